@@ -1,5 +1,5 @@
-//! Linear systems with the equations of rods and supports: the one solver for search directions, projections of
-//! velocities, forces of supports and certificates.
+//! Linear systems with the equations of rods and supports: the one solver for search directions, projections
+//! of velocities, forces of supports and certificates.
 
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
@@ -28,6 +28,11 @@ impl RowValues {
     pub(crate) fn clear(&mut self) {
         self.rods.fill(0.0);
         self.supports.fill(Vector3::zeros());
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.rods.iter_mut().for_each(|a| *a *= factor);
+        self.supports.iter_mut().for_each(|a| *a *= factor);
     }
 
     /// Adds a multiple of other values.
@@ -59,8 +64,9 @@ impl RowValues {
 /// H y - A^T m = f,   A y = r
 /// ```
 ///
-/// for `y` (`3V`, zero at pinned vertices) and the multipliers `m`, where `A` has the rows `G` of the rods and `J` of
-/// those vertex constraints that are equalities, by way of the factorised matrix `K = H + A^T R A` with penalties `R`.
+/// for `y` (`3V`, zero at pinned vertices) and the multipliers `m`, where `A` has the rows `G` of the rods
+/// and `J` of those vertex constraints that are equalities, by way of the factorised matrix `K = H + A^T R A`
+/// with penalties `R`.
 ///
 /// With `K y = f + A^T (m + R r)` for given multipliers the equations have the residual `r - A y`. It vanishes
 /// for `m + dm` with
@@ -70,16 +76,17 @@ impl RowValues {
 /// ```
 ///
 /// The eigenvalues of `R S` lie between 0 and 1, nearly all of them close to 1: the method of multipliers,
-/// `dm = R (r - A y)`, is one Richardson iteration ([`ConstrainedSolver::pass`]). Conjugate gradients preconditioned by
-/// `R` ([`ConstrainedSolver::improve`]) need about one iteration, which is one solve with the factorisation at hand, for
-/// each eigenvalue that is not close to 1. These belong to nearly dependent equations. (M. Fortin and R. Glowinski,
-/// "Augmented Lagrangian Methods", 1983, chapter 2.)
+/// `dm = R (r - A y)`, is one Richardson iteration ([`ConstrainedSolver::pass`]). Conjugate gradients
+/// preconditioned by `R` ([`ConstrainedSolver::improve`]) need about one iteration, which is one solve with
+/// the factorisation at hand, for each eigenvalue that is not close to 1. These belong to nearly dependent
+/// equations. (M. Fortin and R. Glowinski, "Augmented Lagrangian Methods", 1983, chapter 2.)
 ///
-/// Where the equations depend on each other and `H = s^2 M`, passes are iterated Tikhonov regularisation of the least
-/// squares of `r - A y` (Engl, Hanke and Neubauer, "Regularization of Inverse Problems", 1996, Sec. 5.1).
+/// Where the equations depend on each other and `H = s^2 M`, passes are iterated Tikhonov regularisation of
+/// the least squares of `r - A y` (Engl, Hanke and Neubauer, "Regularization of Inverse Problems", 1996, Sec.
+/// 5.1).
 ///
-/// Where `K` is factorised without its far couplings, the iterations are those of that matrix, which differs from `K`
-/// across the rods alone.
+/// Where `K` is factorised without its far couplings, the iterations are those of that matrix, which differs
+/// from `K` across the rods alone.
 #[derive(Debug)]
 pub(crate) struct ConstrainedSolver {
     /// `r - A y`.
@@ -146,8 +153,9 @@ impl ConstrainedSolver {
         self.residual.add(-1.0, &self.image);
     }
 
-    /// Improves multipliers and `y` by conjugate gradients. `y` and the residual are those of the multipliers; `y`
-    /// becomes stationary with the multipliers. Returns the residual that is left, as a strain.
+    /// Improves multipliers and `y` by conjugate gradients. `y` and the residual are those of the
+    /// multipliers; `y` becomes stationary with the multipliers. Returns the residual that is left, as a
+    /// strain.
     pub(crate) fn improve(
         &mut self,
         system: &mut ConstrainedSystem<'_>,
@@ -160,8 +168,10 @@ impl ConstrainedSolver {
             if self.violation(system) <= goal.violation {
                 break;
             }
-            let square = system.weighted_square(&self.residual);
-            system.weigh(&self.residual, square / previous, &mut self.direction);
+            system.weigh(&self.residual, &mut self.image);
+            let square = self.image.dot(&self.residual);
+            self.direction.scale(square / previous);
+            self.direction.add(1.0, &self.image);
             previous = square;
             let length = square / self.respond(system);
             if !(length > 0.0 && length <= goal.longest) {
@@ -174,15 +184,20 @@ impl ConstrainedSolver {
                 break;
             }
         }
-        system.weigh(&self.residual, 0.0, &mut self.direction);
-        self.multipliers.add(1.0, &self.direction);
+        self.update(system);
         self.violation(system)
     }
 
-    /// Improves multipliers and `y` by one iteration of the method of multipliers. Of an error in the direction of a
-    /// singular value `s` of `R^1/2 A H^-1/2` the part `1 / (1 + s^2)` is left.
+    /// Replaces the multipliers by their first-order estimates, `m + R (r - A y)`.
+    pub(crate) fn update(&mut self, system: &ConstrainedSystem<'_>) {
+        system.weigh(&self.residual, &mut self.direction);
+        self.multipliers.add(1.0, &self.direction);
+    }
+
+    /// Improves multipliers and `y` by one iteration of the method of multipliers. Of an error in the
+    /// direction of a singular value `s` of `R^1/2 A H^-1/2` the part `1 / (1 + s^2)` is left.
     pub(crate) fn pass(&mut self, system: &mut ConstrainedSystem<'_>, y: &mut [f64]) {
-        system.weigh(&self.residual, 0.0, &mut self.direction);
+        system.weigh(&self.residual, &mut self.direction);
         self.respond(system);
         self.advance(1.0, y);
     }
@@ -232,13 +247,13 @@ impl ConstrainedSystem<'_> {
     pub(crate) fn apply(&self, y: &[f64], out: &mut RowValues) {
         let [x, _] = self.rods();
         self.model.rods().apply(x, y, &mut out.rods);
-        if let SupportRows::Equalities { rows, .. } = self.supports {
-            for (i, o) in out.supports.iter_mut().enumerate() {
-                *o = match rows.equality_penalty(i) {
-                    Some(_) => rows.local(i).jacobian * point(y, rows.vertex(i)),
-                    None => Vector3::zeros(),
-                };
-            }
+        for (i, o) in out.supports.iter_mut().enumerate() {
+            *o = match self.supports {
+                SupportRows::Equalities { rows, .. } if rows.equality_penalty(i).is_some() => {
+                    rows.local(i).jacobian * point(y, rows.vertex(i))
+                }
+                _ => Vector3::zeros(),
+            };
         }
     }
 
@@ -255,30 +270,20 @@ impl ConstrainedSystem<'_> {
         }
     }
 
-    /// Sets `out` to `R values` and the given part of itself.
-    fn weigh(&self, values: &RowValues, part: f64, out: &mut RowValues) {
+    /// Sets `out = R values`.
+    fn weigh(&self, values: &RowValues, out: &mut RowValues) {
         let [_, penalties] = self.rods();
         for (o, (v, r)) in out.rods.iter_mut().zip(values.rods.iter().zip(penalties)) {
-            *o = r * v + part * *o;
+            *o = r * v;
         }
-        if let SupportRows::Equalities { rows, penalty } = self.supports {
-            for (i, o) in out.supports.iter_mut().enumerate() {
-                let r = penalty * rows.equality_penalty(i).unwrap_or(0.0);
-                *o = r * values.supports[i] + part * *o;
+        match self.supports {
+            SupportRows::None => out.supports.fill(Vector3::zeros()),
+            SupportRows::Equalities { rows, penalty } => {
+                for (i, o) in out.supports.iter_mut().enumerate() {
+                    let own = rows.equality_penalty(i).unwrap_or(0.0);
+                    *o = penalty * own * values.supports[i];
+                }
             }
         }
-    }
-
-    /// The product of `values` and `R values`.
-    fn weighted_square(&self, values: &RowValues) -> f64 {
-        let [_, penalties] = self.rods();
-        let rods = values.rods.iter().zip(penalties);
-        let mut sum = rods.fold(0.0, |sum, (v, r)| sum + r * v * v);
-        if let SupportRows::Equalities { rows, penalty } = self.supports {
-            for (i, v) in values.supports.iter().enumerate() {
-                sum += penalty * rows.equality_penalty(i).unwrap_or(0.0) * v.norm_squared();
-            }
-        }
-        sum
     }
 }

@@ -334,7 +334,7 @@ impl Substeps<'_, '_> {
 
     /// Proposes a sub-step of `h` seconds within the limit of the effort.
     fn attempt(&mut self, h: f64) -> Result<(), StepError> {
-        // A sheet has to follow what moves: there, shorter steps do not spare it what it buckles under.
+        // A sheet has to follow bodies and supports that move, and buckles under them in shorter steps too.
         let can_be_divided = self.lengths.can_halve(self.engine.control.min_fraction);
         let phases = match self.lengths.is_whole() && can_be_divided {
             true if self.engine.surroundings_rest(self.lengths.end()) => Phases::Brief,

@@ -170,7 +170,7 @@ impl ResidualMomentum {
             if matrix.factorize().is_err() {
                 continue;
             }
-            let mut system = ConstrainedSystem {
+            let system = ConstrainedSystem {
                 model,
                 matrix: &mut matrix,
                 supports: SupportRows::Equalities {
@@ -192,7 +192,7 @@ impl ResidualMomentum {
                 system.matrix.solve(model, &free, &mut y);
                 solver.residual.clear();
                 solver.subtract(&system, &y);
-                solver.pass(&mut system, &mut y);
+                solver.update(&system);
             }
             for (p, f) in shares.pins.iter_mut().zip(&left) {
                 *p += f;

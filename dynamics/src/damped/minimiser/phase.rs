@@ -107,10 +107,10 @@ impl Phase {
     /// second row. Slivers begin with it without contact, with its own multipliers of the step before. At rest and
     /// without contact the last row would repeat the second one.
     ///
-    /// A whole step of rods in contact with bodies at rest tries the first two rows, each with the iterations of the first one, and is
-    /// divided where both fail: sheets that buckle, or touch while they are exactly flat, take fewer iterations in
-    /// its parts. (Sheets of 289 vertices that fall onto a table take 2000 to 3000 factorisations in half a second, and
-    /// 3000 to 12 000 where whole steps try all rows.)
+    /// A whole step of rods in contact with bodies at rest tries the first two rows, each with the iterations
+    /// of the first one, and is divided where both fail: sheets that buckle, or touch while they are exactly
+    /// flat, take fewer iterations in its parts. (Sheets of 289 vertices that fall onto a table take 2000 to
+    /// 3000 factorisations in half a second, and 3000 to 12 000 where whole steps try all rows.)
     pub(super) fn table(
         problem: &StepProblem<'_>,
         faces: Faces,

@@ -221,3 +221,29 @@ fn supports_are_equations_like_rods() {
     let errors = residuals(&model, &x, (&loaded, &values), &outcome);
     assert!(errors.iter().all(|e| *e < 1e-11), "{errors:?}");
 }
+
+#[test]
+fn a_broken_system_leaves_nothing_behind() {
+    let (model, x) = model(0.05);
+    let (_, values) = load(&model, &x);
+    let penalties = penalties(&model, 10.0);
+    let mut matrix = PrimalMatrix::new(&model).unwrap();
+    matrix.assemble(&model, &x, &penalties, &vec![0.0; penalties.len()]);
+    matrix.factorize().unwrap();
+    let mut system = ConstrainedSystem {
+        model: &model,
+        matrix: &mut matrix,
+        supports: SupportRows::None,
+    };
+    let pass = |solver: &mut ConstrainedSolver, system: &mut ConstrainedSystem<'_>| {
+        let mut y = vec![0.0; x.len()];
+        solver.residual.rods.copy_from_slice(&values);
+        solver.pass(system, &mut y);
+        y
+    };
+    let mut solver = ConstrainedSolver::new(&model);
+    let first = pass(&mut solver, &mut system);
+    solver.residual.rods.fill(f64::NAN);
+    solver.pass(&mut system, &mut vec![0.0; x.len()]);
+    assert_eq!(pass(&mut solver, &mut system), first);
+}
