@@ -2,14 +2,13 @@
 
 use crate::bundle_view::{self, BundleViewArgs};
 use crate::condition::{self, ConditionArgs};
+use crate::cost::{self, CostArgs};
 use crate::failure::EXIT_CODES;
 use crate::gallery::{self, GalleryArgs};
 use crate::hard_cases::{self, HardCasesArgs};
 use crate::locking::{self, LockingArgs};
 use crate::measured::{self, MeasuredArgs};
 use crate::reproduce::{self, ReproduceArgs};
-use crate::scale::{self, ScaleArgs};
-use crate::speed_vs_error::{self, SpeedArgs};
 use crate::tuning::{self, TuningArgs};
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -36,21 +35,14 @@ pub(crate) enum Command {
     ///
     /// Writes DIR/condition.csv and DIR/condition.svg and prints the table.
     ConditionTable(ConditionArgs),
-    /// Measure time against errors: every method on every problem, the hanging sheet and the tablecloth of
-    /// other programs, the linear solvers
+    /// Measure time against errors: every method on every problem, the scenes of other programs, the linear solvers,
+    /// single steps over the sizes of meshes, and whole runs at the sizes that people use
     ///
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already
-    /// there and was made by the same program with the same effort is kept. Times are wall times on one core:
-    /// leave the machine alone meanwhile. The exit code is 0 unless an order or a length is not as the
-    /// documentation says.
-    SpeedVsError(SpeedArgs),
-    /// Measure what steps and whole runs cost as the mesh is refined, without and with contact: time, memory,
-    /// fill, fitted powers
-    ///
-    /// Writes DIR/scale.html (self-contained), DIR/scale.csv, DIR/draping.csv, DIR/runs.csv, DIR/scale.svg
-    /// and DIR/scale.png and prints the tables. What was measured is kept, as in `reproduce-figures`. The exit
-    /// code is 0 unless a count, a length or a gap is not as it has to be.
-    Scale(ScaleArgs),
+    /// there and was made by the same program with the same effort is kept, row by row; `--works w1,w2e --force`
+    /// runs some rows anew. Times are CPU seconds: leave the machine alone meanwhile. The exit code is 0 unless an
+    /// order, a length, a gap or a count is not as the documentation says.
+    Cost(CostArgs),
     /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks
     /// with references
     ///
@@ -91,8 +83,7 @@ impl Command {
         match self {
             Self::ReproduceFigures(args) => reproduce::run(args),
             Self::ConditionTable(args) => condition::run(args),
-            Self::SpeedVsError(args) => speed_vs_error::run(args),
-            Self::Scale(args) => scale::run(args),
+            Self::Cost(args) => cost::run(args),
             Self::Locking(args) => locking::run(args),
             Self::Tuning(args) => tuning::run(args),
             Self::HardCases(args) => hard_cases::run(args),

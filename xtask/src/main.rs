@@ -2,8 +2,8 @@
 //!
 //! * `reproduce-figures`: the figures and the table of Liu, Tang and Joneja 2007, made with this workspace.
 //! * `condition-table`: the condition numbers of the system coordinates.
-//! * `speed-vs-error`: time against errors of all methods and solvers.
-//! * `scale`: time, memory and fill of a step, and the cost of whole runs, against the size of the mesh.
+//! * `cost`: time against errors of all methods and solvers, time and memory of steps against the size of the mesh,
+//!   whole runs at the sizes that people use.
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
 //! * `measured`: what the reports measured, as numbers of the book and the README.
@@ -13,6 +13,7 @@
 mod bundle_view;
 mod cli;
 mod condition;
+mod cost;
 mod draw;
 mod failure;
 mod figures;
@@ -26,12 +27,9 @@ mod progress;
 mod report;
 mod reproduce;
 mod runs;
-mod scale;
 mod selection;
-mod speed_vs_error;
 mod store;
 mod threads;
-mod timing;
 mod tuning;
 
 use clap::Parser;

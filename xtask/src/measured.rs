@@ -14,13 +14,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The reports that write what they measured.
-const REPORTS: [&str; 7] = [
+const REPORTS: [&str; 6] = [
     "condition-table",
+    "cost",
     "hard-cases",
     "locking",
     "reproduce-figures",
-    "scale",
-    "speed-vs-error",
     "tuning",
 ];
 
@@ -104,11 +103,11 @@ mod tests {
 
     #[test]
     fn blocks_are_filled_and_the_rest_is_kept() {
-        let text = "a\n<!-- measured: scale steps -->\nold\nolder\n<!-- /measured -->\nb\n";
+        let text = "a\n<!-- measured: cost steps -->\nold\nolder\n<!-- /measured -->\nb\n";
         let part = |report: &str, name: &str| Ok(format!("{report}, {name}\nnew"));
         let new = filled(text, &part).unwrap();
         let expected =
-            "a\n<!-- measured: scale steps -->\nscale, steps\nnew\n<!-- /measured -->\nb\n";
+            "a\n<!-- measured: cost steps -->\ncost, steps\nnew\n<!-- /measured -->\nb\n";
         assert_eq!(new, expected);
         assert_eq!(filled(&new, &part).unwrap(), new);
     }

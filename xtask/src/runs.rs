@@ -1,5 +1,6 @@
 //! Runs: their course, and those that figures are made of, made once and recorded in DIR/runs.
 
+mod bumped;
 mod chart_run;
 mod course;
 mod ensemble;
@@ -9,6 +10,9 @@ mod record;
 mod scene;
 mod shape;
 
+pub(crate) use bumped::{
+    BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table, raised,
+};
 pub(crate) use chart_run::{ChartSummary, chart_run};
 pub(crate) use course::{Course, Ending, Plan, unseen};
 pub(crate) use ensemble::{Member, ensemble};

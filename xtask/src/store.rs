@@ -163,6 +163,15 @@ impl Store {
         self.root.join(RECORDS).join(name)
     }
 
+    /// Files that a report makes of several units, and that no stamp lists.
+    pub(crate) fn files(&self) -> Files<'_> {
+        let entries = Vec::new();
+        Files {
+            store: self,
+            entries,
+        }
+    }
+
     /// The path of a file.
     pub(crate) fn path(&self, file: &str) -> PathBuf {
         self.root.join(file)
@@ -203,10 +212,7 @@ impl Store {
         interrupt::check()?;
         let path = self.record(&format!("{}.json", unit.name));
         remove(&path)?;
-        let mut files = Files {
-            store: self,
-            entries: Vec::new(),
-        };
+        let mut files = self.files();
         let found = work(&mut files).with_context(|| unit.title.clone())?;
         let stamp = Stamp {
             options: unit.options.clone(),

@@ -203,7 +203,7 @@ fn refuses_what_makes_no_sense_before_any_work() {
     assert_eq!(run(&["condition-table", "--level", "9"], &out).0, Some(2));
     // An unknown name is answered with the nearest one.
     for (args, name) in [
-        (["speed-vs-error", "--problems", "pendulm"], "'pendulum'"),
+        (["cost", "--parts", "pendulm"], "'pendulum'"),
         (["locking", "--yardsticks", "clamp"], "'clamped'"),
         (["hard-cases", "--cases", "flat"], "'flat-start'"),
         (
@@ -319,9 +319,9 @@ fn ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on() {
 }
 
 #[test]
-fn speed_vs_error_measures_parts_and_keeps_them() {
+fn cost_measures_parts_and_works_and_keeps_them() {
     let (_keep, out) = folder();
-    let run = |list| run(&["speed-vs-error", "--quick", "--problems", list], &out);
+    let run = |list| run(&["cost", "--quick", "--works", "w1", "--parts", list], &out);
     let (code, text) = run("triangle,solvers");
     assert_eq!(code, Some(0), "{text}");
     let files = [
@@ -330,27 +330,31 @@ fn speed_vs_error_measures_parts_and_keeps_them() {
         "plots/triangle.png",
         "tables/solvers.csv",
         "plots/solvers.png",
+        "plots/works.png",
         "index.html",
     ];
     assert_written(&out, 500, &files);
     let (code, text) = run("hanging,triangle");
     assert_eq!(code, Some(0), "{text}");
-    assert_eq!(text.matches("up to date").count(), 1, "{text}");
+    assert_eq!(text.matches("up to date").count(), 2, "{text}");
     let page = read(out.join("index.html"));
-    for part in ["id=\"triangle\"", "id=\"hanging\"", "id=\"solvers\""] {
-        assert!(page.contains(part), "{part} is missing");
+    for part in ["triangle", "hanging", "solvers", "works"].map(|id| format!("id=\"{id}\"")) {
+        assert!(page.contains(&part), "{part} is missing");
     }
     assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("NaN"));
     let (code, text) = run("moon");
     assert_eq!(code, Some(2), "{text}");
-    assert!(text.contains("hanging, tablecloth, solvers"), "{text}");
+    assert!(
+        text.contains("hanging, tablecloth, solvers, steps"),
+        "{text}"
+    );
 }
 
 #[test]
 fn matrices_are_written_for_other_programs() {
     let (_keep, out) = folder();
     let result = xtask()
-        .args(["speed-vs-error", "--quick", "--matrices"])
+        .args(["cost", "--quick", "--matrices"])
         .arg(&out)
         .output()
         .unwrap();

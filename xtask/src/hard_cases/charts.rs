@@ -9,7 +9,7 @@ use crate::draw::spatial::{norm, sub};
 use crate::interrupt;
 use crate::methods::{energy_momentum, methods, rattle_composition};
 use crate::report::{Cell, Effort, Table, number};
-use crate::timing::{bumped, corner, hanging};
+use crate::runs::{bumped, corner, hanging};
 use anyhow::Result;
 use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::placement::{place_f, place_on_line};

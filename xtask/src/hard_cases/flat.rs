@@ -8,7 +8,7 @@ use crate::interrupt;
 use crate::methods::{Named, conservative, damped, methods};
 use crate::report::{Effort, Picture};
 use crate::runs::Course;
-use crate::timing::{bumped, corner};
+use crate::runs::{bumped, corner};
 use anyhow::Result;
 use isosheet_coords::{
     AssignmentOptions, CartesianChart, ChartError, Choice, FrontChart, RodSystem, mass_condition,

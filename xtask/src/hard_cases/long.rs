@@ -8,7 +8,7 @@ use super::{Case, Findings, Shortfall, log_log};
 use crate::draw::Series;
 use crate::methods::{energy_momentum, methods};
 use crate::report::{Effort, number};
-use crate::timing::{bumped, hanging};
+use crate::runs::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{Simulation, State};
 use isosheet_mesh::generate;

@@ -7,7 +7,7 @@ use super::scenes::{
 use super::{Case, Findings, Shortfall};
 use crate::methods::{damped, methods};
 use crate::report::{Effort, number};
-use crate::timing::bumped;
+use crate::runs::bumped;
 use anyhow::Result;
 use isosheet_coords::{BentState, bent_square};
 use isosheet_dynamics::{Potential, PotentialShape, SheetModel};

@@ -8,7 +8,7 @@ use super::{Case, Findings, Shortfall};
 use crate::methods::{conservative, damped, energy_momentum, methods};
 use crate::report::{Effort, Table, number};
 use crate::runs::Course;
-use crate::timing::{bumped, corner};
+use crate::runs::{bumped, corner};
 use anyhow::{Result, bail};
 use isosheet_dynamics::{Method, SheetModel, Simulation};
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, generate};

@@ -2,8 +2,8 @@
 
 use crate::draw::Viewpoint;
 use crate::interrupt::Interrupted;
+use crate::runs::bumped;
 use crate::runs::{Course, Plan};
-use crate::timing::bumped;
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepReport};
 use isosheet_mesh::{MassKind, Sheet, VertexId};

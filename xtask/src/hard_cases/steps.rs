@@ -7,7 +7,7 @@ use crate::draw::Series;
 use crate::methods::{Named, damped, methods};
 use crate::report::{Effort, number};
 use crate::runs::Course;
-use crate::timing::{bumped, hanging};
+use crate::runs::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State, leave_flat};
 use isosheet_mesh::{MassKind, Sheet};

@@ -10,7 +10,7 @@ use super::scene::Scene;
 use crate::draw::{Axis, Charts, superscript};
 use crate::report::Table;
 use crate::runs::Plan;
-use crate::timing::{BUMP, raised};
+use crate::runs::{BUMP, raised};
 use anyhow::Result;
 use isosheet_dynamics::project_positions;
 use isosheet_mesh::{Sheet, VertexId, generate};

@@ -65,9 +65,4 @@ impl Cost {
     pub(crate) fn cpu_per_step(&self) -> Option<f64> {
         self.per_step(self.cpu)
     }
-
-    /// Wall seconds for a factorisation and all that belongs to it.
-    pub(crate) fn wall_per_factorisation(&self) -> Option<f64> {
-        (self.factorisations > 0).then(|| self.wall / self.factorisations as f64)
-    }
 }

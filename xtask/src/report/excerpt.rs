@@ -124,7 +124,7 @@ mod tests {
             Part::table("sizes", &table),
             Part::list("said", &["one".into(), "x < y".into()]),
         ];
-        let file = to_markdown("scale", "Measured.", &parts);
+        let file = to_markdown("cost", "Measured.", &parts);
         assert_eq!(part(&file, "origin"), Some("Measured."));
         let sizes = "a \\| b\n\n| x m |\n|---|\n| 1.5 |\n| 2.0e-9 |";
         assert_eq!(part(&file, "sizes"), Some(sizes));
@@ -134,9 +134,9 @@ mod tests {
 
     #[test]
     fn the_origin_names_command_commit_and_machine() {
-        let text = origin("scale", Effort::Full);
+        let text = origin("cost", Effort::Full);
         assert!(
-            text.starts_with("Measured by `cargo xtask scale --full` at commit "),
+            text.starts_with("Measured by `cargo xtask cost --full` at commit "),
             "{text}"
         );
         assert!(!commit().is_empty() && text.contains(&machine()));
