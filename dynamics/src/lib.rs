@@ -80,6 +80,7 @@ pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use material::elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheetError};
 pub use material::plate_bending::{PlateBending, PlateBendingError};
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
+pub use model::air::{Air, AirError, Wind};
 pub use model::clamps::ClampAcrossMesh;
 pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};

@@ -6,9 +6,9 @@ use isosheet_dynamics::chart::{ChartMethod, ChartOptions, ChartStepControl};
 use isosheet_dynamics::constraint::{Line, Plane, Side};
 use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{
-    Checkpoint, CheckpointError, CreaseSprings, Fallback, ImplicitOptions, Method, PointProfile,
-    Profile, RigidDisplacement, SheetModel, Simulation, SimulationError, State, StepControl,
-    VertexConstraint,
+    Air, Checkpoint, CheckpointError, CreaseSprings, Fallback, ImplicitOptions, Method,
+    PointProfile, Profile, RigidDisplacement, SheetModel, Simulation, SimulationError, State,
+    StepControl, VertexConstraint,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::Isometry3;
@@ -195,6 +195,33 @@ fn so_do_drives_constraints_creases_and_a_fallback() {
             Simulation::new(model(), state, method.clone())
                 .and_then(|s| s.with_control(control.clone()))
                 .expect("valid")
+        };
+        compare(name, start, model);
+    }
+}
+
+#[test]
+fn a_sheet_in_gusts_goes_on_bit_for_bit() {
+    let sheet = bumped(1);
+    let gusts = |mean: f64, frequency: f64| Profile::Sine {
+        mean,
+        amplitude: 3.0,
+        frequency,
+        phase: 0.3,
+    };
+    let model = || {
+        let wind = [gusts(4.0, 2.0), gusts(0.0, 3.1), 0.5.into()].into();
+        let air = Air {
+            wind,
+            ..Air::default()
+        };
+        let pinned = plain(&sheet).with_pins(&[VertexId(20)]).expect("exists");
+        pinned.with_air(air).expect("valid")
+    };
+    for (name, method) in methods() {
+        let start = || {
+            let state = State::at_rest(sheet.positions().to_vec());
+            Simulation::new(model(), state, method.clone()).expect("valid")
         };
         compare(name, start, model);
     }

@@ -1,5 +1,6 @@
 //! Tests that span several crates.
 
+mod air;
 mod balance;
 mod broken_motions;
 mod buckling;

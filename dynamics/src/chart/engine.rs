@@ -110,7 +110,7 @@ impl ChartEngine {
             t,
             source: Box::new(source),
         };
-        let has_forces = !chart.mechanics().model().forces().is_empty();
+        let has_forces = chart.mechanics().model().has_applied_forces();
         let mut applied = vec![0.0; if has_forces { state.x.len() } else { 0 }];
         let limit = chart.options().max_steps;
         let outcome = loop {

@@ -293,8 +293,9 @@ impl ChartMechanics {
         for (f, r) in force.iter_mut().zip(&w.reduced) {
             *f += r;
         }
-        if !self.model.forces().is_empty() {
-            self.model.whole_applied_force(t, x, v, &mut w.full);
+        if self.model.has_applied_forces() {
+            w.full.fill(0.0);
+            self.model.add_applied_force(t, x, v, &mut w.full);
             self.system.gather(&w.full, &mut w.reduced);
             for (f, r) in force.iter_mut().zip(&w.reduced) {
                 *f += r;

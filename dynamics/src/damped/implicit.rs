@@ -1,5 +1,6 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
+use crate::damped::air_step::Formula;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
 use crate::step::effort::SolverEffort;
@@ -124,18 +125,27 @@ fn two_step(
     let b = w * w / (1.0 + 2.0 * w);
     let k = (1.0 + w) / (1.0 + 2.0 * w);
     let before = previous.unwrap_or(state);
+    let formula = previous.map_or(Formula::OneStep, |_| Formula::TwoStep);
     let model = scene.model;
+    minimiser
+        .recall(model, &attempt, k * h)
+        .map_err(|source| StepError::Linalg { t: state.t, source })?;
+    if let Some(air) = &mut minimiser.air {
+        air.begin(model, state, (h, k * h), |i| {
+            state.x[i] + b * (state.x[i] - before.x[i])
+        })?;
+    }
     // The minimiser lends its arrays to the problem.
     let mut applied = std::mem::take(&mut minimiser.applied);
     let mut prediction = std::mem::take(&mut minimiser.prediction);
-    model.applied_force(state.t, &state.x, &state.v, &mut applied);
+    let air = minimiser.air.take();
+    applied.fill(0.0);
+    model.add_explicit_force(state.t, &state.x, &state.v, &mut applied);
+    model.clear_pinned(&mut applied);
     for i in 0..state.x.len() {
         let (x, v) = (state.x[i], state.v[i]);
         prediction[i] = x + b * (x - before.x[i]) + k * h * (v + b * (v - before.v[i]));
     }
-    minimiser
-        .recall(model, &attempt, k * h)
-        .map_err(|source| StepError::Linalg { t: state.t, source })?;
     let problem = StepProblem {
         model,
         contact: scene.contact,
@@ -144,10 +154,12 @@ fn two_step(
         h: k * h,
         prediction: &prediction,
         applied: &applied,
+        air: air.as_ref(),
         phases: attempt.phases,
     };
     let outcome = minimiser.minimise(problem, effort);
     (minimiser.applied, minimiser.prediction) = (applied, prediction);
+    minimiser.air = air;
     let (minimum, contact) = outcome?;
     let solver = &mut proposal.solver;
     let mut work = 0.0;
@@ -164,6 +176,10 @@ fn two_step(
     proposal.account = StepAccount {
         residual: minimum.residual,
         work,
+        air: match &mut minimiser.air {
+            Some(air) => air.work(model, state, formula, &solver.state.x),
+            None => 0.0,
+        },
         outcome: minimum.outcome,
         contact,
     };

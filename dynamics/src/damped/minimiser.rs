@@ -10,6 +10,7 @@ mod tests;
 mod workspace;
 
 use crate::contact::{ContactState, ContactWork};
+use crate::damped::air_step::AirStep;
 use crate::step::effort::SolverEffort;
 use crate::step::history::History;
 use crate::step::integrator::Attempt;
@@ -41,6 +42,8 @@ pub(crate) struct Minimiser {
     pub(crate) prediction: Vec<f64>,
     /// Non-conservative forces, constant over the step.
     pub(crate) applied: Vec<f64>,
+    /// The air, in scenes that name it.
+    pub(crate) air: Option<AirStep>,
 }
 
 impl Minimiser {
@@ -55,6 +58,7 @@ impl Minimiser {
             faces: Faces::of(model, tuning),
             prediction: vec![0.0; n],
             applied: vec![0.0; n],
+            air: model.air_on_faces().map(|_| AirStep::default()),
         })
     }
 

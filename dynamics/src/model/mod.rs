@@ -1,8 +1,10 @@
 //! The mechanical system: rods, masses, pins, potentials and forces.
 
+pub(crate) mod air;
 pub(crate) mod clamps;
 #[cfg(test)]
 mod derivative_tests;
+mod error;
 pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;
@@ -16,79 +18,10 @@ use crate::State;
 use crate::constraint::VertexConstraint;
 use crate::material::elastic_sheet::{ElasticSheet, strain_barrier};
 use crate::model::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
-use crate::motion::MotionError;
-use isosheet_mesh::wording::given;
-use isosheet_mesh::{
-    Advice, LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
-};
+use air::{Air, AirOnFaces};
+pub use error::ModelError;
+use isosheet_mesh::{LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
 use support::MovingPin;
-
-/// Why a model cannot be built.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ModelError {
-    /// The mass does not fit the sheet.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    /// The mass matrix belongs to another sheet.
-    #[error("the mass matrix is for {masses} vertices, the sheet has {vertex_count}")]
-    MassLength {
-        /// Vertices of the mass matrix.
-        masses: usize,
-        /// Vertices of the sheet.
-        vertex_count: usize,
-    },
-    /// A vertex has no mass.
-    #[error("{vertex} has mass {mass} kg", mass = given(*mass))]
-    Mass {
-        /// The vertex.
-        vertex: VertexId,
-        /// Its mass.
-        mass: f64,
-    },
-    /// A pinned vertex does not exist.
-    #[error("{vertex} is pinned, but the sheet has only {vertex_count} vertices")]
-    NoSuchVertex {
-        /// The vertex.
-        vertex: VertexId,
-        /// Number of vertices.
-        vertex_count: usize,
-    },
-    /// A prescribed motion cannot be used.
-    #[error("the motion prescribed for {vertex} cannot be used: {source}")]
-    Motion {
-        /// The vertex that is pinned or constrained.
-        vertex: VertexId,
-        /// What is wrong with its motion.
-        source: MotionError,
-    },
-    /// The elastic sheet belongs to another sheet.
-    #[error("the elastic sheet is made for {found} faces, the sheet has {face_count}")]
-    ElasticSheet {
-        /// Faces that it was built for.
-        found: usize,
-        /// Faces of the sheet.
-        face_count: usize,
-    },
-    /// The damping rate is negative or not finite.
-    #[error("damping rate is {rate}", rate = given(*rate))]
-    Damping {
-        /// The rate given, 1/s.
-        rate: f64,
-    },
-}
-
-impl Advice for ModelError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::Mesh(error) => error.advice(),
-            Self::MassLength { .. } | Self::ElasticSheet { .. } => Some("build it for this sheet"),
-            Self::Mass { .. } => Some("give every vertex that is not pinned a positive mass"),
-            Self::Motion { source, .. } => source.advice(),
-            Self::Damping { .. } => Some("give a finite rate of at least 0 per second"),
-            Self::NoSuchVertex { .. } => None,
-        }
-    }
-}
 
 /// What keeps the lengths of a sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -117,6 +50,7 @@ pub struct SheetModel {
     mass: MassMatrix,
     potentials: Vec<Box<dyn Potential>>,
     forces: Vec<Box<dyn Force>>,
+    air: Option<AirOnFaces>,
     damping: f64,
     free_index: Vec<u32>,
     free_count: usize,
@@ -178,6 +112,7 @@ impl SheetModel {
             mass,
             potentials: Vec::new(),
             forces: Vec::new(),
+            air: None,
             damping: 0.0,
             free_index: (0..n as u32).collect(),
             free_count: n,
@@ -249,6 +184,26 @@ impl SheetModel {
     pub fn with_force(mut self, force: impl Force + 'static) -> Self {
         self.forces.push(Box::new(force));
         self
+    }
+
+    /// Surrounds the sheet with air, in place of any before.
+    ///
+    /// # Errors
+    /// [`ModelError::Air`] if density, a coefficient or a profile makes no sense.
+    pub fn with_air(mut self, air: Air) -> Result<Self, ModelError> {
+        air.validate()?;
+        self.air = Some(AirOnFaces::new(air, &self.topology, self.rods.lengths()));
+        Ok(self)
+    }
+
+    /// The air around the sheet.
+    pub fn air(&self) -> Option<&Air> {
+        self.air.as_ref().map(|on_faces| &on_faces.air)
+    }
+
+    /// The air and the faces that it acts on.
+    pub(crate) fn air_on_faces(&self) -> Option<&AirOnFaces> {
+        self.air.as_ref()
     }
 
     /// Sets the rate `gamma` (1/s) of the velocity damping `v <- v exp(-gamma h)` that follows
@@ -438,18 +393,32 @@ impl SheetModel {
         f.iter_mut().for_each(|v| *v = -*v);
     }
 
-    /// Sum of the non-conservative forces, overwriting `f`; zero at pinned vertices.
+    /// Sum of the non-conservative forces and of that of the air, overwriting `f`; zero at pinned vertices.
     pub(crate) fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.whole_applied_force(t, x, v, f);
+        f.fill(0.0);
+        self.add_applied_force(t, x, v, f);
         self.clear_pinned(f);
     }
 
-    /// As [`SheetModel::applied_force`], at pinned vertices too.
-    pub(crate) fn whole_applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        f.fill(0.0);
+    /// Adds the non-conservative forces and that of the air, at pinned vertices too.
+    pub(crate) fn add_applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.add_explicit_force(t, x, v, f);
+        if let Some(air) = &self.air {
+            air.add_force(t, x, v, f);
+        }
+    }
+
+    /// Adds the non-conservative forces without that of the air, at pinned vertices too: what is constant over
+    /// a step of a method that minimises.
+    pub(crate) fn add_explicit_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         for force in &self.forces {
             force.add_force(t, x, v, f);
         }
+    }
+
+    /// Whether anything but potentials acts on the sheet.
+    pub(crate) fn has_applied_forces(&self) -> bool {
+        !self.forces.is_empty() || self.air.is_some()
     }
 
     /// Whether every potential is linear, so that its force is constant.

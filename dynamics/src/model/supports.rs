@@ -1,6 +1,7 @@
 //! Pins and vertex constraints of a model, and their motions.
 
 use super::{ModelError, PINNED, SheetModel};
+use crate::State;
 use crate::constraint::{ConstrainedVertex, VertexConstraint};
 use crate::model::support::{MovingPin, Support};
 use crate::motion::PointMotion;
@@ -191,6 +192,21 @@ impl SheetModel {
         for pin in &self.moving_pins {
             x[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(&pin.motion.position(t));
         }
+    }
+
+    /// Work of non-conservative forces and air at the pins in motion between two states, joules, by the trapezoidal
+    /// rule: a part of what the pins do passes on to these forces.
+    pub(crate) fn applied_work_at_pins(&self, before: &State, after: &State) -> f64 {
+        if !self.has_applied_forces() || self.moving_pins.is_empty() {
+            return 0.0;
+        }
+        let mut force = vec![0.0; before.x.len()];
+        for State { t, x, v } in [before, after] {
+            self.add_applied_force(*t, x, v, &mut force);
+        }
+        let coordinates = self.moving_pins().flat_map(|v| 3 * v..3 * v + 3);
+        let work = coordinates.map(|i| 0.5 * force[i] * (after.x[i] - before.x[i]));
+        work.sum()
     }
 
     /// The motion of a pin, if one is prescribed.

@@ -547,9 +547,7 @@ impl Simulation {
         let State { t, x, v } = self.state();
         let model = self.model();
         model.potential_force(*t, x, &mut sum);
-        for force in model.forces() {
-            force.add_force(*t, x, v, &mut sum);
-        }
+        model.add_applied_force(*t, x, v, &mut sum);
         let bad = sum.iter().position(|f| !f.is_finite());
         let result = match bad {
             None => Ok(()),

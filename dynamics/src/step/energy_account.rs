@@ -22,6 +22,8 @@ pub(crate) struct EnergyAccount {
 pub(crate) struct Exchange {
     /// Work of the non-conservative forces, joules.
     pub(crate) forces: f64,
+    /// Work of the air, joules.
+    pub(crate) air: f64,
     /// Work of moving pins and vertex constraints, joules.
     pub(crate) supports: f64,
     /// Work of moving bodies, joules.
@@ -47,11 +49,12 @@ impl EnergyAccount {
     ) -> Result<Self, StepError> {
         let kinetic = [&before.v, &after.v].map(|v| model.kinetic_energy(v));
         let potential = [&before.x, &after.x].map(|x| model.potential_energy(after.t, x));
-        let drives = exchange.bodies.abs() + exchange.supports.abs();
+        let drives = exchange.bodies.abs() + exchange.supports.abs() + exchange.air.abs();
         let gain = kinetic[1] + potential[1] + exchange.barrier
             - kinetic[0]
             - potential[0]
             - exchange.forces
+            - exchange.air
             - exchange.supports
             - exchange.bodies;
         if !gain.is_finite() {

@@ -382,6 +382,7 @@ impl Substeps<'_, '_> {
         let step = &proposal.account;
         let mut exchange = Exchange {
             forces: step.work,
+            air: step.air,
             bodies: step.contact.bodies,
             barrier: step.contact.stored,
             length_slack: step.contact.length_slack,
@@ -392,6 +393,7 @@ impl Substeps<'_, '_> {
             let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
             let balance = &proposal.solver.balance;
             exchange.supports = balance.drive_work(model, kept, ends.0, ends.1);
+            exchange.forces += model.applied_work_at_pins(before, after);
         }
         self.pending = Pending {
             account: *account,
@@ -506,7 +508,7 @@ impl Stepping for Substeps<'_, '_> {
         totals.substeps += 1;
         totals.residual = totals.residual.max(step.residual);
         totals.outcome = totals.outcome.max(step.outcome);
-        totals.work += exchange.forces + exchange.supports + exchange.bodies;
+        totals.work += exchange.forces + exchange.air + exchange.supports + exchange.bodies;
         totals.friction += step.contact.friction;
         let dissipated = damp(&engine.model, &mut engine.solver.state, h);
         totals.dissipated += dissipated;

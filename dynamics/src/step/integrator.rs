@@ -43,8 +43,11 @@ pub(crate) struct Proposal {
 pub(crate) struct StepAccount {
     /// Relative residual of the momentum balance.
     pub(crate) residual: f64,
-    /// Work of the non-conservative forces, joules.
+    /// Work of the non-conservative forces at the free vertices, joules; of methods that do not minimise with that of
+    /// the air.
     pub(crate) work: f64,
+    /// Work of the air at the free vertices in a method that minimises, joules.
+    pub(crate) air: f64,
     /// How the sub-step was obtained.
     pub(crate) outcome: StepOutcome,
     /// What contact did; zero without contact.
@@ -113,6 +116,7 @@ impl StepAccount {
         Self {
             residual,
             work,
+            air: 0.0,
             outcome,
             contact: ContactWork::default(),
         }

@@ -1,12 +1,13 @@
 //! Forces of supports on the sheet.
 
-use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::contact::ContactTerms;
+use crate::damped::air_step::AirStep;
 use crate::model::support::Support;
 use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::vectors::{add, point};
+use crate::{SheetModel, State};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -186,7 +187,7 @@ impl Balance {
         self.add_work(share);
     }
 
-    /// Subtracts `share` of the non-conservative forces.
+    /// Subtracts `share` of the non-conservative forces and of that of the air.
     pub(crate) fn add_applied(
         &mut self,
         model: &SheetModel,
@@ -196,10 +197,20 @@ impl Balance {
         share: f64,
     ) {
         self.work.fill(0.0);
-        for force in model.forces() {
-            force.add_force(t, x, v, &mut self.work);
-        }
+        model.add_applied_force(t, x, v, &mut self.work);
         self.add_work(-share);
+    }
+
+    /// Subtracts the non-conservative forces at a state, without that of the air.
+    pub(crate) fn add_explicit(&mut self, model: &SheetModel, State { t, x, v }: &State) {
+        self.work.fill(0.0);
+        model.add_explicit_force(*t, x, v, &mut self.work);
+        self.add_work(-1.0);
+    }
+
+    /// Subtracts the force of the air in a step that ends at `x`.
+    pub(crate) fn add_air(&mut self, air: &AirStep, x: &[f64]) {
+        air.add_gradient(x, 1.0, &mut self.pins);
     }
 
     /// Subtracts the contact forces.

@@ -52,7 +52,7 @@ pub struct StepReport {
     pub kinetic: f64,
     /// Potential energy at the end, contact included, joules.
     pub potential: f64,
-    /// Work since the start, joules, of non-conservative forces, moving bodies and supports, and
+    /// Work since the start, joules, of non-conservative forces, air, moving bodies and supports, and
     /// [driven](crate::Potential::is_driven) potentials.
     pub work: f64,
     /// Energy dissipated by velocity damping since the start, joules.

@@ -154,7 +154,7 @@ tuning! {
     /// Round-off of the energies and of the work, relative to their sizes: the restorations that end a step
     /// leave 1e-12 of the lengths, and forces of rods above the weight do work over that.
     energy_round_off = 1e-9,
-    /// The work of bodies, pins and moving constraints is known to the accuracy of the trapezoidal rule only:
+    /// The work of bodies, pins, moving constraints and air is known to the accuracy of the trapezoidal rule only:
     /// this many times the gain that kinetic energy allows.
     drive_uncertainty = 5.0,
 }

@@ -285,6 +285,9 @@ impl Lagrangian {
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             energy += terms.energy();
         }
+        if let Some(air) = problem.air {
+            energy += air.energy(self.iterate.x());
+        }
         let potential = inertia + h * h * (energy - work);
         let sizes = inertia + h * h * (energy.abs() + work.abs()) + rods.abs() + rod_scale;
         Merit {
@@ -320,6 +323,9 @@ impl Lagrangian {
         self.vertex_rows.add_gradient(&mut self.gradient);
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             terms.add_gradient(h * h, &mut self.gradient);
+        }
+        if let Some(air) = problem.air {
+            air.add_gradient(self.iterate.x(), h * h, &mut self.gradient);
         }
         if self.is_driven(problem) {
             self.add_drive(problem);
@@ -369,6 +375,9 @@ impl Lagrangian {
         };
         for potential in model.potentials() {
             potential.add_hessian(problem.t(), self.iterate.x(), &mut product);
+        }
+        if let Some(air) = problem.air {
+            air.add_hessian(self.iterate.x(), 1.0, &mut product);
         }
     }
 
@@ -445,7 +454,7 @@ impl Lagrangian {
         }
     }
 
-    /// Sets the matrix: masses, rods, vertex constraints and contact.
+    /// Sets the matrix: masses, rods, vertex constraints, contact and air.
     fn assemble(&mut self, problem: &StepProblem<'_>, part: HessianPart) {
         let model = problem.model;
         self.matrix
@@ -455,6 +464,10 @@ impl Lagrangian {
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             self.matrix
                 .add_contact(model, &terms, problem.h * problem.h);
+        }
+        if let Some(air) = problem.air {
+            let x = self.iterate.x();
+            air.add_hessian(x, problem.h * problem.h, &mut self.matrix.sink(model));
         }
     }
 

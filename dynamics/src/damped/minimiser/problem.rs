@@ -1,14 +1,16 @@
 //! The problem of one implicit step.
 
 use crate::contact::StepContact;
+use crate::damped::air_step::AirStep;
 use crate::step::integrator::Phases;
 use crate::{SheetModel, State};
 
-/// Minimise `Phi(x) = |x - x^|_M^2 / 2 + h^2 (V(x, t) + B(x) + D(x - x0) - f . x)` over the positions with
-/// the rest lengths and with the vertex constraints kept at time `t`.
+/// Minimise `Phi(x) = |x - x^|_M^2 / 2 + h^2 (V(x, t) + B(x) + D(x - x0) + R(x) - f . x)` over the positions
+/// with the rest lengths and with the vertex constraints kept at time `t`.
 ///
 /// `x^` is where inertia alone would take the sheet, `V` the potentials, `B` and `D` contact and its
-/// friction, `f` the non-conservative forces at the start of the step.
+/// friction, `R` the incremental potential of the air, `f` the other non-conservative forces at the start of the
+/// step.
 pub(crate) struct StepProblem<'a> {
     /// The sheet.
     pub(crate) model: &'a SheetModel,
@@ -25,6 +27,8 @@ pub(crate) struct StepProblem<'a> {
     pub(crate) prediction: &'a [f64],
     /// Non-conservative forces `f`, `3V`, newtons.
     pub(crate) applied: &'a [f64],
+    /// The air, in scenes that name it.
+    pub(crate) air: Option<&'a AirStep>,
     /// Phases that may be tried.
     pub(crate) phases: Phases,
 }

@@ -60,6 +60,7 @@ impl Scene {
             h: H,
             prediction: &self.prediction,
             applied: &self.applied,
+            air: None,
             phases: Phases::All,
         }
     }
@@ -293,6 +294,7 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
                 h: H,
                 prediction: &state.x,
                 applied: &vec![0.0; state.x.len()],
+                air: None,
                 phases: Phases::All,
             };
             let mut effort = SolverEffort::default();

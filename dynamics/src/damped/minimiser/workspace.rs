@@ -107,8 +107,10 @@ impl Workspace {
             return;
         }
         self.balance.add_potentials(model, problem.t(), x, 1.0);
-        self.balance
-            .add_applied(model, state.t, &state.x, &state.v, 1.0);
+        self.balance.add_explicit(model, state);
+        if let Some(air) = problem.air {
+            self.balance.add_air(air, x);
+        }
         if let Some(terms) = lagrangian.iterate.terms(problem.contact()) {
             self.balance.add_contact(&terms);
         }
