@@ -193,10 +193,14 @@ fn table(all: &[(String, Requirement)]) -> Table {
 fn page(records: &[Record], required: &[(String, Requirement)]) -> Page {
     let mut conclusions = accuracy::fronts(records);
     conclusions.extend(records.iter().flat_map(|r| r.conclusions.clone()));
+    let first = records.iter().position(|r| r.on_front.is_some());
     let body = html! {
-        p { (accuracy::ABOUT) " Machine: " (machine()) "." }
+        p { "Times are CPU seconds where nothing else is said. Machine: " (machine()) "." }
         section { h2 { "Conclusions" } (list(&conclusions)) (table(required)) }
-        @for record in records { (record.section) }
+        @for (k, record) in records.iter().enumerate() {
+            @if first == Some(k) { section { h2 { "Error against time" } p { (accuracy::ABOUT) } } }
+            (record.section)
+        }
     };
     Page::new("Cost and error", body)
 }

@@ -18,11 +18,14 @@ use anyhow::Result;
 use maud::html;
 
 /// What is measured, in words.
-pub(super) const ABOUT: &str = "Every method is run on every problem with ever finer steps. Times are CPU seconds for a simulated second on one core, \
-    set-up left out; short runs are repeated up to five times and the minimum is taken. Position errors are the largest distance of a vertex \
-    from the reference at eight points of time, energy errors the largest change of T + V as part of the largest kinetic energy, strains \
-    the largest relative edge length error. Differences in time below 10 % are noise. Whether a method is on the front is asked of position errors up to 0.05 m and energy errors up to \
-    0.1: coarser runs are cheap, but no motion.";
+pub(super) const ABOUT: &str = "\
+    Every method is run on every problem with ever finer steps. Times are CPU seconds for a simulated \
+    second on one core, set-up left out; short runs are repeated up to five times and the minimum is \
+    taken. Position errors are the largest distance of a vertex from the reference at eight points of \
+    time, energy errors the largest change of T + V as part of the largest kinetic energy, strains the \
+    largest relative edge length error. Differences in time below 10 % are noise. Whether a method is on \
+    the front is asked of position errors up to 0.05 m and energy errors up to 0.1: coarser runs are \
+    cheap, but no motion.";
 
 /// Makes the part of a problem.
 pub(super) fn make(problem: Problem, effort: Effort, files: &mut Files<'_>) -> Result<Record> {

@@ -16,18 +16,23 @@ use maud::html;
 use run::{Mesh, Run};
 
 /// What the hanging sheet is, in words.
-const HANGING: &str = "Square sheet, side 1 m, union-jack mesh M^k, mass 0.1 kg lumped by thirds of the incident areas, horizontal with \
-    z = 1e-3 sin(πx) sin(πy), rest lengths those of the start, corner (0, 1) pinned, gravity 9.8 m/s², no bending stiffness, no contact, no \
-    damping, 1.0 s.";
+const HANGING: &str = "\
+    Square sheet, side 1 m, union-jack mesh M^k, mass 0.1 kg lumped by thirds of the incident areas, \
+    horizontal with z = 1e-3 sin(πx) sin(πy), rest lengths those of the start, corner (0, 1) pinned, \
+    gravity 9.8 m/s², no bending stiffness, no contact, no damping, 1.0 s.";
 
 /// What the tablecloth is, in words.
-const TABLECLOTH: &str = "The sheet of the hanging work, all vertices free, 1 mm above a square table of half its side (a box), 1.5 s, without \
-    friction, by the methods that take contact with steps of 1/60 s; once without and once with contact of the sheet with itself. That nothing penetrates is \
-    checked every tenth of a second apart from the contact code: depth of every vertex in the box, and every edge against every face of the box and, \
-    with self-contact, of the sheet. The energy of the barriers counts: where the sheet starts within their reach they push it up at first.";
+const TABLECLOTH: &str = "\
+    The sheet of the hanging work, all vertices free, 1 mm above a square table of half its side (a \
+    box), 1.5 s, without friction, by the methods that take contact with steps of 1/60 s; once without \
+    and once with contact of the sheet with itself. That nothing penetrates is checked every tenth of a \
+    second apart from the contact code: depth of every vertex in the box, and every edge against every \
+    face of the box and, with self-contact, of the sheet. The energy of the barriers counts: where the \
+    sheet starts within their reach they push it up at first.";
 
 /// Page of the repository on what other programs took for the same scenes.
-const ELSEWHERE: &str = "What other programs took for this scene was measured elsewhere, and not by this command: see \
+const ELSEWHERE: &str = "\
+    What other programs took for this scene was measured elsewhere, and not by this command: see \
     docs/measured-elsewhere.md in the repository.";
 
 /// One of the two scenes, the second one with two kinds of contact.

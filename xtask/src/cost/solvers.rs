@@ -17,6 +17,7 @@ use crate::store::Files;
 use crate::threads;
 use anyhow::Result;
 use body::STIFFNESS;
+use cpu_time::ThreadTime;
 use elimination::elimination;
 use isosheet_coords::linalg::{LinalgError, SparseLdlt, SparseLlt, SparseLu, norm_inf};
 use isosheet_coords::{CartesianChart, Chart, Choice, Linearised, mass_matrix};
@@ -28,13 +29,17 @@ use row::{CRAMER, DENSE_LU, LDLT, MINORS, SCHUR, SOLVERS, SPARSE_LU, SolverRow};
 use std::time::Instant;
 
 /// What is measured, in words.
-const ABOUT: &str = "Free, bent sheets: two triangles (n = 7), then the squares M^0, M^1, ... The task is that of a step: velocities from \
-    momenta, C q' = p, in a Cartesian chart. The dense solvers need C, whose forming is timed by itself; the sparse ones solve \
-    [M G^T; G 0] [v; μ] = [S^T p; 0] for the same velocities. First: symbolic analysis and numeric factorisation; again: numeric factorisation of \
-    new values; solve: one right-hand side. Backward error: |b − A x| / (|A| |x| + |b|) in the largest-entry norm, for the sparse solvers of the \
-    whole saddle-point system, for the dense ones of C; velocity error: against the refined sparse LU. The primal matrix M + r G^T G is that of the \
-    damped methods, which correct its solution as they iterate: it solves the saddle-point system only in the limit, and its errors show what four \
-    steps of the method of multipliers leave. Each time is the minimum over repetitions.";
+const ABOUT: &str = "\
+    Free, bent sheets: two triangles (n = 7), then the squares M^0, M^1, ... The task is that of a step: \
+    velocities from momenta, C q' = p, in a Cartesian chart. The dense solvers need C, whose forming is \
+    timed by itself; the sparse ones solve [M G^T; G 0] [v; μ] = [S^T p; 0] for the same velocities. \
+    First: symbolic analysis and numeric factorisation; again: numeric factorisation of new values; \
+    solve: one right-hand side. Backward error: |b − A x| / (|A| |x| + |b|) in the largest-entry norm, \
+    for the sparse solvers of the whole saddle-point system, for the dense ones of C; velocity error: \
+    against the refined sparse LU. The primal matrix M + r G^T G is that of the damped methods, which \
+    correct its solution as they iterate: it solves the saddle-point system only in the limit, and its \
+    errors show what four steps of the method of multipliers leave. Each time is the minimum over \
+    repetitions.";
 
 /// Makes the part of the linear solvers.
 pub(super) fn make(name: &str, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
@@ -266,7 +271,9 @@ impl<'a> Task<'a> {
             .install(|| shortest(limit, || outcome = factor.factorize()));
         outcome?;
         let mut solution = Vec::new();
-        row.solve = shortest(limit, || solution = self.solve(&mut factor));
+        row.solve = self
+            .one
+            .install(|| shortest(limit, || solution = self.solve(&mut factor)));
         row.backward = Some(self.whole.backward_error(&solution, &self.rhs));
         row.velocity = (name != SPARSE_LU)
             .then(|| self.velocity_error(&solution[..self.body.system.unknowns()]));
@@ -380,13 +387,13 @@ fn minors(c: &DMatrix<f64>, determinant: f64, p: &[f64]) -> DVector<f64> {
     })
 }
 
-/// The shortest time of repeated runs, seconds: at most 20 of them, and no more once a tenth of the limit is
+/// The shortest time of repeated runs, CPU seconds of this thread: at most 20 of them, and no more once a tenth of the limit is
 /// used up.
 fn shortest(limit: f64, mut work: impl FnMut()) -> f64 {
     let mut best = f64::INFINITY;
     let clock = Instant::now();
     for _ in 0..20 {
-        let started = Instant::now();
+        let started = ThreadTime::now();
         work();
         best = best.min(started.elapsed().as_secs_f64());
         if clock.elapsed().as_secs_f64() > 0.1 * limit {

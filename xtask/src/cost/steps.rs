@@ -21,11 +21,14 @@ use orders::OrderRow;
 /// The name of the part.
 pub(super) const NAME: &str = "steps";
 
-const ABOUT: &str = "A square sheet of 1 m and 0.1 kg, the first steps of 0.25 ms by the default method after one of warm-up, on one \
-    thread. Without contact it hangs by a corner from a start that is flat but for a bump of 1 mm; later steps of the fine meshes cost more: \
-    near the flat state the length equations are all but dependent. With contact it has a bump of 0.1 m, all vertices free, above a square \
-    table of half its side that its lowest part touches at once; it touches the table and itself. (A nearly flat cloth on a table needs so many \
-    iterations from 16 641 vertices on that they would hide the price of the size.)";
+const ABOUT: &str = "\
+    A square sheet of 1 m and 0.1 kg, the first steps of 0.25 ms by the default method after one of \
+    warm-up, on one thread. Without contact it hangs by a corner from a start that is flat but for a \
+    bump of 1 mm; later steps of the fine meshes cost more: near the flat state the length equations are \
+    all but dependent. With contact it has a bump of 0.1 m, all vertices free, above a square table of \
+    half its side that its lowest part touches at once; it touches the table and itself. (A nearly flat \
+    cloth on a table needs so many iterations from 16 641 vertices on that they would hide the price of \
+    the size.)";
 
 /// The meshes `M^k` up to a finest one, each kept by itself.
 fn units(store: &Store, finest: u32) -> Vec<(u32, Unit)> {

@@ -1,5 +1,6 @@
 //! A stop-watch around contact.
 
+use cpu_time::ThreadTime;
 use isosheet_dynamics::contact::{
     ActiveContact, BodyMotion, BodyPlace, Contact, ContactError, ContactKey, ContactLaws,
     JointMotion, StepSpan,
@@ -9,9 +10,8 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
-/// Seconds spent in contact.
+/// CPU seconds spent in contact, in simulations on one thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Spent {
     /// Looking for pairs within reach and for the safe part of motions: broad phase and continuous collision
@@ -48,7 +48,7 @@ impl Watch {
 }
 
 fn book<T>(on: &AtomicU64, work: impl FnOnce() -> T) -> T {
-    let clock = Instant::now();
+    let clock = ThreadTime::now();
     let result = work();
     // A run of 500 years would not fit.
     on.fetch_add(clock.elapsed().as_nanos() as u64, Ordering::Relaxed);
