@@ -64,7 +64,7 @@ pub(super) fn table(rows: &[Row]) -> Table {
 fn failure(row: &Row) -> Option<String> {
     let reason = |r: &Run| Some((r.course.time, r.course.failure()?));
     let (time, reason) = row.runs.iter().filter_map(reason).next_back()?;
-    Some(format!("{} s: {}", short(time), rounded(&reason)))
+    Some(format!("at {} s: {}", short(time), rounded(&reason)))
 }
 
 /// The rows of a kind at its sizes.
@@ -97,7 +97,7 @@ pub(super) fn findings(rows: &[Row]) -> Vec<String> {
         }
     }
     for pair in rows.chunk_by(|a, b| (&a.work, &a.size) == (&b.work, &b.size)) {
-        let wall = |r: &Row| r.median(|r| Some(r.course.cost.wall));
+        let wall = |r: &Row| r.median(|r| r.course.rate()).filter(|_| r.is_good());
         if let [one, two] = pair
             && let (Some(alone), Some(shared)) = (wall(one), wall(two))
         {
@@ -113,7 +113,7 @@ pub(super) fn findings(rows: &[Row]) -> Vec<String> {
     }
     let failed: Vec<String> = rows
         .iter()
-        .filter_map(|r| Some(format!("{} {} at {}", r.work, r.size, failure(r)?)))
+        .filter_map(|r| Some(format!("{}, {}", r.name(), failure(r)?)))
         .collect();
     if !failed.is_empty() {
         all.push(format!("Not ended: {}.", failed.join("; ")));
@@ -222,7 +222,7 @@ mod tests {
         let text = findings(&rows).join(" ");
         assert!(
             text.contains("over 81 to 289 vertices")
-                && text.contains("Not ended: w1 M^4 at 1.0 s: 60 s")
+                && text.contains("Not ended: w1 M^4, at 1.0 s: 60 s")
         );
         assert_eq!(points(&rows, "w1", Row::rate).len(), 2);
         assert!(required(&rows).iter().all(Requirement::is_met));

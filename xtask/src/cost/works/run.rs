@@ -27,7 +27,7 @@ impl Extent {
     pub(super) fn of(effort: Effort) -> Self {
         let (starts, steps, patience) = effort.pick(
             (1, 4, 10.0),
-            (3, usize::MAX, 120.0),
+            (3, usize::MAX, 300.0),
             (5, usize::MAX, 1800.0),
         );
         Self {
@@ -74,6 +74,11 @@ impl Row {
         all.sort_by(f64::total_cmp);
         let n = all.len();
         (n > 0).then(|| 0.5 * (all[(n - 1) / 2] + all[n / 2]))
+    }
+
+    /// The row for people.
+    pub(super) fn name(&self) -> String {
+        format!("{} {}", self.work, self.size).trim_end().to_owned()
     }
 
     /// Median of the CPU seconds for a simulated second.
