@@ -84,8 +84,8 @@ impl Advice for ElasticSheetError {
 ///
 /// *Limit.* With `p = (4 |E|^2 / m^2 - 1) / 3` the barrier is `b = -p^2 ln(1 - p)` for `0 < p < 1`: zero up to
 /// half the limit, twice continuously differentiable, convex in the strain and infinite at the limit. The norm
-/// bounds both principal strains and the strain of every edge, `|c_e| <= m l_e^2`. As with contact, each
-/// displacement is cut to a part that is proven to stay within the limit, so that no accepted step is beyond it. The
+/// bounds both principal strains and the strain of every edge, `|c_e| <= m l_e^2`. Each displacement is cut to a
+/// part that ends within the limit, so that no accepted step is beyond it. The
 /// stiffness `kappa` of the barrier (joules per square metre) is set where a simulation starts, from the weight
 /// and the kinetic energy of the sheet, and raised after steps in which it moves faster.
 ///
@@ -287,6 +287,22 @@ impl ElasticSheet {
     /// Number of faces that the sheet was built for.
     pub(crate) fn face_count(&self) -> usize {
         self.faces.len()
+    }
+
+    /// Adds `scale` times what the strains of second order in the displacement `dx` (`3V`, metres) change the gradient
+    /// at `x` by: the tangent law of each face times `|dx_a - dx_b|^2 / 2` for each edge.
+    pub(crate) fn add_second_order(&self, x: &[f64], dx: &[f64], scale: f64, gradient: &mut [f64]) {
+        for face in &self.faces {
+            face.add_second_order(x, dx, &self.limit, scale, gradient);
+        }
+    }
+
+    /// Whether every face keeps a part of its distance from the limit where the sheet goes from `x` to `end`.
+    pub(crate) fn stays_within(&self, x: &[f64], end: &[f64]) -> bool {
+        let limit = self.limit();
+        self.faces
+            .iter()
+            .all(|face| face.stays_within(x, end, limit))
     }
 
     /// Largest part of the displacement `dx` (`3V`, metres), at most one, along which every face keeps a part of

@@ -58,7 +58,10 @@ pub(crate) struct Lagrangian {
     /// Solution of the last linear system: minus the search direction.
     pub(super) dx: Vec<f64>,
     /// What cut that step.
-    cut: Cut,
+    pub(super) cut: Cut,
+    /// The part of the step that grows with the square of its length, see [`Lagrangian::correct_strains`].
+    pub(super) curved: Vec<f64>,
+    pub(super) is_curved: bool,
     /// Where the line search starts.
     pub(super) start: Vec<f64>,
     /// Where prescribed motions end, at the pinned vertices.
@@ -205,6 +208,8 @@ impl Lagrangian {
             energy_at: Evaluated::new(n),
             dx: vec![0.0; n],
             cut: Cut::Nothing,
+            curved: vec![0.0; n],
+            is_curved: false,
             start: vec![0.0; n],
             end: vec![0.0; n],
             axial: vec![0.0; m],
@@ -545,6 +550,7 @@ impl Lagrangian {
     /// Begins a line search at the iterate: the largest part of the step `-dx` that is safe, pinned vertices
     /// going to their ends.
     pub(super) fn begin_line_search(&mut self, problem: &mut StepProblem<'_>) -> f64 {
+        self.is_curved = false;
         self.start.copy_from_slice(self.iterate.x());
         self.safe_part(problem)
     }
@@ -553,7 +559,21 @@ impl Lagrangian {
     /// trial is part of.
     pub(super) fn return_to_start(&mut self, problem: &mut StepProblem<'_>) {
         self.iterate.x_mut().copy_from_slice(&self.start);
-        self.safe_part(problem);
+        if !self.is_curved {
+            self.safe_part(problem);
+        }
+    }
+
+    /// Puts the iterate, which is at the start of the line search, at the part `length` of the step, or of a curved
+    /// step at what of it is safe in contact: that part, or nothing if the strain is beyond the limit there.
+    pub(super) fn go_to(&mut self, problem: &mut StepProblem<'_>, length: f64) -> Option<f64> {
+        match self.is_curved {
+            true => self.move_along_curve(problem, length),
+            false => {
+                self.move_along(length);
+                Some(length)
+            }
+        }
     }
 
     pub(super) fn safe_part(&mut self, problem: &mut StepProblem<'_>) -> f64 {

@@ -74,8 +74,8 @@ pub(super) struct Newton<'a, 'b, 'w> {
     spent: usize,
     /// How often the iteration has gone on because friction had not settled where it had converged.
     friction_updates: usize,
-    /// Whether the iteration has left a saddle.
-    has_left_saddle: bool,
+    /// Whether the iteration has looked for a saddle where it had converged.
+    has_sought_saddle: bool,
     /// The part of the Hessian that is tried first: all of it until that turns out to be indefinite.
     hessian: HessianPart,
     residual: f64,
@@ -99,7 +99,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             iterations: 0,
             spent: 0,
             friction_updates: 0,
-            has_left_saddle: false,
+            has_sought_saddle: false,
             hessian: HessianPart::Full,
             residual: f64::INFINITY,
             outcome: StepOutcome::Newton,
@@ -127,6 +127,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 continue;
             }
             limit = self.correct(limit, &mut direction);
+            limit = self.curve(limit);
             let quality = self.judge(&direction);
             let Some(length) = self.advance(limit, &direction, quality)? else {
                 // What a step can still gain is round-off.
@@ -254,6 +255,10 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 .map_err(|_| self.effort.failed(Reason::LinearAlgebra))?;
             match lagrangian.solve(self.problem.model, self.effort) {
                 Ok(_) => {
+                    // What makes the Hessian indefinite rarely ends within a step.
+                    if hessian == Definiteness::Modified {
+                        self.hessian = HessianPart::PositiveSemidefinite;
+                    }
                     return Ok(hessian);
                 }
                 // The Hessian turned out not to be positive definite.
@@ -359,6 +364,16 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         limit
     }
 
+    /// Curves the step of an elastic sheet, unless contact cuts it as it is; the largest part to be tried.
+    fn curve(&mut self, limit: f64) -> f64 {
+        let lagrangian = &mut self.work.lagrangian;
+        if lagrangian.cut() != Cut::Contact && lagrangian.correct_strains(self.problem) {
+            1.0
+        } else {
+            limit
+        }
+    }
+
     /// Goes on along the step; the part of it that was taken. Where the step would mend the lengths against the
     /// potential, the lengths are restored instead, which counts as a whole step: along exact lengths steps descend.
     /// Nothing if there is no descent, but no more than round-off was promised.
@@ -376,11 +391,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             self.work.lagrangian.merit(self.problem);
             return Ok(Some(1.0));
         }
-        let length = self.line_search(limit, direction);
-        let cut = match length {
-            Some(length) if length == limit => self.work.lagrangian.cut(),
-            _ => Cut::Merit,
-        };
+        let (length, cut) = self.line_search(limit, direction);
         self.trace(length.unwrap_or(0.0), cut, direction.hessian);
         match length {
             None if quality != Quality::RoundOff => Err(self.effort.failed(Reason::NoDescent)),
@@ -389,23 +400,33 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     }
 
     /// Goes on by up to `limit` of the step, not far from the rest lengths; the part of the step, or nothing if
-    /// it does not decrease the merit function.
-    fn line_search(&mut self, limit: f64, direction: &Direction) -> Option<f64> {
+    /// it does not decrease the merit function, and what cut it.
+    fn line_search(&mut self, limit: f64, direction: &Direction) -> (Option<f64>, Cut) {
         let mut length = limit;
+        let mut cut = None;
         for _ in 0..=self.phase.halvings {
-            self.work.lagrangian.move_along(length);
-            if self.keeps_lengths() {
-                let Direction { before, slope, .. } = direction;
-                let now = self.work.lagrangian.merit(self.problem);
-                let promised = before.value + self.work.tuning.armijo * length * slope;
-                if now.value <= promised + before.round_off {
-                    return Some(length);
+            match self.work.lagrangian.go_to(self.problem, length) {
+                None => cut = Some(Cut::StrainLimit),
+                Some(part) => {
+                    if self.keeps_lengths() && self.has_decreased(part, direction) {
+                        let last = self.work.lagrangian.cut();
+                        return (Some(part), cut.unwrap_or(last));
+                    }
+                    cut = Some(Cut::Merit);
                 }
             }
             length *= 0.5;
             self.work.lagrangian.return_to_start(self.problem);
         }
-        None
+        (None, cut.unwrap_or(Cut::Merit))
+    }
+
+    /// Whether the merit function has decreased as far as the part `length` of the step promises (Armijo).
+    fn has_decreased(&mut self, length: f64, direction: &Direction) -> bool {
+        let Direction { before, slope, .. } = direction;
+        let now = self.work.lagrangian.merit(self.problem);
+        let promised = before.value + self.work.tuning.armijo * length * slope;
+        now.value <= promised + before.round_off
     }
 
     /// Brings the iterate to lengths that the phase allows; whether that succeeds.
@@ -467,9 +488,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// either way, or one whose friction belonged to other normal forces and was renewed. Returns false if
     /// there is no reason to.
     fn goes_on(&mut self, direction: &Direction, is_renewed: bool) -> bool {
-        let may_be_saddle = direction.hessian == Definiteness::Modified && !self.has_left_saddle;
+        let may_be_saddle = direction.hessian == Definiteness::Modified && !self.has_sought_saddle;
+        self.has_sought_saddle |= may_be_saddle;
         let because = if may_be_saddle && self.leave_saddle(direction) {
-            self.has_left_saddle = true;
             Continuation::Saddle
         } else if is_renewed {
             self.friction_updates += 1;
@@ -484,6 +505,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
 
     /// Leaves a saddle as the phase says; whether the iterate has moved.
     fn leave_saddle(&mut self, direction: &Direction) -> bool {
+        if self.phase.saddle == Saddle::Perturbation && self.is_minimum() {
+            return false;
+        }
         let Workspace {
             lagrangian,
             options,
@@ -502,6 +526,16 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 true
             }
         }
+    }
+
+    /// Whether the whole Hessian is positive definite at the iterate.
+    fn is_minimum(&mut self) -> bool {
+        let lagrangian = &mut self.work.lagrangian;
+        lagrangian.set_gradient(self.problem);
+        let part = HessianPart::Full;
+        let hessian = lagrangian.factorize(self.problem, RodLoad::Estimates, part, self.effort);
+        matches!(hessian, Ok(Definiteness::Definite))
+            && lagrangian.solve(self.problem.model, self.effort).is_ok()
     }
 
     /// Ends at a point that has converged: whether its lengths are exact now. Otherwise the next round begins, or the

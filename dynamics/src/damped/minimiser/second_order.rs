@@ -1,8 +1,9 @@
-//! Second-order correction of a step for contact.
+//! Second-order corrections of a step: for contact, and for the strains of an elastic sheet.
 
 use super::lagrangian::Lagrangian;
 use super::problem::StepProblem;
 use crate::step::effort::SolverEffort;
+use crate::step::trace::Cut;
 
 impl Lagrangian {
     /// Corrects the step `-dx`, of which only the part `limit` is safe, for gaps that close faster than to
@@ -59,5 +60,64 @@ impl Lagrangian {
         }
         self.dx.copy_from_slice(&self.uncorrected);
         self.safe_part(problem)
+    }
+
+    /// Curves the step `-dx` of an elastic sheet, so that it turns faces and does not stretch them; whether it has
+    /// become curved. The matrix of the step has to be the one that is factorised, and no pin may be on its way.
+    ///
+    /// The linear system knows strains to first order: along a straight step, a face that turns by an angle `a` is
+    /// stretched by `a^2 / 2`, beyond a limit of one per cent from eight degrees on. The step of length `s` becomes
+    /// `-s dx - s^2 w`, with the `w` that takes back what is of second order, by the matrix `K` of the step and the
+    /// tangent law `C` of the faces,
+    ///
+    /// ```text
+    /// K w = h^2 sum_T (dc/dx)^T C_T (|dx_a - dx_b|^2 / 2),
+    /// ```
+    ///
+    /// for a solve and no factorisation, as in the second-order correction of constraints (Nocedal and Wright,
+    /// "Numerical Optimization", 2006, Sec. 15.6).
+    pub(super) fn correct_strains(&mut self, problem: &StepProblem<'_>) -> bool {
+        let model = problem.model;
+        let Some(elastic) = model.elastic_sheet() else {
+            return false;
+        };
+        let scale = problem.h * problem.h;
+        let (x, force) = (self.iterate.x(), &mut self.difference);
+        force.fill(0.0);
+        elastic.add_second_order(x, &self.dx, scale, force);
+        model.clear_pinned(force);
+        self.matrix.solve(model, force, &mut self.curved);
+        self.is_curved = true;
+        true
+    }
+
+    /// Puts the iterate at what is safe of the chord from the start of the line search to the part `length` of the
+    /// curved step; that part of the step, or nothing if the strain is beyond the limit there.
+    pub(super) fn move_along_curve(
+        &mut self,
+        problem: &mut StepProblem<'_>,
+        length: f64,
+    ) -> Option<f64> {
+        for (w, (d, c)) in self
+            .weighted
+            .iter_mut()
+            .zip(self.dx.iter().zip(&self.curved))
+        {
+            *w = -length * (d + length * c);
+        }
+        let free = self
+            .iterate
+            .safe_fraction(problem.contact_mut(), &self.weighted);
+        let displaced = self.start.iter().zip(&self.weighted);
+        for (x, (start, w)) in self.iterate.x_mut().iter_mut().zip(displaced) {
+            *x = start + free * w;
+        }
+        self.cut = match free {
+            1.0 => Cut::Nothing,
+            _ => Cut::Contact,
+        };
+        let elastic = problem.model.elastic_sheet()?;
+        let is_within = elastic.stays_within(&self.start, self.iterate.x());
+        is_within.then_some(free * length)
     }
 }

@@ -130,8 +130,24 @@ impl Face {
         self.law * at.errors + barrier
     }
 
+    /// The second derivatives of the energy by the length errors, newtons per cubic metre.
+    fn tangent_law(&self, at: &Strained, limit: &StrainLimit) -> Matrix3<f64> {
+        let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
+        if slope == 0.0 {
+            return self.law;
+        }
+        let along = self.strains.transpose() * at.strain;
+        self.law
+            + 2.0 * self.area * slope * self.strains.transpose() * self.strains
+            + 4.0 * self.area * curvature * along * along.transpose()
+    }
+
     pub(super) fn add_gradient(&self, at: &Strained, limit: &StrainLimit, gradient: &mut [f64]) {
-        let densities = self.densities(at, limit);
+        self.add_forces(at, &self.densities(at, limit), gradient);
+    }
+
+    /// Adds what force densities of the edges (newtons per metre) do to the gradient.
+    fn add_forces(&self, at: &Strained, densities: &Vector3<f64>, gradient: &mut [f64]) {
         for (k, [a, b]) in self.ends.into_iter().enumerate() {
             let force = densities[k] * at.vectors[k];
             for c in 0..3 {
@@ -139,6 +155,35 @@ impl Face {
                 gradient[3 * b.index() + c] -= force[c];
             }
         }
+    }
+
+    /// Adds `scale` times the change of the gradient by the part of the length errors that is of second order in the
+    /// displacement `dx`, `|dx_a - dx_b|^2 / 2`.
+    pub(super) fn add_second_order(
+        &self,
+        x: &[f64],
+        dx: &[f64],
+        limit: &StrainLimit,
+        scale: f64,
+        gradient: &mut [f64],
+    ) {
+        let at = self.at(x);
+        let second = self
+            .ends
+            .map(|[a, b]| 0.5 * (point(dx, a) - point(dx, b)).norm_squared());
+        let densities = scale * self.tangent_law(&at, limit) * Vector3::from(second);
+        self.add_forces(&at, &densities, gradient);
+    }
+
+    /// The strain that a displacement from `x` may end with: it keeps its distance from the limit but for
+    /// [`KEPT_MARGIN`] of it.
+    fn bound(&self, at: &Strained, limit: f64) -> f64 {
+        limit - KEPT_MARGIN * (limit - at.norm())
+    }
+
+    /// Whether a displacement from `x` to `end` ends within the limit, and keeps a part of the distance from it.
+    pub(super) fn stays_within(&self, x: &[f64], end: &[f64], limit: f64) -> bool {
+        self.at(end).norm() <= self.bound(&self.at(x), limit)
     }
 
     /// Adds the Hessian; `part` says which part of the force density of an edge counts for its curvature.
@@ -149,13 +194,7 @@ impl Face {
         part: impl Fn(f64) -> f64,
         hessian: &mut dyn HessianSink,
     ) {
-        let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
-        let mut law = self.law;
-        if slope != 0.0 {
-            let along = self.strains.transpose() * at.strain;
-            law += 2.0 * self.area * slope * self.strains.transpose() * self.strains
-                + 4.0 * self.area * curvature * along * along.transpose();
-        }
+        let law = self.tangent_law(at, limit);
         let densities = self.densities(at, limit).map(part);
         for (i, [a, b]) in self.ends.into_iter().enumerate() {
             // The corner across from the edge.
@@ -205,7 +244,7 @@ impl Face {
         let first = Vector3::from_fn(|k, _| at.vectors[k].dot(&changes[k]));
         let second = Vector3::from_fn(|k, _| 0.5 * changes[k].norm_squared());
         let (e0, e1, e2) = (at.strain, self.strains * first, self.strains * second);
-        let bound = limit - KEPT_MARGIN * (limit - e0.norm());
+        let bound = self.bound(&at, limit);
         if e0.norm() + most * (e1.norm() + most * e2.norm()) <= bound {
             return most;
         }
