@@ -10,8 +10,10 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 #[derive(Debug, Clone)]
 pub(super) struct Face {
     edges: [EdgeId; 3],
-    /// First and second end of each edge.
-    ends: [[VertexId; 2]; 3],
+    /// Across from each edge: edge `i` leads from corner `i + 1` to corner `i + 2`, modulo three.
+    corners: [VertexId; 3],
+    /// Which of these two is the first end of each edge in the mesh.
+    first_ends: [VertexId; 3],
     squared_lengths: [f64; 3],
     /// Rest area, m2.
     area: f64,
@@ -26,7 +28,7 @@ pub(super) struct Face {
 
 /// The state of a face.
 pub(super) struct Strained {
-    /// Edge vectors, from the second to the first end.
+    /// Edge vectors, from corner `i + 1` to corner `i + 2`.
     vectors: [Vector3<f64>; 3],
     /// Length errors `c`, m2.
     errors: Vector3<f64>,
@@ -55,6 +57,13 @@ impl Face {
     pub(super) fn new(sheet: &Sheet, face: FaceId) -> Option<Self> {
         let topology = sheet.topology();
         let edges = topology.face_edges(face);
+        let ends = edges.map(|e| topology.edges()[e.index()]);
+        // An edge and the next one share a corner, which is across from the third one.
+        let shared = |[a, b]: [VertexId; 2], other: [VertexId; 2]| match other.contains(&a) {
+            true => a,
+            false => b,
+        };
+        let across = |i: usize| shared(ends[(i + 1) % 3], ends[(i + 2) % 3]);
         let lengths = edges.map(|e| sheet.lengths()[e.index()]);
         let area = sheet.face_areas()[face.index()];
         let [a, b, c] = lengths;
@@ -71,7 +80,8 @@ impl Face {
         let strains = errors.try_inverse()?;
         strains.iter().all(|s| s.is_finite()).then(|| Self {
             edges,
-            ends: edges.map(|e| topology.edges()[e.index()]),
+            corners: [across(0), across(1), across(2)],
+            first_ends: ends.map(|[a, _]| a),
             squared_lengths: lengths.map(|l| l * l),
             area,
             strains,
@@ -99,8 +109,14 @@ impl Face {
         self.squared_lengths.iter().sum::<f64>() / 3.0
     }
 
+    /// From corner `i + 1` to corner `i + 2`, of positions or displacements.
+    fn edge_vectors(&self, x: &[f64]) -> [Vector3<f64>; 3] {
+        let [a, b, c] = self.corners.map(|v| point(x, v));
+        [c - b, a - c, b - a]
+    }
+
     pub(super) fn at(&self, x: &[f64]) -> Strained {
-        let vectors = self.ends.map(|[a, b]| point(x, a) - point(x, b));
+        let vectors = self.edge_vectors(x);
         let error = |k: usize| 0.5 * (vectors[k].norm_squared() - self.squared_lengths[k]);
         let errors = Vector3::new(error(0), error(1), error(2));
         Strained {
@@ -148,11 +164,11 @@ impl Face {
 
     /// Adds what force densities of the edges (newtons per metre) do to the gradient.
     fn add_forces(&self, at: &Strained, densities: &Vector3<f64>, gradient: &mut [f64]) {
-        for (k, [a, b]) in self.ends.into_iter().enumerate() {
-            let force = densities[k] * at.vectors[k];
+        let forces = [0, 1, 2].map(|i| densities[i] * at.vectors[i]);
+        for (i, corner) in self.corners.into_iter().enumerate() {
+            let force = forces[(i + 1) % 3] - forces[(i + 2) % 3];
             for c in 0..3 {
-                gradient[3 * a.index() + c] += force[c];
-                gradient[3 * b.index() + c] -= force[c];
+                gradient[3 * corner.index() + c] += force[c];
             }
         }
     }
@@ -168,10 +184,9 @@ impl Face {
         gradient: &mut [f64],
     ) {
         let at = self.at(x);
-        let second = self
-            .ends
-            .map(|[a, b]| 0.5 * (point(dx, a) - point(dx, b)).norm_squared());
-        let densities = scale * self.tangent_law(&at, limit) * Vector3::from(second);
+        let changes = self.edge_vectors(dx);
+        let second = Vector3::from(changes.map(|d| 0.5 * d.norm_squared()));
+        let densities = scale * self.tangent_law(&at, limit) * second;
         self.add_forces(&at, &densities, gradient);
     }
 
@@ -196,40 +211,23 @@ impl Face {
     ) {
         let law = self.tangent_law(at, limit);
         let densities = self.densities(at, limit).map(part);
-        for (i, [a, b]) in self.ends.into_iter().enumerate() {
-            // The corner across from the edge.
-            let [c, d] = self.ends[(i + 1) % 3];
-            let corner = if c == a || c == b { d } else { c };
-            let images = self.images(at, &law, corner);
-            let across = self.signs(corner);
-            let own = densities[(i + 1) % 3] + densities[(i + 2) % 3];
-            let block = product(&images, across, at) + Matrix3::from_diagonal_element(own);
-            hessian.add_vertex(corner, &block);
-            let images = self.images(at, &law, a);
-            let block = product(&images, self.signs(b), at);
-            let block = block - Matrix3::from_diagonal_element(densities[i]);
+        // Products of the derivatives of two length errors, `law_ij v_i v_j^T`.
+        let product = |i: usize, j: usize| {
+            let v = &at.vectors;
+            law[(i, j)] * v[i] * v[j].transpose()
+        };
+        let own = [0, 1, 2].map(|i| product(i, i) + Matrix3::from_diagonal_element(densities[i]));
+        let mixed = [0, 1, 2].map(|i| product((i + 1) % 3, (i + 2) % 3));
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let block = own[j] + own[k] - mixed[i] - mixed[i].transpose();
+            hessian.add_vertex(self.corners[i], &block);
+            // Rows at corner `j`, columns at corner `k`.
+            let block = mixed[k] + mixed[j] - own[i] - mixed[i].transpose();
+            let is_first = self.first_ends[i] == self.corners[j];
+            let block = if is_first { block } else { block.transpose() };
             hessian.add_edge(self.edges[i], &block);
         }
-    }
-
-    /// For each edge 1 where the vertex is its first end, -1 where it is the second one, otherwise 0: the length
-    /// error of the edge has this times its vector as derivative by the vertex.
-    fn signs(&self, v: VertexId) -> [f64; 3] {
-        self.ends.map(|[a, b]| match v {
-            _ if v == a => 1.0,
-            _ if v == b => -1.0,
-            _ => 0.0,
-        })
-    }
-
-    /// For each edge the derivative by a vertex of the derivative of the energy by the length error.
-    fn images(&self, at: &Strained, law: &Matrix3<f64>, v: VertexId) -> [Vector3<f64>; 3] {
-        let signs = self.signs(v);
-        let terms = |l: usize| {
-            let term = |k: usize| signs[k] * law[(k, l)] * at.vectors[k];
-            term(0) + term(1) + term(2)
-        };
-        [terms(0), terms(1), terms(2)]
     }
 
     /// Largest part of the displacement `dx`, at most `most`, along which the strain keeps its distance from the
@@ -240,7 +238,7 @@ impl Face {
     /// halved.
     pub(super) fn safe_part(&self, x: &[f64], dx: &[f64], limit: f64, most: f64) -> f64 {
         let at = self.at(x);
-        let changes = self.ends.map(|[a, b]| point(dx, a) - point(dx, b));
+        let changes = self.edge_vectors(dx);
         let first = Vector3::from_fn(|k, _| at.vectors[k].dot(&changes[k]));
         let second = Vector3::from_fn(|k, _| 0.5 * changes[k].norm_squared());
         let (e0, e1, e2) = (at.strain, self.strains * first, self.strains * second);
@@ -272,17 +270,6 @@ impl Face {
         }
         from
     }
-}
-
-/// The sum of the products of images and the derivatives of the length errors.
-fn product(images: &[Vector3<f64>; 3], signs: [f64; 3], at: &Strained) -> Matrix3<f64> {
-    let mut sum = Matrix3::zeros();
-    for l in 0..3 {
-        if signs[l] != 0.0 {
-            sum.ger(signs[l], &images[l], &at.vectors[l], 1.0);
-        }
-    }
-    sum
 }
 
 /// Whether the polynomial with the coefficients `powers` is proven to be negative on the interval.
