@@ -128,6 +128,40 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
     assert!(left > 0.0, "{left}");
 }
 
+/// Along a straight displacement that turns a sheet the strain grows with the square of its length, along the curved
+/// one of a step with the third power at least.
+#[test]
+fn a_displacement_that_turns_is_curved_so_that_it_does_not_stretch() {
+    let sheet = delaunay(0.3);
+    let x = sheet.positions();
+    let elastic = ElasticSheet::new(&sheet, 3.0, 0.25).unwrap();
+    let model = SheetModel::new(&sheet, 1e-9, MassKind::Lumped).unwrap();
+    let model = model.with_elastic_sheet(elastic.clone()).unwrap();
+    // One half turns about an axis in the plane, the other one rests.
+    let turn = |x: f64| 0.5 * (x.abs() + x);
+    let dx: Vec<f64> = (x.as_chunks::<3>().0.iter())
+        .flat_map(|p| [0.0, 0.0, turn(p[0] - 0.15)])
+        .collect();
+    let none = vec![0.0; model.rods().len()];
+    let mut matrix = PrimalMatrix::new(&model).unwrap();
+    matrix.assemble(&model, x, &none, &none);
+    matrix.add_potentials(&model, 0.0, x, 1.0);
+    matrix.factorize().unwrap();
+    let (mut force, mut curved) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    elastic.add_second_order(x, &dx, 1.0, &mut force);
+    matrix.solve(&model, &force, &mut curved);
+    let energy = |s: f64, square: f64| {
+        let end = (0..x.len()).map(|i| x[i] - s * (dx[i] + s * square * curved[i]));
+        elastic.energy(0.0, &end.collect::<Vec<f64>>())
+    };
+    // Energies grow with the square of the strain.
+    let [straight, bent] =
+        [0.0, 1.0].map(|square| (energy(0.1, square) / energy(0.05, square)).log2());
+    assert!((straight - 4.0).abs() < 0.01, "{straight}");
+    assert!(bent > 5.9, "{bent}");
+    assert!(energy(0.1, 1.0) < 0.01 * energy(0.1, 0.0));
+}
+
 /// The faces where the barrier begins have continuous second derivatives, and those at the limit no finite energy.
 #[test]
 fn the_barrier_begins_at_half_the_limit_and_ends_at_it() {
