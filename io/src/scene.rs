@@ -27,6 +27,7 @@
 //! # }
 //! ```
 
+mod air;
 mod build;
 mod chart;
 mod contact;
@@ -63,6 +64,7 @@ mod toml_problem;
 mod unit;
 mod warning;
 
+pub use air::Air;
 pub use chart::{
     Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
     Substep,
@@ -147,6 +149,9 @@ pub struct Scene {
     /// Forces on the sheet.
     #[serde(default)]
     pub forces: Forces,
+    /// The air around the sheet. Without it there is none.
+    #[serde(default)]
+    pub air: Option<Air>,
     /// Contact of the sheet with itself and with obstacles.
     #[serde(default)]
     pub contact: Contact,
@@ -172,6 +177,7 @@ impl Scene {
             support: Vec::new(),
             obstacle: Vec::new(),
             forces: Forces::default(),
+            air: None,
             contact: Contact::default(),
             method: Method::default(),
             stop: Stop::default(),
@@ -203,6 +209,9 @@ impl Scene {
             obstacle.check(&root.name("obstacle").entry(k), &mut checks);
         }
         self.forces.check(&root.name("forces"), &mut checks);
+        if let Some(air) = &self.air {
+            air.check(&root.name("air"), &mut checks);
+        }
         self.contact.check(&root.name("contact"), &mut checks);
         self.method.check(&root.name("method"), &mut checks);
         self.check_method_fits(&mut checks);

@@ -58,8 +58,8 @@ fn terminal_speed(density: f64) -> f64 {
     (2.0 * MASS * GRAVITY / (density * SIDE * SIDE * normal)).sqrt()
 }
 
-/// Error of the speed of the card after a fall of 0.15 s in so many steps, against `v tanh(g t / v)`, and the energy
-/// error over the energy that was released.
+/// Error of the speed of the card after a fall of 0.15 s in so many steps, against `v tanh(g t / v)`, and the
+/// energy error over the energy that was released.
 fn fall_errors(method: &Method, steps: usize) -> [f64; 2] {
     let sheet = card();
     let model = in_still_air(model(&sheet).with_gravity());
@@ -114,8 +114,8 @@ impl Force for ExplicitDrag {
     }
 }
 
-/// In a fluid a hundred times as dense as air the relaxation takes a fifteenth of a step: the implicit drag sinks at the
-/// terminal speed, an explicit one overshoots it again and again.
+/// In a fluid a hundred times as dense as air the relaxation takes a fifteenth of a step: the implicit drag
+/// sinks at the terminal speed, an explicit one overshoots it again and again.
 #[test]
 fn a_stiff_drag_is_stable() {
     let sheet = card();
@@ -151,7 +151,8 @@ fn a_stiff_drag_is_stable() {
     }
 }
 
-/// A card that slides in its own plane: `dv/dt = -k v^2` with `k = rho A c_t / (2 m)`, hence `v = v0 / (1 + k v0 t)`.
+/// A card that slides in its own plane: `dv/dt = -k v^2` with `k = rho A c_t / (2 m)`, hence `v = v0 / (1 + k
+/// v0 t)`.
 #[test]
 fn friction_alone_brakes_a_sliding_card() {
     let sheet = generate::isotropic_square(1, SIDE).expect("valid");
@@ -291,7 +292,8 @@ fn supports_bear_the_drag() {
     assert!(left.norm() < 1e-4 * drag.norm(), "{left}");
 }
 
-/// A triangle that is towed at its base at a constant speed trails behind: the pins do the work that the air takes.
+/// A triangle that is towed at its base at a constant speed trails behind: the pins do the work that the air
+/// takes.
 #[test]
 fn towing_costs_the_work_of_the_drag() {
     let x = vec![0.0, 0.0, 0.0, 0.0, SIDE, 0.0, -SIDE, 0.5 * SIDE, 0.0];
@@ -327,7 +329,8 @@ fn towing_costs_the_work_of_the_drag() {
     }
 }
 
-/// A sheet that flutters in gusts: the work of the air closes the energy balance, and no step is refused on its account.
+/// A sheet that flutters in gusts: the work of the air closes the energy balance, and no step is refused on
+/// its account.
 #[test]
 fn the_work_of_gusts_closes_the_energy_balance() {
     let sheet = bumped(1, 0.05);

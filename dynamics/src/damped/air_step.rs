@@ -6,16 +6,18 @@ use crate::vectors::add;
 use crate::{HessianSink, SheetModel, State};
 use nalgebra::Vector3;
 
-/// The incremental potential of the drag of the air in a step that makes velocities of positions by `x = y + h v`,
+/// The incremental potential of the drag of the air in a step that makes velocities of positions by `x = y +
+/// h v`,
 ///
 /// ```text
 /// R(x) = h sum_f (n_f |u_n|^3 + t_f |u_t|^3) / 3,   u = w - (x_c - y_c) / h,
 /// ```
 ///
-/// with the centroids `x_c`, `y_c` of the faces and the factors `n_f`, `t_f` of [`FaceDrag`]. Its gradient is minus the
-/// force at the velocities `v` at the end of the step. Normals and wind `w` are those at the end of the step at the
-/// positions that the velocities at its start lead to, which leaves a second-order method its order. With fixed
-/// normals `R` is convex, and in air at rest the force takes energy from the sheet, whatever the normals are.
+/// with the centroids `x_c`, `y_c` of the faces and the factors `n_f`, `t_f` of [`FaceDrag`]. Its gradient is
+/// minus the force at the velocities `v` at the end of the step. Normals and wind `w` are those at the end of
+/// the step at the positions that the velocities at its start lead to, which leaves a second-order method its
+/// order. With fixed normals `R` is convex, and in air at rest the force takes energy from the sheet,
+/// whatever the normals are.
 #[derive(Debug, Default)]
 pub(crate) struct AirStep {
     faces: Vec<FaceInStep>,
@@ -36,8 +38,8 @@ struct FaceInStep {
 }
 
 impl AirStep {
-    /// Begins a step of `span` seconds and the effective step `h` (seconds) in the air of a model, if there is any;
-    /// `rest` gives the coordinates of `y`.
+    /// Begins a step of `span` seconds and the effective step `h` (seconds) in the air of a model, if there
+    /// is any; `rest` gives the coordinates of `y`.
     ///
     /// # Errors
     /// [`StepError::NonFiniteForce`] if the wind at the end of the step is not finite.
@@ -115,9 +117,9 @@ impl AirStep {
         }
     }
 
-    /// Work of the air at the free vertices in the step from `start` to positions `x`, joules: of implicit Euler with the force at the end,
-    /// which balances the energy but for what the method dissipates; of a two-step formula by the trapezoidal rule
-    /// with the force at the start, at the order of the formula.
+    /// Work of the air at the free vertices in the step from `start` to positions `x`, joules: of implicit
+    /// Euler with the force at the end, which balances the energy but for what the method dissipates; of a
+    /// two-step formula by the trapezoidal rule with the force at the start, at the order of the formula.
     pub(crate) fn work(
         &mut self,
         model: &SheetModel,

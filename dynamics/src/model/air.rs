@@ -46,8 +46,8 @@ type WindFunction = dyn Fn([f64; 3], f64) -> [f64; 3] + Send + Sync;
 
 /// The velocity of the air.
 ///
-/// Made from a vector (metres per second), from three [`Profile`]s, or from a function of a point (metres) and the
-/// time (seconds) that returns the velocity there.
+/// Made from a vector (metres per second), from three [`Profile`]s, or from a function of a point (metres)
+/// and the time (seconds) that returns the velocity there.
 #[derive(Clone)]
 pub enum Wind {
     /// The same everywhere; each component follows a profile, metres per second.
@@ -100,7 +100,8 @@ impl Wind {
     }
 }
 
-/// The air around a sheet, at rest or in motion, which drags at every face by the square of the relative velocity.
+/// The air around a sheet, at rest or in motion, which drags at every face by the square of the relative
+/// velocity.
 ///
 /// A face of rest area `A` with the unit normal `n`, whose centroid `x` has the velocity `v`, feels the force
 ///
@@ -108,19 +109,19 @@ impl Wind {
 /// f = rho A / 2 (c_n |u_n| u_n n + c_t |u_t| u_t),   u = w(x, t) - v,   u_n = u . n,   u_t = u - u_n n,
 /// ```
 ///
-/// in newtons, along the wind `w` where the sheet is at rest; a third of it acts on each corner. The other unit
-/// normal, `-n`, gives the same force: the coefficients are those of a plate with its two sides, and each face
-/// counts once.
+/// in newtons, along the wind `w` where the sheet is at rest; a third of it acts on each corner. The other
+/// unit normal, `-n`, gives the same force: the coefficients are those of a plate with its two sides, and
+/// each face counts once.
 ///
-/// That the normal force depends on the normal component of the velocity alone is the cross-flow principle (Hoerner,
-/// "Fluid-dynamic drag", 1965; Taylor, Proc. R. Soc. A 214, 1952, for slender bodies), which models of flexible plates
-/// in wind use face by face (Gosselin, de Langre and Machado-Almeida, J. Fluid Mech. 650, 2010). It holds for
-/// separated flow. There is no lift of attached flow, no wake, no air that moves along with the sheet (added mass),
-/// and no face shelters another.
+/// That the normal force depends on the normal component of the velocity alone is the cross-flow principle
+/// (Hoerner, "Fluid-dynamic drag", 1965; Taylor, Proc. R. Soc. A 214, 1952, for slender bodies), which models
+/// of flexible plates in wind use face by face (Gosselin, de Langre and Machado-Almeida, J. Fluid Mech. 650,
+/// 2010). It holds for separated flow. There is no lift of attached flow, no wake, no air that moves along
+/// with the sheet (added mass), and no face shelters another.
 ///
-/// BDF2 and implicit Euler take the force at the end of a step, with the normals that the velocities at its start lead
-/// to. So it is never too stiff for a step, and at its order. All other methods take it as an explicit force. Its work
-/// is a part of [`StepReport::work`](crate::StepReport::work).
+/// BDF2 and implicit Euler take the force at the end of a step, with the normals that the velocities at its
+/// start lead to. So it is never too stiff for a step, and at its order. All other methods take it as an
+/// explicit force. Its work is a part of [`StepReport::work`](crate::StepReport::work).
 ///
 /// ```
 /// use isosheet_dynamics::{Air, Method, SheetModel, Simulation, State, Wind};
@@ -142,8 +143,8 @@ impl Wind {
 pub struct Air {
     /// Density `rho`, kilograms per cubic metre. Default 1.2: dry air at 20 degrees Celsius and 1013 hPa.
     pub density: f64,
-    /// Coefficient `c_n` of the drag along the normal. Default 1.2: square and round plates across the stream have 1.17
-    /// (Hoerner 1965), strips of five times their width 1.2, and long ones up to 2.
+    /// Coefficient `c_n` of the drag along the normal. Default 1.2: square and round plates across the stream
+    /// have 1.17 (Hoerner 1965), strips of five times their width 1.2, and long ones up to 2.
     pub normal: f64,
     /// Coefficient `c_t` of the friction along the face, of both sides together. Default 0.02: twice the
     /// `1.33 / sqrt(Re)` of a laminar boundary layer (Blasius 1908), for 0.2 m in a wind of 1.3 m/s.
@@ -211,7 +212,8 @@ pub(crate) fn centroid(values: &[f64], vertices: [VertexId; 3]) -> Vector3<f64> 
 }
 
 impl Face {
-    /// The drag on the face at positions `x`. (A face that is a line has no normal: all of its drag is friction.)
+    /// The drag on the face at positions `x`. (A face that is a line has no normal: all of its drag is
+    /// friction.)
     pub(crate) fn drag(&self, x: &[f64]) -> FaceDrag {
         let [a, b, c] = self.vertices.map(|v| point(x, v));
         let across = (b - a).cross(&(c - a));

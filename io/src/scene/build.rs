@@ -10,7 +10,7 @@ use super::pose::{Motion, Pose};
 use super::problem::Problem;
 use super::sheet::{Bending, Elasticity, Isometry};
 use super::supports::{Hold, frame_motion};
-use super::{Origins, Scene, Setup};
+use super::{Air, Origins, Scene, Setup};
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
     AccelerationField, CreaseSprings, ElasticSheet, PlateBending, PointMotion, PointProfile,
@@ -170,6 +170,10 @@ impl<'a> Builder<'a> {
         self.count(forces.load.len(), "load", "loads");
         let fields = ["field of acceleration", "fields of acceleration"];
         self.count(forces.acceleration.len(), fields[0], fields[1]);
+        if let Some(air) = self.scene.air.as_ref().map(Air::as_engine) {
+            self.change(|m| m.with_air(air), at(&Key::root().name("air")))?;
+            self.modelled.push("air".into());
+        }
         Ok(())
     }
 

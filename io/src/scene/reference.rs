@@ -121,7 +121,7 @@ fn ranges(page: &mut String) {
             String::new()
         };
         let symbol = match unit.symbol() {
-            "" => "coefficients of friction",
+            "" => "coefficients of friction and drag",
             symbol => symbol,
         };
         page.push_str(&format!(
@@ -147,10 +147,10 @@ const INTRODUCTION: &str = "\
 
 A scene file says in TOML what is simulated; `isosheet simulate SCENE` runs it. Lengths are in metres, times in
 seconds, masses in kilograms, forces in newtons and **angles in degrees**. Only what the scene names is modelled:
-without `forces.gravity` there is no gravity, without obstacles and self-contact no contact.
+without `forces.gravity` there is no gravity, without `air` no air, without obstacles and self-contact no contact.
 
-`isosheet new NAME --kind hanging|clamp|drape|stamp|feed|fold` writes a commented scene to start from, `isosheet
-check SCENE` says what is wrong with one, and `--set key=value` changes a key for one run, for example
+`isosheet new NAME --kind hanging|clamp|drape|stamp|feed|fold|flag|leaf` writes a commented scene to start from,
+`isosheet check SCENE` says what is wrong with one, and `--set key=value` changes a key for one run, for example
 `--set stop.time=0.5 --set 'obstacle[0].friction=0.3'`. An unknown key is an error, which names the nearest known one.
 
 Where a key has several choices, a choice with keys of its own is a table with one entry

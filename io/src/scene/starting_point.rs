@@ -15,17 +15,23 @@ pub enum StartingPoint {
     Feed,
     /// Miura's crease pattern, folded by driven angles.
     Fold,
+    /// A flag of plastic film in gusty wind.
+    Flag,
+    /// A folded leaf of paper that falls in still air.
+    Leaf,
 }
 
 impl StartingPoint {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::Hanging,
         Self::Clamp,
         Self::Drape,
         Self::Stamp,
         Self::Feed,
         Self::Fold,
+        Self::Flag,
+        Self::Leaf,
     ];
 
     /// Its name.
@@ -37,6 +43,8 @@ impl StartingPoint {
             Self::Stamp => "stamp",
             Self::Feed => "feed",
             Self::Fold => "fold",
+            Self::Flag => "flag",
+            Self::Leaf => "leaf",
         }
     }
 
@@ -49,6 +57,8 @@ impl StartingPoint {
             Self::Stamp => include_str!("starting_point/stamp.toml"),
             Self::Feed => include_str!("starting_point/feed.toml"),
             Self::Fold => include_str!("starting_point/fold.toml"),
+            Self::Flag => include_str!("starting_point/flag.toml"),
+            Self::Leaf => include_str!("starting_point/leaf.toml"),
         }
     }
 }

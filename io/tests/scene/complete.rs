@@ -76,6 +76,11 @@ const ALL_KEYS: [&str; 5] = [
     [[forces.acceleration]]
     direction = [1, 0, 0]
     size = 1
+    [air]
+    density = 1.2
+    normal = 1.1
+    tangential = 0.01
+    wind = [{ sine = { mean = 2, amplitude = 1, frequency = 0.5 } }, 1, 0]
     [contact]
     self_contact = true
     friction = 0.2

@@ -4,7 +4,7 @@ use crate::skip::data_folder;
 use crate::{parse, simulation};
 use isosheet_io::dynamics::nalgebra::Vector3;
 use isosheet_io::dynamics::{
-    Method, PointProfile, Profile as EngineProfile, SheetModel, Simulation, State,
+    Air, Method, PointProfile, Profile as EngineProfile, SheetModel, Simulation, State,
 };
 use isosheet_io::mesh::{MassKind, VertexId, fold_angle, generate};
 use isosheet_io::scene::{Scene, SceneFile, StartingPoint};
@@ -142,6 +142,48 @@ fn supports_carry_weight_and_loads() {
     let carried: f64 = run.reactions().iter().map(|r| r.force.z).sum();
     // 0.02 m2 of 2 kg/m2 at 10 m/s2, and 0.6 N.
     assert!((carried - 1.0).abs() < 1e-9, "{carried} N");
+}
+
+/// A table without keys is still air with the numbers of the engine, and a wind has its profiles.
+#[test]
+fn air_is_the_air_that_it_says() {
+    let of = |air: &str| {
+        let scene = format!(
+            "version = 1
+            [sheet]
+            mesh = {{ square = {{ side = 0.2, level = 0 }} }}
+            density = 0.08
+            {air}"
+        );
+        simulation(&scene)
+    };
+    assert!(of("").model().air().is_none());
+    let (still, engine) = (of("[air]"), Air::default());
+    let still = still.model().air().unwrap();
+    for (found, want) in [
+        (still.density, engine.density),
+        (still.normal, engine.normal),
+        (still.tangential, engine.tangential),
+    ] {
+        assert_eq!(found, want);
+    }
+    assert_eq!(still.wind.velocity([0.0; 3], 0.7), [0.0; 3]);
+    let gusts = "[air]
+        density = 1000
+        normal = 2
+        tangential = 0
+        wind = [{ sine = { mean = 4, amplitude = 2, frequency = 0.5, phase = 90 } }, -1, { ramp = { to = 3, end = 2 } }]";
+    let gusts = of(gusts);
+    let gusts = gusts.model().air().unwrap();
+    assert_eq!(
+        [gusts.density, gusts.normal, gusts.tangential],
+        [1000.0, 2.0, 0.0]
+    );
+    for (t, want) in [(0.0, [6.0, -1.0, 0.0]), (1.0, [2.0, -1.0, 1.5])] {
+        let found = gusts.wind.velocity([0.0; 3], t);
+        let error = (0..3).map(|k| (found[k] - want[k]).abs());
+        assert!(error.fold(0.0, f64::max) < 1e-12, "{found:?}");
+    }
 }
 
 /// The scenes to start from keep what is promised: lengths of rods to 1e-12, elastic sheets within their limit of

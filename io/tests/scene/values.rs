@@ -44,6 +44,11 @@ size = 0.001
 [[forces.acceleration]]
 direction = [1, 0, 0]
 size = 1
+[air]
+density = 1.2
+normal = 1.1
+tangential = 0.01
+wind = [{ sine = { mean = 2, amplitude = 1, frequency = 0.5 } }, 1, 0]
 [method]
 step = 0.01
 strain_tolerance = 1e-10

@@ -9,8 +9,8 @@ use crate::{SheetModel, State};
 /// with the rest lengths and with the vertex constraints kept at time `t`.
 ///
 /// `x^` is where inertia alone would take the sheet, `V` the potentials, `B` and `D` contact and its
-/// friction, `R` the incremental potential of the air, `f` the other non-conservative forces at the start of the
-/// step.
+/// friction, `R` the incremental potential of the air, `f` the other non-conservative forces at the start of
+/// the step.
 pub(crate) struct StepProblem<'a> {
     /// The sheet.
     pub(crate) model: &'a SheetModel,
@@ -43,8 +43,8 @@ impl<'a> StepProblem<'a> {
         self.contact.is_some()
     }
 
-    /// Whether displacements are bounded: by contact or by a limit of the strain. Then pins in motion start where
-    /// they were, and advance with the iterates.
+    /// Whether displacements are bounded: by contact or by a limit of the strain. Then pins in motion start
+    /// where they were, and advance with the iterates.
     pub(crate) fn is_bounded(&self) -> bool {
         self.has_contact() || self.model.has_strain_limit()
     }

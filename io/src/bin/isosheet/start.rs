@@ -47,6 +47,10 @@ enum Kind {
     Feed,
     /// Miura's crease pattern, folded by driven angles
     Fold,
+    /// A flag of plastic film in gusty wind
+    Flag,
+    /// A folded leaf of paper that falls in still air
+    Leaf,
 }
 
 /// Refuses a path that does not end in the name of a file, such as `..` or `scenes/`.
@@ -76,6 +80,8 @@ impl New {
             Kind::Stamp => StartingPoint::Stamp,
             Kind::Feed => StartingPoint::Feed,
             Kind::Fold => StartingPoint::Fold,
+            Kind::Flag => StartingPoint::Flag,
+            Kind::Leaf => StartingPoint::Leaf,
         }
         .text();
         write_atomically(&path, |w| w.write_all(text.as_bytes()))
