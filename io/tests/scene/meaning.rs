@@ -172,7 +172,11 @@ fn air_is_the_air_that_it_says() {
         density = 1000
         normal = 2
         tangential = 0
-        wind = [{ sine = { mean = 4, amplitude = 2, frequency = 0.5, phase = 90 } }, -1, { ramp = { to = 3, end = 2 } }]";
+        wind = [
+            { sine = { mean = 4, amplitude = 2, frequency = 0.5, phase = 90 } },
+            -1,
+            { ramp = { to = 3, end = 2 } },
+        ]";
     let gusts = of(gusts);
     let gusts = gusts.model().air().unwrap();
     assert_eq!(
