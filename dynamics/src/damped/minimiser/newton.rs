@@ -364,10 +364,15 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         limit
     }
 
-    /// Curves the step of an elastic sheet, unless contact cuts it as it is; the largest part to be tried.
+    /// Curves the step of an elastic sheet, unless contact cuts it as it is; the largest part to be tried. In contact, where
+    /// a curved step has to be checked again, whole steps stay straight.
     fn curve(&mut self, limit: f64) -> f64 {
-        let lagrangian = &mut self.work.lagrangian;
-        if lagrangian.cut() != Cut::Contact && lagrangian.correct_strains(self.problem) {
+        let is_curved = match self.work.lagrangian.cut() {
+            Cut::StrainLimit => true,
+            Cut::Nothing => !self.problem.has_contact(),
+            _ => false,
+        };
+        if is_curved && self.work.lagrangian.correct_strains(self.problem) {
             1.0
         } else {
             limit
