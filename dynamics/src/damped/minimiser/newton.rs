@@ -255,8 +255,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 .map_err(|_| self.effort.failed(Reason::LinearAlgebra))?;
             match lagrangian.solve(self.problem.model, self.effort) {
                 Ok(_) => {
-                    // What makes the Hessian indefinite rarely ends within a step.
-                    if hessian == Definiteness::Modified {
+                    if hessian == Definiteness::Modified && self.phase.stays_semidefinite {
                         self.hessian = HessianPart::PositiveSemidefinite;
                     }
                     return Ok(hessian);
@@ -293,8 +292,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                     self.effort,
                 )
                 .map_err(|_| self.effort.failed(Reason::LinearAlgebra))?;
-            // What makes the Hessian indefinite rarely ends within a step.
-            if hessian == Definiteness::Modified {
+            if hessian == Definiteness::Modified && self.phase.stays_semidefinite {
                 self.hessian = HessianPart::PositiveSemidefinite;
             }
             lagrangian.keep_multipliers();
@@ -510,7 +508,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
 
     /// Leaves a saddle as the phase says; whether the iterate has moved.
     fn leave_saddle(&mut self, direction: &Direction) -> bool {
-        if self.phase.saddle == Saddle::Perturbation && self.is_minimum() {
+        // The whole Hessian has not been looked at since it was indefinite.
+        let is_unknown = self.phase.stays_semidefinite;
+        if self.phase.saddle == Saddle::Perturbation && is_unknown && self.is_minimum() {
             return false;
         }
         let Workspace {

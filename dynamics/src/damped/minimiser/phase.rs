@@ -85,6 +85,10 @@ pub(super) struct Phase {
     pub(super) halvings: usize,
     /// Rounds of the method of multipliers.
     pub(super) rounds: usize,
+    /// Whether the Hessian stays semidefinite once it was indefinite, instead of being tried whole in every iteration. (What
+    /// makes it indefinite rarely ends within a step, but in rounds the multipliers of rods do change it: with this,
+    /// strips that jam and blanks that are stamped take 1.3 and 1.7 times the factorisations.)
+    pub(super) stays_semidefinite: bool,
     /// Strain from which the restoration at the end is a small displacement.
     pub(super) small_strain: f64,
     /// Largest number of iterations of this restoration.
@@ -170,6 +174,7 @@ impl Phase {
             all_iterations: usize::MAX,
             halvings: tuning.halvings as usize,
             rounds: 1,
+            stays_semidefinite: true,
             small_strain: match has_contact {
                 // Iterates are exact enough.
                 true => f64::INFINITY,
@@ -208,6 +213,7 @@ impl Phase {
                 true => options.max_iterations,
                 false => 1,
             },
+            stays_semidefinite: problem.model.isometry() == Isometry::Elastic,
             small_strain: match has_contact {
                 true => tuning.small_strain,
                 false => f64::INFINITY,
