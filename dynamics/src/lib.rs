@@ -78,6 +78,7 @@ pub use damped::start::{leave_flat, project_positions};
 pub use linear::rank::{RodRank, rod_rank};
 pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use material::elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheetError};
+pub use material::plasticity::Yield;
 pub use material::plate_bending::{PlateBending, PlateBendingError};
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};

@@ -291,7 +291,7 @@ fn other_sheets_versions_and_damage_are_refused() {
         with(8, 1),
         CheckpointError::Version {
             found: 10,
-            supported: 11
+            supported: 12
         }
     ));
     // Every other byte is under the checksum, the checksum included.
@@ -305,12 +305,12 @@ fn other_sheets_versions_and_damage_are_refused() {
         assert!(Checkpoint::from_bytes(&bytes[..length]).is_err());
     }
     let text = checkpoint.to_json().expect("encoded");
-    let other = text.replacen("\"version\":11", "\"version\":9", 1);
+    let other = text.replacen("\"version\":12", "\"version\":9", 1);
     assert_eq!(
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
             found: 9,
-            supported: 11
+            supported: 12
         })
     );
     assert!(matches!(

@@ -21,6 +21,7 @@ mod materials;
 mod modules;
 mod orders;
 mod origami;
+mod plastic;
 mod robust;
 mod scenes;
 mod statics;

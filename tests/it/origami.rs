@@ -22,6 +22,7 @@ fn spring(edge: EdgeId, stiffness: f64, full: f64) -> CreaseSpring {
         edge,
         stiffness,
         rest: folded_by(full).into(),
+        yields: None,
     }
 }
 

@@ -89,6 +89,11 @@ pub enum ChartDynamicsError {
     /// The sheet is elastic.
     #[error("the sheet has no rigid rods (it is elastic), and charts need them")]
     Elastic,
+    /// The sheet yields.
+    #[error(
+        "the sheet yields (its bends or creases stay), and the equations in a chart have no place for that"
+    )]
+    Plastic,
     /// A one-sided constraint makes no closure equation.
     #[error("vertex constraint {index} is one-sided, and a chart takes two-sided constraints only")]
     OneSided {
@@ -209,7 +214,7 @@ impl Advice for ChartDynamicsError {
                 Some("build the chart with some or all of the pins of the model")
             }
             Self::MovingPin { .. } => Some("build the chart with that vertex free"),
-            Self::Elastic => Some("use BDF2 or implicit Euler without a chart"),
+            Self::Elastic | Self::Plastic => Some("use BDF2 or implicit Euler without a chart"),
             Self::OneSided { .. } => {
                 Some("use contact with a body, or a damped method without a chart")
             }

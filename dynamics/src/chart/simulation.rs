@@ -84,7 +84,8 @@ impl ChartSimulation {
     /// # Errors
     /// Invalid options; a state with the wrong edge lengths or off its supports;
     /// [`ChartDynamicsError::Chart`] for states where the chart is singular (flat sheets) or too
-    /// ill-conditioned; [`ChartDynamicsError::OneSided`], [`ChartDynamicsError::Elastic`].
+    /// ill-conditioned; [`ChartDynamicsError::OneSided`], [`ChartDynamicsError::Elastic`],
+    /// [`ChartDynamicsError::Plastic`].
     pub fn from_state(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -399,6 +400,9 @@ impl ChartSimulation {
 fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsError> {
     if model.isometry() != Isometry::Rods {
         return Err(ChartDynamicsError::Elastic);
+    }
+    if model.has_memory() {
+        return Err(ChartDynamicsError::Plastic);
     }
     let State { t, x, v } = start;
     for (what, slice) in [("x", x), ("v", v)] {

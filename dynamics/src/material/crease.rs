@@ -1,93 +1,25 @@
 //! Torsion springs at the edges: creases that are folded by driven rest angles, and the bending stiffness of
 //! the material.
 
-use crate::motion::profile::{Profile, ProfileError};
-use crate::vectors::point;
+mod fold;
+#[cfg(test)]
+mod plastic_tests;
+mod rest_angle;
+#[cfg(test)]
+mod tests;
+
+pub use rest_angle::RestAngle;
+
+use super::plasticity::{Flow, Yield};
+use crate::motion::profile::ProfileError;
+use crate::options::OptionsError;
 use crate::{HessianSink, Potential};
+use fold::Fold;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Sheet, Topology, VertexId};
-use nalgebra::Vector3;
+use nalgebra::Vector1;
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
-use std::fmt;
-use std::sync::Arc;
-
-/// The fold angle at which a spring exerts no moment, radians: positive for a valley as seen from the side
-/// from which faces are counter-clockwise, negative for a mountain (the sign of
-/// [`isosheet_mesh::fold_angle`]).
-///
-/// Made from a number, a [`Profile`], or a function of time (seconds). A crease whose rest angle changes is
-/// driven.
-#[derive(Clone)]
-pub enum RestAngle {
-    /// By a profile, radians: data that can be written and read.
-    Profile(Profile),
-    /// Any function of time (seconds).
-    Custom(Arc<dyn Fn(f64) -> f64 + Send + Sync>),
-}
-
-impl From<Profile> for RestAngle {
-    fn from(profile: Profile) -> Self {
-        Self::Profile(profile)
-    }
-}
-
-impl From<f64> for RestAngle {
-    fn from(angle: f64) -> Self {
-        Self::Profile(angle.into())
-    }
-}
-
-impl<F: Fn(f64) -> f64 + Send + Sync + 'static> From<F> for RestAngle {
-    fn from(angle: F) -> Self {
-        Self::Custom(Arc::new(angle))
-    }
-}
-
-impl RestAngle {
-    /// The angle at time `t`, radians.
-    pub fn at(&self, t: f64) -> f64 {
-        match self {
-            Self::Profile(profile) => profile.value(t),
-            Self::Custom(angle) => angle(t),
-        }
-    }
-
-    /// Whether it may change.
-    fn is_driven(&self) -> bool {
-        match self {
-            Self::Profile(profile) => !profile.is_constant(),
-            Self::Custom(_) => true,
-        }
-    }
-
-    /// A constant angle lies between a fold shut as a mountain and one shut as a valley; a driven one may
-    /// pass both.
-    fn validate(&self, edge: EdgeId) -> Result<(), CreaseError> {
-        let Self::Profile(profile) = self else {
-            return Ok(());
-        };
-        profile
-            .validate()
-            .map_err(|source| CreaseError::RestAngle { edge, source })?;
-        match profile {
-            Profile::Constant(value) if !(-PI..=PI).contains(value) => {
-                let angle = *value;
-                Err(CreaseError::Angle { edge, angle })
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-impl fmt::Debug for RestAngle {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Profile(profile) => profile.fmt(f),
-            Self::Custom(_) => f.write_str("Custom"),
-        }
-    }
-}
 
 /// A torsion spring at an interior edge.
 #[derive(Debug)]
@@ -98,6 +30,8 @@ pub struct CreaseSpring {
     pub stiffness: f64,
     /// The angle at which it exerts no moment.
     pub rest: RestAngle,
+    /// When it yields, moments in newton metres; nothing for a spring that always comes back.
+    pub yields: Option<Yield>,
 }
 
 impl CreaseSpring {
@@ -110,7 +44,8 @@ impl CreaseSpring {
     /// (rest_i - theta_c)` together, act on that angle with `k_i k_s / (k_s + sum k_i)`: springs in series. A
     /// sheet that nothing loads rests at the rest angle of its crease, flat on both sides; a crease that is much
     /// stiffer than the sheet bends like the sheet. The sheet itself is made without stiffness at these edges
-    /// ([`CreaseSprings::bending_beside`], [`PlateBending::creased`](crate::PlateBending::creased)).
+    /// ([`CreaseSprings::bending_beside`], [`PlateBending::creased`](crate::PlateBending::creased)). Both carry the
+    /// same moment, so that a crease yields at the moment at which it yields by itself.
     ///
     /// `rigidity` is the flexural rigidity `D` in newton metres; with zero the springs stay as they are.
     pub fn put_in_sheet<'a>(
@@ -187,6 +122,14 @@ pub enum CreaseError {
         /// The rigidity given, N m.
         rigidity: f64,
     },
+    /// A spring cannot yield as it is to.
+    #[error("the yield of the spring at {edge} cannot be used: {source}")]
+    Yield {
+        /// The edge.
+        edge: EdgeId,
+        /// What is wrong with it.
+        source: OptionsError,
+    },
 }
 
 impl Advice for CreaseError {
@@ -197,6 +140,7 @@ impl Advice for CreaseError {
                 Some("give a finite one of at least 0")
             }
             Self::RestAngle { source, .. } => source.advice(),
+            Self::Yield { source, .. } => source.advice(),
             Self::Angle { .. } => Some("give an angle from -pi to pi"),
         }
     }
@@ -219,9 +163,15 @@ impl Advice for CreaseError {
 /// The derivatives of the angle are those of Bridson, Marino and Fedkiw, *Simulation of clothing with folds
 /// and wrinkles* (2003), Eq. 3; of the Hessian the semidefinite part `k grad theta grad theta^T` is given,
 /// exact where the spring is at rest.
+///
+/// Springs that [yield](Yield) remember plastic angles `p_e` besides (radians, in
+/// [`Potential::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a step
+/// what they dissipate in it.
 #[derive(Debug)]
 pub struct CreaseSprings {
     hinges: Vec<Hinge>,
+    /// The plastic angle of each hinge, radians; empty if none yields.
+    plastic: Vec<f64>,
 }
 
 #[derive(Debug)]
@@ -232,6 +182,19 @@ struct Hinge {
     edges: [(EdgeId, usize, usize); 5],
     stiffness: f64,
     rest: RestAngle,
+    yields: Option<Yield>,
+}
+
+/// What a hinge does at an angle.
+struct Response {
+    /// The elastic part of the angle, radians.
+    elastic: f64,
+    /// Derivative of the moment `k elastic` by the angle, newton metres per radian.
+    tangent: f64,
+    /// Growth of the plastic angle, radians.
+    step: f64,
+    /// Energy without that of `elastic`, joules.
+    plastic_energy: f64,
 }
 
 impl CreaseSprings {
@@ -242,9 +205,32 @@ impl CreaseSprings {
     /// be used.
     pub fn new(topology: &Topology, springs: Vec<CreaseSpring>) -> Result<Self, CreaseError> {
         let hinges = springs.into_iter().map(|s| Hinge::new(topology, s));
-        Ok(Self {
-            hinges: hinges.collect::<Result<_, _>>()?,
-        })
+        Ok(Self::of(hinges.collect::<Result<_, _>>()?))
+    }
+
+    fn of(hinges: Vec<Hinge>) -> Self {
+        let yields = hinges.iter().any(|h| h.yields.is_some());
+        let plastic = vec![0.0; if yields { hinges.len() } else { 0 }];
+        Self { hinges, plastic }
+    }
+
+    /// Makes springs of the bending stiffness of a sheet ([`CreaseSprings::bending`]) yield as the sheet does, `yields`
+    /// being that of the sheet, per metre: at an edge of length `l_e` the moment is `M_y l_e`, and the curvature
+    /// `theta l_e / A_e`, so that the hardening is `H l_e^2 / A_e`.
+    ///
+    /// # Errors
+    /// [`CreaseError::Yield`].
+    pub fn with_yield(mut self, sheet: &Sheet, yields: Yield) -> Result<Self, CreaseError> {
+        for hinge in &mut self.hinges {
+            let edge = hinge.edge();
+            let source = yields.validate();
+            source.map_err(|source| CreaseError::Yield { edge, source })?;
+            hinge.yields = sheet_stiffness(sheet, yields.hardening, edge).map(|hardening| Yield {
+                moment: yields.moment * sheet.lengths()[edge.index()],
+                hardening,
+            });
+        }
+        Ok(Self::of(self.hinges))
     }
 
     /// The bending stiffness of a uniform material on all interior edges, at rest when flat:
@@ -282,6 +268,7 @@ impl CreaseSprings {
                 edge,
                 stiffness: sheet_stiffness(sheet, rigidity, edge)?,
                 rest: 0.0.into(),
+                yields: None,
             })
         });
         Self::new(t, springs.collect())
@@ -290,8 +277,16 @@ impl CreaseSprings {
     /// Moments `k (rest - theta)` of the springs at time `t` and positions `x`, newton metres, in the order
     /// given: positive where a spring folds towards a valley.
     pub fn moments(&self, t: f64, x: &[f64]) -> Vec<f64> {
-        let moment = |h: &Hinge| -h.stiffness * h.excess(t, Fold::at(x, &h.vertices).angle());
-        self.hinges.iter().map(moment).collect()
+        let moment = |(h, p): (&Hinge, f64)| {
+            -h.stiffness * h.respond(t, Fold::at(x, &h.vertices).angle(), p).elastic
+        };
+        self.with_plastic().map(moment).collect()
+    }
+
+    /// The hinges with their plastic angles.
+    fn with_plastic(&self) -> impl Iterator<Item = (&Hinge, f64)> {
+        let plastic = self.plastic.iter().copied().chain(std::iter::repeat(0.0));
+        self.hinges.iter().zip(plastic)
     }
 }
 
@@ -301,6 +296,7 @@ impl Hinge {
             edge,
             stiffness,
             rest,
+            yields,
         } = spring;
         if edge.index() >= topology.edge_count() {
             return Err(CreaseError::NotInterior { edge });
@@ -312,6 +308,10 @@ impl Hinge {
             return Err(CreaseError::Stiffness { edge, stiffness });
         }
         rest.validate(edge)?;
+        if let Some(yields) = yields {
+            let source = yields.validate();
+            source.map_err(|source| CreaseError::Yield { edge, source })?;
+        }
         let [a, b] = topology.edges()[edge.index()];
         let vertices = [a, b, left, right];
         let between = |i: usize, j: usize| {
@@ -328,83 +328,58 @@ impl Hinge {
             edges: [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3)].map(|(i, j)| between(i, j)),
             stiffness,
             rest,
+            yields,
         })
     }
 
-    /// `theta - rest`, the short way round.
-    fn excess(&self, t: f64, theta: f64) -> f64 {
-        let d = theta - self.rest.at(t);
+    fn edge(&self) -> EdgeId {
+        self.edges[0].0
+    }
+
+    /// `theta - rest - plastic`, the short way round.
+    fn excess(&self, t: f64, theta: f64, plastic: f64) -> f64 {
+        let d = theta - self.rest.at(t) - plastic;
         if d.abs() <= PI {
             return d;
         }
         d - TAU * (d / TAU).round()
     }
-}
 
-/// The two faces at an edge.
-struct Fold {
-    along: Vector3<f64>,
-    to_left: Vector3<f64>,
-    to_right: Vector3<f64>,
-    /// Normals of the left and of the right face, twice their areas long.
-    left: Vector3<f64>,
-    right: Vector3<f64>,
-}
-
-impl Fold {
-    fn at(x: &[f64], vertices: &[VertexId; 4]) -> Self {
-        let [a, b, l, r] = vertices;
-        let [a, b, l, r] = [point(x, *a), point(x, *b), point(x, *l), point(x, *r)];
-        let (along, to_left, to_right) = (b - a, l - a, r - a);
-        Self {
-            left: along.cross(&to_left),
-            right: to_right.cross(&along),
-            along,
-            to_left,
-            to_right,
+    /// What it does at the angle `theta`, with a plastic angle from before.
+    fn respond(&self, t: f64, theta: f64, plastic: f64) -> Response {
+        let excess = self.excess(t, theta, plastic);
+        let Some(yields) = self.yields else {
+            return Response {
+                elastic: excess,
+                tangent: self.stiffness,
+                step: 0.0,
+                plastic_energy: 0.0,
+            };
+        };
+        let (e, p) = (Vector1::new(excess), Vector1::new(plastic));
+        let Flow { step, slope } = yields.flow(self.stiffness, e, p);
+        Response {
+            elastic: excess - step[0],
+            tangent: self.stiffness * (1.0 - slope[0]),
+            step: step[0],
+            plastic_energy: yields.energy(p, step),
         }
-    }
-
-    /// The fold angle.
-    fn angle(&self) -> f64 {
-        let sine = self.right.cross(&self.left).dot(&self.along) / self.along.norm();
-        sine.atan2(self.left.dot(&self.right))
-    }
-
-    /// The derivatives of the fold angle by the two ends and the two opposite vertices.
-    fn gradient(&self) -> [Vector3<f64>; 4] {
-        let squared = self.along.norm_squared();
-        let length = squared.sqrt();
-        // Per unit of height of an opposite vertex the angle grows by the inverse of its distance from the
-        // edge.
-        let (g_l, g_r) = (
-            self.left * (length / self.left.norm_squared()),
-            self.right * (length / self.right.norm_squared()),
-        );
-        let s_l = self.to_left.dot(&self.along) / squared;
-        let s_r = self.to_right.dot(&self.along) / squared;
-        [
-            (s_l - 1.0) * g_l + (s_r - 1.0) * g_r,
-            -s_l * g_l - s_r * g_r,
-            g_l,
-            g_r,
-        ]
     }
 }
 
 impl Potential for CreaseSprings {
     fn energy(&self, t: f64, x: &[f64]) -> f64 {
-        let energy = |h: &Hinge| {
-            let excess = h.excess(t, Fold::at(x, &h.vertices).angle());
-            0.5 * h.stiffness * excess * excess
+        let energy = |(h, p): (&Hinge, f64)| {
+            let response = h.respond(t, Fold::at(x, &h.vertices).angle(), p);
+            0.5 * h.stiffness * response.elastic * response.elastic + response.plastic_energy
         };
-        self.hinges.iter().map(energy).sum()
+        self.with_plastic().map(energy).sum()
     }
 
     fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
-        for h in &self.hinges {
+        for (h, p) in self.with_plastic() {
             let fold = Fold::at(x, &h.vertices);
-            let moment = h.stiffness * h.excess(t, fold.angle());
+            let moment = h.stiffness * h.respond(t, fold.angle(), p).elastic;
             for (v, g) in h.vertices.iter().zip(&fold.gradient()) {
                 for k in 0..3 {
                     gradient[3 * v.index() + k] += moment * g[k];
@@ -413,10 +388,15 @@ impl Potential for CreaseSprings {
         }
     }
 
-    fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
-        for h in &self.hinges {
-            let g = Fold::at(x, &h.vertices).gradient();
-            let block = |i: usize, j: usize| h.stiffness * g[i] * g[j].transpose();
+    fn add_hessian(&self, t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+        for (h, p) in self.with_plastic() {
+            let fold = Fold::at(x, &h.vertices);
+            let tangent = match h.yields {
+                None => h.stiffness,
+                Some(_) => h.respond(t, fold.angle(), p).tangent,
+            };
+            let g = fold.gradient();
+            let block = |i: usize, j: usize| tangent * g[i] * g[j].transpose();
             for (i, &v) in h.vertices.iter().enumerate() {
                 hessian.add_vertex(v, &block(i, i));
             }
@@ -437,7 +417,22 @@ impl Potential for CreaseSprings {
     fn is_driven(&self) -> bool {
         self.hinges.iter().any(|h| h.rest.is_driven())
     }
-}
+    fn memory(&self) -> &[f64] {
+        &self.plastic
+    }
 
-#[cfg(test)]
-mod tests;
+    fn set_memory(&mut self, memory: &[f64]) {
+        self.plastic.copy_from_slice(memory);
+    }
+
+    fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
+        let mut dissipated = 0.0;
+        for (h, p) in self.hinges.iter().zip(&mut self.plastic) {
+            let Some(yields) = h.yields else { continue };
+            let step = h.respond(t, Fold::at(x, &h.vertices).angle(), *p).step;
+            *p += step;
+            dissipated += yields.moment * step.abs();
+        }
+        dissipated
+    }
+}

@@ -3,6 +3,7 @@
 mod catalogue;
 pub(crate) mod crease;
 pub(crate) mod elastic_sheet;
+pub(crate) mod plasticity;
 pub(crate) mod plate_bending;
 #[cfg(test)]
 mod tests;

@@ -1,13 +1,19 @@
 //! Bending stiffness of a thin plate that does not depend on how the mesh runs.
 
+mod plastic;
+#[cfg(test)]
+mod plastic_tests;
 mod stencil;
 #[cfg(test)]
 mod tests;
 
+use super::plasticity::Yield;
+use crate::options::OptionsError;
 use crate::{HessianSink, Potential};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3, Vector3};
+use plastic::{Blocks, PlasticCurvature};
 use std::collections::BTreeMap;
 use stencil::Stencils;
 
@@ -36,11 +42,18 @@ pub enum PlateBendingError {
         /// Number of edges.
         count: usize,
     },
+    /// The plate cannot yield as it is to.
+    #[error("the yield of the plate cannot be used: {source}")]
+    Yield {
+        /// What is wrong with it.
+        source: OptionsError,
+    },
 }
 
 impl Advice for PlateBendingError {
     fn advice(&self) -> Option<&'static str> {
         match self {
+            Self::Yield { source } => source.advice(),
             Self::Rigidity { .. } => Some("give a finite one of at least 0"),
             Self::NoVertex { .. } | Self::NoEdge { .. } => None,
         }
@@ -79,13 +92,26 @@ impl Advice for PlateBendingError {
 /// couplings, and take them into account by conjugate gradients: a step costs about twice as much as with rods
 /// alone, and with the factorisation of the whole matrix ten times as much.
 ///
+/// A plate that [yields](Yield) has plastic curvatures `p_T` besides, symmetric 2 x 2 matrices that are constant on
+/// each face: of the energy of the curvatures `k_T` along the normal `n` of the face, `n . H_T x`, is left that of
+/// `k_T - p_T`,
+///
+/// ```text
+/// V(x) = sum_T A_T min_p [ D/2 |H_T x - n p|^2 + H/2 |p|^2 + M_y |p - p_T| ],
+/// ```
+///
+/// with what hardening stores and what the step dissipates. Of the Hessian, which is not constant any more where faces
+/// have yielded, a semidefinite part is given.
+///
 /// (L. S. D. Morley, "The triangular equilibrium element in the solution of plate bending problems",
 /// Aeronautical Quarterly 19, 1968; elimination of the rotations from patches of faces as in E. Onate and F.
 /// Zarate, "Rotation-free triangular plate and shell elements", Int. J. Numer. Methods Eng. 47, 2000.)
 #[derive(Debug)]
 pub struct PlateBending {
+    rigidity: f64,
     stencils: Stencils,
-    /// The Hessian: one multiple of the identity for each vertex, edge and further pair of vertices.
+    plastic: Option<PlasticCurvature>,
+    /// The Hessian of the elastic plate: one multiple of the identity for each vertex, edge and further pair of vertices.
     at_vertices: Vec<f64>,
     at_edges: Vec<(EdgeId, f64)>,
     at_pairs: Vec<([VertexId; 2], f64)>,
@@ -163,52 +189,126 @@ impl PlateBending {
             }
         }
         Ok(Self {
+            rigidity,
             stencils,
+            plastic: None,
             at_vertices,
             at_edges,
             at_pairs,
         })
     }
+
+    /// Makes the plate of `sheet` yield, from a state without plastic curvature on. (Without rigidity it has no
+    /// moments, and never yields.)
+    ///
+    /// # Errors
+    /// [`PlateBendingError::Yield`].
+    pub fn with_yield(mut self, sheet: &Sheet, yields: Yield) -> Result<Self, PlateBendingError> {
+        let checked = yields.validate();
+        checked.map_err(|source| PlateBendingError::Yield { source })?;
+        self.plastic = (self.rigidity > 0.0).then(|| {
+            let edges = self.at_edges.iter().map(|(edge, _)| *edge);
+            let pairs = self.at_pairs.iter().map(|(pair, _)| *pair);
+            PlasticCurvature::new(sheet, &self.stencils, (self.rigidity, yields), edges, pairs)
+        });
+        Ok(self)
+    }
+
+    /// The plastic curvature of each face, 1/m, the first axis along the first edge of the face, positive where the
+    /// sheet is a valley as seen from the side from which faces are counter-clockwise; none where the plate cannot
+    /// yield.
+    pub fn plastic_curvatures(&self) -> Vec<Matrix2<f64>> {
+        let plastic = self.plastic.iter();
+        plastic.flat_map(PlasticCurvature::matrices).collect()
+    }
 }
 
 impl Potential for PlateBending {
     fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+        if let Some(plastic) = &self.plastic {
+            let faces = self.stencils.iter().enumerate();
+            let energy = |(k, s)| plastic.energy(k, &plastic.bent(k, &s, x));
+            return faces.map(energy).sum();
+        }
         let energy = |h: Matrix3<f64>| 0.5 * h.norm_squared();
         self.stencils.iter().map(|s| energy(s.apply(x))).sum()
     }
 
     fn add_bending_energies(&self, x: &[f64], faces: &mut [f64]) {
-        for (face, stencil) in faces.iter_mut().zip(self.stencils.iter()) {
-            *face += 0.5 * stencil.apply(x).norm_squared();
+        for (k, (face, stencil)) in faces.iter_mut().zip(self.stencils.iter()).enumerate() {
+            let elastic = match &self.plastic {
+                None => stencil.apply(x),
+                Some(plastic) => plastic.bent(k, &stencil, x).elastic,
+            };
+            *face += 0.5 * elastic.norm_squared();
         }
     }
 
     fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
-        for stencil in self.stencils.iter() {
-            let h = stencil.apply(x);
-            for (v, weights) in stencil {
-                let force = h * weights;
-                for k in 0..3 {
-                    gradient[3 * v + k] += force[k];
+        let mut add = |v: usize, force: Vector3<f64>| {
+            for k in 0..3 {
+                gradient[3 * v + k] += force[k];
+            }
+        };
+        for (k, stencil) in self.stencils.iter().enumerate() {
+            let h = match &self.plastic {
+                None => stencil.apply(x),
+                Some(plastic) => {
+                    let bent = plastic.bent(k, &stencil, x);
+                    for (v, force) in bent.turning_forces() {
+                        add(v.index(), force);
+                    }
+                    bent.elastic
                 }
+            };
+            for (v, weights) in stencil {
+                add(v, h * weights);
             }
         }
     }
 
-    fn add_hessian(&self, _t: f64, _x: &[f64], hessian: &mut dyn HessianSink) {
-        let block = |value: f64| Matrix3::from_diagonal_element(value);
+    fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+        let count = [
+            self.at_vertices.len(),
+            self.at_edges.len(),
+            self.at_pairs.len(),
+        ];
+        let plastic = self.plastic.as_ref();
+        let plastic = plastic.and_then(|plastic| plastic.blocks(&self.stencils, x, count));
+        let block = |value: f64, list: fn(&Blocks) -> &[Matrix3<f64>], k: usize| {
+            let elastic = Matrix3::from_diagonal_element(value);
+            plastic
+                .as_ref()
+                .map_or(elastic, |blocks| elastic + list(blocks)[k])
+        };
         for (v, value) in self.at_vertices.iter().enumerate() {
-            hessian.add_vertex(VertexId(v as u32), &block(*value));
+            hessian.add_vertex(VertexId(v as u32), &block(*value, |b| &b.at_vertices, v));
         }
-        for (edge, value) in &self.at_edges {
-            hessian.add_edge(*edge, &block(*value));
+        for (k, (edge, value)) in self.at_edges.iter().enumerate() {
+            hessian.add_edge(*edge, &block(*value, |b| &b.at_edges, k));
         }
-        for ([a, b], value) in &self.at_pairs {
-            hessian.add_pair(*a, *b, &block(*value));
+        for (k, ([a, b], value)) in self.at_pairs.iter().enumerate() {
+            hessian.add_pair(*a, *b, &block(*value, |b| &b.at_pairs, k));
         }
     }
 
     fn couplings(&self) -> Vec<[VertexId; 2]> {
         self.at_pairs.iter().map(|(pair, _)| *pair).collect()
+    }
+    fn memory(&self) -> &[f64] {
+        self.plastic
+            .as_ref()
+            .map_or(&[], PlasticCurvature::curvatures)
+    }
+
+    fn set_memory(&mut self, memory: &[f64]) {
+        if let Some(plastic) = &mut self.plastic {
+            plastic.set_curvatures(memory);
+        }
+    }
+
+    fn settle(&mut self, _t: f64, x: &[f64]) -> f64 {
+        let plastic = self.plastic.as_mut();
+        plastic.map_or(0.0, |plastic| plastic.settle(&self.stencils, x))
     }
 }

@@ -8,6 +8,7 @@ mod error;
 pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;
+mod memory;
 pub mod potential;
 pub(crate) mod round_off;
 pub(crate) mod state;

@@ -44,6 +44,22 @@ pub trait Potential: Debug + Send + Sync {
     /// that of stretching ([`ElasticDeformation`](crate::ElasticDeformation)). The default adds none.
     fn add_bending_energies(&self, _x: &[f64], _faces: &mut [f64]) {}
 
+    /// What the energy depends on besides time and positions: plastic deformations, for instance. The default has
+    /// none. A potential with memory is moved by methods that minimise it (BDF2, implicit Euler).
+    fn memory(&self) -> &[f64] {
+        &[]
+    }
+
+    /// Replaces the memory by another one of the same length, where a simulation goes on from a checkpoint.
+    fn set_memory(&mut self, _memory: &[f64]) {}
+
+    /// Makes the memory that of time `t` (seconds) and positions `x` (`3V`, metres), at which a step of time has
+    /// ended; the energy that has been dissipated in the step, joules, by which the energy falls. It changes no force
+    /// at `x`, and as the energy before it is that of the step, nothing is dissipated where a step is refused.
+    fn settle(&mut self, _t: f64, _x: &[f64]) -> f64 {
+        0.0
+    }
+
     /// How the energy depends on the positions.
     fn shape(&self) -> PotentialShape {
         PotentialShape::General

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Format version; it grows with every change of the fields.
-const VERSION: u32 = 11;
+const VERSION: u32 = 12;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
@@ -84,6 +84,8 @@ pub(crate) struct EnergySums {
     pub(crate) dissipated: f64,
     /// Energy lost to friction and impacts, joules.
     pub(crate) friction: f64,
+    /// Energy dissipated by plastic bending, joules.
+    pub(crate) plastic: f64,
 }
 
 /// Sizes and checksums of a model.
@@ -106,8 +108,12 @@ impl EnergySums {
             work,
             dissipated,
             friction,
+            plastic,
         } = *self;
-        check_finite("sums of energies", &[start, work, dissipated, friction])
+        check_finite(
+            "sums of energies",
+            &[start, work, dissipated, friction, plastic],
+        )
     }
 }
 

@@ -483,6 +483,7 @@ impl Simulation {
         self.energy.work += totals.work;
         self.energy.dissipated += totals.dissipated;
         self.energy.friction += totals.friction;
+        self.energy.plastic += totals.plastic;
         done?;
         self.check_energies()?;
         Ok(self.report(h, &totals))
@@ -517,6 +518,7 @@ impl Simulation {
             work,
             dissipated,
             friction,
+            plastic,
         } = self.energy;
         StepReport {
             t: *t,
@@ -531,7 +533,8 @@ impl Simulation {
             work,
             dissipated,
             friction,
-            energy_drift: kinetic + potential - work + dissipated + friction - start,
+            plastic,
+            energy_drift: kinetic + potential - work + dissipated + friction + plastic - start,
             strain: model.rods().max_strain(x),
             constrained_strain: model.constrained_strain(x),
             taut: totals.taut,

@@ -69,6 +69,9 @@ impl Engine {
         if model.isometry() != Isometry::Rods && !method.is_minimising() {
             return Err(SimulationError::Elastic);
         }
+        if model.has_memory() && !method.is_minimising() {
+            return Err(SimulationError::Plastic);
+        }
         let tuning = Tuning::default();
         let integrator = method.build(&model, &tuning)?;
         let control = StepControl::default();
@@ -105,6 +108,7 @@ impl Engine {
             fixed: self.fixed.iter().map(|v| v.0).collect(),
             barrier: self.contact.as_ref().map(RunContact::barrier),
             strain_barrier: self.model.elastic_sheet().map(ElasticSheet::barrier),
+            memories: self.model.memories(),
         }
     }
 
@@ -116,6 +120,7 @@ impl Engine {
     ) -> Result<Self, SimulationError> {
         check_lengths(&model, &motion)?;
         motion.check_numbers()?;
+        model.set_memories(&motion.memories);
         let fixed: Vec<VertexId> = motion.fixed.iter().copied().map(VertexId).collect();
         model.fix(&fixed);
         let start = &motion.solver.state;
@@ -505,6 +510,8 @@ impl Stepping for Substeps<'_, '_> {
             let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
             totals.work += engine.model.potential_work(ends.0, ends.1);
         }
+        let State { t, x, .. } = &engine.solver.state;
+        totals.plastic += engine.model.settle(*t, x);
         totals.substeps += 1;
         totals.residual = totals.residual.max(step.residual);
         totals.outcome = totals.outcome.max(step.outcome);
@@ -575,6 +582,15 @@ fn check_lengths(model: &SheetModel, motion: &FreeState) -> Result<(), Checkpoin
         .flatten()
         .chain(&motion.fixed)
         .max();
+    let memories = model.memories();
+    check_length(
+        "memories of potentials",
+        motion.memories.len(),
+        memories.len(),
+    )?;
+    for (found, expected) in motion.memories.iter().zip(&memories) {
+        check_length("plastic deformations", found.len(), expected.len())?;
+    }
     for (what, found, expected) in [
         ("positions", state.x.len(), n),
         ("velocities", state.v.len(), n),

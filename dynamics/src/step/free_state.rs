@@ -21,6 +21,8 @@ pub(crate) struct FreeState {
     pub(crate) barrier: Option<BarrierPotential>,
     /// The stiffness of the barrier at the limit of the strain, joules per square metre, of elastic sheets.
     pub(crate) strain_barrier: Option<f64>,
+    /// What potentials remember, if any of them does.
+    pub(crate) memories: Vec<Vec<f64>>,
 }
 
 impl FreeState {
@@ -36,6 +38,9 @@ impl FreeState {
         check_finite("velocities of the step before", &previous.v)?;
         check_finite("multipliers of the isometry", &multipliers.rods)?;
         check_finite("stiffnesses of the rods", &[history.rod_stiffness])?;
+        for memory in &self.memories {
+            check_finite("plastic deformations", memory)?;
+        }
         check_finite(
             "stiffnesses of the strain barrier",
             self.strain_barrier.as_slice(),

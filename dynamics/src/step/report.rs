@@ -59,7 +59,9 @@ pub struct StepReport {
     pub dissipated: f64,
     /// Energy lost to friction, in charts to impacts, since the start, joules.
     pub friction: f64,
-    /// Energy error `T + V - work + dissipated + friction` relative to its value at the start, joules.
+    /// Energy dissipated by plastic bending ([`Yield`](crate::Yield)) since the start, joules.
+    pub plastic: f64,
+    /// Energy error `T + V - work + dissipated + friction + plastic` relative to its value at the start, joules.
     pub energy_drift: f64,
     /// Largest relative edge length error at the end.
     pub strain: f64,
@@ -396,6 +398,7 @@ pub(crate) struct StepTotals<'w> {
     pub(crate) work: f64,
     pub(crate) dissipated: f64,
     pub(crate) friction: f64,
+    pub(crate) plastic: f64,
     pub(crate) taut: Option<Infeasibility>,
 }
 
@@ -410,6 +413,7 @@ impl Default for StepTotals<'_> {
             work: 0.0,
             dissipated: 0.0,
             friction: 0.0,
+            plastic: 0.0,
             taut: None,
         }
     }

@@ -51,6 +51,11 @@ pub enum SimulationError {
     /// The method does not support elastic sheets.
     #[error("the sheet has no rigid rods (it is elastic), and the method needs them")]
     Elastic,
+    /// The method does not support plastic deformations.
+    #[error(
+        "the sheet yields (its bends or creases stay), and the method has no place for what yielding loses"
+    )]
+    Plastic,
     /// The checkpoint is invalid or of another model.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
@@ -68,7 +73,7 @@ impl Advice for SimulationError {
             Self::Chart(error) => error.advice(),
             Self::Contact(error) => error.advice(),
             Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
-            Self::Elastic => Some("use BDF2 or implicit Euler"),
+            Self::Elastic | Self::Plastic => Some("use BDF2 or implicit Euler"),
             Self::Checkpoint(error) => error.advice(),
             Self::ChartControl => Some("leave `StepControl` out"),
             Self::StateLength { .. } => None,

@@ -180,6 +180,7 @@ impl Crease {
             edge,
             stiffness: self.stiffness * sheet.lengths()[edge.index()],
             rest: self.angle.scaled(sign * 1.0_f64.to_radians()).into(),
+            yields: None,
         };
         Ok(edges.into_iter().map(spring).collect())
     }

@@ -209,6 +209,7 @@ impl Folding {
             edge,
             stiffness: stiffness * sheet.lengths()[edge.index()],
             rest: self.course(fold_angle(sheet.topology(), x, edge).unwrap_or(0.0), target),
+            yields: None,
         };
         let flat_stiffness = self
             .flat_stiffness

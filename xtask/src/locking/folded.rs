@@ -142,6 +142,7 @@ impl Job {
                 end: FOLDING,
             }
             .into(),
+            yields: None,
         };
         let mut springs: Vec<CreaseSpring> = crease.iter().map(spring).collect();
         CreaseSpring::put_in_sheet(&mut springs, sheet, RIGIDITY);

@@ -29,6 +29,7 @@ fn springs(t: &Topology, rest: impl Fn(EdgeId) -> f64) -> CreaseSprings {
             } else {
                 RestAngle::from(move |t| angle * t)
             },
+            yields: None,
         }
     });
     CreaseSprings::new(t, springs.collect()).expect("interior edges")
@@ -49,6 +50,7 @@ fn angles_are_those_of_the_mesh_in_sign_and_size() {
             edge: e,
             stiffness: 1.0,
             rest: 0.0.into(),
+            yields: None,
         };
         let own = CreaseSprings::new(t, vec![spring]).expect("interior");
         let moment = own.moments(0.0, &x)[0];
@@ -132,11 +134,12 @@ fn a_fold_that_passes_shut_goes_on() {
         edge: interior(t)[0],
         stiffness: 2.0,
         rest: 3.0.into(),
+        yields: None,
     };
     let p = CreaseSprings::new(t, vec![spring]).expect("interior");
     let hinge = &p.hinges[0];
-    assert!((hinge.excess(0.0, -3.1) - (TAU - 6.1)).abs() < 1e-14);
-    assert!((hinge.excess(0.0, 3.1) - 0.1).abs() < 1e-14);
+    assert!((hinge.excess(0.0, -3.1, 0.0) - (TAU - 6.1)).abs() < 1e-14);
+    assert!((hinge.excess(0.0, 3.1, 0.0) - 0.1).abs() < 1e-14);
 }
 
 #[test]
@@ -149,6 +152,7 @@ fn what_makes_no_sense_is_named() {
             edge,
             stiffness,
             rest,
+            yields: None,
         };
         CreaseSprings::new(t, vec![spring]).map(|_| ())
     };
@@ -233,6 +237,7 @@ fn driven(method: Method) -> [f64; 3] {
         edge,
         stiffness: 1e-2,
         rest,
+        yields: None,
     });
     let springs = CreaseSprings::new(t, springs.into()).expect("interior");
     let model = SheetModel::new(&sheet, 1e-3, MassKind::Lumped)

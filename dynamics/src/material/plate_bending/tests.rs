@@ -188,6 +188,7 @@ fn cantilever(cells: usize, diagonals: Diagonals, jitter: f64, crease: Option<f6
             edge,
             stiffness: crease.filter(|_| is_inside)? * sheet.lengths()[edge.index()],
             rest: 0.0.into(),
+            yields: None,
         })
     };
     let mut springs: Vec<_> = t.edge_ids().filter_map(spring).collect();
@@ -265,6 +266,7 @@ fn a_sheet_rests_at_the_rest_angle_of_its_crease() {
                 edge,
                 stiffness: k * sheet.lengths()[edge.index()],
                 rest: found.into(),
+                yields: None,
             };
             let mut springs: Vec<_> = creases.iter().map(spring).collect();
             CreaseSpring::put_in_sheet(&mut springs, &sheet, 1.0);

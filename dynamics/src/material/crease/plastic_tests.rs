@@ -1,0 +1,263 @@
+//! Creases that yield.
+
+use super::*;
+use crate::linear::primal::PrimalMatrix;
+use crate::{Method, SheetModel, Simulation, SimulationError, State};
+use isosheet_mesh::{MassKind, fold_angle, generate};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const STIFFNESS: f64 = 1e-2;
+const YIELD: Yield = Yield {
+    moment: 2e-3,
+    hardening: 1e-3,
+};
+
+/// Two triangles of a square and the edge between them.
+fn hinge() -> (Sheet, EdgeId) {
+    let x = vec![0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.1, 0.1, 0.0, 0.0, 0.1, 0.0];
+    let sheet = Sheet::new(x, &[[0, 1, 2], [0, 2, 3]]).expect("a square");
+    let edge = sheet.topology().find_edge(VertexId(0), VertexId(2));
+    let edge = edge.expect("the diagonal");
+    (sheet, edge)
+}
+
+fn spring(edge: EdgeId) -> CreaseSpring {
+    CreaseSpring {
+        edge,
+        stiffness: STIFFNESS,
+        rest: 0.0.into(),
+        yields: Some(YIELD),
+    }
+}
+
+/// The square folded to an angle.
+fn folded(angle: f64) -> Vec<f64> {
+    let (sheet, edge) = hinge();
+    let x = |angle: f64| {
+        let height = 0.05 * std::f64::consts::SQRT_2;
+        let (sine, cosine) = angle.sin_cos();
+        let out = 0.05 - 0.05 * cosine;
+        let mut x = sheet.positions().to_vec();
+        x[9..].copy_from_slice(&[out, 0.1 - out, height * sine]);
+        x
+    };
+    let found = fold_angle(sheet.topology(), &x(angle), edge).expect("interior");
+    if found * angle < 0.0 {
+        x(-angle)
+    } else {
+        x(angle)
+    }
+}
+
+#[test]
+fn derivatives_match_differences_across_the_yield() {
+    let sheet = generate::isotropic_square(1, 1.0).expect("valid");
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let x = sheet.positions().iter();
+    let x: Vec<f64> = x.map(|p| p + rng.random_range(-0.08..0.08)).collect();
+    let mut springs = CreaseSprings::bending(&sheet, 1.0)
+        .and_then(|s| s.with_yield(&sheet, YIELD_OF_SHEET))
+        .expect("valid");
+    let memory: Vec<f64> = springs
+        .memory()
+        .iter()
+        .map(|_| rng.random_range(-0.2..0.2))
+        .collect();
+    springs.set_memory(&memory);
+    let mut yielded = springs.memory().to_vec();
+    springs.settle(0.0, &x);
+    yielded
+        .iter_mut()
+        .zip(springs.memory())
+        .for_each(|(p, q)| *p -= q);
+    let count = yielded.iter().filter(|p| **p != 0.0).count();
+    assert!(
+        count > 5 && count + 5 < yielded.len(),
+        "{count} of {}",
+        yielded.len()
+    );
+    springs.set_memory(&memory);
+    let gradient = |x: &[f64]| {
+        let mut g = vec![0.0; x.len()];
+        springs.add_gradient(0.0, x, &mut g);
+        g
+    };
+    let g = gradient(&x);
+    let largest = g.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
+    for i in 0..x.len() {
+        let at = |s: f64| {
+            let mut moved = x.clone();
+            moved[i] += s * 1e-5;
+            springs.energy(0.0, &moved)
+        };
+        let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 12e-5;
+        assert!(
+            (slope - g[i]).abs() < 1e-7 * largest,
+            "{i}: {slope} against {}",
+            g[i]
+        );
+    }
+}
+
+/// Per metre.
+const YIELD_OF_SHEET: Yield = Yield {
+    moment: 0.8,
+    hardening: 0.3,
+};
+
+/// Out of the plane of a flat sheet the angles are linear, and the tangent is that of the section.
+#[test]
+fn the_hessian_matches_differences_where_springs_yield() {
+    let (sheet, edge) = hinge();
+    let springs = CreaseSprings::new(sheet.topology(), vec![spring(edge)]).expect("interior");
+    let model = SheetModel::new(&sheet, 1e-9, MassKind::Lumped).expect("valid");
+    let model = model.with_potential(springs);
+    let mut springs = CreaseSprings::new(sheet.topology(), vec![spring(edge)]).expect("interior");
+    // In the flat state the moment that yields comes from the plastic angle of before.
+    springs.set_memory(&[-0.5]);
+    let with_memory = SheetModel::new(&sheet, 1e-9, MassKind::Lumped).expect("valid");
+    let with_memory = with_memory.with_potential(springs);
+    let x = sheet.positions();
+    let mut d = vec![0.0; x.len()];
+    (d[2], d[11]) = (0.3, -0.8);
+    for (model, part) in [
+        (&model, 1.0),
+        (
+            &with_memory,
+            YIELD.hardening / (YIELD.hardening + STIFFNESS),
+        ),
+    ] {
+        let mut matrix = PrimalMatrix::new(model).expect("pattern");
+        let none = vec![0.0; model.rods().len()];
+        matrix.assemble(model, x, &none, &none);
+        matrix.add_potentials(model, 0.0, x, 1.0);
+        let product = matrix.product(model, &d);
+        let h = 1e-6;
+        let force = |s: f64| {
+            let moved: Vec<f64> = x.iter().zip(&d).map(|(x, d)| x + s * h * d).collect();
+            let mut f = vec![0.0; x.len()];
+            model.potential_force(0.0, &moved, &mut f);
+            f[11]
+        };
+        let slope = -(force(1.0) - force(-1.0)) / (2.0 * h);
+        assert!((slope - product[11]).abs() < 1e-6 * slope.abs(), "{slope}");
+        let ends = vertices(&sheet, edge);
+        let place = |v: u32| ends.iter().position(|w| w.0 == v).expect("a corner");
+        let g = Fold::at(x, &ends).gradient();
+        let angle: f64 = 0.3 * g[place(0)].z - 0.8 * g[place(3)].z;
+        let expected = part * STIFFNESS * angle * g[place(3)].z;
+        let error = (slope - expected).abs();
+        assert!(error < 1e-5 * expected.abs(), "{slope} against {expected}");
+    }
+}
+
+fn vertices(sheet: &Sheet, edge: EdgeId) -> [VertexId; 4] {
+    let [left, right] = sheet.topology().opposite_vertices(edge);
+    let [a, b] = sheet.topology().edges()[edge.index()];
+    [a, b, left.expect("left"), right.expect("right")]
+}
+
+/// Steps through a cycle of angles: what is dissipated is the work of the moment less what is stored.
+#[test]
+fn dissipation_is_work_less_energy() {
+    let (sheet, edge) = hinge();
+    let mut springs = CreaseSprings::new(sheet.topology(), vec![spring(edge)]).expect("interior");
+    let count = 4000;
+    let (mut work, mut dissipated, mut before) = (0.0, 0.0, (0.0, 0.0));
+    for k in 1..=count {
+        let phase = TAU * f64::from(k) / f64::from(count);
+        let angle = 1.1 * phase.sin();
+        let x = folded(angle);
+        dissipated += springs.settle(0.0, &x);
+        let moment = -springs.moments(0.0, &x)[0];
+        work += 0.5 * (moment + before.1) * (angle - before.0);
+        before = (angle, moment);
+    }
+    let stored = springs.energy(0.0, &folded(0.0));
+    assert!(dissipated > 3.0 * YIELD.moment, "{dissipated} J");
+    assert!(
+        (work - stored - dissipated).abs() < 1e-5 * work,
+        "{work} {stored} {dissipated}"
+    );
+}
+
+/// A moment that folds an edge, newton metres: up to the largest one, and back to nothing.
+#[derive(Debug)]
+struct Moment([VertexId; 4]);
+
+const LARGEST: f64 = 3e-3;
+
+impl Moment {
+    fn at(t: f64) -> f64 {
+        LARGEST * (1.0 - (5.0 * t - 1.0).abs()).max(0.0)
+    }
+}
+
+impl Potential for Moment {
+    fn energy(&self, t: f64, x: &[f64]) -> f64 {
+        -Self::at(t) * Fold::at(x, &self.0).angle()
+    }
+
+    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
+        for (v, g) in self.0.iter().zip(Fold::at(x, &self.0).gradient()) {
+            for k in 0..3 {
+                gradient[3 * v.index() + k] -= Self::at(t) * g[k];
+            }
+        }
+    }
+
+    fn is_driven(&self) -> bool {
+        true
+    }
+}
+
+/// A crease that is pressed and let go stays folded at what yielding has left.
+#[test]
+fn a_pressed_crease_stays_folded() {
+    let run = |h: f64| {
+        let (sheet, edge) = hinge();
+        let springs = CreaseSprings::new(sheet.topology(), vec![spring(edge)]).expect("interior");
+        let model = SheetModel::new(&sheet, 1e-7, MassKind::Lumped)
+            .and_then(|m| m.with_potential(springs).with_damping(5.0))
+            .expect("valid")
+            .with_potential(Moment(vertices(&sheet, edge)));
+        let start = State::at_rest(sheet.positions().to_vec());
+        let run = Simulation::new(model, start, Method::Bdf2(Default::default()));
+        let mut run = run.unwrap_or_else(|e| panic!("{e}"));
+        let mut report = run.step(h).expect("accepted");
+        for _ in 1..(0.6 / h).round() as usize {
+            report = run.step(h).expect("accepted");
+        }
+        let angle = fold_angle(sheet.topology(), &run.state().x, edge).expect("interior");
+        (angle, report)
+    };
+    // Its moment is M_y + H p at the largest load.
+    let expected = (LARGEST - YIELD.moment) / YIELD.hardening;
+    let lost = YIELD.moment * expected;
+    let found = [4e-3, 2e-3].map(run);
+    for (angle, report) in &found {
+        assert!(
+            (angle - expected).abs() < 5e-3 * expected,
+            "{angle} {expected}"
+        );
+        assert!((report.plastic - lost).abs() < 5e-3 * lost, "{report:?}");
+        assert!(report.energy_drift.abs() < 0.02 * report.work, "{report:?}");
+    }
+}
+
+#[test]
+fn methods_that_do_not_minimise_are_refused() {
+    let (sheet, edge) = hinge();
+    for method in [
+        Method::EnergyMomentum(Default::default()),
+        Method::Rattle(Default::default()),
+        Method::Projection(Default::default()),
+    ] {
+        let springs = CreaseSprings::new(sheet.topology(), vec![spring(edge)]).expect("interior");
+        let model = SheetModel::new(&sheet, 1e-3, MassKind::Lumped).expect("valid");
+        let start = State::at_rest(sheet.positions().to_vec());
+        let refused = Simulation::new(model.with_potential(springs), start, method);
+        assert_eq!(refused.err(), Some(SimulationError::Plastic));
+    }
+}

@@ -1,0 +1,251 @@
+//! Plates that yield.
+
+use super::*;
+use crate::linear::primal::PrimalMatrix;
+use crate::{Method, SheetModel, Simulation, State};
+use isosheet_mesh::generate;
+use isosheet_mesh::{MassKind, Sheet};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const RIGIDITY: f64 = 2.0;
+const YIELD: Yield = Yield {
+    moment: 0.5,
+    hardening: 0.3,
+};
+
+/// An irregular mesh.
+fn sheet() -> Sheet {
+    let outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.8], [0.0, 0.8]];
+    generate::delaunay(&outline, 0.2, 4).expect("valid")
+}
+
+fn plate(sheet: &Sheet) -> PlateBending {
+    let plate = PlateBending::new(sheet, RIGIDITY).expect("rigidity");
+    plate.with_yield(sheet, YIELD).expect("valid")
+}
+
+/// Rolled about the y-axis to a curvature, without a strain of the surface.
+fn rolled(sheet: &Sheet, curvature: f64) -> Vec<f64> {
+    let roll = |p: &[f64; 3]| {
+        let angle = curvature * (p[0] - 0.5);
+        [
+            angle.sin() / curvature,
+            p[1],
+            (1.0 - angle.cos()) / curvature,
+        ]
+    };
+    sheet
+        .positions()
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .flat_map(roll)
+        .collect()
+}
+
+fn interior(sheet: &Sheet) -> impl Iterator<Item = usize> {
+    let t = sheet.topology();
+    let inside =
+        |f: &isosheet_mesh::FaceId| t.face_edges(*f).iter().all(|e| !t.is_boundary_edge(*e));
+    t.face_ids().filter(inside).map(|f| f.index())
+}
+
+fn gradient(plate: &PlateBending, x: &[f64]) -> Vec<f64> {
+    let mut g = vec![0.0; x.len()];
+    plate.add_gradient(0.0, x, &mut g);
+    g
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The product of the Hessian with a displacement.
+fn product(sheet: &Sheet, plate: PlateBending, x: &[f64], d: &[f64]) -> Vec<f64> {
+    let model = SheetModel::new(sheet, 1e-12, MassKind::Lumped).expect("valid");
+    let model = model.with_potential(plate);
+    let mut matrix = PrimalMatrix::new(&model).expect("pattern");
+    let none = vec![0.0; model.rods().len()];
+    matrix.assemble(&model, x, &none, &none);
+    matrix.add_potentials(&model, 0.0, x, 1.0);
+    matrix.product(&model, d)
+}
+
+#[test]
+fn the_gradient_matches_differences_where_some_faces_yield() {
+    let sheet = sheet();
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let x: Vec<f64> = rolled(&sheet, 0.3);
+    let x: Vec<f64> = x
+        .iter()
+        .map(|x| x + rng.random_range(-0.001..0.001))
+        .collect();
+    let mut plate = plate(&sheet);
+    let memory: Vec<f64> = plate
+        .memory()
+        .iter()
+        .map(|_| rng.random_range(-0.2..0.2))
+        .collect();
+    plate.set_memory(&memory);
+    plate.settle(0.0, &x);
+    let yielded = plate
+        .memory()
+        .iter()
+        .zip(&memory)
+        .filter(|(p, q)| p != q)
+        .count();
+    assert!(
+        yielded > 30 && yielded + 30 < memory.len(),
+        "{yielded} of {}",
+        memory.len()
+    );
+    plate.set_memory(&memory);
+    let g = gradient(&plate, &x);
+    let largest = g.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
+    for i in 0..x.len() {
+        let at = |s: f64| {
+            let mut moved = x.clone();
+            moved[i] += s * 1e-6;
+            plate.energy(0.0, &moved)
+        };
+        let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 12e-6;
+        assert!(
+            (slope - g[i]).abs() < 1e-6 * largest,
+            "{i}: {slope} against {}",
+            g[i]
+        );
+    }
+}
+
+/// On a cylinder that is bent beyond the yield, and beyond the plastic curvature that it has.
+#[test]
+fn the_hessian_matches_differences_of_the_gradient() {
+    let sheet = sheet();
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let d: Vec<f64> = sheet
+        .positions()
+        .iter()
+        .map(|_| rng.random_range(-1.0..1.0))
+        .collect();
+    for (curvature, bound) in [(0.4, 0.04), (0.8, 0.08)] {
+        let mut bent = plate(&sheet);
+        bent.settle(0.0, &rolled(&sheet, curvature));
+        let x = rolled(&sheet, 1.1 * curvature);
+        let h = 1e-7;
+        let at = |s: f64| {
+            let moved: Vec<f64> = x.iter().zip(&d).map(|(x, d)| x + s * h * d).collect();
+            gradient(&bent, &moved)
+        };
+        let (up, down) = (at(1.0), at(-1.0));
+        let expected: Vec<f64> = up
+            .iter()
+            .zip(&down)
+            .map(|(u, d)| (u - d) / (2.0 * h))
+            .collect();
+        let found = product(&sheet, bent, &x, &d);
+        let difference: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
+        let error = norm(&difference) / norm(&expected);
+        assert!(error < bound, "curvature {curvature}: {error}");
+    }
+}
+
+/// A sheet at its plastic curvature has no moments, and turning it costs nothing: the part of its Hessian that turns
+/// normals cancels that of the curvature.
+#[test]
+fn a_sheet_at_its_plastic_curvature_is_at_rest_and_turns_freely() {
+    let sheet = sheet();
+    let curvature = 0.7;
+    let x = rolled(&sheet, curvature);
+    let elastic = PlateBending::new(&sheet, RIGIDITY).expect("rigidity");
+    let bent = || {
+        let with_yield = |moment: f64| {
+            let plate = PlateBending::new(&sheet, RIGIDITY).expect("rigidity");
+            plate
+                .with_yield(&sheet, Yield::perfect(moment))
+                .expect("valid")
+        };
+        // Of a plate that hardly resists all curvature is plastic.
+        let (mut soft, mut plate) = (with_yield(1e-9), with_yield(YIELD.moment));
+        soft.settle(0.0, &x);
+        plate.set_memory(soft.memory());
+        plate
+    };
+    let ratio = bent().energy(0.0, &x) / elastic.energy(0.0, &x);
+    assert!(ratio < 1e-2, "{ratio}");
+    let forces = norm(&gradient(&bent(), &x)) / norm(&gradient(&elastic, &x));
+    assert!(forces < 0.1, "{forces}");
+    for axis in [Vector3::x(), Vector3::y()] {
+        let turn = |p: &[f64; 3]| axis.cross(&Vector3::from(*p)).data.0[0];
+        let d: Vec<f64> = x.as_chunks::<3>().0.iter().flat_map(turn).collect();
+        let plain = PlateBending::new(&sheet, RIGIDITY).expect("rigidity");
+        let part = norm(&product(&sheet, bent(), &x, &d)) / norm(&product(&sheet, plain, &x, &d));
+        assert!(part < 0.1, "{axis}: {part}");
+    }
+}
+
+/// The closed form of springback, and the energy that bending has dissipated.
+#[test]
+fn a_rolled_sheet_keeps_the_curvature_beyond_the_yield() {
+    let sheet = sheet();
+    let curvature = 0.9;
+    let mut plate = plate(&sheet);
+    let expected = (RIGIDITY * curvature - YIELD.moment) / (RIGIDITY + YIELD.hardening);
+    let x = rolled(&sheet, curvature);
+    let before = plate.energy(0.0, &x);
+    let dissipated = plate.settle(0.0, &x);
+    let fall = before - plate.energy(0.0, &x);
+    assert!(
+        (fall - dissipated).abs() < 1e-12 * before,
+        "{fall} {dissipated}"
+    );
+    let curvatures = plate.plastic_curvatures();
+    for face in interior(&sheet) {
+        let principal = curvatures[face].symmetric_eigenvalues();
+        let (large, small) = (principal.max(), principal.min());
+        assert!(
+            (large - expected).abs() < 0.03 * expected,
+            "{large} {expected}"
+        );
+        assert!(small.abs() < 0.03 * expected, "{small}");
+    }
+    // Rolled to the other side it yields sooner.
+    let back = -0.5 * curvature;
+    plate.settle(0.0, &rolled(&sheet, back));
+    let expected = (RIGIDITY * back + YIELD.moment) / (RIGIDITY + YIELD.hardening);
+    let curvatures = plate.plastic_curvatures();
+    for face in interior(&sheet) {
+        let least = curvatures[face].symmetric_eigenvalues().min();
+        assert!(
+            (least - expected).abs() < 0.05 * curvature,
+            "{least} {expected}"
+        );
+    }
+}
+
+/// What does not yield costs nothing: the same bits as without.
+#[test]
+fn a_plate_below_its_yield_moves_as_one_that_never_yields() {
+    let sheet = sheet();
+    let run = |plate: PlateBending| {
+        let pins = [VertexId(0), VertexId(1)];
+        let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
+            .expect("mass")
+            .with_gravity()
+            .with_pins(&pins)
+            .expect("vertices")
+            .with_potential(plate);
+        let start = State::at_rest(sheet.positions().to_vec());
+        let mut run =
+            Simulation::new(model, start, Method::Bdf2(Default::default())).expect("valid");
+        for _ in 0..5 {
+            run.step(0.01).expect("accepted");
+        }
+        run.state().x.clone()
+    };
+    let hard = Yield::perfect(1e6);
+    let elastic = PlateBending::new(&sheet, RIGIDITY).expect("rigidity");
+    let yielding = PlateBending::new(&sheet, RIGIDITY).expect("rigidity");
+    let yielding = yielding.with_yield(&sheet, hard).expect("valid");
+    assert_eq!(run(elastic), run(yielding));
+}

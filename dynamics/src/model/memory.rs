@@ -1,0 +1,32 @@
+//! What the potentials of a model remember.
+
+use crate::SheetModel;
+
+impl SheetModel {
+    /// Whether a potential has a memory ([`Potential::memory`]).
+    pub(crate) fn has_memory(&self) -> bool {
+        self.potentials().any(|p| !p.memory().is_empty())
+    }
+
+    /// What each of the potentials remembers that were added; nothing if none of them has a memory.
+    pub(crate) fn memories(&self) -> Vec<Vec<f64>> {
+        if !self.has_memory() {
+            return Vec::new();
+        }
+        self.outer_potentials()
+            .map(|p| p.memory().to_vec())
+            .collect()
+    }
+
+    /// Replaces what the potentials remember by memories of the same numbers of values.
+    pub(crate) fn set_memories(&mut self, memories: &[Vec<f64>]) {
+        for (potential, memory) in self.potentials.iter_mut().zip(memories) {
+            potential.set_memory(memory);
+        }
+    }
+
+    /// Makes what the potentials remember that of the end of a step; the energy that has been dissipated, joules.
+    pub(crate) fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
+        self.potentials.iter_mut().map(|p| p.settle(t, x)).sum()
+    }
+}
