@@ -290,7 +290,7 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 10,
+            found: 13,
             supported: 12
         }
     ));
