@@ -38,6 +38,9 @@ pub mod scene;
 #[cfg(feature = "scene")]
 pub use {isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics};
 
+#[cfg(feature = "cli")]
+pub mod command;
+
 #[cfg(feature = "picture")]
 pub mod picture;
 

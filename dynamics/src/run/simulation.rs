@@ -400,6 +400,11 @@ impl Simulation {
         self.model().kinetic_energy(&self.state().v) + self.potential_energy()
     }
 
+    /// Adds work (joules) that no step has done to the energy balance.
+    pub(super) fn count_work(&mut self, work: f64) {
+        self.energy.work += work;
+    }
+
     fn potential_energy(&self) -> f64 {
         let State { t, x, .. } = self.state();
         let potential = self.model().potential_energy(*t, x);

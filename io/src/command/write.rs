@@ -1,9 +1,8 @@
 //! Files and text that subcommands write.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use isosheet_io::scene::{materials_page, reference_page, schema};
-use isosheet_io::{write_atomically, write_json};
+use super::failure::{Code, Done, Failure};
+use crate::scene::{materials_page, reference_page, schema};
+use crate::{write_atomically, write_json};
 use std::io::Write;
 use std::path::Path;
 

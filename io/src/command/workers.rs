@@ -1,11 +1,10 @@
 //! The runs of a sweep on this machine, each in a process of its own: a run that is killed or crashes leaves
 //! the others as they are.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use crate::interrupt;
-use crate::message::{counted, is_verbose, print_message, print_progress, print_result};
-use isosheet_io::run::{Sweep, SweepRun};
+use super::failure::{Code, Done, Failure};
+use super::interrupt;
+use super::message::{counted, is_verbose, print_message, print_progress, print_result};
+use crate::run::{Sweep, SweepRun};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::num::NonZero;

@@ -1,6 +1,6 @@
 //! Ctrl-C: the first one asks the run to stop, which it does within a step, a second one ends the process at once.
 
-use crate::exit::{Code, Failure};
+use super::failure::{Code, Failure};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static REQUESTED: AtomicBool = AtomicBool::new(false);

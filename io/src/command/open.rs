@@ -1,6 +1,6 @@
 //! Pages in the browser of the user.
 
-use crate::message::print_message;
+use super::message::print_message;
 use std::path::Path;
 
 /// Opens a page with the program that the system has for it. Where there is none, a warning says so: the page

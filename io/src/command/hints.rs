@@ -1,14 +1,14 @@
 //! What to know of a sheet that can be simulated, and may not do what was meant: lines of text, or none.
 
-use isosheet_io::mesh::wording::brief;
-use isosheet_io::mesh::{Sheet, VertexId};
+use crate::mesh::wording::brief;
+use crate::mesh::{Sheet, VertexId};
 
 /// Width from which the unit of a file is questioned, metres: hardly a sheet is larger than a big tent, and
 /// files in millimetres, points or pixels are.
 const WIDE: f64 = 20.0;
 
 /// Closed parts: they have `3V - E = 3 chi`, at most the six degrees of freedom of a rigid body, and almost all
-/// of them are rigid ([`Dof`](isosheet_io::mesh::Dof)).
+/// of them are rigid ([`Dof`](crate::mesh::Dof)).
 pub(crate) fn closed(sheet: &Sheet) -> String {
     let t = sheet.topology();
     let parts = t.components();

@@ -1,12 +1,11 @@
 //! `isosheet new`.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use crate::message::print_result;
+use super::failure::{Code, Done, Failure};
+use super::message::print_result;
+use crate::scene::StartingPoint;
+use crate::write_atomically;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use isosheet_io::scene::StartingPoint;
-use isosheet_io::write_atomically;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::path::PathBuf;

@@ -1,19 +1,18 @@
 //! `isosheet convert`.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use crate::frames::{FrameRange, Size, View};
-use crate::info::is_scene;
-use crate::message::counted;
-use crate::pictures::{self, FrameChoice, PictureFormat};
-use crate::write::{is_same_file, to_stdout};
-use clap::Args;
-use isosheet_io::run::{FilmOptions, Recording};
-use isosheet_io::{
+use super::failure::{Code, Done, Failure};
+use super::frames::{FrameRange, Size, View};
+use super::info::is_scene;
+use super::message::counted;
+use super::pictures::{self, FrameChoice, PictureFormat};
+use super::write::{is_same_file, to_stdout};
+use crate::run::{FilmOptions, Recording};
+use crate::{
     Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem,
     MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, TrajectoryError, read_mesh_with,
     write_frame, write_mesh, write_series,
 };
+use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// What is read and written, as `--help` shows it.

@@ -1,12 +1,11 @@
 //! `isosheet sweep`.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use crate::message::{counted, print_progress};
-use crate::workers;
-use crate::write::to_stdout;
+use super::failure::{Code, Done, Failure};
+use super::message::{counted, print_progress};
+use super::workers;
+use super::write::to_stdout;
+use crate::run::{Engine, Sweep, Variation};
 use clap::{Args, ValueEnum};
-use isosheet_io::run::{Engine, Sweep, Variation};
 use std::ffi::OsStr;
 use std::num::{NonZero, NonZeroUsize};
 use std::path::{Path, PathBuf};
@@ -75,17 +74,16 @@ impl EngineName {
 }
 
 impl SweepArgs {
-    pub(crate) fn run(self) -> Done {
+    pub(crate) fn run(self, program: &Path) -> Done {
         let folder = self.out.unwrap_or_else(|| default_folder(&self.scene));
         let sweep = Sweep::new(&self.scene, &folder, self.edits, self.over)?;
         sweep.check()?;
-        let program = this_program()?;
-        sweep.write(&word_for(&program)?)?;
+        sweep.write(&word_for(program)?)?;
         let count = counted(sweep.len(), "run", "runs");
         print_progress(format_args!("{count} in {}", folder.display()));
         match self.engine {
             Some(engine) => to_stdout(&engine.engine().text(&sweep)),
-            None => workers::run(&sweep, &program, self.jobs.unwrap_or_else(all_cores)),
+            None => workers::run(&sweep, program, self.jobs.unwrap_or_else(all_cores)),
         }
     }
 }
@@ -99,14 +97,6 @@ fn all_cores() -> NonZero<usize> {
 fn default_folder(scene: &Path) -> PathBuf {
     let name = scene.file_stem().unwrap_or_default().to_string_lossy();
     PathBuf::from(format!("{name}-sweep"))
-}
-
-/// The program that is running.
-fn this_program() -> Result<PathBuf, Failure> {
-    std::env::current_exe().map_err(|e| {
-        let message = format!("cannot find the program that is running: {e}");
-        Failure::new(Code::Input, message).remedy("reinstall it")
-    })
 }
 
 /// What a shell calls the program by: `isosheet` if that is the same program, its whole path otherwise.

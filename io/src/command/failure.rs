@@ -1,24 +1,8 @@
-//! How the command ends.
+//! Why a subcommand fails, and the code that the command ends with.
 
-use crate::message::print_message;
-use isosheet_io::Advice;
-use isosheet_io::run::{RunError, SweepError};
-use isosheet_io::scene::{Colours, SceneError, SceneFileError};
-use serde_json::json;
-use std::io::{IsTerminal, Write};
-use std::process::ExitCode;
-
-/// The exit codes, as `--help` shows them.
-pub(crate) const EXIT_CODES: &str = "\
-Exit codes:
-  0    done; of `simulate`, the run is complete; of `sweep`, all runs are
-  1    a step of the simulation failed
-  2    the command line is wrong, or does not fit to the files that it names
-  3    the scene or the mesh is wrong, or a file cannot be read
-  4    the folder holds the run of another scene or version, another sweep, or other files
-  5    another process is writing to the folder
-  6    a file or a folder cannot be written
-  130  stopped by Ctrl-C, or a run of a sweep was killed; the same command continues";
+use crate::Advice;
+use crate::run::{RunError, SweepError};
+use crate::scene::{SceneError, SceneFileError};
 
 /// A class of failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,18 +48,22 @@ pub(crate) enum Format {
     Json,
 }
 
+/// A failure of a subcommand, or nothing to say.
+pub(crate) type Done = Result<(), Failure>;
+
 /// A failure with its message.
 #[derive(Debug)]
 pub(crate) struct Failure {
     pub(crate) code: Code,
-    message: Message,
+    pub(super) message: Message,
     /// What to do, where the message does not say it.
-    remedy: Option<String>,
-    format: Format,
+    pub(super) remedy: Option<String>,
+    pub(super) format: Format,
 }
 
+/// What a failure says.
 #[derive(Debug)]
-enum Message {
+pub(super) enum Message {
     Text(String),
     Scene(SceneError),
 }
@@ -113,36 +101,6 @@ impl Failure {
 
     pub(crate) fn in_format(self, format: Format) -> Self {
         Self { format, ..self }
-    }
-
-    /// Writes the message to stderr, or as JSON to stdout, and returns the exit code.
-    pub(crate) fn report(self) -> ExitCode {
-        let code = self.code as u8;
-        match self.format {
-            Format::Text => {
-                let text = match &self.message {
-                    Message::Text(text) => format!("error: {text}"),
-                    Message::Scene(error) if std::io::stderr().is_terminal() => {
-                        error.render(Colours::Terminal)
-                    }
-                    Message::Scene(error) => error.render(Colours::Plain),
-                };
-                print_message(format_args!("{text}"));
-                if let Some(remedy) = &self.remedy {
-                    print_message(format_args!("  = help: {remedy}"));
-                }
-            }
-            Format::Json => {
-                let problems = match &self.message {
-                    Message::Text(text) => json!([{ "message": text, "remedy": self.remedy }]),
-                    Message::Scene(error) => json!(error.placed()),
-                };
-                let line = json!({ "event": "error", "code": code, "problems": problems });
-                // Nobody is left to be told that stdout is closed.
-                let _ = writeln!(std::io::stdout(), "{line}");
-            }
-        }
-        ExitCode::from(code)
     }
 }
 

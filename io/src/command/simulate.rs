@@ -1,15 +1,14 @@
 //! `isosheet simulate` and `isosheet resume`.
 
-use crate::Done;
-use crate::exit::{Code, Failure, Format};
-use crate::interrupt;
-use crate::message::{counted, print_message, print_result, print_warnings, with_advice};
-use crate::open::open_page;
-use crate::progress::{Progress, event};
-use crate::trace::TraceFile;
+use super::failure::{Code, Done, Failure, Format};
+use super::interrupt;
+use super::message::{counted, print_message, print_result, print_warnings, with_advice};
+use super::open::open_page;
+use super::progress::{Progress, event};
+use super::trace::TraceFile;
+use crate::run::{Outcome, RunError, Summary, resume_folder, simulate, simulate_anew};
+use crate::scene::SceneFile;
 use clap::Args;
-use isosheet_io::run::{Outcome, RunError, Summary, resume_folder, simulate, simulate_anew};
-use isosheet_io::scene::SceneFile;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

@@ -1,14 +1,13 @@
 //! Frames of a run as pictures, for `isosheet convert`.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use crate::message::counted;
-use crate::progress::DrawingProgress;
-use crate::write::to_stdout;
-use isosheet_io::Advice;
-use isosheet_io::picture::PictureError;
-use isosheet_io::run::{Film, FilmOptions, Recording};
-use isosheet_io::write_atomically;
+use super::failure::{Code, Done, Failure};
+use super::message::counted;
+use super::progress::DrawingProgress;
+use super::write::to_stdout;
+use crate::Advice;
+use crate::picture::PictureError;
+use crate::run::{Film, FilmOptions, Recording};
+use crate::write_atomically;
 use rayon::prelude::*;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,11 +1,10 @@
 //! `isosheet gallery`.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use crate::message::{counted, print_message, print_result};
-use crate::open::open_page;
+use super::failure::{Code, Done, Failure};
+use super::message::{counted, print_message, print_result};
+use super::open::open_page;
+use crate::run::{Gallery, GalleryError};
 use clap::Args;
-use isosheet_io::run::{Gallery, GalleryError};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

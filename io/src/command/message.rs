@@ -1,10 +1,10 @@
 //! Text for people: results on standard output, everything else on standard error.
 
-use crate::Done;
-use crate::write::to_stdout;
+use super::failure::Done;
+use super::write::to_stdout;
+use crate::Advice;
+pub(crate) use crate::mesh::wording::counted;
 use clap::Args;
-use isosheet_io::Advice;
-pub(crate) use isosheet_io::mesh::wording::counted;
 use std::fmt::Arguments;
 use std::io::Write;
 use std::sync::OnceLock;

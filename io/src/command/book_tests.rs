@@ -1,6 +1,6 @@
 //! The lines of shell in the hand-written pages are command lines that the parser takes.
 
-use crate::Cli;
+use super::Cli;
 use clap::{CommandFactory, Parser};
 use std::fs;
 use std::path::Path;

@@ -1,9 +1,8 @@
 //! The file of `--trace`: one line of JSON for each iteration, phase, refusal and accepted part of a step.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
+use super::failure::{Code, Done, Failure};
+use crate::run::TraceSink;
 use isosheet_dynamics::{TraceEvent, Tuning};
-use isosheet_io::run::TraceSink;
 use serde_json::json;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};

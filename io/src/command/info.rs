@@ -1,15 +1,14 @@
 //! `isosheet info`.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use crate::message::print_warnings;
-use crate::write::to_stdout;
+use super::failure::{Code, Done, Failure};
+use super::message::print_warnings;
+use super::write::to_stdout;
+use crate::dynamics::{SheetModel, rod_rank};
+use crate::mesh::{Dof, MassKind, Sheet};
+use crate::run::Recording;
+use crate::scene::{SceneFile, Setup};
+use crate::{MeshFileProblem, read_sheet};
 use clap::Args;
-use isosheet_io::dynamics::{SheetModel, rod_rank};
-use isosheet_io::mesh::{Dof, MassKind, Sheet};
-use isosheet_io::run::Recording;
-use isosheet_io::scene::{SceneFile, Setup};
-use isosheet_io::{MeshFileProblem, read_sheet};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\

@@ -1,12 +1,11 @@
 //! `isosheet page`.
 
-use crate::Done;
-use crate::exit::Failure;
-use crate::message::print_result;
-use crate::open::open_page;
+use super::failure::{Done, Failure};
+use super::message::print_result;
+use super::open::open_page;
+use crate::run::write_page;
+use crate::view::PageOptions;
 use clap::Args;
-use isosheet_io::run::write_page;
-use isosheet_io::view::PageOptions;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

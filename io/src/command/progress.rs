@@ -1,11 +1,11 @@
 //! Progress of runs and of drawings: a bar on a terminal, plain lines elsewhere, JSON lines for programs.
 
-use crate::exit::Format;
-use crate::interrupt;
-use crate::message::{counted, is_quiet, is_verbose, print_progress, print_warnings, with_advice};
-use crate::trace::TraceFile;
+use super::failure::Format;
+use super::interrupt;
+use super::message::{counted, is_quiet, is_verbose, print_progress, print_warnings, with_advice};
+use super::trace::TraceFile;
+use crate::run::{Beginning, StepPart, Tick, TraceSink, Watch};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use isosheet_io::run::{Beginning, StepPart, Tick, TraceSink, Watch};
 use serde_json::{Value, json};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;

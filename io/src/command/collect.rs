@@ -1,11 +1,10 @@
 //! `isosheet collect`.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use crate::message::{counted, print_message, print_result};
-use crate::write::{bytes_to_stdout, is_same_file};
+use super::failure::{Code, Done, Failure};
+use super::message::{counted, print_message, print_result};
+use super::write::{bytes_to_stdout, is_same_file};
+use crate::run::Collection;
 use clap::Args;
-use isosheet_io::run::Collection;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

@@ -1,18 +1,17 @@
 //! `isosheet check`.
 
-use crate::Done;
-use crate::exit::{Code, Failure};
-use crate::hints;
-use crate::info::{describe_scene, is_scene, refuse_edits, refuse_folder};
-use crate::message::{counted, print_warnings};
-use crate::write::{is_same_file, to_stdout};
-use clap::Args;
-use isosheet_io::mesh::Sheet;
-use isosheet_io::scene::{Isometry, Mesh, SceneFile};
-use isosheet_io::{
+use super::failure::{Code, Done, Failure};
+use super::hints;
+use super::info::{describe_scene, is_scene, refuse_edits, refuse_folder};
+use super::message::{counted, print_warnings};
+use super::write::{is_same_file, to_stdout};
+use crate::mesh::Sheet;
+use crate::scene::{Isometry, Mesh, SceneFile};
+use crate::{
     Advice, MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
     write_mesh,
 };
+use clap::Args;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\

@@ -1,0 +1,129 @@
+//! The command `isosheet`: simulates scenes, checks and repairs what they are made of.
+//!
+//! The program `isosheet` and the Python module of the same name are thin shells around [`run`].
+
+#[cfg(test)]
+mod book_tests;
+mod check;
+mod collect;
+mod convert;
+mod exit;
+mod failure;
+mod frames;
+mod gallery;
+mod hints;
+mod info;
+mod interrupt;
+mod message;
+mod open;
+mod page;
+mod pictures;
+mod progress;
+mod simulate;
+mod start;
+mod sweep;
+mod trace;
+mod workers;
+mod write;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use exit::EXIT_CODES;
+use message::Verbosity;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  isosheet new cloth --kind drape              write a scene to start from: cloth.toml
+  isosheet simulate cloth.toml --open          run it in the folder cloth-run, and open its 3D page
+  isosheet info cloth-run                      say what came of it
+  isosheet convert cloth-run cloth.usda        write it for Blender; .pvd for ParaView, .apng as a film ...
+  isosheet sweep cloth.toml --over sheet.density=0.1,0.2
+                                               run the scene with both values
+  isosheet check cloth.toml                    say what is wrong with a scene or a mesh file";
+
+/// Simulates sheets that bend and crease but never stretch.
+#[derive(Debug, Parser)]
+#[command(name = "isosheet", version, before_help = EXAMPLES, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(flatten)]
+    verbosity: Verbosity,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene; continue it if a part of it is done, do nothing if it is complete
+    Simulate(simulate::Simulate),
+    /// Continue the run in a folder, with the scene that is stored there
+    Resume(simulate::Resume),
+    /// Run a scene with all combinations of some values, on all cores or by GNU parallel, Slurm or Snakemake
+    Sweep(sweep::SweepArgs),
+    /// Make one table of the summaries of runs and sweeps
+    Collect(collect::Collect),
+    /// Make the 3D page of a run, complete or not
+    Page(page::Page),
+    /// Make one page of many runs: pictures, key numbers and links to the pages that play them
+    Gallery(gallery::GalleryArgs),
+    /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
+    Check(check::Check),
+    /// Say what came of a run, or what the sheet of a scene or a mesh file is like
+    Info(info::Info),
+    /// Convert a mesh file to another format, or a run to files of other programs
+    Convert(convert::Convert),
+    /// Write a commented scene to start from
+    New(start::New),
+    /// Print the completion script of a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write the reference of scene files: scene.md, materials.md and the JSON schema scene.schema.json
+    #[command(hide = true)]
+    Reference {
+        /// The folder
+        dir: PathBuf,
+    },
+}
+
+/// Does what a command line says, whose first word names the command, and returns the exit code. A sweep starts
+/// `program`, which has to be this command too, for each of its runs.
+///
+/// Results go to standard output, everything else to standard error. Of what a process has only once, a call takes over
+/// Ctrl-C and keeps how much is said: one command line is meant for one process.
+///
+/// ```
+/// let code = isosheet_io::command::run(["isosheet", "info", "no-such-run"].map(Into::into), "isosheet".as_ref());
+/// assert_eq!(code, 3);
+/// ```
+pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
+    let cli = match Cli::try_parse_from(words) {
+        Ok(cli) => cli,
+        Err(answer) => {
+            // Nobody is left to be told that stdout is closed.
+            let _ = answer.print();
+            return answer.exit_code() as u8;
+        }
+    };
+    cli.verbosity.choose();
+    let done = match cli.command {
+        Command::Simulate(simulate) => simulate.run(),
+        Command::Resume(resume) => resume.run(),
+        Command::Sweep(sweep) => sweep.run(program),
+        Command::Collect(collect) => collect.run(),
+        Command::Page(page) => page.run(),
+        Command::Gallery(gallery) => gallery.run(),
+        Command::Check(check) => check.run(),
+        Command::Info(info) => info.run(),
+        Command::Convert(convert) => convert.run(),
+        Command::New(new) => new.run(),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "isosheet", &mut script);
+            write::to_stdout(&String::from_utf8_lossy(&script))
+        }
+        Command::Reference { dir } => write::reference(&dir),
+    };
+    done.map_or_else(|failure| exit::report(&failure), |()| 0)
+}
