@@ -87,15 +87,15 @@ enum Command {
     },
 }
 
-/// Does what a command line says, whose first word names the command, and returns the exit code. A sweep starts
-/// `program`, which has to be this command too, for each of its runs.
+/// Does what a command line says, whose first word names the command, and returns the exit code. A sweep
+/// starts `program`, which has to be this command too, for each of its runs.
 ///
-/// Results go to standard output, everything else to standard error. Of what a process has only once, a call takes over
-/// Ctrl-C and keeps how much is said: one command line is meant for one process.
+/// Results go to standard output, everything else to standard error. Of what a process has only once, a call
+/// takes over Ctrl-C and keeps how much is said: one command line is meant for one process.
 ///
 /// ```
-/// let code = isosheet_io::command::run(["isosheet", "info", "no-such-run"].map(Into::into), "isosheet".as_ref());
-/// assert_eq!(code, 3);
+/// let words = ["isosheet", "info", "no-such-run"].map(Into::into);
+/// assert_eq!(isosheet_io::command::run(words, "isosheet".as_ref()), 3); // a file cannot be read
 /// ```
 pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
     let cli = match Cli::try_parse_from(words) {

@@ -6,13 +6,13 @@ use crate::step::checkpoint_error::CheckpointError;
 use crate::step::simulation_error::SimulationError;
 
 impl Simulation {
-    /// Completes a change of the model or the contact between two steps. This simulation has been resumed from the
-    /// checkpoint of `before` with others: other loads, rest angles of creases, motions of pins and bodies. The sheet,
-    /// its masses and the vertices that are held are the same, as a checkpoint asks for.
+    /// Completes a change of the model or the contact between two steps. This simulation has been resumed
+    /// from the checkpoint of `before` with others: other loads, rest angles of creases, motions of pins and
+    /// bodies. The sheet, its masses and the vertices that are held are the same, as a checkpoint asks for.
     ///
-    /// What the change does at once is work, `E - E_before` with the energies of both at the present state, so that
-    /// [`StepReport::energy_drift`](crate::StepReport::energy_drift) goes on without a jump. A change of nothing
-    /// leaves every bit as it is.
+    /// What the change does at once is work, `E - E_before` with the energies of both at the present state,
+    /// so that [`StepReport::energy_drift`](crate::StepReport::energy_drift) goes on without a jump. A change
+    /// of nothing leaves every bit as it is.
     ///
     /// ```
     /// use isosheet_dynamics::{Method, ModelError, PointProfile, Profile, SheetModel, Simulation, State};
@@ -23,7 +23,8 @@ impl Simulation {
     /// let model = |z: Profile| -> Result<SheetModel, ModelError> {
     ///     let offset = sheet.position(VertexId(20));
     ///     let hold = PointProfile { offset, z, ..PointProfile::default() };
-    ///     SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?.with_gravity().with_moving_pin(VertexId(20), hold)
+    ///     let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?.with_gravity();
+    ///     model.with_moving_pin(VertexId(20), hold)
     /// };
     /// let start = State::at_rest(sheet.positions().to_vec());
     /// let mut simulation = Simulation::new(model(0.0.into())?, start, Method::default())?;
@@ -40,8 +41,9 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// [`SimulationError::Start`] if the new motion of a support does not begin where its vertex is, or the state
-    /// exceeds a new limit of the strain; [`SimulationError::Checkpoint`] if `before` is at another state.
+    /// [`SimulationError::Start`] if the new motion of a support does not begin where its vertex is, or the
+    /// state exceeds a new limit of the strain; [`SimulationError::Checkpoint`] if `before` is at another
+    /// state.
     pub fn changed_from(mut self, before: &Self) -> Result<Self, SimulationError> {
         if self.state() != before.state() {
             let what = "time, positions or velocities";
@@ -125,7 +127,8 @@ mod tests {
         assert!(report.energy_drift.abs() < 0.5 * jump.abs(), "{report:?}");
     }
 
-    /// A free sheet in free fall on which a load acts from some time on: `dv = F / m dt`, exactly for implicit Euler.
+    /// A free sheet in free fall on which a load acts from some time on: `dv = F / m dt`, exactly for
+    /// implicit Euler.
     #[test]
     fn a_load_acts_from_the_change_on() {
         let sheet = sheet();

@@ -36,6 +36,12 @@ pub enum EditProblem {
         /// The key of the list.
         list: Key,
     },
+    /// What is driven is no function of time.
+    #[error("the scene has no function of time at `{place}`")]
+    NoProfile {
+        /// The key.
+        place: Key,
+    },
 }
 
 impl Advice for EditError {
@@ -46,6 +52,10 @@ impl Advice for EditError {
             EditProblem::Place { .. } => {
                 Some("count the entries of lists from 0, for example `obstacle[0].friction=0.3`")
             }
+            EditProblem::NoProfile { .. } => Some(
+                "name a function of time, for example `support[0].hold.moving_pin.z` of a support that the \
+                 scene holds by a `moving_pin`, or `crease[0].angle`",
+            ),
             EditProblem::NoTable { .. } => Some(
                 "write all keys of the entry in braces, for example \
                  `obstacle[0]={ shape = { sphere = { radius = 0.1 } } }`, or change one of its keys, \

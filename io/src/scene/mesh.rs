@@ -1,5 +1,6 @@
 //! Where the mesh of a sheet comes from.
 
+use super::error::SceneError;
 use super::key::Key;
 use super::outline::Outline;
 use super::pattern::{
@@ -104,6 +105,13 @@ pub enum Mesh {
     Hypar(Hypar),
     /// The square twist, with mountains and valleys.
     SquareTwist(SquareTwist),
+    /// The triangles of a small mesh, or of a program.
+    Triangles {
+        /// Coordinates of the vertices, metres.
+        vertices: Vec<[f64; 3]>,
+        /// Vertices of each triangle by their numbers, from 0, counter-clockwise as seen from the same side.
+        faces: Vec<[u32; 3]>,
+    },
     /// A mesh file: OBJ, OFF, STL, PLY, FOLD (with its crease pattern) or glTF.
     File(MeshFile),
 }
@@ -265,6 +273,7 @@ impl Mesh {
             Self::Kresling(_) => "kresling",
             Self::Hypar(_) => "hypar",
             Self::SquareTwist(_) => "square_twist",
+            Self::Triangles { .. } => "triangles",
             Self::File(_) => "file",
         }
     }
@@ -320,8 +329,24 @@ impl Mesh {
             Self::Kresling(pattern) => pattern.check(&key, checks),
             Self::Hypar(pattern) => pattern.check(&key, checks),
             Self::SquareTwist(twist) => twist.check(&key, checks),
+            Self::Triangles { vertices, .. } => {
+                for (k, vertex) in vertices.iter().enumerate() {
+                    checks.finite(key.name("vertices").entry(k), vertex, Unit::Metre);
+                }
+            }
             Self::File(file) => file.check(&key, checks),
         }
+    }
+
+    /// The sheet of the mesh; files are relative to `folder`.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the mesh cannot be made.
+    pub fn sheet(&self, folder: &Path) -> Result<Sheet, SceneError> {
+        let (key, mut checks) = (Key::root().name("mesh"), Checks::default());
+        self.check(&key, &mut checks);
+        SceneError::of(checks.problems)?;
+        Ok(self.build(&key, folder)?.sheet)
     }
 
     /// Makes the mesh; files are relative to `folder`.
@@ -370,6 +395,11 @@ impl Mesh {
             Self::Kresling(pattern) => return of_pattern(&key, pattern.pattern()),
             Self::Hypar(pattern) => return of_pattern(&key, pattern.pattern()),
             Self::SquareTwist(twist) => return of_pattern(&key, twist.pattern()),
+            Self::Triangles { vertices, faces } => {
+                let sheet = Sheet::new(vertices.as_flattened().to_vec(), faces);
+                let sheet = sheet.map_err(|e| Problem::from_error(key.name("faces"), &e))?;
+                return Ok(RestMesh { sheet, roles: None });
+            }
             Self::File(file) => return read_sheet(file, &key, folder),
         };
         Ok(RestMesh {

@@ -185,6 +185,7 @@ pub(crate) fn scenes() -> Vec<SceneFile> {
         "{ polygon = { outline = [[0, 0], [1, 0], [0, 1]], spacing = 0.2, seed = 1 } }",
         "{ polygon_rings = { outline = [[1, 0], [0, 1], [-1, -1]], rings = 2 } }",
         "{ octagon = { radius = 1 } }",
+        "{ triangles = { vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] } }",
         "{ degree_four = { sectors = [60, 80], radius = 0.1, alike = \"odd\" } }",
         "{ degree_four = { sectors = [60, 80], radius = 0.1, alike = \"even\" } }",
         "{ waterbomb = { columns = 2, rows = 2, side = 0.1 } }",

@@ -7,6 +7,7 @@ mod files;
 mod folding;
 mod formulas;
 mod keys;
+mod live;
 mod materials;
 mod meaning;
 mod messages;

@@ -1,0 +1,22 @@
+//! Numpy arrays of what Rust has as slices.
+
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+
+/// A copy of numbers in a row.
+pub(crate) fn array<'py, T: Element>(py: Python<'py>, values: &[T]) -> Bound<'py, PyArray1<T>> {
+    PyArray1::from_slice(py, values)
+}
+
+/// A copy of rows of `N` numbers, of shape (rows, N).
+pub(crate) fn rows<'py, T: Element, const N: usize>(
+    py: Python<'py>,
+    rows: &[[T; N]],
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    array(py, rows.as_flattened()).reshape([rows.len(), N])
+}
+
+/// A copy of coordinates x0 y0 z0 x1 ..., of shape (vertices, 3).
+pub(crate) fn vectors<'py>(py: Python<'py>, x: &[f64]) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    rows(py, x.as_chunks::<3>().0)
+}

@@ -1,0 +1,174 @@
+//! Meshes from arrays, generators and files.
+
+use crate::arrays::{array, rows, vectors};
+use crate::error::{of_scene, plain};
+use crate::value::table;
+use isosheet_io::mesh::Sheet;
+use isosheet_io::scene;
+use isosheet_io::write_obj;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
+
+/// A mesh of triangles, whose edges have their lengths here as rest lengths.
+///
+/// vertices: array of shape (V, 3), metres.
+/// faces: array of whole numbers of shape (F, 3), the corners of each triangle, all counter-clockwise as seen
+///     from the same side.
+///
+/// A mesh takes the place of a mesh in a scene: ``Scene.from_dict({"sheet": {"mesh": mesh}, ...})``. Raises
+/// Error for what is no oriented surface.
+#[pyclass(frozen, module = "isosheet")]
+pub(crate) struct Mesh {
+    sheet: Sheet,
+}
+
+impl Mesh {
+    /// The mesh as a scene has it.
+    pub(crate) fn as_value(&self) -> Value {
+        let vertices = self.sheet.positions().as_chunks::<3>().0;
+        let vertex = |x: &[f64; 3]| Value::Array(x.iter().map(|&c| Value::Float(c)).collect());
+        let face =
+            |f: &[u32; 3]| Value::Array(f.iter().map(|&v| Value::Integer(v.into())).collect());
+        let triangles = Table::from_iter([
+            (
+                "vertices".to_owned(),
+                Value::Array(vertices.iter().map(vertex).collect()),
+            ),
+            (
+                "faces".to_owned(),
+                Value::Array(self.sheet.face_indices().iter().map(face).collect()),
+            ),
+        ]);
+        Value::Table(Table::from_iter([(
+            "triangles".to_owned(),
+            Value::Table(triangles),
+        )]))
+    }
+
+    fn of(py: Python<'_>, mesh: &scene::Mesh) -> PyResult<Self> {
+        let sheet = py.detach(|| mesh.sheet(Path::new("")));
+        let sheet = sheet.map_err(|e| of_scene(py, &e))?;
+        Ok(Self { sheet })
+    }
+}
+
+#[pymethods]
+impl Mesh {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let numpy = py.import("numpy")?;
+        let vertices = numpy.call_method1("asarray", (vertices, "float64"))?;
+        let given = numpy.call_method1("asarray", (faces,))?;
+        // Whole numbers that are too large or negative are refused here, and parts of numbers are not cut
+        // off.
+        let kind: String = given.getattr("dtype")?.getattr("kind")?.extract()?;
+        if !matches!(kind.as_str(), "i" | "u") {
+            return Err(PyValueError::new_err(
+                "faces have to be an array of whole numbers",
+            ));
+        }
+        let faces = given.call_method1("astype", ("int64",))?;
+        let vertices: PyReadonlyArray2<'_, f64> = vertices.extract()?;
+        let faces: PyReadonlyArray2<'_, i64> = faces.extract()?;
+        let (vertices, faces) = (vertices.as_array(), faces.as_array());
+        if vertices.ncols() != 3 || faces.ncols() != 3 {
+            let message = "vertices have to be of shape (V, 3), faces of shape (F, 3)";
+            return Err(PyValueError::new_err(message));
+        }
+        let number = |v: &i64| {
+            u32::try_from(*v)
+                .map_err(|_| PyValueError::new_err(format!("no vertex has the number {v}")))
+        };
+        let faces = faces.iter().map(number).collect::<PyResult<Vec<u32>>>()?;
+        let sheet = Sheet::new(vertices.iter().copied().collect(), faces.as_chunks::<3>().0);
+        let sheet = sheet.map_err(|e| plain(py, &e))?;
+        Ok(Self { sheet })
+    }
+
+    /// A mesh of a generator of scenes: ``Mesh.generate("square", side=0.2, level=3)``.
+    ///
+    /// Names and parameters are those of ``sheet.mesh`` in scenes. Raises SceneError for wrong ones.
+    #[staticmethod]
+    #[pyo3(signature = (name, **parameters))]
+    fn generate(
+        py: Python<'_>,
+        name: &str,
+        parameters: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let parameters = parameters.map_or_else(|| Ok(Table::new()), table)?;
+        let value = Table::from_iter([(name.to_owned(), Value::Table(parameters))]);
+        let mesh = value.try_into();
+        let mesh: scene::Mesh =
+            mesh.map_err(|e: toml::de::Error| PyValueError::new_err(e.to_string()))?;
+        Self::of(py, &mesh)
+    }
+
+    /// A mesh of a file: OBJ, OFF, STL, PLY, FOLD or glTF. `scale` is the length of one unit of the file in
+    /// metres.
+    #[staticmethod]
+    #[pyo3(signature = (path, scale = 1.0))]
+    fn read(py: Python<'_>, path: PathBuf, scale: f64) -> PyResult<Self> {
+        let mut file = scene::MeshFile::new(path);
+        file.scale = scale;
+        Self::of(py, &scene::Mesh::File(file))
+    }
+
+    /// Writes the mesh as an OBJ file, whose numbers have all digits.
+    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let written = py.detach(|| write_obj(&path, self.sheet.topology(), self.sheet.positions()));
+        written.map_err(|e| plain(py, &e))
+    }
+
+    /// Positions of the vertices, metres, of shape (V, 3).
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        vectors(py, self.sheet.positions())
+    }
+
+    /// Corners of the triangles, of shape (F, 3).
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        rows(py, &self.sheet.face_indices())
+    }
+
+    /// Ends of the edges, of shape (E, 2).
+    #[getter]
+    fn edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        rows(py, &edges(&self.sheet))
+    }
+
+    /// Lengths of the edges, metres, of shape (E,).
+    #[getter]
+    fn rest_lengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        array(py, self.sheet.lengths())
+    }
+
+    /// Area, m2.
+    #[getter]
+    fn area(&self) -> f64 {
+        self.sheet.area()
+    }
+
+    fn __repr__(&self) -> String {
+        let t = self.sheet.topology();
+        format!(
+            "<isosheet.Mesh of {} vertices and {} faces>",
+            t.vertex_count(),
+            t.face_count()
+        )
+    }
+}
+
+/// Ends of the edges of a sheet.
+pub(crate) fn edges(sheet: &Sheet) -> Vec<[u32; 2]> {
+    let edges = sheet.topology().edges().iter();
+    edges.map(|ends| ends.map(|v| v.0)).collect()
+}

@@ -1,0 +1,221 @@
+//! What a run has written.
+
+use crate::arrays::{array, rows};
+use crate::error::{of_run, plain};
+use crate::scene::Scene;
+use crate::value::to_python;
+use isosheet_io::HistoryRow;
+use isosheet_io::run::{self, Recording};
+use isosheet_io::view::PageOptions;
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+use toml::Value;
+
+/// What a run has written to a folder, complete or not.
+///
+/// folder: the folder of `isosheet simulate` or of Scene.simulate.
+///
+/// Numbers of frames, vertices, faces and edges are T, V, F and E. In a notebook a run shows its 3D page.
+#[pyclass(frozen, module = "isosheet")]
+pub(crate) struct Run {
+    folder: PathBuf,
+    recording: Recording,
+}
+
+impl Run {
+    pub(crate) fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        let recording = py.detach(|| Recording::read(&folder));
+        let recording = recording.map_err(|e| of_run(py, &e))?;
+        Ok(Self { folder, recording })
+    }
+
+    /// The values of all frames one after the other, and how many each frame has; `None` if frames have none.
+    fn frames<'a>(
+        &'a self,
+        frame: impl Fn(usize) -> Option<&'a [f64]>,
+    ) -> Option<(Vec<f64>, usize)> {
+        let width = frame(0)?.len();
+        let frames = (0..self.recording.trajectory.len()).filter_map(frame);
+        Some((frames.flatten().copied().collect(), width))
+    }
+
+    /// Values of shape (T, N).
+    fn numbers<'py, 'a>(
+        &'a self,
+        py: Python<'py>,
+        frame: impl Fn(usize) -> Option<&'a [f64]>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let Some((values, width)) = self.frames(frame) else {
+            return Ok(None);
+        };
+        let count = self.recording.trajectory.len();
+        array(py, &values).reshape([count, width]).map(Some)
+    }
+
+    /// Vectors of shape (T, V, 3).
+    fn vectors<'py, 'a>(
+        &'a self,
+        py: Python<'py>,
+        frame: impl Fn(usize) -> Option<&'a [f64]>,
+    ) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+        let Some((values, width)) = self.frames(frame) else {
+            return Ok(None);
+        };
+        let count = self.recording.trajectory.len();
+        array(py, &values).reshape([count, width / 3, 3]).map(Some)
+    }
+}
+
+#[pymethods]
+impl Run {
+    #[new]
+    fn new(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        Self::read(py, folder)
+    }
+
+    /// The folder.
+    #[getter]
+    fn folder(&self) -> PathBuf {
+        self.folder.clone()
+    }
+
+    /// The scene as it was run.
+    #[getter]
+    fn scene(&self) -> Scene {
+        Scene::of(self.recording.scene.clone())
+    }
+
+    /// What was modelled, in words.
+    #[getter]
+    fn modelled(&self) -> Vec<String> {
+        self.recording.modelled.clone()
+    }
+
+    /// Times of the frames, seconds, of shape (T,).
+    #[getter]
+    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        array(py, self.recording.trajectory.times())
+    }
+
+    /// Positions of the vertices in the frames, metres, of shape (T, V, 3).
+    #[getter]
+    fn x<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+        self.vectors(py, |k| self.recording.trajectory.frame(k))
+    }
+
+    /// Corners of the triangles, of shape (F, 3).
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        rows(py, self.recording.trajectory.faces())
+    }
+
+    /// Ends of the edges, of shape (E, 2).
+    #[getter]
+    fn edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        rows(py, self.recording.trajectory.edges())
+    }
+
+    /// Rest lengths of the edges, metres, of shape (E,).
+    #[getter]
+    fn rest_lengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        array(py, self.recording.trajectory.rest_lengths())
+    }
+
+    /// Forces of the rods in the frames, newtons, tension positive, of shape (T, E); None of sheets without
+    /// rods.
+    #[getter]
+    fn rod_forces<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.numbers(py, |k| self.recording.trajectory.rod_forces(k))
+    }
+
+    /// Forces of contact on the vertices in the frames, newtons, of shape (T, V, 3); None without contact.
+    #[getter]
+    fn contact_forces<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+        self.vectors(py, |k| self.recording.trajectory.contact_forces(k))
+    }
+
+    /// Smallest gap of each vertex in the frames, metres, of shape (T, V); None without contact.
+    #[getter]
+    fn gaps<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.numbers(py, |k| self.recording.trajectory.gaps(k))
+    }
+
+    /// One array for each column of `history.csv`, with a row for the start and for every step: "time", "h",
+    /// "iterations", "factorisations", "rejected", "kinetic", "potential", "total", "drift", "strain", "gap"
+    /// (NaN without contact). Seconds, joules, metres.
+    #[getter]
+    fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let rows = &self.recording.history;
+        let columns = PyDict::new(py);
+        let numbers: [(&str, fn(&HistoryRow) -> f64); 8] = [
+            ("time", |row| row.t),
+            ("h", |row| row.h),
+            ("kinetic", |row| row.kinetic),
+            ("potential", |row| row.potential),
+            ("total", |row| row.total),
+            ("drift", |row| row.drift),
+            ("strain", |row| row.strain),
+            ("gap", |row| row.gap.unwrap_or(f64::NAN)),
+        ];
+        for (name, of) in numbers {
+            columns.set_item(name, array(py, &rows.iter().map(of).collect::<Vec<_>>()))?;
+        }
+        let counts: [(&str, fn(&HistoryRow) -> usize); 3] = [
+            ("iterations", |row| row.iterations),
+            ("factorisations", |row| row.factorisations),
+            ("rejected", |row| row.rejected),
+        ];
+        for (name, of) in counts {
+            let column: Vec<u64> = rows.iter().map(|row| of(row) as u64).collect();
+            columns.set_item(name, array(py, &column))?;
+        }
+        Ok(columns)
+    }
+
+    /// What `summary.json` says; None of a run that is not complete.
+    #[getter]
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let Some(summary) = &self.recording.summary else {
+            return Ok(None);
+        };
+        let value = Value::try_from(summary);
+        let value = value.map_err(|e| PyValueError::new_err(e.to_string()))?;
+        to_python(py, &value).map(Some)
+    }
+
+    /// The 3D page of the run, one text of HTML that needs no other file and no connection.
+    ///
+    /// budget: the largest size, bytes; of a run that needs more, every second, fourth, ... frame is kept.
+    #[pyo3(signature = (budget = PageOptions::default().budget))]
+    fn html(&self, py: Python<'_>, budget: usize) -> PyResult<String> {
+        let page = py.detach(|| {
+            self.recording
+                .replay()?
+                .to_html_with(&PageOptions { budget })
+        });
+        page.map_err(|e| plain(py, &e))
+    }
+
+    /// Writes the 3D page of the run to a file.
+    fn write_page(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let written = py.detach(|| run::write_page(&self.folder, &path, &PageOptions::default()));
+        written.map(drop).map_err(|e| of_run(py, &e))
+    }
+
+    /// The 3D page in a frame of a notebook.
+    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
+        let page = self.html(py, PageOptions::default().budget)?;
+        let page = page.replace('&', "&amp;").replace('"', "&quot;");
+        Ok(format!(
+            "<iframe srcdoc=\"{page}\" sandbox=\"allow-scripts\" style=\"width: 100%; height: 640px; border: 0\"></iframe>"
+        ))
+    }
+
+    fn __repr__(&self) -> String {
+        let (frames, folder) = (self.recording.trajectory.len(), self.folder.display());
+        format!("<isosheet.Run {folder} of {frames} frames>")
+    }
+}

@@ -1,0 +1,207 @@
+//! Scenes.
+
+use crate::error::{of_file, of_run};
+use crate::run::Run;
+use crate::value::{edits, table, to_python};
+use isosheet_io::run::{self, StepPart, Tick, Watch};
+use isosheet_io::scene::{Key, KeyPart, SceneFile, SceneFileError, StartingPoint};
+use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use toml::Value;
+
+/// A scene: everything that decides how a simulation goes. The keys are those of scene files.
+///
+/// Make one by Scene.from_toml, Scene.from_dict or Scene.new. A scene never changes; Scene.edit makes another
+/// one.
+#[pyclass(frozen, module = "isosheet")]
+pub(crate) struct Scene {
+    file: SceneFile,
+}
+
+impl Scene {
+    pub(crate) fn of(file: SceneFile) -> Self {
+        Self { file }
+    }
+
+    pub(crate) fn file(&self) -> &SceneFile {
+        &self.file
+    }
+
+    /// The scene with all its values, also those that its text leaves out.
+    fn whole(&self) -> PyResult<Value> {
+        let value = Value::try_from(self.file.scene());
+        value.map_err(|e| PyValueError::new_err(e.to_string()))
+    }
+}
+
+/// A scene file in a text.
+fn parse(text: String, folder: &Path) -> Result<SceneFile, SceneFileError> {
+    SceneFile::parse(text, &folder.join("scene.toml"), &[])
+}
+
+#[pymethods]
+impl Scene {
+    /// The scene of a file, or of a text.
+    ///
+    /// text_or_path: a path, or a text of TOML, which is told by its having more than one line.
+    /// edits: keys and values that replace those of the file, such as {"stop.time": 0.5}.
+    ///
+    /// Raises SceneError with all problems that were found.
+    #[staticmethod]
+    #[pyo3(signature = (text_or_path, edits = None))]
+    fn from_toml(
+        py: Python<'_>,
+        text_or_path: &Bound<'_, PyAny>,
+        edits: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let edits = edits.map_or_else(|| Ok(Vec::new()), self::edits)?;
+        let text = text_or_path.cast::<PyString>().ok();
+        let text: Option<String> = text.map(|t| t.extract()).transpose()?;
+        let file = match text.filter(|t| t.contains('\n')) {
+            Some(text) => SceneFile::parse(text, Path::new("scene.toml"), &edits),
+            None => SceneFile::read(&text_or_path.extract::<PathBuf>()?, &edits),
+        };
+        file.map(Self::of).map_err(|e| of_file(py, &e))
+    }
+
+    /// The scene of a dictionary, which has the keys of a scene file; `version` may be left out.
+    ///
+    /// Values are numbers, texts, lists, dictionaries, numpy arrays, paths and meshes. Paths are relative to
+    /// `folder`.
+    #[staticmethod]
+    #[pyo3(signature = (scene, folder = PathBuf::new()))]
+    fn from_dict(py: Python<'_>, scene: &Bound<'_, PyDict>, folder: PathBuf) -> PyResult<Self> {
+        let mut scene = table(scene)?;
+        let version = Value::Integer(isosheet_io::scene::VERSION.into());
+        scene.entry("version").or_insert(version);
+        let file = parse(scene.to_string(), &folder);
+        file.map(Self::of).map_err(|e| of_file(py, &e))
+    }
+
+    /// A commented scene to start from, of a kind of `isosheet new`: "hanging", "clamp", "drape" and so on.
+    #[staticmethod]
+    #[pyo3(signature = (kind = "hanging", edits = None))]
+    fn new(py: Python<'_>, kind: &str, edits: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let edits = edits.map_or_else(|| Ok(Vec::new()), self::edits)?;
+        let known = StartingPoint::ALL;
+        let point = known
+            .into_iter()
+            .find(|p| p.name() == kind)
+            .ok_or_else(|| {
+                let names: Vec<&str> = known.iter().map(|p| p.name()).collect();
+                PyValueError::new_err(format!(
+                    "there is no scene \"{kind}\"; the kinds are {}",
+                    names.join(", ")
+                ))
+            })?;
+        let file = SceneFile::parse(point.text().to_owned(), Path::new("scene.toml"), &edits);
+        file.map(Self::of).map_err(|e| of_file(py, &e))
+    }
+
+    /// The same scene with other values: ``scene.edit({"obstacle[0].friction": 0.8})``.
+    fn edit(&self, py: Python<'_>, edits: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let text = self.file.text();
+        let file = SceneFile::parse(text.text.clone(), &text.path, &self::edits(edits)?);
+        file.map(Self::of).map_err(|e| of_file(py, &e))
+    }
+
+    /// The scene as TOML, with comments and edits.
+    #[getter]
+    fn text(&self) -> &str {
+        &self.file.text().text
+    }
+
+    /// All values as a dictionary, also those that the text leaves out.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.whole()?)
+    }
+
+    /// The value at a key such as "method.step" or "support[0].at".
+    fn __getitem__<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
+        let whole = self.whole()?;
+        let missing = || PyKeyError::new_err(key.to_owned());
+        let parts: Key = key.parse().map_err(|_| missing())?;
+        let found = parts
+            .parts()
+            .iter()
+            .try_fold(&whole, |value, part| match part {
+                KeyPart::Name(name) => value.get(name.as_str()),
+                KeyPart::Entry(number) => value.get(*number),
+            });
+        to_python(py, found.ok_or_else(missing)?)
+    }
+
+    /// What to know before the scene is run, in words.
+    fn warnings(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let setup = py.detach(|| self.file.build());
+        let setup = setup.map_err(|e| of_file(py, &e.into()))?;
+        Ok(setup.warnings().iter().map(ToString::to_string).collect())
+    }
+
+    /// Runs the scene in a folder, as `isosheet simulate` does: a complete run is left as it is, a part of
+    /// one is continued. Returns what the run wrote.
+    ///
+    /// Raises StepFailed or RunFailed; KeyboardInterrupt after Ctrl-C, when the same call continues.
+    fn simulate(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Run> {
+        let mut signals = Signals::default();
+        let outcome = py.detach(|| run::simulate(&self.file, &folder, &mut signals));
+        match outcome.map_err(|e| of_run(py, &e))? {
+            run::Outcome::Interrupted => Err(signals
+                .raised
+                .unwrap_or_else(|| PyKeyboardInterrupt::new_err(()))),
+            _ => Run::read(py, folder),
+        }
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.file.scene() == other.file.scene()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<isosheet.Scene {}>", self.file.text().path.display())
+    }
+}
+
+/// Asks Python now and then whether Ctrl-C was pressed.
+#[derive(Default)]
+pub(crate) struct Signals {
+    asked: Option<Instant>,
+    /// The exception of a handler of signals, once it has been raised.
+    pub(crate) raised: Option<PyErr>,
+}
+
+/// Time between two questions: nobody notices a tenth of a second, and a thread of Python that computes hands
+/// over the interpreter every 5 ms.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+impl Signals {
+    /// Whether to go on.
+    pub(crate) fn ask(&mut self) -> ControlFlow<()> {
+        let now = Instant::now();
+        if *self.asked.get_or_insert(now) + PATIENCE > now {
+            return ControlFlow::Continue(());
+        }
+        self.asked = Some(now);
+        match Python::attach(|py| py.check_signals()) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                self.raised = Some(error);
+                ControlFlow::Break(())
+            }
+        }
+    }
+}
+
+impl Watch for Signals {
+    fn within_step(&mut self, _part: &StepPart) -> ControlFlow<()> {
+        self.ask()
+    }
+
+    fn step(&mut self, _tick: &Tick) -> ControlFlow<()> {
+        self.ask()
+    }
+}

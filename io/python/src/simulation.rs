@@ -1,0 +1,326 @@
+//! Simulations.
+
+use crate::arrays::{array, rows, vectors};
+use crate::error::{of_file, of_scene, of_step, plain};
+use crate::mesh::edges;
+use crate::report::StepReport;
+use crate::scene::{Scene, Signals};
+use crate::value::edits;
+use isosheet_io::dynamics::{self, Checkpoint, Support};
+use isosheet_io::mesh::VertexId;
+use isosheet_io::scene::{Key, KeyError, LiveScene};
+use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::sync::{Mutex, PoisonError};
+
+/// A simulation of a scene, at its start.
+///
+/// scene: a Scene.
+///
+/// Arrays are copies, because the next step changes the memory of the simulation. Numbers of vertices, faces
+/// and edges are V, F and E; units are metres, seconds, newtons and joules. Steps let other threads of Python
+/// run; a simulation that several threads use does what they ask for one after the other.
+#[pyclass(frozen, module = "isosheet")]
+pub(crate) struct Simulation {
+    live: Mutex<LiveScene>,
+}
+
+impl Simulation {
+    fn of(live: LiveScene) -> Self {
+        let live = Mutex::new(live);
+        Self { live }
+    }
+
+    /// Does something with the simulation while other threads of Python run.
+    fn with<R: Send>(&self, py: Python<'_>, f: impl FnOnce(&mut LiveScene) -> R + Send) -> R {
+        py.detach(|| f(&mut self.live.lock().unwrap_or_else(PoisonError::into_inner)))
+    }
+
+    /// A copy of something that the engine has.
+    fn copied<R: Send>(
+        &self,
+        py: Python<'_>,
+        f: impl FnOnce(&dynamics::Simulation) -> R + Send,
+    ) -> R {
+        self.with(py, |live| f(live.simulation()))
+    }
+
+    /// A step of `h` seconds, or of the next one of a run until a time; nothing at its end.
+    fn advance(&self, py: Python<'_>, length: Length) -> PyResult<Option<StepReport>> {
+        let mut signals = Signals::default();
+        let stepped = self.with(py, |live| {
+            let h = match length {
+                Length::Given(h) => h,
+                Length::OfScene => live.file().scene().method.step,
+                Length::Until(end) => live.next_step(end)?,
+            };
+            let stepped = live.step_watched(h, &mut |_| signals.ask());
+            Some(stepped.map_err(|e| (e, live.simulation().state().t)))
+        });
+        match stepped {
+            None => Ok(None),
+            Some(Ok(report)) => Ok(Some(report.into())),
+            Some(Err((error, t))) => Err(signals.raised.unwrap_or_else(|| of_step(py, &error, t))),
+        }
+    }
+}
+
+/// The length of a step.
+enum Length {
+    /// In seconds.
+    Given(f64),
+    OfScene,
+    /// The next one of a run until this time, seconds.
+    Until(f64),
+}
+
+#[pymethods]
+impl Simulation {
+    #[new]
+    fn new(py: Python<'_>, scene: &Scene) -> PyResult<Self> {
+        let file = scene.file().clone();
+        let live = py.detach(|| LiveScene::start(file));
+        live.map(Self::of).map_err(|e| of_scene(py, &e))
+    }
+
+    /// The simulation at a checkpoint, bit for bit.
+    ///
+    /// scene: the scene of the simulation when the checkpoint was made (Simulation.scene).
+    /// checkpoint: what Simulation.checkpoint returned.
+    #[staticmethod]
+    fn resume(py: Python<'_>, scene: &Scene, checkpoint: &[u8]) -> PyResult<Self> {
+        let file = scene.file().clone();
+        let checkpoint = Checkpoint::from_bytes(checkpoint).map_err(|e| plain(py, &e))?;
+        let live = py.detach(|| LiveScene::resume(file, checkpoint));
+        live.map(Self::of).map_err(|e| of_scene(py, &e))
+    }
+
+    /// The present state as bytes, from which Simulation.resume goes on with the same bits.
+    fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = self.copied(py, |s| s.checkpoint().to_bytes());
+        let bytes = bytes.map_err(|e| plain(py, &e))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Advances by `h` seconds, by default the step of the scene, and returns a StepReport.
+    ///
+    /// Raises StepFailed, which has key, time and advice; then and after Ctrl-C the state is that of the last
+    /// accepted sub-step.
+    #[pyo3(signature = (h = None))]
+    fn step(&self, py: Python<'_>, h: Option<f64>) -> PyResult<Option<StepReport>> {
+        self.advance(py, h.map_or(Length::OfScene, Length::Given))
+    }
+
+    /// Takes steps of the scene until the time `until` (seconds), the last one as short as that asks for.
+    ///
+    /// each: a function that is called after every step with its report, and ends the run by returning True.
+    ///
+    /// Returns the reports. Ctrl-C raises KeyboardInterrupt within a step or after it, and the run can go on.
+    #[pyo3(signature = (until, each = None))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        until: f64,
+        each: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Vec<Py<StepReport>>> {
+        let mut reports = Vec::new();
+        while let Some(report) = self.advance(py, Length::Until(until))? {
+            let report = Py::new(py, report)?;
+            let ends = match each {
+                None => false,
+                Some(each) => each
+                    .call1((&report,))?
+                    .extract::<Option<bool>>()?
+                    .unwrap_or(false),
+            };
+            reports.push(report);
+            py.check_signals()?;
+            if ends {
+                break;
+            }
+        }
+        Ok(reports)
+    }
+
+    /// Changes values of the scene from now on: ``simulation.change({"forces.gravity": [0, 0, 0]})``.
+    ///
+    /// What acts on the sheet may change: forces, creases, damping, air, bodies, friction, motions of
+    /// supports. What a change does at once counts as work. Raises SceneError, and then nothing has changed.
+    fn change(&self, py: Python<'_>, edits: &Bound<'_, PyDict>) -> PyResult<()> {
+        let edits = self::edits(edits)?;
+        self.with(py, |live| live.change(&edits))
+            .map_err(|e| of_file(py, &e))
+    }
+
+    /// Lets functions of time go from their present values to others, along a ramp until the time `until`
+    /// (seconds):
+    /// ``simulation.drive({"support[0].hold.moving_pin.z": 0.01}, until=simulation.time + 0.1)``.
+    ///
+    /// Values have the units of scenes: metres, degrees, newtons.
+    fn drive(&self, py: Python<'_>, targets: &Bound<'_, PyDict>, until: f64) -> PyResult<()> {
+        let target = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+            let text: String = key.extract()?;
+            let key: Key = text
+                .parse()
+                .map_err(|e: KeyError| PyKeyError::new_err(e.to_string()))?;
+            Ok((key, value.extract()?))
+        };
+        let targets = targets
+            .iter()
+            .map(target)
+            .collect::<PyResult<Vec<(Key, f64)>>>()?;
+        self.with(py, |live| live.drive(&targets, until))
+            .map_err(|e| of_file(py, &e))
+    }
+
+    /// The scene with all changes.
+    #[getter]
+    fn scene(&self, py: Python<'_>) -> Scene {
+        Scene::of(self.with(py, |live| live.file().clone()))
+    }
+
+    /// What is modelled, in words.
+    #[getter]
+    fn modelled(&self, py: Python<'_>) -> Vec<String> {
+        self.with(py, |live| live.modelled().to_vec())
+    }
+
+    /// Time, seconds.
+    #[getter]
+    fn time(&self, py: Python<'_>) -> f64 {
+        self.copied(py, |s| s.state().t)
+    }
+
+    /// Positions of the vertices, metres: a copy of shape (V, 3).
+    #[getter]
+    fn x<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        vectors(py, &self.copied(py, |s| s.state().x.clone()))
+    }
+
+    /// Velocities of the vertices, m/s: a copy of shape (V, 3).
+    #[getter]
+    fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        vectors(py, &self.copied(py, |s| s.state().v.clone()))
+    }
+
+    /// Corners of the triangles, of shape (F, 3).
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        rows(py, &self.with(py, |live| live.sheet().face_indices()))
+    }
+
+    /// Ends of the edges, of shape (E, 2).
+    #[getter]
+    fn edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        rows(py, &self.with(py, |live| edges(live.sheet())))
+    }
+
+    /// Rest lengths of the edges, metres, of shape (E,).
+    #[getter]
+    fn rest_lengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        array(py, &self.with(py, |live| live.sheet().lengths().to_vec()))
+    }
+
+    /// Masses of the vertices, kg, of shape (V,).
+    #[getter]
+    fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        array(py, &self.copied(py, |s| s.model().mass().vertex.clone()))
+    }
+
+    /// Numbers of the pinned vertices, at rest or in motion.
+    #[getter]
+    fn pins<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        let pins: Vec<VertexId> = self.copied(py, |s| s.model().pins());
+        array(py, &pins.iter().map(|v| v.0).collect::<Vec<_>>())
+    }
+
+    /// Forces of pins, curves and surfaces on the sheet in the last step, newtons, at the vertices that they
+    /// hold, of shape (V, 3); zero before the first step.
+    #[getter]
+    fn reactions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let forces = self.copied(py, |s| {
+            let mut forces = vec![0.0; s.state().x.len()];
+            for reaction in s.reactions() {
+                let (Support::Pin(vertex) | Support::Constraint { vertex, .. }) = reaction.support;
+                for k in 0..3 {
+                    forces[3 * vertex.index() + k] += reaction.force[k];
+                }
+            }
+            forces
+        });
+        vectors(py, &forces)
+    }
+
+    /// Force of each support of the scene on the sheet in the last step, newtons, of shape (supports, 3).
+    #[getter]
+    fn support_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        rows(py, &self.with(py, |live| live.support_forces()))
+    }
+
+    /// Force of the sheet on each obstacle of the scene, newtons, of shape (obstacles, 3).
+    #[getter]
+    fn obstacle_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let loads = self.copied(py, |s| s.body_loads());
+        rows(
+            py,
+            &loads
+                .iter()
+                .map(|load| load.force.into())
+                .collect::<Vec<[f64; 3]>>(),
+        )
+    }
+
+    /// Forces of contact on the vertices, newtons, of shape (V, 3); None without contact.
+    #[getter]
+    fn contact_forces<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let forces = self.copied(py, |s| s.contact_forces());
+        forces.map(|f| vectors(py, &f)).transpose()
+    }
+
+    /// Forces of the rods in the last step, newtons, tension positive, of shape (E,); None of sheets without
+    /// rods.
+    #[getter]
+    fn rod_forces<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let forces = self.copied(py, |s| s.rod_forces());
+        forces.map(|f| array(py, &f))
+    }
+
+    /// Energies, joules: "kinetic", "potential" (contact included) and "total".
+    #[getter]
+    fn energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (kinetic, total) =
+            self.copied(py, |s| (s.model().kinetic_energy(&s.state().v), s.energy()));
+        let energies = PyDict::new(py);
+        energies.set_item("kinetic", kinetic)?;
+        energies.set_item("potential", total - kinetic)?;
+        energies.set_item("total", total)?;
+        Ok(energies)
+    }
+
+    /// Smallest gap, metres: None without contact, infinite where nothing is close.
+    #[getter]
+    fn gap(&self, py: Python<'_>) -> Option<f64> {
+        self.copied(py, |s| s.contacts().map(|c| c.gap()))
+    }
+
+    /// Smallest gap of each vertex and of its edges and faces, metres, at most the distance from which
+    /// contact acts, of shape (V,); None without contact.
+    #[getter]
+    fn gaps<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let gaps = self.copied(py, |s| s.vertex_gaps());
+        gaps.map(|g| array(py, &g))
+    }
+
+    /// Largest relative error of an edge length.
+    #[getter]
+    fn strain(&self, py: Python<'_>) -> f64 {
+        self.copied(py, |s| s.model().rods().max_strain(&s.state().x))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let (t, count) = self.copied(py, |s| (s.state().t, s.model().topology().vertex_count()));
+        format!("<isosheet.Simulation of {count} vertices at {t} s>")
+    }
+}

@@ -1,0 +1,97 @@
+//! Python's values as those of TOML, and back.
+
+use crate::mesh::Mesh;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use toml::{Table, Value};
+
+/// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries,
+/// numpy arrays and numbers, and meshes. Entries of dictionaries that are `None` are left out.
+pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
+    let py = value.py();
+    if let Ok(mesh) = value.cast::<Mesh>() {
+        return Ok(mesh.get().as_value());
+    }
+    if value.is_instance_of::<PyBool>() {
+        return Ok(Value::Boolean(value.extract()?));
+    }
+    if value.is_instance_of::<PyInt>() {
+        let number = value.extract().map_err(|_| {
+            PyValueError::new_err(format!(
+                "{value} is beyond the whole numbers of scenes, -2^63 to 2^63 - 1"
+            ))
+        });
+        return Ok(Value::Integer(number?));
+    }
+    if value.is_instance_of::<PyFloat>() {
+        return Ok(Value::Float(value.extract()?));
+    }
+    if value.is_instance_of::<PyString>() {
+        return Ok(Value::String(value.extract()?));
+    }
+    if let Ok(dict) = value.cast::<PyDict>() {
+        return Ok(Value::Table(table(dict)?));
+    }
+    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        let entries = value.try_iter()?;
+        let entries = entries.map(|entry| from_python(&entry?));
+        return Ok(Value::Array(entries.collect::<PyResult<_>>()?));
+    }
+    // Arrays and numbers of numpy, and of what else there is.
+    if let Some(plain) = value.getattr_opt(intern!(py, "tolist"))? {
+        return from_python(&plain.call0()?);
+    }
+    if value.hasattr(intern!(py, "__fspath__"))? {
+        let path = value.call_method0(intern!(py, "__fspath__"))?;
+        return Ok(Value::String(path.extract()?));
+    }
+    let message = format!(
+        "{} has no place in a scene; give numbers, texts, lists, dictionaries, arrays or a Mesh",
+        value.get_type().name()?
+    );
+    Err(PyTypeError::new_err(message))
+}
+
+/// The table of TOML that stands for a dictionary.
+pub(crate) fn table(dict: &Bound<'_, PyDict>) -> PyResult<Table> {
+    let mut table = Table::new();
+    for (key, value) in dict {
+        if !value.is_none() {
+            table.insert(key.extract()?, from_python(&value)?);
+        }
+    }
+    Ok(table)
+}
+
+/// The edits `key=value` that stand for a dictionary of keys and values.
+pub(crate) fn edits(dict: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
+    let edit = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+        let key: String = key.extract()?;
+        Ok(format!("{key}={}", from_python(&value)?))
+    };
+    dict.iter().map(edit).collect()
+}
+
+/// The value of Python that stands for one of TOML.
+pub(crate) fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match value {
+        Value::String(text) => PyString::new(py, text).into_any(),
+        Value::Integer(number) => number.into_pyobject(py)?.into_any(),
+        Value::Float(number) => PyFloat::new(py, *number).into_any(),
+        Value::Boolean(truth) => PyBool::new(py, *truth).to_owned().into_any(),
+        Value::Datetime(time) => PyString::new(py, &time.to_string()).into_any(),
+        Value::Array(entries) => {
+            let entries = entries.iter().map(|entry| to_python(py, entry));
+            PyList::new(py, entries.collect::<PyResult<Vec<_>>>()?)?.into_any()
+        }
+        Value::Table(table) => {
+            let dict = PyDict::new(py);
+            for (key, value) in table {
+                dict.set_item(key, to_python(py, value)?)?;
+            }
+            dict.into_any()
+        }
+    })
+}

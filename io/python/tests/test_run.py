@@ -1,0 +1,113 @@
+"""Runs: what the command wrote, compared bit for bit with the module."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import isosheet
+
+SCENE = """
+version = 1
+[sheet]
+mesh = { square = { side = 0.2, level = 1 } }
+density = 0.08
+[[support]]
+at = { vertices = [20] }
+hold = { moving_pin = { z = { smooth_step = { to = 0.02, end = 0.2 } } } }
+[[obstacle]]
+shape = "half_space"
+pose = { position = [0, 0, -0.05] }
+[forces]
+gravity = [0, 0, -9.81]
+[method]
+step = 0.01
+[stop]
+time = 0.2
+[output]
+frames_per_second = 50
+"""
+
+
+def command(*words, cwd):
+    """The command as pip installs it."""
+    program = os.path.join(os.path.dirname(sys.executable), "isosheet")
+    return subprocess.run([program, *words], cwd=cwd, capture_output=True, text=True)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The folder of a run that the command made."""
+    folder = tmp_path_factory.mktemp("runs")
+    (folder / "scene.toml").write_text(SCENE)
+    done = command("simulate", "scene.toml", "--out", "run", "--quiet", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return folder / "run"
+
+
+def test_the_module_takes_the_steps_of_the_command_bit_for_bit(folder):
+    run = isosheet.Run(folder)
+    simulation = isosheet.Simulation(isosheet.Scene.from_toml(SCENE))
+    for time, x in zip(run.time, run.x, strict=True):
+        simulation.run(time)
+        assert np.array_equal(simulation.x, x), time
+    history, state = run.history, simulation.energies
+    assert history["time"][-1] == simulation.time
+    assert (history["kinetic"][-1], history["total"][-1]) == (state["kinetic"], state["total"])
+    assert run.rod_forces[-1] == pytest.approx(simulation.rod_forces, abs=1e-12)
+    assert np.array_equal(run.contact_forces[-1], simulation.contact_forces)
+
+
+def test_a_run_is_what_its_files_say(folder):
+    run = isosheet.Run(folder)
+    file = np.load(folder / "trajectory.npz")
+    for name in ("x", "faces", "edges", "rest_lengths", "rod_forces", "contact_forces", "gaps"):
+        assert np.array_equal(getattr(run, name), file[name]), name
+    assert np.array_equal(run.time, file["t"])
+    table = np.genfromtxt(folder / "history.csv", delimiter=",", names=True)
+    for name, column in (("time", "t"), ("total", "H"), ("iterations", "iterations"), ("strain", "strain")):
+        assert np.array_equal(run.history[name], table[column]), name
+    summary = json.loads((folder / "summary.json").read_text())
+    assert run.summary["ending"] == summary["ending"] and run.summary["steps"] == summary["steps"] == 20
+    assert run.scene["stop.time"] == 0.2 and "gravity" in run.modelled
+
+
+def test_a_run_shows_its_page(folder, tmp_path):
+    run = isosheet.Run(folder)
+    page = run.html()
+    assert page.lower().startswith("<!doctype html>")
+    run.write_page(tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text() == page
+    shown = run._repr_html_()
+    assert shown.startswith("<iframe srcdoc=") and shown.count('"') == 6
+    with pytest.raises(isosheet.Error, match="budget"):
+        run.html(budget=10)
+
+
+def test_a_scene_runs_in_a_folder_as_the_command_does(folder, tmp_path):
+    run = isosheet.Scene.from_toml(SCENE).simulate(tmp_path / "again")
+    assert np.array_equal(run.x, isosheet.Run(folder).x)
+    other = isosheet.Scene.from_toml(SCENE, {"sheet.density": 0.1})
+    with pytest.raises(isosheet.RunFailed) as caught:
+        other.simulate(tmp_path / "again")
+    assert "another folder" in caught.value.advice
+    with pytest.raises(isosheet.RunFailed, match="not the folder of a run"):
+        isosheet.Run(tmp_path)
+
+
+def test_the_command_of_the_wheel_is_the_command(tmp_path):
+    assert command("--version", cwd=tmp_path).stdout.split() == ["isosheet", isosheet.__version__]
+    assert command("simulate", cwd=tmp_path).returncode == 2
+    wrong = command("info", "nothing", cwd=tmp_path)
+    assert wrong.returncode == 3 and "error" in wrong.stderr
+    new = command("new", "cloth", "--kind", "hanging", cwd=tmp_path)
+    assert new.returncode == 0 and (tmp_path / "cloth.toml").is_file()
+    assert isosheet.Scene.from_toml(tmp_path / "cloth.toml") == isosheet.Scene.new("hanging")
+    swept = command("sweep", "cloth.toml", "--over", "sheet.density=0.1,0.2", "--set", "stop.time=0.05", cwd=tmp_path)
+    assert swept.returncode == 0, swept.stderr
+    assert len(list((tmp_path / "cloth-sweep").glob("*/summary.json"))) == 2
+    module = subprocess.run([sys.executable, "-m", "isosheet", "--version"], capture_output=True, text=True)
+    assert module.stdout == command("--version", cwd=tmp_path).stdout

@@ -1,0 +1,275 @@
+//! A simulation together with its scene, which can be changed between steps.
+
+use super::edit::{EditError, EditProblem};
+use super::key::{Key, KeyPart};
+use super::{
+    Method, Origins, Problem, Profile, Scene, SceneError, SceneFile, SceneFileError, Setup,
+    SupportForces,
+};
+use isosheet_dynamics::{Checkpoint, Simulation, StepError, StepProgress, StepReport};
+use isosheet_mesh::{Advice, Sheet};
+use serde::Deserialize;
+use std::ops::ControlFlow;
+use thiserror::Error;
+
+/// A simulation together with the scene that it is made of. Between two steps the scene can be changed.
+///
+/// ```
+/// use isosheet_io::scene::{LiveScene, SceneFile};
+/// use std::path::Path;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let text = r#"
+///     version = 1
+///     [sheet]
+///     mesh = { square = { side = 0.2, level = 1 } }
+///     density = 0.08
+///     [[support]]
+///     at = { vertices = [20] }
+///     hold = { moving_pin = {} }
+///     [forces]
+///     gravity = [0, 0, -9.81]
+/// "#;
+/// let mut live = LiveScene::start(SceneFile::parse(text.into(), Path::new("cloth.toml"), &[])?)?;
+/// live.step(0.01)?;
+/// // The corner rises by 1 mm until t = 0.02 s, and weight has gone.
+/// live.change(&["forces.gravity=[0, 0, 0]".into()])?;
+/// live.drive(&[("support[0].hold.moving_pin.z".parse()?, 0.001)], 0.02)?;
+/// live.step(0.01)?;
+/// assert!((live.simulation().state().x[62] - 0.001).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
+pub struct LiveScene {
+    file: SceneFile,
+    sheet: Sheet,
+    modelled: Vec<String>,
+    origins: Origins,
+    supports: SupportForces,
+    simulation: Simulation,
+}
+
+/// Part of a step by which a time may differ from a whole number of steps, to allow for round-off: of a
+/// thousand steps it is 1e-13.
+const ROUND_OFF: f64 = 1e-9;
+
+/// A step that failed: the error of the engine, and the place of the scene that is to blame.
+#[derive(Debug, Error)]
+#[error("{scene}")]
+pub struct FailedStep {
+    /// What failed.
+    pub step: StepError,
+    /// The same in words of the scene.
+    pub scene: SceneError,
+}
+
+impl Advice for FailedStep {
+    /// Always `None`: the text has the remedy.
+    fn advice(&self) -> Option<&'static str> {
+        self.scene.advice()
+    }
+}
+
+/// The facts of a setup that outlive it.
+struct Facts {
+    sheet: Sheet,
+    modelled: Vec<String>,
+    origins: Origins,
+}
+
+impl Facts {
+    fn of(setup: &Setup) -> Self {
+        Self {
+            sheet: setup.sheet.clone(),
+            modelled: setup.modelled.clone(),
+            origins: setup.origins.clone(),
+        }
+    }
+}
+
+impl LiveScene {
+    /// The scene at its start.
+    ///
+    /// # Errors
+    /// [`SceneError`], shown at its place in the text.
+    pub fn start(file: SceneFile) -> Result<Self, SceneError> {
+        let setup = file.build()?;
+        let facts = Facts::of(&setup);
+        Ok(Self::new(file, facts, setup.start()?))
+    }
+
+    /// The scene at a checkpoint of its simulation, bit for bit. A scene that was changed is resumed with the
+    /// changed one ([`LiveScene::file`]).
+    ///
+    /// # Errors
+    /// [`SceneError`] if the checkpoint belongs to another scene.
+    pub fn resume(file: SceneFile, checkpoint: Checkpoint) -> Result<Self, SceneError> {
+        let setup = file.build()?;
+        let facts = Facts::of(&setup);
+        Ok(Self::new(file, facts, setup.resume(checkpoint)?))
+    }
+
+    fn new(file: SceneFile, facts: Facts, simulation: Simulation) -> Self {
+        let Facts {
+            sheet,
+            modelled,
+            origins,
+        } = facts;
+        let count = file.scene().support.len();
+        Self {
+            supports: SupportForces::new(origins.clone(), &simulation, count),
+            file,
+            sheet,
+            modelled,
+            origins,
+            simulation,
+        }
+    }
+
+    /// The scene with all changes.
+    pub fn file(&self) -> &SceneFile {
+        &self.file
+    }
+
+    /// The simulation.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// The sheet in its rest shape, placed in space.
+    pub fn sheet(&self) -> &Sheet {
+        &self.sheet
+    }
+
+    /// What is modelled, in words.
+    pub fn modelled(&self) -> &[String] {
+        &self.modelled
+    }
+
+    /// Force of each support of the scene on the sheet in the last step, newtons; zero before the first one.
+    pub fn support_forces(&self) -> Vec<[f64; 3]> {
+        self.supports.of(&self.simulation)
+    }
+
+    /// The length of the next step of a run until time `until` (seconds): that of the scene, the rest of the
+    /// time where that is less, and nothing at the end. A rest that is round-off is no step.
+    pub fn next_step(&self, until: f64) -> Option<f64> {
+        let h = self.file.scene().method.step;
+        let rest = until - self.simulation.state().t;
+        let parts = rest / h;
+        (parts > ROUND_OFF).then(|| if parts < 1.0 - ROUND_OFF { rest } else { h })
+    }
+
+    /// Advances by `h` seconds, see [`Simulation::step`].
+    ///
+    /// # Errors
+    /// [`FailedStep`]; the state is that of the last accepted sub-step.
+    pub fn step(&mut self, h: f64) -> Result<StepReport, FailedStep> {
+        self.step_watched(h, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`LiveScene::step`], with a watch as in [`Simulation::step_watched`].
+    ///
+    /// # Errors
+    /// As [`LiveScene::step`]; with [`StepError::Interrupted`] if the watch ended the step.
+    pub fn step_watched(
+        &mut self,
+        h: f64,
+        watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,
+    ) -> Result<StepReport, FailedStep> {
+        let stepped = self.simulation.step_watched(h, watch);
+        stepped.map_err(|step| {
+            let problem = self.origins.of_failed_step(&step, &self.simulation);
+            let scene = SceneError::from(problem).in_text(self.file.text());
+            FailedStep { step, scene }
+        })
+    }
+
+    /// Changes the scene between two steps by edits of the form `key=value`, in force from now on. What acts
+    /// on the sheet may change: forces, stiffnesses and angles of creases, damping, air, bodies, friction,
+    /// the motions of supports; what it is may not. Where supports are is no matter of a change, they do not
+    /// jump: see [`LiveScene::drive`]. What a change does at once counts as work
+    /// ([`Simulation::changed_from`]). A change costs what building the scene costs.
+    ///
+    /// # Errors
+    /// [`SceneFileError`]; then nothing has changed.
+    pub fn change(&mut self, edits: &[String]) -> Result<(), SceneFileError> {
+        let text = self.file.text();
+        let file = SceneFile::parse(text.text.clone(), &text.path, edits)?;
+        SceneError::of(lasting(self.file.scene(), file.scene()))
+            .map_err(|e| e.in_text(file.text()))?;
+        let setup = file.build()?;
+        let facts = Facts::of(&setup);
+        let resumed = setup.resume(self.simulation.checkpoint())?;
+        let changed = resumed.changed_from(&self.simulation).map_err(|e| {
+            let problem = facts.origins.of_start(&e);
+            SceneError::from(problem).in_text(file.text())
+        })?;
+        *self = Self::new(file, facts, changed);
+        Ok(())
+    }
+
+    /// Lets functions of time in the scene go from their present values to others until time `until`
+    /// (seconds), along a ramp, and keep these: displacements and angles of supports and bodies, angles of
+    /// creases, sizes of loads. Values are in the units of the scene.
+    ///
+    /// # Errors
+    /// As [`LiveScene::change`]; [`EditProblem::NoProfile`] at a key that is no function of time.
+    pub fn drive(&mut self, targets: &[(Key, f64)], until: f64) -> Result<(), SceneFileError> {
+        let begin = self.simulation.state().t;
+        let scene = self.file.scene();
+        let edit = |(key, to): &(Key, f64)| {
+            let from = profile(scene, key)?.value(begin);
+            let numbers = [
+                ("from", from),
+                ("to", *to),
+                ("begin", begin),
+                ("end", until),
+            ];
+            let numbers =
+                numbers.map(|(name, value)| format!("{name} = {}", toml::Value::from(value)));
+            Ok(format!("{key}={{ ramp = {{ {} }} }}", numbers.join(", ")))
+        };
+        let edits = targets.iter().map(edit);
+        self.change(&edits.collect::<Result<Vec<_>, EditError>>()?)
+    }
+}
+
+/// What a change must not change: where the sheet starts and how the motion is computed.
+fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
+    let method = |scene: &Scene| Method {
+        step: before.method.step,
+        ..scene.method.clone()
+    };
+    let (old, new) = (&before.sheet, &after.sheet);
+    let checks = [
+        ("sheet.mesh", old.mesh == new.mesh),
+        ("sheet.placement", old.placement == new.placement),
+        ("sheet.start", old.start == new.start),
+        ("method", method(before) == method(after)),
+    ];
+    let changed = checks.into_iter().filter(|(_, same)| !same);
+    let problem = |(key, _): (&str, bool)| {
+        let message = format!("`{key}` does not change during a simulation");
+        Problem::new(Key::root().name(key), message, "begin a new simulation")
+    };
+    changed.map(problem).collect()
+}
+
+/// The function of time at a key, in the units of the scene.
+fn profile(scene: &Scene, key: &Key) -> Result<Profile, EditError> {
+    let error = || EditError {
+        edit: key.to_string(),
+        problem: EditProblem::NoProfile { place: key.clone() },
+    };
+    let whole = toml::Value::try_from(scene).map_err(|_| error())?;
+    let found = key
+        .parts()
+        .iter()
+        .try_fold(&whole, |value, part| match part {
+            KeyPart::Name(name) => value.get(name.as_str()),
+            KeyPart::Entry(number) => value.get(*number),
+        });
+    let found = found.cloned().ok_or_else(error)?;
+    Profile::deserialize(found).map_err(|_| error())
+}

@@ -1,0 +1,218 @@
+//! Scenes that change while they are simulated.
+
+use super::parse;
+use isosheet_io::dynamics::{Checkpoint, StepError};
+use isosheet_io::scene::{Key, LiveScene, Mesh, SceneFileError};
+use std::path::Path;
+
+/// A square that hangs by a corner, which can be moved, and has a crease along its middle line and a load.
+const HANGING: &str = r#"
+    version = 1
+    [sheet]
+    mesh = { square = { side = 0.2, level = 1 } }
+    density = 0.08
+    [[crease]]
+    at = { line = { from = [0, 0.1, 0], to = [0.2, 0.1, 0] } }
+    stiffness = 1e-3
+    angle = { sine = { amplitude = 30, frequency = 1 } }
+    [[support]]
+    at = { vertices = [20] }
+    hold = { moving_pin = { z = { sine = { amplitude = 0.01, frequency = 2 } } } }
+    [[forces.load]]
+    at = { vertices = [0] }
+    direction = [1, 0, 0]
+    size = 0
+    [forces]
+    gravity = [0, 0, -9.81]
+    [method]
+    step = 0.01
+"#;
+
+fn live(text: &str) -> LiveScene {
+    let file = parse(text).unwrap_or_else(|e| panic!("{e}"));
+    LiveScene::start(file).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn key(text: &str) -> Key {
+    text.parse().expect("a key")
+}
+
+fn step(live: &mut LiveScene, count: usize) {
+    for _ in 0..count {
+        live.step(0.01).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// Position of vertex 20.
+fn pin(live: &LiveScene) -> &[f64] {
+    &live.simulation().state().x[60..63]
+}
+
+#[test]
+fn a_driven_pin_begins_where_it_is_and_ends_where_it_is_sent() {
+    let mut live = live(HANGING);
+    step(&mut live, 3);
+    let start = live.sheet().positions()[62];
+    let before = 0.01 * (std::f64::consts::TAU * 2.0 * live.simulation().state().t).sin();
+    assert!((pin(&live)[2] - start - before).abs() < 1e-15);
+    live.drive(&[(key("support[0].hold.moving_pin.z"), 0.05)], 0.05)
+        .expect("a function of time");
+    step(&mut live, 1);
+    assert!((pin(&live)[2] - start - 0.5 * (before + 0.05)).abs() < 1e-15);
+    step(&mut live, 2);
+    assert!((pin(&live)[2] - start - 0.05).abs() < 1e-15);
+    step(&mut live, 1);
+    assert!((pin(&live)[2] - start - 0.05).abs() < 1e-15);
+}
+
+/// The angle is driven in degrees, from its present value: the energy does not jump.
+#[test]
+fn angles_are_driven_from_where_they_are() {
+    let mut live = live(HANGING);
+    step(&mut live, 4);
+    let before = live.simulation().energy();
+    live.drive(&[(key("crease[0].angle"), 90.0)], 1.0)
+        .expect("a function of time");
+    let after = live.simulation().energy();
+    assert!(
+        (after - before).abs() < 1e-12 * before.abs(),
+        "{before} J, {after} J"
+    );
+    let text = &live.file().text().text;
+    assert!(
+        text.contains("to = 90.0") && text.contains("end = 1.0"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_change_of_nothing_leaves_every_bit() {
+    let (mut left, mut changed) = (live(HANGING), live(HANGING));
+    for _ in 0..3 {
+        step(&mut left, 1);
+        step(&mut changed, 1);
+        changed
+            .change(&["forces.gravity=[0, 0, -9.81]".into()])
+            .expect("the same");
+    }
+    assert_eq!(left.simulation().state(), changed.simulation().state());
+}
+
+/// A scene that was changed is resumed with the changed scene, bit for bit.
+#[test]
+fn a_changed_scene_is_resumed_bit_for_bit() {
+    let mut live = live(HANGING);
+    step(&mut live, 2);
+    live.change(&["forces.load[0].size=0.01".into(), "sheet.damping=1".into()])
+        .expect("a change");
+    live.drive(&[(key("support[0].hold.moving_pin.x"), -0.02)], 0.1)
+        .expect("a change");
+    step(&mut live, 1);
+    let bytes = live.simulation().checkpoint().to_bytes().expect("bytes");
+    let checkpoint = Checkpoint::from_bytes(&bytes).expect("a checkpoint");
+    let mut resumed = LiveScene::resume(live.file().clone(), checkpoint).expect("the scene");
+    step(&mut live, 3);
+    step(&mut resumed, 3);
+    assert_eq!(live.simulation().state(), resumed.simulation().state());
+    assert_eq!(live.support_forces(), resumed.support_forces());
+}
+
+/// What cannot be changed is refused with the key that is to blame, and nothing has changed.
+#[test]
+fn what_cannot_change_is_refused() {
+    let mut live = live(HANGING);
+    step(&mut live, 2);
+    for (edit, at) in [
+        ("method.integrator=implicit_euler", "method"),
+        ("sheet.start.perturbation=0.1", "sheet.start"),
+        (
+            "sheet.mesh={ disk = { radius = 0.1, rings = 2 } }",
+            "sheet.mesh",
+        ),
+        ("support[0].hold.moving_pin.z=0", "support[0].hold"),
+        ("sheet.density=-1", "sheet.density"),
+        ("sheet.density=0.1", ""),
+    ] {
+        let before = (live.file().clone(), live.simulation().checkpoint());
+        let Err(SceneFileError::Scene(error)) = live.change(&[edit.into()]) else {
+            panic!("{edit} is no error of the scene");
+        };
+        assert_eq!(error.problems()[0].key.to_string(), at, "{error}");
+        assert_eq!(
+            (live.file().clone(), live.simulation().checkpoint()),
+            before
+        );
+    }
+    for wrong in ["support[0].hold.pin.z", "sheet.mesh", "forces.load[1].size"] {
+        let error = live
+            .drive(&[(key(wrong), 1.0)], 1.0)
+            .expect_err("no function of time");
+        assert!(
+            error
+                .to_string()
+                .contains(&format!("no function of time at `{wrong}`")),
+            "{error}"
+        );
+    }
+    let past = live
+        .drive(&[(key("crease[0].angle"), 1.0)], 0.0)
+        .expect_err("it is over");
+    assert!(
+        past.to_string().contains("crease[0].angle.ramp.end") || past.to_string().contains("end")
+    );
+}
+
+#[test]
+fn a_step_that_fails_names_error_and_key() {
+    let mut live = live(HANGING);
+    let failed = live.step(-1.0).expect_err("no step");
+    assert_eq!(failed.step, StepError::StepSize { h: -1.0, t: 0.0 });
+    assert!(failed.to_string().contains("step size"), "{failed}");
+}
+
+#[test]
+fn a_run_ends_with_a_short_step() {
+    let mut live = live(HANGING);
+    let mut lengths = Vec::new();
+    while let Some(h) = live.next_step(0.035) {
+        lengths.push(h);
+        live.step(h).expect("accepted");
+    }
+    assert_eq!(lengths[..3], [0.01; 3]);
+    assert!(
+        lengths.len() == 4 && (lengths[3] - 0.005).abs() < 1e-15,
+        "{lengths:?}"
+    );
+}
+
+/// Triangles in the scene are the mesh that has them.
+#[test]
+fn triangles_are_a_mesh() {
+    let square = parse(HANGING).expect("a scene");
+    let sheet = square
+        .scene()
+        .sheet
+        .mesh
+        .sheet(Path::new("."))
+        .expect("a mesh");
+    let triangles = Mesh::Triangles {
+        vertices: sheet.positions().as_chunks::<3>().0.to_vec(),
+        faces: sheet.face_indices(),
+    };
+    let mut scene = square.scene().clone();
+    scene.sheet.mesh = triangles;
+    let text = toml::to_string(&scene).expect("TOML");
+    let (mut generated, mut given) = (live(HANGING), live(&text));
+    step(&mut generated, 2);
+    step(&mut given, 2);
+    assert_eq!(generated.simulation().state(), given.simulation().state());
+    scene.sheet.mesh = Mesh::Triangles {
+        vertices: vec![[0.0; 3]; 3],
+        faces: vec![[0, 1, 5]],
+    };
+    let error = scene.build(Path::new(".")).expect_err("no mesh");
+    assert_eq!(
+        error.problems()[0].key.to_string(),
+        "sheet.mesh.triangles.faces"
+    );
+}
