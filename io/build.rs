@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::process::Command;
 
-fn main() {
+pub(crate) fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rustc-check-cfg=cfg(isosheet_log_of_head)");
     if std::env::var_os("CARGO_FEATURE_CLI").is_none() {

@@ -91,6 +91,7 @@ class StepReport:
     work: float
     dissipated: float
     friction: float
+    plastic: float
     energy_drift: float
     strain: float
     constrained_strain: float

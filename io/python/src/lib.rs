@@ -12,6 +12,8 @@
 //! threads of Python run.
 
 mod arrays;
+#[path = "../../src/bin/isosheet/commit.rs"]
+mod commit;
 mod error;
 mod materials;
 mod mesh;
@@ -45,6 +47,9 @@ fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
 
 #[pymodule]
 fn _isosheet(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    if let Some(commit) = commit::commit() {
+        isosheet_io::run::note_commit(commit);
+    }
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<mesh::Mesh>()?;
     module.add_class::<report::StepReport>()?;

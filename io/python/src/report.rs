@@ -31,6 +31,8 @@ pub(crate) struct StepReport {
     dissipated: f64,
     /// Energy lost to friction since the start.
     friction: f64,
+    /// Energy that plastic bending has taken since the start.
+    plastic: f64,
     /// Error of the energy balance since the start.
     energy_drift: f64,
     /// Largest relative error of an edge length at the end.
@@ -63,6 +65,7 @@ impl From<dynamics::StepReport> for StepReport {
             work: report.work,
             dissipated: report.dissipated,
             friction: report.friction,
+            plastic: report.plastic,
             energy_drift: report.energy_drift,
             strain: report.strain,
             constrained_strain: report.constrained_strain,
@@ -116,7 +119,7 @@ impl StepReport {
 }
 
 /// The names of all values.
-const NAMES: [&str; 20] = [
+const NAMES: [&str; 21] = [
     "time",
     "h",
     "substeps",
@@ -130,6 +133,7 @@ const NAMES: [&str; 20] = [
     "work",
     "dissipated",
     "friction",
+    "plastic",
     "energy_drift",
     "strain",
     "constrained_strain",
