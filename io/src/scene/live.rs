@@ -157,7 +157,8 @@ impl LiveScene {
         let h = self.file.scene().method.step;
         let rest = until - self.simulation.state().t;
         let parts = rest / h;
-        (parts > ROUND_OFF).then(|| if parts < 1.0 - ROUND_OFF { rest } else { h })
+        let length = if parts < 1.0 - ROUND_OFF { rest } else { h };
+        (parts > ROUND_OFF).then_some(length)
     }
 
     /// Advances by `h` seconds, see [`Simulation::step`].
