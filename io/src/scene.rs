@@ -64,6 +64,7 @@ mod supports;
 mod toml_problem;
 mod unit;
 mod warning;
+mod yields;
 
 pub use air::Air;
 pub use chart::{
@@ -102,6 +103,7 @@ pub use stop::{Rest, Stop};
 pub use support_forces::SupportForces;
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
 pub use warning::SceneWarning;
+pub use yields::{CreaseYield, SheetYield};
 
 #[cfg(feature = "run")]
 pub(crate) use supports::frame_motion;

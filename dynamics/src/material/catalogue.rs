@@ -4,6 +4,7 @@
 //! which handbooks and data sheets agree to a few per cent. Paper, cloth and leather differ from sort to sort by
 //! a factor of two, and from direction to direction as well: the numbers are typical ones.
 
+use super::plasticity::Yield;
 use super::{Isotropic, Material};
 use isosheet_mesh::Advice;
 
@@ -116,6 +117,7 @@ const fn fibrous(density: f64, stiffness: f64, rigidity: f64, poisson: f64) -> M
         rigidity,
         poisson,
         strain_limit: Material::STRAIN_LIMIT,
+        yields: None,
     }
 }
 
@@ -130,6 +132,20 @@ const fn plate(youngs: f64, thickness: f64, density: f64, poisson: f64) -> Mater
     material.sheet()
 }
 
+/// Paper of a thickness (m). Its moment is that of a section that has yielded in the whole of its thickness, `3 D e / h`
+/// with the elastic limit `e` = 0.5 % of tensile curves, and grows after that with a quarter of the slope before,
+/// `D H / (D + H) = D / 4`.
+const fn creasing(paper: Material, thickness: f64) -> Material {
+    let yields = Yield {
+        moment: 3.0 * paper.rigidity * 5e-3 / thickness,
+        hardening: paper.rigidity / 3.0,
+    };
+    Material {
+        yields: Some(yields),
+        ..paper
+    }
+}
+
 const fn stretching(material: Material, strain_limit: f64) -> Material {
     Material {
         strain_limit,
@@ -139,29 +155,31 @@ const fn stretching(material: Material, strain_limit: f64) -> Material {
 
 catalogue! {
     office_paper: "office paper", "uncoated copy paper, 80 g/m2, 0.1 mm",
-        fibrous(0.08, 3e5, 5e-4, 0.3),
+        creasing(fibrous(0.08, 3e5, 5e-4, 0.3), 1e-4),
         "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness (ISO 1924-3), between about \
          5e5 N/m in the machine direction and 2e5 N/m across. Rigidity: typical bending stiffness (ISO 5628) in the \
          machine direction, along which A4 sheets are long; across it is about 2e-4 N m. K. Niskanen (ed.), \
          Mechanics of Paper Products, De Gruyter 2012. Poisson's ratio: 0.29 as the geometric mean of both \
-         directions, G. A. Baum, D. C. Brennan and C. C. Habeger, Tappi 64(8), 97-101, 1981.";
+         directions, G. A. Baum, D. C. Brennan and C. C. Habeger, Tappi 64(8), 97-101, 1981. Yield: assumed, from typical \
+         tensile curves (ISO 1924-3), which bend at 0.5 % to a quarter of their slope, between a sixth across and two \
+         fifths in the machine direction.";
     card: "card", "solid bleached board, 250 g/m2, 0.3 mm",
-        fibrous(0.25, 1.1e6, 1e-2, 0.3),
+        creasing(fibrous(0.25, 1.1e6, 1e-2, 0.3), 3e-4),
         "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 4.5 kN m/g (ISO \
          1924-3) times the grammage. Rigidity: typical bending stiffness (ISO 5628), between about 1.5e-2 N m in the \
          machine direction and 7e-3 N m across. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; \
-         Poisson's ratio as for office paper.";
+         Poisson's ratio and yield as for office paper.";
     newsprint: "newsprint", "newspaper, 45 g/m2, 0.07 mm",
-        fibrous(0.045, 1.6e5, 6e-5, 0.3),
+        creasing(fibrous(0.045, 1.6e5, 6e-5, 0.3), 7e-5),
         "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 3.5 kN m/g (ISO \
          1924-3) times the grammage. Rigidity: typical, eight tenths of that of a plate of this stiffness and \
-         thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio as for office \
+         thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio and yield as for office \
          paper.";
     kraft_paper: "kraft paper", "wrapping paper, 80 g/m2, 0.11 mm",
-        fibrous(0.08, 4e5, 4e-4, 0.3),
+        creasing(fibrous(0.08, 4e5, 4e-4, 0.3), 1.1e-4),
         "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 5 kN m/g (ISO \
          1924-3), long fibres, times the grammage. Rigidity: typical, nine tenths of that of a plate of this \
-         stiffness and thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio as \
+         stiffness and thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio and yield as \
          for office paper.";
     tissue_paper: "tissue paper", "smooth wrapping tissue, 18 g/m2, 0.03 mm",
         fibrous(0.018, 6e4, 4e-6, 0.3),
@@ -195,25 +213,29 @@ catalogue! {
          Plastics Materials, 7th ed., Butterworth-Heinemann 1999. Poisson's ratio: typical. Strain limit: half of the \
          strain at yield, 5 to 8 %.";
     aluminium_foil: "aluminium foil", "household foil, alloy 8011, 0.016 mm",
-        plate(6.9e10, 1.6e-5, 2700.0, 0.33),
+        plate(6.9e10, 1.6e-5, 2700.0, 0.33).with_yield_stress(1.6e-5, 3.5e7),
         "Young's modulus, density and Poisson's ratio: ASM Handbook Vol. 2, Properties and Selection: Nonferrous \
-         Alloys, ASM International 1990. Thickness: as sold.";
+         Alloys, ASM International 1990. Thickness: as sold. Yield: 35 MPa, typical of soft foil (temper O), \
+         with the hardening of EN 1993-1-5, C.6.";
     aluminium_sheet: "aluminium sheet", "0.5 mm",
-        plate(6.9e10, 5e-4, 2700.0, 0.33),
+        plate(6.9e10, 5e-4, 2700.0, 0.33).with_yield_stress(5e-4, 8.5e7),
         "Young's modulus, density and Poisson's ratio: ASM Handbook Vol. 2, Properties and Selection: Nonferrous \
-         Alloys, ASM International 1990.";
+         Alloys, ASM International 1990. Yield: 85 MPa, the least proof strength of EN AW-1050A, half hard (H14), EN \
+         485-2; harder alloys have up to 300 MPa. Hardening: as EN 1993-1-5, C.6, has it for steel.";
     steel_sheet: "steel sheet", "0.5 mm",
-        plate(2.1e11, 5e-4, 7850.0, 0.3),
-        "Young's modulus and Poisson's ratio: EN 1993-1-1 (Eurocode 3), 3.2.6. Density: EN 1991-1-1, Table A.4.";
+        plate(2.1e11, 5e-4, 7850.0, 0.3).with_yield_stress(5e-4, 2.35e8),
+        "Young's modulus and Poisson's ratio: EN 1993-1-1 (Eurocode 3), 3.2.6. Density: EN 1991-1-1, Table A.4. Yield: \
+         235 MPa, S235 of EN 1993-1-1, Table 3.1, with the hardening of EN 1993-1-5, C.6.";
     copper_foil: "copper foil", "of circuit boards, 0.035 mm",
         plate(1.17e11, 3.5e-5, 8930.0, 0.34),
         "Young's modulus, density and Poisson's ratio of copper C11000: ASM Handbook Vol. 2, Properties and \
          Selection: Nonferrous Alloys, ASM International 1990. Thickness: 1 ounce on a square foot. Electrodeposited \
          foils are softer by up to a third.";
     copper_sheet: "copper sheet", "0.5 mm",
-        plate(1.17e11, 5e-4, 8930.0, 0.34),
+        plate(1.17e11, 5e-4, 8930.0, 0.34).with_yield_stress(5e-4, 6.9e7),
         "Young's modulus, density and Poisson's ratio of copper C11000: ASM Handbook Vol. 2, Properties and \
-         Selection: Nonferrous Alloys, ASM International 1990.";
+         Selection: Nonferrous Alloys, ASM International 1990. Yield: 69 MPa, annealed, of the same handbook; hard \
+         copper has up to 300 MPa. Hardening: as EN 1993-1-5, C.6, has it for steel.";
     brass_shim: "brass shim", "cartridge brass C26000, 0.1 mm",
         plate(1.12e11, 1e-4, 8530.0, 0.34),
         "Young's modulus and density: Olin Brass, C26000 Cartridge Brass, Alloy Data. Poisson's ratio: ASM Handbook \

@@ -13,6 +13,7 @@ pub use catalogue::{NamedMaterial, UnknownMaterial};
 use crate::options::OptionsError;
 use crate::{ElasticSheet, ElasticSheetError};
 use isosheet_mesh::Sheet;
+use plasticity::Yield;
 use serde::{Deserialize, Serialize};
 
 /// A material in the form of a sheet.
@@ -48,6 +49,9 @@ pub struct Material {
     /// The largest principal strain that a sheet of this material may have: [`Material::STRAIN_LIMIT`], or
     /// more for materials that stretch visibly in use.
     pub strain_limit: f64,
+    /// When a sheet of this material yields in bending, per metre of its width; nothing where it is not known.
+    #[serde(default)]
+    pub yields: Option<Yield>,
 }
 
 /// A sheet of one isotropic material, for [`Material::isotropic`].
@@ -80,6 +84,7 @@ impl Isotropic {
                 / (12.0 * (1.0 - poisson * poisson)),
             poisson,
             strain_limit: Material::STRAIN_LIMIT,
+            yields: None,
         }
     }
 }
@@ -105,6 +110,25 @@ impl Material {
         Ok(sheet)
     }
 
+    /// The hardening of metals, in parts of the rigidity: after the yield a moment grows with a hundredth of the slope
+    /// before, `D H / (D + H) = D / 100`, as EN 1993-1-5 (Eurocode 3), C.6, has it for finite elements.
+    const METAL_HARDENING: f64 = 1.0 / 99.0;
+
+    /// Makes it yield at a stress (Pa), as a metal of this thickness (metres) does: at the moment `stress thickness^2 /
+    /// 4` of a section that has yielded in the whole of its thickness, with the hardening of Eurocode 3. (It begins at two
+    /// thirds of this moment; what it bends in between is neglected.)
+    #[must_use]
+    pub const fn with_yield_stress(self, thickness: f64, stress: f64) -> Self {
+        let yields = Yield {
+            moment: stress * thickness * thickness / 4.0,
+            hardening: self.rigidity * Self::METAL_HARDENING,
+        };
+        Self {
+            yields: Some(yields),
+            ..self
+        }
+    }
+
     /// Checks the numbers. The ranges are far beyond those of all sheets; a strain limit has to be below 0.5, the
     /// compression of an edge to nothing.
     ///
@@ -115,7 +139,8 @@ impl Material {
         OptionsError::check_range("stiffness", self.stiffness, 1e-9, 1e18)?;
         OptionsError::check_range("rigidity", self.rigidity, 0.0, 1e18)?;
         OptionsError::check_range("poisson", self.poisson, 0.0, 0.5)?;
-        OptionsError::check_range("strain_limit", self.strain_limit, 1e-6, 0.49)
+        OptionsError::check_range("strain_limit", self.strain_limit, 1e-6, 0.49)?;
+        self.yields.map_or(Ok(()), |yields| yields.validate())
     }
 
     /// The elasticity in the plane of a sheet of this material: softened as far as the mesh needs

@@ -177,6 +177,7 @@ fn add_ending(row: &mut Row, ending: &Ending) {
         t,
         kinetic,
         potential,
+        plastic,
         energy_drift,
         largest_speed,
         supports,
@@ -188,6 +189,9 @@ fn add_ending(row: &mut Row, ending: &Ending) {
     cell("t", number(*t));
     cell("kinetic", number(*kinetic));
     cell("potential", number(*potential));
+    if let Some(plastic) = plastic {
+        cell("plastic", number(*plastic));
+    }
     cell("energy_drift", number(*energy_drift));
     cell("largest_speed", number(*largest_speed));
     if let Some(folding) = folding {

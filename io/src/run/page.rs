@@ -124,6 +124,9 @@ impl Rows {
         if let Some(gap) = summary.smallest_gap {
             self.add("smallest gap", format!("{gap:.2e} m"));
         }
+        if let Some(plastic) = ending.plastic {
+            self.add("dissipated by yielding", format!("{plastic:.2e} J"));
+        }
         self.add(
             "error of the energy balance",
             format!("{:.2e} J", ending.energy_drift),

@@ -210,11 +210,14 @@ impl Stepping<'_> {
 
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {
         let loads = self.simulation.body_loads();
+        let mut potentials = self.simulation.model().potentials();
+        let yields = potentials.any(|p| !p.memory().is_empty());
         Ending {
             reason,
             t: report.t,
             kinetic: report.kinetic,
             potential: report.potential,
+            plastic: yields.then_some(report.plastic),
             energy_drift: report.energy_drift,
             largest_speed: self.largest_speed(),
             supports: self.support_forces(),

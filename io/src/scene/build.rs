@@ -273,18 +273,30 @@ impl<'a> Builder<'a> {
 
     fn add_bending(&mut self, creases: &[EdgeId]) -> Result<(), SceneError> {
         let key = Key::root().name("sheet.bending");
+        let yields = self.scene.sheet.yields();
+        if yields.is_some() {
+            self.modelled.push("bends that stay".into());
+        }
         match self.scene.sheet.bending() {
             Bending::None => Ok(()),
             Bending::Plate { rigidity } => {
                 let clamped = self.model().pins();
                 let plate = PlateBending::creased(&self.rest.sheet, rigidity, &clamped, creases);
-                let plate = plate.map_err(at(&key))?;
+                let mut plate = plate.map_err(at(&key))?;
+                if let Some(yields) = yields {
+                    let yielding = plate.with_yield(&self.rest.sheet, yields);
+                    plate = yielding.map_err(at(&Key::root().name("sheet.yield")))?;
+                }
                 self.modelled.push("bending stiffness of a plate".into());
                 self.change(|m| Ok(m.with_potential(plate)), at::<SimulationError>(&key))
             }
             Bending::Hinges { rigidity } => {
                 let springs = CreaseSprings::bending_beside(&self.rest.sheet, rigidity, creases);
-                let springs = springs.map_err(at(&key))?;
+                let mut springs = springs.map_err(at(&key))?;
+                if let Some(yields) = yields {
+                    let yielding = springs.with_yield(&self.rest.sheet, yields);
+                    springs = yielding.map_err(at(&Key::root().name("sheet.yield")))?;
+                }
                 self.modelled.push("bending stiffness at edges".into());
                 self.change(
                     |m| Ok(m.with_potential(springs)),

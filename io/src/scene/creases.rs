@@ -6,6 +6,7 @@ use super::problem::{Checks, Problem};
 use super::profile::Profile;
 use super::selection::size;
 use super::unit::Unit;
+use super::yields::CreaseYield;
 use isosheet_dynamics::CreaseSpring;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
@@ -33,6 +34,9 @@ pub struct Crease {
     /// are counter-clockwise, negative for a mountain.
     #[serde(default)]
     pub angle: Profile,
+    /// When it yields. If left out, never: it comes back to its angle.
+    #[serde(default, rename = "yield")]
+    pub yields: Option<CreaseYield>,
 }
 
 /// Which edges a crease consists of. Points are those of the rest shape before it is placed.
@@ -129,6 +133,9 @@ impl Crease {
         {
             checks.within(key.name("angle"), angle, [-180.0, 180.0]);
         }
+        if let Some(yields) = &self.yields {
+            yields.check(&key.name("yield"), checks);
+        }
         if let CreaseEdges::Line { from, to } = &self.at {
             checks.finite(key.name("at.line.from"), from, Unit::Metre);
             checks.finite(key.name("at.line.to"), to, Unit::Metre);
@@ -180,7 +187,9 @@ impl Crease {
             edge,
             stiffness: self.stiffness * sheet.lengths()[edge.index()],
             rest: self.angle.scaled(sign * 1.0_f64.to_radians()).into(),
-            yields: None,
+            yields: self
+                .yields
+                .map(|y| y.of_edge(sheet.lengths()[edge.index()])),
         };
         Ok(edges.into_iter().map(spring).collect())
     }

@@ -42,6 +42,10 @@ pub struct Plate {
     /// Poisson's ratio, from 0 to 0.5.
     #[serde(default = "typical_poisson")]
     pub poisson: f64,
+    /// Stress at which the material yields, Pa: steel has from 2e8. It makes the sheet yield where `sheet.yield` says
+    /// so, at the moment `yield_stress thickness^2 / 4`.
+    #[serde(default)]
+    pub yield_stress: Option<f64>,
 }
 
 /// Poisson's ratio of most solids, between 0.25 and 0.4: metals, paper, films.
@@ -51,11 +55,15 @@ pub(crate) fn typical_poisson() -> f64 {
 
 impl Plate {
     fn numbers(&self) -> Result<engine::Material, OptionsError> {
-        engine::Material::isotropic(engine::Isotropic {
+        let material = engine::Material::isotropic(engine::Isotropic {
             youngs: self.youngs,
             thickness: self.thickness,
             density: self.density,
             poisson: self.poisson,
+        })?;
+        Ok(match self.yield_stress {
+            Some(stress) => material.with_yield_stress(self.thickness, stress),
+            None => material,
         })
     }
 
@@ -66,6 +74,9 @@ impl Plate {
         let unit = Unit::KilogramPerCubicMetre;
         checks.positive(key.name("density"), self.density, unit);
         checks.within(key.name("poisson"), self.poisson, [0.0, 0.5]);
+        if let Some(stress) = self.yield_stress {
+            checks.positive(key.name("yield_stress"), stress, Unit::Pascal);
+        }
         if checks.problems.len() > before {
             return;
         }
@@ -105,14 +116,18 @@ impl Material {
             }
             Self::Plate(plate) => format!("a plate of {} m", given(plate.thickness)),
         };
-        Some(format!(
-            "{what}: {} kg/m2, E h {} N/m, D {} N m, Poisson's ratio {}, strain at most {} %",
-            brief(numbers.density),
-            brief(numbers.stiffness),
-            brief(numbers.rigidity),
-            brief(numbers.poisson),
-            brief(100.0 * numbers.strain_limit)
-        ))
+        Some(
+            format!(
+                "{what}: {} kg/m2, E h {} N/m, D {} N m, Poisson's ratio {}, strain at most {} %",
+                brief(numbers.density),
+                brief(numbers.stiffness),
+                brief(numbers.rigidity),
+                brief(numbers.poisson),
+                brief(100.0 * numbers.strain_limit)
+            ) + &numbers.yields.map_or(String::new(), |yields| {
+                format!(", yields at {} N m/m", brief(yields.moment))
+            }),
+        )
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {

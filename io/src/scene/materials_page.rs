@@ -36,19 +36,29 @@ that of the other papers is eight to nine tenths of a plate's. The sources say w
 The strain limit is not where a material yields or tears. It is a bound that keeps strain invisible where a
 mesh is too coarse for its bends.
 
+Materials with a moment `M_y` yield in bending where a scene asks for it by `sheet.yield = {}`: bends beyond the
+curvature `M_y / D` stay, and spring back by that curvature. `H` is the hardening. (The page \"The theory\" has the
+formulas.) The yield differs more than all other numbers: that of a metal by its alloy and temper. `yield = { moment =
+..., hardening = ... }` replaces it, and `yield_stress` among the numbers of a material computes it, `M_y =
+yield_stress thickness^2 / 4`.
+
 ";
 
 /// The page of all materials in Markdown: a table of the numbers, and their sources.
 pub fn materials_page() -> String {
     let mut page = String::from(INTRODUCTION);
     page.push_str(
-        "| name | sheet | mass, kg/m2 | `E h`, N/m | `D`, N m | Poisson's ratio | largest strain, % |\n\
-         |---|---|---|---|---|---|---|\n",
+        "| name | sheet | mass, kg/m2 | `E h`, N/m | `D`, N m | Poisson's ratio | largest strain, % | `M_y`, N m/m | `H`, N m |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
     );
     for named in Material::catalogue() {
         let m = named.material;
+        let [moment, hardening] = match m.yields {
+            Some(yields) => [yields.moment, yields.hardening].map(|value| brief(value).to_string()),
+            None => [String::new(), String::new()],
+        };
         page.push_str(&format!(
-            "| `{}` | {} | {} | {} | {} | {} | {} |\n",
+            "| `{}` | {} | {} | {} | {} | {} | {} | {moment} | {hardening} |\n",
             named.name,
             named.form,
             brief(m.density),

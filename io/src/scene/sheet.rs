@@ -6,6 +6,7 @@ use super::mesh::{Mesh, MeshFile};
 use super::pose::Pose;
 use super::problem::Checks;
 use super::unit::Unit;
+use super::yields::SheetYield;
 use isosheet_dynamics as engine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -44,6 +45,9 @@ pub struct Sheet {
     /// What resists bending. If left out, a plate of the rigidity of the material; without one nothing.
     #[serde(default)]
     pub bending: Option<Bending>,
+    /// When it yields in bending. If left out, never: bends spring back.
+    #[serde(default, rename = "yield")]
+    pub yields: Option<SheetYield>,
     /// Rate of the velocity damping `v <- v exp(-damping h)` after each step of `h` seconds, 1/s.
     #[serde(default)]
     pub damping: f64,
@@ -155,6 +159,7 @@ impl Sheet {
             thickness: 0.0,
             isometry: None,
             bending: None,
+            yields: None,
             damping: 0.0,
             placement: Pose::default(),
             start: Start::default(),
@@ -190,6 +195,12 @@ impl Sheet {
             },
             (None, _) => Bending::None,
         }
+    }
+
+    /// When the sheet yields in bending, per metre of its width: as written, or of the material. Nothing if it never
+    /// does.
+    pub fn yields(&self) -> Option<engine::Yield> {
+        self.yields?.numbers(self.made_of().and_then(|m| m.yields))
     }
 
     /// The numbers of an elastic sheet: as written, of the material, or defaults. `None` of other sheets, and
@@ -233,6 +244,24 @@ impl Sheet {
         isometry.check(&key.name("isometry"), checks);
         if let Some(bending) = &self.bending {
             bending.check(&key.name("bending"), checks);
+        }
+        if let Some(yields) = &self.yields {
+            let key = key.name("yield");
+            yields.check(&key, checks);
+            if self.yields().is_none() {
+                checks.report(
+                    key.clone(),
+                    "the sheet has neither a moment at which it yields nor a material that gives one",
+                    "give `moment` in N m per m of width, or a material of which docs/materials.md says when it yields",
+                );
+            }
+            if self.bending() == Bending::None {
+                checks.report(
+                    key,
+                    "the sheet yields in bending, and nothing resists bending",
+                    "give `sheet.bending`, or `sheet.material`",
+                );
+            }
         }
         let is_elastic = matches!(isometry, Isometry::Elastic { .. });
         if is_elastic && self.material.is_none() && self.elasticity().is_none() {

@@ -16,6 +16,7 @@ const ALL_KEYS: [&str; 5] = [
     thickness = 1e-4
     isometry = { elastic = { stiffness = 1e6, poisson = 0.3, limit = 0.02 } }
     bending = { plate = { rigidity = 1e-3 } }
+    yield = { moment = 0.1, hardening = 1e-4 }
     damping = 1.0
     placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }
     start = { perturbation = 0.01, seed = 3, file = { path = "a.obj", scale = 1.0, up = "y", polygons = "refuse", frame = "folded" } }
@@ -23,6 +24,7 @@ const ALL_KEYS: [&str; 5] = [
     at = { ends = [[0, 1]] }
     stiffness = 0.1
     angle = { sine = { mean = 1, amplitude = 2, frequency = 3, phase = 4 } }
+    yield = { moment = 0.01, hardening = 0.001 }
     [[crease]]
     at = { line = { from = [0, 0, 0], to = [1, 1, 0] } }
     stiffness = 0.1
@@ -146,7 +148,7 @@ const ALL_KEYS: [&str; 5] = [
     r#"version = 1
     [sheet]
     mesh = { file = { path = "a.obj", up = "z", polygons = "triangulate" } }
-    material = { youngs = 7e10, thickness = 1e-4, density = 2700, poisson = 0.3 }
+    material = { youngs = 7e10, thickness = 1e-4, density = 2700, poisson = 0.3, yield_stress = 1e8 }
     isometry = "rods"
     bending = "none"
     [method]

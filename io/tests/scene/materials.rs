@@ -144,12 +144,77 @@ fn an_elastic_sheet_needs_no_material() {
 }
 
 #[test]
+fn a_sheet_yields_where_it_says_so() {
+    let yields = |lines: &str| sheet(lines).sheet.yields();
+    assert_eq!(yields("material = \"steel sheet\""), None);
+    let steel = dynamics::Material::steel_sheet().yields;
+    assert!(steel.is_some());
+    assert_eq!(yields("material = \"steel sheet\"\nyield = {}"), steel);
+    let plate = "{ youngs = 2.1e11, thickness = 5e-4, density = 7850, yield_stress = 2.35e8 }";
+    assert_eq!(yields(&format!("material = {plate}\nyield = {{}}")), steel);
+    let own = dynamics::Yield::perfect(2.0);
+    assert_eq!(
+        yields("material = \"steel sheet\"\nyield = { moment = 2 }"),
+        Some(own)
+    );
+    let bending = "bending = { hinges = { rigidity = 1e-3 } }";
+    let lines = format!("{bending}\nyield = {{ moment = 2, hardening = 1e-4 }}");
+    assert_eq!(
+        yields(&lines),
+        Some(dynamics::Yield {
+            hardening: 1e-4,
+            ..own
+        })
+    );
+    // Rubber has no moment at which it yields, and a limp sheet no moment at all.
+    let text = refused(&with("material = \"rubber sheet\"\nyield = {}"));
+    assert!(
+        text.contains("neither a moment at which it yields"),
+        "{text}"
+    );
+    let text = refused(&with("yield = { moment = 2 }"));
+    assert!(text.contains("nothing resists bending"), "{text}");
+}
+
+#[test]
+fn plates_hinges_and_creases_of_a_scene_remember() {
+    let remembered = |lines: &str, rest: &str| {
+        let file = parse(&format!("{}{rest}", with(lines))).unwrap();
+        let setup = file.build().unwrap();
+        let counts = setup.model.potentials().map(|p| p.memory().len());
+        counts.sum::<usize>()
+    };
+    let (faces, edges) = (4, 3);
+    let paper = "material = \"office paper\"";
+    assert_eq!(remembered(paper, ""), 0);
+    assert_eq!(remembered(&format!("{paper}\nyield = {{}}"), ""), 3 * faces);
+    let hinges = "bending = { hinges = { rigidity = 1e-3 } }\nyield = { moment = 0.1 }";
+    assert_eq!(remembered(hinges, ""), edges);
+    let crease = "[[crease]]\nat = { line = { from = [0.1, 0, 0], to = [0.1, 0.1, 0] } }\nstiffness = 0.1\n\
+                  yield = { moment = 0.01 }";
+    assert_eq!(remembered("", crease), 1);
+}
+
+#[test]
+fn methods_without_a_place_for_it_are_refused_at_their_key() {
+    let lines = "bending = { hinges = { rigidity = 1e-3 } }\nyield = { moment = 0.1 }";
+    let text = format!("{}[method]\nintegrator = \"rattle\"\n", with(lines));
+    let setup = parse(&text).unwrap().build().unwrap();
+    let error = setup.start().err().expect("refused").to_string();
+    assert!(
+        error.contains("the sheet yields") && error.contains("method"),
+        "{error}"
+    );
+}
+
+#[test]
 fn a_scene_with_a_material_is_written_as_it_is_read() {
     let plate = Plate {
         youngs: 3e9,
         thickness: 2e-4,
         density: 900.0,
         poisson: 0.35,
+        yield_stress: Some(2e7),
     };
     for material in [Material::named("card"), Material::Plate(plate)] {
         for isometry in [None, Some(Isometry::ELASTIC), Some(Isometry::Rods)] {
