@@ -79,7 +79,8 @@ fn a_plate_has_the_rigidity_of_its_thickness() {
         density: 7850.0,
         poisson: 0.3,
     });
-    assert_eq!(steel, Ok(Material::steel_sheet()));
+    let yielding = steel.map(|m| m.with_yield_stress(5e-4, 2.35e8));
+    assert_eq!(yielding, Ok(Material::steel_sheet()));
     // Half a millimetre of steel: 3.925 kg/m2 and 2.4038 N m.
     assert!((Material::steel_sheet().density - 3.925).abs() < 1e-12);
     assert!((Material::steel_sheet().rigidity - 2.403_846).abs() < 1e-6);
@@ -157,4 +158,24 @@ fn numbers_without_sense_are_refused_by_name() {
     // Numbers that have a sense each, of a sheet that has none.
     assert_eq!(isotropic(1.0, 1e-12, 1e3, 0.3), Err("stiffness"));
     assert_eq!(isotropic(1e15, 1e12, 1e-3, 0.3), Err("stiffness"));
+}
+
+/// A section that has yielded throughout: `s h^2 / 4`, and a hundredth of the slope after that. Of paper the curvature at
+/// the yield is that of an elastic limit of 0.75 % at the surface, three halves of that of its tensile curve.
+#[test]
+fn papers_and_metals_say_when_they_yield() {
+    let steel = Material::steel_sheet();
+    let Yield { moment, hardening } = steel.yields.unwrap();
+    assert!((moment - 14.6875).abs() < 1e-9);
+    let slope = steel.rigidity * hardening / (steel.rigidity + hardening);
+    assert!((slope / steel.rigidity - 0.01).abs() < 1e-12);
+    for (name, thickness) in [("office paper", 1e-4), ("card", 3e-4), ("newsprint", 7e-5)] {
+        let paper = Material::named(name).unwrap();
+        let Yield { moment, hardening } = paper.yields.unwrap();
+        let strain = 0.5 * thickness * moment / paper.rigidity;
+        assert!((strain - 7.5e-3).abs() < 1e-12, "{name}: {strain}");
+        let slope = paper.rigidity * hardening / (paper.rigidity + hardening);
+        assert!((slope / paper.rigidity - 0.25).abs() < 1e-12, "{name}");
+    }
+    assert_eq!(Material::cotton().yields, None);
 }
