@@ -85,6 +85,7 @@ pub use model::air::{Air, AirError, Wind};
 pub use model::clamps::ClampAcrossMesh;
 pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};
+pub use model::part::PotentialOfPart;
 pub use model::potential::{Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape};
 pub use model::state::State;
 pub use model::support::Support;

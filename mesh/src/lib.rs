@@ -8,6 +8,7 @@
 //! * [`EdgeAngles`], [`check_compatibility`], [`fold_angle`]: angles of any state; [`CreasePattern`]: where
 //!   the sheet folds straight.
 //! * [`angle_from_lengths`], [`area_from_lengths`]: triangles from the lengths of their sides.
+//! * [`Part`]: one of several sheets in their union.
 //! * [`orient_consistently`]: repair on request.
 //! * [`generate`]: squares, grids and other sheets made by formula; [`origami`]: how some of them fold.
 //!
@@ -32,6 +33,7 @@ mod invariants;
 mod lengths;
 mod mass;
 pub mod origami;
+mod part;
 mod repair;
 mod sheet;
 #[cfg(test)]
@@ -53,6 +55,7 @@ pub use error::{MeshError, TopologyError};
 pub use ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
 pub use lengths::LengthConstraints;
 pub use mass::{MassKind, MassMatrix};
+pub use part::Part;
 pub use repair::orient_consistently;
 pub use sheet::Sheet;
 pub use topology::Topology;

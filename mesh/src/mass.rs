@@ -1,6 +1,7 @@
 //! Lumped and consistent mass.
 
 use crate::{MeshError, Sheet, Topology};
+use std::collections::BTreeSet;
 
 /// How the mass of a uniform sheet is distributed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,6 +74,20 @@ impl MassMatrix {
                 vertex: masses,
                 edge: None,
             }),
+        }
+    }
+
+    /// The matrix of the [union](Sheet::union) of sheets with the given matrices, all of one kind, in the same order.
+    ///
+    /// # Panics
+    /// If some are lumped and others are not.
+    pub fn union(matrices: &[Self]) -> Self {
+        let kinds: BTreeSet<bool> = matrices.iter().map(|m| m.edge.is_some()).collect();
+        assert!(kinds.len() <= 1, "matrices of one kind");
+        let edges = matrices.iter().flat_map(|m| m.edge.iter().flatten());
+        Self {
+            vertex: matrices.iter().flat_map(|m| &m.vertex).copied().collect(),
+            edge: kinds.contains(&true).then(|| edges.copied().collect()),
         }
     }
 

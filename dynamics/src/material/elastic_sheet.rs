@@ -11,7 +11,7 @@ use crate::{HessianSink, Potential};
 pub use deformation::ElasticDeformation;
 use face::Face;
 use isosheet_mesh::wording::given;
-use isosheet_mesh::{Advice, FaceId, Sheet};
+use isosheet_mesh::{Advice, FaceId, Part, Sheet};
 use limit::StrainLimit;
 pub(crate) use load::strain_barrier;
 
@@ -42,6 +42,17 @@ pub enum ElasticSheetError {
         /// The limit given.
         limit: f64,
     },
+    /// Two sheets that are to be one have different limits of the strain.
+    #[error(
+        "the limit of the strain is {first} of one sheet and {other} of another",
+        first = given(*first), other = given(*other)
+    )]
+    Limits {
+        /// The limit of the first sheet.
+        first: f64,
+        /// That of another.
+        other: f64,
+    },
     /// A face has no area at rest, so that it has no strain.
     #[error("{face} has the area {area} m2 at rest", area = given(*area))]
     Face {
@@ -59,6 +70,7 @@ impl Advice for ElasticSheetError {
             Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
             Self::Rigidity { .. } => Some("give a finite one of at least 0"),
             Self::Limit { .. } => Some("give a value above 0 and below 0.5, for instance 0.01"),
+            Self::Limits { .. } => Some("give all sheets the same limit"),
             Self::Face { .. } => Some("remove the face, or mend the mesh"),
         }
     }
@@ -101,8 +113,8 @@ pub struct ElasticSheet {
     poisson: f64,
     /// Young's modulus times thickness of the material, N/m.
     stiffness: f64,
-    /// Flexural rigidity by which faces were softened, N m; zero if they were not.
-    rigidity: f64,
+    /// Edge length up to which no face is softened, metres.
+    unsoftened_size: f64,
     /// Largest acceleration by constant forces, m/s2; zero before a simulation has started.
     acceleration: f64,
     limit: StrainLimit,
@@ -154,7 +166,7 @@ impl ElasticSheet {
             faces: faces.collect::<Result<_, _>>()?,
             poisson,
             stiffness,
-            rigidity: 0.0,
+            unsoftened_size: f64::INFINITY,
             acceleration: 0.0,
             limit: StrainLimit::new(Self::LIMIT),
         };
@@ -175,9 +187,10 @@ impl ElasticSheet {
         if !(rigidity.is_finite() && rigidity >= 0.0) {
             return Err(ElasticSheetError::Rigidity { rigidity });
         }
-        self.rigidity = rigidity;
         if rigidity > 0.0 {
+            self.unsoftened_size = (Self::SOFTENING * rigidity / self.stiffness).sqrt();
             for face in &mut self.faces {
+                face.rigidity = rigidity;
                 let bearable = Self::SOFTENING * rigidity / face.mean_squared_length();
                 face.set_stiffness(self.stiffness.min(bearable), self.poisson);
             }
@@ -197,12 +210,35 @@ impl ElasticSheet {
         Ok(self)
     }
 
+    /// The elasticity of the [union](Sheet::union) of several sheets, each with its own stiffness.
+    ///
+    /// # Errors
+    /// [`ElasticSheetError::Limits`] if the limits of their strains differ.
+    ///
+    /// # Panics
+    /// If there is no sheet.
+    pub fn union(sheets: Vec<(Self, Part)>) -> Result<Self, ElasticSheetError> {
+        let mut sheets = sheets.into_iter();
+        let (mut union, _) = sheets.next().expect("at least one sheet");
+        for (sheet, part) in sheets {
+            let (first, other) = (union.limit(), sheet.limit());
+            if first != other {
+                return Err(ElasticSheetError::Limits { first, other });
+            }
+            let faces = sheet.faces.into_iter();
+            union.faces.extend(faces.map(|face| face.in_union(&part)));
+            union.stiffness = union.stiffness.max(sheet.stiffness);
+            union.unsoftened_size = union.unsoftened_size.min(sheet.unsoftened_size);
+        }
+        Ok(union)
+    }
+
     /// The limit of the strain.
     pub fn limit(&self) -> f64 {
         self.limit.limit()
     }
 
-    /// The stiffness of the material, `E h`, newtons per metre.
+    /// The stiffness of the material, `E h`, newtons per metre; of several sheets the largest.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
@@ -229,24 +265,19 @@ impl ElasticSheet {
     /// The angles by which the faces bend that have the given energies of bending (joules), radians.
     fn bend_angles(&self, bending: &[f64]) -> Vec<f64> {
         let angle = |(face, energy): (&Face, &f64)| {
-            let curvature = (2.0 * energy / (self.rigidity * face.area())).sqrt();
+            if face.rigidity == 0.0 {
+                return 0.0;
+            }
+            let curvature = (2.0 * energy / (face.rigidity * face.area())).sqrt();
             curvature * face.mean_squared_length().sqrt()
         };
-        if self.rigidity > 0.0 {
-            self.faces.iter().zip(bending).map(angle).collect()
-        } else {
-            vec![0.0; self.faces.len()]
-        }
+        self.faces.iter().zip(bending).map(angle).collect()
     }
 
     /// Edge length (root mean square of a face, metres) up to which faces of a sheet with this rigidity have the
-    /// stiffness of the material; infinite if faces were not softened.
+    /// stiffness of the material; infinite if faces were not softened. Of several sheets the smallest.
     pub fn unsoftened_size(&self) -> f64 {
-        if self.rigidity > 0.0 {
-            (Self::SOFTENING * self.rigidity / self.stiffness).sqrt()
-        } else {
-            f64::INFINITY
-        }
+        self.unsoftened_size
     }
 
     /// The face with the largest strain, and that strain, where it is not below the limit.

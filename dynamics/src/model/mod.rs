@@ -9,6 +9,7 @@ pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;
 mod memory;
+pub(crate) mod part;
 pub mod potential;
 pub(crate) mod round_off;
 pub(crate) mod state;

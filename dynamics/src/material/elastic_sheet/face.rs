@@ -3,7 +3,7 @@
 use super::limit::StrainLimit;
 use crate::HessianSink;
 use crate::vectors::point;
-use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
+use isosheet_mesh::{EdgeId, FaceId, Part, Sheet, VertexId};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 /// A face with one constant strain.
@@ -22,6 +22,8 @@ pub(super) struct Face {
     strains: Matrix3<f64>,
     /// `k_T`, N/m.
     stiffness: f64,
+    /// Flexural rigidity by which the face was softened, N m; zero if it was not.
+    pub(super) rigidity: f64,
     /// `V_T = c^T law c / 2` without the barrier, newtons per cubic metre.
     law: Matrix3<f64>,
 }
@@ -86,8 +88,19 @@ impl Face {
             area,
             strains,
             stiffness: 0.0,
+            rigidity: 0.0,
             law: Matrix3::zeros(),
         })
+    }
+
+    /// The same face of a sheet in a union of several.
+    pub(super) fn in_union(self, part: &Part) -> Self {
+        Self {
+            edges: self.edges.map(|e| part.edge(e)),
+            corners: self.corners.map(|v| part.vertex(v)),
+            first_ends: self.first_ends.map(|v| part.vertex(v)),
+            ..self
+        }
     }
 
     pub(super) fn set_stiffness(&mut self, stiffness: f64, nu: f64) {

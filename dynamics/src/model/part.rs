@@ -1,0 +1,109 @@
+//! Potentials of one of several sheets.
+
+use crate::{HessianSink, Potential, PotentialShape};
+use isosheet_mesh::{EdgeId, Part, VertexId};
+use nalgebra::Matrix3;
+
+/// A potential that was made for one sheet, in a model of the [union](isosheet_mesh::Sheet::union) of several: it sees
+/// the coordinates of its own vertices, and its derivatives go to the places that these have in the union.
+///
+/// ```
+/// use isosheet_dynamics::{PlateBending, PotentialOfPart, SheetModel};
+/// use isosheet_mesh::{MassMatrix, MassKind, Part, Sheet, generate};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let paper = generate::isotropic_square(2, 0.2)?;
+/// let card = generate::isotropic_square(1, 0.1)?.map_positions(|[x, y, z]| [x, y, z + 0.01])?;
+/// let parts = Part::of_union(&[&paper, &card]);
+/// let masses = [
+///     MassMatrix::from_density(&paper, 0.08, MassKind::Lumped)?,
+///     MassMatrix::from_density(&card, 0.25, MassKind::Lumped)?,
+/// ];
+/// let both = Sheet::union(&[&paper, &card])?;
+/// let model = SheetModel::with_mass(&both, MassMatrix::union(&masses))?
+///     .with_potential(PotentialOfPart::new(PlateBending::new(&paper, 5e-4)?, &parts[0]))
+///     .with_potential(PotentialOfPart::new(PlateBending::new(&card, 1e-2)?, &parts[1]));
+/// # let _ = model;
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct PotentialOfPart<P> {
+    potential: P,
+    part: Part,
+}
+
+impl<P: Potential> PotentialOfPart<P> {
+    /// A potential of the sheet that is this part of a union.
+    pub fn new(potential: P, part: &Part) -> Self {
+        let part = part.clone();
+        Self { potential, part }
+    }
+}
+
+impl<P: Potential> Potential for PotentialOfPart<P> {
+    fn energy(&self, t: f64, x: &[f64]) -> f64 {
+        self.potential.energy(t, &x[self.part.coordinates()])
+    }
+
+    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
+        let own = self.part.coordinates();
+        self.potential
+            .add_gradient(t, &x[own.clone()], &mut gradient[own]);
+    }
+
+    fn add_hessian(&self, t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+        let part = &self.part;
+        self.potential
+            .add_hessian(t, &x[part.coordinates()], &mut Shifted { part, hessian });
+    }
+
+    fn add_semidefinite_hessian(&self, t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+        let part = &self.part;
+        let own = &x[part.coordinates()];
+        self.potential
+            .add_semidefinite_hessian(t, own, &mut Shifted { part, hessian });
+    }
+
+    fn couplings(&self) -> Vec<[VertexId; 2]> {
+        let pairs = self.potential.couplings().into_iter();
+        pairs
+            .map(|pair| pair.map(|v| self.part.vertex(v)))
+            .collect()
+    }
+
+    fn is_driven(&self) -> bool {
+        self.potential.is_driven()
+    }
+
+    fn add_bending_energies(&self, x: &[f64], faces: &mut [f64]) {
+        let own = &mut faces[self.part.faces.clone()];
+        self.potential
+            .add_bending_energies(&x[self.part.coordinates()], own);
+    }
+
+    fn shape(&self) -> PotentialShape {
+        self.potential.shape()
+    }
+}
+
+/// A sink that takes the numbers of a part.
+struct Shifted<'a> {
+    part: &'a Part,
+    hessian: &'a mut dyn HessianSink,
+}
+
+impl HessianSink for Shifted<'_> {
+    fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
+        self.hessian.add_vertex(self.part.vertex(v), block);
+    }
+
+    fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>) {
+        self.hessian.add_edge(self.part.edge(e), block);
+    }
+
+    fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
+        let [a, b] = [a, b].map(|v| self.part.vertex(v));
+        self.hessian.add_pair(a, b, block);
+    }
+}
