@@ -74,7 +74,7 @@ pub use conservative::rattle::RattleOptions;
 pub use constraint::VertexConstraint;
 pub use damped::options::ImplicitOptions;
 pub use damped::projection_step::ProjectionStepOptions;
-pub use damped::start::{leave_flat, project_positions};
+pub use damped::start::{leave_flat, leave_flat_in, project_positions};
 pub use linear::rank::{RodRank, rod_rank};
 pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use material::elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheetError};

@@ -48,6 +48,7 @@ mod obstacles;
 mod outline;
 mod output;
 mod pattern;
+mod placed;
 mod pose;
 mod problem;
 mod profile;
@@ -56,6 +57,7 @@ mod replaced;
 mod selection;
 mod setup;
 mod sheet;
+mod sheets;
 mod source;
 mod starting_point;
 mod stop;
@@ -136,8 +138,10 @@ pub const VERSION: u32 = 1;
 pub struct Scene {
     /// Version of the format: 1.
     pub version: u32,
-    /// The sheet.
-    pub sheet: Sheet,
+    /// The sheet, or several, each with a name: `[[sheet]]`.
+    #[serde(with = "sheets")]
+    #[schemars(with = "sheets::OneOrSeveral")]
+    pub sheet: Vec<Sheet>,
     /// Creases with rest angles.
     #[serde(default)]
     pub crease: Vec<Crease>,
@@ -175,7 +179,7 @@ impl Scene {
     pub fn new(sheet: Sheet) -> Self {
         Self {
             version: VERSION,
-            sheet,
+            sheet: vec![sheet],
             crease: Vec::new(),
             folding: None,
             support: Vec::new(),
@@ -199,15 +203,30 @@ impl Scene {
             let message = format!("version {} of scene files is not known", self.version);
             checks.report(root.name("version"), message, "write `version = 1`");
         }
-        self.sheet.check(&root.name("sheet"), &mut checks);
+        sheets::check(&self.sheet, &mut checks);
+        let is_known = |name: &Option<String>, key: &Key, checks: &mut Checks| {
+            sheets::check_reference(&self.sheet, name.as_deref(), &key.name("sheet"), checks);
+        };
         for (k, crease) in self.crease.iter().enumerate() {
-            crease.check(&root.name("crease").entry(k), &mut checks);
+            let key = root.name("crease").entry(k);
+            crease.check(&key, &mut checks);
+            is_known(&crease.sheet, &key, &mut checks);
         }
         if let Some(folding) = &self.folding {
-            folding.check(&self.sheet.mesh, &root.name("folding"), &mut checks);
+            let key = root.name("folding");
+            is_known(&folding.sheet, &key, &mut checks);
+            if let Ok(Some(k)) = sheets::number_of(&self.sheet, folding.sheet.as_deref(), &key) {
+                folding.check(&self.sheet[k].mesh, &key, &mut checks);
+            }
         }
         for (k, support) in self.support.iter().enumerate() {
-            support.check(&root.name("support").entry(k), &mut checks);
+            let key = root.name("support").entry(k);
+            support.check(&key, &mut checks);
+            is_known(&support.sheet, &key, &mut checks);
+        }
+        for (k, load) in self.forces.load.iter().enumerate() {
+            let key = root.name("forces.load").entry(k);
+            is_known(&load.sheet, &key, &mut checks);
         }
         for (k, obstacle) in self.obstacle.iter().enumerate() {
             obstacle.check(&root.name("obstacle").entry(k), &mut checks);
@@ -249,11 +268,12 @@ impl Scene {
                 remedy,
             );
         }
-        if self.sheet.isometry() != Isometry::Rods {
+        let mut sheets = self.sheet.iter();
+        if let Some(elastic) = sheets.find(|sheet| sheet.isometry() != Isometry::Rods) {
             checks.report(
                 key,
                 "this integrator needs rigid rods, and the sheet has none",
-                match (&self.sheet.isometry, &self.sheet.material) {
+                match (&elastic.isometry, &elastic.material) {
                     (None, Some(_)) => {
                         "choose `bdf2` or `implicit_euler`, or write `isometry = \"rods\"` beside `sheet.material`"
                     }
@@ -278,11 +298,15 @@ impl Scene {
     /// The mesh files that the scene names, with their places.
     pub(crate) fn files_mut(&mut self) -> Vec<(Key, &mut MeshFile)> {
         let (root, mut files) = (Key::root(), Vec::new());
-        if let Mesh::File(file) = &mut self.sheet.mesh {
-            files.push((root.name("sheet.mesh.file"), file));
-        }
-        if let Some(file) = &mut self.sheet.start.file {
-            files.push((root.name("sheet.start.file"), file));
+        let count = self.sheet.len();
+        for (k, sheet) in self.sheet.iter_mut().enumerate() {
+            let key = sheets::sheet_key(count, k);
+            if let Mesh::File(file) = &mut sheet.mesh {
+                files.push((key.name("mesh.file"), file));
+            }
+            if let Some(file) = &mut sheet.start.file {
+                files.push((key.name("start.file"), file));
+            }
         }
         for (k, obstacle) in self.obstacle.iter_mut().enumerate() {
             if let Shape::File(file) = &mut obstacle.shape {

@@ -51,6 +51,14 @@ impl Part {
         VertexId::from_index(self.vertices.start + v.index())
     }
 
+    /// A vertex of the union in the sheet.
+    ///
+    /// # Panics
+    /// If it is before those of the part.
+    pub fn local_vertex(&self, v: VertexId) -> VertexId {
+        VertexId::from_index(v.index() - self.vertices.start)
+    }
+
     /// An edge of the sheet in the union.
     pub fn edge(&self, e: EdgeId) -> EdgeId {
         EdgeId::from_index(self.edges.start + e.index())

@@ -13,6 +13,7 @@ use crate::{SheetModel, SimulationError, State};
 use isosheet_mesh::{EdgeId, VertexId};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::ops::Range;
 
 /// Largest relative length error of a start state. Files keep six to eight digits and are
 /// projected first; anything within this bound is closed by the first step unnoticed.
@@ -92,13 +93,32 @@ pub fn leave_flat(
     amplitude: f64,
     seed: u64,
 ) -> Result<f64, SimulationError> {
+    let all = 0..model.topology().vertex_count();
+    leave_flat_in(model, all, x, amplitude, seed)
+}
+
+/// [`leave_flat`] for the vertices of a range alone, those of one of several sheets
+/// ([`Part::vertices`](isosheet_mesh::Part::vertices)).
+///
+/// # Errors
+/// As [`leave_flat`].
+pub fn leave_flat_in(
+    model: &SheetModel,
+    vertices: Range<usize>,
+    x: &mut [f64],
+    amplitude: f64,
+    seed: u64,
+) -> Result<f64, SimulationError> {
     OptionsError::check_range("amplitude", amplitude, 0.0, 1.0)?;
     check_count(model, x)?;
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let size = amplitude * model.mean_length();
-    let mut displacement: Vec<f64> = (0..x.len())
-        .map(|_| rng.random_range(-size..=size))
-        .collect();
+    let mut displacement = vec![0.0; x.len()];
+    for v in vertices {
+        for c in displacement.iter_mut().skip(3 * v).take(3) {
+            *c = rng.random_range(-size..=size);
+        }
+    }
     model.clear_pinned(&mut displacement);
     let mut moved: Vec<f64> = x.iter().zip(&displacement).map(|(x, d)| x + d).collect();
     let strain = project_positions(model, &mut moved, 1e-12)?;

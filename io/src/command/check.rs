@@ -50,14 +50,15 @@ impl Check {
         let scene = SceneFile::read(&self.file, &self.edits)?;
         let setup = scene.build()?;
         let text = describe_scene(&setup);
-        let sheet = &scene.scene().sheet;
-        let closed = match sheet.isometry() {
-            Isometry::Rods => hints::closed(&setup.sheet),
-            Isometry::Elastic { .. } => String::new(),
+        let sheets = &scene.scene().sheet;
+        let closed = match sheets.iter().any(|sheet| sheet.isometry() == Isometry::Rods) {
+            true => hints::closed(&setup.sheet),
+            false => String::new(),
         };
-        let wide = match &sheet.mesh {
-            Mesh::File(file) if file.scale == 1.0 => hints::wide(&setup.sheet),
-            _ => String::new(),
+        let is_unscaled = |mesh: &Mesh| matches!(mesh, Mesh::File(file) if file.scale == 1.0);
+        let wide = match sheets.iter().any(|sheet| is_unscaled(&sheet.mesh)) {
+            true => hints::wide(&setup.sheet),
+            false => String::new(),
         };
         let warnings = setup.warnings();
         setup.start()?;

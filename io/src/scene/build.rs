@@ -4,22 +4,23 @@ use super::creases::{EdgeFolds, FoldSprings};
 use super::error::SceneError;
 use super::folding::FoldTargets;
 use super::key::Key;
-use super::material::Material;
-use super::mesh::{Mesh, RestMesh};
-use super::pose::{Motion, Pose};
+use super::mesh::Mesh;
+use super::placed::{PlacedSheet, PlacedSheets};
+use super::pose::Motion;
 use super::problem::Problem;
 use super::sheet::{Bending, Elasticity, Isometry};
 use super::supports::{Hold, frame_motion};
 use super::{Air, Origins, Scene, Setup};
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
-    AccelerationField, CreaseSprings, ElasticSheet, PlateBending, PointMotion, PointProfile,
-    RigidProfile, SheetModel, SimulationError, State, VertexConstraint, VertexLoad, leave_flat,
-    project_positions,
+    AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, PlateBending, PointMotion,
+    PointProfile, Potential, PotentialOfPart, RigidProfile, SheetModel, SimulationError, State,
+    VertexConstraint, VertexLoad, leave_flat_in, project_positions,
 };
 use isosheet_mesh::wording::{brief, counted};
-use isosheet_mesh::{Advice, EdgeId, MassKind, Sheet, VertexId};
+use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 impl Scene {
@@ -34,9 +35,7 @@ impl Scene {
         builder.add_forces()?;
         builder.add_supports()?;
         builder.mend_lengths();
-        let springs = builder.fold_springs(folder)?;
-        builder.add_bending(&springs.creases())?;
-        builder.add_springs(springs)?;
+        builder.add_folds(folder)?;
         builder.add_isometry()?;
         builder.perturb()?;
         let (contacts, obstacles) = builder.contacts(folder)?;
@@ -54,10 +53,7 @@ const ROUNDING: f64 = 1e-4;
 /// A model on its way.
 struct Builder<'a> {
     scene: &'a Scene,
-    /// The rest shape, placed in space.
-    rest: RestMesh,
-    /// The rest shape as its mesh has it.
-    unplaced: Sheet,
+    sheets: PlacedSheets<'a>,
     /// Positions at the start, `3V`.
     x: Vec<f64>,
     /// Absent only while it is replaced by a changed one.
@@ -76,43 +72,19 @@ fn at<E: Advice>(key: &Key) -> impl Fn(E) -> SceneError {
 impl<'a> Builder<'a> {
     fn new(scene: &'a Scene, folder: &Path) -> Result<Self, SceneError> {
         let key = Key::root().name("sheet");
-        let mesh_key = key.name("mesh");
-        let RestMesh { sheet, roles } = scene.sheet.mesh.build(&mesh_key, folder)?;
-        let pose = &scene.sheet.placement;
-        let placed = sheet
-            .map_positions(|p| place(pose, p))
-            .map_err(at(&mesh_key))?;
-        let x = match &scene.sheet.start.file {
-            None => placed.positions().to_vec(),
-            Some(file) => {
-                let key = key.name("start.file");
-                let start = file.read(&key, folder)?;
-                if triangles(&start.faces) != triangles(&placed.face_indices()) {
-                    let message = "the file does not have the vertices and faces of `sheet.mesh`";
-                    let remedy = "export both shapes from the same mesh, without reordering";
-                    return Err(Problem::new(key.name("path"), message, remedy).into());
-                }
-                let points = start.positions.as_chunks::<3>().0.iter();
-                points.flat_map(|&p| place(pose, p)).collect()
-            }
-        };
-        let by_area = scene.sheet.areal_density() * placed.area();
-        let mass = scene.sheet.mass.unwrap_or(by_area);
-        let model = SheetModel::new(&placed, mass, MassKind::Lumped)
-            .and_then(|m| m.with_damping(scene.sheet.damping))
+        let sheets = PlacedSheets::new(&scene.sheet, folder)?;
+        let damping = scene.sheet[0].damping;
+        let model = SheetModel::with_mass(&sheets.union, sheets.mass())
+            .and_then(|m| m.with_damping(damping))
             .map_err(at(&key))?;
         let mut modelled = Vec::new();
-        if scene.sheet.damping > 0.0 {
+        if damping > 0.0 {
             modelled.push("velocity damping".to_owned());
         }
         Ok(Self {
             scene,
-            rest: RestMesh {
-                sheet: placed,
-                roles,
-            },
-            unplaced: sheet,
-            x,
+            x: sheets.start.clone(),
+            sheets,
             model: Some(model),
             origins: Origins::default(),
             modelled,
@@ -136,10 +108,6 @@ impl<'a> Builder<'a> {
         model.expect("a change that fails ends the building")
     }
 
-    fn vertices(&self, selection: &super::Selection, key: &Key) -> Result<Vec<VertexId>, Problem> {
-        selection.resolve(key, self.rest.sheet.topology(), &self.x)
-    }
-
     fn add_forces(&mut self) -> Result<(), SceneError> {
         let forces = &self.scene.forces;
         let key = Key::root().name("forces");
@@ -152,16 +120,18 @@ impl<'a> Builder<'a> {
         }
         for (k, load) in forces.load.iter().enumerate() {
             let key = key.name("load").entry(k);
-            let vertices = self.vertices(&load.at, &key.name("at"))?;
+            let vertices = self
+                .sheets
+                .vertices(load.sheet.as_deref(), &load.at, &key)?;
             let size = load.size.scaled(1.0 / vertices.len() as f64);
-            let topology = self.rest.sheet.topology();
+            let topology = self.sheets.union.topology();
             let load = VertexLoad::new(topology, &vertices, load.direction, size);
             let load = load.map_err(at(&key))?;
             self.change(|m| Ok(m.with_force(load)), at::<SimulationError>(&key))?;
         }
         for (k, field) in forces.acceleration.iter().enumerate() {
             let key = key.name("acceleration").entry(k);
-            let weights = self.model().mass().row_sums(self.rest.sheet.topology());
+            let weights = self.model().mass().row_sums(self.sheets.union.topology());
             let size = field.size.as_given();
             let field = AccelerationField::new(weights, field.direction, size);
             let field = field.map_err(at(&key))?;
@@ -187,7 +157,8 @@ impl<'a> Builder<'a> {
     fn add_supports(&mut self) -> Result<(), SceneError> {
         for (k, support) in self.scene.support.iter().enumerate() {
             let key = Key::root().name("support").entry(k);
-            let vertices = self.vertices(&support.at, &key.name("at"))?;
+            let name = support.sheet.as_deref();
+            let vertices = self.sheets.vertices(name, &support.at, &key)?;
             for &v in &vertices {
                 self.check_free(v, k, &key)?;
             }
@@ -271,72 +242,15 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    fn add_bending(&mut self, creases: &[EdgeId]) -> Result<(), SceneError> {
-        let key = Key::root().name("sheet.bending");
-        let yields = self.scene.sheet.yields();
-        if yields.is_some() {
-            self.modelled.push("bends that stay".into());
+    /// Bending stiffness and the springs of folds, sheet by sheet.
+    fn add_folds(&mut self, folder: &Path) -> Result<(), SceneError> {
+        let mut modelled = BTreeSet::new();
+        for number in 0..self.sheets.list.len() {
+            let springs = self.fold_springs(number, folder)?;
+            modelled.extend(self.add_bending(number, &springs.creases())?);
+            self.add_springs(number, springs)?;
         }
-        match self.scene.sheet.bending() {
-            Bending::None => Ok(()),
-            Bending::Plate { rigidity } => {
-                let clamped = self.model().pins();
-                let plate = PlateBending::creased(&self.rest.sheet, rigidity, &clamped, creases);
-                let mut plate = plate.map_err(at(&key))?;
-                if let Some(yields) = yields {
-                    let yielding = plate.with_yield(&self.rest.sheet, yields);
-                    plate = yielding.map_err(at(&Key::root().name("sheet.yield")))?;
-                }
-                self.modelled.push("bending stiffness of a plate".into());
-                self.change(|m| Ok(m.with_potential(plate)), at::<SimulationError>(&key))
-            }
-            Bending::Hinges { rigidity } => {
-                let springs = CreaseSprings::bending_beside(&self.rest.sheet, rigidity, creases);
-                let mut springs = springs.map_err(at(&key))?;
-                if let Some(yields) = yields {
-                    let yielding = springs.with_yield(&self.rest.sheet, yields);
-                    springs = yielding.map_err(at(&Key::root().name("sheet.yield")))?;
-                }
-                self.modelled.push("bending stiffness at edges".into());
-                self.change(
-                    |m| Ok(m.with_potential(springs)),
-                    at::<SimulationError>(&key),
-                )
-            }
-        }
-    }
-
-    /// The springs of the creases and of `[folding]`.
-    fn fold_springs(&mut self, folder: &Path) -> Result<FoldSprings, SceneError> {
-        let mut springs = FoldSprings::default();
-        for (k, crease) in self.scene.crease.iter().enumerate() {
-            let key = Key::root().name("crease").entry(k);
-            let roles = self.rest.roles.as_ref();
-            let found = crease.springs(&key, &self.unplaced, roles)?;
-            springs.add(key, crease.folds(), found);
-        }
-        if let (Some(folding), Mesh::File(file)) = (&self.scene.folding, &self.scene.sheet.mesh) {
-            let key = Key::root().name("folding");
-            let targets = folding.targets(&key, file, &self.unplaced, folder)?;
-            let [driven, flat] = folding.springs(&targets, &self.rest.sheet, &self.x);
-            springs.add(key.clone(), EdgeFolds::Yes, driven);
-            springs.add(key, EdgeFolds::No, flat);
-            self.folding = Some(targets);
-        }
-        let rigidity = self.scene.sheet.bending().rigidity();
-        springs.put_in_sheet(&self.rest.sheet, rigidity);
-        Ok(springs)
-    }
-
-    fn add_springs(&mut self, springs: FoldSprings) -> Result<(), SceneError> {
-        for (key, springs) in springs.into_groups() {
-            let springs = CreaseSprings::new(self.rest.sheet.topology(), springs);
-            let springs = springs.map_err(at(&key))?;
-            self.change(
-                |m| Ok(m.with_potential(springs)),
-                at::<SimulationError>(&key),
-            )?;
-        }
+        self.modelled.extend(modelled.into_iter().map(str::to_owned));
         self.count(self.scene.crease.len(), "crease", "creases");
         if self.folding.is_some() {
             self.modelled.push("folding to given angles".into());
@@ -344,28 +258,132 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    /// Adds a potential that was made for one of the sheets.
+    fn add_potential_of(&mut self, number: usize, potential: impl Potential + 'static) {
+        let part = match &self.sheets.list[..] {
+            [_] => None,
+            list => Some(&list[number].part),
+        };
+        let model = self.model.take();
+        self.model = model.map(|model| match part {
+            None => model.with_potential(potential),
+            Some(part) => model.with_potential(PotentialOfPart::new(potential, part)),
+        });
+    }
+
+    /// Returns what is modelled, in words.
+    fn add_bending(
+        &mut self,
+        number: usize,
+        creases: &[EdgeId],
+    ) -> Result<Vec<&'static str>, SceneError> {
+        let PlacedSheet {
+            of,
+            key,
+            placed,
+            part,
+            ..
+        } = &self.sheets.list[number];
+        let yields = of.yields();
+        let [key, yield_key] = ["bending", "yield"].map(|name| key.name(name));
+        let mut modelled = Vec::new();
+        if yields.is_some() {
+            modelled.push("bends that stay");
+        }
+        match of.bending() {
+            Bending::None => {}
+            Bending::Plate { rigidity } => {
+                let pins = self.model().pins().into_iter();
+                let own = pins.filter(|v| part.vertices.contains(&v.index()));
+                let clamped: Vec<VertexId> = own.map(|v| part.local_vertex(v)).collect();
+                let plate = PlateBending::creased(placed, rigidity, &clamped, creases);
+                let mut plate = plate.map_err(at(&key))?;
+                if let Some(yields) = yields {
+                    let yielding = plate.with_yield(placed, yields);
+                    plate = yielding.map_err(at(&yield_key))?;
+                }
+                modelled.push("bending stiffness of a plate");
+                self.add_potential_of(number, plate);
+            }
+            Bending::Hinges { rigidity } => {
+                let springs = CreaseSprings::bending_beside(placed, rigidity, creases);
+                let mut springs = springs.map_err(at(&key))?;
+                if let Some(yields) = yields {
+                    let yielding = springs.with_yield(placed, yields);
+                    springs = yielding.map_err(at(&yield_key))?;
+                }
+                modelled.push("bending stiffness at edges");
+                self.add_potential_of(number, springs);
+            }
+        }
+        Ok(modelled)
+    }
+
+    /// The springs of the creases and of `[folding]` in one of the sheets, by its own edges.
+    fn fold_springs(&mut self, number: usize, folder: &Path) -> Result<FoldSprings, SceneError> {
+        let mut springs = FoldSprings::default();
+        let own = &self.sheets.list[number];
+        let is_own = |name: Option<&str>, key: &Key, what| {
+            self.sheets
+                .one(name, key, what)
+                .map(|named| std::ptr::eq(named, own))
+        };
+        for (k, crease) in self.scene.crease.iter().enumerate() {
+            let key = Key::root().name("crease").entry(k);
+            if is_own(crease.sheet.as_deref(), &key, "the edges")? {
+                let found = crease.springs(&key, &own.unplaced, own.roles.as_ref())?;
+                springs.add(key, crease.folds(), found);
+            }
+        }
+        if let (Some(folding), Mesh::File(file)) = (&self.scene.folding, &own.of.mesh) {
+            let key = Key::root().name("folding");
+            if is_own(folding.sheet.as_deref(), &key, "the creases")? {
+                let mut targets = folding.targets(&key, file, &own.unplaced, folder)?;
+                let x = &self.x[own.part.coordinates()];
+                let [driven, flat] = folding.springs(&targets, &own.placed, x);
+                springs.add(key.clone(), EdgeFolds::Yes, driven);
+                springs.add(key, EdgeFolds::No, flat);
+                targets.renumber(|e| own.part.edge(e));
+                self.folding = Some(targets);
+            }
+        }
+        springs.put_in_sheet(&own.placed, own.of.bending().rigidity());
+        Ok(springs)
+    }
+
+    fn add_springs(&mut self, number: usize, springs: FoldSprings) -> Result<(), SceneError> {
+        for (key, springs) in springs.into_groups() {
+            let topology = self.sheets.list[number].placed.topology();
+            let springs = CreaseSprings::new(topology, springs);
+            self.add_potential_of(number, springs.map_err(at(&key))?);
+        }
+        Ok(())
+    }
+
     fn add_isometry(&mut self) -> Result<(), SceneError> {
-        let of_sheet = &self.scene.sheet;
-        let Some(elasticity) = of_sheet.elasticity() else {
+        let mut elastic = Vec::new();
+        for PlacedSheet { of, key, placed, part, .. } in &self.sheets.list {
+            let Some(elasticity) = of.elasticity() else {
+                continue;
+            };
+            let key = key.name(match of.isometry {
+                Some(_) => "isometry",
+                None => "material",
+            });
+            let sheet = elastic_sheet(placed, elasticity, of.bending().rigidity());
+            let sheet = sheet.map_err(at(&key))?;
+            let words = elastic_in_words(&sheet);
+            if !self.modelled.contains(&words) {
+                self.modelled.push(words);
+            }
+            elastic.push((sheet, part.clone()));
+        }
+        if elastic.is_empty() {
             self.modelled.push("rigid rods".into());
             return Ok(());
-        };
-        let name = match of_sheet.isometry {
-            Some(_) => "sheet.isometry",
-            None => "sheet.material",
-        };
-        let key = Key::root().name(name);
-        let Elasticity {
-            stiffness,
-            poisson,
-            limit,
-        } = elasticity;
-        let rigidity = of_sheet.bending().rigidity();
-        let elastic = ElasticSheet::new(&self.rest.sheet, stiffness, poisson)
-            .and_then(|e| e.softened(rigidity))
-            .and_then(|e| e.with_limit(limit))
-            .map_err(at(&key))?;
-        self.modelled.push(elastic_in_words(&elastic));
+        }
+        let key = Key::root().name("sheet");
+        let elastic = ElasticSheet::union(elastic).map_err(at(&key))?;
         self.change(|m| m.with_elastic_sheet(elastic), at(&key))
     }
 
@@ -373,8 +391,9 @@ impl<'a> Builder<'a> {
     /// What is further off, or has no such positions nearby, stays as it is, and the engine says what is
     /// wrong with it.
     fn mend_lengths(&mut self) {
-        let is_rigid = self.scene.sheet.isometry() == Isometry::Rods;
-        if !is_rigid || self.scene.sheet.start.file.is_none() {
+        let sheets = &self.scene.sheet;
+        let is_rigid = sheets[0].isometry() == Isometry::Rods;
+        if !is_rigid || sheets.iter().all(|sheet| sheet.start.file.is_none()) {
             return;
         }
         if (EXACT..=ROUNDING).contains(&self.model().rods().max_strain(&self.x)) {
@@ -386,13 +405,18 @@ impl<'a> Builder<'a> {
     }
 
     fn perturb(&mut self) -> Result<(), SceneError> {
-        let start = &self.scene.sheet.start;
-        if start.perturbation > 0.0 {
-            let (size, seed) = (start.perturbation, start.seed);
-            let mut x = std::mem::take(&mut self.x);
-            leave_flat(self.model(), &mut x, size, seed)
-                .map_err(|e| SceneError::from(self.origins.of_start(&e)))?;
-            self.x = x;
+        let mut x = std::mem::take(&mut self.x);
+        let mut is_perturbed = false;
+        for PlacedSheet { of, part, .. } in &self.sheets.list {
+            let (size, seed) = (of.start.perturbation, of.start.seed);
+            if size > 0.0 {
+                leave_flat_in(self.model(), part.vertices.clone(), &mut x, size, seed)
+                    .map_err(|e| SceneError::from(self.origins.of_start(&e)))?;
+                is_perturbed = true;
+            }
+        }
+        self.x = x;
+        if is_perturbed {
             self.modelled
                 .push("random displacement at the start".into());
         }
@@ -401,20 +425,24 @@ impl<'a> Builder<'a> {
 
     fn finish(mut self, contacts: Option<Contacts>, obstacles: Vec<Obstacle>) -> Setup {
         let model = self.model.take();
+        let sheets = &self.sheets.list;
+        let part = |sheet: &PlacedSheet<'_>| {
+            let name = sheet.of.name.clone()?;
+            Some((name, sheet.part.clone()))
+        };
         Setup {
             start: State::at_rest(self.x),
-            sheet: self.rest.sheet,
+            parts: match &sheets[..] {
+                [_] => Vec::new(),
+                several => several.iter().filter_map(part).collect(),
+            },
+            material: materials_in_words(sheets),
+            sheet: self.sheets.union,
             model: model.expect("a change that fails ends the building"),
             contacts,
             obstacles,
             integration: self.scene.method.build(),
             modelled: self.modelled,
-            material: self
-                .scene
-                .sheet
-                .material
-                .as_ref()
-                .and_then(Material::in_words),
             folding: self.folding,
             origins: self.origins,
             text: None,
@@ -426,7 +454,7 @@ impl<'a> Builder<'a> {
         if !scene.has_contact() {
             return Ok((None, Vec::new()));
         }
-        let options = scene.contact.options(self.model(), scene.sheet.thickness);
+        let options = scene.contact.options(self.model(), scene.sheet[0].thickness);
         let mut contacts =
             Contacts::new(self.model(), options).map_err(at(&key.name("contact")))?;
         let mut obstacles = Vec::new();
@@ -447,6 +475,34 @@ impl<'a> Builder<'a> {
         }
         Ok((Some(contacts), obstacles))
     }
+}
+
+fn elastic_sheet(
+    placed: &Sheet,
+    elasticity: Elasticity,
+    rigidity: f64,
+) -> Result<ElasticSheet, ElasticSheetError> {
+    let Elasticity {
+        stiffness,
+        poisson,
+        limit,
+    } = elasticity;
+    ElasticSheet::new(placed, stiffness, poisson)?
+        .softened(rigidity)?
+        .with_limit(limit)
+}
+
+/// What the sheets are made of, if the scene names it.
+fn materials_in_words(sheets: &[PlacedSheet<'_>]) -> Option<String> {
+    let words = |sheet: &PlacedSheet<'_>| {
+        let words = sheet.of.material.as_ref()?.in_words()?;
+        match (&sheet.of.name, sheets.len()) {
+            (Some(name), 2..) => Some(format!("{name} of {words}")),
+            _ => Some(words),
+        }
+    };
+    let all: Vec<String> = sheets.iter().filter_map(words).collect();
+    (!all.is_empty()).then(|| all.join("; "))
 }
 
 /// What an elastic sheet is on its mesh.
@@ -474,24 +530,6 @@ fn self_contact_problem(error: &ContactsError) -> Problem {
     let key = Key::root().name("contact.self_contact");
     let remedy = "choose a smaller `sheet.thickness` or `contact.activation`, or a mesh without narrow faces";
     Problem::new(key, error.to_string(), remedy)
-}
-
-/// The triangles without order and orientation: frames of a FOLD file may list the same faces in other ways.
-fn triangles(faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    let mut triangles = faces.to_vec();
-    for corners in &mut triangles {
-        corners.sort_unstable();
-    }
-    triangles.sort_unstable();
-    triangles
-}
-
-/// A point of the mesh in space.
-fn place(pose: &Pose, p: [f64; 3]) -> [f64; 3] {
-    if *pose == Pose::default() {
-        return p;
-    }
-    (pose.isometry() * Point3::from(p)).coords.into()
 }
 
 /// The motion of a pinned vertex that starts at `p`.

@@ -25,6 +25,9 @@ use std::collections::BTreeSet;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Crease {
+    /// The name of the sheet, if there are several.
+    #[serde(default)]
+    pub sheet: Option<String>,
     /// Which edges.
     pub at: CreaseEdges,
     /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre). It takes the place of

@@ -36,6 +36,9 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Folding {
+    /// The name of the sheet, if there are several.
+    #[serde(default)]
+    pub sheet: Option<String>,
     /// When the angles of the springs have reached their targets, seconds. They begin at the fold angles of
     /// the start and change smoothly.
     pub time: f64,
@@ -91,6 +94,12 @@ pub struct FoldResidual {
 }
 
 impl FoldTargets {
+    /// Gives the edges other numbers.
+    pub(crate) fn renumber(&mut self, number: impl Fn(EdgeId) -> EdgeId) {
+        self.creases.iter_mut().for_each(|(e, _)| *e = number(*e));
+        self.flat.iter_mut().for_each(|e| *e = number(*e));
+    }
+
     /// The differences at positions `x` (`3V`, metres), taken the short way round as the springs do.
     ///
     /// # Panics

@@ -46,6 +46,9 @@ pub struct Forces {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
+    /// The name of the sheet, if there are several and not the vertices of all are meant.
+    #[serde(default)]
+    pub sheet: Option<String>,
     /// Which vertices.
     pub at: Selection,
     /// Direction in space, of any length.

@@ -12,7 +12,7 @@ use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{
     Checkpoint, Isometry, Method, SheetModel, Simulation, SimulationError, State, StepControl,
 };
-use isosheet_mesh::Sheet;
+use isosheet_mesh::{Part, Sheet};
 
 /// How the motion is computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,8 +31,10 @@ pub enum Integration {
 /// Everything that a simulation is made of.
 #[derive(Debug)]
 pub struct Setup {
-    /// The sheet in its rest shape, placed in space.
+    /// The sheet in its rest shape, placed in space; the union of several.
     pub sheet: Sheet,
+    /// Of several sheets the name of each, and where it is in the union.
+    pub parts: Vec<(String, Part)>,
     /// The state at the start.
     pub start: State,
     /// What moves.

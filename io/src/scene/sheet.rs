@@ -11,7 +11,9 @@ use isosheet_dynamics as engine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The sheet.
+/// A sheet. A scene of several has a table `[[sheet]]` for each, with a `name` by which supports, creases and loads
+/// name it; where they name none, regions and points are of all sheets. All sheets are of rods or all are elastic, and
+/// they have the same `damping`, `thickness` and limit of strain. With `contact.self_contact` they meet one another.
 ///
 /// ```toml
 /// [sheet]
@@ -23,6 +25,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sheet {
+    /// Its name, which each of several sheets has to have.
+    #[serde(default)]
+    pub name: Option<String>,
     /// Where the mesh comes from. Its shape is the rest shape: the one with the rest lengths.
     pub mesh: Mesh,
     /// What the sheet is made of. Without it, the sheet is one of rigid rods, as in the paper.
@@ -152,6 +157,7 @@ impl Sheet {
     /// A sheet of office paper without bending stiffness, of rigid rods.
     pub fn new(mesh: Mesh) -> Self {
         Self {
+            name: None,
             mesh,
             material: None,
             density: None,

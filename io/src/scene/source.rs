@@ -5,6 +5,7 @@ use super::error::{SceneError, SceneText};
 use super::form::form_problems;
 use super::key::Key;
 use super::problem::Problem;
+use super::sheets::sheet_key;
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
 use crate::format::MeshFormat;
@@ -166,16 +167,23 @@ impl SceneFile {
         Ok(setup)
     }
 
-    /// What each edge of the sheet is meant to do, if its mesh is a crease pattern; `None` for an edge of
-    /// which the pattern does not say it.
+    /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a crease pattern
+    /// among the meshes; `None` for an edge of which the pattern does not say it.
     ///
     /// # Errors
     /// [`SceneError`] if the mesh cannot be made.
     pub fn fold_assignments(&self) -> Result<Option<Vec<Option<FoldAssignment>>>, SceneError> {
-        let key = Key::root().name("sheet.mesh");
-        let rest = self.scene.sheet.mesh.build(&key, &self.folder);
-        let rest = rest.map_err(|e| SceneError::from(e).in_text(&self.text))?;
-        Ok(rest.roles.map(|roles| roles.assignments))
+        let sheets = &self.scene.sheet;
+        let mut all = Vec::new();
+        for (k, sheet) in sheets.iter().enumerate() {
+            let key = sheet_key(sheets.len(), k).name("mesh");
+            let rest = sheet.mesh.build(&key, &self.folder);
+            let rest = rest.map_err(|e| SceneError::from(e).in_text(&self.text))?;
+            let edges = rest.sheet.topology().edge_count();
+            all.push(rest.roles.map_or(vec![None; edges], |r| r.assignments));
+        }
+        let all = all.concat();
+        Ok(all.iter().any(Option::is_some).then_some(all))
     }
 
     /// The same scene with other paths of mesh files, one for each of [`Scene::files`].

@@ -27,6 +27,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
+    /// The name of the sheet, if there are several and not the vertices of all are meant.
+    #[serde(default)]
+    pub sheet: Option<String>,
     /// Which vertices.
     pub at: Selection,
     /// How they are held.
@@ -245,6 +248,7 @@ impl Support {
     /// Vertices that stay where they are at the start.
     pub fn pin(at: Selection) -> Self {
         Self {
+            sheet: None,
             at,
             hold: Hold::Pin,
         }

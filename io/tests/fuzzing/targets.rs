@@ -146,7 +146,7 @@ fn scene(data: &[u8]) {
 /// Whether a scene is built within milliseconds: its mesh has at most a few hundred cells.
 fn is_small(scene: &Scene) -> bool {
     const MOST: usize = 300;
-    let cells = match &scene.sheet.mesh {
+    let cells = |mesh: &Mesh| match mesh {
         Mesh::Square { level, .. } => 4usize.saturating_pow(level.saturating_add(1)),
         Mesh::Rectangle { columns, rows, .. } => columns.saturating_mul(*rows),
         Mesh::Disk { rings, .. } => rings.saturating_mul(*rings).saturating_mul(6),
@@ -169,7 +169,8 @@ fn is_small(scene: &Scene) -> bool {
         Mesh::SquareTwist(_) => 13,
         _ => usize::MAX,
     };
-    cells <= MOST && scene.files().is_empty()
+    let all = scene.sheet.iter().map(|sheet| cells(&sheet.mesh));
+    all.fold(0, usize::saturating_add) <= MOST && scene.files().is_empty()
 }
 
 /// Infinite numbers are written by nobody and mean nothing.

@@ -26,7 +26,7 @@ fn refused(text: &str) -> String {
 #[test]
 fn a_material_gives_mass_stiffness_and_an_elastic_sheet() {
     let paper = dynamics::Material::office_paper();
-    let scene = sheet("material = \"office paper\"").sheet;
+    let scene = sheet("material = \"office paper\"").sheet.remove(0);
     assert_eq!(scene.areal_density(), paper.density);
     assert_eq!(
         scene.bending(),
@@ -43,8 +43,8 @@ fn a_material_gives_mass_stiffness_and_an_elastic_sheet() {
     assert_eq!(scene.elasticity(), Some(numbers));
     // Steel of half a millimetre, by its numbers.
     let steel = "material = { youngs = 2.1e11, thickness = 5e-4, density = 7850, poisson = 0.3 }";
-    let steel = sheet(steel).sheet;
-    let named = sheet("material = \"Steel-Sheet\"").sheet;
+    let steel = sheet(steel).sheet.remove(0);
+    let named = sheet("material = \"Steel-Sheet\"").sheet.remove(0);
     assert_eq!(steel.areal_density(), named.areal_density());
     assert_eq!(steel.bending(), named.bending());
     assert_eq!(steel.elasticity(), named.elasticity());
@@ -52,7 +52,7 @@ fn a_material_gives_mass_stiffness_and_an_elastic_sheet() {
 
 #[test]
 fn without_a_material_a_sheet_is_one_of_rods() {
-    let scene = sheet("").sheet;
+    let scene = sheet("").sheet.remove(0);
     assert_eq!(scene.isometry(), Isometry::Rods);
     assert_eq!(scene.bending(), Bending::None);
     assert_eq!(scene.areal_density(), 0.08);
@@ -61,11 +61,11 @@ fn without_a_material_a_sheet_is_one_of_rods() {
 
 #[test]
 fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
-    let scene = sheet("material = \"denim\"\ndensity = 0.3\nbending = \"none\"").sheet;
+    let scene = sheet("material = \"denim\"\ndensity = 0.3\nbending = \"none\"").sheet.remove(0);
     assert_eq!(scene.areal_density(), 0.3);
     assert_eq!(scene.bending(), Bending::None);
     let denim = dynamics::Material::denim();
-    let elastic = sheet("material = \"denim\"\nisometry = { elastic = { limit = 0.03 } }").sheet;
+    let elastic = sheet("material = \"denim\"\nisometry = { elastic = { limit = 0.03 } }").sheet.remove(0);
     let numbers = Elasticity {
         stiffness: denim.stiffness,
         poisson: denim.poisson,
@@ -73,7 +73,7 @@ fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
     };
     assert_eq!(elastic.elasticity(), Some(numbers));
     let rods = sheet("material = \"denim\"\nisometry = \"rods\"");
-    assert_eq!(rods.sheet.elasticity(), None);
+    assert_eq!(rods.sheet[0].elasticity(), None);
     let setup = rods.build(Path::new("")).unwrap();
     assert!((setup.model.mass().total() - 0.02 * denim.density).abs() < 1e-15);
     assert_eq!(setup.model.isometry(), dynamics::Isometry::Rods);
@@ -129,7 +129,7 @@ fn a_scene_says_what_the_material_gives_and_what_the_mesh_can_bear() {
 
 #[test]
 fn an_elastic_sheet_needs_no_material() {
-    let scene = sheet("isometry = { elastic = { stiffness = 1e4 } }").sheet;
+    let scene = sheet("isometry = { elastic = { stiffness = 1e4 } }").sheet.remove(0);
     let numbers = Elasticity {
         stiffness: 1e4,
         poisson: 0.3,
@@ -219,8 +219,8 @@ fn a_scene_with_a_material_is_written_as_it_is_read() {
     for material in [Material::named("card"), Material::Plate(plate)] {
         for isometry in [None, Some(Isometry::ELASTIC), Some(Isometry::Rods)] {
             let mut scene = sheet("");
-            scene.sheet.material = Some(material.clone());
-            scene.sheet.isometry = isometry;
+            scene.sheet[0].material = Some(material.clone());
+            scene.sheet[0].isometry = isometry;
             let written = SceneFile::of(scene.clone(), Path::new("")).unwrap();
             assert_eq!(parse(&written.text().text).unwrap().scene(), &scene);
         }

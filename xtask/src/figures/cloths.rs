@@ -69,7 +69,7 @@ pub(super) struct Layout {
 
 impl Layout {
     pub(super) fn of(scene: &scene::Scene) -> Result<Self> {
-        let cloth = match &scene.sheet.mesh {
+        let cloth = match &scene.sheet[0].mesh {
             scene::Mesh::Rectangle { width, height, .. } => {
                 Outline::rectangle(0.5 * width, 0.5 * height)
             }

@@ -150,7 +150,7 @@ fn describe(run: &Run, free: Option<&RunSummary>) -> Result<Vec<Row>> {
             format!(
                 "{}, damping {:.0}/s, friction with itself {}",
                 method_name(scene.scene().method.integrator),
-                scene.scene().sheet.damping,
+                scene.scene().sheet[0].damping,
                 scene.scene().contact.friction
             ),
         ),

@@ -335,7 +335,7 @@ pub(super) fn make(store: &Store) -> Result<Made> {
                 "{:.0} mm x {:.0} mm, {:.0} g/m², flexural rigidity {:.0e} N m, {}/{} vertices/faces",
                 1e3 * s.size[0],
                 1e3 * s.size[1],
-                1e3 * of_scene.sheet.areal_density(),
+                1e3 * of_scene.sheet[0].areal_density(),
                 s.rigidity,
                 jam.run.summary.vertices,
                 jam.run.summary.faces

@@ -39,7 +39,7 @@ fn vertex(alike: AlikeCreases, effort: Effort) -> Result<FigureScene> {
 
 /// The Miura pattern of a scene.
 fn miura_of(scene: &FigureScene) -> Result<&Miura> {
-    match &scene.scene().sheet.mesh {
+    match &scene.scene().sheet[0].mesh {
         Mesh::Miura(miura) => Ok(miura),
         other => bail!("a Miura pattern, not {other:?}"),
     }
@@ -47,7 +47,7 @@ fn miura_of(scene: &FigureScene) -> Result<&Miura> {
 
 /// The vertex of degree four of a scene.
 fn vertex_of(scene: &FigureScene) -> Result<&DegreeFour> {
-    match &scene.scene().sheet.mesh {
+    match &scene.scene().sheet[0].mesh {
         Mesh::DegreeFour(vertex) => Ok(vertex),
         other => bail!("a vertex of degree four, not {other:?}"),
     }

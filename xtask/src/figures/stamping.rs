@@ -71,7 +71,7 @@ impl Punched {
             .collect();
         Ok(Self {
             peak: curve.iter().map(|p| p[1]).fold(0.0, f64::max),
-            weight: 9.8 * run.scene.scene().sheet.areal_density() * run.sheet.area(),
+            weight: 9.8 * run.scene.scene().sheet[0].areal_density() * run.sheet.area(),
             curve,
             stroke,
             full,
@@ -99,7 +99,7 @@ impl Punched {
         let blank = format!(
             "{:.1} m wide, {:.1} kg/m² (half a millimetre of steel)",
             self.run.sheet.area().sqrt(),
-            scene.scene().sheet.areal_density()
+            scene.scene().sheet[0].areal_density()
         );
         let motion = [self.stroke / self.full, self.stroke].map(millimetres);
         let holders = [value("/obstacle/2/shape/box/size/1")?, clearance].map(millimetres);

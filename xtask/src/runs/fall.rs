@@ -35,7 +35,7 @@ pub(crate) fn fall(scene: &FigureScene) -> Result<Vec<[f64; 2]>> {
 /// damping c as in the scene.
 pub(crate) fn plate_fall(scene: &FigureScene) -> Result<Vec<[f64; 2]>> {
     let Hanging { sheet, side, .. } = Hanging::of(scene)?;
-    let (damping, gravity) = (scene.scene().sheet.damping, gravity(scene.scene()));
+    let (damping, gravity) = (scene.scene().sheet[0].damping, gravity(scene.scene()));
     let mass = MassMatrix::from_total(&sheet, 1.0, MassKind::Lumped)?.vertex;
     let inertia: f64 = sheet
         .topology()
@@ -72,7 +72,7 @@ pub(crate) fn plate_fall(scene: &FigureScene) -> Result<Vec<[f64; 2]>> {
 /// As [`Hanging::of`].
 pub(crate) fn free_fall(scene: &FigureScene) -> Result<Vec<[f64; 2]>> {
     let side = Hanging::of(scene)?.side;
-    let (c, gravity) = (scene.scene().sheet.damping, gravity(scene.scene()));
+    let (c, gravity) = (scene.scene().sheet[0].damping, gravity(scene.scene()));
     let at = |k: usize| {
         let t = k as f64 * scene.frame();
         [t, gravity * (t + (-c * t).exp_m1() / c) / c / side]

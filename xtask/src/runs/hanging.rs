@@ -24,7 +24,7 @@ impl Hanging {
     /// # Errors
     /// A scene whose sheet is not a square, or is not held at one vertex.
     pub(crate) fn of(scene: &FigureScene) -> Result<Self> {
-        let Mesh::Square { side, level } = scene.scene().sheet.mesh else {
+        let Mesh::Square { side, level } = scene.scene().sheet[0].mesh else {
             bail!("{}: the sheet is not a square", scene.name());
         };
         let setup = scene.setup()?;

@@ -99,7 +99,7 @@ impl FigureScene {
 
     /// What the sheet is made of, in words.
     pub(crate) fn sheet_name(&self) -> &str {
-        match &self.scene().sheet.material {
+        match &self.scene().sheet[0].material {
             Some(Material::Named(name)) => name,
             Some(Material::Plate(_)) => "plate",
             None => "rods",

@@ -1,0 +1,157 @@
+//! The sheets of a scene in their places, and the union of them that is simulated.
+
+use super::error::SceneError;
+use super::mesh::RestMesh;
+use super::pattern::EdgeRoles;
+use super::pose::Pose;
+use super::problem::Problem;
+use super::sheets::sheet_key;
+use super::{Key, Selection, Sheet as SheetOfScene, sheets};
+use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
+use nalgebra::Point3;
+use std::path::Path;
+
+/// A sheet in its place.
+pub(super) struct PlacedSheet<'a> {
+    /// What the scene says of it.
+    pub(super) of: &'a SheetOfScene,
+    pub(super) key: Key,
+    /// The rest shape, placed in space.
+    pub(super) placed: Sheet,
+    /// The rest shape as its mesh has it.
+    pub(super) unplaced: Sheet,
+    pub(super) roles: Option<EdgeRoles>,
+    /// Where it is in the union.
+    pub(super) part: Part,
+    pub(super) mass: MassMatrix,
+}
+
+/// All sheets.
+pub(super) struct PlacedSheets<'a> {
+    pub(super) list: Vec<PlacedSheet<'a>>,
+    pub(super) union: Sheet,
+    /// Positions at the start, `3V`.
+    pub(super) start: Vec<f64>,
+}
+
+impl<'a> PlacedSheets<'a> {
+    pub(super) fn new(sheets: &'a [SheetOfScene], folder: &Path) -> Result<Self, SceneError> {
+        let (mut list, mut start) = (Vec::new(), Vec::new());
+        for (k, of) in sheets.iter().enumerate() {
+            let (placed, x) = PlacedSheet::new(of, sheet_key(sheets.len(), k), folder)?;
+            list.push(placed);
+            start.extend(x);
+        }
+        let placed: Vec<&Sheet> = list.iter().map(|sheet| &sheet.placed).collect();
+        let union = match placed[..] {
+            [sheet] => sheet.clone(),
+            _ => Sheet::union(&placed)
+                .map_err(|e| Problem::from_error(Key::root().name("sheet"), &e))?,
+        };
+        let parts = Part::of_union(&placed);
+        for (sheet, part) in list.iter_mut().zip(parts) {
+            sheet.part = part;
+        }
+        Ok(Self { list, union, start })
+    }
+
+    pub(super) fn mass(&self) -> MassMatrix {
+        let masses: Vec<MassMatrix> = self.list.iter().map(|sheet| sheet.mass.clone()).collect();
+        MassMatrix::union(&masses)
+    }
+
+    /// The vertices of a selection in the sheet of a name, or in all sheets.
+    pub(super) fn vertices(
+        &self,
+        name: Option<&str>,
+        selection: &Selection,
+        key: &Key,
+    ) -> Result<Vec<VertexId>, Problem> {
+        let all = self.list.iter().map(|sheet| sheet.of);
+        let at = key.name("at");
+        let number = match selection {
+            Selection::Vertices(_) => Some(sheets::one_of(all, name, key, "the vertices")?),
+            _ => sheets::number_of(all, name, &key.name("sheet"))?,
+        };
+        let Some(number) = number else {
+            return selection.resolve(&at, self.union.topology(), &self.start);
+        };
+        let PlacedSheet { placed, part, .. } = &self.list[number];
+        let own = &self.start[part.coordinates()];
+        let found = selection.resolve(&at, placed.topology(), own)?;
+        Ok(found.into_iter().map(|v| part.vertex(v)).collect())
+    }
+
+    /// The sheet of a name, which has to be given if there are several.
+    pub(super) fn one(
+        &self,
+        name: Option<&str>,
+        key: &Key,
+        what: &str,
+    ) -> Result<&PlacedSheet<'a>, Problem> {
+        let all = self.list.iter().map(|sheet| sheet.of);
+        sheets::one_of(all, name, key, what).map(|k| &self.list[k])
+    }
+}
+
+impl<'a> PlacedSheet<'a> {
+    /// With its positions at the start. Its part is not known yet.
+    fn new(
+        of: &'a SheetOfScene,
+        key: Key,
+        folder: &Path,
+    ) -> Result<(Self, Vec<f64>), SceneError> {
+        let mesh_key = key.name("mesh");
+        let RestMesh { sheet, roles } = of.mesh.build(&mesh_key, folder)?;
+        let pose = &of.placement;
+        let placed = sheet
+            .map_positions(|p| place(pose, p))
+            .map_err(|e| Problem::from_error(mesh_key, &e))?;
+        let x = match &of.start.file {
+            None => placed.positions().to_vec(),
+            Some(file) => {
+                let key = key.name("start.file");
+                let start = file.read(&key, folder)?;
+                if triangles(&start.faces) != triangles(&placed.face_indices()) {
+                    let message = "the file does not have the vertices and faces of `sheet.mesh`";
+                    let remedy = "export both shapes from the same mesh, without reordering";
+                    return Err(Problem::new(key.name("path"), message, remedy).into());
+                }
+                let points = start.positions.as_chunks::<3>().0.iter();
+                points.flat_map(|&p| place(pose, p)).collect()
+            }
+        };
+        let by_area = of.areal_density() * placed.area();
+        let mass = of.mass.unwrap_or(by_area);
+        let mass = MassMatrix::from_total(&placed, mass, MassKind::Lumped)
+            .map_err(|e| Problem::from_error(key.clone(), &e))?;
+        let sheet = Self {
+            of,
+            key,
+            placed,
+            unplaced: sheet,
+            roles,
+            part: Part::default(),
+            mass,
+        };
+        Ok((sheet, x))
+    }
+}
+
+/// The triangles without order and orientation: frames of a FOLD file may list the same faces in other ways.
+fn triangles(faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut triangles = faces.to_vec();
+    for corners in &mut triangles {
+        corners.sort_unstable();
+    }
+    triangles.sort_unstable();
+    triangles
+}
+
+/// A point of the mesh in space.
+fn place(pose: &Pose, p: [f64; 3]) -> [f64; 3] {
+    if *pose == Pose::default() {
+        return p;
+    }
+    (pose.isometry() * Point3::from(p)).coords.into()
+}

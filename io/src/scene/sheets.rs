@@ -1,0 +1,174 @@
+//! One sheet, or several.
+
+use super::key::Key;
+use super::problem::{Checks, Problem};
+use super::sheet::{Isometry, Sheet};
+use schemars::JsonSchema;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::fmt;
+
+/// How `sheet` is written: `[sheet]` for one, `[[sheet]]` for several.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the form of the schema, which has no values")]
+pub(super) enum OneOrSeveral {
+    /// The sheet.
+    One(Sheet),
+    /// The sheets.
+    Several(Vec<Sheet>),
+}
+
+pub(super) fn serialize<S: Serializer>(sheets: &[Sheet], to: S) -> Result<S::Ok, S::Error> {
+    match sheets {
+        [sheet] => sheet.serialize(to),
+        sheets => sheets.serialize(to),
+    }
+}
+
+pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Sheet>, D::Error> {
+    struct Either;
+    impl<'de> Visitor<'de> for Either {
+        type Value = Vec<Sheet>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a table, or a list of tables")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Vec<Sheet>, A::Error> {
+            Sheet::deserialize(MapAccessDeserializer::new(map)).map(|sheet| vec![sheet])
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Vec<Sheet>, A::Error> {
+            Vec::deserialize(SeqAccessDeserializer::new(list))
+        }
+    }
+    from.deserialize_any(Either)
+}
+
+/// The key of one of so many sheets.
+pub(super) fn sheet_key(count: usize, number: usize) -> Key {
+    let key = Key::root().name("sheet");
+    match count {
+        1 => key,
+        _ => key.entry(number),
+    }
+}
+
+/// Checks the sheets, and what they have to have in common.
+pub(super) fn check(sheets: &[Sheet], checks: &mut Checks) {
+    let root = Key::root().name("sheet");
+    if sheets.is_empty() {
+        checks.report(root, "the scene has no sheet", "write a table `[sheet]`");
+        return;
+    }
+    for (k, sheet) in sheets.iter().enumerate() {
+        let key = sheet_key(sheets.len(), k);
+        sheet.check(&key, checks);
+        if sheets.len() > 1 {
+            check_name(sheets, k, &key, checks);
+            check_common(&sheets[0], sheet, &key, checks);
+        }
+    }
+}
+
+fn check_name(sheets: &[Sheet], k: usize, key: &Key, checks: &mut Checks) {
+    let remedy = "give each of several sheets a name of its own, `name = \"cover\"`";
+    match &sheets[k].name {
+        None => checks.report(key.clone(), "the sheet has no name", remedy),
+        Some(name) if name.is_empty() => {
+            checks.report(key.name("name"), "the name is empty", remedy);
+        }
+        Some(name) if sheets[..k].iter().any(|s| s.name.as_ref() == Some(name)) => {
+            let message = format!("another sheet has the name `{name}`, too");
+            checks.report(key.name("name"), message, remedy);
+        }
+        Some(_) => {}
+    }
+}
+
+/// The engine has one kind of sheet, one rate of damping and one distance of contact.
+fn check_common(first: &Sheet, sheet: &Sheet, key: &Key, checks: &mut Checks) {
+    let is_rigid = |s: &Sheet| s.isometry() == Isometry::Rods;
+    if is_rigid(sheet) != is_rigid(first) {
+        checks.report(
+            key.name("isometry"),
+            "one sheet has rigid rods, and another is elastic",
+            "give all sheets a `material`, or write `isometry = \"rods\"` in all of them",
+        );
+    }
+    let limit = |s: &Sheet| s.elasticity().map(|e| e.limit);
+    if !is_rigid(sheet) && !is_rigid(first) && limit(sheet) != limit(first) {
+        checks.report(
+            key.name("isometry"),
+            "the limit of the strain differs from that of the first sheet",
+            "write the same `isometry = { elastic = { limit = ... } }` in all sheets",
+        );
+    }
+    for (name, is_same) in [
+        ("damping", sheet.damping == first.damping),
+        ("thickness", sheet.thickness == first.thickness),
+    ] {
+        if !is_same {
+            let message = format!("the {name} differs from that of the first sheet");
+            checks.report(
+                key.name(name),
+                message,
+                format!("give all sheets the same `{name}`"),
+            );
+        }
+    }
+}
+
+/// Reports a name that no sheet has.
+pub(super) fn check_reference(
+    sheets: &[Sheet],
+    name: Option<&str>,
+    key: &Key,
+    checks: &mut Checks,
+) {
+    if let Err(problem) = number_of(sheets, name, key) {
+        checks.problems.push(problem);
+    }
+}
+
+/// The number of the sheet of the given name; of no name, if there is one sheet only.
+pub(super) fn number_of<'a>(
+    sheets: impl IntoIterator<Item = &'a Sheet>,
+    name: Option<&str>,
+    key: &Key,
+) -> Result<Option<usize>, Problem> {
+    let names: Vec<Option<&str>> = sheets.into_iter().map(|s| s.name.as_deref()).collect();
+    let Some(name) = name else {
+        return Ok((names.len() == 1).then_some(0));
+    };
+    let found = names.iter().position(|n| *n == Some(name));
+    found.map(Some).ok_or_else(|| {
+        let known: Vec<String> = names.iter().flatten().map(|n| format!("`{n}`")).collect();
+        let remedy = match known.is_empty() {
+            true => "leave the key out, or give the sheet this `name`".to_owned(),
+            false => format!("give one of these: {}", known.join(", ")),
+        };
+        let message = format!("no sheet has the name `{name}`");
+        Problem::new(key.clone(), message, remedy)
+    })
+}
+
+/// The number of the sheet that is meant, which has to be said if there are several.
+pub(super) fn one_of<'a>(
+    sheets: impl IntoIterator<Item = &'a Sheet>,
+    name: Option<&str>,
+    key: &Key,
+    what: &str,
+) -> Result<usize, Problem> {
+    number_of(sheets, name, &key.name("sheet"))?.ok_or_else(|| {
+        let message = format!("{what} may be of several sheets");
+        Problem::new(
+            key.clone(),
+            message,
+            "add `sheet = \"...\"` with the name of the sheet that is meant",
+        )
+    })
+}
