@@ -22,7 +22,7 @@ use body::Body;
 use evaluate::{Placed, Sheet};
 use isosheet_dynamics::contact::{
     ActiveContact, ActiveContacts, BodyMotion, BodyPlace, Coefficients, Contact, ContactError,
-    ContactKey, ContactLaws, JointMotion, StepSpan,
+    ContactKey, ContactLaws, JointMotion, SheetPair, StepSpan,
 };
 use isosheet_dynamics::{SheetModel, State};
 use motion::SheetMotion;
@@ -30,6 +30,7 @@ use nalgebra::Vector3;
 use neighbours::{Neighbours, SelfPairs};
 use options::smallest_height;
 use path::PartOfStep;
+use std::ops::Range;
 
 /// Length of the first part of a long motion that is searched for pairs, in mean edge lengths, and ratio of
 /// the lengths of the following parts: contact mostly ends a long motion early, and the number of pairs whose
@@ -205,6 +206,24 @@ impl Contacts {
         self.has_self_contact = true;
         self.laws.itself = coefficients;
         self.neighbours = None;
+        Ok(self)
+    }
+
+    /// Sets the friction between two of several sheets, whose vertices these are, or of one of them with itself,
+    /// in place of that of [`Contacts::with_self_contact`].
+    ///
+    /// # Errors
+    /// [`ContactsError::Friction`].
+    pub fn with_friction_between(
+        mut self,
+        vertices: [Range<usize>; 2],
+        coefficients: Coefficients,
+    ) -> Result<Self, ContactsError> {
+        coefficients.validate()?;
+        self.laws.pairs.push(SheetPair {
+            vertices,
+            coefficients,
+        });
         Ok(self)
     }
 

@@ -73,7 +73,7 @@ pub use chart::{
     Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
     Substep,
 };
-pub use contact::Contact;
+pub use contact::{Contact, SheetPair};
 pub use creases::{Crease, CreaseEdges, PatternEdges};
 pub use edit::{EditError, EditProblem};
 pub use engine_problem::Origins;
@@ -236,6 +236,12 @@ impl Scene {
             air.check(&root.name("air"), &mut checks);
         }
         self.contact.check(&root.name("contact"), &mut checks);
+        for (k, pair) in self.contact.pair.iter().enumerate() {
+            let key = root.name("contact.pair").entry(k).name("sheets");
+            for (i, name) in pair.sheets.iter().enumerate() {
+                sheets::check_reference(&self.sheet, Some(name), &key.entry(i), &mut checks);
+            }
+        }
         self.method.check(&root.name("method"), &mut checks);
         self.check_method_fits(&mut checks);
         let step = self.method.step;

@@ -1,6 +1,7 @@
 //! The parameters of a scene's contact.
 
-use super::{Coefficients, Friction};
+use super::{ActiveContact, Coefficients, Friction};
+use std::ops::Range;
 
 /// Stiffness `kappa` of the barrier potential `kappa b`, constant over a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +19,23 @@ pub enum Stiffness {
     Joules(f64),
 }
 
+/// Friction between two of several sheets, or of one of them with itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SheetPair {
+    /// The vertices of the two sheets ([`Part::vertices`](isosheet_mesh::Part::vertices)).
+    pub vertices: [Range<usize>; 2],
+    /// The coefficients.
+    pub coefficients: Coefficients,
+}
+
+impl SheetPair {
+    /// Whether these are the sheets of two vertices.
+    fn has(&self, [a, b]: [usize; 2]) -> bool {
+        let [first, second] = &self.vertices;
+        first.contains(&a) && second.contains(&b) || first.contains(&b) && second.contains(&a)
+    }
+}
+
 /// The parameters of barrier and friction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactLaws {
@@ -27,8 +45,10 @@ pub struct ContactLaws {
     pub stiffness: Stiffness,
     /// Speed below which sliding counts as rest, metres per second.
     pub rest_speed: f64,
-    /// Friction of the sheet with itself.
+    /// Friction of the sheet with itself, and of sheets that are no pair of `pairs`.
     pub itself: Coefficients,
+    /// Friction of pairs of sheets, where it is another.
+    pub pairs: Vec<SheetPair>,
     /// Friction of the sheet with each body, in the order of the bodies; none where a body has no entry.
     pub bodies: Vec<Coefficients>,
 }
@@ -41,14 +61,20 @@ impl ContactLaws {
             stiffness: Stiffness::Automatic,
             rest_speed: 0.0,
             itself: Coefficients::FRICTIONLESS,
+            pairs: Vec::new(),
             bodies: Vec::new(),
         }
     }
 
-    /// The coefficients of friction with a body, or of the sheet with itself.
-    pub(crate) fn coefficients(&self, body: Option<u32>) -> Coefficients {
-        match body {
-            None => self.itself,
+    /// The coefficients of friction at a contact.
+    pub(crate) fn coefficients(&self, contact: &ActiveContact) -> Coefficients {
+        match contact.key.body {
+            // The first and the last vertex are of the two that meet.
+            None => {
+                let [first, .., last] = contact.vertices.map(|v| v as usize);
+                let pair = self.pairs.iter().find(|pair| pair.has([first, last]));
+                pair.map_or(self.itself, |pair| pair.coefficients)
+            }
             Some(b) => {
                 let own = self.bodies.get(b as usize);
                 own.copied().unwrap_or(Coefficients::FRICTIONLESS)
@@ -56,10 +82,9 @@ impl ContactLaws {
         }
     }
 
-    /// Friction with a body, or of the sheet with itself, in a step of `h` seconds; `None` without friction
-    /// and in a step without duration.
-    pub fn friction(&self, body: Option<u32>, h: f64) -> Option<Friction> {
-        let c = self.coefficients(body);
+    /// Friction at a contact in a step of `h` seconds; `None` without friction and in a step without duration.
+    pub fn friction(&self, contact: &ActiveContact, h: f64) -> Option<Friction> {
+        let c = self.coefficients(contact);
         if c.is_frictionless() {
             return None;
         }
@@ -68,7 +93,8 @@ impl ContactLaws {
 
     /// Whether there is no friction anywhere.
     pub(crate) fn is_frictionless(&self) -> bool {
-        let mut all = self.bodies.iter().chain([&self.itself]);
+        let pairs = self.pairs.iter().map(|pair| &pair.coefficients);
+        let mut all = self.bodies.iter().chain(pairs).chain([&self.itself]);
         all.all(Coefficients::is_frictionless)
     }
 }

@@ -45,7 +45,7 @@ pub use error::{BodyMotionError, ContactError, ContactPair};
 pub use friction::{Coefficients, Friction, FrictionError};
 pub use impulse::ContactPoint;
 pub use lagged::{FrictionContact, LaggedFriction};
-pub use laws::{ContactLaws, Stiffness};
+pub use laws::{ContactLaws, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;
 pub(crate) use run::{RunContact, StepContact, check_start};
 

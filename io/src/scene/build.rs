@@ -471,6 +471,17 @@ impl<'a> Builder<'a> {
             contacts = contacts
                 .with_self_contact(coefficients)
                 .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
+            for (k, pair) in scene.contact.pair.iter().enumerate() {
+                let key = key.name("contact.pair").entry(k);
+                let [first, second] = &pair.sheets;
+                let first = self.sheets.one(Some(first), &key, "the contacts")?;
+                let second = self.sheets.one(Some(second), &key, "the contacts")?;
+                let vertices = [first, second].map(|sheet| sheet.part.vertices.clone());
+                let coefficients = Coefficients::equal(pair.friction);
+                contacts = contacts
+                    .with_friction_between(vertices, coefficients)
+                    .map_err(at(&key))?;
+            }
             self.modelled.push("self-contact".into());
         }
         Ok((Some(contacts), obstacles))

@@ -19,10 +19,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contact {
-    /// Whether the sheet meets itself.
+    /// Whether the sheet meets itself; of several sheets, whether they meet themselves and one another.
     pub self_contact: bool,
-    /// Coefficient of friction of the sheet with itself. (That of an obstacle is given with the obstacle.)
+    /// Coefficient of friction of sheets with themselves and one another. (That of an obstacle is given with the
+    /// obstacle.)
     pub friction: f64,
+    /// Friction between two of several sheets, where it is another.
+    pub pair: Vec<SheetPair>,
     /// Gap below which contact acts, metres; if left out, 1 % of the mean edge length and at most half the
     /// smallest height of a face.
     pub activation: Option<f64>,
@@ -32,9 +35,33 @@ pub struct Contact {
     pub rest_speed: Option<f64>,
 }
 
+/// Friction between two of several sheets, or of one of them with itself.
+///
+/// ```toml
+/// [[contact.pair]]
+/// sheets = ["cover", "page"]
+/// friction = 0.6
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SheetPair {
+    /// The names of the two sheets.
+    pub sheets: [String; 2],
+    /// Coefficient of friction.
+    pub friction: f64,
+}
+
 impl Contact {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.not_negative(key.name("friction"), self.friction, Unit::One);
+        for (k, pair) in self.pair.iter().enumerate() {
+            let key = key.name("pair").entry(k);
+            checks.not_negative(key.name("friction"), pair.friction, Unit::One);
+            if !self.self_contact {
+                let remedy = "write `self_contact = true`, or leave the pair out";
+                checks.report(key, "sheets do not meet one another", remedy);
+            }
+        }
         let lengths = [
             ("activation", self.activation, Unit::Metre),
             ("stiffness", self.stiffness, Unit::Joule),
