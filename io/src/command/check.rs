@@ -51,7 +51,10 @@ impl Check {
         let setup = scene.build()?;
         let text = describe_scene(&setup);
         let sheets = &scene.scene().sheet;
-        let closed = match sheets.iter().any(|sheet| sheet.isometry() == Isometry::Rods) {
+        let closed = match sheets
+            .iter()
+            .any(|sheet| sheet.isometry() == Isometry::Rods)
+        {
             true => hints::closed(&setup.sheet),
             false => String::new(),
         };

@@ -250,7 +250,8 @@ impl<'a> Builder<'a> {
             modelled.extend(self.add_bending(number, &springs.creases())?);
             self.add_springs(number, springs)?;
         }
-        self.modelled.extend(modelled.into_iter().map(str::to_owned));
+        self.modelled
+            .extend(modelled.into_iter().map(str::to_owned));
         self.count(self.scene.crease.len(), "crease", "creases");
         if self.folding.is_some() {
             self.modelled.push("folding to given angles".into());
@@ -362,7 +363,14 @@ impl<'a> Builder<'a> {
 
     fn add_isometry(&mut self) -> Result<(), SceneError> {
         let mut elastic = Vec::new();
-        for PlacedSheet { of, key, placed, part, .. } in &self.sheets.list {
+        for PlacedSheet {
+            of,
+            key,
+            placed,
+            part,
+            ..
+        } in &self.sheets.list
+        {
             let Some(elasticity) = of.elasticity() else {
                 continue;
             };
@@ -454,7 +462,9 @@ impl<'a> Builder<'a> {
         if !scene.has_contact() {
             return Ok((None, Vec::new()));
         }
-        let options = scene.contact.options(self.model(), scene.sheet[0].thickness);
+        let options = scene
+            .contact
+            .options(self.model(), scene.sheet[0].thickness);
         let mut contacts =
             Contacts::new(self.model(), options).map_err(at(&key.name("contact")))?;
         let mut obstacles = Vec::new();

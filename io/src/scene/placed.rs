@@ -96,11 +96,7 @@ impl<'a> PlacedSheets<'a> {
 
 impl<'a> PlacedSheet<'a> {
     /// With its positions at the start. Its part is not known yet.
-    fn new(
-        of: &'a SheetOfScene,
-        key: Key,
-        folder: &Path,
-    ) -> Result<(Self, Vec<f64>), SceneError> {
+    fn new(of: &'a SheetOfScene, key: Key, folder: &Path) -> Result<(Self, Vec<f64>), SceneError> {
         let mesh_key = key.name("mesh");
         let RestMesh { sheet, roles } = of.mesh.build(&mesh_key, folder)?;
         let pose = &of.placement;

@@ -11,6 +11,7 @@ mod live;
 mod materials;
 mod meaning;
 mod messages;
+mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;
 mod values;

@@ -61,11 +61,15 @@ fn without_a_material_a_sheet_is_one_of_rods() {
 
 #[test]
 fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
-    let scene = sheet("material = \"denim\"\ndensity = 0.3\nbending = \"none\"").sheet.remove(0);
+    let scene = sheet("material = \"denim\"\ndensity = 0.3\nbending = \"none\"")
+        .sheet
+        .remove(0);
     assert_eq!(scene.areal_density(), 0.3);
     assert_eq!(scene.bending(), Bending::None);
     let denim = dynamics::Material::denim();
-    let elastic = sheet("material = \"denim\"\nisometry = { elastic = { limit = 0.03 } }").sheet.remove(0);
+    let elastic = sheet("material = \"denim\"\nisometry = { elastic = { limit = 0.03 } }")
+        .sheet
+        .remove(0);
     let numbers = Elasticity {
         stiffness: denim.stiffness,
         poisson: denim.poisson,
@@ -129,7 +133,9 @@ fn a_scene_says_what_the_material_gives_and_what_the_mesh_can_bear() {
 
 #[test]
 fn an_elastic_sheet_needs_no_material() {
-    let scene = sheet("isometry = { elastic = { stiffness = 1e4 } }").sheet.remove(0);
+    let scene = sheet("isometry = { elastic = { stiffness = 1e4 } }")
+        .sheet
+        .remove(0);
     let numbers = Elasticity {
         stiffness: 1e4,
         poisson: 0.3,
