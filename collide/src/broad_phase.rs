@@ -11,9 +11,9 @@ mod tests;
 /// Pairs of primitives of one mesh whose swept boxes overlap.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Candidates {
-    /// Vertex and face; the vertex is no corner of the face.
+    /// Vertex and face; the vertex is no corner of the face, nor glued to one.
     pub vertex_face: Vec<[u32; 2]>,
-    /// Two edges without a common end, the lower number first.
+    /// Two edges without a common end, glued or not, the lower number first.
     pub edge_edge: Vec<[u32; 2]>,
 }
 
@@ -223,7 +223,7 @@ impl BroadPhase {
             let bounds = &faces[f as usize];
             let corners = &mesh.faces()[f as usize];
             for v in a.vertices.iter() {
-                if vertices[v as usize].overlaps(bounds) && !corners.contains(&v) {
+                if vertices[v as usize].overlaps(bounds) && !mesh.are_joined(&[v], corners) {
                     out.vertex_face.push([v, f]);
                 }
             }
@@ -237,9 +237,7 @@ impl BroadPhase {
                 let ends = &mesh.edges()[e as usize];
                 for g in b.edges.iter() {
                     let others = &mesh.edges()[g as usize];
-                    if bounds.overlaps(&edges[g as usize])
-                        && !ends.iter().any(|v| others.contains(v))
-                    {
+                    if bounds.overlaps(&edges[g as usize]) && !mesh.are_joined(ends, others) {
                         out.edge_edge.push([e.min(g), e.max(g)]);
                     }
                 }
@@ -264,8 +262,7 @@ impl BroadPhase {
             let corners = &mesh.faces()[f as usize];
             for e in a.edges.iter() {
                 let ends = &mesh.edges()[e as usize];
-                if edges[e as usize].overlaps(&faces[f as usize])
-                    && !ends.iter().any(|v| corners.contains(v))
+                if edges[e as usize].overlaps(&faces[f as usize]) && !mesh.are_joined(ends, corners)
                 {
                     out.push([e, f]);
                 }

@@ -25,6 +25,7 @@ use isosheet_dynamics::contact::{
     ContactKey, ContactLaws, JointMotion, SheetPair, StepSpan,
 };
 use isosheet_dynamics::{SheetModel, State};
+use isosheet_mesh::VertexId;
 use motion::SheetMotion;
 use nalgebra::Vector3;
 use neighbours::{Neighbours, SelfPairs};
@@ -207,6 +208,19 @@ impl Contacts {
         self.laws.itself = coefficients;
         self.neighbours = None;
         Ok(self)
+    }
+
+    /// Tells of pairs of vertices that are glued to each other ([`isosheet_dynamics::Glue`]): what has them in common
+    /// does not repel each other, as neighbours in a mesh do not.
+    ///
+    /// # Panics
+    /// If a vertex does not exist.
+    #[must_use]
+    pub fn with_glue(mut self, pairs: &[[VertexId; 2]]) -> Self {
+        let pairs: Vec<[u32; 2]> = pairs.iter().map(|pair| pair.map(|v| v.0)).collect();
+        self.mesh = self.mesh.with_glue(&pairs);
+        self.neighbours = None;
+        self
     }
 
     /// Sets the friction between two of several sheets, whose vertices these are, or of one of them with itself,

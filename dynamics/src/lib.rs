@@ -79,6 +79,7 @@ pub use linear::rank::{RodRank, rod_rank};
 pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use material::elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheetError};
 pub use material::plasticity::Yield;
+pub use material::glue::{Glue, GlueError};
 pub use material::plate_bending::{PlateBending, PlateBendingError};
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};
@@ -86,7 +87,9 @@ pub use model::clamps::ClampAcrossMesh;
 pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};
 pub use model::part::PotentialOfPart;
-pub use model::potential::{Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape};
+pub use model::potential::{
+    CouplingKind, Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape,
+};
 pub use model::state::State;
 pub use model::support::Support;
 pub use model::{Isometry, ModelError, SheetModel};

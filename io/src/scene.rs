@@ -38,6 +38,7 @@ mod error;
 mod folding;
 mod forces;
 mod form;
+mod glue;
 mod key;
 mod live;
 mod material;
@@ -80,6 +81,7 @@ pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use forces::{Acceleration, Forces, Load};
+pub use glue::{Glue, SeamSide};
 pub use key::{Key, KeyError, KeyPart};
 pub use live::{FailedStep, LiveScene};
 pub use material::{Material, Plate};
@@ -148,6 +150,9 @@ pub struct Scene {
     /// Folding to the angles of the FOLD file that is the mesh.
     #[serde(default)]
     pub folding: Option<Folding>,
+    /// Seams: vertices that are glued to each other.
+    #[serde(default)]
+    pub glue: Vec<Glue>,
     /// What holds the sheet.
     #[serde(default)]
     pub support: Vec<Support>,
@@ -182,6 +187,7 @@ impl Scene {
             sheet: vec![sheet],
             crease: Vec::new(),
             folding: None,
+            glue: Vec::new(),
             support: Vec::new(),
             obstacle: Vec::new(),
             forces: Forces::default(),
@@ -218,6 +224,9 @@ impl Scene {
             if let Ok(Some(k)) = sheets::number_of(&self.sheet, folding.sheet.as_deref(), &key) {
                 folding.check(&self.sheet[k].mesh, &key, &mut checks);
             }
+        }
+        for (k, glue) in self.glue.iter().enumerate() {
+            glue.check(&self.sheet, &root.name("glue").entry(k), &mut checks);
         }
         for (k, support) in self.support.iter().enumerate() {
             let key = root.name("support").entry(k);

@@ -12,7 +12,7 @@ use crate::model::PINNED;
 use crate::step::effort::SolverEffort;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
-use far::FarCouplings;
+use far::{FarCouplings, stiff_pairs};
 use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt};
 use isosheet_mesh::{EdgeId, VertexId};
 use iterative::{ConjugateGradients, Ending, Goal};
@@ -65,6 +65,8 @@ pub(crate) struct PrimalMatrix {
     /// Pairs of free vertices (in free numbers, larger first) that contact couples beyond the mesh's edges,
     /// sorted.
     extra: Vec<[u32; 2]>,
+    /// Pairs that potentials couple stiffly, in the same form.
+    stiff: Vec<[u32; 2]>,
     couplings: Vec<[u32; 2]>,
     /// Positions at the last assembly (`3V`, metres) and the penalties of the equations.
     x: Vec<f64>,
@@ -132,7 +134,8 @@ impl PrimalMatrix {
                 both_free.then(|| (layout.block([i.max(j), i.min(j)], FULL), j > i))
             })
             .collect();
-        for &pair in &extra {
+        let stiff = stiff_pairs(model);
+        for &pair in extra.iter().chain(&stiff) {
             layout.block(pair, FULL);
         }
         let n = 3 * model.free_count();
@@ -161,6 +164,7 @@ impl PrimalMatrix {
             edge_slots,
             rhs: vec![0.0; n],
             extra,
+            stiff,
             couplings: Vec::new(),
             x: vec![0.0; model.coordinate_count()],
             axial: vec![0.0; model.rods().len()],
@@ -539,7 +543,15 @@ impl HessianSink for Sink<'_> {
     }
 
     fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
-        self.matrix.far.add(self.model, [a, b], block, self.scale);
+        if self.matrix.stiff.is_empty() {
+            self.matrix.far.add(self.model, [a, b], block, self.scale);
+            return;
+        }
+        let [i, j] = [a, b].map(|v| self.model.free_index()[v.index()]);
+        match self.matrix.stiff.binary_search(&[i.max(j), i.min(j)]) {
+            Ok(_) => self.add(a.0, b.0, block),
+            Err(_) => self.matrix.far.add(self.model, [a, b], block, self.scale),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Potentials of one of several sheets.
 
-use crate::{HessianSink, Potential, PotentialShape};
+use crate::{CouplingKind, HessianSink, Potential, PotentialShape};
 use isosheet_mesh::{EdgeId, Part, VertexId};
 use nalgebra::Matrix3;
 
@@ -70,6 +70,10 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
         pairs
             .map(|pair| pair.map(|v| self.part.vertex(v)))
             .collect()
+    }
+
+    fn coupling_kind(&self) -> CouplingKind {
+        self.potential.coupling_kind()
     }
 
     fn is_driven(&self) -> bool {

@@ -34,6 +34,11 @@ pub trait Potential: Debug + Send + Sync {
         Vec::new()
     }
 
+    /// How stiff the [`Potential::couplings`] are.
+    fn coupling_kind(&self) -> CouplingKind {
+        CouplingKind::Soft
+    }
+
     /// Whether the energy depends on time at fixed positions. If it says so, the work of changing it enters
     /// the energy balance; the default says no.
     fn is_driven(&self) -> bool {
@@ -64,6 +69,16 @@ pub trait Potential: Debug + Send + Sync {
     fn shape(&self) -> PotentialShape {
         PotentialShape::General
     }
+}
+
+/// How stiff the couplings of vertices without a common edge are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CouplingKind {
+    /// Such as those of bending: a matrix may be factorised without them, where that is cheaper, and they are taken
+    /// into account by conjugate gradients.
+    Soft,
+    /// So stiff that conjugate gradients would not converge without them.
+    Stiff,
 }
 
 /// How a potential depends on the positions.

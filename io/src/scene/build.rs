@@ -13,9 +13,9 @@ use super::supports::{Hold, frame_motion};
 use super::{Air, Origins, Scene, Setup};
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
-    AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, PlateBending, PointMotion,
-    PointProfile, Potential, PotentialOfPart, RigidProfile, SheetModel, SimulationError, State,
-    VertexConstraint, VertexLoad, leave_flat_in, project_positions,
+    AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, PAPER_GRAVITY,
+    PlateBending, PointMotion, PointProfile, Potential, PotentialOfPart, RigidProfile, SheetModel,
+    SimulationError, State, VertexConstraint, VertexLoad, leave_flat_in, project_positions,
 };
 use isosheet_mesh::wording::{brief, counted};
 use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
@@ -38,6 +38,7 @@ impl Scene {
         builder.add_folds(folder)?;
         builder.add_isometry()?;
         builder.perturb()?;
+        builder.add_glue()?;
         let (contacts, obstacles) = builder.contacts(folder)?;
         Ok(builder.finish(contacts, obstacles))
     }
@@ -61,6 +62,8 @@ struct Builder<'a> {
     origins: Origins,
     modelled: Vec<String>,
     folding: Option<FoldTargets>,
+    /// Pairs of vertices that are glued to each other.
+    glued: Vec<[VertexId; 2]>,
 }
 
 /// An error of the engine at a key.
@@ -89,6 +92,7 @@ impl<'a> Builder<'a> {
             origins: Origins::default(),
             modelled,
             folding: None,
+            glued: Vec::new(),
         })
     }
 
@@ -431,6 +435,28 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    fn add_glue(&mut self) -> Result<(), SceneError> {
+        let rigidity = self.scene.sheet.iter().map(|s| s.bending().rigidity());
+        let rigidity = rigidity.fold(0.0, f64::max);
+        let norm = |g: [f64; 3]| g.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let gravity = self.scene.forces.gravity.map(norm).filter(|g| *g > 0.0);
+        let gravity = gravity.unwrap_or(norm(PAPER_GRAVITY));
+        for (k, seam) in self.scene.glue.iter().enumerate() {
+            let key = Key::root().name("glue").entry(k);
+            let pairs = seam.pairs(&self.sheets, &key)?;
+            let model = self.model();
+            let (mass, length) = (model.mass().total(), model.mean_length());
+            let stiffness = seam.stiffness(mass, gravity, rigidity, length);
+            let closing = seam.closing.as_given();
+            let glue = Glue::new(model.topology(), &pairs, stiffness, closing, &self.x);
+            let glue = glue.map_err(at(&key))?;
+            self.change(|m| Ok(m.with_potential(glue)), at::<SimulationError>(&key))?;
+            self.glued.extend(pairs);
+        }
+        self.count(self.scene.glue.len(), "seam", "seams");
+        Ok(())
+    }
+
     fn finish(mut self, contacts: Option<Contacts>, obstacles: Vec<Obstacle>) -> Setup {
         let model = self.model.take();
         let sheets = &self.sheets.list;
@@ -465,8 +491,9 @@ impl<'a> Builder<'a> {
         let options = scene
             .contact
             .options(self.model(), scene.sheet[0].thickness);
-        let mut contacts =
-            Contacts::new(self.model(), options).map_err(at(&key.name("contact")))?;
+        let mut contacts = Contacts::new(self.model(), options)
+            .map_err(at(&key.name("contact")))?
+            .with_glue(&self.glued);
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);

@@ -120,7 +120,11 @@ impl Selection {
     }
 }
 
-fn by_number(numbers: &[usize], key: &Key, count: usize) -> Result<Vec<VertexId>, Problem> {
+pub(super) fn by_number(
+    numbers: &[usize],
+    key: &Key,
+    count: usize,
+) -> Result<Vec<VertexId>, Problem> {
     if let Some(k) = numbers.iter().position(|&n| n >= count) {
         return Err(Problem::new(
             key.name("vertices").entry(k),

@@ -1,7 +1,7 @@
 //! Couplings of vertices without a common edge, and what takes their place in a matrix without them.
 
-use crate::SheetModel;
 use crate::model::PINNED;
+use crate::{CouplingKind, SheetModel};
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, Vector3};
 
@@ -67,8 +67,7 @@ enum Rows {
 impl FarCouplings {
     /// Of the potentials of a model.
     pub(super) fn of(model: &SheetModel) -> Self {
-        let named = model.potentials().flat_map(|p| p.couplings());
-        Self::named(model, named.collect())
+        Self::named(model, couplings(model, CouplingKind::Soft))
     }
 
     /// No couplings.
@@ -260,6 +259,20 @@ impl FarCouplings {
         }
         multiples + self.substitutes.iter().map(Matrix3::norm).sum::<f64>()
     }
+}
+
+/// The pairs of free vertices (in free numbers, larger first) with stiff couplings, sorted.
+pub(super) fn stiff_pairs(model: &SheetModel) -> Vec<[u32; 2]> {
+    let named = couplings(model, CouplingKind::Stiff).into_iter();
+    let mut pairs: Vec<[u32; 2]> = named.filter_map(|n| Some(pair_of(model, n)?.0)).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+fn couplings(model: &SheetModel, kind: CouplingKind) -> Vec<[VertexId; 2]> {
+    let potentials = model.potentials().filter(|p| p.coupling_kind() == kind);
+    potentials.flat_map(|p| p.couplings()).collect()
 }
 
 /// The pair of two free vertices, and which of these is the first of the pair.

@@ -1,0 +1,207 @@
+//! Seams: vertices of one sheet or of two that are glued to each other.
+
+use super::key::Key;
+use super::placed::PlacedSheets;
+use super::problem::{Checks, Problem};
+use super::profile::Profile;
+use super::selection::{by_number, size};
+use super::unit::Unit;
+use super::{Sheet, sheets};
+use isosheet_mesh::wording::brief;
+use isosheet_mesh::{Sheet as Mesh, VertexId};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Vertices of one sheet or of two that are glued to each other in pairs: the first of one side to the first of the
+/// other side, and so on.
+///
+/// Pairs that coincide at the start stay together. Others are drawn together by a `closing` from 0 to 1. The sides of
+/// a seam may run in opposite directions: two ends of a strip make a band, and a Moebius band if one of them is
+/// given from its other end. A seam along one line is a hinge without stiffness; with a second one along the
+/// next lines of vertices (an overlap) the curvature goes on across it.
+///
+/// ```toml
+/// [[glue]]
+/// first = { line = { from = [0, 0, 0], to = [0, 0.02, 0] } }
+/// second = { line = { from = [0.3, 0, 0], to = [0.3, 0.02, 0] } }
+/// closing = { smooth_step = { to = 1, end = 1.0 } }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Glue {
+    /// The names of the sheets of the two sides, if there are several.
+    #[serde(default)]
+    pub sheets: Option<[String; 2]>,
+    /// The vertices of one side.
+    pub first: SeamSide,
+    /// Those of the other side, as many.
+    pub second: SeamSide,
+    /// How far the glue has drawn the two sides together: from 0, as at the start, to 1, closed.
+    #[serde(default = "closed")]
+    pub closing: Profile,
+    /// Stiffness of each pair, N/m. If left out, `1e4 (m g + D / L) / L` with the mass `m` of all sheets, gravity `g`
+    /// (9.8 m/s2 if there is none), the largest flexural rigidity `D` and the mean edge length `L`: a pair that carries
+    /// all of that is apart by a ten-thousandth of an edge.
+    #[serde(default)]
+    pub stiffness: Option<f64>,
+}
+
+fn closed() -> Profile {
+    Profile::Constant(1.0)
+}
+
+/// One side of a seam. Points are those of the rest shape before it is placed.
+///
+/// ```toml
+/// [[glue]]
+/// first = { vertices = [0, 21, 42] }
+/// second = { vertices = [20, 41, 62] }
+/// closing = { ramp = { to = 1, end = 0.5 } }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum SeamSide {
+    /// Vertices by their numbers, from 0, in order.
+    Vertices(Vec<usize>),
+    /// The vertices on a straight line, in the order in which they lie on it.
+    Line {
+        /// Where the line begins, metres.
+        from: [f64; 3],
+        /// Where the line ends, metres.
+        to: [f64; 3],
+    },
+}
+
+/// Largest distance of two glued vertices that coincide, and of a vertex from the line that it is on, as a part of
+/// the size of the sheet: above the round-off of coordinates that went through a text file with seven digits.
+const COINCIDENT: f64 = 1e-6;
+
+/// Stiffness of glue in units of `(m g + D / L) / L`, see [`Glue::stiffness`].
+const STIFFNESS: f64 = 1e4;
+
+impl Glue {
+    pub(crate) fn check(&self, all: &[Sheet], key: &Key, checks: &mut Checks) {
+        for (i, name) in self.sheets.iter().flatten().enumerate() {
+            let key = key.name("sheets").entry(i);
+            sheets::check_reference(all, Some(name), &key, checks);
+        }
+        for (name, side) in [("first", &self.first), ("second", &self.second)] {
+            let key = key.name(name);
+            if let SeamSide::Line { from, to } = side {
+                checks.finite(key.name("line.from"), from, Unit::Metre);
+                checks.finite(key.name("line.to"), to, Unit::Metre);
+                if from == to {
+                    let message = "the line begins where it ends";
+                    checks.report(key.name("line.to"), message, "give two different points");
+                }
+            }
+        }
+        self.closing.check(key.name("closing"), Unit::One, checks);
+        if let Some(stiffness) = self.stiffness {
+            checks.positive(key.name("stiffness"), stiffness, Unit::NewtonPerMetre);
+        }
+    }
+
+    /// The pairs of vertices, by their numbers in the union of all sheets.
+    pub(super) fn pairs(
+        &self,
+        all: &PlacedSheets<'_>,
+        key: &Key,
+    ) -> Result<Vec<[VertexId; 2]>, Problem> {
+        let names = |i: usize| self.sheets.as_ref().map(|names| names[i].as_str());
+        let side = |i: usize, name: &str, side: &SeamSide| {
+            let sheet = all.one(names(i), key, "the sides of the seam")?;
+            let found = side.vertices(&sheet.unplaced, &key.name(name))?;
+            let found = found.into_iter().map(|v| sheet.part.vertex(v));
+            Ok::<_, Problem>(found.collect::<Vec<_>>())
+        };
+        let first = side(0, "first", &self.first)?;
+        let second = side(1, "second", &self.second)?;
+        if first.len() != second.len() {
+            return Err(Problem::new(
+                key.name("second"),
+                format!(
+                    "one side of the seam has {} vertices, and the other {}",
+                    first.len(),
+                    second.len()
+                ),
+                "give as many on both sides; a mesh with the same spacing along both has them",
+            ));
+        }
+        let pairs = first.into_iter().zip(second).map(|(a, b)| [a, b]);
+        // (The tip of a cone is on both sides of its seam.)
+        let pairs: Vec<[VertexId; 2]> = pairs.filter(|[a, b]| a != b).collect();
+        self.check_apart(&pairs, all, key)?;
+        Ok(pairs)
+    }
+
+    /// Refuses glue that would draw its sides together in no time.
+    fn check_apart(
+        &self,
+        pairs: &[[VertexId; 2]],
+        all: &PlacedSheets<'_>,
+        key: &Key,
+    ) -> Result<(), Problem> {
+        let points = all.start.as_chunks::<3>().0;
+        let apart = |&[a, b]: &[VertexId; 2]| {
+            let [a, b] = [a, b].map(|v| points[v.index()]);
+            (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+        };
+        let farthest = pairs.iter().map(apart).fold(0.0, f64::max);
+        let drawn = farthest * self.closing.as_given().value(0.0).abs();
+        if drawn > COINCIDENT * size(points) {
+            return Err(Problem::new(
+                key.name("closing"),
+                format!(
+                    "the sides of the seam are {} m apart at the start",
+                    brief(farthest)
+                ),
+                "draw them together in time, `closing = { smooth_step = { to = 1, end = 1 } }`, or start where they \
+                 meet (`sheet.start.file`)",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The stiffness of each pair, N/m.
+    pub(super) fn stiffness(&self, mass: f64, gravity: f64, rigidity: f64, length: f64) -> f64 {
+        let automatic = STIFFNESS * (mass * gravity + rigidity / length) / length;
+        self.stiffness.unwrap_or(automatic)
+    }
+}
+
+impl SeamSide {
+    fn vertices(&self, mesh: &Mesh, key: &Key) -> Result<Vec<VertexId>, Problem> {
+        let points = mesh.positions().as_chunks::<3>().0;
+        let found = match self {
+            Self::Vertices(numbers) => by_number(numbers, key, points.len())?,
+            Self::Line { from, to } => on_line(points, from, to),
+        };
+        if found.is_empty() {
+            return Err(Problem::new(
+                key.clone(),
+                "no vertex of the mesh is selected here",
+                "compare the line with the mesh before it is placed",
+            ));
+        }
+        Ok(found)
+    }
+}
+
+/// The points on a line between two points, in its order.
+fn on_line(points: &[[f64; 3]], from: &[f64; 3], to: &[f64; 3]) -> Vec<VertexId> {
+    let tolerance = COINCIDENT * size(points);
+    let along: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
+    let length2: f64 = along.iter().map(|c| c * c).sum();
+    let place = |(v, p): (usize, &[f64; 3])| {
+        let part: f64 = (0..3).map(|k| along[k] * (p[k] - from[k])).sum::<f64>() / length2;
+        let nearest = part.clamp(0.0, 1.0);
+        let distance2: f64 = (0..3)
+            .map(|k| (from[k] + nearest * along[k] - p[k]).powi(2))
+            .sum();
+        (distance2 <= tolerance * tolerance).then_some((part, VertexId::from_index(v)))
+    };
+    let mut found: Vec<(f64, VertexId)> = points.iter().enumerate().filter_map(place).collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().map(|(_, v)| v).collect()
+}
