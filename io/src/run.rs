@@ -54,7 +54,7 @@ pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use page::write_page;
 pub use recording::Recording;
-pub use summary::{EndReason, Ending, Summary};
+pub use summary::{EndReason, Ending, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, VariationError};
 pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
@@ -156,6 +156,7 @@ fn simulate_in(
     let facts = Facts {
         hash: material.hash,
         modelled,
+        sheets: setup.parts.iter().map(SheetPlace::new).collect(),
         sheet: setup.sheet.clone(),
         frame: FrameShape::of(&setup),
     };
@@ -240,6 +241,7 @@ fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError>
 struct Facts {
     hash: SceneHash,
     modelled: Vec<String>,
+    sheets: Vec<SheetPlace>,
     sheet: isosheet_mesh::Sheet,
     frame: FrameShape,
 }
@@ -252,6 +254,7 @@ fn start<'a>(
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
     let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
+    let glued = setup.glued.clone();
     let simulation = setup.start()?;
     let count = file.scene().support.len();
     let mut stepping = Stepping {
@@ -259,6 +262,7 @@ fn start<'a>(
         folder,
         supports: SupportForces::new(origins.clone(), &simulation, count),
         folding,
+        glued,
         simulation,
         origins,
         history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
@@ -298,6 +302,7 @@ fn resume<'a>(
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
     let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
+    let glued = setup.glued.clone();
     let frames = FrameFile::resume(
         &folder.path(RunFolder::FRAMES),
         progress.frames,
@@ -310,6 +315,7 @@ fn resume<'a>(
         folder,
         supports: SupportForces::new(origins.clone(), &simulation, count),
         folding,
+        glued,
         simulation,
         origins,
         history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,
@@ -345,6 +351,7 @@ fn finish(
         scene: facts.hash.to_string(),
         wall_time: progress.wall + clock.elapsed().as_secs_f64(),
         modelled: facts.modelled.clone(),
+        sheets: facts.sheets.clone(),
         vertices: topology.vertex_count(),
         faces: topology.face_count(),
         steps: progress.steps,

@@ -3,8 +3,8 @@
 mod catalogue;
 pub(crate) mod crease;
 pub(crate) mod elastic_sheet;
-pub(crate) mod plasticity;
 pub(crate) mod glue;
+pub(crate) mod plasticity;
 pub(crate) mod plate_bending;
 #[cfg(test)]
 mod tests;

@@ -86,6 +86,18 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
             .add_bending_energies(&x[self.part.coordinates()], own);
     }
 
+    fn memory(&self) -> &[f64] {
+        self.potential.memory()
+    }
+
+    fn set_memory(&mut self, memory: &[f64]) {
+        self.potential.set_memory(memory);
+    }
+
+    fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
+        self.potential.settle(t, &x[self.part.coordinates()])
+    }
+
     fn shape(&self) -> PotentialShape {
         self.potential.shape()
     }

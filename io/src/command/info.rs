@@ -108,10 +108,19 @@ pub(crate) fn describe_scene(setup: &Setup) -> String {
     let pins = setup.model.pins().len();
     let mass = setup.model.mass().total();
     let modelled = setup.modelled.join(", ");
+    let sheets = setup.parts.iter().map(|(name, part)| {
+        let (v, f) = (&part.vertices, &part.faces);
+        let last = [v.end - 1, f.end - 1];
+        format!(
+            "sheet            {name}: vertices {} to {}, faces {} to {}\n",
+            v.start, last[0], f.start, last[1]
+        )
+    });
+    let sheets: String = sheets.collect();
     let material = setup.material.as_ref();
     let material = material.map_or(String::new(), |m| format!("material         {m}\n"));
     format!(
-        "{sheet}{material}mass             {} kg\npinned vertices  {pins}\nmodelled         {modelled}\n",
+        "{sheet}{sheets}{material}mass             {} kg\npinned vertices  {pins}\nmodelled         {modelled}\n",
         number(mass)
     )
 }

@@ -50,6 +50,10 @@ enum Kind {
     Flag,
     /// A folded leaf of paper that falls in still air
     Leaf,
+    /// Three sheets of paper, of which a roller feeds the uppermost
+    Stack,
+    /// A strip of paper whose ends are glued after half a turn
+    Moebius,
 }
 
 /// Refuses a path that does not end in the name of a file, such as `..` or `scenes/`.
@@ -81,6 +85,8 @@ impl New {
             Kind::Fold => StartingPoint::Fold,
             Kind::Flag => StartingPoint::Flag,
             Kind::Leaf => StartingPoint::Leaf,
+            Kind::Stack => StartingPoint::Stack,
+            Kind::Moebius => StartingPoint::Moebius,
         }
         .text();
         write_atomically(&path, |w| w.write_all(text.as_bytes()))

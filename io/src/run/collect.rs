@@ -131,6 +131,7 @@ fn add_summary(row: &mut Row, summary: &Summary) {
         scene,
         wall_time,
         modelled,
+        sheets,
         vertices,
         faces,
         steps,
@@ -150,6 +151,11 @@ fn add_summary(row: &mut Row, summary: &Summary) {
     cell("scene", scene.clone());
     cell("wall_time", number(*wall_time));
     cell("modelled", modelled.join("; "));
+    for place in sheets {
+        let [first, end] = place.vertices.map(|v| v.to_string());
+        cell(&format!("sheets.{}.first_vertex", place.name), first);
+        cell(&format!("sheets.{}.end_vertex", place.name), end);
+    }
     cell("vertices", vertices.to_string());
     cell("faces", faces.to_string());
     cell("steps", steps.to_string());
@@ -183,6 +189,7 @@ fn add_ending(row: &mut Row, ending: &Ending) {
         supports,
         obstacles,
         folding,
+        glue,
     } = ending;
     let mut cell = |name: &str, value: String| row.push((format!("ending.{name}"), value));
     cell("reason", reason.name().to_owned());
@@ -199,6 +206,9 @@ fn add_ending(row: &mut Row, ending: &Ending) {
         cell("folding.largest", number(folding.largest));
         cell("folding.rms", number(folding.rms));
         cell("folding.largest_flat", number(folding.largest_flat));
+    }
+    if let Some(glue) = glue {
+        cell("glue", number(*glue));
     }
     for (list, forces) in [("supports", supports), ("obstacles", obstacles)] {
         for (k, force) in forces.iter().enumerate() {

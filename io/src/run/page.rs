@@ -2,7 +2,7 @@
 
 use super::elastic::ElasticSummary;
 use super::recording::Recording;
-use super::{EndReason, RunError, Summary, constraints};
+use super::{EndReason, RunError, SheetPlace, Summary, constraints};
 use crate::format::write_atomically;
 use crate::view::{Field, PageOptions, Replay, ViewError};
 use std::io::Write;
@@ -111,6 +111,16 @@ impl Rows {
             "steps",
             format!("{}, {} rejected", summary.steps, summary.rejected),
         );
+        for SheetPlace {
+            name,
+            vertices,
+            faces,
+        } in &summary.sheets
+        {
+            let [[v, w], [f, g]] = [*vertices, *faces];
+            let place = format!("vertices {v} to {}, faces {f} to {}", w - 1, g - 1);
+            self.add(&format!("sheet {name}"), place);
+        }
         let solves = (summary.iterations, summary.factorisations);
         self.add(
             "solver",
@@ -126,6 +136,10 @@ impl Rows {
         }
         if let Some(plastic) = ending.plastic {
             self.add("dissipated by yielding", format!("{plastic:.2e} J"));
+        }
+        if let Some(glue) = ending.glue {
+            let name = "largest distance of glued vertices at the end";
+            self.add(name, format!("{glue:.2e} m"));
         }
         self.add(
             "error of the energy balance",

@@ -9,6 +9,7 @@ use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter};
 use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
 use isosheet_dynamics::{Checkpoint, Simulation, StepError, StepProgress, StepReport};
+use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use std::time::Instant;
 
@@ -20,6 +21,7 @@ pub(crate) struct Stepping<'a> {
     pub(crate) origins: Origins,
     pub(crate) supports: SupportForces,
     pub(crate) folding: Option<FoldTargets>,
+    pub(crate) glued: Vec<[VertexId; 2]>,
     pub(crate) history: HistoryWriter,
     pub(crate) frames: FrameFile,
     pub(crate) progress: Progress,
@@ -208,6 +210,16 @@ impl Stepping<'_> {
         self.supports.of(&self.simulation)
     }
 
+    /// Largest distance of two vertices that are glued to each other, metres.
+    fn glue_gap(&self) -> Option<f64> {
+        let x = self.simulation.state().x.as_chunks::<3>().0;
+        let gap = |&[a, b]: &[VertexId; 2]| {
+            let [a, b] = [a, b].map(|v| Vector3::from(x[v.index()]));
+            (a - b).norm()
+        };
+        self.glued.iter().map(gap).reduce(f64::max)
+    }
+
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {
         let loads = self.simulation.body_loads();
         let mut potentials = self.simulation.model().potentials();
@@ -226,6 +238,7 @@ impl Stepping<'_> {
                 let topology = self.simulation.model().topology();
                 targets.residual(topology, &self.simulation.state().x)
             }),
+            glue: self.glue_gap(),
         }
     }
 

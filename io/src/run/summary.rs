@@ -2,6 +2,7 @@
 
 use super::elastic::ElasticSummary;
 use crate::scene::FoldResidual;
+use isosheet_mesh::Part;
 use serde::{Deserialize, Serialize};
 
 /// The contents of `summary.json`.
@@ -19,6 +20,9 @@ pub struct Summary {
     pub wall_time: f64,
     /// What was modelled, in words.
     pub modelled: Vec<String>,
+    /// Of several sheets the name and the place of each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sheets: Vec<SheetPlace>,
     /// Number of vertices.
     pub vertices: usize,
     /// Number of faces.
@@ -70,6 +74,31 @@ pub struct Ending {
     /// Differences of the fold angles from their targets, if the scene folds to the angles of a FOLD file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub folding: Option<FoldResidual>,
+    /// Largest distance of two vertices that are glued to each other, metres, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub glue: Option<f64>,
+}
+
+/// One of several sheets in the arrays of a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SheetPlace {
+    /// Its name.
+    pub name: String,
+    /// Its first vertex, and the one after its last.
+    pub vertices: [usize; 2],
+    /// Its first face, and the one after its last.
+    pub faces: [usize; 2],
+}
+
+impl SheetPlace {
+    pub(crate) fn new((name, part): &(String, Part)) -> Self {
+        let ends = |range: &std::ops::Range<usize>| [range.start, range.end];
+        Self {
+            name: name.clone(),
+            vertices: ends(&part.vertices),
+            faces: ends(&part.faces),
+        }
+    }
 }
 
 /// Why a run ended.

@@ -478,6 +478,7 @@ impl<'a> Builder<'a> {
             integration: self.scene.method.build(),
             modelled: self.modelled,
             folding: self.folding,
+            glued: self.glued,
             origins: self.origins,
             text: None,
         }

@@ -149,7 +149,7 @@ A scene file says in TOML what is simulated; `isosheet simulate SCENE` runs it. 
 seconds, masses in kilograms, forces in newtons and **angles in degrees**. Only what the scene names is modelled:
 without `forces.gravity` there is no gravity, without `air` no air, without obstacles and self-contact no contact.
 
-`isosheet new NAME --kind hanging|clamp|drape|stamp|feed|fold|flag|leaf` writes a commented scene to start from,
+`isosheet new NAME --kind hanging|clamp|drape|stamp|feed|fold|flag|leaf|stack|moebius` writes a commented scene to start from,
 `isosheet check SCENE` says what is wrong with one, and `--set key=value` changes a key for one run, for example
 `--set stop.time=0.5 --set 'obstacle[0].friction=0.3'`. An unknown key is an error, which names the nearest known one.
 

@@ -12,7 +12,7 @@ use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{
     Checkpoint, Isometry, Method, SheetModel, Simulation, SimulationError, State, StepControl,
 };
-use isosheet_mesh::{Part, Sheet};
+use isosheet_mesh::{Part, Sheet, VertexId};
 
 /// How the motion is computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +35,8 @@ pub struct Setup {
     pub sheet: Sheet,
     /// Of several sheets the name of each, and where it is in the union.
     pub parts: Vec<(String, Part)>,
+    /// Pairs of vertices that are glued to each other.
+    pub glued: Vec<[VertexId; 2]>,
     /// The state at the start.
     pub start: State,
     /// What moves.

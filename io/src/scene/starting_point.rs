@@ -19,11 +19,15 @@ pub enum StartingPoint {
     Flag,
     /// A folded leaf of paper that falls in still air.
     Leaf,
+    /// Three sheets of paper, of which a roller feeds the uppermost.
+    Stack,
+    /// A strip of paper whose ends are glued after half a turn.
+    Moebius,
 }
 
 impl StartingPoint {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Hanging,
         Self::Clamp,
         Self::Drape,
@@ -32,6 +36,8 @@ impl StartingPoint {
         Self::Fold,
         Self::Flag,
         Self::Leaf,
+        Self::Stack,
+        Self::Moebius,
     ];
 
     /// Its name.
@@ -45,6 +51,8 @@ impl StartingPoint {
             Self::Fold => "fold",
             Self::Flag => "flag",
             Self::Leaf => "leaf",
+            Self::Stack => "stack",
+            Self::Moebius => "moebius",
         }
     }
 
@@ -59,6 +67,8 @@ impl StartingPoint {
             Self::Fold => include_str!("starting_point/fold.toml"),
             Self::Flag => include_str!("starting_point/flag.toml"),
             Self::Leaf => include_str!("starting_point/leaf.toml"),
+            Self::Stack => include_str!("starting_point/stack.toml"),
+            Self::Moebius => include_str!("starting_point/moebius.toml"),
         }
     }
 }
