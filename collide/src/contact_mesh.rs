@@ -1,5 +1,8 @@
 //! What of a mesh can touch: its vertices, edges and faces.
 
+mod glued;
+
+use glued::Glued;
 use isosheet_mesh::{Advice, Topology};
 use std::collections::HashMap;
 use thiserror::Error;
@@ -14,8 +17,7 @@ pub struct ContactMesh {
     edges: Vec<[u32; 2]>,
     faces: Vec<[u32; 3]>,
     elements: Vec<Element>,
-    /// Of each vertex the lowest number among those that are glued to it; empty if none are.
-    glued: Vec<u32>,
+    glued: Option<Glued>,
 }
 
 /// A face, a free edge or a free vertex together with the vertices and edges that it represents.
@@ -208,40 +210,28 @@ impl ContactMesh {
             edges,
             faces,
             elements,
-            glued: Vec::new(),
+            glued: None,
         }
     }
 
-    /// Counts vertices that are glued to each other as one, so that primitives that have them do not repel each other.
+    /// Counts the vertices of each pair as one, because they are glued to each other, so that primitives that have them
+    /// do not repel each other. Replaces pairs named before.
     ///
     /// # Panics
     /// If a vertex does not exist.
     #[must_use]
     pub fn with_glue(mut self, pairs: &[[u32; 2]]) -> Self {
-        if self.glued.is_empty() && !pairs.is_empty() {
-            self.glued = (0..index(self.vertex_count)).collect();
-        }
-        for pair in pairs {
-            let [a, b] = pair.map(|v| self.glued[v as usize]);
-            let (low, high) = (a.min(b), a.max(b));
-            for lowest in &mut self.glued {
-                if *lowest == high {
-                    *lowest = low;
-                }
-            }
-        }
+        let glued = || Glued::new(self.vertex_count, &self.edges, pairs);
+        self.glued = (!pairs.is_empty()).then(glued);
         self
     }
 
-    /// Whether two primitives have a vertex in common, or vertices that are glued to each other.
+    /// Whether two primitives have a vertex in common or are glued to each other.
     pub(crate) fn are_joined(&self, first: &[u32], second: &[u32]) -> bool {
-        if self.glued.is_empty() {
-            return first.iter().any(|v| second.contains(v));
+        match &self.glued {
+            None => first.iter().any(|v| second.contains(v)),
+            Some(glued) => glued.are_joined(first, second),
         }
-        let lowest = |v: &u32| self.glued[*v as usize];
-        first
-            .iter()
-            .any(|v| second.iter().any(|w| lowest(v) == lowest(w)))
     }
 
     /// Number of vertices.

@@ -10,6 +10,7 @@ use std::path::Path;
 const ALL_KEYS: [&str; 5] = [
     r#"version = 1
     [sheet]
+    name = "main"
     mesh = { square = { side = 0.2, level = 1 } }
     density = 0.1
     mass = 0.01
@@ -21,6 +22,7 @@ const ALL_KEYS: [&str; 5] = [
     placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }
     start = { perturbation = 0.01, seed = 3, file = { path = "a.obj", scale = 1.0, up = "y", polygons = "refuse", frame = "folded" } }
     [[crease]]
+    sheet = "main"
     at = { ends = [[0, 1]] }
     stiffness = 0.1
     angle = { sine = { mean = 1, amplitude = 2, frequency = 3, phase = 4 } }
@@ -29,7 +31,14 @@ const ALL_KEYS: [&str; 5] = [
     at = { line = { from = [0, 0, 0], to = [1, 1, 0] } }
     stiffness = 0.1
     angle = { keyframes = { interpolation = "monotone_cubic", keys = [[0, 0], [1, 90]] } }
+    [[glue]]
+    sheets = ["main", "main"]
+    first = { vertices = [0] }
+    second = { line = { from = [0, 0, 0], to = [1, 0, 0] } }
+    closing = 0.0
+    stiffness = 10.0
     [[support]]
+    sheet = "main"
     at = { nearest = [[0, 0, 0]] }
     hold = { curve = { shape = { line = { point = [0, 0, 0], direction = [1, 0, 0] } }, motion = { x = 1.0 } } }
     [[support]]
@@ -72,6 +81,7 @@ const ALL_KEYS: [&str; 5] = [
     [forces]
     gravity = [0, 0, -9.81]
     [[forces.load]]
+    sheet = "main"
     at = "all"
     direction = [1, 0, 0]
     size = 1.0
@@ -89,6 +99,9 @@ const ALL_KEYS: [&str; 5] = [
     activation = 1e-3
     stiffness = 1e-3
     rest_speed = 1e-3
+    [[contact.pair]]
+    sheets = ["main", "main"]
+    friction = 0.1
     [method]
     integrator = "implicit_euler"
     step = 0.01
@@ -169,9 +182,11 @@ const ALL_KEYS: [&str; 5] = [
     singular = "refuse""#,
     r#"version = 1
     [sheet]
+    name = "main"
     mesh = { file = { path = "a.fold" } }
     material = "card"
     [folding]
+    sheet = "main"
     time = 1
     stiffness = 0.01
     flat_stiffness = 0.5
