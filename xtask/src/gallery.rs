@@ -1,4 +1,4 @@
-//! `gallery`: ten scenes that anybody can run, each as a labelled picture, and a film of one of them.
+//! `gallery`: scenes that anybody can run, each as a labelled picture, and a film of one of them.
 
 use crate::draw::{Shot, Viewpoint};
 use crate::progress::Progress;
@@ -49,7 +49,7 @@ impl Shown {
 }
 
 /// The scenes in the order of the picture.
-const SCENES: [Shown; 10] = [
+const SCENES: &[Shown] = &[
     Shown::new(["hanging", "new --kind hanging"], [-62.0, 17.0], 0.5, &[]),
     Shown::new(["drape", "new --kind drape"], [-62.0, 24.0], 1.0, &[0]),
     Shown::new(
@@ -70,6 +70,11 @@ const SCENES: [Shown; 10] = [
     ),
     Shown::new(["fig16", "fig16: a paper jam"], [-72.0, 12.0], 1.0, &[0, 2]),
     Shown::new(["fig17", "fig17: Miura's folds"], [-58.0, 38.0], 0.5, &[]),
+    Shown::new(["clamp", "new --kind clamp"], [-62.0, 17.0], 1.0, &[]),
+    Shown::new(["flag", "new --kind flag"], [-50.0, 17.0], 0.8, &[]),
+    Shown::new(["leaf", "new --kind leaf"], [-62.0, 24.0], 0.4, &[]),
+    Shown::new(["stack", "new --kind stack"], [-60.0, 20.0], 0.9, &[1]),
+    Shown::new(["moebius", "new --kind moebius"], [-62.0, 30.0], 1.0, &[]),
 ];
 
 /// Pictures in a row, and the size of one, pixels.
@@ -91,7 +96,7 @@ const DISTANCE: f64 = 6.0;
 pub(crate) fn run(args: &GalleryArgs) -> Result<()> {
     let store = args.options.open("gallery")?;
     let mut runs = Vec::new();
-    for shown in &SCENES {
+    for shown in SCENES {
         runs.push(Run::of(&store, shown.scene(&store)?)?);
     }
     let bar = Progress::start("pictures", SCENES.len() + FRAMES);
@@ -175,7 +180,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (effort, remake) = (crate::report::Effort::Quick, crate::store::Remake::Never);
         let store = Store::open(folder.path(), "gallery", effort, remake).unwrap();
-        for shown in &SCENES {
+        for shown in SCENES {
             let bodies = shown.scene(&store).unwrap().setup().unwrap().obstacles;
             for body in shown.bodies {
                 assert!(Solid::of(&bodies[*body], 0.0).is_ok(), "{}", shown.scene);

@@ -18,7 +18,8 @@ use serde::{Deserialize, Serialize};
 /// Pairs that coincide at the start stay together. Others are drawn together by a `closing` from 0 to 1. The sides of
 /// a seam may run in opposite directions: two ends of a strip make a band, and a Moebius band if one of them is
 /// given from its other end. A seam along one line is a hinge without stiffness; with a second one along the
-/// next lines of vertices (an overlap) the curvature goes on across it.
+/// next lines of vertices (an overlap) the curvature goes on across it. Sides that overlap are drawn together through
+/// each other, so that with `contact.self_contact` an overlap has to be there at the start.
 ///
 /// ```toml
 /// [[glue]]
