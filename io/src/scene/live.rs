@@ -2,6 +2,7 @@
 
 use super::edit::{EditError, EditProblem};
 use super::key::{Key, KeyPart};
+use super::sheets::sheet_key;
 use super::{
     Method, Origins, Problem, Profile, Scene, SceneError, SceneFile, SceneFileError, Setup,
     SupportForces,
@@ -243,16 +244,22 @@ fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
         ..scene.method.clone()
     };
     let (old, new) = (&before.sheet, &after.sheet);
-    let checks = [
-        ("sheet.mesh", old.mesh == new.mesh),
-        ("sheet.placement", old.placement == new.placement),
-        ("sheet.start", old.start == new.start),
-        ("method", method(before) == method(after)),
-    ];
+    if old.len() != new.len() {
+        let message = "the number of sheets does not change during a simulation";
+        let key = Key::root().name("sheet");
+        return vec![Problem::new(key, message, "begin a new simulation")];
+    }
+    let mut checks = vec![(Key::root().name("method"), method(before) == method(after))];
+    for (k, (old, new)) in old.iter().zip(new).enumerate() {
+        let key = sheet_key(before.sheet.len(), k);
+        checks.push((key.name("mesh"), old.mesh == new.mesh));
+        checks.push((key.name("placement"), old.placement == new.placement));
+        checks.push((key.name("start"), old.start == new.start));
+    }
     let changed = checks.into_iter().filter(|(_, same)| !same);
-    let problem = |(key, _): (&str, bool)| {
+    let problem = |(key, _): (Key, bool)| {
         let message = format!("`{key}` does not change during a simulation");
-        Problem::new(Key::root().name(key), message, "begin a new simulation")
+        Problem::new(key, message, "begin a new simulation")
     };
     changed.map(problem).collect()
 }

@@ -189,9 +189,7 @@ fn a_run_ends_with_a_short_step() {
 #[test]
 fn triangles_are_a_mesh() {
     let square = parse(HANGING).expect("a scene");
-    let sheet = square
-        .scene()
-        .sheet
+    let sheet = square.scene().sheet[0]
         .mesh
         .sheet(Path::new("."))
         .expect("a mesh");
@@ -200,13 +198,13 @@ fn triangles_are_a_mesh() {
         faces: sheet.face_indices(),
     };
     let mut scene = square.scene().clone();
-    scene.sheet.mesh = triangles;
+    scene.sheet[0].mesh = triangles;
     let text = toml::to_string(&scene).expect("TOML");
     let (mut generated, mut given) = (live(HANGING), live(&text));
     step(&mut generated, 2);
     step(&mut given, 2);
     assert_eq!(generated.simulation().state(), given.simulation().state());
-    scene.sheet.mesh = Mesh::Triangles {
+    scene.sheet[0].mesh = Mesh::Triangles {
         vertices: vec![[0.0; 3]; 3],
         faces: vec![[0, 1, 5]],
     };

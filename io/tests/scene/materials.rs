@@ -151,7 +151,7 @@ fn an_elastic_sheet_needs_no_material() {
 
 #[test]
 fn a_sheet_yields_where_it_says_so() {
-    let yields = |lines: &str| sheet(lines).sheet.yields();
+    let yields = |lines: &str| sheet(lines).sheet[0].yields();
     assert_eq!(yields("material = \"steel sheet\""), None);
     let steel = dynamics::Material::steel_sheet().yields;
     assert!(steel.is_some());
