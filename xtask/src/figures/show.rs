@@ -177,6 +177,7 @@ fn rows(run: &RunSummary) -> Vec<(String, String)> {
         ("work of bodies and forces", joules(e.work)),
         ("taken out by damping", joules(e.damped)),
         ("lost to friction", joules(e.friction)),
+        ("dissipated by yielding", joules(e.plastic)),
         ("error of the energy balance", joules(e.drift)),
     ]
     .map(|(name, value)| (name.to_owned(), value))

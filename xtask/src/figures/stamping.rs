@@ -18,6 +18,25 @@ pub(super) fn scene(effort: Effort) -> Result<FigureScene> {
     FigureScene::of("fig13", "stamping", &edits)
 }
 
+/// Times of the pictures of the blank that the die leaves, seconds: before, half-way up, at the top, half-way down, and
+/// with the die back.
+const RELEASE: [f64; 5] = [0.0, 1.2, 2.4, 3.0, 4.0];
+
+/// The edit that makes the blank yield.
+const YIELDS: &str = "sheet.yield={}";
+
+/// The scene in which the die withdraws, with edits.
+fn release(name: &str, edits: &[&str], effort: Effort) -> Result<FigureScene> {
+    let quick = ["sheet.mesh.square.level=1", "stop.time=0.13333333333333333"];
+    let short = effort.quick_or(quick.to_vec(), Vec::new());
+    let edits: Vec<String> = edits
+        .iter()
+        .chain(&short)
+        .map(|e| (*e).to_owned())
+        .collect();
+    FigureScene::of("fig13-release", name, &edits)
+}
+
 /// The numbers of the die and the frame among the bodies; the holders follow.
 const DIE: usize = 0;
 const FRAME: usize = 1;
@@ -154,11 +173,71 @@ impl Punched {
     }
 }
 
+/// A blank that the die has left.
+struct Released {
+    label: &'static str,
+    run: Run,
+    /// Its height above its lowest point at the end, and the largest one before, metres.
+    height: f64,
+    largest: f64,
+}
+
+impl Released {
+    fn of(store: &Store, label: &'static str, scene: FigureScene) -> Result<Self> {
+        let run = Run::of(store, scene)?;
+        let frames = 0..run.trajectory.len();
+        let height = |k: usize| {
+            let x = run.trajectory.frame(k).unwrap_or_default();
+            let z = x.as_chunks::<3>().0.iter().map(|p| p[2]);
+            let [least, most] = z.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], z| {
+                [l.min(z), m.max(z)]
+            });
+            most - least
+        };
+        Ok(Self {
+            height: frames.clone().map(height).next_back().unwrap_or_default(),
+            largest: frames.map(height).fold(0.0, f64::max),
+            label,
+            run,
+        })
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let millimetres = |length: f64| format!("{:.1} mm", 1e3 * length);
+        let yields = self.run.scene.scene().sheet.yields();
+        let yields = yields.map_or("never".into(), |y| {
+            format!("at {:.1} N m/m, hardening {:.3} N m", y.moment, y.hardening)
+        });
+        let energy = &self.run.summary.energy;
+        let mut rows = vec![
+            ("yields", yields),
+            ("largest height of the blank", millimetres(self.largest)),
+            ("its height when the die is back", millimetres(self.height)),
+            ("work of the die", format!("{:.2} J", energy.work)),
+            ("dissipated by yielding", format!("{:.2} J", energy.plastic)),
+        ];
+        rows.extend(course(&self.run.summary));
+        rows
+    }
+
+    fn page(&self, effort: Effort) -> Result<Play> {
+        let label = format!("stamping, the die withdraws, {}", self.label);
+        VIEW.play(&self.run, effort, 13, &label)
+    }
+}
+
 pub(super) fn make(store: &Store) -> Result<Made> {
     let effort = store.effort;
     let rods = scene(effort)?;
     let steel = Punched::of(store, rods.made_of(METAL)?)?;
     let rods = Punched::of(store, rods)?;
+    let springs = release("stamping-release-elastic", &[], effort)?;
+    let springs = Released::of(store, "elastic steel", springs)?;
+    let stays = release("stamping-release", &[YIELDS], effort)?;
+    let stays = Released::of(store, "steel that yields", stays)?;
+    let both = [&springs, &stays];
+    let ends = both.map(|r| (r.label.to_owned(), &r.run));
+    let left = "The blank after the die has withdrawn: elastic steel is flat, steel that yields keeps a shape";
     let alt = "Force of the sheet on the die over its stroke";
     let plot = Charts::row([rods.plot(), steel.plot()]);
     Ok(Made {
@@ -168,17 +247,38 @@ pub(super) fn make(store: &Store) -> Result<Made> {
             "Four holders above the sides of the frame, which are not drawn, let the blank draw in at the sides and buckle at the \
              corners; the holding conditions of the paper are not known. The first sequence is of rods, the second of an elastic {METAL}, \
              which bends as half a millimetre of steel does and never yields: it presses the die with up to {:.0} N, and rods with up to \
-             {:.0} N.",
-            steel.peak, rods.peak
+             {:.0} N. In the last two pictures the die withdraws: the blank of elastic steel springs back from {:.0} mm to {:.1} mm, and \
+             one that yields (S235, docs/materials.md) from {:.0} mm to {:.1} mm, a part that keeps its shape.",
+            steel.peak,
+            rods.peak,
+            1e3 * springs.largest,
+            1e3 * springs.height,
+            1e3 * stays.largest,
+            1e3 * stays.height,
         )
         .into(),
-        tables: vec![compared(&["rods", METAL], &[rods.rows()?, steel.rows()?])],
+        tables: vec![
+            compared(&["rods", METAL], &[rods.rows()?, steel.rows()?]),
+            compared(&both.map(|r| r.label), &both.map(Released::rows)),
+        ],
         pictures: vec![
             rods.picture("fig13.png", effort)?,
             steel.picture("fig13-elastic.png", effort)?,
             Picture::svg("fig13-force", &plot, alt),
+            VIEW.picture(&stays.run, effort, ["fig13-release.png", left], &RELEASE)?,
+            VIEW.ends(&ends, effort, ["fig13-released.png", left])?,
         ],
-        pages: vec![page(13, &rods.run, effort)?, page(13, &steel.run, effort)?],
-        facts: json!({ "rods": rods.facts(), "elastic": steel.facts() }),
+        pages: vec![
+            page(13, &rods.run, effort)?,
+            page(13, &steel.run, effort)?,
+            springs.page(effort)?,
+            stays.page(effort)?,
+        ],
+        facts: json!({
+            "rods": rods.facts(),
+            "elastic": steel.facts(),
+            "height_mm_after_release": both.map(|r| 1e3 * r.height),
+            "release": both.map(|r| json!(r.run.summary)),
+        }),
     })
 }

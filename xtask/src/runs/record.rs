@@ -61,6 +61,9 @@ pub(crate) struct Energy {
     pub(crate) damped: f64,
     /// Lost to friction.
     pub(crate) friction: f64,
+    /// Dissipated by yielding.
+    #[serde(default)]
+    pub(crate) plastic: f64,
     /// What the balance lacks: the error of the integrator.
     pub(crate) drift: f64,
 }
@@ -104,6 +107,7 @@ impl RunSummary {
             work: r.work,
             damped: r.dissipated,
             friction: r.friction,
+            plastic: r.plastic,
             drift: r.energy_drift,
         };
     }
