@@ -204,7 +204,7 @@ impl Released {
 
     fn rows(&self) -> Vec<Row> {
         let millimetres = |length: f64| format!("{:.1} mm", 1e3 * length);
-        let yields = self.run.scene.scene().sheet.yields();
+        let yields = self.run.scene.scene().sheet[0].yields();
         let yields = yields.map_or("never".into(), |y| {
             format!("at {:.1} N m/m, hardening {:.3} N m", y.moment, y.hardening)
         });
