@@ -53,6 +53,8 @@ pub(super) static WORKS: &[Work] = &[
     Work {
         keys: LEVEL,
         sizes: [&[2], &[2, 3, 4], &[2, 3, 4, 5]],
+        // From a random displacement ten times as large 4225 vertices have no way back to their lengths.
+        perturbation: 1e-4,
         ..single("w1", "square of rods hangs by a corner", "cost-hanging")
     },
     Work {
