@@ -1,7 +1,22 @@
-//! Numpy arrays of what Rust has as slices.
+//! Numpy arrays of what Rust has as slices, and slices of them.
 
+use isosheet_io::mesh::Part;
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PySlice};
+
+/// The vertices of each of several sheets by its name, as slices.
+pub(crate) fn slices<'py>(
+    py: Python<'py>,
+    parts: &[(String, Part)],
+) -> PyResult<Bound<'py, PyDict>> {
+    let slices = PyDict::new(py);
+    for (name, part) in parts {
+        let (begin, end) = (part.vertices.start as isize, part.vertices.end as isize);
+        slices.set_item(name, PySlice::new(py, begin, end, 1))?;
+    }
+    Ok(slices)
+}
 
 /// A copy of numbers in a row.
 pub(crate) fn array<'py, T: Element>(py: Python<'py>, values: &[T]) -> Bound<'py, PyArray1<T>> {

@@ -1,6 +1,6 @@
 //! What a run has written.
 
-use crate::arrays::{array, rows};
+use crate::arrays::{array, rows, slices};
 use crate::error::{of_run, plain};
 use crate::scene::Scene;
 use crate::value::to_python;
@@ -92,6 +92,13 @@ impl Run {
     #[getter]
     fn modelled(&self) -> Vec<String> {
         self.recording.modelled.clone()
+    }
+
+    /// Of several sheets the vertices of each by its name, as slices: ``run.x[:, run.sheets["top"]]``. Empty for
+    /// one sheet.
+    #[getter]
+    fn sheets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        slices(py, &self.recording.parts)
     }
 
     /// Times of the frames, seconds, of shape (T,).

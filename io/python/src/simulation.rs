@@ -1,6 +1,6 @@
 //! Simulations.
 
-use crate::arrays::{array, rows, vectors};
+use crate::arrays::{array, rows, slices, vectors};
 use crate::error::{of_file, of_scene, of_step, plain};
 use crate::mesh::edges;
 use crate::report::StepReport;
@@ -185,6 +185,13 @@ impl Simulation {
     #[getter]
     fn modelled(&self, py: Python<'_>) -> Vec<String> {
         self.with(py, |live| live.modelled().to_vec())
+    }
+
+    /// Of several sheets the vertices of each by its name, as slices: ``simulation.x[simulation.sheets["top"]]``.
+    /// Empty for one sheet.
+    #[getter]
+    fn sheets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        slices(py, &self.with(py, |live| live.parts().to_vec()))
     }
 
     /// Time, seconds.

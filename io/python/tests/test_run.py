@@ -87,6 +87,24 @@ def test_a_run_shows_its_page(folder, tmp_path):
         run.html(budget=10)
 
 
+def test_several_sheets_have_slices(tmp_path):
+    sheet = {"mesh": {"square": {"side": 0.1, "level": 0}}, "density": 0.08}
+    above = {"position": [0, 0, 0.05]}
+    scene = isosheet.Scene.from_dict(
+        {
+            "sheet": [{**sheet, "name": "low"}, {**sheet, "name": "high", "placement": above}],
+            "stop": {"time": 0.05},
+        }
+    )
+    simulation = isosheet.Simulation(scene)
+    run = scene.simulate(tmp_path / "run")
+    assert simulation.sheets == run.sheets == {"low": slice(0, 9, 1), "high": slice(9, 18, 1)}
+    assert np.array_equal(simulation.x[simulation.sheets["high"]], simulation.x[:9] + above["position"])
+    assert np.array_equal(run.x[-1, run.sheets["high"]], simulation.x[9:])
+    alone = isosheet.Simulation(isosheet.Scene.from_dict({"sheet": sheet}))
+    assert alone.sheets == {}
+
+
 def test_a_scene_runs_in_a_folder_as_the_command_does(folder, tmp_path):
     run = isosheet.Scene.from_toml(SCENE).simulate(tmp_path / "again")
     assert np.array_equal(run.x, isosheet.Run(folder).x)

@@ -7,7 +7,7 @@ use crate::format::{HistoryRow, SeriesBody, Trajectory, read_history, read_json}
 use crate::scene::SceneFile;
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_mesh::{Part, Sheet, VertexId};
 use nalgebra::{Isometry3, Vector3};
 use std::path::Path;
 
@@ -20,6 +20,8 @@ pub struct Recording {
     pub scene: SceneFile,
     /// The sheet in its rest shape, placed in space.
     pub sheet: Sheet,
+    /// Of several sheets the name of each, and where it is in their union.
+    pub parts: Vec<(String, Part)>,
     /// What is modelled, in words.
     pub modelled: Vec<String>,
     /// Vertices that are pinned, at rest or in motion.
@@ -65,6 +67,7 @@ impl Recording {
             immobile: immobile_vertices(&setup.model, &setup.start.x),
             pins: setup.model.pins(),
             model: setup.model,
+            parts: setup.parts,
             modelled: setup.modelled,
             sheet: setup.sheet,
             obstacles: setup.obstacles,

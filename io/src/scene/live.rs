@@ -8,7 +8,7 @@ use super::{
     SupportForces,
 };
 use isosheet_dynamics::{Checkpoint, Simulation, StepError, StepProgress, StepReport};
-use isosheet_mesh::{Advice, Sheet};
+use isosheet_mesh::{Advice, Part, Sheet};
 use serde::Deserialize;
 use std::ops::ControlFlow;
 use thiserror::Error;
@@ -43,9 +43,7 @@ use thiserror::Error;
 /// ```
 pub struct LiveScene {
     file: SceneFile,
-    sheet: Sheet,
-    modelled: Vec<String>,
-    origins: Origins,
+    facts: Facts,
     supports: SupportForces,
     simulation: Simulation,
 }
@@ -74,6 +72,7 @@ impl Advice for FailedStep {
 /// The facts of a setup that outlive it.
 struct Facts {
     sheet: Sheet,
+    parts: Vec<(String, Part)>,
     modelled: Vec<String>,
     origins: Origins,
 }
@@ -82,6 +81,7 @@ impl Facts {
     fn of(setup: &Setup) -> Self {
         Self {
             sheet: setup.sheet.clone(),
+            parts: setup.parts.clone(),
             modelled: setup.modelled.clone(),
             origins: setup.origins.clone(),
         }
@@ -111,18 +111,11 @@ impl LiveScene {
     }
 
     fn new(file: SceneFile, facts: Facts, simulation: Simulation) -> Self {
-        let Facts {
-            sheet,
-            modelled,
-            origins,
-        } = facts;
         let count = file.scene().support.len();
         Self {
-            supports: SupportForces::new(origins.clone(), &simulation, count),
+            supports: SupportForces::new(facts.origins.clone(), &simulation, count),
             file,
-            sheet,
-            modelled,
-            origins,
+            facts,
             simulation,
         }
     }
@@ -137,14 +130,19 @@ impl LiveScene {
         &self.simulation
     }
 
-    /// The sheet in its rest shape, placed in space.
+    /// The sheet in its rest shape, placed in space; the union of several.
     pub fn sheet(&self) -> &Sheet {
-        &self.sheet
+        &self.facts.sheet
+    }
+
+    /// Of several sheets the name of each, and where it is in their union.
+    pub fn parts(&self) -> &[(String, Part)] {
+        &self.facts.parts
     }
 
     /// What is modelled, in words.
     pub fn modelled(&self) -> &[String] {
-        &self.modelled
+        &self.facts.modelled
     }
 
     /// Force of each support of the scene on the sheet in the last step, newtons; zero before the first one.
@@ -181,7 +179,7 @@ impl LiveScene {
     ) -> Result<StepReport, FailedStep> {
         let stepped = self.simulation.step_watched(h, watch);
         stepped.map_err(|step| {
-            let problem = self.origins.of_failed_step(&step, &self.simulation);
+            let problem = self.facts.origins.of_failed_step(&step, &self.simulation);
             let scene = SceneError::from(problem).in_text(self.file.text());
             FailedStep { step, scene }
         })
