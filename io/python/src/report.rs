@@ -45,7 +45,7 @@ pub(crate) struct StepReport {
     violation: Option<f64>,
     /// The support that asks for more than the rods allow, where the step ended taut.
     taut: Option<String>,
-    /// What the hardest sub-step needed: "newton", "globalised", "branch_seeded", "fallback", "chart" or
+    /// What the hardest sub-step needed: "newton", "globalised", "`branch_seeded`", "fallback", "chart" or
     /// "rebased".
     path: &'static str,
 }
@@ -112,8 +112,8 @@ impl StepReport {
             ..
         } = self;
         format!(
-            "<isosheet.StepReport time={time} h={h} substeps={substeps} iterations={iterations} strain={strain:.1e} \
-             path={path}>"
+            "<isosheet.StepReport time={time} h={h} substeps={substeps} iterations={iterations} \
+             strain={strain:.1e} path={path}>"
         )
     }
 }

@@ -25,6 +25,9 @@ pub(crate) struct Run {
     recording: Recording,
 }
 
+/// A column of the history: its name and its values.
+type Column<T> = (&'static str, fn(&HistoryRow) -> T);
+
 impl Run {
     pub(crate) fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
         let recording = py.detach(|| Recording::read(&folder));
@@ -94,8 +97,9 @@ impl Run {
         self.recording.modelled.clone()
     }
 
-    /// Of several sheets the vertices of each by its name, as slices: ``run.x[:, run.sheets["top"]]``. Empty for
-    /// one sheet.
+    /// Of several sheets the vertices of each by its name, as slices: ``run.x[:, run.sheets["top"]]``.
+    ///
+    /// Empty for one sheet.
     #[getter]
     fn sheets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         slices(py, &self.recording.parts)
@@ -157,7 +161,7 @@ impl Run {
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let rows = &self.recording.history;
         let columns = PyDict::new(py);
-        let numbers: [(&str, fn(&HistoryRow) -> f64); 8] = [
+        let numbers: [Column<f64>; 8] = [
             ("time", |row| row.t),
             ("h", |row| row.h),
             ("kinetic", |row| row.kinetic),
@@ -170,7 +174,7 @@ impl Run {
         for (name, of) in numbers {
             columns.set_item(name, array(py, &rows.iter().map(of).collect::<Vec<_>>()))?;
         }
-        let counts: [(&str, fn(&HistoryRow) -> usize); 3] = [
+        let counts: [Column<usize>; 3] = [
             ("iterations", |row| row.iterations),
             ("factorisations", |row| row.factorisations),
             ("rejected", |row| row.rejected),
@@ -217,7 +221,8 @@ impl Run {
         let page = self.html(py, PageOptions::default().budget)?;
         let page = page.replace('&', "&amp;").replace('"', "&quot;");
         Ok(format!(
-            "<iframe srcdoc=\"{page}\" sandbox=\"allow-scripts\" style=\"width: 100%; height: 640px; border: 0\"></iframe>"
+            "<iframe srcdoc=\"{page}\" sandbox=\"allow-scripts\" \
+             style=\"width: 100%; height: 640px; border: 0\"></iframe>"
         ))
     }
 

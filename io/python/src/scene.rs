@@ -15,8 +15,8 @@ use toml::Value;
 
 /// A scene: everything that decides how a simulation goes. The keys are those of scene files.
 ///
-/// Make one by Scene.from_toml, Scene.from_dict or Scene.new. A scene never changes; Scene.edit makes another
-/// one.
+/// Make one by `Scene.from_toml`, `Scene.from_dict` or Scene.new. A scene never changes; Scene.edit makes
+/// another one.
 #[pyclass(frozen, module = "isosheet")]
 pub(crate) struct Scene {
     file: SceneFile,
@@ -47,10 +47,10 @@ fn parse(text: String, folder: &Path) -> Result<SceneFile, SceneFileError> {
 impl Scene {
     /// The scene of a file, or of a text.
     ///
-    /// text_or_path: a path, or a text of TOML, which is told by its having more than one line.
+    /// `text_or_path`: a path, or a text of TOML, which is told by its having more than one line.
     /// edits: keys and values that replace those of the file, such as {"stop.time": 0.5}.
     ///
-    /// Raises SceneError with all problems that were found.
+    /// Raises `SceneError` with all problems that were found.
     #[staticmethod]
     #[pyo3(signature = (text_or_path, edits = None))]
     fn from_toml(
@@ -145,7 +145,7 @@ impl Scene {
     /// Runs the scene in a folder, as `isosheet simulate` does: a complete run is left as it is, a part of
     /// one is continued. Returns what the run wrote.
     ///
-    /// Raises StepFailed or RunFailed; KeyboardInterrupt after Ctrl-C, when the same call continues.
+    /// Raises `StepFailed` or `RunFailed`; `KeyboardInterrupt` after Ctrl-C, when the same call continues.
     fn simulate(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Run> {
         let mut signals = Signals::default();
         let outcome = py.detach(|| run::simulate(&self.file, &folder, &mut signals));

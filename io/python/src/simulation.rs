@@ -104,10 +104,10 @@ impl Simulation {
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// Advances by `h` seconds, by default the step of the scene, and returns a StepReport.
+    /// Advances by `h` seconds, by default the step of the scene, and returns a `StepReport`.
     ///
-    /// Raises StepFailed, which has key, time and advice; then and after Ctrl-C the state is that of the last
-    /// accepted sub-step.
+    /// Raises `StepFailed`, which has key, time and advice; then and after Ctrl-C the state is that of the
+    /// last accepted sub-step.
     #[pyo3(signature = (h = None))]
     fn step(&self, py: Python<'_>, h: Option<f64>) -> PyResult<Option<StepReport>> {
         self.advance(py, h.map_or(Length::OfScene, Length::Given))
@@ -117,7 +117,8 @@ impl Simulation {
     ///
     /// each: a function that is called after every step with its report, and ends the run by returning True.
     ///
-    /// Returns the reports. Ctrl-C raises KeyboardInterrupt within a step or after it, and the run can go on.
+    /// Returns the reports. Ctrl-C raises `KeyboardInterrupt` within a step or after it, and the run can go
+    /// on.
     #[pyo3(signature = (until, each = None))]
     fn run(
         &self,
@@ -147,7 +148,8 @@ impl Simulation {
     /// Changes values of the scene from now on: ``simulation.change({"forces.gravity": [0, 0, 0]})``.
     ///
     /// What acts on the sheet may change: forces, creases, damping, air, bodies, friction, motions of
-    /// supports. What a change does at once counts as work. Raises SceneError, and then nothing has changed.
+    /// supports. What a change does at once counts as work. Raises `SceneError`, and then nothing has
+    /// changed.
     fn change(&self, py: Python<'_>, edits: &Bound<'_, PyDict>) -> PyResult<()> {
         let edits = self::edits(edits)?;
         self.with(py, |live| live.change(&edits))
@@ -187,8 +189,8 @@ impl Simulation {
         self.with(py, |live| live.modelled().to_vec())
     }
 
-    /// Of several sheets the vertices of each by its name, as slices: ``simulation.x[simulation.sheets["top"]]``.
-    /// Empty for one sheet.
+    /// Of several sheets the vertices of each by its name, as slices:
+    /// ``simulation.x[simulation.sheets["top"]]``. Empty for one sheet.
     #[getter]
     fn sheets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         slices(py, &self.with(py, |live| live.parts().to_vec()))

@@ -16,7 +16,7 @@ use std::fmt;
 #[expect(dead_code, reason = "the form of the schema, which has no values")]
 pub(super) enum OneOrSeveral {
     /// The sheet.
-    One(Sheet),
+    One(Box<Sheet>),
     /// The sheets.
     Several(Vec<Sheet>),
 }
