@@ -217,6 +217,12 @@ fn a_refused_step_leaves_what_has_yielded() {
     }
 }
 
+/// What all potentials remember.
+fn remembered(run: &Simulation) -> Vec<f64> {
+    let memories = run.model().potentials().map(|p| p.memory().to_vec());
+    memories.flatten().collect()
+}
+
 #[test]
 fn a_resumed_run_goes_on_with_the_same_bits() {
     for kind in [Kind::Rods, Kind::Elastic] {
@@ -226,6 +232,8 @@ fn a_resumed_run_goes_on_with_the_same_bits() {
             run.step(5e-3).expect("accepted");
         }
         let bytes = run.checkpoint().to_bytes().expect("encodes");
+        let before = remembered(&run);
+        assert!(before.iter().any(|p| *p != 0.0));
         let checkpoint = Checkpoint::from_bytes(&bytes).expect("decodes");
         let mut resumed = Simulation::resume(model(&sheet, kind, Some(SECTION)), None, checkpoint)
             .expect("the same model");
@@ -236,6 +244,12 @@ fn a_resumed_run_goes_on_with_the_same_bits() {
         }
         assert_eq!(run.state(), resumed.state());
         assert_eq!(run.checkpoint(), resumed.checkpoint());
+        // Other potentials may come and go.
+        let checkpoint = Checkpoint::from_bytes(&bytes).expect("decodes");
+        let with_weight = model(&sheet, kind, Some(SECTION)).with_gravity();
+        let resumed = Simulation::resume(with_weight, None, checkpoint);
+        let resumed = resumed.unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(remembered(&resumed), before);
         // A model that does not yield has no place for it.
         let checkpoint = Checkpoint::from_bytes(&bytes).expect("decodes");
         let refused = Simulation::resume(model(&sheet, kind, None), None, checkpoint);

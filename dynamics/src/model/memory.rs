@@ -8,19 +8,18 @@ impl SheetModel {
         self.potentials().any(|p| !p.memory().is_empty())
     }
 
-    /// What each of the potentials remembers that were added; nothing if none of them has a memory.
+    /// What each of the potentials remembers that have a memory, in the order in which they were added.
     pub(crate) fn memories(&self) -> Vec<Vec<f64>> {
-        if !self.has_memory() {
-            return Vec::new();
-        }
-        self.outer_potentials()
-            .map(|p| p.memory().to_vec())
-            .collect()
+        let memories = self.outer_potentials().map(|p| p.memory());
+        let memories = memories.filter(|memory| !memory.is_empty());
+        memories.map(<[f64]>::to_vec).collect()
     }
 
-    /// Replaces what the potentials remember by memories of the same numbers of values.
+    /// Replaces what these potentials remember by memories of the same numbers of values.
     pub(crate) fn set_memories(&mut self, memories: &[Vec<f64>]) {
-        for (potential, memory) in self.potentials.iter_mut().zip(memories) {
+        let remembering = self.potentials.iter_mut();
+        let remembering = remembering.filter(|p| !p.memory().is_empty());
+        for (potential, memory) in remembering.zip(memories) {
             potential.set_memory(memory);
         }
     }

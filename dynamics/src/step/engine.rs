@@ -584,12 +584,16 @@ fn check_lengths(model: &SheetModel, motion: &FreeState) -> Result<(), Checkpoin
         .max();
     let memories = model.memories();
     check_length(
-        "memories of potentials",
+        "the list of potentials that yield",
         motion.memories.len(),
         memories.len(),
     )?;
     for (found, expected) in motion.memories.iter().zip(&memories) {
-        check_length("plastic deformations", found.len(), expected.len())?;
+        check_length(
+            "the list of plastic deformations",
+            found.len(),
+            expected.len(),
+        )?;
     }
     for (what, found, expected) in [
         ("positions", state.x.len(), n),

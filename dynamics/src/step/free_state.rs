@@ -21,7 +21,7 @@ pub(crate) struct FreeState {
     pub(crate) barrier: Option<BarrierPotential>,
     /// The stiffness of the barrier at the limit of the strain, joules per square metre, of elastic sheets.
     pub(crate) strain_barrier: Option<f64>,
-    /// What potentials remember, if any of them does.
+    /// What potentials remember, of those that do.
     pub(crate) memories: Vec<Vec<f64>>,
 }
 
