@@ -38,6 +38,18 @@ pub struct Contact {
 /// Friction between two of several sheets, or of one of them with itself.
 ///
 /// ```toml
+/// [[sheet]]
+/// name = "cover"
+/// mesh = { square = { side = 0.1, level = 1 } }
+///
+/// [[sheet]]
+/// name = "page"
+/// mesh = { square = { side = 0.1, level = 1 } }
+/// placement = { position = [0, 0, 0.01] }
+///
+/// [contact]
+/// self_contact = true
+///
 /// [[contact.pair]]
 /// sheets = ["cover", "page"]
 /// friction = 0.6
