@@ -40,7 +40,7 @@ impl ActiveContacts {
                 Some(b) => contact.body_velocity(b, t, &c.closest),
                 None => Vector3::zeros(),
             },
-            friction: laws.coefficients(c).sliding,
+            friction: laws.coefficients(c.key.body, c.vertices).sliding,
         }));
         for (contact, point) in self.list().iter().zip(&*out) {
             let value = point.body_velocity.iter().find(|c| !c.is_finite());

@@ -138,7 +138,7 @@ impl LaggedFriction {
             return;
         }
         for contact in active.list() {
-            if let Some(law) = laws.friction(contact, active.span().h) {
+            if let Some(law) = laws.friction(contact.key.body, contact.vertices, active.span().h) {
                 let lagged = FrictionContact::new(contact, barrier, law, active.bodies());
                 if lagged.force > 0.0 {
                     self.contacts.push(lagged);

@@ -1,6 +1,6 @@
 //! The parameters of a scene's contact.
 
-use super::{ActiveContact, Coefficients, Friction};
+use super::{Coefficients, Friction};
 use std::ops::Range;
 
 /// Stiffness `kappa` of the barrier potential `kappa b`, constant over a run.
@@ -66,12 +66,12 @@ impl ContactLaws {
         }
     }
 
-    /// The coefficients of friction at a contact.
-    pub(crate) fn coefficients(&self, contact: &ActiveContact) -> Coefficients {
-        match contact.key.body {
-            // The first and the last vertex are of the two that meet.
+    /// The coefficients of friction with a body, or where these four vertices of sheets meet, the first and the last of
+    /// which are of the two that do.
+    pub(crate) fn coefficients(&self, body: Option<u32>, vertices: [u32; 4]) -> Coefficients {
+        match body {
             None => {
-                let [first, .., last] = contact.vertices.map(|v| v as usize);
+                let [first, .., last] = vertices.map(|v| v as usize);
                 let pair = self.pairs.iter().find(|pair| pair.has([first, last]));
                 pair.map_or(self.itself, |pair| pair.coefficients)
             }
@@ -82,9 +82,11 @@ impl ContactLaws {
         }
     }
 
-    /// Friction at a contact in a step of `h` seconds; `None` without friction and in a step without duration.
-    pub fn friction(&self, contact: &ActiveContact, h: f64) -> Option<Friction> {
-        let c = self.coefficients(contact);
+    /// Friction in a step of `h` seconds with a body, or between the sheets of the first and the last of four vertices
+    /// that meet ([`ActiveContact::vertices`](super::ActiveContact::vertices)); `None` without friction and in a
+    /// step without duration.
+    pub fn friction(&self, body: Option<u32>, vertices: [u32; 4], h: f64) -> Option<Friction> {
+        let c = self.coefficients(body, vertices);
         if c.is_frictionless() {
             return None;
         }
