@@ -35,10 +35,11 @@ fn completed(part: &str) -> String {
     let mut scene: toml::Table = toml::from_str(part).unwrap_or_else(|e| panic!("{e}\n{part}"));
     scene.insert("version".to_owned(), toml::Value::Integer(1));
     let empty = toml::Value::Table(toml::Table::new());
-    let sheet = scene.entry("sheet").or_insert(empty);
-    let sheet = sheet.as_table_mut().expect("the sheet is a table");
     let square: toml::Table = toml::from_str("square = { side = 0.2, level = 1 }").expect("TOML");
-    sheet.entry("mesh").or_insert(toml::Value::Table(square));
+    // Several sheets have meshes of their own.
+    if let Some(sheet) = scene.entry("sheet").or_insert(empty).as_table_mut() {
+        sheet.entry("mesh").or_insert(toml::Value::Table(square));
+    }
     toml::to_string(&scene).expect("TOML")
 }
 
