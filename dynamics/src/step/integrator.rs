@@ -136,10 +136,10 @@ pub(crate) struct Attempt<'a> {
     memory: Memory,
 }
 
-/// The phases of a minimisation that a sub-step of rods in contact with bodies at rest may try.
+/// The phases of a minimisation that a sub-step of rods among bodies and supports at rest may try.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Phases {
-    /// The first two, each with as many iterations as the first one has: where both fail the step is divided.
+    /// The first two, the second one within bounds of the first one: where both fail the step is divided.
     Brief,
     /// All of them.
     All,
