@@ -4,7 +4,7 @@ use super::key::Key;
 use super::pattern::EdgeRoles;
 use super::problem::{Checks, Problem};
 use super::profile::Profile;
-use super::selection::size;
+use super::selection::{ON_LINE, place_on_line, size};
 use super::unit::Unit;
 use super::yields::CreaseYield;
 use isosheet_dynamics::CreaseSpring;
@@ -123,10 +123,6 @@ pub enum PatternEdges {
     Zigzags,
 }
 
-/// Largest distance of the ends of an edge from a line, as a part of the size of the sheet: above the
-/// round-off of coordinates that went through a text file with seven digits, below any mesh.
-const ON_LINE: f64 = 1e-6;
-
 impl Crease {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.not_negative(key.name("stiffness"), self.stiffness, Unit::Newton);
@@ -223,17 +219,7 @@ fn by_ends(ends: &[[usize; 2]], key: &Key, sheet: &Sheet) -> Result<Vec<(EdgeId,
 fn on_line(sheet: &Sheet, from: &[f64; 3], to: &[f64; 3]) -> Vec<(EdgeId, f64)> {
     let t = sheet.topology();
     let tolerance = ON_LINE * size(sheet.positions().as_chunks::<3>().0);
-    let along: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
-    let length2: f64 = along.iter().map(|c| c * c).sum();
-    let near = |v: VertexId| {
-        let p = sheet.position(v);
-        let part: f64 = (0..3).map(|k| along[k] * (p[k] - from[k])).sum::<f64>() / length2;
-        let part = part.clamp(0.0, 1.0);
-        let distance2: f64 = (0..3)
-            .map(|k| (from[k] + part * along[k] - p[k]).powi(2))
-            .sum();
-        distance2 <= tolerance * tolerance
-    };
+    let near = |v: VertexId| place_on_line(&sheet.position(v), [from, to], tolerance).is_some();
     let edges = t.edge_ids().filter(|&e| !t.is_boundary_edge(e));
     let edges = edges.filter(|e| t.edges()[e.index()].iter().all(|&v| near(v)));
     edges.map(|e| (e, 1.0)).collect()

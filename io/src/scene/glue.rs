@@ -4,7 +4,7 @@ use super::key::Key;
 use super::placed::PlacedSheets;
 use super::problem::{Checks, Problem};
 use super::profile::Profile;
-use super::selection::{by_number, size};
+use super::selection::{ON_LINE, by_number, place_on_line, size};
 use super::unit::Unit;
 use super::{Sheet, sheets};
 use isosheet_mesh::wording::brief;
@@ -72,10 +72,6 @@ pub enum SeamSide {
         to: [f64; 3],
     },
 }
-
-/// Largest distance of two glued vertices that coincide, and of a vertex from the line that it is on, as a part of
-/// the size of the sheet: above the round-off of coordinates that went through a text file with seven digits.
-const COINCIDENT: f64 = 1e-6;
 
 /// Stiffness of glue in units of `(m g + D / L) / L`, see [`Glue::stiffness`].
 const STIFFNESS: f64 = 1e4;
@@ -150,7 +146,7 @@ impl Glue {
         };
         let farthest = pairs.iter().map(apart).fold(0.0, f64::max);
         let drawn = farthest * self.closing.as_given().value(0.0).abs();
-        if drawn > COINCIDENT * size(points) {
+        if drawn > ON_LINE * size(points) {
             return Err(Problem::new(
                 key.name("closing"),
                 format!(
@@ -191,16 +187,10 @@ impl SeamSide {
 
 /// The points on a line between two points, in its order.
 fn on_line(points: &[[f64; 3]], from: &[f64; 3], to: &[f64; 3]) -> Vec<VertexId> {
-    let tolerance = COINCIDENT * size(points);
-    let along: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
-    let length2: f64 = along.iter().map(|c| c * c).sum();
+    let tolerance = ON_LINE * size(points);
     let place = |(v, p): (usize, &[f64; 3])| {
-        let part: f64 = (0..3).map(|k| along[k] * (p[k] - from[k])).sum::<f64>() / length2;
-        let nearest = part.clamp(0.0, 1.0);
-        let distance2: f64 = (0..3)
-            .map(|k| (from[k] + nearest * along[k] - p[k]).powi(2))
-            .sum();
-        (distance2 <= tolerance * tolerance).then_some((part, VertexId::from_index(v)))
+        let part = place_on_line(p, [from, to], tolerance)?;
+        Some((part, VertexId::from_index(v)))
     };
     let mut found: Vec<(f64, VertexId)> = points.iter().enumerate().filter_map(place).collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));

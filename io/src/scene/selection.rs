@@ -147,6 +147,27 @@ fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> VertexId {
     VertexId::from_index(best)
 }
 
+/// Largest distance of a vertex from a line that it is on, and of two that coincide, as a part of the size of the sheet:
+/// above the round-off of coordinates that went through a text file with seven digits, below any mesh.
+pub(super) const ON_LINE: f64 = 1e-6;
+
+/// The place of a point beside the line between two points, 0 where that begins and 1 where it ends; nothing if the
+/// point is farther from the line than `tolerance`, metres.
+pub(super) fn place_on_line(
+    p: &[f64; 3],
+    [from, to]: [&[f64; 3]; 2],
+    tolerance: f64,
+) -> Option<f64> {
+    let along: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
+    let length2: f64 = along.iter().map(|c| c * c).sum();
+    let part: f64 = (0..3).map(|k| along[k] * (p[k] - from[k])).sum::<f64>() / length2;
+    let nearest = part.clamp(0.0, 1.0);
+    let distance2: f64 = (0..3)
+        .map(|k| (from[k] + nearest * along[k] - p[k]).powi(2))
+        .sum();
+    (distance2 <= tolerance * tolerance).then_some(part)
+}
+
 /// Largest extent of some points along an axis, metres.
 pub(crate) fn size(points: &[[f64; 3]]) -> f64 {
     let [low, high] = bounds(points);
