@@ -54,6 +54,7 @@ mod pose;
 mod problem;
 mod profile;
 mod reference;
+mod refined;
 mod replaced;
 mod selection;
 mod setup;
@@ -220,9 +221,9 @@ impl Scene {
         }
         if let Some(folding) = &self.folding {
             let key = root.name("folding");
-            is_known(&folding.sheet, &key, &mut checks);
-            if let Ok(Some(k)) = sheets::number_of(&self.sheet, folding.sheet.as_deref(), &key) {
-                folding.check(&self.sheet[k].mesh, &key, &mut checks);
+            match sheets::one_of(&self.sheet, folding.sheet.as_deref(), &key, "the creases") {
+                Ok(k) => folding.check(&self.sheet[k].mesh, &key, &mut checks),
+                Err(problem) => checks.problems.push(problem),
             }
         }
         for (k, glue) in self.glue.iter().enumerate() {

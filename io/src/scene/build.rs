@@ -345,7 +345,7 @@ impl<'a> Builder<'a> {
             if is_own(folding.sheet.as_deref(), &key, "the creases")? {
                 let mut targets = folding.targets(&key, file, &own.unplaced, folder)?;
                 let x = &self.x[own.part.coordinates()];
-                let [driven, flat] = folding.springs(&targets, &own.placed, x);
+                let [driven, flat] = folding.springs(&targets, own.of, &own.placed, x);
                 springs.add(key.clone(), EdgeFolds::Yes, driven);
                 springs.add(key, EdgeFolds::No, flat);
                 targets.renumber(|e| own.part.edge(e));

@@ -4,6 +4,7 @@ use super::key::Key;
 use super::pattern::EdgeRoles;
 use super::problem::{Checks, Problem};
 use super::profile::Profile;
+use super::refined::Refined;
 use super::selection::{ON_LINE, place_on_line, size};
 use super::unit::Unit;
 use super::yields::CreaseYield;
@@ -52,7 +53,7 @@ pub struct Crease {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum CreaseEdges {
-    /// Edges by the numbers of their two vertices.
+    /// Edges of `sheet.mesh` by the numbers of their two vertices.
     Ends(Vec<[usize; 2]>),
     /// The interior edges on a straight line.
     Line {
@@ -154,15 +155,16 @@ impl Crease {
     }
 
     /// The springs of the crease on a rest shape.
-    pub(crate) fn springs(
+    pub(super) fn springs(
         &self,
         key: &Key,
-        sheet: &Sheet,
+        refined: &Refined,
         roles: Option<&EdgeRoles>,
     ) -> Result<Vec<CreaseSpring>, Problem> {
         let at = key.name("at");
+        let sheet = refined.sheet();
         let edges = match &self.at {
-            CreaseEdges::Ends(ends) => by_ends(ends, &at.name("ends"), sheet)?,
+            CreaseEdges::Ends(ends) => by_ends(ends, &at.name("ends"), refined)?,
             CreaseEdges::Line { from, to } => on_line(sheet, from, to),
             CreaseEdges::Pattern(wanted) => {
                 let Some(roles) = roles else {
@@ -194,15 +196,19 @@ impl Crease {
     }
 }
 
-fn by_ends(ends: &[[usize; 2]], key: &Key, sheet: &Sheet) -> Result<Vec<(EdgeId, f64)>, Problem> {
-    let t = sheet.topology();
+fn by_ends(
+    ends: &[[usize; 2]],
+    key: &Key,
+    refined: &Refined,
+) -> Result<Vec<(EdgeId, f64)>, Problem> {
+    let t = refined.mesh().topology();
     let edge = |(k, &[a, b]): (usize, &[usize; 2])| {
         let count = t.vertex_count();
         let found = (a < count && b < count && a != b)
             .then(|| t.find_edge(VertexId::from_index(a), VertexId::from_index(b)))
             .flatten()
             .filter(|&e| !t.is_boundary_edge(e));
-        found.map(|e| (e, 1.0)).ok_or_else(|| {
+        found.ok_or_else(|| {
             Problem::new(
                 key.entry(k),
                 format!("the mesh has no interior edge between the vertices {a} and {b}"),
@@ -213,7 +219,13 @@ fn by_ends(ends: &[[usize; 2]], key: &Key, sheet: &Sheet) -> Result<Vec<(EdgeId,
             )
         })
     };
-    ends.iter().enumerate().map(edge).collect()
+    let edges: Vec<EdgeId> = ends
+        .iter()
+        .enumerate()
+        .map(edge)
+        .collect::<Result<_, _>>()?;
+    let parts = edges.into_iter().flat_map(|e| refined.parts(e));
+    Ok(parts.map(|e| (e, 1.0)).collect())
 }
 
 fn on_line(sheet: &Sheet, from: &[f64; 3], to: &[f64; 3]) -> Vec<(EdgeId, f64)> {

@@ -5,6 +5,8 @@ use super::key::Key;
 use super::mesh::MeshFile;
 use super::problem::{Checks, Problem};
 use super::profile::{Change, Course, Profile};
+use super::refined::Refined;
+use super::sheet::{Isometry, Sheet as SheetOfScene};
 use super::unit::Unit;
 use crate::format::{EdgeAssignment, FoldFrame};
 use isosheet_dynamics::{CreaseSpring, RestAngle};
@@ -17,9 +19,10 @@ use std::path::Path;
 /// Folding to the angles of the FOLD file that is the mesh of the sheet.
 ///
 /// A torsion spring at each crease drives it from the angle that it has at the start (before a perturbation)
-/// to its target, and a stiffer one keeps each edge inside a panel flat, or makes it flat. Angles that no
-/// shape of rigid panels has are approached as far as the springs come to an equilibrium: the summary of the
-/// run says how large the differences are at the end.
+/// to its target. Panels of rods are kept flat, or made flat, by a stiffer spring at each edge inside of them;
+/// those of an elastic sheet bend as its material does, where `sheet.refine` divides them finely enough. Angles
+/// that no such shape has are approached as far as the springs come to an equilibrium: the summary of the run
+/// says how large the differences are at the end.
 ///
 /// Mountains and valleys are driven to the angles that `edges_foldAngle` gives them; edges of the kinds `F`
 /// and `J` and the cuts of polygons stay flat; `U`, and `B` inside the sheet, are driven where their angle is
@@ -44,8 +47,8 @@ pub struct Folding {
     pub time: f64,
     /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre).
     pub stiffness: f64,
-    /// Torsional stiffness of a metre of the edges that stay flat, N; if left out, 50 times that of the
-    /// creases.
+    /// Torsional stiffness of a metre of the edges that stay flat, N. If left out, 50 times that of the creases in
+    /// a sheet of rods; an elastic sheet has no such springs then, since its bending stiffness keeps panels flat.
     #[serde(default)]
     pub flat_stiffness: Option<f64>,
     /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on
@@ -143,14 +146,14 @@ impl Folding {
     }
 
     /// Where the edges of the sheet are driven, which was read from `file`.
-    pub(crate) fn targets(
+    pub(super) fn targets(
         &self,
         key: &Key,
         file: &MeshFile,
-        sheet: &Sheet,
+        refined: &Refined,
         folder: &Path,
     ) -> Result<FoldTargets, Problem> {
-        let t = sheet.topology();
+        let t = refined.mesh().topology();
         let (frame, name) = match &self.frame {
             None => {
                 let key = Key::root().name("sheet.mesh.file");
@@ -174,7 +177,10 @@ impl Folding {
             let remedy = "choose a frame of the same vertices";
             return Err(Problem::new(key.name("frame"), message, remedy));
         }
-        let mut targets = FoldTargets::default();
+        let mut targets = FoldTargets {
+            flat: refined.inside_faces(),
+            ..FoldTargets::default()
+        };
         let shape = (!is_plane(t, &frame.positions)).then_some(&frame.positions[..]);
         for crease in &frame.creases {
             let [a, b] = crease.ends.map(VertexId);
@@ -185,12 +191,16 @@ impl Folding {
                 Some(x) => fold_angle(t, x, e),
                 None => crease.angle,
             };
+            let parts = refined.parts(e).into_iter();
+            let mut drive = |angle| {
+                targets
+                    .creases
+                    .extend(parts.clone().map(|e| (e, self.part * angle)))
+            };
             match (crease.assignment, angle) {
-                (EdgeAssignment::Flat | EdgeAssignment::Join, _) => targets.flat.push(e),
-                (EdgeAssignment::Mountain | EdgeAssignment::Valley, Some(angle)) => {
-                    targets.creases.push((e, self.part * angle));
-                }
-                (_, Some(angle)) if angle != 0.0 => targets.creases.push((e, self.part * angle)),
+                (EdgeAssignment::Flat | EdgeAssignment::Join, _) => targets.flat.extend(parts),
+                (EdgeAssignment::Mountain | EdgeAssignment::Valley, Some(angle)) => drive(angle),
+                (_, Some(angle)) if angle != 0.0 => drive(angle),
                 _ => {}
             }
         }
@@ -211,6 +221,7 @@ impl Folding {
     pub(crate) fn springs(
         &self,
         targets: &FoldTargets,
+        of: &SheetOfScene,
         sheet: &Sheet,
         x: &[f64],
     ) -> [Vec<CreaseSpring>; 2] {
@@ -220,13 +231,16 @@ impl Folding {
             rest: self.course(fold_angle(sheet.topology(), x, edge).unwrap_or(0.0), target),
             yields: None,
         };
-        let flat_stiffness = self
-            .flat_stiffness
-            .unwrap_or(FLAT_STIFFNESS * self.stiffness);
+        let flat_stiffness = self.flat_stiffness.or(match of.isometry() {
+            Isometry::Rods => Some(FLAT_STIFFNESS * self.stiffness),
+            Isometry::Elastic { .. } => None,
+        });
         let driven = targets.creases.iter();
         let driven = driven.map(|&(edge, target)| spring(edge, self.stiffness, target));
-        let flat = targets.flat.iter();
-        let flat = flat.map(|&edge| spring(edge, flat_stiffness, 0.0));
+        let flat = flat_stiffness.into_iter().flat_map(|stiffness| {
+            let flat = targets.flat.iter();
+            flat.map(move |&edge| spring(edge, stiffness, 0.0))
+        });
         [driven.collect(), flat.collect()]
     }
 

@@ -251,6 +251,7 @@ fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
     for (k, (old, new)) in old.iter().zip(new).enumerate() {
         let key = sheet_key(before.sheet.len(), k);
         checks.push((key.name("mesh"), old.mesh == new.mesh));
+        checks.push((key.name("refine"), old.refine == new.refine));
         checks.push((key.name("placement"), old.placement == new.placement));
         checks.push((key.name("start"), old.start == new.start));
     }

@@ -5,6 +5,7 @@ use super::mesh::RestMesh;
 use super::pattern::EdgeRoles;
 use super::pose::Pose;
 use super::problem::Problem;
+use super::refined::Refined;
 use super::sheets::sheet_key;
 use super::{Key, Selection, Sheet as SheetOfScene, sheets};
 use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
@@ -19,7 +20,7 @@ pub(super) struct PlacedSheet<'a> {
     /// The rest shape, placed in space.
     pub(super) placed: Sheet,
     /// The rest shape as its mesh has it.
-    pub(super) unplaced: Sheet,
+    pub(super) unplaced: Refined,
     pub(super) roles: Option<EdgeRoles>,
     /// Where it is in the union.
     pub(super) part: Part,
@@ -100,7 +101,9 @@ impl<'a> PlacedSheet<'a> {
         let mesh_key = key.name("mesh");
         let RestMesh { sheet, roles } = of.mesh.build(&mesh_key, folder)?;
         let pose = &of.placement;
-        let placed = sheet
+        let unplaced = Refined::new(sheet, of.refine, &key.name("refine"))?;
+        let placed = unplaced
+            .sheet()
             .map_positions(|p| place(pose, p))
             .map_err(|e| Problem::from_error(mesh_key, &e))?;
         let x = match &of.start.file {
@@ -108,12 +111,13 @@ impl<'a> PlacedSheet<'a> {
             Some(file) => {
                 let key = key.name("start.file");
                 let start = file.read(&key, folder)?;
-                if triangles(&start.faces) != triangles(&placed.face_indices()) {
+                if triangles(&start.faces) != triangles(&unplaced.mesh().face_indices()) {
                     let message = "the file does not have the vertices and faces of `sheet.mesh`";
                     let remedy = "export both shapes from the same mesh, without reordering";
                     return Err(Problem::new(key.name("path"), message, remedy).into());
                 }
-                let points = start.positions.as_chunks::<3>().0.iter();
+                let x = unplaced.positions(start.positions);
+                let points = x.as_chunks::<3>().0.iter();
                 points.flat_map(|&p| place(pose, p)).collect()
             }
         };
@@ -125,8 +129,8 @@ impl<'a> PlacedSheet<'a> {
             of,
             key,
             placed,
-            unplaced: sheet,
-            roles,
+            roles: roles.map(|roles| unplaced.roles(roles)),
+            unplaced,
             part: Part::default(),
             mass,
         };

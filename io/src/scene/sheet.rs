@@ -30,6 +30,11 @@ pub struct Sheet {
     pub name: Option<String>,
     /// Where the mesh comes from. Its shape is the rest shape: the one with the rest lengths.
     pub mesh: Mesh,
+    /// How often all faces of the mesh are divided into four, as the paper's Fig. 4 does: the middle of the longest
+    /// edge is joined to the opposite corner and to the middles of the other two. Vertices and edges of the mesh
+    /// keep their numbers and their creases; panels of a crease pattern can bend where they are divided.
+    #[serde(default)]
+    pub refine: usize,
     /// What the sheet is made of. Without it, the sheet is one of rigid rods, as in the paper.
     #[serde(default)]
     pub material: Option<Material>,
@@ -159,6 +164,7 @@ impl Sheet {
         Self {
             name: None,
             mesh,
+            refine: 0,
             material: None,
             density: None,
             mass: None,

@@ -3,6 +3,7 @@
 use crate::headless::self_test;
 use crate::skip::data_folder;
 use crate::{code, run, stderr, summary};
+use isosheet_io::run::Recording;
 use std::fs;
 use std::path::Path;
 
@@ -60,4 +61,54 @@ fn a_sheet_of_others_is_folded_by_one_command() {
     assert!(table.contains("ending.folding.largest_flat"), "{table}");
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
     self_test(&page, "1100,800");
+}
+
+/// The pleated hyperbolic paraboloid of others has no rigid folding. Its panels bend, and it becomes a saddle: the
+/// corners of a diagonal are above the middle, and those of the other one below.
+#[test]
+fn a_pattern_without_rigid_folding_bends_its_panels() {
+    let Some(data) = data_folder() else {
+        return;
+    };
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::copy(data.join("fold/hypar_tri.fold"), dir.join("hypar.fold")).unwrap();
+    let scene = "version = 1
+        [sheet]
+        mesh = { file = { path = \"hypar.fold\", scale = 0.0005 } }
+        refine = 1
+        material = \"office paper\"
+        start = { perturbation = 1e-4, seed = 1 }
+        damping = 5.0
+        [folding]
+        stiffness = 0.01
+        time = 2
+        part = 0.5
+        [method]
+        step = 0.02
+        [stop]
+        time = 4";
+    fs::write(dir.join("hypar.toml"), scene).unwrap();
+    let output = run(dir, &["simulate", "hypar.toml"]);
+    assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    let residual = summary(&dir.join("hypar-run")).ending.folding.unwrap();
+    // Flat, all creases differ by 90 degrees.
+    assert!(residual.rms < 65.0, "{residual:?}");
+    let trajectory = Recording::read(&dir.join("hypar-run")).unwrap().trajectory;
+    let [flat, folded] =
+        [0, trajectory.len() - 1].map(|k| trajectory.frame(k).unwrap().as_chunks::<3>().0);
+    let distance = |p: &[f64; 3], [x, y]: [f64; 2]| (p[0] - x).hypot(p[1] - y);
+    let height = |place: [f64; 2]| {
+        let nearest = |a: &usize, b: &usize| {
+            distance(&flat[*a], place).total_cmp(&distance(&flat[*b], place))
+        };
+        folded[(0..flat.len()).min_by(nearest).unwrap()][2]
+    };
+    let corners = [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]].map(height);
+    let above = corners.map(|z| z - height([0.0, 0.0]));
+    let side = above[0].signum();
+    for (corner, sign) in above.into_iter().zip([1.0, -1.0, 1.0, -1.0]) {
+        // A tenth of a side at least.
+        assert!(corner * sign * side > 0.02, "{above:?}");
+    }
 }

@@ -19,6 +19,7 @@ const ALL_KEYS: [&str; 5] = [
     bending = { plate = { rigidity = 1e-3 } }
     yield = { moment = 0.1, hardening = 1e-4 }
     damping = 1.0
+    refine = 1
     placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }
     start = { perturbation = 0.01, seed = 3, file = { path = "a.obj", scale = 1.0, up = "y", polygons = "refuse", frame = "folded" } }
     [[crease]]

@@ -52,6 +52,11 @@ fn exact_angle(pattern: &FoldPattern, theta: f64, e: usize) -> f64 {
 
 /// Writes the file, folds it with the keys of `[folding]`, and gives what is left.
 fn folded(folder: &Path, fold: &Value, keys: &str) -> FoldResidual {
+    folded_of(folder, fold, "", keys)
+}
+
+/// As [`folded`], with more keys of the sheet.
+fn folded_of(folder: &Path, fold: &Value, of_sheet: &str, keys: &str) -> FoldResidual {
     fs::write(folder.join("sheet.fold"), fold.to_string()).unwrap();
     let text = format!(
         "version = 1
@@ -59,6 +64,7 @@ fn folded(folder: &Path, fold: &Value, keys: &str) -> FoldResidual {
         mesh = {{ file = {{ path = \"sheet.fold\" }} }}
         density = 0.1
         damping = 5.0
+        {of_sheet}
         [folding]
         time = 1.0
         stiffness = 0.01
@@ -106,6 +112,52 @@ fn angles_that_close_are_reached() {
         "{residual:?}"
     );
     assert!(residual.largest_flat < 1e-3, "{residual:?}");
+}
+
+/// A mesh that is refined folds as it does without, and its creases have as many parts as it says.
+#[test]
+fn refined_panels_fold_as_whole_ones() {
+    let dir = tempfile::tempdir().unwrap();
+    let pattern = pattern();
+    let fold = fold_file(&pattern, |e| exact_angle(&pattern, 0.8, e));
+    let residual = folded_of(dir.path(), &fold, "refine = 1", "");
+    assert_eq!(residual.creases, 48);
+    assert!(residual.largest < 1e-3, "{residual:?}");
+    assert!(residual.largest_flat < 1e-3, "{residual:?}");
+}
+
+/// Angles that no rigid panels have are approached the better the more easily panels bend; stiff panels of an
+/// elastic sheet fold as far as those of rods.
+#[test]
+fn panels_of_an_elastic_sheet_bend() {
+    let dir = tempfile::tempdir().unwrap();
+    let pattern = pattern();
+    // All creases of the same size: the rigid Miura sheet has two different ones.
+    let fold = fold_file(&pattern, |e| {
+        60.0_f64.copysign(exact_angle(&pattern, 0.5, e))
+    });
+    let residual = |rigidity: f64| {
+        let of = format!(
+            "refine = 1
+            isometry = {{ elastic = {{ stiffness = 3e5 }} }}
+            bending = {{ plate = {{ rigidity = {rigidity} }} }}"
+        );
+        folded_of(dir.path(), &fold, &of, "")
+    };
+    let (stiff, medium, soft) = (residual(1e-1), residual(1e-3), residual(1e-4));
+    assert!(
+        soft.rms < 0.98 * medium.rms && medium.rms < 0.98 * stiff.rms,
+        "{stiff:?}, {medium:?}, {soft:?}"
+    );
+    assert!(
+        stiff.largest_flat < 1.0 && soft.largest_flat > 5.0,
+        "{stiff:?}, {soft:?}"
+    );
+    let rods = folded(dir.path(), &fold, "");
+    assert!(
+        (rods.rms / stiff.rms - 1.0).abs() < 0.01,
+        "{rods:?}, {stiff:?}"
+    );
 }
 
 /// Angles that do not close end at the minimum of the energy of the creases over the rigid foldings, which
@@ -436,4 +488,19 @@ fn what_cannot_be_folded_is_refused() {
         stiffness = 0.01";
     let said = crate::parse(text).unwrap_err().to_string();
     assert!(said.contains("`sheet.mesh` is no file"), "{said}");
+    let text = "version = 1
+        [[sheet]]
+        name = \"a\"
+        mesh = { square = { side = 0.2, level = 1 } }
+        [[sheet]]
+        name = \"b\"
+        mesh = { square = { side = 0.2, level = 1 } }
+        [folding]
+        time = 1.0
+        stiffness = 0.01";
+    let said = crate::parse(text).unwrap_err().to_string();
+    assert!(
+        said.contains("the creases may be of several sheets"),
+        "{said}"
+    );
 }
