@@ -75,10 +75,11 @@ const SCENES: &[Shown] = &[
     Shown::new(["leaf", "new --kind leaf"], [-62.0, 24.0], 0.4, &[]),
     Shown::new(["stack", "new --kind stack"], [-60.0, 20.0], 0.9, &[1]),
     Shown::new(["moebius", "new --kind moebius"], [-62.0, 30.0], 1.0, &[]),
+    Shown::new(["hypar", "new --kind hypar"], [-62.0, 25.0], 1.0, &[]),
 ];
 
 /// Pictures in a row, and the size of one, pixels.
-const COLUMNS: usize = 5;
+const COLUMNS: usize = 4;
 const SIZE: [usize; 2] = [480, 400];
 
 /// The scene of the film, by its number, its part of the run, and its frames; the size and the time of one

@@ -4,7 +4,7 @@ use super::failure::{Code, Done, Failure};
 use super::message::print_result;
 use crate::scene::StartingPoint;
 use crate::write_atomically;
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::builder::{PathBufValueParser, PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::ffi::OsStr;
 use std::io::Write;
@@ -28,32 +28,18 @@ pub(crate) struct New {
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// What it shows
-    #[arg(long, value_enum, default_value_t = Kind::Hanging)]
-    kind: Kind,
+    #[arg(long, value_enum, default_value_t = StartingPoint::Hanging)]
+    kind: StartingPoint,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Kind {
-    /// A sheet of paper that hangs by one corner
-    Hanging,
-    /// A strip of paper that is clamped at one end and bends under its weight
-    Clamp,
-    /// A tablecloth of plastic film that drapes over a round table
-    Drape,
-    /// A sheet of aluminium that a punch presses between two bars
-    Stamp,
-    /// A strip of paper that is pushed up a ramp
-    Feed,
-    /// Miura's crease pattern, folded by driven angles
-    Fold,
-    /// A flag of plastic film in gusty wind
-    Flag,
-    /// A folded leaf of paper that falls in still air
-    Leaf,
-    /// Three sheets of paper, of which a roller feeds the uppermost
-    Stack,
-    /// A strip of paper whose ends are glued after half a turn
-    Moebius,
+impl ValueEnum for StartingPoint {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()).help(self.about()))
+    }
 }
 
 /// Refuses a path that does not end in the name of a file, such as `..` or `scenes/`.
@@ -76,19 +62,7 @@ impl New {
             let message = format!("{} exists", path.display());
             return Err(Failure::new(Code::Output, message).remedy("choose another name"));
         }
-        let text = match self.kind {
-            Kind::Hanging => StartingPoint::Hanging,
-            Kind::Clamp => StartingPoint::Clamp,
-            Kind::Drape => StartingPoint::Drape,
-            Kind::Stamp => StartingPoint::Stamp,
-            Kind::Feed => StartingPoint::Feed,
-            Kind::Fold => StartingPoint::Fold,
-            Kind::Flag => StartingPoint::Flag,
-            Kind::Leaf => StartingPoint::Leaf,
-            Kind::Stack => StartingPoint::Stack,
-            Kind::Moebius => StartingPoint::Moebius,
-        }
-        .text();
+        let text = self.kind.text();
         write_atomically(&path, |w| w.write_all(text.as_bytes()))
             .map_err(|e| Failure::of(Code::Output, &e))?;
         print_result(format_args!(

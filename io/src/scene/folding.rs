@@ -193,9 +193,8 @@ impl Folding {
             };
             let parts = refined.parts(e).into_iter();
             let mut drive = |angle| {
-                targets
-                    .creases
-                    .extend(parts.clone().map(|e| (e, self.part * angle)))
+                let driven = parts.clone().map(|e| (e, self.part * angle));
+                targets.creases.extend(driven);
             };
             match (crease.assignment, angle) {
                 (EdgeAssignment::Flat | EdgeAssignment::Join, _) => targets.flat.extend(parts),

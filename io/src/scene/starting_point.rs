@@ -5,13 +5,13 @@
 pub enum StartingPoint {
     /// A sheet of paper that hangs by one corner.
     Hanging,
-    /// A strip of paper that is clamped at one end.
+    /// A strip of paper that is clamped at one end and bends under its weight.
     Clamp,
     /// A tablecloth of plastic film that drapes over a round table.
     Drape,
-    /// A sheet that a die presses through an opening.
+    /// A sheet of aluminium that a punch presses between two bars.
     Stamp,
-    /// A strip of paper that is pushed against a ramp.
+    /// A strip of paper that is pushed up a ramp.
     Feed,
     /// Miura's crease pattern, folded by driven angles.
     Fold,
@@ -23,11 +23,13 @@ pub enum StartingPoint {
     Stack,
     /// A strip of paper whose ends are glued after half a turn.
     Moebius,
+    /// Pleated paper whose creases bend its panels to a hyperbolic paraboloid.
+    Hypar,
 }
 
 impl StartingPoint {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Hanging,
         Self::Clamp,
         Self::Drape,
@@ -38,6 +40,7 @@ impl StartingPoint {
         Self::Leaf,
         Self::Stack,
         Self::Moebius,
+        Self::Hypar,
     ];
 
     /// Its name.
@@ -53,6 +56,24 @@ impl StartingPoint {
             Self::Leaf => "leaf",
             Self::Stack => "stack",
             Self::Moebius => "moebius",
+            Self::Hypar => "hypar",
+        }
+    }
+
+    /// What it shows, in a few words.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Hanging => "A sheet of paper that hangs by one corner",
+            Self::Clamp => "A strip of paper that is clamped at one end and bends under its weight",
+            Self::Drape => "A tablecloth of plastic film that drapes over a round table",
+            Self::Stamp => "A sheet of aluminium that a punch presses between two bars",
+            Self::Feed => "A strip of paper that is pushed up a ramp",
+            Self::Fold => "Miura's crease pattern, folded by driven angles",
+            Self::Flag => "A flag of plastic film in gusty wind",
+            Self::Leaf => "A folded leaf of paper that falls in still air",
+            Self::Stack => "Three sheets of paper, of which a roller feeds the uppermost",
+            Self::Moebius => "A strip of paper whose ends are glued after half a turn",
+            Self::Hypar => "Pleated paper whose creases bend its panels to a hyperbolic paraboloid",
         }
     }
 
@@ -69,6 +90,7 @@ impl StartingPoint {
             Self::Leaf => include_str!("starting_point/leaf.toml"),
             Self::Stack => include_str!("starting_point/stack.toml"),
             Self::Moebius => include_str!("starting_point/moebius.toml"),
+            Self::Hypar => include_str!("starting_point/hypar.toml"),
         }
     }
 }
