@@ -84,6 +84,7 @@ pub use material::plate_bending::{PlateBending, PlateBendingError};
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};
 pub use model::clamps::ClampAcrossMesh;
+pub use model::hand::{Hand, HandError};
 pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};
 pub use model::part::PotentialOfPart;

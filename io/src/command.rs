@@ -14,6 +14,7 @@ mod gallery;
 mod hints;
 mod info;
 mod interrupt;
+mod live;
 mod message;
 mod open;
 mod page;
@@ -56,6 +57,8 @@ struct Cli {
 enum Command {
     /// Run a scene; continue it if a part of it is done, do nothing if it is complete
     Simulate(simulate::Simulate),
+    /// Play a scene in the browser while it is computed, and pull at its sheet
+    Live(live::Live),
     /// Continue the run in a folder, with the scene that is stored there
     Resume(simulate::Resume),
     /// Run a scene with all combinations of some values, on all cores or by GNU parallel, Slurm or Snakemake
@@ -109,6 +112,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
     cli.verbosity.choose();
     let done = match cli.command {
         Command::Simulate(simulate) => simulate.run(),
+        Command::Live(live) => live.run(),
         Command::Resume(resume) => resume.run(),
         Command::Sweep(sweep) => sweep.run(program),
         Command::Collect(collect) => collect.run(),

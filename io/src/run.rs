@@ -45,6 +45,8 @@ mod watch;
 
 pub use collect::Collection;
 pub use commit::note_commit;
+#[cfg(feature = "cli")]
+pub(crate) use constraints::HoldingBody;
 pub use elastic::{Bend, ElasticSummary};
 pub use error::RunError;
 #[cfg(feature = "picture")]

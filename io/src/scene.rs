@@ -84,7 +84,7 @@ pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use forces::{Acceleration, Forces, Load};
 pub use glue::{Glue, SeamSide};
 pub use key::{Key, KeyError, KeyPart};
-pub use live::{FailedStep, LiveScene};
+pub use live::{FailedStep, HoldError, LiveScene};
 pub use material::{Material, Plate};
 pub use materials_page::materials_page;
 pub use mesh::{Diagonals, Mesh, MeshFile, PolygonFaces, UpAxis};

@@ -5,6 +5,7 @@ pub(crate) mod clamps;
 #[cfg(test)]
 mod derivative_tests;
 mod error;
+pub(crate) mod hand;
 pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;

@@ -9,6 +9,7 @@ use super::trace::TraceFile;
 use crate::run::{Outcome, RunError, Summary, resume_folder, simulate, simulate_anew};
 use crate::scene::SceneFile;
 use clap::Args;
+use clap::builder::RangedI64ValueParser;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -63,7 +64,7 @@ struct How {
     #[arg(long)]
     json: bool,
     /// Number of threads, at most 1024; the results do not depend on it
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads())]
     threads: u16,
     /// Write what the iterations of every step did to a file, a JSON object a line: see the page "How a damped step
     /// is found" of the book
@@ -78,6 +79,18 @@ struct How {
 /// and systems end processes that start tens of thousands of threads.
 const MOST_THREADS: i64 = 1024;
 
+/// Numbers of threads.
+pub(super) fn threads() -> RangedI64ValueParser<u16> {
+    clap::value_parser!(u16).range(1..=MOST_THREADS)
+}
+
+/// Computes with a number of threads from now on.
+pub(super) fn use_threads(number: u16) -> Done {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(number));
+    let threads = |e| Failure::new(Code::Step, format!("cannot start the threads: {e}"));
+    pool.build_global().map_err(threads)
+}
+
 impl How {
     fn format(&self) -> Format {
         if self.json {
@@ -89,9 +102,7 @@ impl How {
 
     fn prepare(&self) -> Done {
         interrupt::install()?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(self.threads));
-        let threads = |e| Failure::new(Code::Step, format!("cannot start the threads: {e}"));
-        pool.build_global().map_err(threads)
+        use_threads(self.threads)
     }
 
     /// Runs, shows the progress and says how it ended.

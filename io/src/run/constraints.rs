@@ -1,7 +1,7 @@
 //! Curves and surfaces that hold vertices, as bodies of the page.
 
 use crate::format::Trajectory;
-use crate::scene::{Curve, Hold, Scene, Surface, frame_motion};
+use crate::scene::{Curve, Hold, Scene, Support, Surface, frame_motion};
 use crate::view::{Body, BodyShape};
 use isosheet_dynamics::constraint::{self, Polyline, Spline};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
@@ -19,32 +19,68 @@ const CYLINDER_SIDES: usize = 64;
 const CIRCLE_POINTS: usize = 96;
 const PART_POINTS: usize = 24;
 
-/// The curves and surfaces of a scene where they are in each frame. Curves are thin tubes; lines, planes and
-/// cylinders, which have no ends, are drawn as far as the sheet comes.
+/// The curves and surfaces of a scene where they are in each frame.
 pub(super) fn bodies(scene: &Scene, trajectory: &Trajectory) -> Vec<Body> {
-    let space = Space::of(trajectory);
-    let mut bodies = Vec::new();
-    for (k, support) in scene.support.iter().enumerate() {
-        let (local, shape, motion) = match &support.hold {
-            Hold::Pin | Hold::MovingPin(_) => continue,
-            Hold::Curve { shape, motion } => {
-                let tube = tube(&points(shape, &space), TUBE * space.radius, TUBE_SIDES);
-                (Isometry3::identity(), tube, motion)
-            }
-            Hold::Surface { shape, motion, .. } => {
-                let (local, shape) = surface(shape, &space);
-                (local, shape, motion)
-            }
+    let frames = (0..trajectory.len()).filter_map(|k| trajectory.frame(k));
+    let held = HoldingBody::all(scene, frames);
+    let body = |held: HoldingBody| {
+        let HoldingBody { name, shape, .. } = &held;
+        let (name, shape) = (name.as_str(), shape.clone());
+        Body::moving(name, shape, trajectory.times(), |t| held.pose(scene, t))
+    };
+    held.into_iter().map(body).collect()
+}
+
+/// A curve or a surface that holds vertices, as it is drawn. Curves are thin tubes; lines, planes and cylinders,
+/// which have no ends, are drawn as far as the sheet comes.
+#[derive(Debug)]
+pub(crate) struct HoldingBody {
+    /// The key of the support.
+    pub(crate) name: String,
+    pub(crate) shape: BodyShape,
+    /// Where it is while displacements and angle of its motion are zero.
+    local: Isometry3<f64>,
+    /// The number of the support.
+    support: usize,
+}
+
+impl HoldingBody {
+    /// Those of a scene, whose sheet comes to the positions (length 3V) of some frames.
+    pub(crate) fn all<'a>(scene: &Scene, frames: impl Iterator<Item = &'a [f64]>) -> Vec<Self> {
+        let space = Space::of(frames);
+        let body = |(support, entry): (usize, &Support)| {
+            let (local, shape) = match &entry.hold {
+                Hold::Pin | Hold::MovingPin(_) => return None,
+                Hold::Curve { shape, .. } => {
+                    let tube = tube(&points(shape, &space), TUBE * space.radius, TUBE_SIDES);
+                    (Isometry3::identity(), tube)
+                }
+                Hold::Surface { shape, .. } => surface(shape, &space),
+            };
+            let name = format!("support[{support}]");
+            Some(Self {
+                name,
+                shape,
+                local,
+                support,
+            })
         };
-        let motion = frame_motion(motion);
-        let pose = |t: f64| match &motion {
-            None => local,
-            Some(motion) => motion.pose(t) * local,
-        };
-        let name = format!("support[{k}]");
-        bodies.push(Body::moving(&name, shape, trajectory.times(), pose));
+        let supports = scene.support.iter().enumerate();
+        supports.filter_map(body).collect()
     }
-    bodies
+
+    /// Where it is at time `t` (seconds) in its scene, in which its motion may have been changed since.
+    pub(crate) fn pose(&self, scene: &Scene, t: f64) -> Isometry3<f64> {
+        let hold = scene.support.get(self.support).map(|s| &s.hold);
+        let motion = match hold {
+            Some(Hold::Curve { motion, .. } | Hold::Surface { motion, .. }) => frame_motion(motion),
+            _ => None,
+        };
+        match motion {
+            None => self.local,
+            Some(motion) => motion.pose(t) * self.local,
+        }
+    }
 }
 
 /// The ball that holds the sheet in all frames.
@@ -54,8 +90,7 @@ struct Space {
 }
 
 impl Space {
-    fn of(trajectory: &Trajectory) -> Self {
-        let frames = (0..trajectory.len()).filter_map(|k| trajectory.frame(k));
+    fn of<'a>(frames: impl Iterator<Item = &'a [f64]>) -> Self {
         let points = frames.flat_map(|x| x.as_chunks::<3>().0);
         let (mut low, mut high) = (
             Vector3::repeat(f64::INFINITY),

@@ -49,23 +49,49 @@ fn step_length(scene: &Scene, number: u64) -> f64 {
     }
 }
 
+impl HistoryRow {
+    /// The row of the state that a simulation starts at.
+    pub(crate) fn of_start(simulation: &Simulation) -> Self {
+        let state = simulation.state();
+        let kinetic = simulation.model().kinetic_energy(&state.v);
+        let total = simulation.energy();
+        Self {
+            t: state.t,
+            kinetic,
+            potential: total - kinetic,
+            total,
+            strain: simulation.model().rods().max_strain(&state.x),
+            ..Self::default()
+        }
+    }
+
+    /// The row of a step of a run that started at an energy, joules.
+    pub(crate) fn of_step(report: &StepReport, start_energy: f64) -> Self {
+        let total = report.hamiltonian();
+        Self {
+            t: report.t,
+            h: report.h,
+            iterations: report.iterations,
+            factorisations: report.factorisations,
+            rejected: report.rejected,
+            kinetic: report.kinetic,
+            potential: report.potential,
+            total,
+            drift: total - start_energy,
+            strain: report.strain,
+            gap: report.gap.filter(|gap| gap.is_finite()),
+        }
+    }
+}
+
 impl Stepping<'_> {
     /// Records the state at the start.
     pub(crate) fn record_start(&mut self) -> Result<(), RunError> {
         self.progress.elastic = ElasticSummary::of(self.simulation.model());
         self.observe_elastic();
-        let state = self.simulation.state();
-        let kinetic = self.simulation.model().kinetic_energy(&state.v);
-        let total = self.simulation.energy();
-        self.progress.start_energy = total;
-        self.history.append(&HistoryRow {
-            t: state.t,
-            kinetic,
-            potential: total - kinetic,
-            total,
-            strain: self.simulation.model().rods().max_strain(&state.x),
-            ..HistoryRow::default()
-        })?;
+        self.progress.start_energy = self.simulation.energy();
+        self.history
+            .append(&HistoryRow::of_start(&self.simulation))?;
         self.record_frame()?;
         self.save()
     }
@@ -161,20 +187,7 @@ impl Stepping<'_> {
     }
 
     fn row(&self, report: &StepReport) -> HistoryRow {
-        let total = report.hamiltonian();
-        HistoryRow {
-            t: report.t,
-            h: report.h,
-            iterations: report.iterations,
-            factorisations: report.factorisations,
-            rejected: report.rejected,
-            kinetic: report.kinetic,
-            potential: report.potential,
-            total,
-            drift: total - self.progress.start_energy,
-            strain: report.strain,
-            gap: report.gap.filter(|gap| gap.is_finite()),
-        }
+        HistoryRow::of_step(report, self.progress.start_energy)
     }
 
     /// Whether a condition to stop holds after a step.

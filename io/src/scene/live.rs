@@ -1,5 +1,9 @@
 //! A simulation together with its scene, which can be changed between steps.
 
+mod hand;
+
+pub use hand::HoldError;
+
 use super::edit::{EditError, EditProblem};
 use super::key::{Key, KeyPart};
 use super::sheets::sheet_key;
@@ -7,7 +11,8 @@ use super::{
     Method, Origins, Problem, Profile, Scene, SceneError, SceneFile, SceneFileError, Setup,
     SupportForces,
 };
-use isosheet_dynamics::{Checkpoint, Simulation, StepError, StepProgress, StepReport};
+use isosheet_collide::Obstacle;
+use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
 use isosheet_mesh::{Advice, Part, Sheet};
 use serde::Deserialize;
 use std::ops::ControlFlow;
@@ -46,6 +51,8 @@ pub struct LiveScene {
     facts: Facts,
     supports: SupportForces,
     simulation: Simulation,
+    /// What somebody holds.
+    hand: Option<Hand>,
 }
 
 /// Part of a step by which a time may differ from a whole number of steps, to allow for round-off: of a
@@ -73,6 +80,7 @@ impl Advice for FailedStep {
 struct Facts {
     sheet: Sheet,
     parts: Vec<(String, Part)>,
+    obstacles: Vec<Obstacle>,
     modelled: Vec<String>,
     origins: Origins,
 }
@@ -82,6 +90,7 @@ impl Facts {
         Self {
             sheet: setup.sheet.clone(),
             parts: setup.parts.clone(),
+            obstacles: setup.obstacles.clone(),
             modelled: setup.modelled.clone(),
             origins: setup.origins.clone(),
         }
@@ -117,6 +126,7 @@ impl LiveScene {
             file,
             facts,
             simulation,
+            hand: None,
         }
     }
 
@@ -138,6 +148,11 @@ impl LiveScene {
     /// Of several sheets the name of each, and where it is in their union.
     pub fn parts(&self) -> &[(String, Part)] {
         &self.facts.parts
+    }
+
+    /// The bodies, in the order of the scene.
+    pub fn obstacles(&self) -> &[Obstacle] {
+        &self.facts.obstacles
     }
 
     /// What is modelled, in words.
@@ -198,14 +213,25 @@ impl LiveScene {
         let file = SceneFile::parse(text.text.clone(), &text.path, edits)?;
         SceneError::of(lasting(self.file.scene(), file.scene()))
             .map_err(|e| e.in_text(file.text()))?;
-        let setup = file.build()?;
+        Ok(self.rebuild(file, self.hand.clone())?)
+    }
+
+    /// Goes on with another scene and another hand from the present state.
+    fn rebuild(&mut self, file: SceneFile, hand: Option<Hand>) -> Result<(), SceneError> {
+        let mut setup = file.build()?;
         let facts = Facts::of(&setup);
+        if let Some(hand) = &hand {
+            setup.model = setup.model.with_potential(hand.clone());
+        }
         let resumed = setup.resume(self.simulation.checkpoint())?;
         let changed = resumed.changed_from(&self.simulation).map_err(|e| {
             let problem = facts.origins.of_start(&e);
             SceneError::from(problem).in_text(file.text())
         })?;
-        *self = Self::new(file, facts, changed);
+        *self = Self {
+            hand,
+            ..Self::new(file, facts, changed)
+        };
         Ok(())
     }
 

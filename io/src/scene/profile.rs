@@ -135,6 +135,20 @@ impl Profile {
         self.as_given().value(t)
     }
 
+    /// The smallest and the largest value until time `t` (seconds) of one that is used from time zero on.
+    pub fn range(&self, t: f64) -> [f64; 2] {
+        let values = match self {
+            Self::Course(Course::RunUp { .. }) => vec![self.value(0.0), self.value(t)],
+            Self::Course(Course::Sine {
+                mean, amplitude, ..
+            }) => vec![mean - amplitude, mean + amplitude],
+            _ => self.numbers().1,
+        };
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let widen = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
+        values.into_iter().fold(none, widen)
+    }
+
     /// The profile as the engine has it, values multiplied by `scale`.
     pub(crate) fn scaled(&self, scale: f64) -> engine::Profile {
         let course = match self {

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::body::{Body, BodyShape};
 use super::field::{Field, Place, Scale, Series};
+use super::live::LivePage;
 use super::pack::{Packed, pack_doubles, pack_indices, pack_rows};
 use super::quantise::{quantise_field, quantise_positions};
 use super::replay::{Axis, Replay};
@@ -33,6 +34,9 @@ pub(super) struct Document<'a> {
     summary: &'a [(String, String)],
     scene: &'a str,
     reproduce: &'a str,
+    /// Of a run that goes on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    live: Option<&'a LivePage>,
 }
 
 #[derive(Serialize)]
@@ -117,6 +121,15 @@ impl<'a> Document<'a> {
             summary: &replay.summary,
             scene: &replay.scene,
             reproduce: &replay.reproduce,
+            live: None,
+        }
+    }
+
+    /// The same of a run that goes on.
+    pub(super) fn live(self, live: &'a LivePage) -> Self {
+        Self {
+            live: Some(live),
+            ..self
         }
     }
 

@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use super::document::Document;
 use super::error::ViewError;
+use super::live::LivePage;
 use super::pack::pack_text;
 use super::replay::Replay;
 
@@ -73,7 +74,7 @@ impl Replay {
         let mut stride = 1;
         loop {
             let document = Document::new(self, stride);
-            let page = fill(&self.title, &document.to_json());
+            let page = fill(&self.title, "", &document.to_json());
             if page.len() <= options.budget {
                 return Ok(page);
             }
@@ -87,10 +88,24 @@ impl Replay {
             stride *= 2;
         }
     }
+
+    /// The page of a run that goes on, which gets all states but the first from the server that it comes from.
+    ///
+    /// # Errors
+    /// [`ViewError`] for a replay that is not valid.
+    pub fn to_live_html(&self, live: &LivePage) -> Result<String, ViewError> {
+        self.validate()?;
+        let nonce = match live.nonce.as_str() {
+            "" => String::new(),
+            nonce => format!(" nonce=\"{}\"", escape(nonce)),
+        };
+        let document = Document::new(self, 1).live(live);
+        Ok(fill(&self.title, &nonce, &document.to_json()))
+    }
 }
 
 /// Fills the template. Texts that are filled in are not searched for markers.
-fn fill(title: &str, data: &str) -> String {
+fn fill(title: &str, nonce: &str, data: &str) -> String {
     let mut page = String::with_capacity(shell_size() + title.len() + data.len());
     let mut rest = TEMPLATE;
     for (marker, text) in [
@@ -99,6 +114,7 @@ fn fill(title: &str, data: &str) -> String {
         ("{licences}", &escape(LICENCES)),
         ("{data}", data),
         ("{program}", &PACKED_PROGRAM),
+        ("{nonce}", nonce),
     ] {
         let (before, after) = rest
             .split_once(marker)

@@ -4,12 +4,16 @@ mod command_line;
 mod contact_data;
 mod continuing;
 mod convert;
+#[path = "../shared/devtools.rs"]
+mod devtools;
 mod ends;
 mod folders;
 mod folding;
 mod gallery;
 #[path = "../shared/headless.rs"]
 mod headless;
+mod live;
+mod live_page;
 mod pages;
 mod rod_forces;
 #[path = "../shared/skip.rs"]

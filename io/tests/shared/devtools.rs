@@ -2,6 +2,8 @@
 //! `DevTools` protocol over pipes, so that its own input handling is tested, too.
 
 use crate::headless::browser;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
@@ -23,13 +25,36 @@ pub(crate) struct Driven {
     address: String,
 }
 
+/// Where the pointer is and what it does.
+#[derive(Clone, Copy)]
+pub(crate) enum Pointer {
+    Press,
+    /// With the button pressed.
+    Drag,
+    Release,
+    /// Without a button.
+    Move,
+}
+
 impl Driven {
     /// Opens a page in a browser; `None` where none is installed.
+    #[allow(dead_code, reason = "not every test binary opens a page of its own")]
     pub(crate) fn open(page: &str) -> Option<Self> {
-        let browser = browser()?;
         let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("page.html");
+        std::fs::write(&file, page).unwrap();
+        Self::start(folder, address_of(&file))
+    }
+
+    /// Opens an address in a browser; `None` where none is installed.
+    #[allow(dead_code, reason = "not every test binary has a server")]
+    pub(crate) fn visit(address: &str) -> Option<Self> {
+        Self::start(tempfile::tempdir().unwrap(), address.to_owned())
+    }
+
+    fn start(folder: tempfile::TempDir, address: String) -> Option<Self> {
+        let browser = browser()?;
         let path = |name: &str| folder.path().join(name);
-        std::fs::write(path("page.html"), page).unwrap();
         let pipes = Command::new("mkfifo")
             .args([path("in"), path("out")])
             .status();
@@ -47,7 +72,6 @@ impl Driven {
             .unwrap();
         let commands = File::options().write(true).open(path("in")).unwrap();
         let answers = BufReader::new(File::open(path("out")).unwrap());
-        let address = address_of(&path("page.html"));
         let mut driven = Self {
             child,
             commands,
@@ -116,19 +140,19 @@ impl Driven {
     /// Clicks in the middle of an element.
     pub(crate) fn click(&mut self, id: &str) {
         let [x, y] = self.middle(id);
-        for kind in ["mousePressed", "mouseReleased"] {
-            self.pointer(kind, [x, y]);
-        }
+        self.pointer(Pointer::Press, [x, y]);
+        self.pointer(Pointer::Release, [x, y]);
     }
 
     /// Drags from the middle of an element by some pixels.
+    #[allow(dead_code, reason = "not every test binary drags an element")]
     pub(crate) fn drag(&mut self, id: &str, by: [f64; 2]) {
         let [x, y] = self.middle(id);
-        self.pointer("mousePressed", [x, y]);
+        self.pointer(Pointer::Press, [x, y]);
         for part in [0.25, 0.5, 0.75, 1.0] {
-            self.pointer("mouseMoved", [x + part * by[0], y + part * by[1]]);
+            self.pointer(Pointer::Drag, [x + part * by[0], y + part * by[1]]);
         }
-        self.pointer("mouseReleased", [x + by[0], y + by[1]]);
+        self.pointer(Pointer::Release, [x + by[0], y + by[1]]);
     }
 
     fn middle(&mut self, id: &str) -> [f64; 2] {
@@ -140,11 +164,25 @@ impl Driven {
         [0, 1].map(|k| place[k].as_f64().expect("a place"))
     }
 
-    fn pointer(&mut self, kind: &str, [x, y]: [f64; 2]) {
+    /// Does something with the pointer at a place, in pixels.
+    pub(crate) fn pointer(&mut self, what: Pointer, [x, y]: [f64; 2]) {
+        let (kind, button, buttons) = match what {
+            Pointer::Press => ("mousePressed", "left", 1),
+            Pointer::Drag => ("mouseMoved", "left", 1),
+            Pointer::Release => ("mouseReleased", "left", 1),
+            Pointer::Move => ("mouseMoved", "none", 0),
+        };
         let parameters = json!({
-            "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1,
+            "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1,
         });
         self.call("Input.dispatchMouseEvent", parameters);
+    }
+
+    /// The picture of the page, as a PNG file.
+    #[allow(dead_code, reason = "for a look at what a test sees")]
+    pub(crate) fn picture(&mut self) -> Vec<u8> {
+        let answer = self.call("Page.captureScreenshot", json!({ "format": "png" }));
+        STANDARD.decode(answer["data"].as_str().unwrap()).unwrap()
     }
 
     /// Presses a key and lets it go. Space has the name `" "`.

@@ -8,6 +8,8 @@ import { number } from "./format.js";
 import { Hover } from "./hover.js";
 import { listenToKeys, releaseControls } from "./keys.js";
 import { showLegend } from "./legend.js";
+import { Live } from "./live.js";
+import { LiveReplay } from "./live-replay.js";
 import { Player } from "./player.js";
 import { Plots } from "./plots.js";
 import { Replay } from "./replay.js";
@@ -34,7 +36,7 @@ class Page {
     showTexts(replay);
     this.stage = new Stage($("view"), replay);
     this.hover = new Hover($("view"), this.stage);
-    this.player = new Player(replay, () => this.changed());
+    this.player = replay.data.live ? new Live(this) : new Player(replay, () => this.changed());
     this.plots = new Plots($("plots"), replay.data.series, (time) => this.player.seekTime(time));
     this.connect();
     onThemeChange(() => {
@@ -43,6 +45,7 @@ class Page {
     });
     this.player.seek(0);
     this.address = new Address(this);
+    this.player.begin?.();
     this.changed();
     this.stage.controls.addEventListener("change", () => this.address.changed());
   }
@@ -54,7 +57,7 @@ class Page {
     this.hover.update();
     this.plots.setTime(replay.time);
     $("scrub").value = replay.frame;
-    $("time").textContent = `${number(replay.time)} s · ${replay.frame + 1}/${replay.frames}`;
+    $("time").textContent = player.timeText?.() ?? `${number(replay.time)} s · ${replay.frame + 1}/${replay.frames}`;
     $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
     $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
     this.address.changed();
@@ -65,7 +68,7 @@ class Page {
     $("scrub").max = replay.frames - 1;
     $("scrub").addEventListener("input", () => player.seek(Number($("scrub").value)));
     $("play").addEventListener("click", () => player.toggle());
-    $("transport").hidden = replay.frames === 1;
+    $("transport").hidden = replay.frames === 1 && !replay.data.live;
     $("speed").append(
       ...SPEEDS.map(([value, name]) => new Option(`${name}×`, value, value === 1, value === 1)),
     );
@@ -95,7 +98,7 @@ class Page {
       });
     }
     releaseControls();
-    const step = (frames) => (isTen) => player.seek(replay.frame + (isTen ? 10 : 1) * frames);
+    const step = (frames) => (isTen) => player.step?.(frames) ?? player.seek(replay.frame + (isTen ? 10 : 1) * frames);
     listenToKeys({
       " ": () => player.toggle(),
       ArrowLeft: step(-1),
@@ -127,7 +130,7 @@ async function main() {
   const isTest = new URLSearchParams(location.hash.slice(1)).has("selftest");
   const exceptions = watchErrors();
   const data = await decode(JSON.parse($("replay").textContent));
-  const page = new Page(new Replay(data));
+  const page = new Page(data.live ? new LiveReplay(data) : new Replay(data));
   $("message").hidden = true;
   page.address.read();
   if (isTest)

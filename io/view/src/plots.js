@@ -5,6 +5,10 @@ import { number } from "./format.js";
 import { themeColours } from "./theme.js";
 
 const HEIGHT = 132;
+/** Values of a series that grows; of more, every second one is kept. */
+const MOST_VALUES = 4000;
+/** Milliseconds between two drawings of plots that grow. */
+const REFRESH = 250;
 /** Line colours after Okabe and Ito, which readers with colour vision deficiencies tell apart. */
 const LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
@@ -48,6 +52,26 @@ export class Plots {
     for (const plot of this.plots) plot.resize(this.container.clientWidth);
   }
 
+  /** Adds a value to each of the series, in their order, and draws them anew at the next occasion. */
+  append(time, values) {
+    const series = this.groups.flat();
+    series.forEach((s, k) => {
+      [s.times, s.values] = [Array.from(s.times), Array.from(s.values)];
+      s.times.push(time);
+      s.values.push(values[k]);
+      if (s.times.length > MOST_VALUES) {
+        const thin = (list) => list.filter((_, i) => i % 2 === 0 || i === list.length - 1);
+        [s.times, s.values] = [thin(s.times), thin(s.values)];
+      }
+    });
+    this.pending ??= setTimeout(() => {
+      this.pending = null;
+      // A plot that had no values yet gets its axes.
+      if (this.plots.some((plot) => !plot.refresh())) this.build();
+      this.setTime(this.time);
+    }, REFRESH);
+  }
+
   setTime(time) {
     this.time = time;
     for (const plot of this.plots) plot.setTime(time);
@@ -76,7 +100,8 @@ class Plot {
     this.line = document.createElement("div");
     this.line.className = "now";
     const logarithmic = group[0].scale === "logarithmic";
-    this.values = group.map((s) => Array.from(s.values, (v) => (logarithmic && v <= 0 ? null : v)));
+    this.logarithmic = logarithmic;
+    this.readValues();
     if (group[0].times.length === 0 || this.values.every((list) => list.every((v) => v === null))) {
       figure.append(Object.assign(document.createElement("p"), { textContent: "No values to plot." }));
       return;
@@ -84,6 +109,19 @@ class Plot {
     this.plot = new uPlot(this.options(colours, logarithmic), [group[0].times, ...this.values], figure);
     this.plot.over.append(this.line);
     this.drag(this.plot.over);
+  }
+
+  readValues() {
+    const shown = (v) => (this.logarithmic && v <= 0 ? null : v);
+    this.values = this.group.map((s) => Array.from(s.values, shown));
+  }
+
+  /** Takes over values that have been added; false if there is no plot for them yet. */
+  refresh() {
+    this.readValues();
+    if (!this.plot) return this.values.every((list) => list.every((v) => v === null));
+    this.plot.setData([this.group[0].times, ...this.values]);
+    return true;
   }
 
   options(colours, logarithmic) {

@@ -57,6 +57,16 @@ export class Replay {
     });
   }
 
+  /** The range of the fold angles in degrees, and whether there are others. */
+  get foldRange() {
+    return (this.foundFolds ??= foldRange(this));
+  }
+
+  /** The range of the heights, metres. */
+  get heightRange() {
+    return (this.foundHeights ??= heightRange(this));
+  }
+
   /** The last frame that is not after a time. */
   frameAt(time) {
     const { times } = this.data;
@@ -88,7 +98,6 @@ const FLAT = 0.01;
 const DEGREES = 180 / Math.PI;
 
 function foldQuantity(replay) {
-  let found = null;
   return {
     key: "fold",
     label: "Fold angle",
@@ -96,9 +105,9 @@ function foldQuantity(replay) {
     place: "edge",
     map: DIVERGING,
     scale: "linear",
-    open: () => ({ below: found.open, above: found.open }),
+    open: () => ({ below: replay.foldRange.open, above: replay.foldRange.open }),
     leavesOut: (place) => !(Math.abs(place - 0.5) > FLAT),
-    range: () => (found ??= foldRange(replay)).range,
+    range: () => replay.foldRange.range,
     value: (edge) => replay.folds[edge] * DEGREES,
   };
 }
@@ -135,11 +144,14 @@ function foldRange(replay) {
   return { range: [-end, end], open: largest > end };
 }
 
-function heightQuantity(replay) {
+function heightRange(replay) {
   const { low, step, positions } = replay.data;
   let largest = 0;
   for (let k = replay.up; k < positions.length; k += 3) if (positions[k] > largest) largest = positions[k];
-  const range = [low[replay.up], low[replay.up] + step * largest];
+  return [low[replay.up], low[replay.up] + step * largest];
+}
+
+function heightQuantity(replay) {
   return {
     leavesOut: Number.isNaN,
     key: "height",
@@ -148,7 +160,7 @@ function heightQuantity(replay) {
     place: "vertex",
     map: SEQUENTIAL,
     scale: "linear",
-    range: () => range,
+    range: () => replay.heightRange,
     value: (vertex) => replay.x[3 * vertex + replay.up],
   };
 }

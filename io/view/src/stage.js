@@ -133,6 +133,11 @@ export class Stage {
     this.request();
   }
 
+  /** Takes over the poses of bodies that have one pose, which has changed. */
+  placeBodies() {
+    this.replay.data.bodies.forEach((body, k) => placeBody(this.bodyGroups[k], body, 0));
+  }
+
   setQuantity(quantity) {
     this.sheet.setQuantity(quantity);
     this.update();
@@ -257,6 +262,46 @@ export class Stage {
     const body = this.raycaster.intersectObjects(solid, false)[0];
     if (body && !(sheet?.distance < body.distance)) return { body: body.object.parent.name };
     return sheet ? this.nearest(sheet.faceIndex, sheet.point) : null;
+  }
+
+  /**
+   * The vertex of the sheet that is seen within `reach` pixels of a place, or null: of the face there the nearest
+   * one; beside the sheet the nearest of all.
+   */
+  vertexNear(left, top, reach) {
+    const found = this.pick(left, top);
+    if (found?.body !== undefined) return null;
+    const { faces, vertexCount } = this.replay.mesh;
+    const candidates = found
+      ? faces.subarray(3 * found.face, 3 * found.face + 3)
+      : Array.from({ length: vertexCount }, (_, v) => v);
+    let nearest = null,
+      least = reach;
+    for (const v of candidates) {
+      const [x, y] = this.placeOf(new Vector3().fromArray(this.positions, 3 * v));
+      const distance = Math.hypot(x - left, y - top);
+      if (distance <= least) [nearest, least] = [v, distance];
+    }
+    return nearest;
+  }
+
+  /** Where a point of the stage is seen: pixels from the upper left corner, and its depth. */
+  placeOf(point) {
+    const { clientWidth, clientHeight } = this.container;
+    const { x, y, z } = point.project(this.camera);
+    return [((x + 1) / 2) * clientWidth, ((1 - y) / 2) * clientHeight, z];
+  }
+
+  /** The point of the stage that is seen at a place, at a depth. */
+  pointAt(left, top, depth) {
+    const { clientWidth, clientHeight } = this.container;
+    const place = new Vector3((2 * left) / clientWidth - 1, 1 - (2 * top) / clientHeight, depth);
+    return place.unproject(this.camera);
+  }
+
+  /** A point of the stage in metres. */
+  toMetres(point) {
+    return point.toArray().map((c, k) => c * this.size + this.centre[k]);
   }
 
   nearest(face, point) {

@@ -18,7 +18,9 @@ export function showTexts(replay) {
     count(data.vertices, "vertex", "vertices"),
     count(mesh.edgeCount, "edge", "edges"),
     count(mesh.faceCount, "face", "faces"),
-    count(data.frames, "frame", "frames") + (data.frames > 1 ? ` over ${withUnit(duration, "s")}` : ""),
+    data.live
+      ? "live"
+      : count(data.frames, "frame", "frames") + (data.frames > 1 ? ` over ${withUnit(duration, "s")}` : ""),
   ].join(" · ");
   const rows = data.summary.map(([name, value]) => {
     const row = document.createElement("tr");
@@ -33,7 +35,7 @@ export function showTexts(replay) {
   $("footer").replaceChildren(
     ...[
       `${data.program} ${data.version}.`,
-      `Positions are rounded to ${number(data.step / 2, 2)} m in each coordinate.`,
+      data.live ? "" : `Positions are rounded to ${number(data.step / 2, 2)} m in each coordinate.`,
       data.stride > 1
         ? `Has one in ${data.stride} of the ${data.frames_of_run} frames of the run, and the last one.`
         : "",

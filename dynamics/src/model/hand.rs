@@ -1,0 +1,366 @@
+//! A spring by which somebody pulls at a vertex while the simulation runs.
+
+use crate::model::potential::{HessianSink, Potential};
+use isosheet_mesh::wording::given;
+use isosheet_mesh::{Advice, Topology, VertexId};
+use nalgebra::{Matrix3, Vector3};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Why a hand cannot pull.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum HandError {
+    /// The vertex does not exist.
+    #[error("{vertex} is pulled at, but the sheet has only {vertex_count} vertices")]
+    NoSuchVertex {
+        /// The vertex.
+        vertex: VertexId,
+        /// Number of vertices.
+        vertex_count: usize,
+    },
+    /// The stiffness is not positive and finite.
+    #[error("the stiffness of the hand is {stiffness} N/m", stiffness = given(*stiffness))]
+    Stiffness {
+        /// The stiffness, N/m.
+        stiffness: f64,
+    },
+    /// A coordinate of the point that pulls is not finite.
+    #[error("the hand is led to [{x}, {y}, {z}] m", x = given(to[0]), y = given(to[1]), z = given(to[2]))]
+    Target {
+        /// The point, metres.
+        to: [f64; 3],
+    },
+}
+
+impl Advice for HandError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoSuchVertex { .. } => None,
+            Self::Stiffness { .. } => Some("give a positive number"),
+            Self::Target { .. } => Some("give three finite numbers"),
+        }
+    }
+}
+
+/// A spring between a vertex and a point in space that is led from outside, `V(t, x) = k |x_v - p(t)|^2 / 2`: a hand
+/// that holds a vertex. Between two steps it is led elsewhere without a change of the simulation, and its work
+/// enters the energy balance. Clones are the same hand.
+///
+/// ```
+/// use isosheet_dynamics::{Hand, Method, SheetModel, Simulation, State};
+/// use isosheet_mesh::{MassKind, VertexId, generate};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let sheet = generate::isotropic_square(1, 0.21)?;
+/// let corner = VertexId(20);
+/// let hand = Hand::new(sheet.topology(), corner, 10.0, sheet.position(corner))?;
+/// let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?.with_potential(hand.clone());
+/// let mut simulation = Simulation::new(model, State::at_rest(sheet.positions().to_vec()), Method::default())?;
+/// for _ in 0..60 {
+///     // The hand rises by 0.1 m/s.
+///     let t = simulation.state().t;
+///     let mut to = hand.target(t);
+///     to[2] += 0.1 / 60.0;
+///     hand.lead(to, t, t + 1.0 / 60.0)?;
+///     simulation.step(1.0 / 60.0)?;
+/// }
+/// assert!((simulation.state().x[62] - 0.1).abs() < 0.01);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct Hand {
+    vertex: VertexId,
+    stiffness: f64,
+    way: Arc<Mutex<Way>>,
+}
+
+/// A straight way of the point: at `from` until `begin`, at `to` from `end` on (seconds).
+#[derive(Debug, Clone, Copy)]
+struct Way {
+    from: Vector3<f64>,
+    to: Vector3<f64>,
+    begin: f64,
+    end: f64,
+}
+
+impl Way {
+    fn at(&self, t: f64) -> Vector3<f64> {
+        if t >= self.end {
+            return self.to;
+        }
+        let part = ((t - self.begin) / (self.end - self.begin)).clamp(0.0, 1.0);
+        self.from + part * (self.to - self.from)
+    }
+}
+
+impl Hand {
+    /// A hand of a stiffness (N/m) that holds a vertex and is at a point (metres): where the vertex is, it pulls at
+    /// nothing yet.
+    ///
+    /// # Errors
+    /// [`HandError`] naming the first argument that cannot be used.
+    pub fn new(
+        topology: &Topology,
+        vertex: VertexId,
+        stiffness: f64,
+        at: [f64; 3],
+    ) -> Result<Self, HandError> {
+        let vertex_count = topology.vertex_count();
+        if vertex.index() >= vertex_count {
+            return Err(HandError::NoSuchVertex {
+                vertex,
+                vertex_count,
+            });
+        }
+        if !(stiffness.is_finite() && stiffness > 0.0) {
+            return Err(HandError::Stiffness { stiffness });
+        }
+        let at = point(at)?;
+        let way = Way {
+            from: at,
+            to: at,
+            begin: 0.0,
+            end: 0.0,
+        };
+        Ok(Self {
+            vertex,
+            stiffness,
+            way: Arc::new(Mutex::new(way)),
+        })
+    }
+
+    /// The vertex that is held.
+    pub fn vertex(&self) -> VertexId {
+        self.vertex
+    }
+
+    /// The stiffness of the spring, N/m.
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// Where the hand is at time `t` (seconds), metres.
+    pub fn target(&self, t: f64) -> [f64; 3] {
+        self.way().at(t).into()
+    }
+
+    /// Leads the hand from where it is at time `begin` to a point (metres) until time `end` (seconds), on a straight
+    /// way with a constant speed. `begin` is the time of the simulation: between two steps the energy does not jump.
+    ///
+    /// # Errors
+    /// [`HandError::Target`]; then nothing has changed.
+    pub fn lead(&self, to: [f64; 3], begin: f64, end: f64) -> Result<(), HandError> {
+        let to = point(to)?;
+        let from = self.way().at(begin);
+        let mut way = self.way.lock().unwrap_or_else(PoisonError::into_inner);
+        *way = Way {
+            from,
+            to,
+            begin,
+            end,
+        };
+        Ok(())
+    }
+
+    fn way(&self) -> Way {
+        *self.way.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// From the hand to the vertex, metres.
+    fn stretch(&self, t: f64, x: &[f64]) -> Vector3<f64> {
+        Vector3::from(x.as_chunks::<3>().0[self.vertex.index()]) - self.way().at(t)
+    }
+}
+
+fn point(to: [f64; 3]) -> Result<Vector3<f64>, HandError> {
+    match to.iter().all(|c| c.is_finite()) {
+        true => Ok(to.into()),
+        false => Err(HandError::Target { to }),
+    }
+}
+
+impl Potential for Hand {
+    fn energy(&self, t: f64, x: &[f64]) -> f64 {
+        0.5 * self.stiffness * self.stretch(t, x).norm_squared()
+    }
+
+    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
+        let force = self.stiffness * self.stretch(t, x);
+        let row = &mut gradient.as_chunks_mut::<3>().0[self.vertex.index()];
+        for k in 0..3 {
+            row[k] += force[k];
+        }
+    }
+
+    fn add_hessian(&self, _t: f64, _x: &[f64], hessian: &mut dyn HessianSink) {
+        let block = Matrix3::from_diagonal_element(self.stiffness);
+        hessian.add_vertex(self.vertex, &block);
+    }
+
+    fn is_driven(&self) -> bool {
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Method, SheetModel, Simulation, State};
+    use isosheet_mesh::{EdgeId, MassKind, Sheet, generate};
+
+    const STEP: f64 = 1.0 / 60.0;
+    const CORNER: VertexId = VertexId(20);
+
+    fn sheet() -> Sheet {
+        generate::isotropic_square(1, 0.2).expect("a mesh")
+    }
+
+    fn hand(sheet: &Sheet, stiffness: f64) -> Hand {
+        let at = sheet.position(CORNER);
+        Hand::new(sheet.topology(), CORNER, stiffness, at).expect("a hand")
+    }
+
+    struct Blocks(Vec<(VertexId, Matrix3<f64>)>);
+
+    impl HessianSink for Blocks {
+        fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
+            self.0.push((v, *block));
+        }
+
+        fn add_edge(&mut self, e: EdgeId, _block: &Matrix3<f64>) {
+            panic!("a block at {e}");
+        }
+
+        fn add_pair(&mut self, a: VertexId, b: VertexId, _block: &Matrix3<f64>) {
+            panic!("a block at {a} and {b}");
+        }
+    }
+
+    /// The energy is quadratic: central differences have no error but round-off.
+    #[test]
+    fn derivatives_match_differences() {
+        let sheet = sheet();
+        let hand = hand(&sheet, 7.0);
+        hand.lead([0.4, -0.1, 0.3], 1.0, 2.0).expect("finite");
+        let (t, x) = (1.25, sheet.positions().to_vec());
+        let gradient = |x: &[f64]| {
+            let mut gradient = vec![0.0; x.len()];
+            hand.add_gradient(t, x, &mut gradient);
+            gradient
+        };
+        let mut blocks = Blocks(Vec::new());
+        hand.add_hessian(t, &x, &mut blocks);
+        let [(vertex, block)] = blocks.0[..] else {
+            panic!("{} blocks", blocks.0.len());
+        };
+        assert_eq!(vertex, CORNER);
+        let slope = gradient(&x);
+        for i in 0..x.len() {
+            let (mut up, mut down) = (x.clone(), x.clone());
+            up[i] += 0.5;
+            down[i] -= 0.5;
+            let difference = hand.energy(t, &up) - hand.energy(t, &down);
+            assert!((difference - slope[i]).abs() < 1e-13, "coordinate {i}");
+            for (j, (a, b)) in gradient(&up).iter().zip(gradient(&down)).enumerate() {
+                let at = 3 * CORNER.index();
+                let is_inside = (at..at + 3).contains(&i) && (at..at + 3).contains(&j);
+                let want = if is_inside {
+                    block[(i - at, j - at)]
+                } else {
+                    0.0
+                };
+                assert!((a - b - want).abs() < 1e-13, "coordinates {i}, {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_way_is_straight_and_begins_where_the_hand_is() {
+        let hand = hand(&sheet(), 1.0);
+        let start = Vector3::from(hand.target(3.0));
+        let to = start + Vector3::new(0.0, 0.0, 0.4);
+        hand.lead(to.into(), 1.0, 3.0).expect("finite");
+        let at = |t: f64| Vector3::from(hand.target(t)) - start;
+        assert_eq!(at(0.5), Vector3::zeros());
+        assert!((at(1.5) - Vector3::new(0.0, 0.0, 0.1)).norm() < 1e-15);
+        assert_eq!(Vector3::from(hand.target(5.0)), to);
+        // On the way it is led back, from where it is.
+        hand.lead(start.into(), 2.0, 2.5).expect("finite");
+        assert!((at(2.0) - Vector3::new(0.0, 0.0, 0.2)).norm() < 1e-15);
+        assert!((at(2.25) - Vector3::new(0.0, 0.0, 0.1)).norm() < 1e-15);
+        let error = hand.lead([0.0, f64::NAN, 0.0], 0.0, 1.0);
+        assert!(matches!(error, Err(HandError::Target { .. })), "{error:?}");
+        assert_eq!(Vector3::from(hand.target(9.0)), start);
+    }
+
+    #[test]
+    fn arguments_without_a_meaning_are_refused() {
+        let sheet = sheet();
+        let new = |vertex, stiffness, x| {
+            Hand::new(sheet.topology(), VertexId(vertex), stiffness, [x, 0.0, 0.0]).map(drop)
+        };
+        assert!(matches!(
+            new(9999, 1.0, 0.0),
+            Err(HandError::NoSuchVertex { .. })
+        ));
+        for stiffness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(
+                new(0, stiffness, 0.0),
+                Err(HandError::Stiffness { .. })
+            ));
+        }
+        assert!(matches!(
+            new(0, 1.0, f64::NAN),
+            Err(HandError::Target { .. })
+        ));
+    }
+
+    /// Under its weight a sheet hangs from a hand at rest by `m g / k`, exactly in equilibrium.
+    #[test]
+    fn the_weight_stretches_the_spring() {
+        let (sheet, mass) = (sheet(), 1e-3);
+        let hand = hand(&sheet, 3.0);
+        let model = SheetModel::new(&sheet, mass, MassKind::Lumped).expect("a model");
+        let model = model.with_acceleration([0.0, 0.0, -9.81]);
+        let model = model.with_potential(hand.clone());
+        let model = model.with_damping(20.0).expect("positive");
+        let start = State::at_rest(sheet.positions().to_vec());
+        let mut simulation = Simulation::new(model, start, Method::default()).expect("valid");
+        for _ in 0..600 {
+            simulation.step(STEP).expect("accepted");
+        }
+        let stretch = hand.stretch(simulation.state().t, &simulation.state().x);
+        let want = Vector3::new(0.0, 0.0, -mass * 9.81 / 3.0);
+        assert!((stretch - want).norm() < 1e-6, "{stretch}, {want}");
+    }
+
+    /// The work of the hand that drags a sheet is the energy of the sheet and the spring, up to what the method damps,
+    /// which vanishes with the step.
+    #[test]
+    fn the_work_of_the_hand_is_counted() {
+        let drift = |parts: u32| {
+            let sheet = sheet();
+            let hand = hand(&sheet, 2.0);
+            let model = SheetModel::new(&sheet, 1e-2, MassKind::Lumped).expect("a model");
+            let model = model.with_potential(hand.clone());
+            let start = State::at_rest(sheet.positions().to_vec());
+            let mut simulation = Simulation::new(model, start, Method::default()).expect("valid");
+            let (mut largest, mut work) = (0.0_f64, 0.0);
+            for step in 0..30 {
+                let t = simulation.state().t;
+                let to = Vector3::from(sheet.position(CORNER))
+                    + 0.1 * (f64::from(step) * STEP) * Vector3::new(1.0, 1.0, 0.0);
+                hand.lead(to.into(), t, t + STEP).expect("finite");
+                for _ in 0..parts {
+                    let report = simulation.step(STEP / f64::from(parts)).expect("accepted");
+                    largest = largest.max(report.energy_drift.abs());
+                    work = report.work;
+                }
+            }
+            (largest, work)
+        };
+        let [(coarse, _), (fine, work)] = [4, 16].map(drift);
+        assert!(work > 0.0 && fine < 0.02 * work, "{fine}, work {work}");
+        assert!(coarse > 4.0 * fine, "{coarse}, {fine}");
+    }
+}

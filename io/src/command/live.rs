@@ -1,0 +1,121 @@
+//! `isosheet live`.
+
+mod access;
+mod answer;
+mod board;
+mod clock;
+mod message;
+mod page;
+mod player;
+mod request;
+mod server;
+mod session;
+mod slider;
+
+use super::failure::{Code, Done, Failure};
+use super::interrupt;
+use super::message::print_result;
+use super::open::open_address;
+use super::simulate::use_threads;
+use crate::scene::SceneFile;
+use access::{Access, random_text};
+use board::Board;
+use clap::Args;
+use player::{Ended, Player};
+use server::{Server, Shared, listen};
+use session::Session;
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+
+const EXAMPLES: &str = "\
+Examples:
+  isosheet live cloth.toml                     play a scene in the browser, and pull at its sheet
+  isosheet live flag.toml --set stop.time=60   play it for a minute before it pauses";
+
+/// Play a scene in the browser while it is computed
+///
+/// The page is that of a run, with the 3D view and the plots. It shows the run as it goes: play, pause, single steps;
+/// a vertex that the mouse holds is pulled by a spring; sliders drive the wind and all motions, angles and loads that
+/// the scene names. Play is never faster than real time, and the page says how fast it is.
+///
+/// The page is served to this machine alone (127.0.0.1), to whoever has the address with its random token. The first
+/// page steers, all others watch. The run waits while no page is open, and pauses at the time `stop.time` of the
+/// scene; play goes on beyond it. Other conditions to stop and `output` of the scene are not used, and no folder is
+/// written: `isosheet simulate` does that. Ctrl-C, or `End` in the page, ends the run.
+#[derive(Debug, Args)]
+#[command(before_help = EXAMPLES)]
+pub(crate) struct Live {
+    /// The scene file
+    scene: PathBuf,
+    /// Change a key of the scene, for example `method.step=0.005` or `obstacle[0].friction=0.3`
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    edits: Vec<String>,
+    /// Do not open the page in a browser, only print its address
+    #[arg(long)]
+    no_open: bool,
+    /// The port of the page [default: one that is free]
+    #[arg(
+        long,
+        value_name = "PORT",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    port: u16,
+    /// Number of threads, at most 1024; the results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = super::simulate::threads())]
+    threads: u16,
+}
+
+impl Live {
+    pub(crate) fn run(&self) -> Done {
+        let scene = SceneFile::read(&self.scene, &self.edits)?;
+        interrupt::install()?;
+        use_threads(self.threads)?;
+        let session = Session::start(scene)?;
+        let failed = |e: io::Error| {
+            let failure = Failure::new(Code::Output, format!("cannot serve the page: {e}"));
+            failure.remedy("choose another port with `--port`, or none for one that is free")
+        };
+        let random = || random_text().map_err(|e| failed(e.into()));
+        let (token, nonce) = (random()?, random()?);
+        let title = self.scene.file_stem().unwrap_or_default();
+        let page = page::page(&session, &title.to_string_lossy(), &nonce);
+        let page = page.map_err(|e| Failure::of(Code::Input, &e))?;
+        let listener = listen(self.port).map_err(failed)?;
+        let port = listener.local_addr().map_err(failed)?.port();
+        let access = Access::new(token, port);
+        let address = access.address();
+        let (sender, commands) = mpsc::channel();
+        let board = Arc::new(Board::default());
+        let end_is_asked = Arc::new(AtomicBool::new(false));
+        let shared = Shared {
+            access,
+            page,
+            policy: answer::policy(&nonce),
+            board: board.clone(),
+            commands: sender,
+            end_is_asked: end_is_asked.clone(),
+        };
+        let server = Server::start(listener, shared).map_err(failed)?;
+        print_result(format_args!("page: {address}\nCtrl-C ends the run"))?;
+        if !self.no_open {
+            open_address(&address);
+        }
+        let player = Player {
+            session,
+            board: &board,
+            commands,
+            is_over: &interrupt::requested,
+            end_is_asked: &|| end_is_asked.load(Ordering::SeqCst),
+        };
+        let ended = player.play();
+        server.end();
+        match ended {
+            Ended::ByPage => print_result(format_args!("ended by the page")),
+            Ended::ByProcess => print_result(format_args!("ended by Ctrl-C")),
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! The page of a run that goes on, at its start.
+
+use super::session::Session;
+use crate::view::{Body, LivePage, Replay, ViewError};
+use isosheet_mesh::VertexId;
+
+/// The page of a session: that of a run with one frame, and what it is steered by.
+///
+/// # Errors
+/// [`ViewError`] if the scene cannot be shown.
+pub(super) fn page(session: &Session, title: &str, nonce: &str) -> Result<String, ViewError> {
+    let live = session.live();
+    let (simulation, scene) = (live.simulation(), live.file().scene());
+    let state = simulation.state();
+    let times = [state.t];
+    let obstacles = live.obstacles().iter().enumerate();
+    let obstacles =
+        obstacles.map(|(k, body)| Body::of_obstacle(&format!("obstacle[{k}]"), body, &times));
+    let holding = session.holding().iter().map(|body| {
+        let pose = |t: f64| body.pose(scene, t);
+        Body::moving(&body.name, body.shape.clone(), &times, pose)
+    });
+    let numbers = |vertices: &[VertexId]| vertices.iter().map(|v| v.0).collect();
+    let file = live.file().text().path.display();
+    let replay = Replay {
+        title: title.into(),
+        faces: live.sheet().face_indices(),
+        rest: live.sheet().positions().to_vec(),
+        times: times.to_vec(),
+        positions: vec![state.x.clone()],
+        pins: numbers(&simulation.model().pins()),
+        immobile: numbers(simulation.immobile_vertices()),
+        bodies: obstacles.chain(holding).collect(),
+        series: session.plotted(),
+        summary: vec![("modelled".into(), live.modelled().join(", "))],
+        scene: live.file().text().text.clone(),
+        reproduce: format!("isosheet live {file}"),
+        ..Replay::default()
+    };
+    let sliders = session.sliders().iter().map(|slider| slider.shown.clone());
+    replay.to_live_html(&LivePage {
+        sliders: sliders.collect(),
+        nonce: nonce.into(),
+    })
+}

@@ -1,0 +1,112 @@
+//! A hand that holds a vertex of a simulation.
+
+use super::LiveScene;
+use crate::scene::SceneError;
+use isosheet_dynamics::{Hand, HandError};
+use isosheet_mesh::{Advice, VertexId};
+use thiserror::Error;
+
+/// The stretch of the spring of a hand under the whole weight of the sheet, as a part of its size: a vertex that
+/// carries all of it seems to be where the hand is, and light sheets do not shake at it.
+const STRETCH: f64 = 0.01;
+
+/// Standard gravity, m/s2: a sheet without weight is held as firmly as one with it.
+const GRAVITY: f64 = 9.80665;
+
+/// Why a vertex cannot be held.
+#[derive(Debug, Error)]
+pub enum HoldError {
+    /// The vertex cannot move.
+    #[error("vertex {} cannot be pulled at: a support holds it in place", vertex.index())]
+    Held {
+        /// The vertex.
+        vertex: VertexId,
+    },
+    /// The hand.
+    #[error(transparent)]
+    Hand(#[from] HandError),
+    /// The scene cannot be built.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+impl Advice for HoldError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Held { .. } => Some("pull at another vertex"),
+            Self::Hand(error) => error.advice(),
+            Self::Scene(error) => error.advice(),
+        }
+    }
+}
+
+impl LiveScene {
+    /// Holds a vertex by a spring from now on, in place of any held before. It pulls at nothing until
+    /// [`Hand::lead`] moves its other end, which costs nothing. Its stiffness is `M g / (d / 100)` with the mass `M`
+    /// of the sheet, standard gravity `g` and the diagonal `d` of the box around the rest shape: the weight of the
+    /// whole sheet stretches it by a hundredth of that. What it does is work.
+    ///
+    /// ```
+    /// use isosheet_io::scene::{LiveScene, SceneFile, StartingPoint};
+    /// use isosheet_mesh::VertexId;
+    /// use std::path::Path;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let text = StartingPoint::Hanging.text().into();
+    /// let mut live = LiveScene::start(SceneFile::parse(text, Path::new("sheet.toml"), &[])?)?;
+    /// let hand = live.hold(VertexId(0))?;
+    /// let mut to = hand.target(0.0);
+    /// to[2] += 0.001;
+    /// hand.lead(to, 0.0, 0.01)?;
+    /// live.step(0.01)?;
+    /// live.let_go()?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// [`HoldError`]; then nothing has changed.
+    pub fn hold(&mut self, vertex: VertexId) -> Result<Hand, HoldError> {
+        let model = self.simulation.model();
+        let immobile = self.simulation.immobile_vertices();
+        if model.pins().contains(&vertex) || immobile.contains(&vertex) {
+            return Err(HoldError::Held { vertex });
+        }
+        let positions = self.simulation.state().x.as_chunks::<3>().0;
+        let at = positions.get(vertex.index()).copied().unwrap_or_default();
+        let hand = Hand::new(model.topology(), vertex, self.firmness(), at)?;
+        self.rebuild(self.file.clone(), Some(hand.clone()))?;
+        Ok(hand)
+    }
+
+    /// Lets go of the vertex that is held; the energy of the spring is gone, as work. Nothing if none is held.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the scene cannot be built, such as for a mesh file that has been deleted since.
+    pub fn let_go(&mut self) -> Result<(), SceneError> {
+        match self.hand {
+            Some(_) => self.rebuild(self.file.clone(), None),
+            None => Ok(()),
+        }
+    }
+
+    /// The hand that holds a vertex.
+    pub fn hand(&self) -> Option<&Hand> {
+        self.hand.as_ref()
+    }
+
+    /// The stiffness of the spring of a hand, N/m.
+    fn firmness(&self) -> f64 {
+        let points = self.facts.sheet.positions().as_chunks::<3>().0;
+        let along = |axis: usize| {
+            let values = points.iter().map(|p| p[axis]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| {
+                (low.min(c), high.max(c))
+            });
+            high - low
+        };
+        let size = [0, 1, 2].map(along).into_iter().map(|side| side * side);
+        let size = size.sum::<f64>().sqrt();
+        self.simulation.model().mass().total() * GRAVITY / (STRETCH * size)
+    }
+}
