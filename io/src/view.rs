@@ -48,6 +48,11 @@
 //! With `#selftest=1` the page tests itself and leaves the result as JSON in the attribute `data-selftest` of
 //! its body.
 //!
+//! # Runs that go on
+//! [`Replay::to_live_html`] makes the page of a run that has not ended, of its first frame: with buttons, sliders
+//! ([`LivePage`]) and a hand that pulls at vertices in place of the bar of frames. It follows the server-sent events at
+//! the address `events` beside its own and posts what is to be done to `command`; `isosheet live` is the server.
+//!
 //! # Encoding
 //! The data are JSON in the element `replay`. Integers are replaced by differences of order 0, 1 or 2 in
 //! time, whichever is shortest, modulo `2^(8 b)`; differences become unsigned by the zigzag map; all low

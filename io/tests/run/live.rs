@@ -178,7 +178,7 @@ impl Viewer {
             if found == name && holds(&data) {
                 return data;
             }
-            assert!(begun.elapsed() < PATIENCE, "no such {name}: {data}");
+            assert!(begun.elapsed() < PATIENCE, "no such {name}");
         }
     }
 

@@ -2,7 +2,8 @@
 
 use super::parse;
 use isosheet_io::dynamics::{Checkpoint, StepError};
-use isosheet_io::scene::{Key, LiveScene, Mesh, SceneFileError};
+use isosheet_io::mesh::VertexId;
+use isosheet_io::scene::{HoldError, Key, LiveScene, Mesh, SceneFileError};
 use std::path::Path;
 
 /// A square that hangs by a corner, which can be moved, and has a crease along its middle line and a load.
@@ -213,4 +214,87 @@ fn triangles_are_a_mesh() {
         error.problems()[0].key.to_string(),
         "sheet.mesh.triangles.faces"
     );
+}
+
+/// Holding a vertex and letting go of it without a step in between changes no bit.
+#[test]
+fn a_hand_that_does_nothing_leaves_no_trace() {
+    let [mut one, mut other] = [live(HANGING), live(HANGING)];
+    step(&mut one, 3);
+    step(&mut other, 3);
+    other.hold(VertexId(3)).expect("a vertex that moves");
+    other.let_go().expect("the same scene");
+    other.let_go().expect("nothing is held");
+    step(&mut one, 3);
+    step(&mut other, 3);
+    assert_eq!(
+        one.simulation().checkpoint(),
+        other.simulation().checkpoint()
+    );
+}
+
+/// The weight of a sheet that hangs from a hand stretches the spring by a hundredth of its diagonal.
+#[test]
+fn a_hand_holds_the_weight_of_a_sheet() {
+    let mut live = live(
+        r#"
+        version = 1
+        [sheet]
+        mesh = { square = { side = 0.3, level = 1 } }
+        density = 0.08
+        damping = 20
+        [forces]
+        gravity = [0, 0, -9.80665]
+        "#,
+    );
+    let vertex = VertexId(0);
+    let hand = live.hold(vertex).expect("a vertex that moves");
+    step(&mut live, 1200);
+    let x = &live.simulation().state().x;
+    let stretch = hand.target(12.0)[2] - x[3 * vertex.index() + 2];
+    assert!((stretch - 0.003 * 2.0_f64.sqrt()).abs() < 1e-5, "{stretch}");
+    // The energy of the spring, k d^2 / 2, is gone with it, as work.
+    let before = live.simulation().energy();
+    live.let_go().expect("the same scene");
+    let released = before - live.simulation().energy();
+    let want = 0.5 * hand.stiffness() * stretch * stretch;
+    assert!((released - want).abs() < 1e-3 * want, "{released}, {want}");
+    assert!(live.hand().is_none());
+}
+
+/// A hand is led and a crease is driven at the same time; what both do is work.
+#[test]
+fn a_scene_changes_while_a_vertex_is_held() {
+    let mut live = live(HANGING);
+    let hand = live.hold(VertexId(0)).expect("a vertex that moves");
+    let start = hand.target(0.0);
+    hand.lead([start[0], start[1], start[2] + 0.02], 0.0, 0.05)
+        .expect("finite");
+    step(&mut live, 2);
+    live.drive(&[(key("crease[0].angle"), 45.0)], 0.1)
+        .expect("a function of time");
+    assert_eq!(live.hand().map(|hand| hand.vertex()), Some(VertexId(0)));
+    step(&mut live, 8);
+    let height = live.simulation().state().x[2] - start[2];
+    assert!((height - 0.02).abs() < 0.005, "{height}");
+}
+
+#[test]
+fn pins_and_vertices_that_there_are_not_cannot_be_held() {
+    let mut live = live(HANGING);
+    step(&mut live, 1);
+    let before = live.simulation().checkpoint();
+    let held = live.hold(VertexId(20)).map(drop);
+    assert!(
+        matches!(
+            held,
+            Err(HoldError::Held {
+                vertex: VertexId(20)
+            })
+        ),
+        "{held:?}"
+    );
+    let held = live.hold(VertexId(25)).map(drop);
+    assert!(matches!(held, Err(HoldError::Hand(_))), "{held:?}");
+    assert_eq!(live.simulation().checkpoint(), before);
 }

@@ -23,7 +23,10 @@ export class Address {
     page.colourBy(choices.get("colour"));
     page.showBodies(choices.get("bodies"));
     page.stage.resetCamera();
-    if (choices.has("camera")) page.stage.lookFrom(choices.get("camera").split(",").map(Number));
+    if (choices.has("camera")) {
+      page.stage.lookFrom(choices.get("camera").split(",").map(Number));
+      page.player.isTouched = true;
+    }
     page.player.seek(Number(choices.get("frame")) || 0);
     for (const [id, start] of Object.entries(BOXES)) {
       const isOn = choices.has(id) ? choices.get(id) === "1" : start;

@@ -21,6 +21,8 @@ export class Live {
     this.page = page;
     this.role = null;
     this.frame = null;
+    this.plotted = null;
+    this.isTouched = false;
     this.orders = new Orders((status) => this.refused(status));
     this.hand = new Hand($("view"), page.stage, this.orders, () => this.steers);
     this.arrange();
@@ -47,6 +49,7 @@ export class Live {
     $("play").title = "Play or pause (space)";
     $("play").after(
       button("step", "Step", "Take one step of time (right arrow)", () => this.step(1)),
+      $("time"),
       element("output", { id: "pace" }),
       element("output", { id: "role" }),
     );
@@ -82,6 +85,7 @@ export class Live {
     this.events.addEventListener("role", ({ data }) => this.takeRole(JSON.parse(data)));
     this.events.addEventListener("frame", ({ data }) => {
       this.newest = JSON.parse(data);
+      this.plot(this.newest);
       // Of the states that come while nothing is drawn, the newest one is shown.
       this.drawing ??= requestAnimationFrame(() => {
         this.drawing = null;
@@ -90,7 +94,16 @@ export class Live {
     });
     this.events.addEventListener("end", () => this.end("The run has ended."));
     this.events.addEventListener("error", () => this.lost());
+    this.page.stage.controls.addEventListener("start", () => (this.isTouched = true));
     this.showRole();
+  }
+
+  /** Adds a state to the plots, which begin with the first one that has come. */
+  plot({ t, series }) {
+    const { plots } = this.page;
+    if (this.plotted === null) plots.clear();
+    if (t !== this.plotted) plots.append(t, series);
+    this.plotted = t;
   }
 
   takeRole(role) {
@@ -112,15 +125,15 @@ export class Live {
 
   /** Shows a state. */
   take(frame) {
-    const { page } = this,
-      isLater = frame.t !== this.frame?.t;
+    const { page } = this;
     this.frame = frame;
     const isWider = page.replay.take(frame);
     page.stage.placeBodies();
-    if (isLater) page.plots.append(frame.t, frame.series);
     if (isWider) page.colourBy($("colour").value);
     page.changed();
     this.hand.show(frame.hand);
+    // Until the reader turns the camera, it goes back as far as the sheet needs.
+    if (!this.isTouched && !this.hand.held && page.stage.keepInView()) page.address.start = page.stage.cameraText();
     this.sliders.forEach(({ input, value, unit, isHeld }, k) => {
       if (isHeld) return;
       input.value = frame.sliders[k];

@@ -52,11 +52,15 @@ export class Plots {
     for (const plot of this.plots) plot.resize(this.container.clientWidth);
   }
 
+  /** Forgets all values. */
+  clear() {
+    for (const s of this.groups.flat()) [s.times, s.values] = [[], []];
+  }
+
   /** Adds a value to each of the series, in their order, and draws them anew at the next occasion. */
   append(time, values) {
     const series = this.groups.flat();
     series.forEach((s, k) => {
-      [s.times, s.values] = [Array.from(s.times), Array.from(s.values)];
       s.times.push(time);
       s.values.push(values[k]);
       if (s.times.length > MOST_VALUES) {

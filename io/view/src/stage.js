@@ -133,6 +133,20 @@ export class Stage {
     this.request();
   }
 
+  /**
+   * Takes the camera back so far that the sheet, as it is now, is in the box that fills the view, up to some times
+   * its size at the start. Says whether the camera has moved.
+   */
+  keepInView() {
+    const box = this.box.clone().union(new Box3().setFromArray(this.positions)),
+      length = (b) => b.getSize(new Vector3()).length();
+    this.firstLength ??= length(this.box);
+    if (box.equals(this.box) || length(box) > LARGEST_FRAME * this.firstLength) return false;
+    this.box = box;
+    this.frameBox(box, this.camera.position.clone().sub(this.controls.target));
+    return true;
+  }
+
   /** Takes over the poses of bodies that have one pose, which has changed. */
   placeBodies() {
     this.replay.data.bodies.forEach((body, k) => placeBody(this.bodyGroups[k], body, 0));

@@ -130,7 +130,9 @@ mod tests {
     #[test]
     fn what_a_scene_does_not_name_has_no_slider() {
         assert_eq!(sliders(StartingPoint::Hanging.text()), []);
-        assert_eq!(sliders(StartingPoint::Leaf.text()), [], "the air is still");
+        // The air is still, and the crease folds.
+        let crease = ("angle of crease[0]".to_owned(), 0.0, 60.0);
+        assert_eq!(sliders(StartingPoint::Leaf.text()), [crease]);
     }
 
     #[test]
