@@ -7,7 +7,7 @@ use isosheet_coords::{
 use isosheet_dynamics::chart::{
     ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind,
 };
-use isosheet_dynamics::{Method, Potential, Simulation, State, StepControl, StepOutcome};
+use isosheet_dynamics::{Air, Method, Potential, Simulation, State, StepControl, StepOutcome};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -160,5 +160,44 @@ fn a_refused_step_that_has_rebased_leaves_everything_as_it_was() {
             assert_eq!(bytes(&disturbed), bytes(&calm));
         }
         assert!(rebased >= 5, "{rebased} steps rebased the chart");
+    }
+}
+
+/// The drag of air is the same force in the paper's coordinates: motion there, which knows nothing of the implicit
+/// drag of damped methods, is the limit that BDF2 approaches at its order.
+#[test]
+fn drag_in_a_chart_is_that_of_damped_methods() {
+    let air = Air {
+        wind: [0.0, 2.0, 1.0].into(),
+        ..Air::default()
+    };
+    let windy = || pinned(1, BUMP).with_air(air.clone()).expect("valid");
+    let start = State::at_rest(bumped(1, BUMP).positions().to_vec());
+    let options = ChartOptions {
+        method: ChartMethod::RungeKutta4,
+        equations: Equations::Full,
+        control: ChartStepControl::Fixed(5e-4),
+        ..Default::default()
+    };
+    let mut run = Simulation::in_chart(windy(), start.clone(), cartesian(1), options.clone())
+        .expect("usable");
+    run.step(0.1).expect("accepted");
+    let want = run.state().x.clone();
+    // The wind moves the sheet by much more than the errors.
+    let mut calm = in_chart(1, cartesian(1), options);
+    calm.step(0.1).expect("accepted");
+    assert!(gap(&calm.state().x, &want) > 1e-3);
+    let error = |steps: usize| {
+        let method = Method::Bdf2(Default::default());
+        let mut run = Simulation::new(windy(), start.clone(), method).expect("valid");
+        for _ in 0..steps {
+            run.step(0.1 / steps as f64).expect("accepted");
+        }
+        gap(&run.state().x, &want)
+    };
+    let errors = [100, 200, 400].map(error);
+    for k in 0..2 {
+        let order = (errors[k] / errors[k + 1]).log2();
+        assert!((order - 2.0).abs() < 0.3, "{errors:?}");
     }
 }
