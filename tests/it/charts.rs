@@ -179,8 +179,8 @@ fn drag_in_a_chart_is_that_of_damped_methods() {
         control: ChartStepControl::Fixed(5e-4),
         ..Default::default()
     };
-    let mut run = Simulation::in_chart(windy(), start.clone(), cartesian(1), options.clone())
-        .expect("usable");
+    let mut run =
+        Simulation::in_chart(windy(), start.clone(), cartesian(1), options).expect("usable");
     run.step(0.1).expect("accepted");
     let want = run.state().x.clone();
     // The wind moves the sheet by much more than the errors.

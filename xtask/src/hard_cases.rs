@@ -7,6 +7,7 @@
 mod case;
 mod charts;
 mod clamps;
+mod file;
 mod flat;
 mod invariance;
 mod locking;
@@ -21,7 +22,7 @@ mod scales;
 mod scenes;
 mod steps;
 
-pub(crate) use case::{Case, Findings, Record, Shortfall};
+pub(crate) use case::{Case, Findings, Record, Shortfall, Work};
 
 use crate::draw::{Chart, Charts, Series};
 use crate::failure::ReportError;
@@ -34,7 +35,7 @@ use clap::Args;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// The cases in the order of the report.
+/// The cases that are code, in the order of the report.
 static CASES: [&Case; 23] = [
     &flat::START,
     &flat::BRANCH,
@@ -61,8 +62,13 @@ static CASES: [&Case; 23] = [
     &clamps::CLAMPS,
 ];
 
+/// All cases in the order of the report.
+fn cases() -> impl Iterator<Item = &'static Case> {
+    CASES.iter().chain(file::all()).copied()
+}
+
 fn named() -> Vec<(&'static str, &'static Case)> {
-    CASES.map(|case| (case.name, case)).to_vec()
+    cases().map(|case| (case.name, case)).collect()
 }
 
 /// Arguments of `hard-cases`.
@@ -80,15 +86,16 @@ pub(crate) struct HardCasesArgs {
 pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
     let store = args.options.open("hard-cases")?;
     let is_wanted = |case: &Case| args.cases.iter().any(|c| c.name == case.name);
-    let results: Vec<Result<Record>> = CASES
-        .par_iter()
+    let wanted = cases().filter(|case| args.cases.is_empty() || is_wanted(case));
+    let wanted: Vec<&Case> = wanted.collect();
+    let results: Vec<Result<Record>> = wanted
+        .into_par_iter()
         .with_max_len(1)
-        .filter(|case| args.cases.is_empty() || is_wanted(case))
         .map(|case| store.keep(&unit(&store, case), |files| make(case, store.effort, files)))
         .collect();
     let made = results.into_iter().try_for_each(|made| made.map(drop));
     interrupt::afterwards(made, || {
-        let units = CASES.iter().map(|case| unit(&store, case));
+        let units = cases().map(|case| unit(&store, case));
         let kept: Kept<Record> = store.all_kept(units.collect());
         let records = &kept.records;
         print!("{}", page::text(records));
@@ -118,14 +125,18 @@ fn semi_log(x: &str, y: &str, series: Vec<Series>) -> Charts {
 }
 
 fn unit(store: &Store, case: &Case) -> Unit {
-    store.unit(format!("case-{}", case.name), case.name)
+    let mut unit = store.unit(format!("case-{}", case.name), case.name);
+    if let Work::File(file) = case.run {
+        unit.options["file"] = file.options();
+    }
+    unit
 }
 
 /// Runs a case.
 fn make(case: &Case, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
     let started = Instant::now();
     let mut found = Findings::default();
-    (case.run)(&mut found, effort)?;
+    case.find(&mut found, effort)?;
     for picture in &found.pictures {
         picture.write(files)?;
     }

@@ -1,5 +1,6 @@
 //! What a hard case is, and what is found in it.
 
+use super::file::CaseFile;
 use super::scenes::STRAIN;
 use crate::draw::Charts;
 use crate::report::{Effort, Picture, Section, Table, number};
@@ -14,8 +15,27 @@ pub(crate) struct Case {
     pub(crate) title: &'static str,
     /// What should happen.
     pub(crate) expected: &'static str,
+    /// What is done.
+    pub(crate) run: Work,
+}
+
+/// What is done in a case.
+#[derive(Clone, Copy)]
+pub(crate) enum Work {
+    /// Whatever the function does.
+    Code(fn(&mut Findings, Effort) -> Result<()>),
+    /// What a file says.
+    File(&'static CaseFile),
+}
+
+impl Case {
     /// Runs it.
-    pub(crate) run: fn(&mut Findings, Effort) -> Result<()>,
+    pub(super) fn find(&self, found: &mut Findings, effort: Effort) -> Result<()> {
+        match self.run {
+            Work::Code(work) => work(found, effort),
+            Work::File(file) => file.run(found, effort),
+        }
+    }
 }
 
 impl std::fmt::Debug for Case {
@@ -89,6 +109,7 @@ impl Verdict {
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Shortfall {
     /// The number lies between these two, outside of its bound.
+    #[serde(rename = "between")]
     Value([f64; 2]),
     /// The run stops between these two times, seconds.
     Stops {
@@ -124,6 +145,7 @@ pub(crate) struct Limitation {
     /// Why.
     pub(crate) why: String,
     /// What happens instead.
+    #[serde(flatten)]
     pub(crate) shortfall: Shortfall,
 }
 
@@ -240,7 +262,7 @@ impl Findings {
         self.check(what.into(), value, Bound::AtLeast(bound))
     }
 
-    fn check(&mut self, what: String, value: f64, bound: Bound) -> &mut Check {
+    pub(super) fn check(&mut self, what: String, value: f64, bound: Bound) -> &mut Check {
         let at = self.checks.len();
         self.checks.push(Check {
             what,

@@ -2,7 +2,7 @@
 //! degenerate placement of Fig. 7.
 
 use super::scenes::{FRAME, apart, go, pinned, released};
-use super::{Case, Findings, log_log};
+use super::{Case, Findings, Work, log_log};
 use crate::condition;
 use crate::draw::Series;
 use crate::draw::spatial::{norm, sub};
@@ -31,7 +31,7 @@ pub(crate) const CONDITION: Case = Case {
     title: "Condition of the system coordinates",
     expected: "The velocities that belong to given momenta are found to many digits on every mesh. The paper's front marches across the sheet \
                and multiplies errors at every row, so that its mass matrix loses all digits on M^2 or M^3; well-chosen coordinates do not.",
-    run: condition,
+    run: Work::Code(condition),
 };
 
 fn condition(f: &mut Findings, effort: Effort) -> Result<()> {
@@ -179,7 +179,7 @@ pub(crate) const LITERAL: Case = Case {
     title: "The literal scheme's error does not go away",
     expected: "Halving the step of a first-order scheme halves its error. The paper carries the momenta over from step to step while it treats \
                the Jacobian as constant, which leaves out the velocity-squared forces: its error stays as it is, however small the step.",
-    run: literal,
+    run: Work::Code(literal),
 };
 
 /// Height of the bump (metres) and duration of the runs (seconds).
@@ -286,7 +286,7 @@ pub(crate) const COLLINEAR: Case = Case {
     expected: "Placing a vertex from three known neighbours fails where these are on a line (Fig. 7 of the paper): the angle about the line is \
                free. It is refused with the reason, carried over from the state before, or given a coordinate; sheets whose crease lines \
                stay straight run.",
-    run: collinear,
+    run: Work::Code(collinear),
 };
 
 /// Trilateration as textbooks have it (Fang 1986 and others), in the frame of the three known points.

@@ -1,7 +1,7 @@
 //! Clamped sheets with contact and in moving clamps.
 
 use super::scenes::{FRAME, STRAIN, at_rest, go};
-use super::{Case, Findings};
+use super::{Case, Findings, Work};
 use crate::locking::clamped::{Clamped, DAMPING, MASS};
 use crate::report::{Effort, Table, number};
 use crate::runs::Course;
@@ -16,7 +16,7 @@ pub(crate) const CLAMPS: Case = Case {
     title: "Clamped sheets above a floor and in moving clamps",
     expected: "Every run reaches its end with exact lengths and nothing passed through, or is refused because the rods lock, after a bounded number of \
                factorisations.",
-    run: clamps,
+    run: Work::Code(clamps),
 };
 
 /// What a clamped sheet has to do with.

@@ -2,7 +2,7 @@
 
 use super::naive::{TEXTBOOK, textbook, textbook_steps};
 use super::scenes::{FRAME, VIEWPOINT, apart, course, go, pinned, released};
-use super::{Case, Findings, log_log};
+use super::{Case, Findings, Work, log_log};
 use crate::draw::{Series, Shot, Viewpoint};
 use crate::interrupt;
 use crate::methods::{Named, conservative, damped, methods};
@@ -24,7 +24,7 @@ pub(crate) const START: Case = Case {
     title: "Exactly flat start",
     expected: "A flat sheet held at a corner and released falls. In the flat state one rod for every interior vertex depends on the \
                others, so rod forces are not unique and the paper's coordinates do not exist; the motion does.",
-    run: start,
+    run: Work::Code(start),
 };
 
 fn start(f: &mut Findings, effort: Effort) -> Result<()> {
@@ -115,7 +115,7 @@ pub(crate) const BRANCH: Case = Case {
     expected: "Four triangles meet at a vertex where two straight crease lines cross. Folded along one line, the sheet swings \
                through flat, where it could as well fold along the other one: by inertia it goes on along the first. The motion is that of two rigid \
                flaps, known in closed form.",
-    run: branch,
+    run: Work::Code(branch),
 };
 
 /// The flap of the models with a vertex in the middle of its hinge, so that two creases cross there.

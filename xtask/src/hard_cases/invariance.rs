@@ -2,7 +2,7 @@
 
 use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel_step, textbook_steps};
 use super::scenes::{FRAME, apart, at_rest, course, go, pinned, tumbling};
-use super::{Case, Findings, semi_log};
+use super::{Case, Findings, Work, semi_log};
 use crate::draw::Series;
 use crate::interrupt;
 use crate::methods::{conservative, damped, energy_momentum};
@@ -23,7 +23,7 @@ pub(crate) const REVERSAL: Case = Case {
     title: "Time reversal",
     expected: "The equations of motion do not know the direction of time. A symmetric method that runs forward, turns the velocities round and runs as \
                many steps comes back to its start, but for rounding.",
-    run: reversal,
+    run: Work::Code(reversal),
 };
 
 /// Length of a step there and back, seconds.
@@ -91,7 +91,7 @@ pub(crate) const SYMMETRY: Case = Case {
     title: "Renumbering and turning the frame",
     expected: "The motion does not depend on how vertices and faces are numbered, nor on the axes. In floating point it differs by rounding, which the motion \
                then amplifies as it amplifies any difference at the start.",
-    run: symmetry,
+    run: Work::Code(symmetry),
 };
 
 /// Twin runs start this far apart, metres.
@@ -309,7 +309,7 @@ pub(crate) const THREADS: Case = Case {
     name: "threads",
     title: "Number of threads",
     expected: "The same bits on one thread, on two, and beside other work.",
-    run: threads,
+    run: Work::Code(threads),
 };
 
 /// Numbers that differ between runs on pools of 1, 2 and 4 threads and two runs at the same time.

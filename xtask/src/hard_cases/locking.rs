@@ -1,7 +1,7 @@
 //! The same drape on different triangulations.
 
 use super::scenes::{FRAME, VIEWPOINT, at_rest, go};
-use super::{Case, Findings};
+use super::{Case, Findings, Work};
 use crate::draw::Shot;
 use crate::locking::meshes::nearest;
 use crate::report::{Effort, Picture, Table, extremes, number};
@@ -20,7 +20,7 @@ pub(crate) const DRAPE: Case = Case {
     expected: "A triangulated sheet folds along its edges only, so how it drapes depends on where they are: in the union jack straight lines run in four directions, \
                in the one-way grid in three, in an irregular mesh there are none. This is a property of the model (known as locking), not an \
                error of the solver: it is measured here, not bounded.",
-    run: drape,
+    run: Work::Code(drape),
 };
 
 /// Largest kinetic energy of a sheet that hangs at rest, of its weight times 1 m.

@@ -4,7 +4,7 @@ use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel, textbook, textb
 use super::scenes::{
     FRAME, STRAIN, apart, at_rest, course, pinned, released, top_row, tumbling, upright,
 };
-use super::{Case, Findings, Shortfall, log_log};
+use super::{Case, Findings, Shortfall, Work, log_log};
 use crate::draw::Series;
 use crate::methods::{energy_momentum, methods};
 use crate::report::{Effort, number};
@@ -18,7 +18,7 @@ pub(crate) const REST: Case = Case {
     title: "Rest stays rest",
     expected: "A flat sheet that hangs upright from its top edge is at rest in a state with dependent rods, and stays there for as long as one \
                looks: no drift, no spin, no creeping.",
-    run: rest,
+    run: Work::Code(rest),
 };
 
 fn rest(f: &mut Findings, effort: Effort) -> Result<()> {
@@ -74,7 +74,7 @@ pub(crate) const MILLION: Case = Case {
     title: "Energy over a million steps",
     expected: "A sheet that nothing takes energy from goes on for ever. A conservative method keeps its energy and its lengths to round-off, which adds up \
                slowly, over any number of steps.",
-    run: million,
+    run: Work::Code(million),
 };
 
 /// Step of the long runs, seconds.

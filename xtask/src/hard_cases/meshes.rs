@@ -1,7 +1,7 @@
 //! Large degrees, long chains, irregular meshes, holes and several components.
 
 use super::scenes::{FRAME, at_rest, go, pinned, released};
-use super::{Case, Findings};
+use super::{Case, Findings, Work};
 use crate::methods::{damped, energy_momentum};
 use crate::report::{Effort, Table};
 use anyhow::Result;
@@ -16,7 +16,7 @@ pub(crate) const LONG: Case = Case {
     title: "Fan of 1000 edges, strip of 1000 links",
     expected: "A vertex with a thousand edges and a chain of a thousand links are solved like any other mesh, at a cost that grows with the \
                number of vertices; the chain swings at the frequency of the exact solution.",
-    run: long,
+    run: Work::Code(long),
 };
 
 fn long(f: &mut Findings, effort: Effort) -> Result<()> {
@@ -98,7 +98,7 @@ pub(crate) const IRREGULAR: Case = Case {
     name: "irregular",
     title: "Irregular meshes, holes, several components",
     expected: "Nothing in the method needs a regular mesh, a disk, or one piece.",
-    run: irregular,
+    run: Work::Code(irregular),
 };
 
 fn irregular(f: &mut Findings, effort: Effort) -> Result<()> {

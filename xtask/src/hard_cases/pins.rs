@@ -1,24 +1,22 @@
 //! Too many pins, and sheets pulled taut.
 
 use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel, textbook};
-use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, go, pinned, released, stopped, top_row, upright,
-};
-use super::{Case, Findings, Shortfall};
+use super::scenes::{FRAME, apart, at_rest, go, pinned, released, top_row, upright};
+use super::{Case, Findings, Shortfall, Work};
 use crate::methods::{damped, methods};
 use crate::report::{Effort, number};
 use crate::runs::bumped;
 use anyhow::Result;
 use isosheet_coords::{BentState, bent_square};
 use isosheet_dynamics::{Potential, PotentialShape, SheetModel};
-use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, generate};
+use isosheet_mesh::{MassMatrix, Sheet, VertexId, generate};
 
 pub(crate) const OVER_PINNED: Case = Case {
     name: "over-pinned",
     title: "Over-constrained pins",
     expected: "More pins than the sheet has room for leave it where it is, to the last bit where nothing is free, and otherwise as far as rounding tells \
                lengths apart; pins that leave room act as such. Nothing blows up, and a refusal names its reason.",
-    run: over_pinned,
+    run: Work::Code(over_pinned),
 };
 
 fn over_pinned(f: &mut Findings, effort: Effort) -> Result<()> {
@@ -31,7 +29,6 @@ fn over_pinned(f: &mut Findings, effort: Effort) -> Result<()> {
     let steps = effort.pick(15, 60, 240);
     let flat = bumped(1, 0.0)?;
     held_all_around(f, &flat, &boundary, steps)?;
-    held_at_opposite_corners(f, &flat, [corners[0], corners[3]])?;
     // Sheets with exact room, and flat ones without any.
     let bump = bumped(1, 0.1)?;
     let cylinder = bent_square(&flat, 1, BentState::Cylinder);
@@ -78,32 +75,6 @@ fn over_pinned(f: &mut Findings, effort: Effort) -> Result<()> {
     Ok(())
 }
 
-/// What two taut pins do to the damped methods.
-const NO_ROOM: &str = "The two halves of the sheet fall shut on each other and hang taut, in a state without room: displacements d across \
-                    taut rods change lengths by d² only, and the iteration closes in linearly.";
-
-/// Number of flat sheets at two opposite corners, whose masses differ by half a percent each.
-const SHEETS: u32 = 12;
-
-/// A flat sheet held at two opposite corners, many times. Measured: of 24 sheets implicit Euler has to hold
-/// 15 to 17 within 1 s, BDF2 23 or 24, and the projection stops in all.
-fn held_at_opposite_corners(f: &mut Findings, flat: &Sheet, pins: [VertexId; 2]) -> Result<()> {
-    for (name, method) in damped() {
-        let (stopped, strain) = stopped(SHEETS, 60, |k| {
-            let mass = 0.1 * (1.0 + 0.005 * f64::from(k));
-            let model = SheetModel::new(flat, mass, MassKind::Lumped)?.with_gravity();
-            at_rest(model.with_pins(&pins)?, flat.positions(), method.clone())
-        })?;
-        let least = if name == "implicit Euler" { 3.0 } else { 9.0 };
-        let what = format!("{SHEETS} sheets, flat, held at two opposite corners, {name}");
-        f.at_most(format!("{what}: edge strain"), strain, STRAIN);
-        let what = format!("{what}: how many stop within 1 s");
-        f.at_most(what, f64::from(stopped), 0.0)
-            .limited(NO_ROOM, Shortfall::Value([least, f64::from(SHEETS)]));
-    }
-    Ok(())
-}
-
 /// What naive methods do to a flat sheet that is held all around.
 fn held_all_around(f: &mut Findings, flat: &Sheet, pins: &[VertexId], steps: usize) -> Result<()> {
     let start = flat.positions();
@@ -131,7 +102,7 @@ pub(crate) const TAUT: Case = Case {
     name: "taut",
     title: "Taut sheet pulled hard",
     expected: "A strip held at one end and pulled at the other with a million times its weight stays as long as it is, and swings as a taut string does.",
-    run: taut,
+    run: Work::Code(taut),
 };
 
 /// A constant force on some vertices: a potential linear in the positions.

@@ -2,7 +2,7 @@
 
 use super::rigid::{SPIN, tetrahedron};
 use super::scenes::{apart, at_rest, course, go};
-use super::{Case, Findings, log_log};
+use super::{Case, Findings, Work, log_log};
 use crate::draw::{Axis, Chart, Series};
 use crate::methods::{conservative, energy_momentum, rattle_composition};
 use crate::report::{Effort, number};
@@ -18,7 +18,7 @@ pub(crate) const PLATE: Case = Case {
     expected: "A uniform rigid plate has the rotary inertia of its area. The consistent mass matrix gives it exactly. Lumping a third of every face \
                at its corners, as the paper does, gives a triangle four times the inertia about its centroid: it swings slower, and stays \
                the default only because it is the paper's.",
-    run: plate,
+    run: Work::Code(plate),
 };
 
 /// Time at which the positions are compared, seconds.

@@ -2,7 +2,7 @@
 
 use super::naive::{TEXTBOOK, textbook_steps};
 use super::scenes::{apart, course};
-use super::{Case, Findings, Shortfall};
+use super::{Case, Findings, Shortfall, Work};
 use crate::interrupt;
 use crate::methods::{Named, methods};
 use crate::report::{Effort, Table, number};
@@ -17,7 +17,7 @@ pub(crate) const CLOSED: Case = Case {
     title: "Closed and rigid meshes",
     expected: "A closed surface has six degrees of freedom: it turns as Euler's rigid body and nothing bends, also where rods are dependent \
                without being able to move, as at a vertex inside a flat side.",
-    run: closed,
+    run: Work::Code(closed),
 };
 
 /// Its vertices, metres.

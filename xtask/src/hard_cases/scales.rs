@@ -4,7 +4,7 @@ use super::naive::gauss_seidel;
 use super::scenes::{
     FRAME, STRAIN, apart, at_rest, course, go, pinned, released, stopped, strain_bound,
 };
-use super::{Case, Findings, Shortfall};
+use super::{Case, Findings, Shortfall, Work};
 use crate::methods::{conservative, damped, energy_momentum, methods};
 use crate::report::{Effort, Table, number};
 use crate::runs::Course;
@@ -19,7 +19,7 @@ pub(crate) const SLIVERS: Case = Case {
     title: "Slivers of aspect 1e6",
     expected: "Triangles a million times longer than wide are triangles: they swing with the right period, whether held at the long \
                side or at the short one, and strips and sheets of them fall with exact lengths.",
-    run: slivers,
+    run: Work::Code(slivers),
 };
 
 /// Why needles pinned at their long side are hard.
@@ -145,7 +145,7 @@ pub(crate) const MASSES: Case = Case {
     title: "Mass ratio 1e8",
     expected: "A light vertex between heavy ones follows them; a heavy one among light ones drags them. Lengths and energy stay as exact as \
                with equal masses.",
-    run: masses,
+    run: Work::Code(masses),
 };
 
 /// What happens when heavy apexes have pulled their light hinge flat.
@@ -283,7 +283,7 @@ pub(crate) const SIZES: Case = Case {
     title: "From micrometres to kilometres",
     expected: "Lengths times s, times times times the root of s and masses times any factor leave the motion under gravity the same. With powers of four \
                even the rounding is the same: every bit of the answer, if no absolute tolerance hides in the solver.",
-    run: sizes,
+    run: Work::Code(sizes),
 };
 
 fn sizes(f: &mut Findings, effort: Effort) -> Result<()> {

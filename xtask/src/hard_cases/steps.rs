@@ -2,7 +2,7 @@
 
 use super::naive::{TEXTBOOK, textbook, textbook_steps};
 use super::scenes::{apart, course, go};
-use super::{Case, Findings, Shortfall, log_log};
+use super::{Case, Findings, Shortfall, Work, log_log};
 use crate::draw::Series;
 use crate::methods::{Named, damped, methods};
 use crate::report::{Effort, number};
@@ -17,7 +17,7 @@ pub(crate) const SIZES: Case = Case {
     name: "step-sizes",
     title: "Steps from 1e-6 s to 0.1 s",
     expected: "Very short steps are as good as any: errors go down to round-off and stay there. Very long ones lose accuracy, not exact lengths.",
-    run: sizes,
+    run: Work::Code(sizes),
 };
 
 /// What tiny steps meet near the flat state.
@@ -152,7 +152,7 @@ pub(crate) const FREE_FALL: Case = Case {
     name: "free-fall",
     title: "Free fall: all rod forces zero",
     expected: "A sheet thrown without spin keeps its shape, flat or crumpled, exactly flat included; its centre follows a parabola and no rod carries a force.",
-    run: free_fall,
+    run: Work::Code(free_fall),
 };
 
 /// Velocity of the throw, m/s; length (seconds) and number of steps.
