@@ -1,15 +1,17 @@
 //! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a
-//! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for
+//! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for [`bumped`] sheets, for
 //! [`RigidBody`], which gives the motion of any sheet that cannot bend, and for states of rest: [`Elastica`],
 //! [`buckled`] strips and [`ExcessCone`].
 
 mod buckled;
+mod bumped;
 mod catenary;
 mod elastica;
 mod elliptic;
 mod excess_cone;
 mod flap;
 mod linkage;
+mod methods;
 mod pendulum;
 mod rigid_body;
 mod strip;
@@ -17,12 +19,16 @@ mod triangle;
 mod tumbling;
 
 pub use buckled::buckled;
+pub use bumped::{bumped, corner, raised};
 pub use catenary::Catenary;
 pub use elastica::{Elastica, Hanging};
 pub use elliptic::{agm, complete_k, jacobi};
 pub use excess_cone::ExcessCone;
 pub use flap::Flap;
 pub use linkage::Linkage;
+pub use methods::{
+    Named, conservative, damped, energy_momentum, implicit_euler, methods, rattle_composition,
+};
 pub use pendulum::Pendulum;
 pub use rigid_body::RigidBody;
 pub use strip::{HangingStrip, laguerre, laguerre_zeros};

@@ -22,7 +22,6 @@ mod hard_cases;
 mod interrupt;
 mod locking;
 mod measured;
-mod methods;
 mod progress;
 mod report;
 mod reproduce;

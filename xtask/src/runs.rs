@@ -10,9 +10,9 @@ mod record;
 mod scene;
 mod shape;
 
-pub(crate) use bumped::{
-    BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table, raised,
-};
+pub(crate) use isosheet_tests::{bumped, corner, raised};
+
+pub(crate) use bumped::{BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, hanging, on_table};
 pub(crate) use chart_run::{ChartSummary, chart_run};
 pub(crate) use course::{Course, Ending, Plan, unseen};
 pub(crate) use ensemble::{Member, ensemble};

@@ -5,13 +5,13 @@ mod report;
 mod run;
 
 use super::{DEFAULT, Record};
-use crate::methods::{Named, energy_momentum, implicit_euler};
 use crate::progress::Progress;
 use crate::report::{Effort, Part as Excerpt, list};
 use crate::runs::{Pairs, STEP, Work};
 use crate::store::Files;
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method, ProjectionStepOptions};
+use isosheet_tests::{Named, energy_momentum, implicit_euler};
 use maud::html;
 use run::{Mesh, Run};
 

@@ -7,7 +7,6 @@ use crate::condition;
 use crate::draw::Series;
 use crate::draw::spatial::{norm, sub};
 use crate::interrupt;
-use crate::methods::{energy_momentum, methods, rattle_composition};
 use crate::report::{Cell, Effort, Table, number};
 use crate::runs::{bumped, corner, hanging};
 use anyhow::Result;
@@ -24,6 +23,7 @@ use isosheet_dynamics::chart::{
 use isosheet_dynamics::{Method, Simulation, State};
 use isosheet_mesh::{Sheet, VertexId, generate};
 use isosheet_tests::orders;
+use isosheet_tests::{energy_momentum, methods, rattle_composition};
 use nalgebra::Vector3;
 
 pub(crate) const CONDITION: Case = Case {
@@ -260,7 +260,7 @@ fn chart_error(
     reference: &[f64],
 ) -> Result<f64> {
     interrupt::check()?;
-    let sheet = bumped(0, BUMP)?;
+    let sheet = bumped(0, BUMP);
     let chart = front_chart(&sheet, corner(0), Degenerate::Assign, sheet.positions())?;
     let position = match method {
         ChartMethod::RungeKutta4 => PositionUpdate::Exact,
@@ -312,7 +312,7 @@ fn collinear(f: &mut Findings, effort: Effort) -> Result<()> {
     });
     // Every interior vertex of degree 4 keeps one straight crease; the bumped M^1 has four of them next to
     // its boundary.
-    let sheet = bumped(1, 0.1)?;
+    let sheet = bumped(1, 0.1);
     let options = ChartOptions {
         method: ChartMethod::RungeKutta4,
         control: ChartStepControl::Fixed(1e-3),

@@ -5,7 +5,6 @@ use super::scenes::{FRAME, VIEWPOINT, apart, course, go, pinned, released};
 use super::{Case, Findings, Work, log_log};
 use crate::draw::{Series, Shot, Viewpoint};
 use crate::interrupt;
-use crate::methods::{Named, conservative, damped, methods};
 use crate::report::{Effort, Picture};
 use crate::runs::Course;
 use crate::runs::{bumped, corner};
@@ -17,6 +16,7 @@ use isosheet_dynamics::chart::{ChartOptions, Rebase};
 use isosheet_dynamics::{Frames, Method, SheetModel, Simulation, State, rod_rank};
 use isosheet_mesh::{MassMatrix, Sheet};
 use isosheet_tests::{Flap, orders};
+use isosheet_tests::{Named, conservative, damped, methods};
 use std::f64::consts::FRAC_PI_2;
 
 pub(crate) const START: Case = Case {
@@ -28,7 +28,7 @@ pub(crate) const START: Case = Case {
 };
 
 fn start(f: &mut Findings, effort: Effort) -> Result<()> {
-    let sheet = bumped(1, 0.0)?;
+    let sheet = bumped(1, 0.0);
     let model = pinned(&sheet, &[corner(1)])?;
     let condition = front_condition(&sheet, &model).map_err(|e| e.to_string());
     f.naive_run("The paper's coordinates", condition, |condition| {
@@ -42,7 +42,7 @@ fn start(f: &mut Findings, effort: Effort) -> Result<()> {
         (text, strain.is_nan() || strain >= 1e-2)
     });
     for level in effort.pick(1..=1, 1..=3, 1..=4) {
-        let sheet = bumped(level, 0.0)?;
+        let sheet = bumped(level, 0.0);
         for (name, method) in damped() {
             let mut run = released(&sheet, &[corner(level)], method)?;
             let mut potential = 0.0_f64;
@@ -84,7 +84,7 @@ fn front_condition(sheet: &Sheet, model: &SheetModel) -> Result<f64, ChartError>
 
 /// The fall of M^2, rendered.
 fn fall() -> Result<Picture> {
-    let (sheet, pins) = (bumped(2, 0.0)?, [corner(2)]);
+    let (sheet, pins) = (bumped(2, 0.0), [corner(2)]);
     let mut run = released(&sheet, &pins, Method::default())?;
     let mut kept = Frames::every(1);
     run.run(1.0, FRAME, &mut [&mut kept, &mut interrupt::observe])?;

@@ -5,7 +5,6 @@ use super::scenes::{FRAME, apart, at_rest, course, go, pinned, tumbling};
 use super::{Case, Findings, Work, semi_log};
 use crate::draw::Series;
 use crate::interrupt;
-use crate::methods::{conservative, damped, energy_momentum};
 use crate::report::{Effort, number};
 use crate::runs::{Pairs, bumped, corner, hanging, on_table};
 use crate::threads::pool;
@@ -13,6 +12,7 @@ use anyhow::Result;
 use isosheet_collide::ContactOptions;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, project_positions};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
+use isosheet_tests::{conservative, damped, energy_momentum};
 use nalgebra::{Rotation3, Vector3};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
@@ -144,11 +144,11 @@ impl Image {
 }
 
 fn reference(level: u32) -> Result<Image> {
-    Ok(Image::of(bumped(level, 0.05)?, corner(level)))
+    Ok(Image::of(bumped(level, 0.05), corner(level)))
 }
 
 fn renumbered(level: u32, seed: u64) -> Result<Image> {
-    let sheet = bumped(level, 0.05)?;
+    let sheet = bumped(level, 0.05);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let n = sheet.topology().vertex_count();
     // Vertex v becomes number[v].
@@ -181,7 +181,7 @@ fn renumbered(level: u32, seed: u64) -> Result<Image> {
 
 fn turned(level: u32) -> Result<Image> {
     let turn = Rotation3::from_euler_angles(0.7, -1.1, 2.3);
-    let sheet = bumped(level, 0.05)?.map_positions(|p| (turn * Vector3::from(p)).into())?;
+    let sheet = bumped(level, 0.05).map_positions(|p| (turn * Vector3::from(p)).into())?;
     let back = move |x: &[f64]| {
         let places = x.chunks(3).map(Vector3::from_column_slice);
         let places = places.flat_map(|p| <[f64; 3]>::from(turn.inverse() * p));
@@ -368,7 +368,7 @@ fn threads(f: &mut Findings, effort: Effort) -> Result<()> {
 
 /// The end of some steps of a cloth that touches a table and itself.
 fn cloth(steps: usize) -> Result<Vec<f64>> {
-    let sheet = bumped(4, 0.1)?;
+    let sheet = bumped(4, 0.1);
     let model = pinned(&sheet, &[])?;
     let options = ContactOptions::for_sheet(&model);
     // Just below the lowest part of the bump above it.

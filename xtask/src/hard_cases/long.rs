@@ -6,12 +6,12 @@ use super::scenes::{
 };
 use super::{Case, Findings, Shortfall, Work, log_log};
 use crate::draw::Series;
-use crate::methods::{energy_momentum, methods};
 use crate::report::{Effort, number};
 use crate::runs::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{Simulation, State};
 use isosheet_mesh::generate;
+use isosheet_tests::{energy_momentum, methods};
 
 pub(crate) const REST: Case = Case {
     name: "rest",
@@ -103,7 +103,7 @@ fn free() -> Result<Simulation> {
 
 /// `M^1` with the same bump, swinging from its top side.
 fn swinging() -> Result<Simulation> {
-    let flat = bumped(1, 0.2)?;
+    let flat = bumped(1, 0.2);
     let sheet = flat.map_positions(|[x, y, z]| [x, y, z + 0.2 * (3.0 * x).cos() * y])?;
     released(&sheet, &top_row(), energy_momentum())
 }

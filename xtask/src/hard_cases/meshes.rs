@@ -2,13 +2,13 @@
 
 use super::scenes::{FRAME, at_rest, go, pinned, released};
 use super::{Case, Findings, Work};
-use crate::methods::{damped, energy_momentum};
 use crate::report::{Effort, Table};
 use anyhow::Result;
 use isosheet_coords::{Start, sys_coord_assnmt_single};
 use isosheet_dynamics::{Method, Simulation, leave_flat};
 use isosheet_mesh::{Dof, Sheet, VertexId, generate};
 use isosheet_tests::HangingStrip;
+use isosheet_tests::{damped, energy_momentum};
 use std::f64::consts::PI;
 
 pub(crate) const LONG: Case = Case {

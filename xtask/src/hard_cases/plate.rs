@@ -4,12 +4,12 @@ use super::rigid::{SPIN, tetrahedron};
 use super::scenes::{apart, at_rest, course, go};
 use super::{Case, Findings, Work, log_log};
 use crate::draw::{Axis, Chart, Series};
-use crate::methods::{conservative, energy_momentum, rattle_composition};
 use crate::report::{Effort, number};
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 use isosheet_tests::{Pendulum, RigidBody, orders};
+use isosheet_tests::{conservative, energy_momentum, rattle_composition};
 use nalgebra::Vector3;
 
 pub(crate) const PLATE: Case = Case {

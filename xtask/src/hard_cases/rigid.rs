@@ -4,12 +4,12 @@ use super::naive::{TEXTBOOK, textbook_steps};
 use super::scenes::{apart, course};
 use super::{Case, Findings, Shortfall, Work};
 use crate::interrupt;
-use crate::methods::{Named, methods};
 use crate::report::{Effort, Table, number};
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State};
 use isosheet_mesh::{Dof, MassMatrix, Sheet, fold_angle};
 use isosheet_tests::RigidBody;
+use isosheet_tests::{Named, methods};
 use nalgebra::Vector3;
 
 pub(crate) const CLOSED: Case = Case {

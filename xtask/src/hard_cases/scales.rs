@@ -5,7 +5,6 @@ use super::scenes::{
     FRAME, STRAIN, apart, at_rest, course, go, pinned, released, stopped, strain_bound,
 };
 use super::{Case, Findings, Shortfall, Work};
-use crate::methods::{conservative, damped, energy_momentum, methods};
 use crate::report::{Effort, Table, number};
 use crate::runs::Course;
 use crate::runs::{bumped, corner};
@@ -13,6 +12,7 @@ use anyhow::{Result, bail};
 use isosheet_dynamics::{Method, SheetModel, Simulation};
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, generate};
 use isosheet_tests::{Flap, Pendulum};
+use isosheet_tests::{conservative, damped, energy_momentum, methods};
 
 pub(crate) const SLIVERS: Case = Case {
     name: "slivers",
@@ -47,7 +47,7 @@ fn pendulum(altitude: f64) -> Pendulum {
 
 /// `M^1` squashed to a width.
 fn squashed(level: u32, width: f64) -> Result<Sheet> {
-    Ok(bumped(level, 0.0)?.map_positions(|[x, y, _]| [x, width * y, 0.0])?)
+    Ok(bumped(level, 0.0).map_positions(|[x, y, _]| [x, width * y, 0.0])?)
 }
 
 /// A run of a series: what tells it from the others, its method, what happened, and its gain of energy.
@@ -213,7 +213,7 @@ fn masses(f: &mut Findings, effort: Effort) -> Result<()> {
 
 /// A checkerboard of light and heavy vertices.
 fn board(ratio: f64, bump: f64, light: f64) -> Result<(SheetModel, Sheet)> {
-    let sheet = bumped(1, bump)?;
+    let sheet = bumped(1, bump);
     let mass = |i| 0.004 * if i % 2 == 0 { light } else { ratio };
     let masses = MassMatrix::from_vertex_masses((0..25).map(mass).collect())?;
     let model = SheetModel::with_mass(&sheet, masses)?.with_gravity();
@@ -307,7 +307,7 @@ fn sizes(f: &mut Findings, effort: Effort) -> Result<()> {
     // A projection that stops at an absolute tolerance, as is common.
     let mut parts = Vec::new();
     for size in [1e3, 1.0, 1e-6] {
-        let sheet = bumped(1, 0.05)?.map_positions(|p| p.map(|c| c * size))?;
+        let sheet = bumped(1, 0.05).map_positions(|p| p.map(|c| c * size))?;
         let model = pinned(&sheet, &[corner(1)])?;
         let h = FRAME * size.sqrt();
         let (strain, _) = gauss_seidel(&model, sheet.positions(), h, 20, (10_000, 1e-6));
@@ -331,7 +331,7 @@ fn sizes(f: &mut Findings, effort: Effort) -> Result<()> {
 /// The end of `M^1` with lengths times a power of four, times and masses to match, over the length.
 fn scaled_run(bump: f64, method: &Method, power: i32, steps: usize) -> Result<(Vec<f64>, Course)> {
     let (length, time) = (4.0_f64.powi(power), 2.0_f64.powi(power));
-    let sheet = bumped(1, bump)?.map_positions(|p| p.map(|c| c * length))?;
+    let sheet = bumped(1, bump).map_positions(|p| p.map(|c| c * length))?;
     let model = SheetModel::new(&sheet, 0.125 * 16.0_f64.powi(power), MassKind::Lumped)?
         .with_gravity()
         .with_pins(&[corner(1)])?;

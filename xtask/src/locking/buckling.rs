@@ -9,11 +9,11 @@ use super::records::Records;
 use super::sample::{Sample, requirements};
 use super::scene::Scene;
 use crate::draw::{Axis, Charts};
-use crate::methods::implicit_euler;
 use crate::report::{Effort, Table};
 use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_mesh::Sheet;
+use isosheet_tests::implicit_euler;
 
 pub(super) const ABOUT: &str = "A strip of 0.30 m x 0.02 m and 80 g/m² is clamped at one end with its width upright; gravity acts in its plane, and one \
     thousandth of it across. Below a critical weight the strip stays upright, above it bends and twists sideways (a test of Romero et al., \

@@ -9,13 +9,13 @@ use super::sample::{OfModel, Sample, requirements};
 use super::scene::{End, Scene};
 use super::{Findings, order};
 use crate::draw::{Axis, Charts};
-use crate::methods::implicit_euler;
 use crate::report::{Table, extremes, number};
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::SheetModel;
 use isosheet_mesh::Sheet;
 use isosheet_tests::Elastica;
+use isosheet_tests::implicit_euler;
 use serde::{Deserialize, Serialize};
 
 pub(super) const ABOUT: &str = "A strip of 0.06 m width and 80 g/m² is clamped horizontally over 0.03 m and hangs free over 0.30 m: the heavy elastica. The \

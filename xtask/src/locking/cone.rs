@@ -9,12 +9,12 @@ use super::panels::{BANDS, Panel, charts};
 use super::records::Records;
 use super::scene::Scene;
 use crate::draw::{Axis, Charts};
-use crate::methods::implicit_euler;
 use crate::report::{Table, extremes, number};
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::{PointProfile, Profile, SheetModel};
 use isosheet_mesh::Sheet;
+use isosheet_tests::implicit_euler;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 

@@ -9,12 +9,12 @@ use super::scene::{End, Scene};
 use super::targets::{Target, at_least};
 use super::{Findings, order};
 use crate::draw::{Axis, Charts};
-use crate::methods::implicit_euler;
 use crate::report::{Table, number};
 use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_dynamics::{Profile, SheetModel, Support};
 use isosheet_mesh::{Sheet, VertexId};
+use isosheet_tests::implicit_euler;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

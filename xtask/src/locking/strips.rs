@@ -10,12 +10,12 @@ use super::records::Records;
 use super::scene::{End, Scene};
 use super::{Findings, order};
 use crate::draw::{Axis, Charts};
-use crate::methods::implicit_euler;
 use crate::report::{Cell, Cost, Table, extremes, number};
 use crate::runs::Plan;
 use anyhow::Result;
 use case::{Case, DENSITY, Exact, LENGTH, RIGIDITY, WIDTH, middle, plate};
 use isosheet_mesh::Sheet;
+use isosheet_tests::implicit_euler;
 use serde::{Deserialize, Serialize};
 
 pub(super) const ABOUT: &str = "Strips of paper with a free part of 4 a x a (a = 0.1 m, 5e-4 N m), clamped over 0.5 a. Loaded: one end is clamped, a load of 0.025 D / a³ \

@@ -1,7 +1,7 @@
 //! Methods by which models are tried.
 
-use crate::methods::damped;
 use isosheet_dynamics::Method;
+use isosheet_tests::damped;
 
 /// A method with its name.
 pub(super) struct Way {

@@ -3,11 +3,10 @@
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
-use isosheet_mesh::generate::isotropic_square;
-use isosheet_mesh::{MassKind, Sheet, VertexId};
+use isosheet_mesh::{MassKind, Sheet};
+use isosheet_tests::{bumped, corner};
 use nalgebra::Isometry3;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
 
 /// Height of the bump, metres: nearly flat, so that the length constraints are nearly dependent.
 pub(crate) const BUMP: f64 = 1e-3;
@@ -23,23 +22,6 @@ pub(crate) const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
 
 /// Mass of the sheet, kilograms.
 const MASS: f64 = 0.1;
-
-/// The union-jack square `M^level` of side 1 m with `z = bump sin(pi x) sin(pi y)`.
-pub(crate) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
-    let flat = isotropic_square(level, 1.0)?;
-    Ok(flat.map_positions(|p| raised(p, bump))?)
-}
-
-/// A point of the flat square on the bump.
-pub(crate) fn raised([x, y, _]: [f64; 3], bump: f64) -> [f64; 3] {
-    [x, y, bump * (PI * x).sin() * (PI * y).sin()]
-}
-
-/// The corner (0, 1) of `M^level`.
-pub(crate) fn corner(level: u32) -> VertexId {
-    let n = (2 << level) + 1;
-    VertexId(n * (n - 1))
-}
 
 /// Which pairs repel each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -72,14 +54,14 @@ impl Work {
     pub(crate) fn start(self, level: u32, bump: f64, method: Method) -> Result<Simulation> {
         match self {
             Self::Hanging => hanging(level, bump, method),
-            Self::Tablecloth(pairs) => tablecloth(&bumped(level, bump)?, pairs, method),
+            Self::Tablecloth(pairs) => tablecloth(&bumped(level, bump), pairs, method),
         }
     }
 }
 
 /// The sheet `M^level` with a bump of the given height (metres), held at its corner.
 pub(crate) fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulation> {
-    let sheet = bumped(level, bump)?;
+    let sheet = bumped(level, bump);
     let model = SheetModel::new(&sheet, MASS, MassKind::Lumped)?
         .with_gravity()
         .with_pins(&[corner(level)])?;

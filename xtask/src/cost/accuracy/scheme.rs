@@ -2,7 +2,6 @@
 
 use super::problem::Problem;
 use crate::cost::DEFAULT;
-use crate::methods::{conservative, damped, energy_momentum, rattle_composition};
 use anyhow::Result;
 use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::{
@@ -12,6 +11,7 @@ use isosheet_dynamics::chart::{
     ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind, PositionUpdate, Rebase,
 };
 use isosheet_dynamics::{Method, Simulation, SimulationError};
+use isosheet_tests::{conservative, damped, energy_momentum, rattle_composition};
 
 /// A method, with everything but its step.
 #[derive(Clone, Debug)]

@@ -71,7 +71,7 @@ mod tests {
     /// A sheet pushed into the table is found by both checks.
     #[test]
     fn penetration_is_seen() {
-        let sheet = bumped(2, BUMP).unwrap();
+        let sheet = bumped(2, BUMP);
         let checker = Checker::new(&sheet).unwrap();
         let mut x = sheet.positions().to_vec();
         assert_eq!(

@@ -2,11 +2,11 @@
 
 use super::penetration::Checker;
 use crate::cost::steps::factorisation_time;
-use crate::methods::Named;
 use crate::report::{rounded, short};
 use crate::runs::{BUMP, Course, Pairs, Plan, Work, bumped, unseen};
 use anyhow::Result;
 use isosheet_dynamics::{Simulation, StepReport};
+use isosheet_tests::Named;
 use std::ops::ControlFlow;
 
 /// A mesh, and what a factorisation of its matrix takes.
@@ -21,7 +21,7 @@ pub(super) struct Mesh {
 impl Mesh {
     /// Measures the factorisation of `M^level`.
     pub(super) fn measured(level: u32) -> Result<Self> {
-        let sheet = bumped(level, BUMP)?;
+        let sheet = bumped(level, BUMP);
         Ok(Self {
             level,
             vertices: sheet.topology().vertex_count(),
@@ -79,7 +79,7 @@ impl Run {
     ) -> Result<Self> {
         let checker = match work {
             Work::Hanging => None,
-            Work::Tablecloth(pairs) => Some((Checker::new(&bumped(mesh.level, BUMP)?)?, pairs)),
+            Work::Tablecloth(pairs) => Some((Checker::new(&bumped(mesh.level, BUMP))?, pairs)),
         };
         let begin = || work.start(mesh.level, BUMP, method.clone());
         let plan = Plan::new(step, work.duration()).within(patience);

@@ -81,7 +81,7 @@ impl Row {
 /// Measures one level: `steps` steps of each sheet after a first one that is not timed, the fastest of some
 /// runs, and the orders of elimination.
 pub(super) fn measure(level: u32, steps: usize) -> Result<Row> {
-    let sheet = bumped(level, BUMP)?;
+    let sheet = bumped(level, BUMP);
     reset_peak_memory();
     let hanging = fastest(|| Ok((hanging(level, steps)?, ())))?.0;
     let peak = peak_memory();
@@ -122,7 +122,7 @@ fn hanging(level: u32, steps: usize) -> Result<Course> {
 }
 
 fn draping(level: u32, steps: usize) -> Result<(Course, ContactRow)> {
-    let sheet = bumped(level, DRAPED)?;
+    let sheet = bumped(level, DRAPED);
     let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)?.with_gravity();
     let options = ContactOptions::for_sheet(&model);
     // The bump is at half its height above the corners of the table, where the cloth is lowest.

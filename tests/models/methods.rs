@@ -3,10 +3,10 @@
 use isosheet_dynamics::Method;
 
 /// A method with its name.
-pub(crate) type Named = (&'static str, Method);
+pub type Named = (&'static str, Method);
 
 /// The damped methods, the default first.
-pub(crate) fn damped() -> [Named; 3] {
+pub fn damped() -> [Named; 3] {
     [
         ("BDF2", Method::Bdf2(Default::default())),
         ("implicit Euler", Method::ImplicitEuler(Default::default())),
@@ -15,7 +15,7 @@ pub(crate) fn damped() -> [Named; 3] {
 }
 
 /// The conservative methods.
-pub(crate) fn conservative() -> [Named; 3] {
+pub fn conservative() -> [Named; 3] {
     [
         ("energy-momentum", energy_momentum()),
         ("RATTLE", Method::Rattle(Default::default())),
@@ -24,21 +24,21 @@ pub(crate) fn conservative() -> [Named; 3] {
 }
 
 /// All of them.
-pub(crate) fn methods() -> impl Iterator<Item = Named> {
+pub fn methods() -> impl Iterator<Item = Named> {
     damped().into_iter().chain(conservative())
 }
 
 /// The energy-momentum method.
-pub(crate) fn energy_momentum() -> Method {
+pub fn energy_momentum() -> Method {
     Method::EnergyMomentum(Default::default())
 }
 
 /// The fourth-order composition of RATTLE.
-pub(crate) fn rattle_composition() -> Method {
+pub fn rattle_composition() -> Method {
     Method::RattleComposition(Default::default())
 }
 
 /// Implicit Euler.
-pub(crate) fn implicit_euler() -> Method {
+pub fn implicit_euler() -> Method {
     Method::ImplicitEuler(Default::default())
 }
