@@ -71,7 +71,7 @@ fn losses(method: &Method, steps: u32) -> [f64; 3] {
 
 #[test]
 fn conservative_methods_keep_the_angular_momentum() {
-    for (name, method) in methods().into_iter().skip(3) {
+    for (name, method) in methods().skip(3) {
         let [_, energy, change] = losses(&method, 50);
         assert!(change < 1e-15, "{name}: angular momentum {change:e}");
         if name == "energy-momentum" {
@@ -91,7 +91,7 @@ fn damped_methods_lose_angular_momentum_and_energy_by_their_order() {
         ("implicit Euler", [9.47e-4, 2.17e-3], 1.0),
         ("projection", [4.80e-4, 1.10e-3], 1.0),
     ];
-    for ((name, method), (same, shares, order)) in methods().into_iter().zip(expected) {
+    for ((name, method), (same, shares, order)) in methods().zip(expected) {
         assert_eq!(name, same);
         let runs = [50, 100, 200].map(|steps| losses(&method, steps));
         for (k, what) in ["angular momentum", "energy"].into_iter().enumerate() {
@@ -113,7 +113,7 @@ fn damped_methods_lose_angular_momentum_and_energy_by_their_order() {
 
 #[test]
 fn symmetric_methods_run_backwards() {
-    for (name, method) in methods().into_iter().skip(3) {
+    for (name, method) in methods().skip(3) {
         let mut run = tumbling(method.clone());
         let start = run.state().clone();
         for _ in 0..40 {

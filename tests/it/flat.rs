@@ -10,7 +10,7 @@ use isosheet_mesh::{MassKind, VertexId, generate};
 #[test]
 fn flat_start_is_never_rejected() {
     for level in [1, 2, 3] {
-        for (name, method) in methods().into_iter().take(3) {
+        for (name, method) in methods().take(3) {
             let mut run = hanging(level, 0.0, method);
             let mut last = 0.0;
             for k in 0..60 {
@@ -61,7 +61,7 @@ fn energy_momentum_refuses_a_loaded_flat_sheet_and_says_why() {
 /// part in 1e5 (its composition) of the 1.3 mJ that the fall releases.
 #[test]
 fn rattle_leaves_a_loaded_flat_sheet_by_short_steps() {
-    for (name, method) in methods().into_iter().skip(4) {
+    for (name, method) in methods().skip(4) {
         let mut run = hanging(1, 0.0, method);
         let report = run
             .step(1.0 / 60.0)

@@ -154,7 +154,7 @@ fn changing_steps_do_not_feed_energy() {
         ("RATTLE composition", [-4e-8, 4e-9]),
     ];
     for short in [1e-3, 1e-4, 1e-5] {
-        for ((name, method), (same, [low, high])) in methods().into_iter().zip(bounds) {
+        for ((name, method), (same, [low, high])) in methods().zip(bounds) {
             assert_eq!(name, same);
             let mut run = Simulation::new(problem.model(), problem.start(), method).expect("valid");
             let scale = run.energy().abs();
@@ -179,7 +179,7 @@ fn changing_steps_do_not_feed_energy() {
 #[test]
 fn a_flat_sheet_in_flight_keeps_its_momentum_until_rods_answer_round_off() {
     let sheet = bumped(2, 0.0);
-    for (name, method) in methods().into_iter().skip(3) {
+    for (name, method) in methods().skip(3) {
         for speed in [1.0, 100.0] {
             // RATTLE solves for the impulses of dependent rods also where round-off alone loads them, and
             // stops there: at 1 m/s RATTLE in the second step and its composition in the first.
