@@ -207,8 +207,7 @@ impl PlateBending {
         let checked = yields.validate();
         checked.map_err(|source| PlateBendingError::Yield { source })?;
         self.plastic = (self.rigidity > 0.0).then(|| {
-            let edges = self.at_edges.iter().map(|(edge, _)| *edge);
-            let pairs = self.at_pairs.iter().map(|(pair, _)| *pair);
+            let (edges, pairs) = (&self.at_edges, &self.at_pairs);
             PlasticCurvature::new(sheet, &self.stencils, (self.rigidity, yields), edges, pairs)
         });
         Ok(self)
@@ -268,13 +267,8 @@ impl Potential for PlateBending {
     }
 
     fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
-        let count = [
-            self.at_vertices.len(),
-            self.at_edges.len(),
-            self.at_pairs.len(),
-        ];
         let plastic = self.plastic.as_ref();
-        let plastic = plastic.and_then(|plastic| plastic.blocks(&self.stencils, x, count));
+        let plastic = plastic.and_then(|plastic| plastic.blocks(&self.stencils, x));
         let block = |value: f64, list: fn(&Blocks) -> &[Matrix3<f64>], k: usize| {
             let elastic = Matrix3::from_diagonal_element(value);
             plastic

@@ -7,6 +7,7 @@ use isosheet_mesh::{EdgeId, Sheet, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::SQRT_2;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The plastic curvatures of the faces of a plate.
 #[derive(Debug)]
@@ -21,6 +22,8 @@ pub(super) struct PlasticCurvature {
     /// Plastic curvature of each face, 1/m: the components `(11, sqrt(2) 12, 22)`, the first axis along the first
     /// edge of the face.
     curvatures: Vec<f64>,
+    /// Room for the blocks, so that no step allocates.
+    blocks: Mutex<Blocks>,
 }
 
 /// What does not change of a face.
@@ -56,10 +59,38 @@ enum Rows {
 }
 
 /// What the plastic curvatures add to the Hessian of an elastic plate, in the places of its blocks.
+#[derive(Debug)]
 pub(super) struct Blocks {
     pub(super) at_vertices: Vec<Matrix3<f64>>,
     pub(super) at_edges: Vec<Matrix3<f64>>,
     pub(super) at_pairs: Vec<Matrix3<f64>>,
+    /// The vertices of the face whose blocks are computed.
+    vertices: Vec<BentVertex>,
+}
+
+/// What the Hessian of a face needs of one of the vertices of its stencil.
+#[derive(Debug)]
+struct BentVertex {
+    index: usize,
+    /// Its weights `w`, and `slope w`.
+    weights: Vector3<f64>,
+    yielded: Vector3<f64>,
+    /// `w . p`, the plastic curvature as [`BentFace::plastic`] has it.
+    along: f64,
+    /// Gradient of the linear function that is one here, zero where the vertex is no corner.
+    hat: Vector3<f64>,
+}
+
+impl Blocks {
+    fn zero(&mut self) {
+        for list in [
+            &mut self.at_vertices,
+            &mut self.at_edges,
+            &mut self.at_pairs,
+        ] {
+            list.fill(Matrix3::zeros());
+        }
+    }
 }
 
 /// A face at positions, `B` being the second derivatives of the positions, `n` the unit normal and `p` the plastic
@@ -99,18 +130,15 @@ impl PlasticCurvature {
         sheet: &Sheet,
         stencils: &Stencils,
         (rigidity, yields): (f64, Yield),
-        edges: impl Iterator<Item = EdgeId>,
-        pairs: impl Iterator<Item = [VertexId; 2]>,
+        edges: &[(EdgeId, f64)],
+        pairs: &[([VertexId; 2], f64)],
     ) -> Self {
         let topology = sheet.topology();
-        let edges = edges.map(|e| topology.edges()[e.index()]);
-        let edges = edges
-            .enumerate()
-            .map(|(k, ends)| (ends, (List::Edges, k as u32)));
-        let pairs = pairs
-            .enumerate()
-            .map(|(k, pair)| (pair, (List::Pairs, k as u32)));
-        let places: BTreeMap<[VertexId; 2], (List, u32)> = edges.chain(pairs).collect();
+        let ends = edges.iter().map(|(e, _)| topology.edges()[e.index()]);
+        let at_edges = ends.zip(0..).map(|(ends, k)| (ends, (List::Edges, k)));
+        let at_pairs = pairs.iter().zip(0..);
+        let at_pairs = at_pairs.map(|((pair, _), k)| (*pair, (List::Pairs, k)));
+        let places: BTreeMap<[VertexId; 2], (List, u32)> = at_edges.chain(at_pairs).collect();
         let slot = |v: VertexId, w: VertexId| {
             let (place, rows) = match places.get(&[v, w]) {
                 Some(place) => (place, Rows::First),
@@ -119,7 +147,9 @@ impl PlasticCurvature {
             let (list, index) = *place;
             Slot { list, index, rows }
         };
-        let (mut slots, mut faces) = (Vec::new(), Vec::new());
+        let counts = [topology.vertex_count(), edges.len(), pairs.len()];
+        let [at_vertices, at_edges, at_pairs] = counts.map(|n| vec![Matrix3::zeros(); n]);
+        let (mut slots, mut faces, mut most) = (Vec::new(), Vec::new(), 0);
         let corners = topology.faces().iter().zip(sheet.face_areas());
         for ((corners, area), stencil) in corners.zip(stencils.iter()) {
             faces.push(PlasticFace {
@@ -128,6 +158,7 @@ impl PlasticCurvature {
                 slots: slots.len(),
             });
             let vertices: Vec<_> = stencil.map(|(v, _)| VertexId::from_index(v)).collect();
+            most = most.max(vertices.len());
             for (i, v) in vertices.iter().enumerate() {
                 slots.extend(vertices[..i].iter().map(|w| slot(*v, *w)));
             }
@@ -138,6 +169,12 @@ impl PlasticCurvature {
             curvatures: vec![0.0; 3 * faces.len()],
             faces,
             slots,
+            blocks: Mutex::new(Blocks {
+                at_vertices,
+                at_edges,
+                at_pairs,
+                vertices: Vec::with_capacity(most),
+            }),
         }
     }
 
@@ -204,59 +241,54 @@ impl PlasticCurvature {
     /// The Hessian is that of `|P (dB - dn p^T)|^2 + n . dB (1 - slope) dB^T n`, with the projection `P` along the
     /// normal, and of `max(0, p . (k - p)) |dn|^2`: it is positive semidefinite, and differs from the second derivatives
     /// by terms that vanish where the sheet is isometric and no face is bent against its plastic curvature.
-    pub(super) fn blocks(
-        &self,
-        stencils: &Stencils,
-        x: &[f64],
-        count: [usize; 3],
-    ) -> Option<Blocks> {
-        let bent = stencils.iter().enumerate();
-        let bent = bent.map(|(face, stencil)| self.bent(face, &stencil, x));
-        let bent: Vec<BentFace> = bent.collect();
-        if bent.iter().all(BentFace::is_elastic) {
-            return None;
+    pub(super) fn blocks(&self, stencils: &Stencils, x: &[f64]) -> Option<MutexGuard<'_, Blocks>> {
+        let mut blocks = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut is_elastic = true;
+        for (face, stencil) in stencils.iter().enumerate() {
+            let bent = self.bent(face, &stencil, x);
+            if bent.is_elastic() {
+                continue;
+            }
+            if is_elastic {
+                blocks.zero();
+                is_elastic = false;
+            }
+            self.add_blocks(&bent, face, stencil, &mut blocks);
         }
-        let [at_vertices, at_edges, at_pairs] = count.map(|n| vec![Matrix3::zeros(); n]);
-        let mut blocks = Blocks {
+        (!is_elastic).then_some(blocks)
+    }
+
+    fn add_blocks(&self, bent: &BentFace, face: usize, stencil: Stencil<'_>, blocks: &mut Blocks) {
+        let (n, p) = (bent.normal, bent.plastic);
+        let turning = p.norm_squared() + (bent.elastic * p).dot(&n).max(0.0);
+        let Blocks {
             at_vertices,
             at_edges,
             at_pairs,
+            vertices,
+        } = blocks;
+        vertices.clear();
+        vertices.extend(stencil.map(|(index, weights)| {
+            let corner = bent.corners.iter().position(|c| c.index() == index);
+            BentVertex {
+                index,
+                weights,
+                yielded: bent.flow.slope * weights,
+                along: weights.dot(&p),
+                hat: corner.map_or(Vector3::zeros(), |k| bent.hats[k]),
+            }
+        }));
+        let block = |i: &BentVertex, j: &BentVertex| {
+            let normal = turning * i.hat.dot(&j.hat) - i.yielded.dot(&j.weights);
+            (n * normal + i.along * j.hat) * n.transpose() + j.along * n * i.hat.transpose()
         };
-        let faces = bent.iter().zip(&self.faces).zip(stencils.iter());
-        for ((bent, face), stencil) in faces.filter(|((bent, _), _)| !bent.is_elastic()) {
-            self.add_blocks(bent, face, stencil, &mut blocks);
-        }
-        Some(blocks)
-    }
-
-    fn add_blocks(
-        &self,
-        bent: &BentFace,
-        face: &PlasticFace,
-        stencil: Stencil<'_>,
-        blocks: &mut Blocks,
-    ) {
-        let (n, p) = (bent.normal, bent.plastic);
-        let turning = p.norm_squared() + (bent.elastic * p).dot(&n).max(0.0);
-        let vertices: Vec<_> = stencil
-            .map(|(v, w)| {
-                let corner = face.corners.iter().position(|c| c.index() == v);
-                let hat = corner.map_or(Vector3::zeros(), |k| bent.hats[k]);
-                (v, w, bent.flow.slope * w, w.dot(&p), hat)
-            })
-            .collect();
-        let block = |i: usize, j: usize| {
-            let ((_, _, yielded, p_i, g_i), (_, w, _, p_j, g_j)) = (&vertices[i], &vertices[j]);
-            let normal = turning * g_i.dot(g_j) - yielded.dot(w);
-            (n * normal + *p_i * g_j) * n.transpose() + *p_j * n * g_i.transpose()
-        };
-        let mut slots = self.slots[face.slots..].iter();
-        for (i, vertex) in vertices.iter().enumerate() {
-            blocks.at_vertices[vertex.0] += block(i, i);
-            for (j, Slot { list, index, rows }) in (0..i).zip(&mut slots) {
+        let mut slots = self.slots[self.faces[face].slots..].iter();
+        for (k, i) in vertices.iter().enumerate() {
+            at_vertices[i.index] += block(i, i);
+            for (j, Slot { list, index, rows }) in vertices[..k].iter().zip(&mut slots) {
                 let list = match list {
-                    List::Edges => &mut blocks.at_edges,
-                    List::Pairs => &mut blocks.at_pairs,
+                    List::Edges => &mut *at_edges,
+                    List::Pairs => &mut *at_pairs,
                 };
                 list[*index as usize] += match rows {
                     Rows::First => block(i, j),
