@@ -10,7 +10,7 @@ mod tests;
 
 pub use rest_angle::RestAngle;
 
-use super::plasticity::{Flow, Yield};
+use super::plasticity::Yield;
 use crate::motion::profile::ProfileError;
 use crate::options::OptionsError;
 use crate::{HessianSink, Potential};
@@ -164,13 +164,13 @@ impl Advice for CreaseError {
 /// and wrinkles* (2003), Eq. 3; of the Hessian the semidefinite part `k grad theta grad theta^T` is given,
 /// exact where the spring is at rest.
 ///
-/// Springs that [yield](Yield) remember plastic angles `p_e` besides (radians, in
+/// Springs that [yield](Yield) remember plastic angles `p_e` besides (radians, one for each layer, in
 /// [`Potential::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a step
 /// what they dissipate in it.
 #[derive(Debug)]
 pub struct CreaseSprings {
     hinges: Vec<Hinge>,
-    /// The plastic angle of each hinge, radians; empty if none yields.
+    /// The plastic angles of the layers of the hinges that yield, radians.
     plastic: Vec<f64>,
 }
 
@@ -191,8 +191,6 @@ struct Response {
     elastic: f64,
     /// Derivative of the moment `k elastic` by the angle, newton metres per radian.
     tangent: f64,
-    /// Growth of the plastic angle, radians.
-    step: f64,
     /// Energy without that of `elastic`, joules.
     plastic_energy: f64,
 }
@@ -209,8 +207,7 @@ impl CreaseSprings {
     }
 
     fn of(hinges: Vec<Hinge>) -> Self {
-        let yields = hinges.iter().any(|h| h.yields.is_some());
-        let plastic = vec![0.0; if yields { hinges.len() } else { 0 }];
+        let plastic = vec![0.0; hinges.iter().map(Hinge::layers).sum()];
         Self { hinges, plastic }
     }
 
@@ -228,6 +225,7 @@ impl CreaseSprings {
             hinge.yields = sheet_stiffness(sheet, yields.hardening, edge).map(|hardening| Yield {
                 moment: yields.moment * sheet.lengths()[edge.index()],
                 hardening,
+                ..yields
             });
         }
         Ok(Self::of(self.hinges))
@@ -277,16 +275,26 @@ impl CreaseSprings {
     /// Moments `k (rest - theta)` of the springs at time `t` and positions `x`, newton metres, in the order
     /// given: positive where a spring folds towards a valley.
     pub fn moments(&self, t: f64, x: &[f64]) -> Vec<f64> {
-        let moment = |(h, p): (&Hinge, f64)| {
+        let moment = |(h, p): (&Hinge, &[f64])| {
             -h.stiffness * h.respond(t, Fold::at(x, &h.vertices).angle(), p).elastic
         };
         self.with_plastic().map(moment).collect()
     }
 
-    /// The hinges with their plastic angles.
-    fn with_plastic(&self) -> impl Iterator<Item = (&Hinge, f64)> {
-        let plastic = self.plastic.iter().copied().chain(std::iter::repeat(0.0));
-        self.hinges.iter().zip(plastic)
+    /// The edges that yield, in the order given, with the plastic angles that stay, radians, positive for valleys.
+    pub fn plastic_angles(&self) -> Vec<(EdgeId, f64)> {
+        let yielding = self.with_plastic().filter(|(h, _)| h.yields.is_some());
+        yielding.map(|(h, p)| (h.edge(), h.plastic(p))).collect()
+    }
+
+    /// The hinges with the plastic angles of their layers.
+    fn with_plastic(&self) -> impl Iterator<Item = (&Hinge, &[f64])> {
+        let mut plastic = self.plastic.as_slice();
+        self.hinges.iter().map(move |h| {
+            let (own, others) = plastic.split_at(h.layers());
+            plastic = others;
+            (h, own)
+        })
     }
 }
 
@@ -336,6 +344,16 @@ impl Hinge {
         self.edges[0].0
     }
 
+    /// The number of its layers, none if it does not yield.
+    fn layers(&self) -> usize {
+        self.yields.map_or(0, |yields| yields.layers)
+    }
+
+    /// The plastic angle, the mean of those of its layers.
+    fn plastic(&self, layers: &[f64]) -> f64 {
+        self.yields.map_or(0.0, |y| y.plastic::<1>(layers)[0])
+    }
+
     /// `theta - rest - plastic`, the short way round.
     fn excess(&self, t: f64, theta: f64, plastic: f64) -> f64 {
         let d = theta - self.rest.at(t) - plastic;
@@ -345,31 +363,28 @@ impl Hinge {
         d - TAU * (d / TAU).round()
     }
 
-    /// What it does at the angle `theta`, with a plastic angle from before.
-    fn respond(&self, t: f64, theta: f64, plastic: f64) -> Response {
-        let excess = self.excess(t, theta, plastic);
+    /// What it does at the angle `theta`, with the plastic angles of its layers from before.
+    fn respond(&self, t: f64, theta: f64, layers: &[f64]) -> Response {
+        let excess = self.excess(t, theta, self.plastic(layers));
         let Some(yields) = self.yields else {
             return Response {
                 elastic: excess,
                 tangent: self.stiffness,
-                step: 0.0,
                 plastic_energy: 0.0,
             };
         };
-        let (e, p) = (Vector1::new(excess), Vector1::new(plastic));
-        let Flow { step, slope } = yields.flow(self.stiffness, e, p);
+        let flow = yields.flow(self.stiffness, Vector1::new(excess), layers);
         Response {
-            elastic: excess - step[0],
-            tangent: self.stiffness * (1.0 - slope[0]),
-            step: step[0],
-            plastic_energy: yields.energy(p, step),
+            elastic: excess - flow.step[0],
+            tangent: self.stiffness * (1.0 - flow.slope[0]),
+            plastic_energy: flow.energy,
         }
     }
 }
 
 impl Potential for CreaseSprings {
     fn energy(&self, t: f64, x: &[f64]) -> f64 {
-        let energy = |(h, p): (&Hinge, f64)| {
+        let energy = |(h, p): (&Hinge, &[f64])| {
             let response = h.respond(t, Fold::at(x, &h.vertices).angle(), p);
             0.5 * h.stiffness * response.elastic * response.elastic + response.plastic_energy
         };
@@ -427,11 +442,14 @@ impl Potential for CreaseSprings {
 
     fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
         let mut dissipated = 0.0;
-        for (h, p) in self.hinges.iter().zip(&mut self.plastic) {
+        let mut plastic = self.plastic.as_mut_slice();
+        for h in &self.hinges {
+            let (own, others) = plastic.split_at_mut(h.layers());
+            plastic = others;
             let Some(yields) = h.yields else { continue };
-            let step = h.respond(t, Fold::at(x, &h.vertices).angle(), *p).step;
-            *p += step;
-            dissipated += yields.moment * step.abs();
+            let theta = Fold::at(x, &h.vertices).angle();
+            let excess = h.excess(t, theta, h.plastic(own));
+            dissipated += yields.settle(h.stiffness, Vector1::new(excess), own);
         }
         dissipated
     }

@@ -100,7 +100,8 @@ impl Advice for PlateBendingError {
 /// V(x) = sum_T A_T min_p [ D/2 |H_T x - n p|^2 + H/2 |p|^2 + M_y |p - p_T| ],
 /// ```
 ///
-/// with what hardening stores and what the step dissipates. Of the Hessian, which is not constant any more where faces
+/// with what hardening stores and what the step dissipates; of a section in layers it is the sum over their parts of
+/// `D`, `H` and `M_y`, each with a curvature `p_T` of its own. Of the Hessian, which is not constant any more where faces
 /// have yielded, a semidefinite part is given.
 ///
 /// (L. S. D. Morley, "The triangular equilibrium element in the solution of plate bending problems",

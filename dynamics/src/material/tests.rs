@@ -165,13 +165,17 @@ fn numbers_without_sense_are_refused_by_name() {
 #[test]
 fn papers_and_metals_say_when_they_yield() {
     let steel = Material::steel_sheet();
-    let Yield { moment, hardening } = steel.yields.unwrap();
+    let Yield {
+        moment, hardening, ..
+    } = steel.yields.unwrap();
     assert!((moment - 14.6875).abs() < 1e-9);
     let slope = steel.rigidity * hardening / (steel.rigidity + hardening);
     assert!((slope / steel.rigidity - 0.01).abs() < 1e-12);
     for (name, thickness) in [("office paper", 1e-4), ("card", 3e-4), ("newsprint", 7e-5)] {
         let paper = Material::named(name).unwrap();
-        let Yield { moment, hardening } = paper.yields.unwrap();
+        let Yield {
+            moment, hardening, ..
+        } = paper.yields.unwrap();
         let strain = 0.5 * thickness * moment / paper.rigidity;
         assert!((strain - 7.5e-3).abs() < 1e-12, "{name}: {strain}");
         let slope = paper.rigidity * hardening / (paper.rigidity + hardening);

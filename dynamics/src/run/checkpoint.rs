@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Format version; it grows with every change of the fields.
-const VERSION: u32 = 12;
+const VERSION: u32 = 13;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";

@@ -9,15 +9,16 @@ use serde::{Deserialize, Serialize};
 
 /// When the sheet yields in bending, so that bends stay: the moment `M` of a metre of width is `D (k - p)` with the
 /// rigidity `D`, the curvature `k` and the plastic curvature `p`, which grows where `|M - hardening p|` would be more
-/// than `moment`. For `bdf2` and `implicit_euler`.
+/// than `moment`. A sheet in `layers` begins to yield at its faces, at two thirds of that. For `bdf2` and
+/// `implicit_euler`.
 ///
 /// ```toml
 /// [sheet]
 /// mesh = { rectangle = { width = 0.1, height = 0.02, columns = 20, rows = 4 } }
 /// material = "aluminium sheet"
-/// yield = {}
+/// yield = { layers = 4 }
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SheetYield {
     /// Moment at which a metre of the sheet yields, N m per m: `s h^2 / 4` where the material yields at the stress `s`
@@ -26,6 +27,30 @@ pub struct SheetYield {
     /// Growth of this moment by plastic curvature, N m. If left out, that of the material where `moment` is left out
     /// too, and otherwise 0.
     pub hardening: Option<f64>,
+    /// Number of layers of equal thickness of each half of the sheet, each of which yields by itself. With 1, the sheet
+    /// yields in the whole of its thickness at once; with 4, the moment of a sheet that yields from its faces inwards has
+    /// an error of 1.5 % of `moment`.
+    pub layers: usize,
+}
+
+impl Default for SheetYield {
+    fn default() -> Self {
+        Self {
+            moment: None,
+            hardening: None,
+            layers: one_layer(),
+        }
+    }
+}
+
+fn one_layer() -> usize {
+    1
+}
+
+/// Checks a number of layers.
+fn check_layers(key: &Key, layers: usize, checks: &mut Checks) {
+    let most = Yield::MAX_LAYERS as f64;
+    checks.within(key.name("layers"), layers as f64, [1.0, most]);
 }
 
 /// When a crease yields, so that it stays folded: its moment is `stiffness (angle - p)` with the plastic angle `p`,
@@ -46,6 +71,10 @@ pub struct CreaseYield {
     /// Growth of this moment by plastic angle, N (newton metres per radian and metre).
     #[serde(default)]
     pub hardening: f64,
+    /// Number of layers of equal thickness of each half of its section, each of which yields by itself: with more than 1
+    /// it begins to yield at two thirds of `moment`, more and more of it up to that.
+    #[serde(default = "one_layer")]
+    pub layers: usize,
 }
 
 impl SheetYield {
@@ -57,6 +86,7 @@ impl SheetYield {
         Some(Yield {
             moment,
             hardening: hardening.unwrap_or(0.0),
+            layers: self.layers,
         })
     }
 
@@ -67,6 +97,7 @@ impl SheetYield {
         if let Some(hardening) = self.hardening {
             checks.not_negative(key.name("hardening"), hardening, Unit::NewtonMetre);
         }
+        check_layers(key, self.layers, checks);
     }
 }
 
@@ -76,11 +107,13 @@ impl CreaseYield {
         Yield {
             moment: self.moment * length,
             hardening: self.hardening * length,
+            layers: self.layers,
         }
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("moment"), self.moment, Unit::Newton);
         checks.not_negative(key.name("hardening"), self.hardening, Unit::Newton);
+        check_layers(key, self.layers, checks);
     }
 }

@@ -17,7 +17,7 @@ const ALL_KEYS: [&str; 5] = [
     thickness = 1e-4
     isometry = { elastic = { stiffness = 1e6, poisson = 0.3, limit = 0.02 } }
     bending = { plate = { rigidity = 1e-3 } }
-    yield = { moment = 0.1, hardening = 1e-4 }
+    yield = { moment = 0.1, hardening = 1e-4, layers = 4 }
     damping = 1.0
     refine = 1
     placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }
@@ -27,7 +27,7 @@ const ALL_KEYS: [&str; 5] = [
     at = { ends = [[0, 1]] }
     stiffness = 0.1
     angle = { sine = { mean = 1, amplitude = 2, frequency = 3, phase = 4 } }
-    yield = { moment = 0.01, hardening = 0.001 }
+    yield = { moment = 0.01, hardening = 0.001, layers = 2 }
     [[crease]]
     at = { line = { from = [0, 0, 0], to = [1, 1, 0] } }
     stiffness = 0.1

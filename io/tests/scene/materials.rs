@@ -178,6 +178,8 @@ fn a_sheet_yields_where_it_says_so() {
         text.contains("neither a moment at which it yields"),
         "{text}"
     );
+    let text = refused(&with("material = \"steel sheet\"\nyield = { layers = 0 }"));
+    assert!(text.contains("sheet.yield.layers"), "{text}");
     let text = refused(&with("yield = { moment = 2 }"));
     assert!(text.contains("nothing resists bending"), "{text}");
 }
@@ -196,6 +198,8 @@ fn plates_hinges_and_creases_of_a_scene_remember() {
     assert_eq!(remembered(&format!("{paper}\nyield = {{}}"), ""), 3 * faces);
     let hinges = "bending = { hinges = { rigidity = 1e-3 } }\nyield = { moment = 0.1 }";
     assert_eq!(remembered(hinges, ""), edges);
+    let layers = format!("{paper}\nyield = {{ layers = 4 }}");
+    assert_eq!(remembered(&layers, ""), 4 * 3 * faces);
     let crease = "[[crease]]\nat = { line = { from = [0.1, 0, 0], to = [0.1, 0.1, 0] } }\nstiffness = 0.1\n\
                   yield = { moment = 0.01 }";
     assert_eq!(remembered("", crease), 1);

@@ -11,6 +11,7 @@ const STIFFNESS: f64 = 1e-2;
 const YIELD: Yield = Yield {
     moment: 2e-3,
     hardening: 1e-3,
+    layers: 1,
 };
 
 /// Two triangles of a square and the edge between them.
@@ -104,6 +105,7 @@ fn derivatives_match_differences_across_the_yield() {
 const YIELD_OF_SHEET: Yield = Yield {
     moment: 0.8,
     hardening: 0.3,
+    layers: 1,
 };
 
 /// Out of the plane of a flat sheet the angles are linear, and the tangent is that of the section.

@@ -19,8 +19,8 @@ pub(super) struct PlasticCurvature {
     /// Of each pair of vertices of each stencil, the second one being before the first, where its block of the
     /// Hessian is.
     slots: Vec<Slot>,
-    /// Plastic curvature of each face, 1/m: the components `(11, sqrt(2) 12, 22)`, the first axis along the first
-    /// edge of the face.
+    /// Plastic curvature of each layer of each face, 1/m: the components `(11, sqrt(2) 12, 22)`, the first axis along
+    /// the first edge of the face.
     curvatures: Vec<f64>,
     /// Room for the blocks, so that no step allocates.
     blocks: Mutex<Blocks>,
@@ -104,8 +104,8 @@ pub(super) struct BentFace {
     pub(super) elastic: Matrix3<f64>,
     /// `sqrt(D A) p`.
     plastic: Vector3<f64>,
-    /// Plastic curvature before the step, 1/m.
-    before: Vector3<f64>,
+    /// The curvature less the plastic one before the step, 1/m.
+    trial: Vector3<f64>,
     flow: Flow<3>,
 }
 
@@ -166,7 +166,7 @@ impl PlasticCurvature {
         Self {
             yields,
             rigidity,
-            curvatures: vec![0.0; 3 * faces.len()],
+            curvatures: vec![0.0; 3 * yields.layers * faces.len()],
             faces,
             slots,
             blocks: Mutex::new(Blocks {
@@ -186,10 +186,19 @@ impl PlasticCurvature {
         self.curvatures.copy_from_slice(curvatures);
     }
 
+    /// The plastic curvatures of the layers of a face.
+    fn layers(&self, face: usize) -> &[f64] {
+        let count = 3 * self.yields.layers;
+        &self.curvatures[count * face..count * (face + 1)]
+    }
+
     /// The plastic curvatures as matrices, 1/m.
     pub(super) fn matrices(&self) -> impl Iterator<Item = Matrix2<f64>> {
-        let matrix = |p: &[f64; 3]| Matrix2::new(p[0], p[1] / SQRT_2, p[1] / SQRT_2, p[2]);
-        self.curvatures.as_chunks::<3>().0.iter().map(matrix)
+        let matrix = |face| {
+            let p: Vector3<f64> = self.yields.plastic(self.layers(face));
+            Matrix2::new(p[0], p[1] / SQRT_2, p[1] / SQRT_2, p[2])
+        };
+        (0..self.faces.len()).map(matrix)
     }
 
     /// A face at positions.
@@ -202,9 +211,10 @@ impl PlasticCurvature {
         let normal = normal / double_area;
         let hats = [c - b, a - c, b - a].map(|opposite| normal.cross(&opposite) / double_area);
         let derivatives = stencil.apply(x);
-        let before = Vector3::from(self.curvatures.as_chunks::<3>().0[face]);
-        let curvature = derivatives.tr_mul(&normal) / scale;
-        let flow = self.yields.flow(self.rigidity, curvature - before, before);
+        let layers = self.layers(face);
+        let before: Vector3<f64> = self.yields.plastic(layers);
+        let trial = derivatives.tr_mul(&normal) / scale - before;
+        let flow = self.yields.flow(self.rigidity, trial, layers);
         let plastic = scale * (before + flow.step);
         BentFace {
             corners,
@@ -212,26 +222,25 @@ impl PlasticCurvature {
             hats,
             elastic: derivatives - normal * plastic.transpose(),
             plastic,
-            before,
+            trial,
             flow,
         }
     }
 
-    /// The energy of a face, joules: of what is bent elastically, of hardening, and what is dissipated in the step.
+    /// The energy of a face, joules: of what is bent elastically, of hardening, of the stresses between layers, and what
+    /// is dissipated in the step.
     pub(super) fn energy(&self, face: usize, bent: &BentFace) -> f64 {
-        let plastic = self.yields.energy(bent.before, bent.flow.step);
-        0.5 * bent.elastic.norm_squared() + self.faces[face].area * plastic
+        0.5 * bent.elastic.norm_squared() + self.faces[face].area * bent.flow.energy
     }
 
     /// Makes the curvatures those at the end of a step; the energy that has been dissipated, joules.
     pub(super) fn settle(&mut self, stencils: &Stencils, x: &[f64]) -> f64 {
         let mut dissipated = 0.0;
         for (face, stencil) in stencils.iter().enumerate() {
-            let step = self.bent(face, &stencil, x).flow.step;
-            for (p, growth) in self.curvatures[3 * face..].iter_mut().zip(&step) {
-                *p += growth;
-            }
-            dissipated += self.faces[face].area * self.yields.moment * step.norm();
+            let trial = self.bent(face, &stencil, x).trial;
+            let count = 3 * self.yields.layers;
+            let layers = &mut self.curvatures[count * face..count * (face + 1)];
+            dissipated += self.faces[face].area * self.yields.settle(self.rigidity, trial, layers);
         }
         dissipated
     }

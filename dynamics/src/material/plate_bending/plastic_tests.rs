@@ -12,6 +12,7 @@ const RIGIDITY: f64 = 2.0;
 const YIELD: Yield = Yield {
     moment: 0.5,
     hardening: 0.3,
+    layers: 1,
 };
 
 /// An irregular mesh.
@@ -21,8 +22,13 @@ fn sheet() -> Sheet {
 }
 
 fn plate(sheet: &Sheet) -> PlateBending {
+    plate_in_layers(sheet, 1)
+}
+
+fn plate_in_layers(sheet: &Sheet, layers: usize) -> PlateBending {
     let plate = PlateBending::new(sheet, RIGIDITY).expect("rigidity");
-    plate.with_yield(sheet, YIELD).expect("valid")
+    let plate = plate.with_yield(sheet, YIELD.in_layers(layers));
+    plate.expect("valid")
 }
 
 /// Rolled about the y-axis to a curvature, without a strain of the surface.
@@ -74,6 +80,12 @@ fn product(sheet: &Sheet, plate: PlateBending, x: &[f64], d: &[f64]) -> Vec<f64>
 
 #[test]
 fn the_gradient_matches_differences_where_some_faces_yield() {
+    for layers in [1, 3] {
+        check_gradient(layers);
+    }
+}
+
+fn check_gradient(layers: usize) {
     let sheet = sheet();
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let x: Vec<f64> = rolled(&sheet, 0.3);
@@ -81,7 +93,7 @@ fn the_gradient_matches_differences_where_some_faces_yield() {
         .iter()
         .map(|x| x + rng.random_range(-0.001..0.001))
         .collect();
-    let mut plate = plate(&sheet);
+    let mut plate = plate_in_layers(&sheet, layers);
     let memory: Vec<f64> = plate
         .memory()
         .iter()
@@ -128,8 +140,8 @@ fn the_hessian_matches_differences_of_the_gradient() {
         .iter()
         .map(|_| rng.random_range(-1.0..1.0))
         .collect();
-    for (curvature, bound) in [(0.4, 0.04), (0.8, 0.08)] {
-        let mut bent = plate(&sheet);
+    for (layers, curvature, bound) in [(1, 0.4, 0.04), (1, 0.8, 0.08), (4, 0.4, 0.04)] {
+        let mut bent = plate_in_layers(&sheet, layers);
         bent.settle(0.0, &rolled(&sheet, curvature));
         let x = rolled(&sheet, 1.1 * curvature);
         let h = 1e-7;
@@ -146,7 +158,10 @@ fn the_hessian_matches_differences_of_the_gradient() {
         let found = product(&sheet, bent, &x, &d);
         let difference: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
         let error = norm(&difference) / norm(&expected);
-        assert!(error < bound, "curvature {curvature}: {error}");
+        assert!(
+            error < bound,
+            "{layers} layers, curvature {curvature}: {error}"
+        );
     }
 }
 
