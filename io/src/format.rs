@@ -5,6 +5,7 @@ mod export;
 mod finite;
 mod history;
 mod json;
+mod loads;
 mod matrix_market;
 mod mesh_file;
 mod obj_write;
@@ -18,8 +19,9 @@ pub use export::{
     BodyPose, ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series,
     SeriesBody, SeriesField, SeriesFormat, SeriesOptions, write_frame, write_mesh, write_series,
 };
-pub use history::{HistoryError, HistoryRow, HistoryWriter, read_history};
+pub use history::{HistoryError, HistoryRow, HistoryWriter, Row, RowWriter, read_history};
 pub use json::{JsonError, read_json, write_json};
+pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};
 pub use matrix_market::{MatrixMarketError, MatrixSymmetry, write_matrix_market};
 pub use mesh_file::{
     EdgeAssignment, FileCrease, FoldFrame, FoldProblem, GltfProblem, MeshFile, MeshFileError,

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `scene.toml` | the scene as it is run, edits included; mesh files are copied to `meshes/` |
 //! | `history.csv` | one row for each step ([`HistoryRow`](crate::HistoryRow)) |
+//! | `loads.csv` | the loads of each support and obstacle at each step ([`LoadRow`](crate::LoadRow)), if there are any |
 //! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), when the run ends, fails or is stopped |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
 //! | `index.html` | the 3D page of the run ([`view`](crate::view)), unless the scene says `page = false` |
@@ -61,7 +62,7 @@ pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, Var
 pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
-use crate::format::{HistoryWriter, frame_path, read_json, write_json, write_obj};
+use crate::format::{HistoryWriter, LoadWriter, frame_path, read_json, write_json, write_obj};
 use crate::scene::{SceneFile, Setup, SupportForces};
 use crate::view::PageOptions;
 use checkpoint::Progress;
@@ -248,6 +249,11 @@ struct Facts {
     frame: FrameShape,
 }
 
+/// Whether there is a support or an obstacle in a scene.
+fn bears_loads(file: &SceneFile) -> bool {
+    !file.scene().support.is_empty() || !file.scene().obstacle.is_empty()
+}
+
 fn start<'a>(
     file: &'a SceneFile,
     folder: &'a RunFolder,
@@ -268,6 +274,9 @@ fn start<'a>(
         simulation,
         origins,
         history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
+        loads: bears_loads(file)
+            .then(|| LoadWriter::create(&folder.path(RunFolder::LOADS)))
+            .transpose()?,
         frames: FrameFile::create(&folder.path(RunFolder::FRAMES))?,
         progress: Progress {
             scene: hash.to_string(),
@@ -321,6 +330,10 @@ fn resume<'a>(
         simulation,
         origins,
         history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,
+        loads: progress
+            .loads
+            .map(|length| LoadWriter::resume(&folder.path(RunFolder::LOADS), length))
+            .transpose()?,
         frames,
         progress,
         clock,

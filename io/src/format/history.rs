@@ -4,8 +4,10 @@ use isosheet_mesh::Advice;
 use isosheet_mesh::wording::brief;
 use std::fs::File;
 use std::io::{self, Seek, Write};
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -98,10 +100,12 @@ pub enum HistoryError {
         length: u64,
     },
     /// The first line is not the expected one.
-    #[error("{} does not start with the columns {}, but with {found:?}", path.display(), COLUMNS.join(","))]
+    #[error("{} does not start with the columns {columns}, but with {found:?}", path.display())]
     Header {
         /// The file.
         path: PathBuf,
+        /// The columns that were expected.
+        columns: String,
         /// The first line.
         found: String,
     },
@@ -126,7 +130,7 @@ impl Advice for HistoryError {
             }
             Self::Read { .. } => Some("check the path"),
             Self::Shorter { .. } => Some("start the run anew in another folder"),
-            Self::Header { .. } => Some("name the file history.csv of a run"),
+            Self::Header { .. } => Some("name the file of a run, such as its history.csv"),
             Self::Row { .. } => Some("correct or remove the row"),
         }
     }
@@ -144,14 +148,52 @@ impl Advice for HistoryError {
 /// assert_eq!(read_history(&path)?.len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+pub type HistoryWriter = RowWriter<HistoryRow>;
+
+/// A row of a table that grows while a run goes on.
+pub trait Row: Serialize {
+    /// The columns of the file.
+    const COLUMNS: &'static [&'static str];
+
+    /// Time of the row, seconds.
+    fn time(&self) -> f64;
+
+    /// The values that have to be finite, with their columns.
+    fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)>;
+}
+
+impl Row for HistoryRow {
+    const COLUMNS: &'static [&'static str] = &COLUMNS;
+
+    fn time(&self) -> f64 {
+        self.t
+    }
+
+    fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let values = [
+            ("t", self.t),
+            ("h", self.h),
+            ("kinetic", self.kinetic),
+            ("potential", self.potential),
+            ("H", self.total),
+            ("dH", self.drift),
+            ("strain", self.strain),
+            ("gap", self.gap.unwrap_or(0.0)),
+        ];
+        values.into_iter()
+    }
+}
+
+/// Writes a table of comma-separated values row by row, as [`HistoryWriter`] does.
 #[derive(Debug)]
-pub struct HistoryWriter {
+pub struct RowWriter<R> {
     path: PathBuf,
     file: File,
     length: u64,
+    rows: PhantomData<fn(&R)>,
 }
 
-impl HistoryWriter {
+impl<R: Row> RowWriter<R> {
     /// Starts a new history, replacing an older file; missing parent folders are created.
     ///
     /// # Errors
@@ -164,12 +206,13 @@ impl HistoryWriter {
             path: path.to_owned(),
             file,
             length: 0,
+            rows: PhantomData,
         };
-        history.write_record(|w| w.write_record(COLUMNS))?;
+        history.write_record(|w| w.write_record(R::COLUMNS))?;
         Ok(history)
     }
 
-    /// Continues a history after its first `length` bytes, an earlier value of [`HistoryWriter::length`];
+    /// Continues a history after its first `length` bytes, an earlier value of [`RowWriter::length`];
     /// what follows them is cut off.
     ///
     /// # Errors
@@ -195,6 +238,7 @@ impl HistoryWriter {
             path: path.to_owned(),
             file,
             length,
+            rows: PhantomData,
         })
     }
 
@@ -220,21 +264,11 @@ impl HistoryWriter {
     /// # Errors
     /// [`HistoryError::NotFinite`] naming the column, in which case nothing is written;
     /// [`HistoryError::File`].
-    pub fn append(&mut self, row: &HistoryRow) -> Result<(), HistoryError> {
-        let values = [
-            ("t", row.t),
-            ("h", row.h),
-            ("kinetic", row.kinetic),
-            ("potential", row.potential),
-            ("H", row.total),
-            ("dH", row.drift),
-            ("strain", row.strain),
-            ("gap", row.gap.unwrap_or(0.0)),
-        ];
-        if let Some(&(column, value)) = values.iter().find(|(_, v)| !v.is_finite()) {
+    pub fn append(&mut self, row: &R) -> Result<(), HistoryError> {
+        if let Some((column, value)) = row.numbers().find(|(_, v)| !v.is_finite()) {
             return Err(HistoryError::NotFinite {
                 column,
-                t: row.t,
+                t: row.time(),
                 value,
             });
         }
@@ -275,6 +309,11 @@ impl HistoryWriter {
 /// # Errors
 /// [`HistoryError`] for a file that is missing, has other columns, or an unreadable row before the last.
 pub fn read_history(path: &Path) -> Result<Vec<HistoryRow>, HistoryError> {
+    read_rows(path)
+}
+
+/// Reads what a [`RowWriter`] has written.
+pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>, HistoryError> {
     let text = std::fs::read(path).map_err(|source| HistoryError::Read {
         path: path.to_owned(),
         source,
@@ -286,14 +325,18 @@ pub fn read_history(path: &Path) -> Result<Vec<HistoryRow>, HistoryError> {
         .headers()
         .map(|h| h.iter().map(str::to_owned).collect::<Vec<_>>())
         .unwrap_or_default();
-    if header != COLUMNS {
+    if header != R::COLUMNS {
         return Err(HistoryError::Header {
             path: path.to_owned(),
+            columns: R::COLUMNS.join(","),
             found: header.join(","),
         });
     }
+    // Rows are read by the order of their columns, so that a row may hold vectors.
+    reader.set_headers(csv::StringRecord::new());
     let mut rows = Vec::new();
-    for (k, row) in reader.deserialize().enumerate() {
+    for (k, record) in reader.records().enumerate() {
+        let row = record.and_then(|record| record.deserialize(None));
         rows.push(row.map_err(|e| HistoryError::Row {
             path: path.to_owned(),
             row: k + 1,

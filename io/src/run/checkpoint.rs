@@ -21,6 +21,9 @@ pub(crate) struct Progress {
     pub(crate) steps: u64,
     /// Length of the history, bytes.
     pub(crate) history: u64,
+    /// Length of the table of loads, bytes; none if nothing can bear a load.
+    #[serde(default)]
+    pub(crate) loads: Option<u64>,
     /// Number of frames.
     pub(crate) frames: u64,
     /// Wall time of all processes up to here, seconds.

@@ -119,6 +119,7 @@ impl RunFolder {
     pub(crate) const CHECKPOINT: &'static str = "checkpoint.bin";
     pub(crate) const FRAMES: &'static str = "frames.bin";
     pub(crate) const HISTORY: &'static str = "history.csv";
+    pub(crate) const LOADS: &'static str = "loads.csv";
     pub(crate) const TRAJECTORY: &'static str = "trajectory.npz";
     pub(crate) const PAGE: &'static str = "index.html";
     pub(crate) const OBJ: &'static str = "obj";
@@ -210,6 +211,7 @@ impl RunFolder {
             Self::TRAJECTORY,
             Self::FRAMES,
             Self::HISTORY,
+            Self::LOADS,
             Self::SCENE,
         ];
         let folders = [Self::OBJ, MESHES];

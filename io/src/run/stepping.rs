@@ -6,7 +6,7 @@ use super::folder::RunFolder;
 use super::frames::FrameFile;
 use super::summary::{EndReason, Ending};
 use super::{RunError, StepPart, Tick, Watch};
-use crate::format::{FrameData, HistoryRow, HistoryWriter};
+use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
 use isosheet_dynamics::{Checkpoint, Simulation, StepError, StepProgress, StepReport};
 use isosheet_mesh::VertexId;
@@ -23,6 +23,8 @@ pub(crate) struct Stepping<'a> {
     pub(crate) folding: Option<FoldTargets>,
     pub(crate) glued: Vec<[VertexId; 2]>,
     pub(crate) history: HistoryWriter,
+    /// The loads of supports and obstacles, if there are any.
+    pub(crate) loads: Option<LoadWriter>,
     pub(crate) frames: FrameFile,
     pub(crate) progress: Progress,
     /// Since when the wall time in the progress counts.
@@ -109,6 +111,34 @@ impl Stepping<'_> {
         Ok(self.frames.append(state.t, &state.x, &data)?)
     }
 
+    /// Records the loads at the end of a step.
+    fn record_loads(&mut self) -> Result<(), RunError> {
+        let Some(loads) = &mut self.loads else {
+            return Ok(());
+        };
+        let t = self.simulation.state().t;
+        let supports = self.supports.of(&self.simulation).into_iter().enumerate();
+        let on_supports = supports.map(|(number, force)| LoadRow {
+            t,
+            on: LoadKind::Support,
+            number,
+            force,
+            torque: [None; 3],
+        });
+        let bodies = self.simulation.body_loads().into_iter().enumerate();
+        let on_obstacles = bodies.map(|(number, load)| LoadRow {
+            t,
+            on: LoadKind::Obstacle,
+            number,
+            force: load.force.into(),
+            torque: [0, 1, 2].map(|k| Some(load.torque[k])),
+        });
+        for row in on_supports.chain(on_obstacles) {
+            loads.append(&row)?;
+        }
+        Ok(())
+    }
+
     /// Takes and records a step. Says what has been reached, or nothing if the watch gave the step up: then a
     /// checkpoint of the state before it is written.
     pub(crate) fn step(&mut self, watch: &mut dyn Watch) -> Result<Option<Tick>, RunError> {
@@ -150,6 +180,7 @@ impl Stepping<'_> {
         self.count(&report);
         self.observe_elastic();
         self.history.append(&self.row(&report))?;
+        self.record_loads()?;
         let reason = self.end_reason(&report);
         let frame = scene.output.steps_per_frame(scene.method.step);
         if number.is_multiple_of(frame) || reason.is_some() {
@@ -265,6 +296,10 @@ impl Stepping<'_> {
         self.history.sync()?;
         self.frames.sync()?;
         self.progress.history = self.history.length();
+        if let Some(loads) = &self.loads {
+            loads.sync()?;
+            self.progress.loads = Some(loads.length());
+        }
         self.progress.frames = self.frames.count();
         self.progress.wall += self.clock.elapsed().as_secs_f64();
         self.clock = Instant::now();

@@ -4,6 +4,7 @@ use crate::headless::self_test;
 use crate::{code, killed, run, stderr};
 use isosheet_io::run::Recording;
 use isosheet_io::view::{Field, Scale};
+use isosheet_io::{LoadKind, read_loads};
 use std::fs;
 use std::path::Path;
 
@@ -203,4 +204,39 @@ fn a_run_that_was_stopped_has_contact_up_to_there() {
         .copied()
         .fold(1.0, f64::min);
     assert!(least > 0.0 && least < 1e-3, "{least}");
+}
+
+/// Loads are in a table for each step: at rest the box carries the weight, and its torque about the middle of the box is
+/// zero by symmetry; a sheet without supports and obstacles has no table.
+#[test]
+fn loads_are_in_a_table() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let recording = simulated(dir, "run", &[]);
+    let loads = read_loads(&dir.join("run/loads.csv")).unwrap();
+    assert_eq!(loads.len(), recording.history.len() - 1);
+    for (load, row) in loads.iter().zip(&recording.history[1..]) {
+        assert_eq!(
+            (load.t, load.on, load.number),
+            (row.t, LoadKind::Obstacle, 0)
+        );
+    }
+    let last = loads.last().unwrap();
+    assert!((last.force[2] + WEIGHT).abs() < 1e-3 * WEIGHT, "{last:?}");
+    for torque in last.torque {
+        // A hundredth of the weight at the edge of the box.
+        assert!(torque.unwrap().abs() < 0.01 * WEIGHT * 0.075, "{last:?}");
+    }
+    // Held at two corners and hanging clear of the box.
+    let held =
+        "support=[{ at = { nearest = [[0, 0, 0]] } }, { at = { nearest = [[0.15, 0.15, 0]] } }]";
+    simulated(dir, "held", &[held, "obstacle=[]", "stop.time=6"]);
+    let loads = read_loads(&dir.join("held/loads.csv")).unwrap();
+    let [first, second] = [0, 1].map(|k| loads[loads.len() - 2 + k]);
+    assert_eq!((first.on, first.number), (LoadKind::Support, 0));
+    assert_eq!((second.number, second.torque), (1, [None; 3]));
+    let up = first.force[2] + second.force[2];
+    assert!((up - WEIGHT).abs() < 0.02 * WEIGHT, "{first:?}, {second:?}");
+    simulated(dir, "free", &["obstacle=[]", "stop.time=0.1"]);
+    assert!(!dir.join("free/loads.csv").exists());
 }

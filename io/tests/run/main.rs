@@ -102,6 +102,13 @@ fn summary(folder: &Path) -> Summary {
 
 /// Everything but the wall time is the same, to the bit.
 fn assert_same(one: &Path, other: &Path) {
+    // Only scenes with supports or obstacles have loads.
+    let loads = [one, other].map(|folder| fs::read(folder.join("loads.csv")).ok());
+    assert!(
+        loads[0] == loads[1],
+        "loads.csv differs in {}",
+        other.display()
+    );
     for file in ["history.csv", "trajectory.npz", "frames.bin", "scene.toml"] {
         let [a, b] = [one, other].map(|folder| fs::read(folder.join(file)).unwrap());
         assert!(a == b, "{file} differs in {}", other.display());
