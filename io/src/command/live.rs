@@ -35,18 +35,19 @@ Examples:
   isosheet live cloth.toml                     play a scene in the browser, and pull at its sheet
   isosheet live flag.toml --set stop.time=60   play it for a minute before it pauses";
 
+const NOTES: &str = "\
+The page is that of a run, with the 3D view and the plots. It shows the run as it goes: play, pause, single steps;
+a vertex that the mouse holds is pulled by a spring; sliders drive the wind and all motions, angles and loads that
+the scene names. Play is never faster than real time, and the page says how fast it is.
+
+The page is served to this machine alone (127.0.0.1), to whoever has the address with its random token. The first
+page steers, all others watch. The run waits while no page is open, and pauses at the time `stop.time` of the
+scene; play goes on beyond it. Other conditions to stop and `output` of the scene are not used, and no folder is
+written: `isosheet simulate` does that. Ctrl-C, or `End` in the page, ends the run.";
+
 /// Play a scene in the browser while it is computed
-///
-/// The page is that of a run, with the 3D view and the plots. It shows the run as it goes: play, pause, single steps;
-/// a vertex that the mouse holds is pulled by a spring; sliders drive the wind and all motions, angles and loads that
-/// the scene names. Play is never faster than real time, and the page says how fast it is.
-///
-/// The page is served to this machine alone (127.0.0.1), to whoever has the address with its random token. The first
-/// page steers, all others watch. The run waits while no page is open, and pauses at the time `stop.time` of the
-/// scene; play goes on beyond it. Other conditions to stop and `output` of the scene are not used, and no folder is
-/// written: `isosheet simulate` does that. Ctrl-C, or `End` in the page, ends the run.
 #[derive(Debug, Args)]
-#[command(before_help = EXAMPLES)]
+#[command(before_help = EXAMPLES, after_help = NOTES)]
 pub(crate) struct Live {
     /// The scene file
     scene: PathBuf,
