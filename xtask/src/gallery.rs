@@ -50,7 +50,7 @@ impl Shown {
 
 /// The scenes in the order of the picture.
 const SCENES: &[Shown] = &[
-    Shown::new(["hanging", "new --kind hanging"], [-62.0, 17.0], 0.5, &[]),
+    Shown::new(["hanging", "new --kind hanging"], [-62.0, 17.0], 0.24, &[]),
     Shown::new(["drape", "new --kind drape"], [-62.0, 24.0], 1.0, &[0]),
     Shown::new(
         ["stamp", "new --kind stamp"],
@@ -71,7 +71,7 @@ const SCENES: &[Shown] = &[
     Shown::new(["fig16", "fig16: a paper jam"], [-72.0, 12.0], 1.0, &[0, 2]),
     Shown::new(["fig17", "fig17: Miura's folds"], [-58.0, 38.0], 0.5, &[]),
     Shown::new(["clamp", "new --kind clamp"], [-62.0, 17.0], 1.0, &[]),
-    Shown::new(["flag", "new --kind flag"], [-50.0, 17.0], 0.8, &[]),
+    Shown::new(["flag", "new --kind flag"], [-50.0, 17.0], 0.42, &[]),
     Shown::new(["leaf", "new --kind leaf"], [-62.0, 24.0], 0.4, &[]),
     Shown::new(["stack", "new --kind stack"], [-60.0, 20.0], 0.9, &[1]),
     Shown::new(["moebius", "new --kind moebius"], [-62.0, 30.0], 1.0, &[]),
