@@ -274,8 +274,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 13,
-            supported: 12
+            found: 12,
+            supported: 13
         }
     ));
     // Every other byte is under the checksum, the checksum included.
@@ -294,7 +294,7 @@ fn other_sheets_versions_and_damage_are_refused() {
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
             found: 9,
-            supported: 12
+            supported: 13
         })
     );
     assert!(matches!(
