@@ -2,6 +2,7 @@
 
 use super::LiveScene;
 use crate::scene::SceneError;
+use crate::scene::selection::bounds;
 use isosheet_dynamics::{Hand, HandError};
 use isosheet_mesh::{Advice, VertexId};
 use thiserror::Error;
@@ -97,16 +98,9 @@ impl LiveScene {
 
     /// The stiffness of the spring of a hand, N/m.
     fn firmness(&self) -> f64 {
-        let points = self.facts.sheet.positions().as_chunks::<3>().0;
-        let along = |axis: usize| {
-            let values = points.iter().map(|p| p[axis]);
-            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| {
-                (low.min(c), high.max(c))
-            });
-            high - low
-        };
-        let size = [0, 1, 2].map(along).into_iter().map(|side| side * side);
-        let size = size.sum::<f64>().sqrt();
+        let [low, high] = bounds(self.facts.sheet.positions().as_chunks::<3>().0);
+        let sides = (0..3).map(|k| high[k] - low[k]);
+        let size = sides.map(|side| side * side).sum::<f64>().sqrt();
         self.simulation.model().mass().total() * GRAVITY / (STRETCH * size)
     }
 }
