@@ -178,7 +178,7 @@ impl Viewer {
             if found == name && holds(&data) {
                 return data;
             }
-            assert!(begun.elapsed() < PATIENCE, "no such {name}");
+            assert!(begun.elapsed() < PATIENCE, "no such {name}: the last was {data}");
         }
     }
 
@@ -201,7 +201,7 @@ pub(crate) fn vertex(frame: &Value, number: usize) -> [f64; 3] {
     positions(frame).as_chunks::<3>().0[number]
 }
 
-pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
@@ -372,10 +372,11 @@ fn a_dragged_corner_follows() {
     order(json!({ "grab": { "vertex": corner } }));
     order(json!("play"));
     let mut to = from;
+    // Towards the corner that is held, so that the sheet reaches it in whatever time this takes.
     for part in 1..=10 {
         to = [
             from[0] + 0.002 * f64::from(part),
-            from[1],
+            from[1] + 0.002 * f64::from(part),
             from[2] + 0.003 * f64::from(part),
         ];
         order(json!({ "drag": { "to": to } }));
