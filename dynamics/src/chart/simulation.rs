@@ -401,7 +401,7 @@ fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsErr
     if model.isometry() != Isometry::Rods {
         return Err(ChartDynamicsError::Elastic);
     }
-    if model.has_memory() {
+    if model.can_yield() {
         return Err(ChartDynamicsError::Plastic);
     }
     let State { t, x, v } = start;

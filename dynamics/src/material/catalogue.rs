@@ -216,8 +216,8 @@ catalogue! {
     aluminium_foil: "aluminium foil", "household foil, alloy 8011, 0.016 mm",
         plate(6.9e10, 1.6e-5, 2700.0, 0.33).with_yield_stress(1.6e-5, 3.5e7),
         "Young's modulus, density and Poisson's ratio: ASM Handbook Vol. 2, Properties and Selection: Nonferrous \
-         Alloys, ASM International 1990. Thickness: as sold. Yield: 35 MPa, typical of soft foil (temper O), \
-         with the hardening of EN 1993-1-5, C.6.";
+         Alloys, ASM International 1990. Thickness: as sold. Yield: 35 MPa, a typical value of soft foil \
+         (temper O), with the hardening of EN 1993-1-5, C.6.";
     aluminium_sheet: "aluminium sheet", "0.5 mm",
         plate(6.9e10, 5e-4, 2700.0, 0.33).with_yield_stress(5e-4, 8.5e7),
         "Young's modulus, density and Poisson's ratio: ASM Handbook Vol. 2, Properties and Selection: Nonferrous \

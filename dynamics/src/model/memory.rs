@@ -3,8 +3,9 @@
 use crate::SheetModel;
 
 impl SheetModel {
-    /// Whether a potential has a memory ([`Potential::memory`]).
-    pub(crate) fn has_memory(&self) -> bool {
+    /// Whether bends or creases can yield: whether a potential has a memory
+    /// ([`Potential::memory`](crate::Potential::memory)).
+    pub fn can_yield(&self) -> bool {
         self.potentials().any(|p| !p.memory().is_empty())
     }
 

@@ -69,7 +69,7 @@ impl Engine {
         if model.isometry() != Isometry::Rods && !method.is_minimising() {
             return Err(SimulationError::Elastic);
         }
-        if model.has_memory() && !method.is_minimising() {
+        if model.can_yield() && !method.is_minimising() {
             return Err(SimulationError::Plastic);
         }
         let tuning = Tuning::default();

@@ -156,12 +156,13 @@ impl Run {
 
     /// One array for each column of `history.csv`, with a row for the start and for every step: "time", "h",
     /// "iterations", "factorisations", "rejected", "kinetic", "potential", "total", "drift", "strain", "gap"
-    /// (NaN without contact). Seconds, joules, metres.
+    /// (NaN without contact), "plastic" (what yielding has dissipated; NaN where nothing can yield). Seconds, joules,
+    /// metres.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let rows = &self.recording.history;
         let columns = PyDict::new(py);
-        let numbers: [Column<f64>; 8] = [
+        let numbers: [Column<f64>; 9] = [
             ("time", |row| row.t),
             ("h", |row| row.h),
             ("kinetic", |row| row.kinetic),
@@ -170,6 +171,7 @@ impl Run {
             ("drift", |row| row.drift),
             ("strain", |row| row.strain),
             ("gap", |row| row.gap.unwrap_or(f64::NAN)),
+            ("plastic", |row| row.plastic.unwrap_or(f64::NAN)),
         ];
         for (name, of) in numbers {
             columns.set_item(name, array(py, &rows.iter().map(of).collect::<Vec<_>>()))?;

@@ -41,10 +41,13 @@ pub struct HistoryRow {
     /// Smallest distance between surfaces that could come into contact, in metres; empty in the file for a
     /// run without contact.
     pub gap: Option<f64>,
+    /// What yielding has dissipated since the start, in joules; empty in the file for a run in which nothing can
+    /// yield.
+    pub plastic: Option<f64>,
 }
 
 /// The column names, in order.
-const COLUMNS: [&str; 11] = [
+const COLUMNS: [&str; 12] = [
     "t",
     "h",
     "iterations",
@@ -56,6 +59,7 @@ const COLUMNS: [&str; 11] = [
     "dH",
     "strain",
     "gap",
+    "plastic",
 ];
 
 /// A history that cannot be written or read.
@@ -179,6 +183,7 @@ impl Row for HistoryRow {
             ("dH", self.drift),
             ("strain", self.strain),
             ("gap", self.gap.unwrap_or(0.0)),
+            ("plastic", self.plastic.unwrap_or(0.0)),
         ];
         values.into_iter()
     }
@@ -364,6 +369,7 @@ mod tests {
             drift: f64::MIN_POSITIVE * s,
             strain: f64::EPSILON,
             gap: (k % 2 == 1).then_some(s),
+            plastic: (k % 3 == 1).then_some(s * s),
         }
     }
 
@@ -383,7 +389,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(
             text.starts_with(
-                "t,h,iterations,factorisations,rejected,kinetic,potential,H,dH,strain,gap\n"
+                "t,h,iterations,factorisations,rejected,kinetic,potential,H,dH,strain,gap,plastic\n"
             ),
             "{text}"
         );
@@ -467,6 +473,13 @@ mod tests {
                         ..row(2)
                     },
                     "gap",
+                ),
+                (
+                    HistoryRow {
+                        plastic: Some(bad),
+                        ..row(2)
+                    },
+                    "plastic",
                 ),
             ];
             for (r, name) in cases {

@@ -181,6 +181,11 @@ impl Series {
                 row.gap.unwrap_or_default()
             }));
         }
+        if rows.iter().any(|row| row.plastic.is_some()) {
+            series.push(one("dissipated by yielding", "J", linear, &all, |row| {
+                row.plastic.unwrap_or_default()
+            }));
+        }
         series.extend([
             one("change of the total energy", "J", linear, &all, |row| {
                 row.drift

@@ -8,7 +8,7 @@ use super::summary::{EndReason, Ending};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
-use isosheet_dynamics::{Checkpoint, Simulation, StepError, StepProgress, StepReport};
+use isosheet_dynamics::{Checkpoint, SheetModel, Simulation, StepError, StepProgress, StepReport};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use std::time::Instant;
@@ -63,12 +63,13 @@ impl HistoryRow {
             potential: total - kinetic,
             total,
             strain: simulation.model().rods().max_strain(&state.x),
+            plastic: dissipated(simulation.model(), 0.0),
             ..Self::default()
         }
     }
 
-    /// The row of a step of a run that started at an energy, joules.
-    pub(crate) fn of_step(report: &StepReport, start_energy: f64) -> Self {
+    /// The row of a step of a model in a run that started at an energy, joules.
+    pub(crate) fn of_step(report: &StepReport, model: &SheetModel, start_energy: f64) -> Self {
         let total = report.hamiltonian();
         Self {
             t: report.t,
@@ -82,8 +83,14 @@ impl HistoryRow {
             drift: total - start_energy,
             strain: report.strain,
             gap: report.gap.filter(|gap| gap.is_finite()),
+            plastic: dissipated(model, report.plastic),
         }
     }
+}
+
+/// What yielding has dissipated, joules, as it is written: none if nothing can yield.
+fn dissipated(model: &SheetModel, plastic: f64) -> Option<f64> {
+    model.can_yield().then_some(plastic)
 }
 
 impl Stepping<'_> {
@@ -218,7 +225,8 @@ impl Stepping<'_> {
     }
 
     fn row(&self, report: &StepReport) -> HistoryRow {
-        HistoryRow::of_step(report, self.progress.start_energy)
+        let model = self.simulation.model();
+        HistoryRow::of_step(report, model, self.progress.start_energy)
     }
 
     /// Whether a condition to stop holds after a step.
@@ -266,14 +274,12 @@ impl Stepping<'_> {
 
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {
         let loads = self.simulation.body_loads();
-        let mut potentials = self.simulation.model().potentials();
-        let yields = potentials.any(|p| !p.memory().is_empty());
         Ending {
             reason,
             t: report.t,
             kinetic: report.kinetic,
             potential: report.potential,
-            plastic: yields.then_some(report.plastic),
+            plastic: dissipated(self.simulation.model(), report.plastic),
             energy_drift: report.energy_drift,
             largest_speed: self.largest_speed(),
             supports: self.support_forces(),

@@ -40,7 +40,8 @@ Materials with a moment `M_y` yield in bending where a scene asks for it by `she
 curvature `M_y / D` stay, and spring back by that curvature. `H` is the hardening. (The page \"The theory\" has the
 formulas.) The yield differs more than all other numbers: that of a metal by its alloy and temper. `yield = { moment =
 ..., hardening = ... }` replaces it, and `yield_stress` among the numbers of a material computes it, `M_y =
-yield_stress thickness^2 / 4`.
+yield_stress thickness^2 / 4`. `M_y` is the moment of a section that has yielded in the whole of its thickness; with
+`yield = { layers = 4 }` bends stay from two thirds of it on, as in a section that yields from its faces inwards.
 
 ";
 

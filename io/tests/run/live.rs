@@ -178,7 +178,10 @@ impl Viewer {
             if found == name && holds(&data) {
                 return data;
             }
-            assert!(begun.elapsed() < PATIENCE, "no such {name}: the last was {data}");
+            assert!(
+                begun.elapsed() < PATIENCE,
+                "no such {name}: the last was {data}"
+            );
         }
     }
 

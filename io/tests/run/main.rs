@@ -22,6 +22,7 @@ mod sweeps;
 mod tools;
 mod traces;
 mod trajectories;
+mod yielding;
 
 use isosheet_io::read_json;
 use isosheet_io::run::Summary;

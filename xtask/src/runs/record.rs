@@ -237,6 +237,7 @@ impl Recorder<'_> {
             potential: total - kinetic,
             total,
             drift: total - self.start,
+            plastic: simulation.model().can_yield().then_some(0.0),
             ..HistoryRow::default()
         };
         if let Some(r) = report {
@@ -254,6 +255,7 @@ impl Recorder<'_> {
             (row.rejected, row.strain) = (r.rejected, r.strain);
             // An infinite gap means that nothing is within reach.
             row.gap = r.gap.filter(|g| g.is_finite());
+            row.plastic = row.plastic.map(|_| r.plastic);
         }
         self.history.append(&row)?;
         let loads = simulation.body_loads().into_iter().enumerate();

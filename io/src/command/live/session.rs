@@ -160,7 +160,8 @@ impl Session {
         }
         match self.live.step_watched(h, watch) {
             Ok(report) => {
-                self.row = HistoryRow::of_step(&report, self.start_energy);
+                let model = self.live.simulation().model();
+                self.row = HistoryRow::of_step(&report, model, self.start_energy);
                 if report.taut.is_some() {
                     let what = "The supports ask for more than the lengths of the sheet allow.";
                     self.pause(what.into());
