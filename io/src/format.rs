@@ -6,7 +6,6 @@ mod finite;
 mod history;
 mod json;
 mod loads;
-mod matrix_market;
 mod mesh_file;
 mod obj_write;
 mod trajectory;
@@ -22,7 +21,6 @@ pub use export::{
 pub use history::{HistoryError, HistoryRow, HistoryWriter, Row, RowWriter, read_history};
 pub use json::{JsonError, read_json, write_json};
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};
-pub use matrix_market::{MatrixMarketError, MatrixSymmetry, write_matrix_market};
 pub use mesh_file::{
     EdgeAssignment, FileCrease, FoldFrame, FoldProblem, GltfProblem, MeshFile, MeshFileError,
     MeshFileProblem, MeshFormat, MeshOptions, Place, Polygons, ReadingChanges, Repair,

@@ -13,7 +13,6 @@
 //! | series: FOLD, glTF, USD, PC2, VTK, OBJ, CSV | | [`write_series`] |
 //! | history CSV, see [`HistoryRow`] | [`read_history`] | [`HistoryWriter`], row by row |
 //! | trajectory npz, see [`Trajectory`] | [`Trajectory::read`] | [`Trajectory::write`] |
-//! | Matrix Market, coordinate format | | [`write_matrix_market`] |
 //! | summary JSON | [`read_json`] | [`write_json`] |
 //! | 3D page of a run (feature `view`) | | `view::Replay` |
 //! | shaded PNG pictures (feature `picture`) | | `picture::render`, `run::Film` |

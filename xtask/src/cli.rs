@@ -35,20 +35,20 @@ pub(crate) enum Command {
     ///
     /// Writes DIR/condition.csv and DIR/condition.svg and prints the table.
     ConditionTable(ConditionArgs),
-    /// Measure time against errors: every method on every problem, the scenes of other programs, the linear solvers,
-    /// single steps over the sizes of meshes, and whole runs at the sizes that people use
+    /// Measure time against errors: every method on every problem, the scenes of other programs, and whole runs at the
+    /// sizes that people use
     ///
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already
     /// there and was made by the same program with the same effort is kept, row by row; `--works w1,w2e --force`
     /// runs some rows anew. Times are CPU seconds: leave the machine alone meanwhile. The exit code is 0 unless an
-    /// order, a length, a gap or a count is not as the documentation says.
+    /// order, a length or a gap is not as the documentation says.
     Cost(CostArgs),
     /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks
     /// with references
     ///
-    /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG) and prints the
-    /// tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not end is an entry
-    /// of a table. The exit code is 0 unless a requirement is missed that is not declared to be.
+    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/tables (CSV) and DIR/plots (SVG and PNG) and prints
+    /// the tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not end is an entry
+    /// of a table. The exit code is 0 unless a finding is out of bounds that is not declared to be.
     Locking(LockingArgs),
     /// Measure what each constant of a damped step is worth: halve and double it over eight starts of nine kinds of
     /// scene, and count factorisations, CPU seconds and failures
@@ -57,7 +57,7 @@ pub(crate) enum Command {
     Tuning(TuningArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
-    /// Writes DIR/index.html (self-contained), DIR/verdicts.csv, DIR/verdicts.json and DIR/figures, and
+    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/findings.json and DIR/figures, and
     /// prints a table. The exit code is 0 unless a case fails that is not declared an open limitation.
     /// Finished cases are kept, as in `reproduce-figures`.
     HardCases(HardCasesArgs),
@@ -66,7 +66,7 @@ pub(crate) enum Command {
     /// Each report writes DIR/measured.md, unless it is quick. This command copies these files to docs/measured, whose
     /// parts the book includes, and fills the marked blocks of README.md.
     Measured(MeasuredArgs),
-    /// Make the pictures of the README: ten scenes that anybody can run, and a film of one of them
+    /// Make the pictures of the README: sixteen scenes that anybody can run, and a film of one of them
     ///
     /// Writes DIR/gallery.png and DIR/film.png (an animated PNG) and keeps the runs in DIR/runs. The scenes
     /// are those of `isosheet new` and of `xtask/scenes`.

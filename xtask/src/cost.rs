@@ -1,26 +1,22 @@
-//! `cost`: what error costs how much time, by method, by solver, by size, and what whole runs cost at the sizes
-//! that people use.
+//! `cost`: what error costs how much time, by method, and what whole runs cost at the sizes that people use.
 //!
 //! Every part, and every row of the parts over sizes, is kept in the output folder, so that an interrupted run
 //! continues where it stopped.
 
 mod accuracy;
 mod methods;
-mod solvers;
-mod steps;
 mod works;
 
 use crate::interrupt;
-use crate::report::{Effort, FullOptions, Page, Part as Excerpt, Requirement, Section, Table};
-use crate::report::{demand, excerpt, list, machine, one_of, requirements};
+use crate::report::{Effort, Finding, FullOptions, Page, Part as Excerpt, Section, Table};
+use crate::report::{demand, excerpt, findings, machine, one_of, write_findings};
 use crate::store::{Kept, Store, Unit};
-use accuracy::Problem;
+use accuracy::{Front, Problem};
 use anyhow::Result;
 use clap::Args;
 use maud::{Markup, html};
 use methods::Scene;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 use works::Work;
 
 /// Name of the method that isosheet uses when none is asked for.
@@ -33,10 +29,6 @@ enum Part {
     Problem(Problem),
     /// The methods on a scene of other programs.
     Methods(Scene),
-    /// The linear solvers.
-    Solvers,
-    /// Single steps over the sizes of the mesh.
-    Steps,
 }
 
 impl Part {
@@ -46,8 +38,6 @@ impl Part {
         let others = [
             ("hanging", Self::Methods(Scene::Hanging)),
             ("tablecloth", Self::Methods(Scene::Tablecloth)),
-            ("solvers", Self::Solvers),
-            (steps::NAME, Self::Steps),
         ];
         problems.into_iter().chain(others).collect()
     }
@@ -76,15 +66,6 @@ pub(crate) struct CostArgs {
     /// Whole runs to measure, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = one_of(works::named))]
     works: Vec<&'static Work>,
-
-    /// Finest mesh of the single steps, M^LEVEL
-    #[arg(long, value_name = "LEVEL", default_value_t = 7,
-        value_parser = clap::value_parser!(u32).range(3..=i64::from(steps::FINEST)))]
-    level: u32,
-
-    /// Write the matrices of the linear solvers to this folder as Matrix Market files, and measure nothing
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["parts", "works"])]
-    matrices: Option<PathBuf>,
 }
 
 /// What is kept of a part.
@@ -92,14 +73,11 @@ pub(crate) struct CostArgs {
 struct Record {
     name: String,
     section: Section,
-    /// What it says among the conclusions of the whole report.
-    conclusions: Vec<String>,
     /// Tables for the book.
     excerpt: Vec<Excerpt>,
-    /// Of a problem: whether the default is on the fronts of position and energy error, of all methods and of
-    /// those that take flat states.
-    on_front: Option<[[bool; 2]; 2]>,
-    requirements: Vec<Requirement>,
+    /// Of a problem: the cheapest methods by error.
+    fronts: Vec<Front>,
+    findings: Vec<Finding>,
 }
 
 impl Record {
@@ -108,10 +86,9 @@ impl Record {
         Self {
             name: name.to_owned(),
             section: html! { section id=(name) { (inside) } }.into(),
-            conclusions: Vec::new(),
             excerpt: Vec::new(),
-            on_front: None,
-            requirements: Vec::new(),
+            fronts: Vec::new(),
+            findings: Vec::new(),
         }
     }
 }
@@ -119,9 +96,6 @@ impl Record {
 /// Runs the command.
 pub(crate) fn run(args: &CostArgs) -> Result<()> {
     let effort = args.options.effort();
-    if let Some(folder) = &args.matrices {
-        return solvers::write_matrices(folder, effort);
-    }
     let store = args.options.open("cost")?;
     let (mut parts, mut works) = (args.parts.clone(), args.works.clone());
     if parts.is_empty() && works.is_empty() {
@@ -132,22 +106,20 @@ pub(crate) fn run(args: &CostArgs) -> Result<()> {
     let made = works::measure(&store, &works).and_then(|()| {
         let named = Part::named().into_iter();
         let mut asked = named.filter(|(_, part)| parts.contains(part));
-        asked.try_for_each(|(name, part)| measure(&store, name, part, args.level))
+        asked.try_for_each(|(name, part)| measure(&store, name, part))
     });
     interrupt::afterwards(made, || report(&store))
 }
 
 /// Makes a part and keeps it.
-fn measure(store: &Store, name: &str, part: Part, finest: u32) -> Result<()> {
+fn measure(store: &Store, name: &str, part: Part) -> Result<()> {
     let effort = store.effort;
     let unit = Part::unit(store, name);
     match part {
-        Part::Steps => return steps::measure(store, finest),
         Part::Problem(problem) => store.keep(&unit, |files| accuracy::make(problem, effort, files)),
         Part::Methods(scene) => {
             store.keep(&unit, |files| methods::make(scene, name, effort, files))
         }
-        Part::Solvers => store.keep(&unit, |files| solvers::make(name, effort, files)),
     }?;
     Ok(())
 }
@@ -162,43 +134,35 @@ fn report(store: &Store) -> Result<()> {
     } = store.all_kept::<Record>(units);
     let works = works::record(store, &mut left_out)?;
     records.splice(0..0, works);
-    records.extend(steps::record(store, &mut left_out)?);
-    let mut parts = vec![Excerpt::list("fronts", &accuracy::fronts(&records))];
+    let fronts: Vec<Front> = records.iter().flat_map(|r| r.fronts.clone()).collect();
+    let fronts = Front::table(&fronts);
+    let mut parts = vec![Excerpt::table(&*fronts.name, &fronts)];
     parts.extend(records.iter().flat_map(|r| r.excerpt.clone()));
     excerpt::write(store, "cost", &parts)?;
-    let required = required(&records);
-    table(&required).write_to(&store.path("tables/targets.csv"))?;
-    let page = page(&records, &required);
+    fronts.write_to(&store.path("tables/fronts.csv"))?;
+    write_findings(store, found(&records))?;
+    let page = page(&records, &fronts);
     Page { left_out, ..page }.write(store, "index.html")?;
-    demand(&required)
+    demand(found(&records))
 }
 
-/// The requirements of all parts.
-fn required(records: &[Record]) -> Vec<(String, Requirement)> {
-    let of = |r: &Record| {
-        let named = r.requirements.iter().map(|q| (r.name.clone(), q.clone()));
-        named.collect::<Vec<_>>()
-    };
-    records.iter().flat_map(of).collect()
+/// The findings of all parts, with the names of the parts.
+fn found(records: &[Record]) -> impl Iterator<Item = (&str, &Finding)> + Clone {
+    let parts = records.iter();
+    parts.flat_map(|r| r.findings.iter().map(move |f| (r.name.as_str(), f)))
 }
 
-fn table(all: &[(String, Requirement)]) -> Table {
-    requirements(
-        "Orders, lengths, gaps, growth and bits against what the documentation says",
-        all,
-    )
-}
-
-/// The page: conclusions first, then every part.
-fn page(records: &[Record], required: &[(String, Requirement)]) -> Page {
-    let mut conclusions = accuracy::fronts(records);
-    conclusions.extend(records.iter().flat_map(|r| r.conclusions.clone()));
-    let first = records.iter().position(|r| r.on_front.is_some());
+/// The page: findings first, then every part.
+fn page(records: &[Record], fronts: &Table) -> Page {
+    let caption = "Orders, lengths and gaps against what the documentation says";
+    let first = records.iter().position(|r| !r.fronts.is_empty());
     let body = html! {
         p { "Times are CPU seconds where nothing else is said. Machine: " (machine()) "." }
-        section { h2 { "Conclusions" } (list(&conclusions)) (table(required)) }
+        section { h2 { "Findings" } (findings(caption, found(records))) }
         @for (k, record) in records.iter().enumerate() {
-            @if first == Some(k) { section { h2 { "Error against time" } p { (accuracy::ABOUT) } } }
+            @if first == Some(k) {
+                section { h2 { "Error against time" } p { (accuracy::ABOUT) } (fronts) }
+            }
             (record.section)
         }
     };

@@ -19,7 +19,7 @@ pub(crate) use chart::{Chart, Charts, Legend, Missing};
 pub(crate) use colour::{Colour, palette};
 pub(crate) use drawing::{Anchor, Drawing, Stroke, Vertical, column, row};
 pub(crate) use marker::Marker;
-pub(crate) use series::{Line, Series};
+pub(crate) use series::Series;
 pub(crate) use shaded::{Shot, Viewpoint};
 pub(crate) use sheet::{flat_edges, flat_faces, plan};
 pub(crate) use spatial::View;

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
   0    everything that was asked for is there
-  1    a run failed, or a hard case or a requirement that is not declared an open limitation
+  1    a run failed, or a finding is out of bounds and not declared an open limitation
   2    the command line is wrong
   4    the folder holds other files, another report, or full results that quick ones would replace
   5    another process is writing to the folder
@@ -31,23 +31,20 @@ pub(crate) enum ReportError {
     NotQuick { folder: PathBuf },
     #[error("{} has results of {of}", folder.display())]
     OtherReport { folder: PathBuf, of: String },
-    #[error("cases failed, or their open limitations are not as declared: {names}")]
-    Cases { names: String },
     #[error("{} has no part called {part}", file.display())]
     Part { file: PathBuf, part: String },
-    #[error("requirements are missed: {names}")]
-    Missed { names: String },
+    #[error("findings are out of bounds, or not out of them as declared: {names}")]
+    Findings { names: String },
 }
 
 impl Advice for ReportError {
     fn advice(&self) -> Option<&'static str> {
         Some(match self {
             Self::NotQuick { .. } | Self::OtherReport { .. } => "choose another folder with --out",
-            Self::Cases { .. } => "see their sections of the page",
             Self::Part { .. } => {
                 "run the whole report, without --quick, and `cargo xtask measured` again"
             }
-            Self::Missed { .. } => "see the table of requirements on the page",
+            Self::Findings { .. } => "see the page, or findings.csv",
         })
     }
 }
@@ -93,9 +90,7 @@ fn code(error: &Error) -> u8 {
         if let Some(report) = cause.downcast_ref() {
             return Some(match report {
                 ReportError::NotQuick { .. } | ReportError::OtherReport { .. } => 4,
-                ReportError::Cases { .. }
-                | ReportError::Part { .. }
-                | ReportError::Missed { .. } => 1,
+                ReportError::Part { .. } | ReportError::Findings { .. } => 1,
             });
         }
         if cause.is::<WriteError>() || cause.is::<std::io::Error>() {
@@ -153,6 +148,6 @@ mod tests {
         assert_eq!(code(&error), 1);
         assert_eq!(code(&Error::from(Interrupted)), 130);
         let names = "sliding: smallest gap".to_owned();
-        assert_eq!(code(&Error::from(ReportError::Missed { names })), 1);
+        assert_eq!(code(&Error::from(ReportError::Findings { names })), 1);
     }
 }

@@ -22,13 +22,12 @@ mod scales;
 mod scenes;
 mod steps;
 
-pub(crate) use case::{Case, Findings, Record, Shortfall, Work};
+pub(crate) use case::{Case, Findings, Record, Work};
 
 use crate::draw::{Chart, Charts, Series};
-use crate::failure::ReportError;
 use crate::interrupt;
 use crate::progress;
-use crate::report::{Effort, FullOptions, excerpt, one_of};
+use crate::report::{Effort, FullOptions, demand, excerpt, one_of};
 use crate::store::{Files, Kept, Store, Unit};
 use anyhow::Result;
 use clap::Args;
@@ -101,13 +100,7 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
         print!("{}", page::text(records));
         page::write(&store, &kept)?;
         excerpt::write(&store, "hard-cases", &page::excerpt(records))?;
-        let failed = records.iter().filter(|r| r.verdict().is_failure());
-        let names: Vec<&str> = failed.map(|r| r.name.as_str()).collect();
-        if names.is_empty() {
-            return Ok(());
-        }
-        let names = names.join(", ");
-        Err(ReportError::Cases { names }.into())
+        demand(page::findings(records))
     })
 }
 

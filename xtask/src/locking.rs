@@ -41,13 +41,12 @@ mod ways;
 
 use crate::draw::Charts;
 use crate::interrupt;
-use crate::report::{Options, Page, Part, Section, Table, demand, excerpt, exponent};
-use crate::report::{list, machine, one_of, plot, requirements};
+use crate::report::{Options, Page, Part, Section, Shortfall, Table, demand, excerpt};
+use crate::report::{exponent, findings, list, machine, one_of, plot, write_findings};
 use crate::store::{Files, Kept, Store, Unit};
 use anyhow::Result;
 use clap::Args;
 use declared::declared;
-use isosheet_io::write_json;
 use maud::html;
 use records::Records;
 use serde::{Deserialize, Serialize};
@@ -260,7 +259,7 @@ pub(crate) fn run(args: &LockingArgs) -> Result<()> {
     interrupt::afterwards(made, || write(&store))
 }
 
-/// Writes the page, `tables/targets.csv` and `targets.json` of all yardsticks applied so far.
+/// Writes the page, `findings.csv` and `findings.json` of all yardsticks applied so far.
 fn write(store: &Store) -> Result<()> {
     let units = YARDSTICKS.iter().map(|yardstick| yardstick.unit(store));
     let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
@@ -268,19 +267,18 @@ fn write(store: &Store) -> Result<()> {
         r.targets
             .iter()
             .map(|t| {
-                let why = declared(&r.name, t, store.effort).map(str::to_owned);
-                let target = Target {
-                    declared: why,
-                    ..t.clone()
-                };
+                let mut target = t.clone();
+                if let Some(why) = declared(&r.name, t, store.effort) {
+                    target.limited(why, Shortfall::Varies);
+                }
                 (r.name.clone(), target)
             })
             .collect::<Vec<_>>()
     };
     let targets: Vec<(String, Target)> = records.iter().flat_map(of).collect();
-    let summary = requirements(CAPTION, &targets);
-    summary.write_to(&store.path("tables/targets.csv"))?;
-    write_json(&store.path("targets.json"), &targets)?;
+    let named = targets.iter().map(|(name, t)| (name.as_str(), t));
+    let summary = findings(CAPTION, named.clone());
+    write_findings(store, named.clone())?;
     let mut parts = vec![Part::table("targets", &targets::by_model(&targets))];
     parts.extend(records.iter().flat_map(|r| r.excerpt.clone()));
     excerpt::write(store, "locking", &parts)?;
@@ -298,7 +296,7 @@ fn write(store: &Store) -> Result<()> {
         ..Page::new("Yardsticks of locking", body)
     };
     page.write(store, "index.html")?;
-    demand(&targets)
+    demand(named)
 }
 
 const CAPTION: &str = "Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs \

@@ -3,23 +3,24 @@
 mod cost;
 mod effort;
 pub(crate) mod excerpt;
+mod finding;
 mod machine;
 mod memory;
 mod number;
 mod options;
 mod page;
 mod picture;
-mod requirement;
 mod table;
 
 pub(crate) use cost::Cost;
 pub(crate) use effort::Effort;
 pub(crate) use excerpt::Part;
+pub(crate) use finding::{Bound, Finding, LENGTHS, Limitation, Shortfall, Verdict};
+pub(crate) use finding::{demand, findings, write_findings};
 pub(crate) use machine::machine;
 pub(crate) use memory::{peak_memory, reset_peak_memory};
-pub(crate) use number::{exponent, extremes, number, order_line, percent, rounded, short};
+pub(crate) use number::{exponent, extremes, number, order_line, rounded, short};
 pub(crate) use options::{FullOptions, Options, one_of};
 pub(crate) use page::{Page, Section, list};
 pub(crate) use picture::{Picture, plot};
-pub(crate) use requirement::{Bound, LENGTHS, Requirement, demand, requirements};
 pub(crate) use table::{Cell, Table};

@@ -8,7 +8,7 @@ pub(super) use kinds::Work;
 
 use super::Record;
 use crate::progress;
-use crate::report::{Part as Excerpt, list, plot};
+use crate::report::{Part as Excerpt, plot};
 use crate::store::{Store, Unit};
 use anyhow::Result;
 use kinds::WORKS;
@@ -99,23 +99,24 @@ pub(super) fn record(store: &Store, left_out: &mut Vec<String>) -> Result<Option
     }
     let table = report::table(&rows).named(NAME);
     table.write_to(&store.path("tables/works.csv"))?;
-    let words = report::findings(&rows);
+    let [powers, threads] = [report::powers(&rows), report::threads(&rows)];
     let alt = "CPU seconds for a simulated second against the number of vertices, by kind of run";
     let figure = plot(&mut store.files(), NAME, &report::chart(&rows)?, alt)?;
     let inside = html! {
         h2 { "Whole runs" }
         p { (ABOUT) }
         (figure)
-        (list(&words))
+        (powers)
+        (threads)
         (table.select(&table.caption, report::SHOWN))
     };
     Ok(Some(Record {
         excerpt: vec![
             Excerpt::table(NAME, &table.select(&table.caption, report::IN_THE_BOOK)),
-            Excerpt::list("works-words", &words),
+            Excerpt::table("works-powers", &powers),
+            Excerpt::table("works-threads", &threads),
         ],
-        conclusions: words,
-        requirements: report::required(&rows),
+        findings: report::required(&rows),
         ..Record::new(NAME, inside)
     }))
 }
@@ -123,7 +124,7 @@ pub(super) fn record(store: &Store, left_out: &mut Vec<String>) -> Result<Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Effort;
+    use crate::report::{Effort, Finding, Verdict};
     use crate::store::Remake;
 
     #[test]
@@ -139,7 +140,8 @@ mod tests {
         assert_eq!(chosen.len(), 2);
         measure(&store, &chosen).unwrap();
         let made = record(&store, &mut Vec::new()).unwrap().expect("rows");
-        assert!(made.requirements.iter().all(|r| r.is_met()), "{made:?}");
+        let passed = |f: &Finding| f.verdict() == Verdict::Passed;
+        assert!(made.findings.iter().all(passed), "{made:?}");
         let csv = std::fs::read_to_string(store.path("tables/works.csv")).unwrap();
         assert!(
             csv.contains("w1,") && csv.contains("w2e,") && !csv.contains("NaN"),

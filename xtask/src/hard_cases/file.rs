@@ -2,9 +2,9 @@
 //!
 //! `xtask/cases/README.md` describes the files.
 
-use super::case::{Bound, Case, Findings, Limitation, Work};
+use super::case::{Case, Findings, Work};
 use crate::interrupt;
-use crate::report::{Effort, number};
+use crate::report::{Bound, Effort, Limitation, number};
 use anyhow::{Context, Result, bail, ensure};
 use isosheet_io::read_history;
 use isosheet_io::run::{Outcome, RunError, Sweep, Variation, simulate};
@@ -183,11 +183,8 @@ impl FileCheck {
                     // The worst run: one without the number, or the one that is farthest on the wrong side.
                     let pointer = format!("/{}", path.replace('.', "/"));
                     let value = |run: &&Ran| run.summary.pointer(&pointer).and_then(Value::as_f64);
-                    let badness = |run: &&Ran| match (value(run), bound) {
-                        (None, _) => f64::INFINITY,
-                        (Some(v), Bound::AtMost(_)) => v,
-                        (Some(v), Bound::AtLeast(_)) => -v,
-                    };
+                    let badness =
+                        |run: &&Ran| value(run).map_or(f64::INFINITY, |v| bound.badness(v));
                     let worst = runs.iter().max_by(|a, b| badness(a).total_cmp(&badness(b)));
                     let worst = worst.expect("there are runs");
                     if worst.stopped.is_none() && value(worst).is_none() {
@@ -337,7 +334,7 @@ fn ran(scene: &Path, edits: Vec<String>) -> Result<Ran> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hard_cases::case::{Check, Verdict};
+    use crate::report::{Finding, Verdict};
 
     const SCENE: &str = "version = 1
         [sheet]
@@ -363,7 +360,7 @@ mod tests {
         Ok(file)
     }
 
-    fn checks(case: &str) -> Vec<Check> {
+    fn checks(case: &str) -> Vec<Finding> {
         let file = read(case).expect("right");
         let mut found = Findings::default();
         file.run(&mut found, Effort::Quick).expect("runs");
@@ -432,7 +429,7 @@ mod tests {
             quantity = 'stopped'
             at_most = 0",
         );
-        let verdicts: Vec<Verdict> = found.iter().map(Check::verdict).collect();
+        let verdicts: Vec<Verdict> = found.iter().map(Finding::verdict).collect();
         assert_eq!(
             verdicts,
             [Verdict::Failed, Verdict::Passed, Verdict::Failed],

@@ -4,9 +4,9 @@ use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel, textbook, textb
 use super::scenes::{
     FRAME, STRAIN, apart, at_rest, course, pinned, released, top_row, tumbling, upright,
 };
-use super::{Case, Findings, Shortfall, Work, log_log};
+use super::{Case, Findings, Work, log_log};
 use crate::draw::Series;
-use crate::report::{Effort, number};
+use crate::report::{Effort, Shortfall, number};
 use crate::runs::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{Simulation, State};

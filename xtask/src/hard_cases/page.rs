@@ -1,12 +1,10 @@
-//! The report: DIR/index.html, DIR/verdicts.csv, DIR/verdicts.json and the table on the terminal.
+//! The report: DIR/index.html, DIR/findings.csv, DIR/findings.json and the table on the terminal.
 
-use super::case::{Bound, Case, Check, Record, Verdict};
-use crate::report::{Page, Part, Picture, Table, number};
+use super::case::{Case, Record};
+use crate::report::{Finding, Page, Part, Picture, Table, Verdict, write_findings};
 use crate::store::{Kept, Store};
 use anyhow::Result;
-use isosheet_io::write_json;
 use maud::{Markup, html};
-use serde_json::json;
 use std::fmt::Write;
 
 const MORE_STYLE: &str = "\
@@ -15,38 +13,12 @@ const MORE_STYLE: &str = "\
 figcaption{font-size:.85rem;color:#666;margin-top:.4rem}h3{font-size:.85rem;font-weight:600;color:#666;margin:.9rem 0 .1rem}\
 section p{margin:.1rem 0 .4rem}ul{margin:.1rem 0 .4rem;padding-left:1.1rem}td.number{white-space:nowrap}";
 
-/// Writes the three files.
+/// Writes the files.
 pub(super) fn write(store: &Store, kept: &Kept<Record>) -> Result<()> {
     let (records, left_out) = (&kept.records, kept.left_out.clone());
-    checks(records).write_to(&store.path("verdicts.csv"))?;
-    let check = |c: &Check| {
-        json!({ "what": c.what, "value": c.value, "bound": c.bound, "verdict": c.verdict(),
-                "limitation": c.limitation, "stopped": c.stopped, "remark": c.remark })
-    };
-    let case = |r: &Record| {
-        let checks: Vec<_> = r.checks.iter().map(check).collect();
-        json!({ "case": r.name, "title": r.title, "verdict": r.verdict(), "naive": r.naive, "checks": checks,
-                "seconds": r.wall })
-    };
-    let cases: Vec<_> = records.iter().map(case).collect();
-    let version = env!("CARGO_PKG_VERSION");
-    let all =
-        json!({ "version": version, "effort": store.effort, "cases": cases, "left_out": left_out });
-    write_json(&store.path("verdicts.json"), &all)?;
+    write_findings(store, findings(records))?;
     let page = page(records);
     Page { left_out, ..page }.write(store, "index.html")
-}
-
-/// What was measured, for people.
-fn measured(check: &Check) -> String {
-    match (check.value, &check.remark) {
-        (Some(v), _) => number(v),
-        (None, Some(_)) => match check.stopped {
-            Some(t) => format!("stopped after {} s", number(t)),
-            None => "stopped".into(),
-        },
-        (None, None) => "no number".into(),
-    }
 }
 
 fn badge(verdict: Verdict) -> Markup {
@@ -104,7 +76,7 @@ pub(super) fn excerpt(records: &[Record]) -> Vec<Part> {
         ],
     );
     let open = of_all(records).filter(|(_, c)| c.verdict() != Verdict::Passed);
-    let why = |c: &Check| {
+    let why = |c: &Finding| {
         let declared = c.limitation.as_ref();
         declared
             .map_or("not declared", |l| l.why.as_str())
@@ -115,8 +87,8 @@ pub(super) fn excerpt(records: &[Record]) -> Vec<Part> {
         open,
         &[
             ("case", &|(r, _)| r.name.as_str().into()),
-            ("check", &|(_, c)| c.what.as_str().into()),
-            ("measured", &|(_, c)| measured(c).into()),
+            ("check", &|(_, c)| c.quantity.as_str().into()),
+            ("measured", &|(_, c)| c.measured().into()),
             ("bound", &|(_, c)| c.bound.text().into()),
             ("why", &|(_, c)| why(c).into()),
         ],
@@ -183,16 +155,16 @@ pub(super) fn section(
     }
 }
 
-fn check_row(check: &Check) -> Markup {
+fn check_row(check: &Finding) -> Markup {
     let limitation = check.limitation.as_ref();
     let declared = limitation.map(|l| format!("{} Declared: {}.", l.why, l.shortfall.text()));
     html! {
         tr {
             td {
-                (check.what)
+                (check.quantity)
                 @for text in [&declared, &check.remark].into_iter().flatten() { br; small { (text) } }
             }
-            td.number { (measured(check)) }
+            td.number { (check.measured()) }
             td.number { (check.bound.text()) }
             td { (badge(check.verdict())) }
         }
@@ -200,38 +172,15 @@ fn check_row(check: &Check) -> Markup {
 }
 
 /// Every check of every case.
-fn of_all(records: &[Record]) -> impl Iterator<Item = (&Record, &Check)> {
+fn of_all(records: &[Record]) -> impl Iterator<Item = (&Record, &Finding)> + Clone {
     records
         .iter()
         .flat_map(|r| r.checks.iter().map(move |c| (r, c)))
 }
 
-/// Every check, for programs.
-fn checks(records: &[Record]) -> Table {
-    let bound = |c: &Check| match c.bound {
-        Bound::AtMost(b) => ("at_most", b),
-        Bound::AtLeast(b) => ("at_least", b),
-    };
-    let limitation = |c: &Check| {
-        let declared = c.limitation.as_ref();
-        declared.map(|l| (l.why.clone(), l.shortfall.text()))
-    };
-    Table::of(
-        "",
-        of_all(records),
-        &[
-            ("case", &|(r, _)| r.name.as_str().into()),
-            ("check", &|(_, c)| c.what.as_str().into()),
-            ("value", &|(_, c)| c.value.into()),
-            ("bound_kind", &|(_, c)| bound(c).0.into()),
-            ("bound", &|(_, c)| bound(c).1.into()),
-            ("verdict", &|(_, c)| c.verdict().text().into()),
-            ("limitation", &|(_, c)| limitation(c).map(|l| l.0).into()),
-            ("declared", &|(_, c)| limitation(c).map(|l| l.1).into()),
-            ("stopped_s", &|(_, c)| c.stopped.into()),
-            ("remark", &|(_, c)| c.remark.clone().into()),
-        ],
-    )
+/// Every check with the name of its case.
+pub(super) fn findings(records: &[Record]) -> impl Iterator<Item = (&str, &Finding)> + Clone {
+    of_all(records).map(|(r, c)| (r.name.as_str(), c))
 }
 
 /// The table on the terminal: every case, and every check that did not simply pass.
@@ -250,8 +199,8 @@ pub(super) fn text(records: &[Record]) -> String {
     );
     let mut out = table.text();
     for (r, c) in of_all(records).filter(|(_, c)| c.verdict() != Verdict::Passed) {
-        let (name, verdict, what) = (&r.name, c.verdict().text(), &c.what);
-        let (found, bound) = (measured(c), c.bound.text());
+        let (name, verdict, what) = (&r.name, c.verdict().text(), &c.quantity);
+        let (found, bound) = (c.measured(), c.bound.text());
         let declared = c.limitation.as_ref().map(|l| l.shortfall.text());
         let declared = declared.map_or(String::new(), |text| format!("; declared: {text}"));
         let _ = writeln!(

@@ -2,8 +2,8 @@
 
 use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel, textbook};
 use super::scenes::{FRAME, apart, at_rest, go, pinned, released, top_row, upright};
-use super::{Case, Findings, Shortfall, Work};
-use crate::report::{Effort, number};
+use super::{Case, Findings, Work};
+use crate::report::{Effort, Shortfall, number};
 use crate::runs::bumped;
 use anyhow::Result;
 use isosheet_coords::{BentState, bent_square};

@@ -2,9 +2,9 @@
 
 use super::naive::{TEXTBOOK, textbook_steps};
 use super::scenes::{apart, course};
-use super::{Case, Findings, Shortfall, Work};
+use super::{Case, Findings, Work};
 use crate::interrupt;
-use crate::report::{Effort, Table, number};
+use crate::report::{Effort, Shortfall, Table, number};
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State};
 use isosheet_mesh::{Dof, MassMatrix, Sheet, fold_angle};

@@ -4,8 +4,8 @@ use super::naive::gauss_seidel;
 use super::scenes::{
     FRAME, STRAIN, apart, at_rest, course, go, pinned, released, stopped, strain_bound,
 };
-use super::{Case, Findings, Shortfall, Work};
-use crate::report::{Effort, Table, number};
+use super::{Case, Findings, Work};
+use crate::report::{Effort, Shortfall, Table, number};
 use crate::runs::Course;
 use crate::runs::{bumped, corner};
 use anyhow::{Result, bail};

@@ -2,9 +2,9 @@
 
 use super::naive::{TEXTBOOK, textbook, textbook_steps};
 use super::scenes::{apart, course, go};
-use super::{Case, Findings, Shortfall, Work, log_log};
+use super::{Case, Findings, Work, log_log};
 use crate::draw::Series;
-use crate::report::{Effort, number};
+use crate::report::{Effort, Shortfall, number};
 use crate::runs::Course;
 use crate::runs::{bumped, hanging};
 use anyhow::Result;

@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn what_the_documentation_claims_is_not_declared() {
         let of =
-            |model: &str, quantity: &str| Target::of(model, quantity, (Bound::AtMost, 1.0), &[]);
+            |model: &str, quantity: &str| Target::worst(model, quantity, Bound::AtMost(1.0), &[]);
         let why =
             |yardstick, model, quantity, effort| declared(yardstick, &of(model, quantity), effort);
         let standard = Effort::Standard;

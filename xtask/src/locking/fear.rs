@@ -6,7 +6,7 @@ use super::model::{Model, Plate, Tried};
 use super::records::Records;
 use super::scene::Scene;
 use crate::draw::Charts;
-use crate::report::{Bound, Cell, Cost, Requirement, Table, extremes};
+use crate::report::{Bound, Cell, Cost, Finding, Table, extremes};
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -167,19 +167,19 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
         let gaps: Vec<Option<f64>> = of.iter().filter_map(|f| f.course.gap).map(Some).collect();
         let name = model.to_string();
         [
-            Requirement::of(
+            Finding::worst(
                 name.clone(),
                 "part of the scenes that reach the end",
-                (Bound::AtLeast, 1.0),
+                Bound::AtLeast(1.0),
                 &[Some(ended as f64 / of.len() as f64)],
             ),
-            Requirement::of(
+            Finding::worst(
                 name.clone(),
                 "largest strain of an edge",
-                (Bound::AtMost, 0.01),
+                Bound::AtMost(0.01),
                 &strains,
             ),
-            Requirement::of(name, "smallest gap, m", (Bound::Above, 0.0), &gaps),
+            Finding::worst(name, "smallest gap, m", Bound::Above(0.0), &gaps),
         ]
     });
     let targets = targets.collect();

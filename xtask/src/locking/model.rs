@@ -2,7 +2,7 @@
 
 use super::isometry::PAPER;
 use crate::draw::{Colour, palette};
-use crate::report::{Bound, Requirement};
+use crate::report::{Bound, Finding};
 use crate::runs::Course;
 use anyhow::Result;
 use isosheet_dynamics::{CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
@@ -155,14 +155,8 @@ impl<J, M> Tried<J, M> {
 }
 
 /// A requirement on the largest of some values of a model.
-pub(super) fn at_most(
-    model: Model,
-    quantity: &str,
-    bound: f64,
-    values: &[Option<f64>],
-) -> Requirement {
-    let side = (Bound::AtMost, bound);
-    Requirement::of(model.to_string(), quantity, side, values)
+pub(super) fn at_most(model: Model, quantity: &str, bound: f64, values: &[Option<f64>]) -> Finding {
+    Finding::worst(model.to_string(), quantity, Bound::AtMost(bound), values)
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! What a model of isometry is required to reach, and what was measured.
 
 use super::isometry::Isometry;
-use crate::report::{Bound, Cell, Table, number};
+use crate::report::{Bound, Cell, Table, Verdict, number};
 use crate::runs::Course;
 
 /// A requirement on a model, and what it reaches.
-pub(super) type Target = crate::report::Requirement;
+pub(super) type Target = crate::report::Finding;
 
 /// A requirement that a value is at most `bound`, checked at the largest of all values; values of runs that
 /// did not end are missing, and no values at all are missing, too.
@@ -15,7 +15,7 @@ pub(super) fn at_most(
     bound: f64,
     values: &[Option<f64>],
 ) -> Target {
-    Target::of(model.to_string(), quantity, (Bound::AtMost, bound), values)
+    Target::worst(model.to_string(), quantity, Bound::AtMost(bound), values)
 }
 
 /// A requirement that a value is at least `bound`, checked at the smallest of all values.
@@ -25,7 +25,7 @@ pub(super) fn at_least(
     bound: f64,
     values: &[Option<f64>],
 ) -> Target {
-    Target::of(model.to_string(), quantity, (Bound::AtLeast, bound), values)
+    Target::worst(model.to_string(), quantity, Bound::AtLeast(bound), values)
 }
 
 /// No edge is longer or shorter by more than 1 % at any time: what the error in length of a sheet that stands
@@ -45,8 +45,8 @@ pub(super) fn kept<'a>(model: Isometry, runs: impl Iterator<Item = &'a Course>) 
         targets.push(at_most(model, quantity, 1e-12, &[Some(worst.violation)]));
     }
     if worst.gap.is_some() {
-        let (name, bound) = (model.to_string(), (Bound::Above, 0.0));
-        targets.push(Target::of(name, "smallest gap, m", bound, &[worst.gap]));
+        let (name, bound) = (model.to_string(), Bound::Above(0.0));
+        targets.push(Target::worst(name, "smallest gap, m", bound, &[worst.gap]));
     }
     targets
 }
@@ -70,7 +70,7 @@ pub(super) fn by_model(targets: &[(String, Target)]) -> Table {
         &head,
     );
     let key = |(yardstick, t): &(String, Target)| {
-        let required = format!("{} {}", t.side.words(), number(t.bound));
+        let required = t.bound.text();
         [yardstick.clone(), t.quantity.clone(), required]
     };
     let mut keys: Vec<[String; 3]> = Vec::new();
@@ -82,7 +82,7 @@ pub(super) fn by_model(targets: &[(String, Target)]) -> Table {
     for row in keys {
         let of = |model: &String| {
             let found = targets.iter().find(|t| t.1.of == *model && key(t) == row);
-            let value = found.and_then(|(_, t)| Some((t.measured?, t.is_met())));
+            let value = found.and_then(|(_, t)| Some((t.value?, t.verdict() == Verdict::Passed)));
             Cell::from(value.map(|(value, is_met)| match is_met {
                 true => format!("**{}**", number(value)),
                 false => number(value),
@@ -114,7 +114,7 @@ mod tests {
         ];
         let text = by_model(&pair).text();
         let row: Vec<&str> = text.lines().last().unwrap().split_whitespace().collect();
-        assert_eq!(row, ["y", "q", "at", "most", "2", "5", "–", "**1**"]);
+        assert_eq!(row, ["y", "q", "≤", "2", "5", "–", "**1**"]);
     }
 
     #[test]
@@ -126,7 +126,10 @@ mod tests {
         };
         let met = |model, runs: &[&Course]| -> Vec<bool> {
             let targets = kept(model, runs.iter().copied());
-            targets.iter().map(Target::is_met).collect()
+            targets
+                .iter()
+                .map(|t| t.verdict() == Verdict::Passed)
+                .collect()
         };
         let [good, loose] = [1e-13, 1e-11].map(|violation| run(violation, None));
         let (good, loose) = (&good, &loose);

@@ -60,9 +60,4 @@ impl Cost {
     pub(crate) fn wall_per_step(&self) -> Option<f64> {
         self.per_step(self.wall)
     }
-
-    /// Seconds of the processor for a step in the mean.
-    pub(crate) fn cpu_per_step(&self) -> Option<f64> {
-        self.per_step(self.cpu)
-    }
 }

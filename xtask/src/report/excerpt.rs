@@ -25,12 +25,6 @@ impl Part {
         Self { name, text }
     }
 
-    /// A list of sentences.
-    pub(crate) fn list(name: impl Into<String>, items: &[String]) -> Self {
-        let items: Vec<String> = items.iter().map(|i| format!("- {}", escaped(i))).collect();
-        Self::text(name, items.join("\n"))
-    }
-
     /// A table with its caption.
     pub(crate) fn table(name: impl Into<String>, table: &Table) -> Self {
         let line = |cells: Vec<String>| format!("| {} |", cells.join(" | "));
@@ -122,13 +116,13 @@ mod tests {
         let table = Table::of("a | b", [1.5, 2.0e-9], &[("x_m", &|v| (*v).into())]);
         let parts = [
             Part::table("sizes", &table),
-            Part::list("said", &["one".into(), "x < y".into()]),
+            Part::text("said", "- one\n- two"),
         ];
         let file = to_markdown("cost", "Measured.", &parts);
         assert_eq!(part(&file, "origin"), Some("Measured."));
         let sizes = "a \\| b\n\n| x m |\n|---|\n| 1.5 |\n| 2.0e-9 |";
         assert_eq!(part(&file, "sizes"), Some(sizes));
-        assert_eq!(part(&file, "said"), Some("- one\n- x &lt; y"));
+        assert_eq!(part(&file, "said"), Some("- one\n- two"));
         assert_eq!(part(&file, "other"), None);
     }
 

@@ -77,17 +77,6 @@ pub(crate) fn short(value: f64) -> String {
     }
 }
 
-/// A signed part as a percentage with the digits that matter.
-pub(crate) fn percent(part: f64) -> String {
-    let p = 100.0 * part;
-    let text = if p.abs() >= 0.1 {
-        format!("{p:.1} %")
-    } else {
-        format!("{p:.0e} %")
-    };
-    text.replace('-', "−")
-}
-
 /// A message with its long numbers rounded to three digits.
 pub(crate) fn rounded(text: &str) -> String {
     let word = |w: &str| {
@@ -170,12 +159,6 @@ mod tests {
         assert!((line[0][0] - 4.0).abs() < 1e-12 && (line[0][1] - 0.2).abs() < 1e-12);
         assert!((line[32][0] - 1.0).abs() < 1e-12);
         assert!(order_line(&points[3..], 2.0).is_empty());
-    }
-
-    #[test]
-    fn percentages() {
-        assert_eq!(percent(-0.143), "−14.3 %");
-        assert_eq!(percent(2e-7), "2e−5 %");
     }
 
     #[test]

@@ -1,37 +1,32 @@
-//! What the points of a study say: orders, Pareto fronts, in numbers and words.
+//! What the points of a study say: orders, which method is the cheapest.
 
 use super::measure::{Errors, Point};
-use crate::report::{exponent, short};
-use std::fmt::Write;
+use crate::report::exponent;
 
 /// Which error.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measure {
     pub(crate) name: &'static str,
-    pub(crate) unit: &'static str,
-    /// The largest error that is of use: coarser runs are cheap, but no motion. Position errors of sheets of
-    /// 1 m.
-    useful: f64,
+    /// The largest error that is of use, a power of ten: coarser runs are cheap, but no motion. Position errors
+    /// of sheets of 1 m.
+    pub(crate) useful: i32,
     pub(crate) of: fn(&Errors) -> f64,
 }
 
 /// Distances from the reference, changes of energy, edge strains: see [`Errors`].
 pub(crate) const POSITION: Measure = Measure {
-    name: "position",
-    unit: " m",
-    useful: 0.05,
+    name: "position, m",
+    useful: -2,
     of: |errors| errors.position,
 };
 pub(crate) const ENERGY: Measure = Measure {
     name: "energy",
-    unit: "",
-    useful: 0.1,
+    useful: -1,
     of: |errors| errors.energy,
 };
 pub(crate) const STRAIN: Measure = Measure {
     name: "strain",
-    unit: "",
-    useful: 1e-2,
+    useful: -2,
     of: |errors| errors.strain,
 };
 
@@ -54,9 +49,6 @@ pub(crate) fn order(points: &[Point], scheme: &str, measure: Measure, floor: f64
     exponent(&usable[finest..]).filter(|_| usable.len() - finest >= 3)
 }
 
-/// Times within this factor count as equal: repeated measurements differ by as much.
-const NOISE: f64 = 1.1;
-
 /// The cheapest point whose error is at most `level`.
 pub(crate) fn cheapest<'a>(
     points: impl IntoIterator<Item = &'a Point>,
@@ -67,72 +59,6 @@ pub(crate) fn cheapest<'a>(
         .into_iter()
         .filter(|p| p.errors.is_some_and(|e| (measure.of)(&e) <= level))
         .min_by(|a, b| a.cpu.total_cmp(&b.cpu))
-}
-
-/// The largest and smallest useful error of the points of a method that no other method reaches in less time
-/// (beyond noise) with as small an error: its part of the front.
-pub(crate) fn on_front(points: &[Point], scheme: &str, measure: Measure) -> Option<[f64; 2]> {
-    points
-        .iter()
-        .filter(|p| p.scheme == scheme)
-        .filter_map(|p| {
-            let level = (measure.of)(&p.errors?);
-            let others = points.iter().filter(|q| q.scheme != scheme);
-            let first = cheapest(others, measure, level).is_none_or(|q| q.cpu * NOISE >= p.cpu);
-            (first && level <= measure.useful).then_some([level; 2])
-        })
-        .reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])])
-}
-
-/// One piece of a front: the method to use for errors from one level to another.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Stretch {
-    pub(crate) scheme: String,
-    /// The smallest error, a power of ten.
-    pub(crate) to: i32,
-    /// Its price at the smallest error, CPU seconds for a simulated second.
-    pub(crate) cpu: f64,
-}
-
-/// Which method is the cheapest at errors of 1e-1, 1e-2, ..., neighbouring levels with the same one joined.
-pub(crate) fn front(points: &[Point], measure: Measure) -> Vec<Stretch> {
-    let mut stretches: Vec<Stretch> = Vec::new();
-    for k in 1..=14 {
-        let Some(best) = cheapest(points, measure, 10f64.powi(-k)) else {
-            break;
-        };
-        let stretch = Stretch {
-            scheme: best.scheme.clone(),
-            to: -k,
-            cpu: best.cpu,
-        };
-        match stretches.last_mut() {
-            Some(last) if last.scheme == stretch.scheme => *last = stretch,
-            _ => stretches.push(stretch),
-        }
-    }
-    stretches
-}
-
-/// The front in words.
-pub(crate) fn advice(points: &[Point], measure: Measure) -> String {
-    let mut text = String::new();
-    for stretch in front(points, measure) {
-        let join = if text.is_empty() { "" } else { "; " };
-        // Writing to a string cannot fail.
-        let _ = write!(
-            text,
-            "{join}down to 1e{}{}: {} ({} s/s)",
-            stretch.to,
-            measure.unit,
-            stretch.scheme,
-            short(stretch.cpu)
-        );
-    }
-    if text.is_empty() {
-        text.push_str("no method reaches 1e-1");
-    }
-    text
 }
 
 #[cfg(test)]
@@ -177,25 +103,11 @@ mod tests {
     }
 
     #[test]
-    fn the_front_names_the_cheapest() {
+    fn the_cheapest_is_the_first_below_a_level() {
         let points = sample();
-        let stretches = front(&points, POSITION);
-        assert_eq!(stretches[0].scheme, "one");
-        assert_eq!(stretches[0].to, -1);
-        assert_eq!(stretches[1].scheme, "four");
-        let [high, low] = on_front(&points, "one", POSITION).unwrap();
-        assert!(
-            high == 0.05 && low < high,
-            "{high} is no more than what is of use"
-        );
-        assert!(on_front(&points, "four", POSITION).is_some());
-        assert_eq!(on_front(&points, "bad", POSITION), None);
-        assert_eq!(on_front(&points, "absent", POSITION), None);
-        let words = advice(&points, POSITION);
-        assert!(
-            words.starts_with("down to 1e-1 m: one (0.10 s/s)"),
-            "{words}"
-        );
-        assert_eq!(advice(&[], ENERGY), "no method reaches 1e-1");
+        let name = |level: f64| cheapest(&points, POSITION, level).map(|p| p.scheme.as_str());
+        assert_eq!(name(0.1), Some("one"));
+        assert_eq!(name(1e-4), Some("four"));
+        assert_eq!(name(1e-20), None);
     }
 }

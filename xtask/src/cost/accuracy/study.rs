@@ -1,17 +1,17 @@
-//! The study of one problem: all methods, all steps; its table, its plot, its words.
+//! The study of one problem: all methods, all steps; its tables and its plot.
 
-use super::analysis::{ENERGY, Measure, POSITION, STRAIN, advice, cheapest, on_front, order};
+use super::analysis::{ENERGY, Measure, POSITION, STRAIN, cheapest, order};
 use super::measure::{Point, sweep};
-use super::problem::{CHECKPOINTS, Problem};
+use super::problem::Problem;
 use super::reference::{self, Reference};
 use super::scheme::{ROBUST, Scheme, is_paper};
 use crate::cost::DEFAULT;
 use crate::draw::{Axis, Chart, Charts, Colour, Legend, Marker, Series, palette};
 use crate::progress::Progress;
 use crate::report::Effort;
-use crate::report::{Bound, Cell, LENGTHS, Requirement, Table, extremes, rounded, short};
+use crate::report::{Bound, Cell, Finding, LENGTHS, Table, rounded, short};
 use anyhow::Result;
-use std::fmt::Write;
+use serde::{Deserialize, Serialize};
 
 /// Everything measured on one problem.
 #[derive(Clone, Debug)]
@@ -19,6 +19,48 @@ pub(crate) struct Study {
     pub(crate) problem: Problem,
     pub(crate) reference: Reference,
     pub(crate) points: Vec<Point>,
+}
+
+/// Smallest error that is asked for, a power of ten.
+const LEAST: i32 = -14;
+
+/// Which method is the cheapest for an error, with CPU seconds for a simulated second.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Front {
+    problem: String,
+    error: String,
+    /// The largest error allowed.
+    level: f64,
+    /// Of all methods.
+    best: (String, f64),
+    /// Of the methods that take flat states.
+    robust: Option<(String, f64)>,
+    /// What the default takes for it.
+    default: Option<f64>,
+}
+
+impl Front {
+    /// Rows of all problems.
+    pub(crate) fn table(rows: &[Self]) -> Table {
+        Table::of(
+            "The cheapest method for an error of positions or of energy: of all, and of those that take flat states, beside the default; CPU \
+             seconds for a simulated second (s/s)",
+            rows,
+            &[
+                ("problem", &|f| f.problem.as_str().into()),
+                ("error", &|f| f.error.as_str().into()),
+                ("at_most", &|f| f.level.into()),
+                ("cheapest", &|f| f.best.0.as_str().into()),
+                ("s/s", &|f| f.best.1.into()),
+                ("cheapest_from_flat_states", &|f| {
+                    f.robust.as_ref().map(|(name, _)| name.as_str()).into()
+                }),
+                ("its_s/s", &|f| f.robust.as_ref().map(|(_, cpu)| *cpu).into()),
+                (DEFAULT, &|f| f.default.into()),
+            ],
+        )
+        .named("fronts")
+    }
 }
 
 /// Runs all methods on a problem.
@@ -78,6 +120,7 @@ impl Study {
                 ("rejected", &|p| p.cost.rejected.into()),
                 ("factorisations", &|p| p.cost.factorisations.into()),
                 ("repetitions", &|p| p.repetitions.into()),
+                ("reached_s", &|p| p.reached.into()),
                 ("failure", &|p| p.failure.clone().into()),
             ],
         )
@@ -95,51 +138,35 @@ impl Study {
     }
 
     /// How the reference was made and how far it goes.
-    pub(crate) fn reference_words(&self) -> String {
+    pub(crate) fn reference_table(&self) -> Table {
         let r = &self.reference;
-        let mut text = format!(
-            "{}; the two are at most {:.0e} m apart over the {} s that are compared",
-            r.source,
-            r.doubt(),
-            short(r.meaningful())
-        );
-        if r.usable() < CHECKPOINTS {
-            let _ = write!(
-                text,
-                " ({} of {CHECKPOINTS} checkpoints: after that they part, and nothing is compared)",
-                r.usable()
-            );
-        }
-        if let Some(g) = r.growth {
-            let _ = write!(
-                text,
-                ". A start displaced by {:.0e} m leads {:.0e} m away: neighbouring motions part {} times as far, on average with the rate {} per \
-                 second",
-                g.start,
-                g.end,
-                short(g.end / g.start),
-                short(g.rate)
-            );
-            if let Some(hint) = horizon(g.rate, r.doubt()) {
-                let _ = write!(text, "; at this rate the reference is lost after {hint} s");
-            }
-        }
-        text.push('.');
-        text
+        Table::of(
+            "The reference: two motions by other methods or other steps, the largest distance between them over the time that is \
+             compared, and the rate at which a displaced start parts from it. After that time the two part, and nothing is compared",
+            [r],
+            &[
+                ("reference", &|r| r.source.as_str().into()),
+                ("compared_for_s", &|r| r.meaningful().into()),
+                ("distance_m", &|r| r.doubt().into()),
+                ("rate_of_parting_1_per_s", &|r| {
+                    r.growth.map(|g| g.rate).into()
+                }),
+            ],
+        )
     }
 
     /// The orders and the lengths that docs/methods.md and README.md claim. An order is asked of methods with
     /// three and more runs that are fine enough to show one, on the problems whose motions are smooth: sheets
     /// flutter on finer scales than their steps.
-    pub(crate) fn requirements(&self) -> Vec<Requirement> {
+    pub(crate) fn findings(&self) -> Vec<Finding> {
         let mut all = Vec::new();
         if self.problem.is_smooth() {
             for (method, theory) in ORDERS {
                 let doubt = self.reference.doubt();
                 let fitted = order(&self.points, method, POSITION, doubt);
-                let bound = (Bound::AtLeast, theory - FIT);
+                let bound = Bound::AtLeast(theory - FIT);
                 let of = |order| {
-                    Requirement::of(method, "order of the position error", bound, &[Some(order)])
+                    Finding::worst(method, "order of the position error", bound, &[Some(order)])
                 };
                 all.extend(fitted.map(of));
             }
@@ -151,89 +178,39 @@ impl Study {
                 .map(|e| Some(e.strain));
             let strains: Vec<_> = strains.collect();
             let quantity = "largest strain of an edge";
-            all.push(Requirement::of(
+            all.push(Finding::worst(
                 method,
                 quantity,
-                (Bound::AtMost, LENGTHS),
+                Bound::AtMost(LENGTHS),
                 &strains,
             ));
         }
         all
     }
 
-    /// What follows for the choice of a method.
-    pub(crate) fn conclusions(&self) -> Vec<String> {
-        let mut all: Vec<String> = [POSITION, ENERGY]
-            .into_iter()
-            .map(|m| {
-                format!(
-                    "Cheapest for a given {} error: {}.",
-                    m.name,
-                    advice(&self.points, m)
-                )
-            })
-            .collect();
-        all.push(self.default_words());
-        all
-    }
-
-    /// Whether the default is on the fronts, and what it costs where it is not.
-    fn default_words(&self) -> String {
-        let parts: Vec<String> = [POSITION, ENERGY, STRAIN]
-            .into_iter()
-            .map(|measure| {
-                let unit = measure.unit;
-                let range = |[high, low]: [f64; 2]| {
-                    if low < high {
-                        format!("from {high:.0e} to {low:.0e}{unit}")
-                    } else {
-                        format!("at {high:.0e}{unit}")
-                    }
+    /// The cheapest methods by error, of all and of those that take any state, beside the default.
+    pub(crate) fn fronts(&self) -> Vec<Front> {
+        let is_robust = |p: &&Point| ROBUST.contains(&p.scheme.as_str());
+        let named = |p: &Point| (p.scheme.clone(), p.cpu);
+        let mut all = Vec::new();
+        for measure in [POSITION, ENERGY] {
+            for power in (LEAST..=measure.useful).rev() {
+                let level = 10f64.powi(power);
+                let Some(best) = cheapest(&self.points, measure, level) else {
+                    break;
                 };
-                let words = match self.default_on_front(measure) {
-                    [Some(all), _] => format!("on the front {}", range(all)),
-                    [None, Some(robust)] => format!(
-                        "not on the front of all methods, but on that of the methods that take flat states {}",
-                        range(robust)
-                    ),
-                    [None, None] => "not on the front".into(),
-                };
-                format!("{}: {words}", measure.name)
-            })
-            .collect();
-        let mut text = format!("The default, {DEFAULT}, in {}.", parts.join("; "));
-        if let Some([low, high]) = self.default_price() {
-            let _ = write!(
-                text,
-                " For the position errors that it reaches it takes {} to {} times the time of the cheapest method.",
-                short(low),
-                short(high)
-            );
+                all.push(Front {
+                    problem: self.problem.to_string(),
+                    error: measure.name.to_owned(),
+                    level,
+                    best: named(best),
+                    robust: cheapest(self.points.iter().filter(is_robust), measure, level)
+                        .map(named),
+                    default: cheapest(self.of(DEFAULT), measure, level).map(|p| p.cpu),
+                });
+            }
         }
-        text
-    }
-
-    /// Smallest and largest ratio of the default's time to that of the cheapest method with as small a
-    /// position error.
-    fn default_price(&self) -> Option<[f64; 2]> {
-        extremes(self.of(DEFAULT).filter_map(|p| {
-            let level = p.errors?.position;
-            Some(p.cpu / cheapest(&self.points, POSITION, level)?.cpu)
-        }))
-    }
-
-    /// The default's part of the front, of all methods and of those that take any state.
-    pub(crate) fn default_on_front(&self, measure: Measure) -> [Option<[f64; 2]>; 2] {
-        let robust: Vec<Point> = self
-            .points
-            .iter()
-            .filter(|p| ROBUST.contains(&p.scheme.as_str()))
-            .cloned()
-            .collect();
-        [
-            on_front(&self.points, DEFAULT, measure),
-            on_front(&robust, DEFAULT, measure),
-        ]
+        all
     }
 
     /// Methods, their fitted orders and the time they take for given errors.
@@ -272,34 +249,6 @@ impl Study {
                 ("remark", &|name| self.remark(name).into()),
             ],
         )
-    }
-
-    /// How far the published scheme comes, its variants included, on the sheets that the paper shows.
-    pub(crate) fn published(&self) -> Option<String> {
-        if !matches!(self.problem, Problem::Sheet(1..)) {
-            return None;
-        }
-        let runs: Vec<&Point> = self.points.iter().filter(|p| is_paper(&p.scheme)).collect();
-        let ended = runs.iter().filter(|p| p.errors.is_some()).count();
-        let furthest = runs.iter().map(|p| p.reached).fold(0.0, f64::max);
-        let names = self.names().into_iter().filter(|name| is_paper(name));
-        let reasons: Vec<String> = names
-            .filter_map(|name| {
-                let last = self.of(name).filter_map(|p| p.failure.as_deref()).last()?;
-                Some(format!("{name}: {}", rounded(last)))
-            })
-            .collect();
-        Some(format!(
-            "{}: {ended} of {} runs of the published scheme came to the end of {} s, the furthest to {} s ({}); {} of {} runs of the \
-             default did.",
-            self.problem.title(),
-            runs.len(),
-            short(self.reference.meaningful()),
-            short(furthest),
-            reasons.join("; "),
-            self.of(DEFAULT).filter(|p| p.errors.is_some()).count(),
-            self.of(DEFAULT).count()
-        ))
     }
 
     /// What kept a method from finishing, if it did.
@@ -395,12 +344,6 @@ const CLIP: f64 = 1e-17;
 /// Errors above this are left out of the plots.
 const LARGEST: f64 = 10.0;
 
-/// When a doubt grows to the size of the sheet, 1 m; `None` when it does not.
-fn horizon(rate: f64, doubt: f64) -> Option<String> {
-    let time = -doubt.ln() / rate;
-    (rate > 0.0 && time.is_finite()).then(|| short(time))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -430,16 +373,13 @@ mod tests {
                 .fold(0.0, f64::max)
         };
         assert!(strain(DEFAULT) < 1e-11 && strain("published scheme") > 1e-4);
-        assert_eq!(study.published(), None);
-        let sheet = Study {
-            problem: Problem::Sheet(1),
-            ..study
-        };
-        let text = sheet.published().expect("a sheet of the paper");
-        let paper = sheet.points.iter().filter(|p| is_paper(&p.scheme)).count();
+        // The default reaches small errors on the front of the methods that take any state, in this or that time.
+        let fronts = study.fronts();
         assert!(
-            text.contains(&format!(" of {paper} runs of the published scheme")),
-            "{text}"
+            fronts
+                .iter()
+                .all(|f| f.default.is_none_or(|cpu| cpu >= f.best.1))
         );
+        assert_eq!(Front::table(&fronts).rows.len(), fronts.len());
     }
 }

@@ -1,15 +1,12 @@
-//! What the runs say: tables and words.
+//! What the runs say.
 
-use super::CONSERVATIVE;
-use super::run::{EXACT, Run};
+use super::run::Run;
 use crate::cost::DEFAULT;
-use crate::report::{Table, percent, short};
+use crate::report::{Bound, Finding, Table};
 use crate::runs::STEP;
-use std::fmt::Write;
 
 /// The columns that the page shows.
-pub(super) const SHOWN: &str = "mesh contact method step_s cpu_s_per_simulated_s times_fastest_exact \
-    times_one_factorisation_a_step strain energy_balance largest_energy_change smallest_gap_m depth_m crossings iterations \
+pub(super) const SHOWN: &str = "mesh contact method step_s cpu_s_per_simulated_s times_fastest_exact strain energy_balance largest_energy_change smallest_gap_m depth_m crossings iterations \
     factorisations steps rejected failure";
 
 /// The columns that the book shows.
@@ -20,8 +17,7 @@ pub(super) const IN_THE_BOOK: &str = "mesh vertices method step_s cpu_s_per_simu
 pub(super) fn table(runs: &[Run]) -> Table {
     Table::of(
         "CPU seconds for a simulated second, of runs that did not end up to the time that they reached; as multiples of the fastest run of \
-         the scene and mesh that keeps lengths to 1e-9, and of one factorisation a step; largest relative edge length error, energy balance \
-         at the end as part of the potential energy released (negative: lost), its largest change on the way",
+         the scene and mesh that keeps lengths to 1e-9; largest relative edge length error, energy balance at the end as part of the potential energy released (negative: lost), its largest change on the way",
         runs,
         &[
             ("scene", &|r| r.scene()[0].into()),
@@ -32,9 +28,6 @@ pub(super) fn table(runs: &[Run]) -> Table {
             ("step_s", &|r| r.step.into()),
             ("cpu_s_per_simulated_s", &|r| r.course.cpu_rate().into()),
             ("times_fastest_exact", &|r| times_fastest(r, runs).into()),
-            ("times_one_factorisation_a_step", &|r| {
-                r.rate().map(|rate| rate / r.limit()).into()
-            }),
             ("strain", &|r| r.course.strain.into()),
             ("energy_balance", &|r| r.balance().into()),
             ("largest_energy_change", &|r| r.relative_drift().into()),
@@ -46,7 +39,6 @@ pub(super) fn table(runs: &[Run]) -> Table {
             ("wall_s_per_simulated_s", &|r| r.course.rate().into()),
             ("steps", &|r| r.course.cost.substeps.into()),
             ("rejected", &|r| r.course.cost.rejected.into()),
-            ("factorisation_s", &|r| r.mesh.factorisation.into()),
             ("repetitions", &|r| r.repetitions.into()),
             ("failure", &|r| r.remark().into()),
         ],
@@ -72,6 +64,26 @@ pub(super) fn default(runs: &[Run]) -> Table {
     )
 }
 
+/// Nothing may pass through anything in a run by a method with contact, as checked beside the contact code.
+pub(super) fn required(runs: &[Run]) -> Vec<Finding> {
+    let touching: Vec<&Run> = runs.iter().filter(|r| !r.scene()[1].is_empty()).collect();
+    if touching.is_empty() {
+        return Vec::new();
+    }
+    let worst = |quantity: &str, bound, of: &dyn Fn(&Run) -> f64| {
+        let values: Vec<_> = touching.iter().map(|r| Some(of(r))).collect();
+        Finding::worst("contact", quantity, bound, &values)
+    };
+    let none = Bound::AtMost(0.0);
+    vec![
+        worst("edges that cross faces", none, &|r| r.crossings as f64),
+        worst("depth of a vertex in the table, m", none, &|r| r.depth),
+        worst("smallest gap, m", Bound::Above(0.0), &|r| {
+            r.course.gap.unwrap_or(f64::INFINITY)
+        }),
+    ]
+}
+
 /// Whether two runs are of one scene on one mesh.
 fn are_alike(a: &Run, b: &Run) -> bool {
     (a.work, a.mesh.level) == (b.work, b.mesh.level)
@@ -90,141 +102,34 @@ fn times_fastest(run: &Run, runs: &[Run]) -> Option<f64> {
     Some(run.rate()? / least)
 }
 
-/// How the methods compare on each mesh.
-pub(super) fn comparisons(runs: &[Run]) -> Vec<String> {
-    runs.chunk_by(are_alike).map(comparison).collect()
-}
-
-fn comparison(runs: &[Run]) -> String {
-    let first = &runs[0];
-    let [scene, contact] = first.scene();
-    let mut text = format!("{scene} {}", first.mesh());
-    if !contact.is_empty() {
-        let _ = write!(text, ", contact with {contact}");
-    }
-    text[..1].make_ascii_uppercase();
-    let Some((best, least)) = fastest(runs) else {
-        return format!("{text}: no run came to the end with lengths kept to {EXACT:.0e}.");
-    };
-    let _ = write!(
-        text,
-        ": the fastest method that keeps lengths to {EXACT:.0e} is {}: {} s/s, {} times the {} s/s of one factorisation a step.",
-        best.name(),
-        short(least),
-        short(least / best.limit()),
-        short(best.limit())
-    );
-    for other in runs.iter().filter(|r| r.name() != best.name()) {
-        let _ = match other.rate() {
-            None => write!(text, " {} did not come to the end.", other.name()),
-            Some(rate) => {
-                let (times, of_limit) = (short(rate / least), short(rate / other.limit()));
-                let name = other.name();
-                let strain = match other.is_exact() {
-                    true => String::new(),
-                    false => format!(", and strains edges by {:.0e}", other.course.strain),
-                };
-                write!(
-                    text,
-                    " {name} takes {times} times as long, {of_limit} times one factorisation a step{strain}."
-                )
-            }
-        };
-    }
-    text
-}
-
-/// Gain of energy, as part of the potential energy released, that is worth a word.
-const GAIN: f64 = 1e-3;
-
-/// What else the runs say: how many ended, what penetrates, what gains energy.
-pub(super) fn details(runs: &[Run]) -> Vec<String> {
-    let ended = || runs.iter().filter(|r| r.course.is_good());
-    let strain = ended().map(|r| r.course.strain).fold(0.0, f64::max);
-    let clean = runs.iter().filter(|r| r.is_clean()).count();
-    let mut all = vec![format!(
-        "{} of {} runs came to the end; none of these strains an edge by more than {strain:.0e}. In {clean} of all runs nothing penetrates.",
-        ended().count(),
-        runs.len()
-    )];
-    let conservative = ended().filter(|r| r.method == CONSERVATIVE);
-    all.extend(conservative.map(|r| {
-        format!(
-            "{}: {CONSERVATIVE} takes {} s/s and keeps the energy to {:.0e}.",
-            r.mesh(),
-            short(r.rate().unwrap_or(f64::NAN)),
-            r.relative_drift()
-        )
-    }));
-    let gains = ended().filter(|r| r.balance() > GAIN);
-    let gains: Vec<String> = gains
-        .map(|r| format!("{} on {} by {}", r.name(), r.mesh(), percent(r.balance())))
-        .collect();
-    if !gains.is_empty() {
-        all.push(format!(
-            "These runs end with more energy than they started with, as part of the energy released: {}.",
-            gains.join("; ")
-        ));
-    }
-    all
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::Scene;
     use super::super::run::Mesh;
     use super::*;
     use crate::report::Cell;
-    use crate::runs::{Ending, Pairs, Work};
+    use crate::runs::{Ending, Work};
 
+    /// A run is compared with the fastest that ended on its mesh with its lengths kept.
     #[test]
-    fn comparisons_follow_the_numbers() {
+    fn the_fastest_exact_run_is_the_unit() {
         let (method, step) = Scene::Hanging.methods()[0].clone();
-        let mesh = Mesh::measured(1).unwrap();
-        let mut run = Run::of(Work::Hanging, mesh, method, step, 1.0).unwrap();
-        run.course.cost.cpu = 0.6 * run.course.time;
-        run.mesh.factorisation = 0.1 * run.step;
-        let mut other = run.clone();
-        other.method = CONSERVATIVE.into();
-        other.course.cost.cpu *= 3.0;
-        let (mut loose, mut lost, mut finer) = (run.clone(), run.clone(), run.clone());
-        loose.method = "loose".into();
-        (loose.course.strain, loose.course.cost.cpu) = (1e-3, 0.3 * loose.course.time);
-        lost.method = "lost".into();
-        lost.course.ending = Ending::Stopped;
-        finer.mesh.level = 2;
-        let mut cloth = run.clone();
-        cloth.work = Work::Tablecloth(Pairs::TableAndItself);
-        cloth.depth = 1e-9;
-        let all = [run, other, loose, lost, finer, cloth];
-        let text = comparisons(&all);
-        assert_eq!(text.len(), 3, "one for each scene and mesh");
-        for part in [
-            "BDF2 (default) at 16.7 ms: 0.60 s/s, 6.0 times the 0.10 s/s of one factorisation",
-            "energy-momentum at 16.7 ms takes 3.0 times as long, 18 times one factorisation a step.",
-            "loose at 16.7 ms takes 0.50 times as long, 3.0 times one factorisation a step, and strains edges by 1e-3.",
-            "lost at 16.7 ms did not come to the end.",
-        ] {
-            assert!(text[0].contains(part), "{part} is missing in {text:?}");
-        }
-        assert!(
-            text[2].starts_with("Tablecloth M^1, contact with table, itself: the fastest"),
-            "{text:?}"
-        );
-        assert!(comparison(&all[2..4]).contains("no run came to the end with lengths kept"));
-        let table = table(&all);
-        assert_eq!(
-            table.rows[1][7],
-            Cell::from(all[1].rate().unwrap() / all[0].rate().unwrap())
-        );
-        let details = details(&all).join(" ");
-        assert!(
-            details.starts_with("5 of 6 runs came to the end"),
-            "{details}"
-        );
-        assert!(
-            details.contains("In 5 of all runs nothing penetrates"),
-            "{details}"
-        );
+        let run = Run::of(Work::Hanging, Mesh::of(1), method, step, 1.0).unwrap();
+        let [mut best, mut slow, mut loose, mut lost, mut finer] = [(); 5].map(|()| run.clone());
+        best.course.cost.cpu = 0.6;
+        slow.course.cost.cpu = 1.8;
+        (loose.course.strain, loose.course.cost.cpu) = (1e-3, 0.3);
+        (lost.course.ending, lost.course.cost.cpu) = (Ending::Stopped, 0.1);
+        (finer.mesh.level, finer.course.cost.cpu) = (2, 0.2);
+        let times = table(&[best, slow, loose, lost, finer]).select("", "times_fastest_exact");
+        let numbers: Vec<Option<f64>> = times
+            .rows
+            .iter()
+            .map(|row| match row[0] {
+                Cell::Number(value) => Some((1e9 * value).round() / 1e9),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(numbers, [Some(1.0), Some(3.0), Some(0.5), None, Some(1.0)]);
     }
 }

@@ -1,7 +1,6 @@
 //! One run of a scene by a method, repeated where it is short.
 
 use super::penetration::Checker;
-use crate::cost::steps::factorisation_time;
 use crate::report::{rounded, short};
 use crate::runs::{BUMP, Course, Pairs, Plan, Work, bumped, unseen};
 use anyhow::Result;
@@ -9,24 +8,20 @@ use isosheet_dynamics::{Simulation, StepReport};
 use isosheet_tests::Named;
 use std::ops::ControlFlow;
 
-/// A mesh, and what a factorisation of its matrix takes.
-#[derive(Clone, Copy, Debug, Default)]
+/// A mesh.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Mesh {
     pub(super) level: u32,
     pub(super) vertices: usize,
-    /// Seconds for one Cholesky factorisation of the matrix of a damped step without contact.
-    pub(super) factorisation: f64,
 }
 
 impl Mesh {
-    /// Measures the factorisation of `M^level`.
-    pub(super) fn measured(level: u32) -> Result<Self> {
-        let sheet = bumped(level, BUMP);
-        Ok(Self {
+    /// The mesh `M^level`.
+    pub(super) fn of(level: u32) -> Self {
+        Self {
             level,
-            vertices: sheet.topology().vertex_count(),
-            factorisation: factorisation_time(&sheet)?,
-        })
+            vertices: bumped(level, BUMP).topology().vertex_count(),
+        }
     }
 }
 
@@ -145,21 +140,9 @@ impl Run {
         self.course.cpu_rate().filter(|_| self.course.is_good())
     }
 
-    /// CPU seconds for a simulated second that one factorisation in each step would take, the least that an
-    /// implicit method can do.
-    pub(super) fn limit(&self) -> f64 {
-        self.mesh.factorisation / self.step
-    }
-
     /// Whether the lengths are kept.
     pub(super) fn is_exact(&self) -> bool {
         self.course.strain <= EXACT
-    }
-
-    /// Whether nothing penetrates.
-    pub(super) fn is_clean(&self) -> bool {
-        let is_apart = self.course.gap.is_none_or(|gap| gap > 0.0);
-        is_apart && self.depth == 0.0 && self.crossings == 0
     }
 
     /// What moves, and what it touches.
@@ -176,11 +159,6 @@ impl Run {
         format!("M^{}", self.mesh.level)
     }
 
-    /// Method and step, for people.
-    pub(super) fn name(&self) -> String {
-        format!("{} at {:.1} ms", self.method, 1e3 * self.step)
-    }
-
     /// How far a run came that did not come to the end, and why.
     pub(super) fn remark(&self) -> Option<String> {
         let failure = rounded(&self.course.failure()?);
@@ -194,10 +172,7 @@ mod tests {
 
     #[test]
     fn short_runs_are_repeated_and_runs_out_of_time_keep_what_they_reached() {
-        let mesh = Mesh {
-            level: 1,
-            ..Mesh::default()
-        };
+        let mesh = Mesh::of(1);
         let step = crate::runs::STEP;
         let run = |work, patience| {
             Run::of(work, mesh, ("BDF2", Default::default()), step, patience).unwrap()
@@ -213,7 +188,8 @@ mod tests {
         let cloth = run(Work::Tablecloth(Pairs::TableAndItself), 60.0);
         let course = &cloth.course;
         assert!(course.is_good() && (course.time - 1.5).abs() < 1e-9);
-        assert!(course.strain < 1e-10 && course.gap.is_some() && cloth.is_clean());
+        assert!(course.strain < 1e-10 && course.gap.is_some_and(|gap| gap > 0.0));
+        assert!(cloth.depth == 0.0 && cloth.crossings == 0);
         assert!(course.cost.factorisations >= course.cost.substeps);
     }
 }

@@ -1,8 +1,8 @@
-//! What the rows say: table, chart, powers, requirements.
+//! What the rows say.
 
 use super::run::{Row, Run};
 use crate::draw::{Chart, Charts, Series};
-use crate::report::{Bound, LENGTHS, Requirement, Table, exponent, rounded, short};
+use crate::report::{Bound, Finding, LENGTHS, Table, exponent, rounded, short};
 use anyhow::{Context, Result};
 use std::path::Path;
 
@@ -38,9 +38,7 @@ pub(super) fn table(rows: &[Row]) -> Table {
             ("cpu_s", &|r| r.median(|r| Some(r.cpu)).into()),
             ("cpu_s_per_simulated_s", &|r| r.rate().into()),
             ("wall_s", &|r| r.median(|r| Some(r.course.cost.wall)).into()),
-            ("factorisations_per_step", &|r| {
-                r.median(|r| r.course.cost.factorisations_per_step()).into()
-            }),
+            ("factorisations_per_step", &|r| r.factorisations().into()),
             ("iterations_per_step", &|r| {
                 r.median(|r| r.course.cost.iterations_per_step()).into()
             }),
@@ -80,45 +78,51 @@ fn points(rows: &[Row], work: &str, value: impl Fn(&Row) -> Option<f64>) -> Vec<
         .collect()
 }
 
-/// What the rows say: powers over the sizes, and what two threads save.
-pub(super) fn findings(rows: &[Row]) -> Vec<String> {
-    let mut all = Vec::new();
-    for (work, name) in OVER_SIZES {
-        let times = points(rows, work, Row::rate);
-        let steps = points(rows, work, |r| {
-            r.median(|r| r.course.cost.factorisations_per_step())
-        });
-        if let (Some(time), Some(steps)) = (exponent(&times), exponent(&steps)) {
-            all.push(format!(
-                "{name}: time grows as V to the power {time:.2} over {} to {} vertices, the number of factorisations of a step as {steps:.2}.",
-                times[0][0],
-                times[times.len() - 1][0]
-            ));
-        }
-    }
-    for pair in rows.chunk_by(|a, b| (&a.work, &a.size) == (&b.work, &b.size)) {
-        let wall = |r: &Row| r.median(|r| r.course.rate()).filter(|_| r.is_good());
-        if let [one, two] = pair
-            && let (Some(alone), Some(shared)) = (wall(one), wall(two))
-        {
-            all.push(format!(
-                "{}, {} vertices: {} threads take {:.2} times the wall time of {}.",
-                two.title,
-                two.vertices,
-                two.threads,
-                shared / alone,
-                one.threads
-            ));
-        }
-    }
-    let failed: Vec<String> = rows
-        .iter()
-        .filter_map(|r| Some(format!("{}, {}", r.name(), failure(r)?)))
-        .collect();
-    if !failed.is_empty() {
-        all.push(format!("Not ended: {}.", failed.join("; ")));
-    }
-    all
+/// Fitted powers over the sizes, by kind.
+pub(super) fn powers(rows: &[Row]) -> Table {
+    let caption = "Fitted powers of the number of vertices V: of the CPU time of whole runs, and of the factorisations \
+        of a step";
+    let of = |work: &str, value: fn(&Row) -> Option<f64>| exponent(&points(rows, work, value));
+    let vertices = |work: &str| {
+        let points = points(rows, work, Row::rate);
+        let ends = points.first().zip(points.last());
+        ends.map(|(first, last)| format!("{} to {}", first[0], last[0]))
+    };
+    let fitted = OVER_SIZES
+        .into_iter()
+        .filter(|(work, _)| of(work, Row::rate).is_some());
+    Table::of(
+        caption,
+        fitted,
+        &[
+            ("runs", &|(_, name)| (*name).into()),
+            ("vertices", &|(work, _)| vertices(work).into()),
+            ("power_of_the_time", &|(work, _)| of(work, Row::rate).into()),
+            ("power_of_the_factorisations", &|(work, _)| {
+                of(work, Row::factorisations).into()
+            }),
+        ],
+    )
+}
+
+/// Wall times on two threads over those on one.
+pub(super) fn threads(rows: &[Row]) -> Table {
+    let wall = |r: &Row| r.median(|r| r.course.rate()).filter(|_| r.is_good());
+    let pairs = rows.chunk_by(|a, b| (&a.work, &a.size) == (&b.work, &b.size));
+    let ratio = |pair: &[Row]| match pair {
+        [one, two] => Some((two.clone(), wall(two)? / wall(one)?)),
+        _ => None,
+    };
+    Table::of(
+        "Wall time of several threads over that of one",
+        pairs.filter_map(ratio),
+        &[
+            ("run", &|(r, _)| r.title.as_str().into()),
+            ("vertices", &|(r, _)| r.vertices.into()),
+            ("threads", &|(r, _)| r.threads.into()),
+            ("part_of_the_time", &|(_, ratio)| (*ratio).into()),
+        ],
+    )
 }
 
 /// CPU seconds for a simulated second against the number of vertices, by kind, and beside them the fastest
@@ -162,14 +166,14 @@ fn elsewhere() -> Result<Vec<[f64; 2]>> {
 }
 
 /// Lengths of rods, the limit of the strain of elastic sheets, gaps.
-pub(super) fn required(rows: &[Row]) -> Vec<Requirement> {
+pub(super) fn required(rows: &[Row]) -> Vec<Finding> {
     let of = |model: &str| rows.iter().filter(|r| r.model == model).collect::<Vec<_>>();
     let gaps: Vec<_> = rows.iter().filter_map(Row::gap).map(Some).collect();
     let rods: Vec<_> = of("rods").iter().map(|r| Some(r.strain())).collect();
     let mut all = Vec::new();
     if !rods.is_empty() {
-        let bound = (Bound::AtMost, LENGTHS);
-        all.push(Requirement::of(
+        let bound = Bound::AtMost(LENGTHS);
+        all.push(Finding::worst(
             "rods",
             "largest strain of an edge",
             bound,
@@ -177,8 +181,8 @@ pub(super) fn required(rows: &[Row]) -> Vec<Requirement> {
         ));
     }
     if !gaps.is_empty() {
-        let bound = (Bound::Above, 0.0);
-        all.push(Requirement::of("contact", "smallest gap, m", bound, &gaps));
+        let bound = Bound::Above(0.0);
+        all.push(Finding::worst("contact", "smallest gap, m", bound, &gaps));
     }
     all
 }
@@ -186,6 +190,7 @@ pub(super) fn required(rows: &[Row]) -> Vec<Requirement> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Verdict;
     use crate::runs::{Course, Ending};
 
     fn row(work: &str, level: u32, threads: usize, cpu: f64) -> Row {
@@ -205,29 +210,27 @@ mod tests {
     }
 
     #[test]
-    fn words_follow_the_numbers() {
+    fn powers_and_ratios_are_those_of_runs_that_ended() {
         let cost = |level: u32| f64::from((2_u32 << level) + 1).powf(3.0);
         let mut rows: Vec<Row> = (2..=4).map(|k| row("w1", k, 1, cost(k))).collect();
         rows.extend([row("ball", 2, 1, 4.0), row("ball", 2, 2, 3.0)]);
-        let text = findings(&rows).join(" ");
-        for part in [
-            "hanging, rods: time grows as V to the power 1.50 over 81 to 1089 vertices",
-            "factorisations of a step as 0.00",
-            "a sheet, 81 vertices: 2 threads take 0.75 times the wall time of 1.",
-        ] {
-            assert!(text.contains(part), "{part} is missing in {text}");
-        }
-        assert!(!text.contains("Not ended"), "{text}");
-        rows[2].runs[0].course.ending = Ending::WallTime(60.0);
-        let text = findings(&rows).join(" ");
+        let text = powers(&rows).text();
+        assert!(text.contains("hanging, rods  81 to 1089  1.5 "), "{text}");
+        let text = threads(&rows).text();
         assert!(
-            text.contains("over 81 to 289 vertices")
-                && text.contains("Not ended: w1 M^4, at 1.0 s: 60 s")
+            text.ends_with("a sheet  81        2        0.75\n"),
+            "{text}"
         );
+        rows[2].runs[0].course.ending = Ending::WallTime(60.0);
+        let text = powers(&rows).text();
+        assert!(text.contains("81 to 289"), "{text}");
         assert_eq!(points(&rows, "w1", Row::rate).len(), 2);
-        assert!(required(&rows).iter().all(Requirement::is_met));
+        let verdicts = |rows: &[Row]| -> Vec<Verdict> {
+            required(rows).iter().map(Finding::verdict).collect()
+        };
+        assert_eq!(verdicts(&rows), [Verdict::Passed; 2]);
         rows[0].runs[0].strain = 1e-9;
-        assert!(!required(&rows)[0].is_met());
+        assert_eq!(verdicts(&rows), [Verdict::Failed, Verdict::Passed]);
     }
 
     /// The chart compares with numbers that stand in the book alone.

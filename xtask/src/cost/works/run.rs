@@ -76,14 +76,14 @@ impl Row {
         (n > 0).then(|| 0.5 * (all[(n - 1) / 2] + all[n / 2]))
     }
 
-    /// The row for people.
-    pub(super) fn name(&self) -> String {
-        format!("{} {}", self.work, self.size).trim_end().to_owned()
-    }
-
     /// Median of the CPU seconds for a simulated second.
     pub(super) fn rate(&self) -> Option<f64> {
         self.median(|r| (r.course.time > 0.0).then(|| r.cpu / r.course.time))
+    }
+
+    /// Median of the factorisations of a step.
+    pub(super) fn factorisations(&self) -> Option<f64> {
+        self.median(|r| r.course.cost.factorisations_per_step())
     }
 
     /// Whether all runs came to their ends.
