@@ -99,6 +99,7 @@ fn code(error: &Error) -> u8 {
         Some(match cause.downcast_ref()? {
             RunError::Foreign { .. } => 4,
             RunError::Busy { .. } => 5,
+            RunError::Step(_) | RunError::Scene(_) => 1,
             _ => 6,
         })
     };

@@ -155,20 +155,23 @@ impl Run {
     }
 
     /// One array for each column of `history.csv`, with a row for the start and for every step: "time", "h",
-    /// "iterations", "factorisations", "rejected", "kinetic", "potential", "total", "drift", "strain", "gap"
-    /// (NaN without contact), "plastic" (what yielding has dissipated; NaN where nothing can yield). Seconds, joules,
-    /// metres.
+    /// "substeps", "iterations", "factorisations", "rejected", "kinetic", "potential", "total", "drift" (of the total
+    /// energy), "work", and what "damped", "friction" and "plastic" bending have dissipated (the last is NaN where nothing
+    /// can yield), "strain", "gap" (NaN without contact). Seconds, joules, metres.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let rows = &self.recording.history;
         let columns = PyDict::new(py);
-        let numbers: [Column<f64>; 9] = [
+        let numbers: [Column<f64>; 12] = [
             ("time", |row| row.t),
             ("h", |row| row.h),
             ("kinetic", |row| row.kinetic),
             ("potential", |row| row.potential),
             ("total", |row| row.total),
             ("drift", |row| row.drift),
+            ("work", |row| row.work),
+            ("damped", |row| row.damped),
+            ("friction", |row| row.friction),
             ("strain", |row| row.strain),
             ("gap", |row| row.gap.unwrap_or(f64::NAN)),
             ("plastic", |row| row.plastic.unwrap_or(f64::NAN)),
@@ -176,7 +179,8 @@ impl Run {
         for (name, of) in numbers {
             columns.set_item(name, array(py, &rows.iter().map(of).collect::<Vec<_>>()))?;
         }
-        let counts: [Column<usize>; 3] = [
+        let counts: [Column<usize>; 4] = [
+            ("substeps", |row| row.substeps),
             ("iterations", |row| row.iterations),
             ("factorisations", |row| row.factorisations),
             ("rejected", |row| row.rejected),

@@ -20,6 +20,8 @@ pub struct HistoryRow {
     pub t: f64,
     /// Length of the step, in seconds; 0 in a row for the start.
     pub h: f64,
+    /// Parts that the step was divided into; 0 in a row for the start.
+    pub substeps: usize,
     /// Iterations that the step took.
     pub iterations: usize,
     /// Matrix factorisations that the step took.
@@ -36,20 +38,27 @@ pub struct HistoryRow {
     /// Change of the total energy since the start, in joules.
     #[serde(rename = "dH")]
     pub drift: f64,
+    /// Work of moving supports and bodies and of applied forces since the start, in joules.
+    pub work: f64,
+    /// What velocity damping has dissipated since the start, in joules.
+    pub damped: f64,
+    /// What friction has dissipated since the start, in joules.
+    pub friction: f64,
+    /// What yielding has dissipated since the start, in joules; empty in the file for a run in which nothing can
+    /// yield. `dH - work + damped + friction + plastic` is the error of the energy balance.
+    pub plastic: Option<f64>,
     /// Largest relative change of an edge length.
     pub strain: f64,
     /// Smallest distance between surfaces that could come into contact, in metres; empty in the file for a
     /// run without contact.
     pub gap: Option<f64>,
-    /// What yielding has dissipated since the start, in joules; empty in the file for a run in which nothing can
-    /// yield.
-    pub plastic: Option<f64>,
 }
 
 /// The column names, in order.
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 16] = [
     "t",
     "h",
+    "substeps",
     "iterations",
     "factorisations",
     "rejected",
@@ -57,9 +66,12 @@ const COLUMNS: [&str; 12] = [
     "potential",
     "H",
     "dH",
+    "work",
+    "damped",
+    "friction",
+    "plastic",
     "strain",
     "gap",
-    "plastic",
 ];
 
 /// A history that cannot be written or read.
@@ -181,9 +193,12 @@ impl Row for HistoryRow {
             ("potential", self.potential),
             ("H", self.total),
             ("dH", self.drift),
+            ("work", self.work),
+            ("damped", self.damped),
+            ("friction", self.friction),
+            ("plastic", self.plastic.unwrap_or(0.0)),
             ("strain", self.strain),
             ("gap", self.gap.unwrap_or(0.0)),
-            ("plastic", self.plastic.unwrap_or(0.0)),
         ];
         values.into_iter()
     }
@@ -360,6 +375,7 @@ mod tests {
         HistoryRow {
             t: 0.1 * k as f64,
             h: 0.1,
+            substeps: k + 1,
             iterations: 3 * k,
             factorisations: 5 * k,
             rejected: k % 3,
@@ -367,9 +383,12 @@ mod tests {
             potential: -s * 1e9,
             total: 1.0 / 3.0,
             drift: f64::MIN_POSITIVE * s,
+            work: 0.1 * s,
+            damped: 0.2 * s,
+            friction: 0.3 * s,
+            plastic: (k % 3 == 1).then_some(s * s),
             strain: f64::EPSILON,
             gap: (k % 2 == 1).then_some(s),
-            plastic: (k % 3 == 1).then_some(s * s),
         }
     }
 
@@ -389,7 +408,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(
             text.starts_with(
-                "t,h,iterations,factorisations,rejected,kinetic,potential,H,dH,strain,gap,plastic\n"
+                "t,h,substeps,iterations,factorisations,rejected,kinetic,potential,H,dH,work,damped,friction,plastic,strain,gap\n"
             ),
             "{text}"
         );

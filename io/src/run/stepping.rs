@@ -8,6 +8,7 @@ use super::summary::{EndReason, Ending};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
+use cpu_time::ThreadTime;
 use isosheet_dynamics::{Checkpoint, SheetModel, Simulation, StepError, StepProgress, StepReport};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
@@ -74,6 +75,7 @@ impl HistoryRow {
         Self {
             t: report.t,
             h: report.h,
+            substeps: report.substeps,
             iterations: report.iterations,
             factorisations: report.factorisations,
             rejected: report.rejected,
@@ -81,9 +83,12 @@ impl HistoryRow {
             potential: report.potential,
             total,
             drift: total - start_energy,
+            work: report.work,
+            damped: report.dissipated,
+            friction: report.friction,
+            plastic: dissipated(model, report.plastic),
             strain: report.strain,
             gap: report.gap.filter(|gap| gap.is_finite()),
-            plastic: dissipated(model, report.plastic),
         }
     }
 }
@@ -171,7 +176,10 @@ impl Stepping<'_> {
             part.factorisations = progress.factorisations;
             watch.within_step(&part)
         };
-        let report = match self.simulation.step_watched(h, &mut ask) {
+        let (wall, cpu) = (Instant::now(), ThreadTime::now());
+        let stepped = self.simulation.step_watched(h, &mut ask);
+        let (wall, cpu) = (wall.elapsed(), cpu.elapsed());
+        let report = match stepped {
             Ok(report) => report,
             Err(StepError::Interrupted { .. }) => {
                 self.write_checkpoint(&before)?;
@@ -202,6 +210,8 @@ impl Stepping<'_> {
             of: step_count(scene),
             strain: report.strain,
             gap: report.gap.filter(|gap| gap.is_finite()),
+            wall,
+            cpu,
         }))
     }
 

@@ -2,6 +2,7 @@
 
 use crate::scene::SceneWarning;
 use std::ops::ControlFlow;
+use std::time::Duration;
 
 /// How a run begins.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +32,10 @@ pub struct Tick {
     pub strain: f64,
     /// Smallest gap, metres; none if nothing is close.
     pub gap: Option<f64>,
+    /// Wall time of the step, without what is recorded of it.
+    pub wall: Duration,
+    /// Time of the processor of the step: that of the thread that calls.
+    pub cpu: Duration,
 }
 
 /// How far a step has come that is under way.

@@ -60,7 +60,7 @@ impl Fed {
     fn of(scene: FigureScene, store: &Store) -> Result<Self> {
         let feed = Feed::of(&scene)?;
         let run = Run::of(store, scene)?;
-        let forces = &run.supports;
+        let forces = &run.supports();
         let force = forces
             .windows(WINDOW)
             .map(|w| {

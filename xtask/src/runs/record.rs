@@ -1,19 +1,16 @@
-//! Runs of scenes as figures are made of them: made once, recorded in DIR/runs.
+//! Runs of scenes as figures are made of them: those of `isosheet simulate`, made once in DIR/runs.
 
-use super::{Course, FigureScene, Plan};
+use super::{Course, FigureScene};
+use crate::interrupt::{self, Interrupted};
 use crate::progress::Progress;
-use crate::report::Table;
+use crate::report::Cost;
 use crate::store::{Files, Store, Unit};
 use anyhow::{Result, ensure};
-use isosheet_dynamics::{Simulation, StepOutcome, StepReport};
-use isosheet_io::run::ElasticSummary;
-use isosheet_io::scene::SupportForces;
-use isosheet_io::{
-    HistoryRow, HistoryWriter, Trajectory, frame_path, read_history, write_json, write_obj,
-};
+use isosheet_io::run::simulate;
+use isosheet_io::run::{ElasticSummary, Outcome, Recording, StepPart, Summary, Tick, Watch};
+use isosheet_io::{HistoryRow, LoadKind, LoadRow, Trajectory, read_loads};
 use isosheet_mesh::Sheet;
 use isosheet_mesh::wording::brief;
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -24,8 +21,8 @@ const STRAIN: f64 = 1e-10;
 /// A sheet with less kinetic energy than this part of the potential energy released is at rest.
 const REST: f64 = 1e-6;
 
-/// What a run did, as in its summary.json.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+/// What a run did.
+#[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct RunSummary {
     /// The scene file.
     pub(crate) scene: String,
@@ -42,8 +39,6 @@ pub(crate) struct RunSummary {
     pub(crate) energy: Energy,
     /// Time from which the kinetic energy stays below [`REST`] of the potential energy released, seconds.
     pub(crate) at_rest_from: Option<f64>,
-    /// Frames by the path that their hardest sub-step took: Newton alone, globalised, seeded, other.
-    pub(crate) paths: [usize; 4],
     /// Kinetic energy at the end as part of the potential energy released.
     pub(crate) motion_left: f64,
     /// How an elastic sheet was softened and deformed; none for rods.
@@ -51,7 +46,7 @@ pub(crate) struct RunSummary {
 }
 
 /// Where the energy went, joules.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Energy {
     /// Potential energy at the start less that at the end.
     pub(crate) released: f64,
@@ -62,13 +57,71 @@ pub(crate) struct Energy {
     /// Lost to friction.
     pub(crate) friction: f64,
     /// Dissipated by yielding.
-    #[serde(default)]
     pub(crate) plastic: f64,
     /// What the balance lacks: the error of the integrator.
     pub(crate) drift: f64,
 }
 
 impl RunSummary {
+    /// What the rows of a run and its summary say, and what its steps took.
+    fn new(scene: &FigureScene, summary: &Summary, rows: &[HistoryRow], times: Times) -> Self {
+        let (first, steps) = rows
+            .split_first()
+            .map_or((None, rows), |(f, s)| (Some(f), s));
+        let start = first.copied().unwrap_or_default();
+        let cost = Cost {
+            steps: steps.len(),
+            substeps: steps.iter().map(|row| row.substeps).sum(),
+            rejected: steps.iter().map(|row| row.rejected).sum(),
+            iterations: steps.iter().map(|row| row.iterations).sum(),
+            factorisations: steps.iter().map(|row| row.factorisations).sum(),
+            wall: times.wall,
+            cpu: times.cpu,
+        };
+        let lengths = || steps.iter().map(|row| row.h / row.substeps.max(1) as f64);
+        let range = lengths().reduce(f64::min).zip(lengths().reduce(f64::max));
+        // Kinetic energy as part of the potential energy released; nothing where none is.
+        let motion = |row: &HistoryRow| {
+            let released = start.total - row.potential;
+            (released > 0.0).then(|| row.kinetic / released)
+        };
+        let moves = |row: &HistoryRow| motion(row).is_none_or(|part| part >= REST);
+        let quiet = steps.iter().rposition(moves).map_or(0, |last| last + 1);
+        let last = steps.last().copied().unwrap_or(start);
+        Self {
+            scene: scene.text().to_owned(),
+            vertices: summary.vertices,
+            faces: summary.faces,
+            course: Course {
+                time: last.t,
+                cost,
+                worst: steps
+                    .iter()
+                    .map(|row| row.factorisations)
+                    .max()
+                    .unwrap_or(0),
+                strain: summary.largest_strain,
+                gap: summary.smallest_gap,
+                kinetic: last.kinetic,
+                speed: summary.ending.largest_speed,
+                ..Course::default()
+            },
+            frames_per_second: cost.steps as f64 / times.wall.max(1e-9),
+            step_range: range.map(|(low, high)| [low, high]),
+            energy: Energy {
+                released: start.total - last.potential,
+                work: last.work,
+                damped: last.damped,
+                friction: last.friction,
+                plastic: last.plastic.unwrap_or(0.0),
+                drift: summary.ending.energy_drift,
+            },
+            at_rest_from: steps.get(quiet).map(|row| row.t),
+            motion_left: motion(&last).unwrap_or(0.0),
+            elastic: summary.elastic,
+        }
+    }
+
     /// Wall time over simulated time: below one is faster than real time.
     pub(crate) fn slowness(&self) -> f64 {
         self.course.cost.wall / self.course.time.max(1e-12)
@@ -86,50 +139,22 @@ impl RunSummary {
         Some(format!("{least} to {most} of {} N/m", brief(e.stiffness)))
     }
 
-    /// Takes a step of a run into account that started with the energy `before`, joules.
-    fn add(&mut self, r: &StepReport, before: f64) {
-        let step = r.h / r.substeps.max(1) as f64;
-        let [low, high] = self.step_range.unwrap_or([step, step]);
-        self.step_range = Some([low.min(step), high.max(step)]);
-        self.paths[match r.outcome {
-            StepOutcome::Newton => 0,
-            StepOutcome::Globalised => 1,
-            StepOutcome::BranchSeeded => 2,
-            _ => 3,
-        }] += 1;
-        let released = before - r.potential;
-        let is_lower = released > 0.0;
-        self.motion_left = if is_lower { r.kinetic / released } else { 0.0 };
-        let is_at_rest = is_lower && self.motion_left < REST;
-        self.at_rest_from = is_at_rest.then(|| self.at_rest_from.unwrap_or(r.t));
-        self.energy = Energy {
-            released,
-            work: r.work,
-            damped: r.dissipated,
-            friction: r.friction,
-            plastic: r.plastic,
-            drift: r.energy_drift,
-        };
+    /// What every run has to keep.
+    fn check(&self) -> Result<()> {
+        let strain = self.strain();
+        let limit = self.elastic.map_or(STRAIN, |e| e.limit);
+        ensure!(
+            strain < limit,
+            "the largest strain is {strain:e}, {limit:e} is the limit"
+        );
+        // Not a number is no gap either.
+        let gap = self.course.gap;
+        ensure!(
+            gap.is_none_or(|g| g > 0.0),
+            "the smallest gap is {gap:?} m: something touches"
+        );
+        Ok(())
     }
-}
-
-/// A force of the sheet on a body with its torque about the body's origin: time (s), number of the body, N,
-/// N m.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Load {
-    t: f64,
-    body: usize,
-    force: [f64; 3],
-    torque: [f64; 3],
-}
-
-/// What is kept of a run beside its files.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Found {
-    summary: RunSummary,
-    loads: Vec<Load>,
-    /// Time (s), and the sum of the forces (N) of all pins and vertex constraints on the sheet.
-    supports: Vec<[f64; 4]>,
 }
 
 /// A run that has been made.
@@ -141,35 +166,35 @@ pub(crate) struct Run {
     pub(crate) trajectory: Trajectory,
     /// A row for the start and for each frame.
     pub(crate) history: Vec<HistoryRow>,
-    /// Time and force of all supports on the sheet: seconds, newtons.
-    pub(crate) supports: Vec<[f64; 4]>,
-    loads: Vec<Load>,
+    loads: Vec<LoadRow>,
 }
 
 impl Run {
     /// An up-to-date run of the scene, which is made now when there is none.
     ///
     /// # Errors
-    /// [`Interrupted`](crate::interrupt::Interrupted) after Ctrl-C; those of the simulation.
+    /// [`Interrupted`] after Ctrl-C; those of the simulation.
     pub(crate) fn of(store: &Store, scene: FigureScene) -> Result<Self> {
         let unit = Unit {
             name: format!("run-{}", scene.name()),
             title: format!("run {}", scene.name()),
             options: scene.options(),
         };
-        let Found {
-            summary,
-            loads,
-            supports,
-        } = store.keep(&unit, |files| record(&scene, files))?;
+        let (summary, times) = store.keep(&unit, |files| record(&scene, files))?;
         let folder = store.path(&folder(&scene));
+        let recorded = Recording::read(&folder)?;
+        let loads = folder.join("loads.csv");
+        let summary = RunSummary::new(&scene, &summary, &recorded.history, times);
+        summary.check()?;
         Ok(Self {
-            sheet: scene.sheet()?,
-            trajectory: Trajectory::read(&folder.join("trajectory.npz"))?,
-            history: read_history(&folder.join("history.csv"))?,
+            sheet: recorded.sheet,
+            trajectory: recorded.trajectory,
+            history: recorded.history,
+            loads: match loads.is_file() {
+                true => read_loads(&loads)?,
+                false => Vec::new(),
+            },
             summary,
-            loads,
-            supports,
             scene,
         })
     }
@@ -187,226 +212,83 @@ impl Run {
 
     /// Time and force of the sheet on a body: seconds, newtons.
     pub(crate) fn forces(&self, body: usize) -> Vec<[f64; 4]> {
-        let of_body = self.loads.iter().filter(|load| load.body == body);
-        let row = |load: &Load| [load.t, load.force[0], load.force[1], load.force[2]];
-        of_body.map(row).collect()
+        let is_of_body = |row: &&LoadRow| row.on == LoadKind::Obstacle && row.number == body;
+        self.loads.iter().filter(is_of_body).map(timed).collect()
     }
+
+    /// Time and force of all supports on the sheet: seconds, newtons.
+    pub(crate) fn supports(&self) -> Vec<[f64; 4]> {
+        let mut sums: Vec<[f64; 4]> = Vec::new();
+        for row in self.loads.iter().filter(|row| row.on == LoadKind::Support) {
+            let [t, force @ ..] = timed(row);
+            match sums.last_mut() {
+                Some(last) if last[0] == t => (0..3).for_each(|k| last[k + 1] += force[k]),
+                _ => sums.push(timed(row)),
+            }
+        }
+        sums
+    }
+}
+
+/// Time and force of a load.
+fn timed(row: &LoadRow) -> [f64; 4] {
+    [row.t, row.force[0], row.force[1], row.force[2]]
 }
 
 fn folder(scene: &FigureScene) -> String {
     format!("runs/{}", scene.name())
 }
 
-/// What every run has to keep at every frame.
-fn check(report: &StepReport) -> Result<()> {
-    let StepReport { t, gap, .. } = *report;
-    let strain = report.constrained_strain;
-    ensure!(
-        strain < STRAIN,
-        "at t = {t} s an edge is strained by {strain:e}, {STRAIN:e} is the limit"
-    );
-    // Not a number is no gap either.
-    ensure!(
-        gap.is_none_or(|g| g > 0.0),
-        "at t = {t} s the smallest gap is {gap:?} m: something touches"
-    );
-    Ok(())
+/// What the steps of a run took, seconds.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+struct Times {
+    wall: f64,
+    cpu: f64,
 }
 
-struct Recorder<'a> {
-    sheet: &'a Sheet,
-    trajectory: Trajectory,
-    history: HistoryWriter,
-    folder: &'a Path,
-    start: f64,
-    found: Found,
+/// Shows the progress of a run and counts its time.
+struct Watching {
+    bar: Progress,
+    times: Times,
 }
 
-impl Recorder<'_> {
-    fn frame(&mut self, simulation: &Simulation, report: Option<&StepReport>) -> Result<()> {
-        let state = simulation.state();
-        let t = state.t;
-        let obj = frame_path(&self.folder.join("obj"), self.trajectory.len());
-        write_obj(&obj, self.sheet.topology(), &state.x)?;
-        self.trajectory.push(t, &state.x)?;
-        let kinetic = simulation.model().kinetic_energy(&state.v);
-        let total = simulation.energy();
-        let mut row = HistoryRow {
-            t,
-            kinetic,
-            potential: total - kinetic,
-            total,
-            drift: total - self.start,
-            plastic: simulation.model().can_yield().then_some(0.0),
-            ..HistoryRow::default()
-        };
-        if let Some(r) = report {
-            check(r)?;
-            self.found.summary.add(r, self.start);
-            if let Some(elastic) = &mut self.found.summary.elastic {
-                elastic.observe(simulation.model(), t, &state.x);
-                let (strain, limit) = (elastic.strain, elastic.limit);
-                ensure!(
-                    strain < limit,
-                    "at t = {t} s a face is strained by {strain:e}, beyond {limit:e}"
-                );
-            }
-            (row.h, row.iterations, row.factorisations) = (r.h, r.iterations, r.factorisations);
-            (row.rejected, row.strain) = (r.rejected, r.strain);
-            // An infinite gap means that nothing is within reach.
-            row.gap = r.gap.filter(|g| g.is_finite());
-            row.plastic = row.plastic.map(|_| r.plastic);
+impl Watch for Watching {
+    fn within_step(&mut self, _: &StepPart) -> ControlFlow<()> {
+        match interrupt::requested() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
         }
-        self.history.append(&row)?;
-        let loads = simulation.body_loads().into_iter().enumerate();
-        self.found.loads.extend(loads.map(|(body, load)| Load {
-            t,
-            body,
-            force: load.force.into(),
-            torque: load.torque.into(),
-        }));
-        // Their forces are known after the first step.
-        let forces: Vec<_> = simulation.reactions().iter().map(|r| r.force).collect();
-        if !forces.is_empty() {
-            let [x, y, z]: [f64; 3] = forces.iter().sum::<Vector3<f64>>().into();
-            self.found.supports.push([t, x, y, z]);
-        }
-        Ok(())
     }
-}
 
-/// Runs a scene and writes what it did.
-fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<Found> {
-    let folder = files.folder(&folder(scene))?;
-    let setup = scene.setup()?;
-    let (sheet, origins) = (setup.sheet.clone(), setup.origins.clone());
-    let mut simulation = setup.start()?;
-    let supports = SupportForces::new(origins, &simulation, scene.scene().support.len());
-    let mut recorder = Recorder {
-        sheet: &sheet,
-        trajectory: Trajectory::new(&sheet),
-        history: HistoryWriter::create(&folder.join("history.csv"))?,
-        folder: &folder,
-        // The sheet starts at rest.
-        start: simulation.energy(),
-        found: Found {
-            summary: RunSummary {
-                elastic: ElasticSummary::of(simulation.model()),
-                ..RunSummary::default()
-            },
-            ..Found::default()
-        },
-    };
-    recorder.frame(&simulation, None)?;
-    let stop = &scene.scene().stop;
-    let bar = Progress::start(format!("run {}", scene.name()), scene.frames());
-    let mut outcome = Ok(());
-    let mut look = |simulation: &Simulation, report: &StepReport| {
-        outcome = recorder.frame(simulation, Some(report));
-        bar.step();
-        if outcome.is_err() || stop.is_force_reached(|| supports.of(simulation)) {
-            return ControlFlow::Break(());
-        }
+    fn step(&mut self, tick: &Tick) -> ControlFlow<()> {
+        self.times.wall += tick.wall.as_secs_f64();
+        self.times.cpu += tick.cpu.as_secs_f64();
+        self.bar.step();
         ControlFlow::Continue(())
-    };
-    let plan = Plan::new(scene.frame(), stop.time);
-    let mut course = plan.run(&mut simulation, &mut look)?;
-    outcome?;
-    if let Some(error) = course.error.take() {
-        return Err(error.into());
     }
-    let mut found = recorder.found;
-    found.summary = RunSummary {
-        scene: scene.text().to_owned(),
-        vertices: sheet.topology().vertex_count(),
-        faces: sheet.topology().face_count(),
-        frames_per_second: course.cost.steps as f64 / course.cost.wall.max(1e-9),
-        course,
-        ..found.summary
+}
+
+/// Runs a scene. What came of it, and what its steps took.
+fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<(Summary, Times)> {
+    let folder = files.folder(&folder(scene))?;
+    let mut watching = Watching {
+        bar: Progress::start(format!("run {}", scene.name()), scene.frames()),
+        times: Times::default(),
     };
-    recorder.trajectory.write(&folder.join("trajectory.npz"))?;
-    write_tables(&found, &folder)?;
-    write_json(&folder.join("summary.json"), &found.summary)?;
-    let s = &found.summary;
-    bar.finish(&format!(
-        "{} of {} frames, {:.1} frames/s",
-        s.course.cost.steps,
+    let summary = run(scene, &folder, &mut watching)?;
+    let (steps, wall) = (summary.steps, watching.times.wall);
+    watching.bar.finish(&format!(
+        "{steps} of {} frames, {:.1} frames/s",
         scene.frames(),
-        s.frames_per_second
+        steps as f64 / wall.max(1e-9)
     ));
-    Ok(found)
+    Ok((summary, watching.times))
 }
 
-/// Writes loads.csv and supports.csv, where there are any.
-fn write_tables(found: &Found, folder: &Path) -> Result<()> {
-    let loads = Table::of(
-        "",
-        &found.loads,
-        &[
-            ("t", &|l| l.t.into()),
-            ("body", &|l| l.body.into()),
-            ("fx", &|l| l.force[0].into()),
-            ("fy", &|l| l.force[1].into()),
-            ("fz", &|l| l.force[2].into()),
-            ("mx", &|l| l.torque[0].into()),
-            ("my", &|l| l.torque[1].into()),
-            ("mz", &|l| l.torque[2].into()),
-        ],
-    );
-    let supports = Table::of(
-        "",
-        &found.supports,
-        &[
-            ("t", &|s| s[0].into()),
-            ("fx", &|s| s[1].into()),
-            ("fy", &|s| s[2].into()),
-            ("fz", &|s| s[3].into()),
-        ],
-    );
-    for (file, table) in [("loads.csv", loads), ("supports.csv", supports)] {
-        if !table.rows.is_empty() {
-            table.write_to(&folder.join(file))?;
-        }
-    }
-    Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::report::Effort;
-    use crate::store::Remake;
-
-    /// [`simulate`](isosheet_io::run::simulate) is what `isosheet simulate` calls.
-    #[test]
-    fn the_command_makes_the_motion_that_the_figures_show() {
-        let folder = tempfile::tempdir().unwrap();
-        let out = folder.path().join("out");
-        let store = Store::open(&out, "a", Effort::Quick, Remake::Never).unwrap();
-        // A strip that is pushed until its support bears 3 mN, a vertex that folds, a sheet in a chart.
-        let cases = [
-            ("fig16", vec!["stop.time=0.05", "stop.support_force=0.003"]),
-            ("fig17-vertex-odd", vec!["stop.time=0.5"]),
-            ("fig10", vec!["stop.time=0.1"]),
-        ];
-        for (file, edits) in cases {
-            let edits: Vec<String> = edits.into_iter().map(str::to_owned).collect();
-            let scene = FigureScene::of(file, file, &edits).unwrap();
-            let shown = Run::of(&store, scene.clone()).unwrap();
-            let course = &shown.summary.course;
-            assert!(course.strain < 1e-11 && shown.summary.step_range.is_some());
-            let run = folder.path().join(file);
-            let go_on = &mut |_: &isosheet_io::run::Tick| ControlFlow::Continue(());
-            isosheet_io::run::simulate(scene.file(), &run, go_on).unwrap();
-            let made = Trajectory::read(&run.join("trajectory.npz")).unwrap();
-            assert_eq!(made.times(), shown.trajectory.times(), "{file}");
-            assert_eq!(made.len(), course.cost.steps + 1, "{file}");
-            assert_eq!(shown.history.len(), made.len());
-            let is_whole = course.cost.steps == scene.frames();
-            assert!(!is_whole || file != "fig16", "stopped by force");
-            for (k, x) in shown.frames().enumerate() {
-                assert_eq!(made.frame(k), Some(x), "{file}, frame {k}");
-            }
-        }
+fn run(scene: &FigureScene, folder: &Path, watching: &mut Watching) -> Result<Summary> {
+    let file = scene.without_page()?;
+    match simulate(&file, folder, watching)? {
+        Outcome::Complete(summary) | Outcome::AlreadyComplete(summary) => Ok(*summary),
+        Outcome::Interrupted => Err(Interrupted.into()),
     }
 }

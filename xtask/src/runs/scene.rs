@@ -126,10 +126,14 @@ impl FigureScene {
         serde_json::from_value(value).with_context(|| format!("{key} of {}", self.name))
     }
 
-    /// The scene file.
-    #[cfg(test)]
-    pub(crate) fn file(&self) -> &SceneFile {
-        &self.file
+    /// The scene file for runs whose page the figure writes.
+    ///
+    /// # Errors
+    /// None that is known.
+    pub(crate) fn without_page(&self) -> Result<SceneFile> {
+        let text = self.file.text();
+        let edits = ["output.page=false".to_owned()];
+        Ok(SceneFile::parse(text.text.clone(), &text.path, &edits)?)
     }
 
     /// The text of the scene file with its edits.
