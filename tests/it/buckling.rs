@@ -117,28 +117,25 @@ fn a_strip_jams_between_walls_without_touching() {
         if step == 79 {
             // What the nip has paid for is stored in bending or lost.
             let stored = report.hamiltonian() - before;
-            // Which buckle it snaps into depends on the step. Measured with steps of 2.5, 1.25 and 0.6 ms, in
-            // shares of the work of 2.7 to 3.3 mJ: stored 0.64 to 0.80, lost to friction 0.17 to 0.27, damped
-            // 0.0035 to 0.0065. The error of the trapezoidal rule for the work of the jamming pins, which
-            // jumps as the strip snaps, is -0.12 to 0.07.
-            let share = |energy: f64| energy / report.work;
-            assert!((2.2e-3..3.8e-3).contains(&report.work), "{report:?}");
-            assert!((0.55..0.9).contains(&share(stored)), "{report:?}");
-            assert!((0.13..0.36).contains(&share(report.friction)), "{report:?}");
+            // Which buckle it snaps into depends on the step. The work of the jamming pins is that of the trapezoidal
+            // rule, which errs where their force jumps as the strip snaps: by less than the smallest of what the
+            // balance is made of, but for the damping of a slow motion.
+            let parts = [stored, report.friction];
+            let least = parts.into_iter().fold(f64::INFINITY, f64::min);
+            assert!(least > 0.0 && report.dissipated > 0.0, "{report:?}");
             assert!(
-                (0.003..0.014).contains(&share(report.dissipated)),
+                report.work > report.friction + report.dissipated,
                 "{report:?}"
             );
-            assert!(share(report.energy_drift).abs() < 0.15, "{report:?}");
+            assert!(report.energy_drift.abs() < least, "{report:?}");
         }
     }
-    // The walls let it buckle, and hold the buckle: it carries more than a strip that is hinged at the plate.
+    // The walls let it buckle, and hold the buckle: it carries more than a free strip that is clamped at both ends,
+    // 4 pi^2 D w / L^2, and less than it takes to buckle into two such waves, four times as much (Chai, 1998).
     let bends = LENGTH * (1.0 - 1.5 / cells as f64);
-    let hinged = 2.0457 * RIGIDITY * WIDTH * (PI / bends).powi(2);
-    // Measured with these steps: 5.2 to 6.2 times as much.
-    let ratio = largest / hinged;
+    let clamped = 4.0 * RIGIDITY * WIDTH * (PI / bends).powi(2);
     assert!(
-        (4.5..7.0).contains(&ratio),
-        "{largest} N against {hinged} N"
+        (clamped..4.0 * clamped).contains(&largest),
+        "{largest} N against {clamped} N"
     );
 }
