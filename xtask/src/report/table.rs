@@ -215,15 +215,17 @@ impl Table {
 }
 
 /// A table of a page, which scrolls when it is wide; numbers are rounded, and names of columns that programs
-/// read have spaces.
+/// read have spaces. Columns without an entry are left out, and tables without a row.
 impl Render for Table {
     fn render(&self) -> Markup {
+        let is_there = |k: &usize| self.rows.iter().any(|row| row[*k] != Cell::Missing);
+        let shown: Vec<usize> = (0..self.head.len()).filter(is_there).collect();
         html! {
-            div.scroll { table {
+            @if !shown.is_empty() { div.scroll { table {
                 caption { (self.caption) }
-                thead { tr { @for name in &self.head { th { (name.replace('_', " ")) } } } }
-                tbody { @for row in &self.rows { tr { @for cell in row { td { (cell.text()) } } } } }
-            } }
+                thead { tr { @for k in &shown { th { (self.head[*k].replace('_', " ")) } } } }
+                tbody { @for row in &self.rows { tr { @for k in &shown { td { (row[*k].text()) } } } } }
+            } } }
         }
     }
 }
@@ -262,7 +264,10 @@ mod tests {
             "caption\na       b, m     c\nx, \"y\"  0.123    –\n<z>     2.5e-18  –\n"
         );
         let page = t.render().into_string();
-        assert!(page.contains("<td>&lt;z&gt;</td><td>2.5e-18</td><td>–</td>"));
+        assert!(page.contains("<td>&lt;z&gt;</td><td>2.5e-18</td></tr>"));
+        assert!(!page.contains("<th>c</th>"), "it has no entry");
+        let none = Table::new("caption", &["a"]).render().into_string();
+        assert_eq!(none, "");
     }
 
     /// All digits of a number come back from a file.
