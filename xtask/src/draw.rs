@@ -15,7 +15,7 @@ mod svg;
 mod text;
 
 pub(crate) use axis::{Axis, superscript};
-pub(crate) use chart::{Chart, Charts, Legend, Missing};
+pub(crate) use chart::{Chart, Charts, Legend};
 pub(crate) use colour::{Colour, palette};
 pub(crate) use drawing::{Anchor, Drawing, Stroke, Vertical, column, row};
 pub(crate) use marker::Marker;

@@ -4,231 +4,138 @@
 //! The runs of every model and the findings of every yardstick are kept in the output folder, so that an
 //! interrupted report continues where it stopped, and the page is written from what is there.
 
-mod bisection;
+mod analysis;
 mod buckling;
-mod cantilever;
 pub(crate) mod clamped;
-mod compliance;
 mod cone;
-mod cone_mesh;
-mod cylinder;
-mod declared;
-mod disk;
-mod dots;
-mod drape;
-mod everyday;
+mod curved;
+mod disks;
 mod excess;
-mod fear;
-mod folded;
-mod grids;
-mod isometry;
-mod iterations;
 mod lasting;
-mod limit;
 pub(crate) mod meshes;
 mod model;
 mod nudge;
-mod panels;
-mod records;
-mod rim;
-mod sample;
+mod runs;
 mod scene;
-mod sliding;
 mod softening;
 mod strips;
-mod targets;
-mod ways;
 
-use crate::draw::Charts;
 use crate::interrupt;
-use crate::report::{Options, Page, Part, Section, Shortfall, Table, demand, excerpt};
-use crate::report::{exponent, findings, list, machine, one_of, plot, write_findings};
+use crate::report::{Finding, Options, Page, Part, Section, Table, demand, excerpt, findings};
+use crate::report::{machine, one_of, plot, write_findings};
 use crate::store::{Files, Kept, Store, Unit};
+use analysis::{Figure, Required, Summary};
 use anyhow::Result;
 use clap::Args;
-use declared::declared;
 use maud::html;
-use records::Records;
+use runs::Records;
 use serde::{Deserialize, Serialize};
-use targets::Target;
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
-/// What a yardstick found.
-#[derive(Clone, Debug, Default)]
-struct Findings {
-    /// Tables of the page, which are files as well.
-    tables: Vec<Table>,
-    /// Tables that are files alone: every single run.
-    files: Vec<Table>,
-    /// What the numbers say, one sentence or two each.
-    remarks: Vec<String>,
-    /// What the models are required to reach here.
-    targets: Vec<Target>,
+/// The file of the yardsticks.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Contents {
+    /// Why requirements may be missed, by a word.
+    reasons: BTreeMap<String, String>,
+    yardstick: Vec<Yardstick>,
 }
+
+/// A yardstick: runs of the same scenes with all models, and what is read off the table of all runs.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Yardstick {
+    /// Its name on the command line and in file names.
+    name: String,
+    title: String,
+    /// The set-up in words.
+    about: String,
+    /// The column with the size of the mesh; empty without powers and figure.
+    #[serde(default)]
+    size: String,
+    /// Tables of the page and of the book.
+    table: Vec<Summary>,
+    figure: Option<Figure>,
+    #[serde(default)]
+    required: Vec<Required>,
+}
+
+static CONTENTS: LazyLock<Contents> = LazyLock::new(|| {
+    let contents = toml::from_str(include_str!("locking/yardsticks.toml"));
+    contents.unwrap_or_else(|error| panic!("yardsticks.toml: {error}"))
+});
 
 /// What is kept of a yardstick.
 #[derive(Debug, Serialize, Deserialize)]
 struct Record {
     name: String,
     section: Section,
-    /// Tables and remarks for a terminal.
+    /// Tables for a terminal.
     text: String,
     /// Its tables for the book.
     excerpt: Vec<Part>,
-    targets: Vec<Target>,
-}
-
-/// Applies a yardstick: what it found, and its figure.
-type Make = fn(&Records<'_>) -> Result<(Findings, Option<Charts>)>;
-
-/// A yardstick.
-#[derive(Debug)]
-pub(crate) struct Yardstick {
-    /// Its name on the command line and in file names.
-    name: &'static str,
-    title: &'static str,
-    /// The set-up in words.
-    about: &'static str,
-    make: Make,
+    findings: Vec<Finding>,
 }
 
 impl Yardstick {
-    const fn new([name, title, about]: [&'static str; 3], make: Make) -> Self {
-        Self {
-            name,
-            title,
-            about,
-            make,
-        }
+    fn unit(&self, store: &Store) -> Unit {
+        store.unit(format!("locking-{}", self.name), &self.name)
     }
 
-    fn unit(&self, store: &Store) -> Unit {
-        store.unit(format!("locking-{}", self.name), self.name)
+    /// The table of all runs.
+    fn runs(&self, records: &Records<'_>) -> Result<Table> {
+        let runs = match self.name.as_str() {
+            "clamped" => clamped::runs,
+            "strips" => strips::runs,
+            "d-cone" => cone::runs,
+            "e-cone" => excess::runs,
+            "softening" => softening::runs,
+            "curved-creases" => curved::runs,
+            "lasting" => lasting::runs,
+            "buckling" => buckling::runs,
+            name => panic!("no runs of the yardstick {name}"),
+        };
+        runs(records)
     }
 
     /// Applies the yardstick and writes its tables and its figure.
     fn apply(&self, store: &Store, files: &mut Files<'_>) -> Result<Record> {
-        let part = self.name;
-        let (found, charts) = (self.make)(&Records { store, part })?;
-        for table in found.tables.iter().chain(&found.files) {
+        let part = self.name.as_str();
+        let runs = self.runs(&Records { store, part })?;
+        runs.clone().named(&format!("{part}-all")).write(files)?;
+        let tables: Vec<Table> = self.table.iter().map(|t| t.of(&runs, &self.size)).collect();
+        for table in &tables {
             table.write(files)?;
         }
-        let figure = charts.map(|charts| plot(files, self.name, &charts, self.title));
+        let charts = self.figure.as_ref().map(|f| f.of(&runs, &self.size));
+        let figure = charts.map(|charts| plot(files, part, &charts, &self.title));
         let section = html! {
-            section id=(self.name) {
+            section id=(part) {
                 h2 { (self.title) }
                 p { (self.about) }
-                @if let Some(figure) = figure.transpose()? { (figure) }
-                (list(&found.remarks))
-                @for table in &found.tables { (table) }
+                @if let Some(figure) = figure.transpose()? { (figure) p { (BANDS) } }
+                @for table in &tables { (table) }
+                p { "Every run: tables/" (part) "-all.csv." }
             }
         };
-        let excerpt = found
-            .tables
-            .iter()
-            .map(|t| Part::table(&t.name, t))
-            .collect();
-        let tables = found.tables.iter().map(Table::text);
-        let texts: Vec<String> = tables.chain(found.remarks).collect();
+        let text: Vec<String> = tables.iter().map(Table::text).collect();
         Ok(Record {
-            name: self.name.to_owned(),
+            name: part.to_owned(),
             section: section.into(),
-            text: texts.join("\n"),
-            excerpt,
-            targets: found.targets,
+            text: text.join("\n"),
+            excerpt: tables.iter().map(|t| Part::table(&t.name, t)).collect(),
+            findings: analysis::findings(&self.required, &runs, store.effort, &CONTENTS.reasons),
         })
     }
 }
 
-/// All of them, in the order of the page.
-static YARDSTICKS: [Yardstick; 16] = [
-    Yardstick::new(["clamped", "Clamped sheets", clamped::ABOUT], clamped::make),
-    Yardstick::new(
-        ["everyday", "Everyday scenes", everyday::ABOUT],
-        everyday::make,
-    ),
-    Yardstick::new(
-        ["cylinder", "Bent to a cylinder", cylinder::ABOUT],
-        cylinder::make,
-    ),
-    Yardstick::new(
-        ["cantilever", "The heavy elastica", cantilever::ABOUT],
-        cantilever::make,
-    ),
-    Yardstick::new(
-        ["strips", "Strips with known answers", strips::ABOUT],
-        strips::make,
-    ),
-    Yardstick::new(
-        ["d-cone", "A disk pushed into a ring", cone::ABOUT],
-        cone::make,
-    ),
-    Yardstick::new(
-        ["e-cone", "A disk with a wedge inserted", excess::ABOUT],
-        excess::make,
-    ),
-    Yardstick::new(
-        ["softening", "The bound of the stiffness", softening::ABOUT],
-        softening::make,
-    ),
-    Yardstick::new(
-        ["creases", "Creases with known answers", folded::ABOUT],
-        folded::make,
-    ),
-    Yardstick::new(
-        ["lasting", "Ten seconds after rest", lasting::ABOUT],
-        lasting::make,
-    ),
-    Yardstick::new(["fear", "Falls and banners", fear::ABOUT], fear::make),
-    Yardstick::new(
-        ["compliance", "Error against compliance", compliance::ABOUT],
-        compliance::make,
-    ),
-    Yardstick::new(
-        [
-            "iterations",
-            "Iterations of the hanging sheet",
-            iterations::ABOUT,
-        ],
-        iterations::make,
-    ),
-    Yardstick::new(
-        ["drape", "A disk on a round table", drape::ABOUT],
-        drape::make,
-    ),
-    Yardstick::new(
-        ["buckling", "Lateral buckling", buckling::ABOUT],
-        buckling::make,
-    ),
-    Yardstick::new(
-        ["sliding", "Sliding down a plane", sliding::ABOUT],
-        sliding::make,
-    ),
-];
+/// What lines and bands of figures are.
+const BANDS: &str = "Lines are medians over the meshes of a size on which the sheet comes to rest, and bands have all of them.";
 
 fn named() -> Vec<(&'static str, &'static Yardstick)> {
-    YARDSTICKS.iter().map(|y| (y.name, y)).collect()
-}
-
-/// The median; NaN of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    if n == 0 {
-        return f64::NAN;
-    }
-    0.5 * (values[(n - 1) / 2] + values[n / 2])
-}
-
-/// Fitted power of the errors above `floor`, the level of round-off and of the solver's tolerances, below
-/// which an error says nothing; nothing from fewer than two.
-fn order(points: &[[f64; 2]], floor: f64) -> Option<f64> {
-    let is_positive = |point: &[f64; 2]| point.iter().all(|v| v.is_finite() && *v > 0.0);
-    let all = points.iter().copied();
-    let above: Vec<[f64; 2]> = all.filter(|p| is_positive(p) && p[1] > floor).collect();
-    if above.len() < 2 {
-        return None;
-    }
-    exponent(&above)
+    let all = CONTENTS.yardstick.iter();
+    all.map(|y| (y.name.as_str(), y)).collect()
 }
 
 /// Arguments of `locking`.
@@ -247,7 +154,7 @@ pub(crate) fn run(args: &LockingArgs) -> Result<()> {
     let store = args.options.open("locking")?;
     let mut yardsticks = args.yardsticks.clone();
     if yardsticks.is_empty() {
-        yardsticks.extend(&YARDSTICKS);
+        yardsticks.extend(&CONTENTS.yardstick);
     }
     let made = yardsticks.into_iter().try_for_each(|yardstick| {
         let record = store.keep(&yardstick.unit(&store), |files| {
@@ -261,25 +168,19 @@ pub(crate) fn run(args: &LockingArgs) -> Result<()> {
 
 /// Writes the page, `findings.csv` and `findings.json` of all yardsticks applied so far.
 fn write(store: &Store) -> Result<()> {
-    let units = YARDSTICKS.iter().map(|yardstick| yardstick.unit(store));
+    let units = CONTENTS.yardstick.iter().map(|y| y.unit(store));
     let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
-    let of = |r: &'_ Record| {
-        r.targets
-            .iter()
-            .map(|t| {
-                let mut target = t.clone();
-                if let Some(why) = declared(&r.name, t, store.effort) {
-                    target.limited(why, Shortfall::Varies);
-                }
-                (r.name.clone(), target)
-            })
+    let of = |r: &Record| {
+        let findings = r.findings.iter();
+        findings
+            .map(|f| (r.name.clone(), f.clone()))
             .collect::<Vec<_>>()
     };
-    let targets: Vec<(String, Target)> = records.iter().flat_map(of).collect();
-    let named = targets.iter().map(|(name, t)| (name.as_str(), t));
+    let all: Vec<(String, Finding)> = records.iter().flat_map(of).collect();
+    let named = all.iter().map(|(name, finding)| (name.as_str(), finding));
     let summary = findings(CAPTION, named.clone());
     write_findings(store, named.clone())?;
-    let mut parts = vec![Part::table("targets", &targets::by_model(&targets))];
+    let mut parts = vec![Part::table("targets", &analysis::by_model(&all))];
     parts.extend(records.iter().flat_map(|r| r.excerpt.clone()));
     excerpt::write(store, "locking", &parts)?;
     let body = html! {
@@ -305,24 +206,4 @@ const CAPTION: &str = "Measured against target. A number is the worst of all run
 const INTRODUCTION: &str = "A triangle mesh whose edges are rigid rods has only B − 3 ways to deform (B: edges on the boundary) and folds only \
     along mesh lines. It is too stiff, or cannot move at all, where a smooth inextensible sheet bends in another direction: it locks. The \
     yardsticks measure by how much, and what two elastic sheets do: one with the membrane stiffness of office paper, 3e5 N/m, on every face (\"real stiffness\"), and the elastic sheet, office paper \
-    that is softened as far as the mesh needs in order to bend (\"elastic\"), both with a limit of the strain of 1 %. Where a scene has no bending stiffness, the softening is that of D = 5e-4 N m.";
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn orders_need_two_values_above_the_floor() {
-        let points = [[0.1, 0.02], [0.2, 0.08], [0.4, 0.0], [0.8, f64::NAN]];
-        assert!((order(&points, 0.0).unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(order(&points, 0.05), None);
-        assert_eq!(order(&points[1..], 0.0), None);
-    }
-
-    #[test]
-    fn medians() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(vec![4.0, 1.0]), 2.5);
-        assert!(median(Vec::new()).is_nan());
-    }
-}
+    that is softened as far as the mesh needs in order to bend (\"elastic\"), both with a limit of the strain of 1 %.";

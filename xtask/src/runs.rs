@@ -10,7 +10,7 @@ mod record;
 mod scene;
 mod shape;
 
-pub(crate) use isosheet_tests::{bumped, corner, raised};
+pub(crate) use isosheet_tests::{bumped, corner};
 
 pub(crate) use bumped::{BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, hanging, on_table};
 pub(crate) use chart_run::{ChartSummary, chart_run};

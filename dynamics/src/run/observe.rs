@@ -1,5 +1,6 @@
 //! Runs of equal steps with observers.
 
+use crate::step::effort::StepProgress;
 use crate::step::report::{StepError, StepReport};
 use crate::{Simulation, State};
 use std::ops::ControlFlow;
@@ -11,6 +12,12 @@ pub trait Observer {
 
     /// Called after every step. [`ControlFlow::Break`] ends the run after this step.
     fn step(&mut self, simulation: &Simulation, report: &StepReport) -> ControlFlow<()>;
+
+    /// Called before each factorisation within a step, see [`Simulation::step_watched`]. [`ControlFlow::Break`] ends
+    /// the run there, with [`StepError::Interrupted`].
+    fn within(&mut self, _progress: &StepProgress) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 impl<F: FnMut(&Simulation, &StepReport) -> ControlFlow<()>> Observer for F {
@@ -117,7 +124,8 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// As [`Simulation::step`]; [`StepError::StepSize`] if the duration is not positive and finite.
+    /// As [`Simulation::step`]; [`StepError::StepSize`] if the duration is not positive and finite;
+    /// [`StepError::Interrupted`] if an observer ended the run within a step.
     pub fn run(
         &mut self,
         duration: f64,
@@ -142,7 +150,8 @@ impl Simulation {
             step
         };
         for k in 1..=count {
-            let report = self.step(if k < count { step } else { last })?;
+            let mut watch = |p: &StepProgress| observers.iter_mut().try_for_each(|o| o.within(p));
+            let report = self.step_watched(if k < count { step } else { last }, &mut watch)?;
             let mut go_on = true;
             for observer in &mut *observers {
                 go_on &= observer.step(self, &report).is_continue();
@@ -199,6 +208,29 @@ mod tests {
         assert_eq!(steps.len(), 4);
         assert!((steps[3] - 0.005).abs() < 1e-15);
         assert!((simulation.state().t - 0.035).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_observer_ends_a_run_within_a_step() {
+        /// Ends the run at the second factorisation after so many steps.
+        struct Impatient(usize);
+        impl Observer for Impatient {
+            fn step(&mut self, _: &Simulation, _: &StepReport) -> ControlFlow<()> {
+                self.0 -= 1;
+                ControlFlow::Continue(())
+            }
+            fn within(&mut self, progress: &StepProgress) -> ControlFlow<()> {
+                match (self.0, progress.factorisations) {
+                    (0, 1) => ControlFlow::Break(()),
+                    _ => ControlFlow::Continue(()),
+                }
+            }
+        }
+        let mut simulation = triangle();
+        let end = simulation.run(1.0, 0.01, &mut [&mut Impatient(3)]);
+        let t = simulation.state().t;
+        assert_eq!(end, Err(StepError::Interrupted { t }));
+        assert!((t - 0.03).abs() < 1e-15, "{t}");
     }
 
     #[test]

@@ -81,11 +81,6 @@ impl Axis {
         value.clamp(self.range[0], self.range[1])
     }
 
-    /// Values at the ends.
-    pub(super) fn ends(&self) -> [f64; 2] {
-        self.range
-    }
-
     /// Whether a value is on the axis.
     pub(super) fn holds(&self, value: f64) -> bool {
         let [low, high] = self.range;

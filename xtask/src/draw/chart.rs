@@ -1,4 +1,4 @@
-//! Charts by plotters: axes, ticks, series, error bars, a legend to the right, marks of runs without a value.
+//! Charts by plotters: axes, ticks, series, error bars, a legend to the right.
 
 use super::axis::Axis;
 use super::colour::{Colour, palette};
@@ -11,9 +11,8 @@ use plotters::backend::SVGBackend;
 use plotters::chart::ChartBuilder;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
-use plotters::element::{EmptyElement, ErrorBar, PathElement, Polygon, Text};
+use plotters::element::{EmptyElement, ErrorBar, PathElement, Polygon};
 use plotters::prelude::{DashedLineSeries, LineSeries, SeriesLabelPosition};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBAColor, ShapeStyle, TextStyle};
 use std::error::Error;
 
@@ -22,17 +21,6 @@ const UNITS: f64 = 10.0;
 
 /// The SVG backend divides sizes of fonts by this.
 const FONT_DIVISOR: f64 = 1.24;
-
-/// A run without a value, such as one that did not end: a mark above the axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Missing {
-    /// Where on the horizontal axis it is.
-    pub(crate) x: f64,
-    /// How far beside that place the mark is drawn, points.
-    pub(crate) beside: f64,
-    pub(crate) colour: Colour,
-    pub(crate) marker: Marker,
-}
 
 /// Where the names of the series are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,8 +41,6 @@ pub(crate) struct Chart {
     size: [f64; 2],
     /// Points outside the vertical axis are left out.
     series: Vec<Series>,
-    /// Runs without a value, on a line above the axes; without it there is no such line.
-    missing: Option<Vec<Missing>>,
     legend: Legend,
 }
 
@@ -62,12 +48,11 @@ pub(crate) struct Chart {
 #[derive(Clone, Debug)]
 pub(crate) struct Charts(pub(crate) Vec<Vec<Chart>>);
 
-/// Sizes of what is around the area inside the axes, points: labels of the axes, title, line of runs without
-/// a value, free room (also around all charts), and what a legend needs besides its lines and names.
+/// Sizes of what is around the area inside the axes, points: labels of the axes, title, free room (also around all
+/// charts), and what a legend needs besides its lines and names.
 const LEFT: f64 = 42.0;
 const BELOW: f64 = 28.0;
 const TITLE: f64 = 14.0;
-const NOT_ENDED: f64 = 20.0;
 const ROOM: f64 = 8.0;
 const LEGEND: f64 = 26.0;
 
@@ -92,7 +77,6 @@ impl Chart {
             y,
             size,
             series,
-            missing: None,
             legend: Legend::Right,
         }
     }
@@ -123,17 +107,9 @@ impl Chart {
         Self { legend, ..self }
     }
 
-    /// The same with a line of runs without a value.
-    pub(crate) fn with_missing(self, missing: Vec<Missing>) -> Self {
-        let missing = Some(missing);
-        Self { missing, ..self }
-    }
-
-    /// Heights above the area inside the axes, points: of the title, and of the line of runs without a value.
-    fn above(&self) -> [f64; 2] {
-        let title = if self.title.is_empty() { 0.0 } else { TITLE };
-        let missing = self.missing.as_ref().map_or(ROOM, |_| NOT_ENDED);
-        [title, missing]
+    /// Height of the title, points.
+    fn above(&self) -> f64 {
+        if self.title.is_empty() { 0.0 } else { TITLE }
     }
 
     /// Width to the right of the area inside the axes, points.
@@ -146,8 +122,8 @@ impl Chart {
 
     /// Size with everything around the axes, points.
     fn outer(&self) -> [f64; 2] {
-        let ([w, h], [title, missing]) = (self.size, self.above());
-        [LEFT + w + self.beside(), title + missing + h + BELOW]
+        let [w, h] = self.size;
+        [LEFT + w + self.beside(), self.above() + ROOM + h + BELOW]
     }
 
     /// The series of the legend.
@@ -158,7 +134,7 @@ impl Chart {
     }
 
     fn draw(&self, area: &Area<'_>) -> Drawn {
-        let [title, missing] = self.above().map(units);
+        let title = units(self.above());
         let (head, body) = area.split_vertically(title);
         if !self.title.is_empty() {
             let size = (units(self.size[0]), title);
@@ -167,7 +143,7 @@ impl Chart {
         }
         let (left, side) = body.split_horizontally(units(LEFT + self.size[0] + ROOM));
         let mut chart = ChartBuilder::on(&left)
-            .margin_top(missing)
+            .margin_top(units(ROOM))
             .margin_right(units(ROOM))
             .y_label_area_size(units(LEFT))
             .x_label_area_size(units(BELOW))
@@ -215,28 +191,7 @@ impl Chart {
             });
             chart.draw_series(marked)?;
         }
-        self.draw_legend(&side)?;
-        let Some(missing) = &self.missing else {
-            return Ok(());
-        };
-        let top = chart.plotting_area();
-        let place = |x: f64| top.map_coordinate(&(x, self.y.ends()[1]));
-        let [(left, y), (right, _)] = self.x.ends().map(place);
-        let (y, grey) = (y - units(NOT_ENDED - ROOM), stroke(palette::GREY, 0.5));
-        let screen = body.use_screen_coord();
-        screen.draw(&PathElement::new([(left, y), (right, y)], grey))?;
-        let words = font(6.0, palette::GREY).pos(Pos::new(HPos::Right, VPos::Center));
-        screen.draw(&Text::new("no value", (left - units(4.0), y), words))?;
-        for m in missing {
-            let look = Look {
-                colour: m.colour,
-                marker: Some(m.marker),
-                line: Line::None,
-            };
-            let ([rim, inside], (x, _)) = (look.symbol(1.8), place(m.x));
-            screen.draw(&(EmptyElement::at((x + units(m.beside), y)) + rim + inside))?;
-        }
-        Ok(())
+        self.draw_legend(&side)
     }
 
     /// The names of the series in an area beside the axes.

@@ -1,25 +1,21 @@
 //! A disk with an inserted wedge: the excess cone.
 
-use super::cone_mesh::{Kind, Mesh, RADIUS};
-use super::model::{Model, Plate, Tried, at_most};
-use super::panels::{BANDS, Panel, charts};
-use super::records::Records;
-use super::scene::Scene;
-use super::{Findings, order};
-use crate::draw::{Axis, Charts};
-use crate::report::{Cell, Table, extremes, number};
+use super::disks::Disk;
+use super::meshes::SNAP;
+use super::model::{Model, PAPER};
+use super::runs::{Ran, Records, samples};
+use super::scene::{DAMPING, Scene, until_rest};
+use crate::report::Table;
 use crate::runs::Plan;
 use anyhow::Result;
-use isosheet_mesh::{FlatCut, Sheet};
+use isosheet_mesh::{FlatCut, Sheet, fold_angle};
 use isosheet_tests::ExcessCone;
-use isosheet_tests::implicit_euler;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-pub(super) const ABOUT: &str = "A disk of office paper (radius R = 0.1 m, 5e-4 N m, without weight and supports) with a wedge of φ = 0.3 rad inserted, so that the angles about its centre are 2π + φ together. It starts as a pyramid of four flat sectors, whose edges go up and down in turn; the rest lengths \
-    are those of the pyramid, and nothing resists its becoming flat at the edges. Inextensible, the disk comes to rest as a cone over an elastic curve of the sphere with two folds up and two down. For small φ its energy between the radii a and b is 3 D φ ln(b / a) (Müller, Ben Amar and Guven, Phys. Rev. Lett. 101, 156104, 2008); for φ = 0.3 the curve is computed. \
-    Measured at rest: the elastic energy over D, where faces within R/4 of the centre do not count, those beyond R/2 do, and those between in part, so that the exact value is that of ln(b / a) = 1; and the root mean square of the distances from the nearest exact cone over the height of its folds.";
+/// Radius, metres.
+const RADIUS: f64 = 0.1;
 
 /// The wedge, radians: 17 degrees. The folds are 14 degrees high.
 const EXCESS: f64 = 0.3;
@@ -29,32 +25,15 @@ const EXCESS: f64 = 0.3;
 /// `dr / r`, and the integral of the weight over `dr / r` is `(1 - ln 2) + ln 2 = 1`.
 const COUNTED: [f64; 2] = [0.25, 0.5];
 
-/// Mass per area (kg/m2), flexural rigidity (N m), rate of damping (1/s).
-const DENSITY: f64 = 0.08;
-const RIGIDITY: f64 = super::isometry::PAPER_RIGIDITY;
-const DAMPING: f64 = 4.0;
-
-/// Steps of implicit Euler, seconds.
-const STEP: f64 = 0.05;
-
-/// The disk is at rest when no vertex is faster, metres per second.
-const REST: f64 = 1e-5;
-
-/// Relative errors below this are those of a sheet that has come to rest to within [`REST`].
-const FLOOR: f64 = 1e-4;
-
-/// Vertices nearer to an axis than this part of the spacing are moved onto it before the disk is cut there.
-const SNAP: f64 = 0.25;
-
 /// The place in the disk with the wedge: distance from the centre (metres) and angle (radians, of `2 pi + phi`).
 type Place = [f64; 2];
 
 /// A disk with a wedge, folded to a pyramid: the angles of the flat disk are stretched, and every face lies in one of
 /// four flat sectors.
-fn pyramid(mesh: Mesh) -> Result<(Sheet, Vec<Place>)> {
-    let mut cut = FlatCut::of(&mesh.disk()?);
+fn pyramid(job: Job) -> Result<(Sheet, Vec<Place>)> {
+    let mut cut = FlatCut::of(&job.mesh.mesh(job.rings, RADIUS)?);
     for normal in [[1.0, 0.0], [0.0, 1.0]] {
-        cut.split([0.0; 2], normal, SNAP * RADIUS / mesh.rings as f64);
+        cut.split([0.0; 2], normal, SNAP * RADIUS / job.rings as f64);
     }
     let flat = cut.sheet()?;
     let place = |&[x, y, _]: &[f64; 3]| {
@@ -91,70 +70,70 @@ fn folded([radius, angle]: Place) -> Vector3<f64> {
     radius * (cos * first + sin * across)
 }
 
-fn plate() -> Plate<'static> {
-    Plate {
-        density: DENSITY,
-        rigidity: RIGIDITY,
-        clamped: &[],
-        creases: &[],
-    }
+/// A mesh: the spacing is the radius over `rings`.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Job {
+    mesh: Disk,
+    #[serde(rename = "R/h")]
+    rings: usize,
 }
 
-/// What is measured at rest.
+/// What is measured; errors at rest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Saddle {
     /// Elastic energy of the faces that count over `D`.
+    #[serde(rename = "energy / D")]
     energy: f64,
+    #[serde(rename = "error of the energy")]
+    energy_error: Option<f64>,
     /// Distance from the exact cone over the height of its folds.
-    place: f64,
+    #[serde(rename = "error of the place")]
+    place_error: Option<f64>,
 }
 
-type Wedged = Tried<Mesh, Saddle>;
-
-impl Wedged {
-    fn spacing(&self) -> f64 {
-        RADIUS / self.job.rings as f64
-    }
-
-    fn energy_error(&self) -> Option<f64> {
-        let exact = ExcessCone::new(EXCESS).energy();
-        self.if_good(|m| (m.energy / exact - 1.0).abs())
-    }
-
-    fn place_error(&self) -> Option<f64> {
-        self.if_good(|m| m.place)
-    }
-}
-
-/// An error of a disk that came to rest.
-type Measure = fn(&Wedged) -> Option<f64>;
-
-const ERRORS: [(&str, Measure); 2] = [
-    ("energy", Wedged::energy_error),
-    ("place", Wedged::place_error),
-];
-
-fn measure(model: Model, job: Mesh, plan: &Plan) -> Result<Wedged> {
+fn measure(model: Model, job: Job, plan: &Plan) -> Result<(Ran, Saddle)> {
     let (sheet, places) = pyramid(job)?;
-    let moved = model.sheet(&sheet, plate())?.with_damping(DAMPING)?;
-    let scene = Scene::flat(moved, &sheet).by(implicit_euler());
-    let (course, end) = scene.run(plan)?;
-    let faces = model.face_energies(&sheet, plate(), &end.x)?;
+    let moved = model.sheet(&sheet, PAPER)?.with_damping(DAMPING)?;
+    let (course, end) = Scene::damped(moved, &sheet).run(plan)?;
+    let ran = Ran::of(model, &sheet, &course);
+    let faces = face_energies(model, &sheet, &end.x)?;
     let corners = sheet.topology().faces().iter();
     let counted = corners.zip(faces).map(|(f, energy)| {
         let radius = f.iter().map(|v| places[v.index()][0]).sum::<f64>() / 3.0;
         weight(radius / RADIUS) * energy
     });
-    Ok(Tried {
-        model,
-        job,
-        vertices: places.len(),
-        course,
-        measured: Saddle {
-            energy: counted.sum::<f64>() / RIGIDITY,
-            place: distance(&places, &end.x),
-        },
-    })
+    let energy = counted.sum::<f64>() / PAPER.rigidity;
+    let exact = ExcessCone::new(EXCESS).energy();
+    let saddle = Saddle {
+        energy,
+        energy_error: ran.if_good((energy / exact - 1.0).abs()),
+        place_error: ran.if_good(distance(&places, &end.x)),
+    };
+    Ok((ran, saddle))
+}
+
+/// The elastic energy of each face, joules; that of a spring belongs to both faces of its edge in equal parts.
+fn face_energies(model: Model, sheet: &Sheet, x: &[f64]) -> Result<Vec<f64>> {
+    if let Some(faces) = model.sheet(sheet, PAPER)?.elastic_deformation(x) {
+        let sums = faces.stretching.iter().zip(&faces.bending);
+        return Ok(sums.map(|(s, b)| s + b).collect());
+    }
+    let t = sheet.topology();
+    let mut energies = vec![0.0; t.face_count()];
+    for edge in t.edge_ids() {
+        if let ([Some(left), Some(right)], Some(angle)) =
+            (t.edge_faces(edge), fold_angle(t, x, edge))
+        {
+            let faces = [left, right].map(|f| f.index());
+            let area: f64 = faces.iter().map(|f| sheet.face_areas()[*f]).sum();
+            // See [`isosheet_dynamics::CreaseSprings::bending`].
+            let stiffness = PAPER.rigidity * sheet.lengths()[edge.index()].powi(2) / area;
+            for face in faces {
+                energies[face] += 0.25 * stiffness * angle * angle;
+            }
+        }
+    }
+    Ok(energies)
 }
 
 /// The part in which the energy at a place counts, by its distance from the centre over the radius.
@@ -220,157 +199,15 @@ fn apart(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
     (squares.sum::<f64>() / n).sqrt()
 }
 
-/// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
+/// The runs of the yardstick.
+pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
     let sizes: &[usize] = effort.quick_or(&[4], &[6, 10, 16]);
-    let kinds = effort.quick_or(&Kind::ALL[2..3], &Kind::ALL[..]);
-    let plan = Plan::new(STEP, 20.0)
-        .within(effort.quick_or(1.0, 40.0))
-        .until_rest(REST);
-    let of = |&kind: &Kind| sizes.iter().map(move |&rings| Mesh { kind, rings });
-    let meshes: Vec<Mesh> = kinds.iter().flat_map(of).collect();
-    let mut all: Vec<Wedged> = Vec::new();
-    for model in Model::ALL {
-        let run = |mesh: &Mesh| measure(model, *mesh, &plan);
-        all.extend(records.runs(&model.to_string(), &meshes, run)?);
-    }
-    let finest = sizes.last();
-    let mut targets = Vec::new();
-    for model in Model::ALL {
-        for (name, error) in ERRORS {
-            let judged = all
-                .iter()
-                .filter(|w| w.model == model && Some(&w.job.rings) == finest);
-            let values: Vec<Option<f64>> = judged.map(error).collect();
-            let quantity = format!("relative error of the {name}, finest meshes");
-            targets.push(at_most(model, &quantity, 0.02, &values));
-        }
-    }
-    let findings = Findings {
-        tables: vec![summary(&all, sizes), orders(&all)],
-        files: vec![table(&all)],
-        remarks: Model::ALL
-            .map(|m| remark(m, &all, finest))
-            .into_iter()
-            .chain([BANDS.to_owned()])
-            .collect(),
-        targets,
-    };
-    Ok((findings, Some(plot(&all, sizes))))
-}
-
-fn summary(all: &[Wedged], sizes: &[usize]) -> Table {
-    let sizes = sizes.iter();
-    let rows = sizes.flat_map(|&rings| Model::ALL.map(|model| (rings, model)));
-    let of = |&(rings, model): &(usize, Model)| {
-        let is_of = move |w: &&Wedged| (w.job.rings, w.model) == (rings, model);
-        all.iter().filter(is_of).collect::<Vec<_>>()
-    };
-    let largest = |of: &[&Wedged], error: Measure| {
-        let values = of.iter().filter_map(|w| error(w));
-        values.reduce(f64::max)
-    };
-    Table::of(
-        "Disks with a wedge (R / h: radius over spacing): how many of the five meshes come to rest, and the largest errors of those that do",
-        rows,
-        &[
-            ("R/h", &|r| r.0.into()),
-            ("model", &|r| r.1.to_string().into()),
-            ("at rest", &|r| of(r).iter().filter(|w| w.course.is_good()).count().into()),
-            ("error of the energy", &|r| largest(&of(r), ERRORS[0].1).into()),
-            ("error of the place", &|r| largest(&of(r), ERRORS[1].1).into()),
-            ("CPU seconds of a run", &|r| {
-                let of = of(r);
-                (of.iter().map(|w| w.course.cost.cpu).sum::<f64>() / of.len() as f64).into()
-            }),
-        ],
-    )
-    .named("e-cone")
-}
-
-fn table(all: &[Wedged]) -> Table {
-    let cone = ExcessCone::new(EXCESS);
-    Table::of(
-        format!(
-            "Disks with a wedge: implicit Euler, steps of {STEP} s, until no vertex is faster than {REST} m/s. The exact energy is {} (3 φ = {})",
-            number(cone.energy()),
-            number(3.0 * EXCESS)
-        ),
-        all,
-        &[
-            ("mesh", &|w| w.job.kind.to_string().into()),
-            ("R/h", &|w| w.job.rings.into()),
-            ("V", &|w| w.vertices.into()),
-            ("model", &|w| w.model.to_string().into()),
-            ("ending", &|w| w.course.ending.name().into()),
-            ("energy / D", &|w| w.measured.energy.into()),
-            ("error of the energy", &|w| w.energy_error().into()),
-            ("error of the place", &|w| w.place_error().into()),
-            ("largest strain of an edge", &|w| w.course.strain.into()),
-            ("factorisations", &|w| w.course.cost.factorisations.into()),
-            ("CPU seconds", &|w| w.course.cost.cpu.into()),
-            ("message", &|w| w.course.ending.message().into()),
-        ],
-    )
-    .named("e-cone-all")
-}
-
-/// The fitted orders of both errors: a row for each model and mesh.
-fn orders(all: &[Wedged]) -> Table {
-    let mut rows: Vec<(Model, Kind)> = Vec::new();
-    for row in all.iter().map(|w| (w.model, w.job.kind)) {
-        if !rows.contains(&row) {
-            rows.push(row);
-        }
-    }
-    let fitted = |&row: &(Model, Kind), error: Measure| -> Cell {
-        let of = all.iter().filter(|w| (w.model, w.job.kind) == row);
-        let points: Option<Vec<_>> = of.map(|w| Some([w.spacing(), error(w)?])).collect();
-        points.and_then(|points| order(&points, FLOOR)).into()
-    };
-    Table::of(
-        "Fitted powers of h of the errors of disks with a wedge where the disks of all sizes come to rest",
-        &rows,
-        &[
-            ("mesh", &|r| r.1.to_string().into()),
-            ("model", &|r| r.0.to_string().into()),
-            ("energy", &|r| fitted(r, ERRORS[0].1)),
-            ("place", &|r| fitted(r, ERRORS[1].1)),
-        ],
-    )
-    .named("e-cone-orders")
-}
-
-fn remark(model: Model, all: &[Wedged], finest: Option<&usize>) -> String {
-    let of: Vec<&Wedged> = all.iter().filter(|w| w.model == model).collect();
-    let judged = of.iter().filter(|w| Some(&w.job.rings) == finest);
-    let [energy, place] = ERRORS.map(|(_, error)| {
-        let worst = extremes(judged.clone().filter_map(|w| error(w))).map(|[_, high]| high);
-        worst.map_or("–".into(), |w| number(100.0 * w))
-    });
-    let ended = of.iter().filter(|w| w.course.is_good()).count();
-    format!(
-        "{model}: {ended} of {} disks come to rest. On the finest meshes the largest error is {energy} % in the energy and {place} % in the place.",
-        of.len()
-    )
-}
-
-/// Both errors against the spacing.
-fn plot(all: &[Wedged], sizes: &[usize]) -> Charts {
-    let spacings: Vec<f64> = sizes.iter().map(|&n| RADIUS / n as f64).collect();
-    let ticks = spacings.iter().map(|&h| (h, number(1e3 * h)));
-    let x = Axis::at("h, mm", ticks.collect());
-    let row = ERRORS.map(|(name, error)| {
-        let of = |w: &Wedged| Some((w.model, [w.spacing(), error(w)?]));
-        Panel {
-            title: format!("error of the {name}"),
-            axes: [x.clone(), Axis::decades("", all.iter().filter_map(error))],
-            points: all.iter().filter_map(of).collect(),
-            guides: vec![spacings.iter().map(|h| [*h, 0.02]).collect()],
-        }
-    });
-    charts(vec![row.to_vec()], &Model::ALL, "2 %")
+    let kinds = effort.quick_or(&Disk::ALL[2..3], &Disk::ALL[..]);
+    let plan = until_rest(20.0, effort.quick_or(1.0, 40.0));
+    let of = |&mesh: &Disk| sizes.iter().map(move |&rings| Job { mesh, rings });
+    let jobs: Vec<Job> = kinds.iter().flat_map(of).collect();
+    samples(&records.of_models(&jobs, |model, job| measure(model, *job, &plan))?)
 }
 
 #[cfg(test)]
@@ -382,8 +219,8 @@ mod tests {
     /// 2 pi, and the pyramid is folded along four edges alone.
     #[test]
     fn pyramids_are_flat_but_for_the_centre() {
-        for kind in Kind::ALL {
-            let (sheet, _) = pyramid(Mesh { kind, rings: 6 }).unwrap();
+        for mesh in Disk::ALL {
+            let (sheet, _) = pyramid(Job { mesh, rings: 6 }).unwrap();
             let t = sheet.topology();
             let mut sums = vec![0.0; t.vertex_count()];
             for f in t.faces() {
@@ -398,7 +235,7 @@ mod tests {
                 let is_tip = Vector3::from(sheet.position(v)).norm() < 1e-9;
                 let expected = if is_tip { TAU + EXCESS } else { TAU };
                 let sum = sums[v.index()];
-                assert!((sum - expected).abs() < 1e-9, "{kind} {v}: {sum}");
+                assert!((sum - expected).abs() < 1e-9, "{mesh:?} {v}: {sum}");
             }
         }
     }
@@ -407,11 +244,11 @@ mod tests {
     /// plate has the exact energy.
     #[test]
     fn the_exact_cone_is_recognised() {
-        let mesh = Mesh {
-            kind: Kind::Concentric,
+        let job = Job {
+            mesh: Disk::Concentric,
             rings: 24,
         };
-        let (sheet, places) = pyramid(mesh).unwrap();
+        let (sheet, places) = pyramid(job).unwrap();
         let cone = ExcessCone::new(EXCESS);
         let turn = nalgebra::Rotation3::from_euler_angles(0.4, -0.3, 1.0);
         let point = |[r, angle]: &Place| *r * (turn * cone.ray(angle + 0.5));
@@ -422,7 +259,7 @@ mod tests {
         let distance = distance(&places, &x);
         assert!(distance < 1e-4, "{distance}");
         assert!(super::distance(&places, sheet.positions()) > 0.05);
-        let bending = PlateBending::new(&sheet, RIGIDITY).unwrap();
+        let bending = PlateBending::new(&sheet, PAPER.rigidity).unwrap();
         let mut faces = vec![0.0; sheet.topology().face_count()];
         bending.add_bending_energies(&x, &mut faces);
         let counted = sheet
@@ -434,8 +271,21 @@ mod tests {
                 let radius = f.iter().map(|v| places[v.index()][0]).sum::<f64>() / 3.0;
                 weight(radius / RADIUS) * energy
             });
-        let part = counted.sum::<f64>() / (RIGIDITY * cone.energy());
+        let part = counted.sum::<f64>() / (PAPER.rigidity * cone.energy());
         assert!((part - 1.0).abs() < 0.02, "{part}");
         assert!(bending.energy(0.0, &x) > 0.0);
+    }
+
+    #[test]
+    fn the_energies_of_the_faces_are_that_of_the_sheet() {
+        let sheet = isosheet_mesh::generate::isotropic_square(2, 0.1).unwrap();
+        let bent = sheet.map_positions(|[x, y, _]| [x, y, 0.1 * x * x + 0.05 * x * y]);
+        let bent = bent.unwrap();
+        for model in Model::ALL {
+            let faces = face_energies(model, &sheet, bent.positions()).unwrap();
+            let whole = model.energy(&sheet, PAPER, bent.positions()).unwrap();
+            let part = faces.iter().sum::<f64>() / whole;
+            assert!((part - 1.0).abs() < 1e-12, "{model}: {part}");
+        }
     }
 }

@@ -1,26 +1,24 @@
-//! The models of a sheet with bending stiffness that yardsticks with answers in closed form compare.
+//! The models of a sheet that are compared, and what sheets are made of.
 
-use super::isometry::PAPER;
 use crate::draw::{Colour, palette};
-use crate::report::{Bound, Finding};
-use crate::runs::Course;
 use anyhow::Result;
 use isosheet_dynamics::{CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
-use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId, fold_angle};
+use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// How a sheet is kept from stretching.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Model {
-    /// The elastic sheet with faces as stiff as the mesh can bear, see [`ElasticSheet::softened`]; a plate.
-    Elastic,
-    /// The same with another bound `C` of the stiffness.
-    Bound(f64),
-    /// The elastic sheet with the stiffness of the material on every face, and a plate.
-    Material,
     /// Every edge is a rigid rod; springs at the edges, see [`CreaseSprings::bending`].
+    #[serde(rename = "rods")]
     Rods,
+    /// The elastic sheet with the stiffness of the material on every face, and a plate.
+    #[serde(rename = "real stiffness")]
+    Material,
+    /// The same with faces as stiff as the mesh can bear, see [`ElasticSheet::softened`].
+    #[serde(rename = "elastic")]
+    Elastic,
 }
 
 /// What a sheet is made of, which vertices clamps fix, and where creases are.
@@ -30,41 +28,48 @@ pub(super) struct Plate<'a> {
     pub(super) density: f64,
     /// Flexural rigidity, N m.
     pub(super) rigidity: f64,
+    /// The bound `C` of the stiffness of softened faces.
+    pub(super) bound: f64,
     pub(super) clamped: &'a [VertexId],
     /// Edges where springs replace the stiffness of the sheet.
     pub(super) creases: &'a [EdgeId],
 }
 
+/// Office paper without clamps and creases.
+pub(super) const PAPER: Plate<'static> = Plate {
+    density: 0.08,
+    rigidity: 5e-4,
+    bound: ElasticSheet::SOFTENING,
+    clamped: &[],
+    creases: &[],
+};
+
+/// Membrane stiffness `E h` of office paper, newtons per metre, and its Poisson's ratio.
+const MEMBRANE: [f64; 2] = [3e5, 0.3];
+
 impl Model {
     /// The models that the tables have rows for.
-    pub(super) const ALL: [Self; 3] = [Self::Elastic, Self::Material, Self::Rods];
+    pub(super) const ALL: [Self; 3] = [Self::Rods, Self::Material, Self::Elastic];
 
     /// A sheet without weight and supports.
     pub(super) fn sheet(self, sheet: &Sheet, plate: Plate<'_>) -> Result<SheetModel> {
-        let Plate {
-            density, rigidity, ..
-        } = plate;
-        let model = SheetModel::new(sheet, density * sheet.area(), MassKind::Lumped)?;
-        let real = || ElasticSheet::new(sheet, PAPER.0, PAPER.1);
+        let model = SheetModel::new(sheet, plate.density * sheet.area(), MassKind::Lumped)?;
+        let real = ElasticSheet::new(sheet, MEMBRANE[0], MEMBRANE[1])?;
         let elastic = match self {
-            Self::Rods => {
-                let springs = CreaseSprings::bending_beside(sheet, rigidity, plate.creases)?;
-                return Ok(model.with_potential(springs));
+            Self::Rods => return Ok(model.with_potential(plate.springs(sheet)?)),
+            Self::Material => real,
+            Self::Elastic => {
+                real.softened(plate.rigidity * plate.bound / ElasticSheet::SOFTENING)?
             }
-            Self::Elastic => real()?.softened(rigidity)?,
-            Self::Bound(c) => real()?.softened(rigidity * c / ElasticSheet::SOFTENING)?,
-            Self::Material => real()?,
         };
-        let bending = plate.bending(sheet)?;
-        Ok(model.with_potential(bending).with_elastic_sheet(elastic)?)
+        let model = model.with_potential(plate.bending(sheet)?);
+        Ok(model.with_elastic_sheet(elastic)?)
     }
 
     /// The energy of bending of positions `x` (3V, metres), without that of creases, joules.
     pub(super) fn bending_energy(self, sheet: &Sheet, plate: Plate<'_>, x: &[f64]) -> Result<f64> {
         Ok(match self {
-            Self::Rods => {
-                CreaseSprings::bending_beside(sheet, plate.rigidity, plate.creases)?.energy(0.0, x)
-            }
+            Self::Rods => plate.springs(sheet)?.energy(0.0, x),
             _ => plate.bending(sheet)?.energy(0.0, x),
         })
     }
@@ -74,52 +79,31 @@ impl Model {
         Ok(self.sheet(sheet, plate)?.potential_energy(0.0, x))
     }
 
-    /// The elastic energy of each face, joules; that of a spring belongs to both faces of its edge in equal parts.
-    pub(super) fn face_energies(
-        self,
-        sheet: &Sheet,
-        plate: Plate<'_>,
-        x: &[f64],
-    ) -> Result<Vec<f64>> {
-        if let Some(faces) = self.sheet(sheet, plate)?.elastic_deformation(x) {
-            let sums = faces.stretching.iter().zip(&faces.bending);
-            return Ok(sums.map(|(s, b)| s + b).collect());
-        }
-        let t = sheet.topology();
-        let mut energies = vec![0.0; t.face_count()];
-        for edge in t.edge_ids().filter(|e| !plate.creases.contains(e)) {
-            let ([Some(left), Some(right)], Some(angle)) =
-                (t.edge_faces(edge), fold_angle(t, x, edge))
-            else {
-                continue;
-            };
-            let faces = [left, right].map(|f| f.index());
-            let area: f64 = faces.iter().map(|f| sheet.face_areas()[*f]).sum();
-            // See [`CreaseSprings::bending`].
-            let stiffness = plate.rigidity * sheet.lengths()[edge.index()].powi(2) / area;
-            for face in faces {
-                energies[face] += 0.25 * stiffness * angle * angle;
-            }
-        }
-        Ok(energies)
-    }
-
     /// The colour in figures.
     pub(super) fn colour(self) -> Colour {
         match self {
-            Self::Elastic | Self::Bound(_) => palette::GREEN,
-            Self::Material => palette::BLUE,
             Self::Rods => palette::VERMILION,
+            Self::Material => palette::BLUE,
+            Self::Elastic => palette::GREEN,
         }
     }
 }
 
 impl Plate<'_> {
     fn bending(&self, sheet: &Sheet) -> Result<PlateBending> {
+        let (clamped, creases) = (self.clamped, self.creases);
         Ok(PlateBending::creased(
             sheet,
             self.rigidity,
-            self.clamped,
+            clamped,
+            creases,
+        )?)
+    }
+
+    fn springs(&self, sheet: &Sheet) -> Result<CreaseSprings> {
+        Ok(CreaseSprings::bending_beside(
+            sheet,
+            self.rigidity,
             self.creases,
         )?)
     }
@@ -127,36 +111,12 @@ impl Plate<'_> {
 
 impl fmt::Display for Model {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Elastic => f.write_str("elastic"),
-            Self::Bound(c) => write!(f, "elastic, C = {c}"),
-            Self::Material => f.write_str("real stiffness"),
-            Self::Rods => f.write_str("rods"),
-        }
+        f.write_str(match self {
+            Self::Rods => "rods",
+            Self::Material => "real stiffness",
+            Self::Elastic => "elastic",
+        })
     }
-}
-
-/// A run with one model, and what was measured of it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Tried<J, M> {
-    pub(super) model: Model,
-    pub(super) job: J,
-    /// Number of vertices of the mesh.
-    pub(super) vertices: usize,
-    pub(super) course: Course,
-    pub(super) measured: M,
-}
-
-impl<J, M> Tried<J, M> {
-    /// A value of a run that reached its end.
-    pub(super) fn if_good(&self, value: impl Fn(&M) -> f64) -> Option<f64> {
-        self.course.is_good().then(|| value(&self.measured))
-    }
-}
-
-/// A requirement on the largest of some values of a model.
-pub(super) fn at_most(model: Model, quantity: &str, bound: f64, values: &[Option<f64>]) -> Finding {
-    Finding::worst(model.to_string(), quantity, Bound::AtMost(bound), values)
 }
 
 #[cfg(test)]
@@ -164,24 +124,22 @@ mod tests {
     use super::*;
     use isosheet_mesh::generate;
 
+    /// A uniform stretch by 0.4 % along x stores `A K E^2 / 2` with Green's strain `E` and `K = E h / (1 -
+    /// nu^2)` in elastic sheets, and no bending energy. The softened stiffness is 2000 `D` over the mean square of
+    /// the edges of a face, four thirds of that of the side of a cell, 0.25 m.
     #[test]
-    fn the_energies_of_the_faces_are_that_of_the_sheet() {
-        let sheet = generate::isotropic_square(2, 0.1).unwrap();
-        let plate = Plate {
-            density: 0.08,
-            rigidity: 5e-4,
-            clamped: &[],
-            creases: &[EdgeId(3)],
-        };
-        let bent = sheet
-            .map_positions(|[x, y, _]| [x, y, 0.1 * x * x + 0.05 * x * y])
-            .unwrap();
-        for model in Model::ALL {
-            let x = bent.positions();
-            let faces = model.face_energies(&sheet, plate, x).unwrap();
-            let whole = model.energy(&sheet, plate, x).unwrap();
-            let part = faces.iter().sum::<f64>() / whole;
-            assert!((part - 1.0).abs() < 1e-12, "{model}: {part}");
+    fn the_energies_of_a_stretched_square_are_known() {
+        let sheet = generate::isotropic_square(1, 1.0).unwrap();
+        let stretched = sheet.map_positions(|[x, y, z]| [1.004 * x, y, z]).unwrap();
+        let x = stretched.positions();
+        let strain = 0.5 * (1.004 * 1.004 - 1.0);
+        let soft = 2000.0 * PAPER.rigidity * 16.0 * 0.75;
+        for (model, stiffness) in [(Model::Material, MEMBRANE[0]), (Model::Elastic, soft)] {
+            let known = 0.5 * stiffness / (1.0 - MEMBRANE[1] * MEMBRANE[1]) * strain * strain;
+            let energy = model.energy(&sheet, PAPER, x).unwrap();
+            assert!((energy / known - 1.0).abs() < 1e-9, "{energy} {known}");
+            let bending = model.bending_energy(&sheet, PAPER, x).unwrap();
+            assert!(bending.abs() < 1e-15);
         }
     }
 }

@@ -55,9 +55,4 @@ impl Cost {
     pub(crate) fn factorisations_per_step(&self) -> Option<f64> {
         self.per_step(self.factorisations as f64)
     }
-
-    /// Wall seconds for a step in the mean.
-    pub(crate) fn wall_per_step(&self) -> Option<f64> {
-        self.per_step(self.wall)
-    }
 }

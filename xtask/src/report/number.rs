@@ -37,28 +37,6 @@ pub(crate) fn exponent(points: &[[f64; 2]]) -> Option<f64> {
     (below > 0.0 && slope.is_finite()).then_some(slope)
 }
 
-/// A line `y ~ x^power` over the range of `x` of some points, through the geometric mean of their values at
-/// the largest `x`; nothing where there are none.
-pub(crate) fn order_line(points: &[[f64; 2]], power: f64) -> Vec<[f64; 2]> {
-    let positive = || points.iter().filter(|p| p[1] > 0.0);
-    let high = positive().map(|p| p[0]).fold(0.0, f64::max);
-    let low = positive().map(|p| p[0]).fold(f64::INFINITY, f64::min);
-    let last: Vec<f64> = positive()
-        .filter(|p| p[0] > 0.999 * high)
-        .map(|p| p[1].ln())
-        .collect();
-    if last.is_empty() || low >= high {
-        return Vec::new();
-    }
-    let mean = (last.iter().sum::<f64>() / last.len() as f64).exp();
-    // Many points, so that what leaves the axes can be left out.
-    let point = |k: i32| {
-        let x = high * (low / high).powf(f64::from(k) / 32.0);
-        [x, mean * (x / high).powf(power)]
-    };
-    (0..=32).map(point).collect()
-}
-
 /// A number with two digits.
 pub(crate) fn short(value: f64) -> String {
     if value < 0.0 {
@@ -146,19 +124,6 @@ mod tests {
         assert!((exponent(&points).expect("four sizes") - 1.5).abs() < 1e-12);
         assert_eq!(exponent(&points[..1]), None);
         assert_eq!(exponent(&[[1.0, 2.0], [1.0, 3.0]]), None);
-    }
-
-    #[test]
-    fn order_lines_have_their_slope_and_pass_through_the_mean() {
-        let points = [[1.0, 1e-3], [4.0, 0.1], [4.0, 0.4], [8.0, 0.0]];
-        let line = order_line(&points, 2.0);
-        for pair in line.windows(2) {
-            let [[x, y], [u, v]] = [pair[0], pair[1]];
-            assert!(((y / v).ln() / (x / u).ln() - 2.0).abs() < 1e-9);
-        }
-        assert!((line[0][0] - 4.0).abs() < 1e-12 && (line[0][1] - 0.2).abs() < 1e-12);
-        assert!((line[32][0] - 1.0).abs() < 1e-12);
-        assert!(order_line(&points[3..], 2.0).is_empty());
     }
 
     #[test]

@@ -134,20 +134,6 @@ impl Table {
         self
     }
 
-    /// The same table with another column.
-    ///
-    /// # Panics
-    /// If there are more or fewer cells than rows.
-    pub(crate) fn with_column(mut self, name: &str, cells: impl Iterator<Item = Cell>) -> Self {
-        let cells: Vec<Cell> = cells.collect();
-        assert_eq!(cells.len(), self.rows.len(), "rows of {}", self.caption);
-        self.head.push(name.to_owned());
-        for (row, cell) in self.rows.iter_mut().zip(cells) {
-            row.push(cell);
-        }
-        self
-    }
-
     /// Some columns of the table under another caption, by their names with spaces between; of equal rows
     /// that follow each other one is left.
     ///

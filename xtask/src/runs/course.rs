@@ -3,8 +3,9 @@
 use crate::interrupt::{self, Interrupted};
 use crate::report::Cost;
 use cpu_time::ThreadTime;
-use isosheet_dynamics::{RunEnd, Simulation, StepError, StepReport};
+use isosheet_dynamics::{Observer, RunEnd, Simulation, StepError, StepProgress, StepReport};
 use serde::{Deserialize, Serialize};
+use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -218,8 +219,7 @@ pub(crate) struct Plan {
     /// The run ends early when the sheet is at rest: when the largest speed of a vertex (m/s) has been below
     /// this bound for [`QUIET`] steps. `None`: it does not end early.
     pub(crate) rest_speed: Option<f64>,
-    /// Longest wall time, seconds. A run ends at the end of the step in which it is over, unless it is the
-    /// last one.
+    /// Longest wall time, seconds. A run ends in the step in which it is over, or after it, unless it is the last one.
     pub(crate) patience: f64,
 }
 
@@ -236,6 +236,29 @@ fn largest_speed(simulation: &Simulation) -> f64 {
     let velocities = simulation.state().v.as_chunks::<3>().0.iter();
     let squares = velocities.map(|v| v.iter().map(|c| c * c).sum::<f64>());
     squares.fold(0.0, f64::max).sqrt()
+}
+
+/// Ends a run within a step when its wall time is over or Ctrl-C was pressed: a step of a sheet that locks can take
+/// minutes.
+struct Limit<'a> {
+    begun: Instant,
+    patience: f64,
+    /// The time of looking at steps, which does not count.
+    seen: &'a Cell<Duration>,
+}
+
+impl Observer for Limit<'_> {
+    fn step(&mut self, _: &Simulation, _: &StepReport) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn within(&mut self, _: &StepProgress) -> ControlFlow<()> {
+        let wall = self.begun.elapsed().saturating_sub(self.seen.get());
+        match interrupt::requested() || wall.as_secs_f64() > self.patience {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
 }
 
 impl Plan {
@@ -291,6 +314,12 @@ impl Plan {
         let before = (course.cost.wall, course.cost.cpu);
         let clocks = Clocks::start();
         let (mut looking, mut quiet, mut stopped) = (Spent::default(), 0, Ending::Stopped);
+        let mut limit = Limit {
+            begun: clocks.wall,
+            patience: self.patience - before.0,
+            seen: &Cell::default(),
+        };
+        let seen_until_now = limit.seen;
         let mut watch = |simulation: &Simulation, report: &StepReport| {
             let begun = Clocks::start();
             course.add(report);
@@ -301,6 +330,7 @@ impl Plan {
             let seen = begun.spent();
             looking.wall += seen.wall;
             looking.cpu += seen.cpu;
+            seen_until_now.set(looking.wall);
             let wall = clocks.cost(&looking, before, &mut course.cost);
             if enough.is_continue() {
                 if quiet >= QUIET {
@@ -316,7 +346,7 @@ impl Plan {
         let end = simulation.run(
             self.duration,
             self.step,
-            &mut [&mut watch, &mut interrupt::observe],
+            &mut [&mut watch, &mut interrupt::observe, &mut limit],
         );
         interrupt::check()?;
         clocks.cost(&looking, before, &mut course.cost);
@@ -324,6 +354,7 @@ impl Plan {
         course.ending = match end {
             Ok(RunEnd::Complete | RunEnd::Taut) => Ending::Complete,
             Ok(RunEnd::Stopped) => stopped,
+            Err(StepError::Interrupted { .. }) => Ending::WallTime(self.patience),
             Err(error) => {
                 let ending = Ending::of_step(&error);
                 if let StepError::Locked { factorisations, .. } = error {
@@ -383,9 +414,10 @@ mod tests {
         let rest = run(plan.until_rest(100.0));
         assert_eq!((&rest.ending, rest.cost.steps), (&Ending::Rest, QUIET));
         let late = run(plan.within(0.0));
-        assert_eq!((&late.ending, late.cost.steps), (&Ending::WallTime(0.0), 1));
-        assert_eq!(late.rate(), Some(late.cost.wall / 0.01));
-        assert_eq!(late.cpu_rate(), Some(late.cost.cpu / 0.01));
+        assert_eq!((&late.ending, late.cost.steps), (&Ending::WallTime(0.0), 0));
+        assert_eq!((late.rate(), late.cpu_rate()), (None, None));
+        assert_eq!(whole.rate(), Some(whole.cost.wall / whole.time));
+        assert_eq!(whole.cpu_rate(), Some(whole.cost.cpu / whole.time));
         let mut stop = |_: &Simulation, _: &StepReport| ControlFlow::Break(());
         let stopped = plan.run(&mut falling(), &mut stop).unwrap();
         assert_eq!(stopped.ending, Ending::Stopped);
@@ -393,9 +425,9 @@ mod tests {
         assert!(!wrong.ending.message().is_empty() && wrong.if_good(1.0).is_nan());
         let mut both = whole.clone();
         both.add_run(late.clone());
-        assert_eq!((both.cost.steps, &both.ending), (11, &late.ending));
+        assert_eq!((both.cost.steps, &both.ending), (10, &late.ending));
         let mut both = late.clone();
         both.add_run(whole);
-        assert_eq!((both.cost.steps, both.ending), (11, late.ending));
+        assert_eq!((both.cost.steps, both.ending), (10, late.ending));
     }
 }
