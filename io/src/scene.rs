@@ -39,6 +39,7 @@ mod folding;
 mod forces;
 mod form;
 mod glue;
+mod in_words;
 mod key;
 mod live;
 mod material;
@@ -61,6 +62,7 @@ mod setup;
 mod sheet;
 mod sheets;
 mod source;
+mod start;
 mod starting_point;
 mod stop;
 mod support_forces;
@@ -68,6 +70,7 @@ mod supports;
 mod toml_problem;
 mod unit;
 mod warning;
+mod weight;
 mod yields;
 
 pub use air::Air;
@@ -101,13 +104,15 @@ pub use profile::{Change, Course, Interpolation, Profile};
 pub use reference::{reference_page, schema};
 pub use selection::Selection;
 pub use setup::{Integration, Setup};
-pub use sheet::{Bending, Elasticity, Isometry, Sheet, Start};
+pub use sheet::{Bending, Elasticity, Isometry, Sheet};
 pub use source::{SceneFile, SceneFileError};
+pub use start::{Spin, Start};
 pub use starting_point::StartingPoint;
 pub use stop::{Rest, Stop};
 pub use support_forces::SupportForces;
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
 pub use warning::SceneWarning;
+pub use weight::Weight;
 pub use yields::{CreaseYield, SheetYield};
 
 #[cfg(feature = "run")]
@@ -154,6 +159,9 @@ pub struct Scene {
     /// Seams: vertices that are glued to each other.
     #[serde(default)]
     pub glue: Vec<Glue>,
+    /// Weights that are fixed to vertices.
+    #[serde(default)]
+    pub weight: Vec<Weight>,
     /// What holds the sheet.
     #[serde(default)]
     pub support: Vec<Support>,
@@ -189,6 +197,7 @@ impl Scene {
             crease: Vec::new(),
             folding: None,
             glue: Vec::new(),
+            weight: Vec::new(),
             support: Vec::new(),
             obstacle: Vec::new(),
             forces: Forces::default(),
@@ -228,6 +237,11 @@ impl Scene {
         }
         for (k, glue) in self.glue.iter().enumerate() {
             glue.check(&self.sheet, &root.name("glue").entry(k), &mut checks);
+        }
+        for (k, weight) in self.weight.iter().enumerate() {
+            let key = root.name("weight").entry(k);
+            weight.check(&key, &mut checks);
+            is_known(&weight.sheet, &key, &mut checks);
         }
         for (k, support) in self.support.iter().enumerate() {
             let key = root.name("support").entry(k);

@@ -3,6 +3,7 @@
 use super::creases::{EdgeFolds, FoldSprings};
 use super::error::SceneError;
 use super::folding::FoldTargets;
+use super::in_words::{elastic_in_words, materials_in_words};
 use super::key::Key;
 use super::mesh::Mesh;
 use super::placed::{PlacedSheet, PlacedSheets};
@@ -17,9 +18,9 @@ use isosheet_dynamics::{
     PlateBending, PointMotion, PointProfile, Potential, PotentialOfPart, RigidProfile, SheetModel,
     SimulationError, State, VertexConstraint, VertexLoad, leave_flat_in, project_positions,
 };
-use isosheet_mesh::wording::{brief, counted};
+use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
-use nalgebra::{Isometry3, Point3};
+use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -77,12 +78,16 @@ impl<'a> Builder<'a> {
         let key = Key::root().name("sheet");
         let sheets = PlacedSheets::new(&scene.sheet, folder)?;
         let damping = scene.sheet[0].damping;
-        let model = SheetModel::with_mass(&sheets.union, sheets.mass())
+        let mass = sheets.mass(&scene.weight)?;
+        let model = SheetModel::with_mass(&sheets.union, mass)
             .and_then(|m| m.with_damping(damping))
             .map_err(at(&key))?;
         let mut modelled = Vec::new();
         if damping > 0.0 {
             modelled.push("velocity damping".to_owned());
+        }
+        if !scene.weight.is_empty() {
+            modelled.push(counted(scene.weight.len(), "weight", "weights"));
         }
         Ok(Self {
             scene,
@@ -457,7 +462,34 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    /// The state at the start. Pinned vertices move with their pins.
+    fn start(&mut self) -> State {
+        let mut v = vec![0.0; self.x.len()];
+        for PlacedSheet { of, part, .. } in &self.sheets.list {
+            if !of.start.is_moving() {
+                continue;
+            }
+            let points = self.x[part.coordinates()].as_chunks::<3>().0;
+            let masses = &self.model().mass().vertex[part.vertices.clone()];
+            let moment = points
+                .iter()
+                .zip(masses)
+                .map(|(p, m)| *m * Vector3::from(*p));
+            let centre = moment.sum::<Vector3<f64>>() / masses.iter().sum::<f64>();
+            let velocities = of.start.velocities(points, centre);
+            v[part.coordinates()].copy_from_slice(velocities.as_flattened());
+        }
+        for pin in self.model().pins() {
+            v[3 * pin.index()..3 * pin.index() + 3].fill(0.0);
+        }
+        if v.iter().any(|v| *v != 0.0) {
+            self.modelled.push("velocities at the start".into());
+        }
+        State::moving(std::mem::take(&mut self.x), v)
+    }
+
     fn finish(mut self, contacts: Option<Contacts>, obstacles: Vec<Obstacle>) -> Setup {
+        let start = self.start();
         let model = self.model.take();
         let sheets = &self.sheets.list;
         let part = |sheet: &PlacedSheet<'_>| {
@@ -465,7 +497,7 @@ impl<'a> Builder<'a> {
             Some((name, sheet.part.clone()))
         };
         Setup {
-            start: State::at_rest(self.x),
+            start,
             parts: match &sheets[..] {
                 [_] => Vec::new(),
                 several => several.iter().filter_map(part).collect(),
@@ -539,40 +571,6 @@ fn elastic_sheet(
     ElasticSheet::new(placed, stiffness, poisson)?
         .softened(rigidity)?
         .with_limit(limit)
-}
-
-/// What the sheets are made of, if the scene names it.
-fn materials_in_words(sheets: &[PlacedSheet<'_>]) -> Option<String> {
-    let words = |sheet: &PlacedSheet<'_>| {
-        let words = sheet.of.material.as_ref()?.in_words()?;
-        match (&sheet.of.name, sheets.len()) {
-            (Some(name), 2..) => Some(format!("{name} of {words}")),
-            _ => Some(words),
-        }
-    };
-    let all: Vec<String> = sheets.iter().filter_map(words).collect();
-    (!all.is_empty()).then(|| all.join("; "))
-}
-
-/// What an elastic sheet is on its mesh.
-fn elastic_in_words(elastic: &ElasticSheet) -> String {
-    let used = elastic.face_stiffnesses();
-    let [least, most] = used.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], k| {
-        [least.min(k), most.max(k)]
-    });
-    let softened = if least == elastic.stiffness() {
-        String::new()
-    } else if brief(least).to_string() == brief(most).to_string() {
-        format!(", softened on this mesh to {} N/m", brief(least))
-    } else {
-        let [least, most] = [brief(least), brief(most)];
-        format!(", softened on this mesh to between {least} and {most} N/m")
-    };
-    format!(
-        "elasticity in the plane ({} N/m{softened}; strain below {} %)",
-        brief(elastic.stiffness()),
-        brief(100.0 * elastic.limit())
-    )
 }
 
 fn self_contact_problem(error: &ContactsError) -> Problem {

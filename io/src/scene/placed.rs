@@ -7,7 +7,7 @@ use super::pose::Pose;
 use super::problem::Problem;
 use super::refined::Refined;
 use super::sheets::sheet_key;
-use super::{Key, Selection, Sheet as SheetOfScene, sheets};
+use super::{Key, Selection, Sheet as SheetOfScene, Weight, sheets};
 use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
 use nalgebra::Point3;
 use std::path::Path;
@@ -56,9 +56,18 @@ impl<'a> PlacedSheets<'a> {
         Ok(Self { list, union, start })
     }
 
-    pub(super) fn mass(&self) -> MassMatrix {
+    /// The masses of the sheets with weights.
+    pub(super) fn mass(&self, weights: &[Weight]) -> Result<MassMatrix, Problem> {
         let masses: Vec<MassMatrix> = self.list.iter().map(|sheet| sheet.mass.clone()).collect();
-        MassMatrix::union(&masses)
+        let mut mass = MassMatrix::union(&masses);
+        for (k, weight) in weights.iter().enumerate() {
+            let key = Key::root().name("weight").entry(k);
+            let vertices = self.vertices(weight.sheet.as_deref(), &weight.at, &key)?;
+            for v in &vertices {
+                mass.vertex[v.index()] += weight.mass / vertices.len() as f64;
+            }
+        }
+        Ok(mass)
     }
 
     /// The vertices of a selection in the sheet of a name, or in all sheets.

@@ -2,9 +2,10 @@
 
 use super::key::Key;
 use super::material::{Material, typical_poisson};
-use super::mesh::{Mesh, MeshFile};
+use super::mesh::Mesh;
 use super::pose::Pose;
 use super::problem::Checks;
+use super::start::Start;
 use super::unit::Unit;
 use super::yields::SheetYield;
 use isosheet_dynamics as engine;
@@ -138,26 +139,6 @@ pub enum Bending {
     },
 }
 
-/// How the sheet starts.
-///
-/// ```toml
-/// [sheet]
-/// start = { perturbation = 0.01, seed = 1 }
-/// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Start {
-    /// A mesh file with the vertices and faces of `mesh` in the same order, whose positions are those at the
-    /// start. It is placed as the rest shape is. With rigid rods, lengths that differ from the rest lengths
-    /// by up to 1e-4 of these, as in files of six digits, are corrected by moving the vertices.
-    pub file: Option<MeshFile>,
-    /// Size of a random displacement of all free vertices, as a part of the mean edge length, from 0 to 1:
-    /// conservative methods cannot start from a flat sheet under load.
-    pub perturbation: f64,
-    /// Another number gives another displacement.
-    pub seed: u64,
-}
-
 impl Sheet {
     /// A sheet of office paper without bending stiffness, of rigid rods.
     pub fn new(mesh: Mesh) -> Self {
@@ -284,15 +265,7 @@ impl Sheet {
             );
         }
         self.placement.check(&key.name("placement"), checks);
-        let start = key.name("start");
-        checks.within(
-            start.name("perturbation"),
-            self.start.perturbation,
-            [0.0, 1.0],
-        );
-        if let Some(file) = &self.start.file {
-            file.check(&start.name("file"), checks);
-        }
+        self.start.check(&key.name("start"), checks);
     }
 }
 

@@ -21,7 +21,7 @@ const ALL_KEYS: [&str; 5] = [
     damping = 1.0
     refine = 1
     placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }
-    start = { perturbation = 0.01, seed = 3, file = { path = "a.obj", scale = 1.0, up = "y", polygons = "refuse", frame = "folded" } }
+    start = { perturbation = 0.01, seed = 3, velocity = [1, 0, 0], spin = { axis = [0, 0, 1], rate = 90, centre = [0, 0, 0] }, file = { path = "a.obj", scale = 1.0, up = "y", polygons = "refuse", frame = "folded" } }
     [[crease]]
     sheet = "main"
     at = { ends = [[0, 1]] }
@@ -38,6 +38,10 @@ const ALL_KEYS: [&str; 5] = [
     second = { line = { from = [0, 0, 0], to = [1, 0, 0] } }
     closing = 0.0
     stiffness = 10.0
+    [[weight]]
+    sheet = "main"
+    at = { vertices = [1] }
+    mass = 1e-3
     [[support]]
     sheet = "main"
     at = { nearest = [[0, 0, 0]] }

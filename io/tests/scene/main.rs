@@ -14,6 +14,7 @@ mod messages;
 mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;
+mod starts;
 mod values;
 mod wrong;
 

@@ -1,0 +1,35 @@
+//! Weights that are fixed to vertices.
+
+use super::key::Key;
+use super::problem::Checks;
+use super::selection::Selection;
+use super::unit::Unit;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A mass that some vertices share equally, beside that of the sheet: a clip at a corner, a batten in a hem. It is
+/// heavy and inert, and has no extent.
+///
+/// ```toml
+/// [[weight]]
+/// at = { nearest = [[0.2, 0.0, 0.0]] }
+/// mass = 0.005
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Weight {
+    /// The name of the sheet, if there are several and not the vertices of all are meant.
+    #[serde(default)]
+    pub sheet: Option<String>,
+    /// Which vertices.
+    pub at: Selection,
+    /// The whole mass, kilograms.
+    pub mass: f64,
+}
+
+impl Weight {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        self.at.check(&key.name("at"), checks);
+        checks.positive(key.name("mass"), self.mass, Unit::Kilogram);
+    }
+}
