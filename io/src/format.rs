@@ -28,3 +28,4 @@ pub use mesh_file::{
 };
 pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
 pub use trajectory::{FrameData, Trajectory, TrajectoryError};
+pub(crate) use trajectory::{MeshCounts, Quantity};

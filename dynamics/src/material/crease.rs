@@ -281,12 +281,6 @@ impl CreaseSprings {
         self.with_plastic().map(moment).collect()
     }
 
-    /// The edges that yield, in the order given, with the plastic angles that stay, radians, positive for valleys.
-    pub fn plastic_angles(&self) -> Vec<(EdgeId, f64)> {
-        let yielding = self.with_plastic().filter(|(h, _)| h.yields.is_some());
-        yielding.map(|(h, p)| (h.edge(), h.plastic(p))).collect()
-    }
-
     /// The hinges with the plastic angles of their layers.
     fn with_plastic(&self) -> impl Iterator<Item = (&Hinge, &[f64])> {
         let mut plastic = self.plastic.as_slice();
@@ -432,6 +426,12 @@ impl Potential for CreaseSprings {
     fn is_driven(&self) -> bool {
         self.hinges.iter().any(|h| h.rest.is_driven())
     }
+
+    fn plastic_angles(&self) -> Vec<(EdgeId, f64)> {
+        let yielding = self.with_plastic().filter(|(h, _)| h.yields.is_some());
+        yielding.map(|(h, p)| (h.edge(), h.plastic(p))).collect()
+    }
+
     fn memory(&self) -> &[f64] {
         &self.plastic
     }

@@ -11,7 +11,7 @@ use super::plasticity::Yield;
 use crate::options::OptionsError;
 use crate::{HessianSink, Potential};
 use isosheet_mesh::wording::given;
-use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
+use isosheet_mesh::{Advice, EdgeId, FaceId, Sheet, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use plastic::{Blocks, PlasticCurvature};
 use std::collections::BTreeMap;
@@ -213,14 +213,6 @@ impl PlateBending {
         });
         Ok(self)
     }
-
-    /// The plastic curvature of each face, 1/m, the first axis along the first edge of the face, positive where the
-    /// sheet is a valley as seen from the side from which faces are counter-clockwise; none where the plate cannot
-    /// yield.
-    pub fn plastic_curvatures(&self) -> Vec<Matrix2<f64>> {
-        let plastic = self.plastic.iter();
-        plastic.flat_map(PlasticCurvature::matrices).collect()
-    }
 }
 
 impl Potential for PlateBending {
@@ -290,6 +282,12 @@ impl Potential for PlateBending {
     fn couplings(&self) -> Vec<[VertexId; 2]> {
         self.at_pairs.iter().map(|(pair, _)| *pair).collect()
     }
+    fn plastic_curvatures(&self) -> Vec<(FaceId, Matrix2<f64>)> {
+        let matrices = self.plastic.iter().flat_map(PlasticCurvature::matrices);
+        let faces = (0..).map(FaceId::from_index);
+        faces.zip(matrices).collect()
+    }
+
     fn memory(&self) -> &[f64] {
         self.plastic
             .as_ref()

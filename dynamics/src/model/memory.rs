@@ -1,12 +1,47 @@
 //! What the potentials of a model remember.
 
 use crate::SheetModel;
+use isosheet_mesh::{EdgeId, FaceId};
+use nalgebra::Matrix2;
 
 impl SheetModel {
     /// Whether bends or creases can yield: whether a potential has a memory
     /// ([`Potential::memory`](crate::Potential::memory)).
     pub fn can_yield(&self) -> bool {
         self.potentials().any(|p| !p.memory().is_empty())
+    }
+
+    /// The plastic angle of each edge (length E, radians, positive for valleys), 0 where nothing yields; `None` where no
+    /// edge can yield. It is what stays of a fold angle where the moment is zero.
+    pub fn plastic_angles(&self) -> Option<Vec<f64>> {
+        let known: Vec<(EdgeId, f64)> =
+            self.potentials().flat_map(|p| p.plastic_angles()).collect();
+        if known.is_empty() {
+            return None;
+        }
+        let mut angles = vec![0.0; self.topology().edge_count()];
+        for (e, angle) in &known {
+            angles[e.index()] += angle;
+        }
+        Some(angles)
+    }
+
+    /// The principal values of the plastic curvature of each face (length F, 1/m), the larger one in size first,
+    /// positive where the sheet is a valley as seen from the side from which faces are counter-clockwise; `None` where
+    /// no face can yield. They are what stays of the curvature where the moment is zero.
+    pub fn plastic_curvatures(&self) -> Option<Vec<[f64; 2]>> {
+        let known: Vec<(FaceId, Matrix2<f64>)> = self
+            .potentials()
+            .flat_map(|p| p.plastic_curvatures())
+            .collect();
+        if known.is_empty() {
+            return None;
+        }
+        let mut curvatures = vec![Matrix2::zeros(); self.topology().face_count()];
+        for (f, curvature) in &known {
+            curvatures[f.index()] += curvature;
+        }
+        Some(curvatures.iter().map(principal).collect())
     }
 
     /// What each of the potentials remembers that have a memory, in the order in which they were added.
@@ -28,5 +63,116 @@ impl SheetModel {
     /// Makes what the potentials remember that of the end of a step; the energy that has been dissipated, joules.
     pub(crate) fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
         self.potentials.iter_mut().map(|p| p.settle(t, x)).sum()
+    }
+}
+
+/// The principal values of a symmetric matrix, the larger one in size first.
+fn principal(m: &Matrix2<f64>) -> [f64; 2] {
+    let mean = 0.5 * (m[(0, 0)] + m[(1, 1)]);
+    let radius = (0.5 * (m[(0, 0)] - m[(1, 1)])).hypot(m[(0, 1)]);
+    let first = if mean < 0.0 {
+        mean - radius
+    } else {
+        mean + radius
+    };
+    [first, 2.0 * mean - first]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CreaseSpring, CreaseSprings, PlateBending, PotentialOfPart, Yield};
+    use isosheet_mesh::{MassKind, Part, Sheet, generate};
+
+    #[test]
+    fn principal_values_are_eigenvalues_in_the_order_of_size() {
+        for m in [
+            Matrix2::new(1.0, 0.4, 0.4, -3.0),
+            Matrix2::new(2.0, -0.7, -0.7, 1.5),
+            Matrix2::zeros(),
+        ] {
+            let [first, second] = principal(&m);
+            assert!(first.abs() >= second.abs());
+            let found = m.symmetric_eigenvalues();
+            let (large, small) = (first.max(second), first.min(second));
+            assert!((found.max() - large).abs() < 1e-14 && (found.min() - small).abs() < 1e-14);
+        }
+    }
+
+    /// Of two strips the second one yields: rolled to a cylinder, its plate keeps what is beyond the yield, and its
+    /// spring too. The first one has nothing.
+    #[test]
+    fn what_stays_has_its_place_among_several_sheets() {
+        let (rigidity, moment, curvature) = (2.0, 0.5, 0.9);
+        let strip = generate::strip(8, 1.0, 0.1, generate::Diagonals::Rising).expect("a strip");
+        let lifted = strip
+            .map_positions(|[x, y, z]| [x, y, z + 1.0])
+            .expect("moved");
+        let sheets = [&strip, &lifted];
+        let parts = Part::of_union(&sheets);
+        let both = Sheet::union(&sheets).expect("two strips");
+        let plate = PlateBending::new(&lifted, rigidity).expect("a plate");
+        let plate = plate
+            .with_yield(&lifted, Yield::perfect(moment))
+            .expect("in range");
+        let t = lifted.topology();
+        let rung = t
+            .edge_ids()
+            .filter(|e| !t.is_boundary_edge(*e))
+            .nth(5)
+            .expect("an inner edge");
+        let spring = CreaseSpring {
+            edge: rung,
+            stiffness: 3.0,
+            rest: 0.0.into(),
+            yields: Some(Yield::perfect(0.06)),
+        };
+        let springs = CreaseSprings::new(t, vec![spring]).expect("a spring");
+        let plain = SheetModel::new(&both, 0.1, MassKind::Lumped).expect("mass");
+        assert_eq!(
+            (plain.plastic_angles(), plain.plastic_curvatures()),
+            (None, None)
+        );
+        let mut model = plain
+            .with_potential(PotentialOfPart::new(plate, &parts[1]))
+            .with_potential(PotentialOfPart::new(springs, &parts[1]));
+        let turn = |x: f64| (curvature * x).sin_cos();
+        let rolled = |[x, y, z]: [f64; 3]| {
+            let (sin, cos) = turn(x);
+            [sin / curvature, y, z + (1.0 - cos) / curvature]
+        };
+        let x: Vec<f64> = both
+            .positions()
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .flat_map(|p| rolled(*p))
+            .collect();
+        assert!(model.settle(0.0, &x) > 0.0);
+        let curvatures = model.plastic_curvatures().expect("a plate that yields");
+        let expected = curvature - moment / rigidity;
+        let own = parts[1].faces.clone();
+        for (face, [first, second]) in curvatures.iter().enumerate() {
+            // The faces at the ends of a strip have no neighbour to one side.
+            if own.start + 2 <= face && face + 2 < own.end {
+                assert!(
+                    (first - expected).abs() < 0.03 * expected,
+                    "{face}: {first}"
+                );
+                assert!(second.abs() < 0.03 * expected, "{face}: {second}");
+            } else if face < own.start {
+                assert_eq!([*first, *second], [0.0; 2]);
+            }
+        }
+        let angles = model.plastic_angles().expect("a spring that yields");
+        let bent: Vec<usize> = (0..angles.len()).filter(|e| angles[*e] != 0.0).collect();
+        assert_eq!(bent, [parts[1].edge(rung).index()]);
+        let fold =
+            isosheet_mesh::fold_angle(both.topology(), &x, parts[1].edge(rung)).expect("inner");
+        let beyond = fold - 0.06 / 3.0;
+        assert!(
+            (angles[bent[0]] - beyond).abs() < 1e-12,
+            "{angles:?} {beyond}"
+        );
     }
 }

@@ -1,8 +1,8 @@
 //! Potentials of one of several sheets.
 
 use crate::{CouplingKind, HessianSink, Potential, PotentialShape};
-use isosheet_mesh::{EdgeId, Part, VertexId};
-use nalgebra::Matrix3;
+use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
+use nalgebra::{Matrix2, Matrix3};
 
 /// A potential that was made for one sheet, in a model of the [union](isosheet_mesh::Sheet::union) of several: it sees
 /// the coordinates of its own vertices, and its derivatives go to the places that these have in the union.
@@ -96,6 +96,18 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
 
     fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
         self.potential.settle(t, &x[self.part.coordinates()])
+    }
+
+    fn plastic_angles(&self) -> Vec<(EdgeId, f64)> {
+        let own = self.potential.plastic_angles().into_iter();
+        own.map(|(e, angle)| (self.part.edge(e), angle)).collect()
+    }
+
+    fn plastic_curvatures(&self) -> Vec<(FaceId, Matrix2<f64>)> {
+        let first = self.part.faces.start;
+        let own = self.potential.plastic_curvatures().into_iter();
+        own.map(|(f, curvature)| (FaceId::from_index(first + f.index()), curvature))
+            .collect()
     }
 
     fn shape(&self) -> PotentialShape {

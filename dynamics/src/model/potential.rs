@@ -1,7 +1,7 @@
 //! Potential energies (Liu, Tang and Joneja 2007, Eq. 1).
 
-use isosheet_mesh::{EdgeId, VertexId};
-use nalgebra::Matrix3;
+use isosheet_mesh::{EdgeId, FaceId, VertexId};
+use nalgebra::{Matrix2, Matrix3};
 use std::fmt::Debug;
 
 /// A potential energy of the vertex positions, `V(t, x)`, from which the forces are
@@ -63,6 +63,19 @@ pub trait Potential: Debug + Send + Sync {
     /// at `x`, and as the energy before it is that of the step, nothing is dissipated where a step is refused.
     fn settle(&mut self, _t: f64, _x: &[f64]) -> f64 {
         0.0
+    }
+
+    /// The edges at which it can yield, with the plastic angles that stay there, radians, positive for valleys. The
+    /// default has none.
+    fn plastic_angles(&self) -> Vec<(EdgeId, f64)> {
+        Vec::new()
+    }
+
+    /// The faces on which it can yield, with the plastic curvature that stays there, 1/m, the first axis along the
+    /// first edge of the face, positive where the sheet is a valley as seen from the side from which faces are
+    /// counter-clockwise. The default has none.
+    fn plastic_curvatures(&self) -> Vec<(FaceId, Matrix2<f64>)> {
+        Vec::new()
     }
 
     /// How the energy depends on the positions.

@@ -64,11 +64,21 @@ impl Run {
         py: Python<'py>,
         frame: impl Fn(usize) -> Option<&'a [f64]>,
     ) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+        self.tuples(py, 3, frame)
+    }
+
+    /// Tuples of n numbers, of shape (T, N, n).
+    fn tuples<'py, 'a>(
+        &'a self,
+        py: Python<'py>,
+        n: usize,
+        frame: impl Fn(usize) -> Option<&'a [f64]>,
+    ) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
         let Some((values, width)) = self.frames(frame) else {
             return Ok(None);
         };
         let count = self.recording.trajectory.len();
-        array(py, &values).reshape([count, width / 3, 3]).map(Some)
+        array(py, &values).reshape([count, width / n, n]).map(Some)
     }
 }
 
@@ -152,6 +162,23 @@ impl Run {
     #[getter]
     fn gaps<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         self.numbers(py, |k| self.recording.trajectory.gaps(k))
+    }
+
+    /// Plastic angles of the edges in the frames, radians, positive for valleys, of shape (T, E); None where no edge can
+    /// yield.
+    #[getter]
+    fn plastic_angles<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.numbers(py, |k| self.recording.trajectory.plastic_angles(k))
+    }
+
+    /// Principal values of the plastic curvature of the faces in the frames, 1/m, the larger one in size first, positive
+    /// for valleys, of shape (T, F, 2); None where no face can yield.
+    #[getter]
+    fn plastic_curvatures<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+        self.tuples(py, 2, |k| self.recording.trajectory.plastic_curvatures(k))
     }
 
     /// One array for each column of `history.csv`, with a row for the start and for every step: "time", "h",

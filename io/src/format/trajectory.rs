@@ -6,11 +6,11 @@ mod error;
 mod rate;
 
 pub use data::FrameData;
+pub(crate) use data::{MeshCounts, Quantity};
 pub use error::TrajectoryError;
 
 use crate::format::atomic::write_atomically;
 use archive::{ArchiveReader, ArchiveWriter};
-use data::Quantity;
 use isosheet_mesh::{Sheet, VertexId};
 use std::path::Path;
 
@@ -26,6 +26,8 @@ use std::path::Path;
 /// | `rod_forces` | f64 | T x E | forces of the rods, in newtons, tension positive; of runs that have them |
 /// | `contact_forces` | f64 | T x V x 3 | force of contact on each vertex, in newtons; of runs with contact |
 /// | `gaps` | f64 | T x V | gap of each vertex, in metres; of runs with contact |
+/// | `plastic_angles` | f64 | T x E | plastic angle of each edge, in radians; of runs with edges that yield |
+/// | `plastic_curvatures` | f64 | T x F x 2 | principal values of the plastic curvature of each face, in 1/m; of runs with a plate that yields |
 ///
 /// In Python: `data = numpy.load("trajectory.npz"); data["x"][-1]` are the last positions.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +39,7 @@ pub struct Trajectory {
     edges: Vec<[u32; 2]>,
     rest_lengths: Vec<f64>,
     /// Of each quantity the values of all frames, or none at all.
-    data: [Vec<f64>; 3],
+    data: [Vec<f64>; Quantity::COUNT],
 }
 
 impl Trajectory {
@@ -125,11 +127,7 @@ impl Trajectory {
             data: Default::default(),
         };
         for &k in frames {
-            let data = FrameData {
-                rod_forces: self.rod_forces(k).unwrap_or_default(),
-                contact_forces: self.contact_forces(k).unwrap_or_default(),
-                gaps: self.gaps(k).unwrap_or_default(),
-            };
+            let data = FrameData::each(|quantity| self.values(quantity, k).unwrap_or_default());
             let x = &self.x[3 * self.vertex_count * k..3 * self.vertex_count * (k + 1)];
             subset.push_with(self.t[k], x, &data)?;
         }
@@ -138,7 +136,15 @@ impl Trajectory {
 
     /// The numbers of a quantity in one frame.
     fn size(&self, quantity: Quantity) -> usize {
-        quantity.size(self.vertex_count, self.edges.len())
+        quantity.size(self.counts())
+    }
+
+    fn counts(&self) -> MeshCounts {
+        MeshCounts {
+            vertices: self.vertex_count,
+            edges: self.edges.len(),
+            faces: self.faces.len(),
+        }
     }
 
     /// A quantity in a frame.
@@ -208,6 +214,20 @@ impl Trajectory {
         self.values(Quantity::Gaps, k)
     }
 
+    /// The plastic angle of each edge in a frame (length E, radians, positive for valleys, 0 where nothing yields): what
+    /// stays of its fold angle where its moment is zero. `None` when no edge can yield, or there is no such frame.
+    pub fn plastic_angles(&self, k: usize) -> Option<&[f64]> {
+        self.values(Quantity::PlasticAngles, k)
+    }
+
+    /// The two principal values of the plastic curvature of each face in a frame (length 2F, 1/m): the larger one in
+    /// size first, positive where the sheet is a valley as seen from the side from which faces are counter-clockwise.
+    /// It is what stays of the curvature where the moment is zero. `None` when no face can yield, or there is no such
+    /// frame.
+    pub fn plastic_curvatures(&self, k: usize) -> Option<&[f64]> {
+        self.values(Quantity::PlasticCurvatures, k)
+    }
+
     /// Writes the `.npz` file, atomically. Equal trajectories give equal bytes.
     ///
     /// # Errors
@@ -226,7 +246,7 @@ impl Trajectory {
             npz.put("rest_lengths", &[self.rest_lengths.len() as u64], lengths)?;
             for (quantity, kept) in Quantity::ALL.into_iter().zip(&self.data) {
                 if !kept.is_empty() {
-                    let frame = quantity.shape(self.vertex_count, self.edges.len());
+                    let frame = quantity.shape(self.counts());
                     let shape = [&[frames], &frame[..]].concat();
                     npz.put(quantity.name(), &shape, kept.iter().copied())?;
                 }
@@ -268,9 +288,14 @@ impl Trajectory {
                 return Err(array(name, problem));
             }
         }
-        let mut data: [Vec<f64>; 3] = Default::default();
+        let counts = MeshCounts {
+            vertices: vertices as usize,
+            edges: rods as usize,
+            faces: faces_shape[0] as usize,
+        };
+        let mut data: [Vec<f64>; Quantity::COUNT] = Default::default();
         for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut data) {
-            let frame = quantity.shape(vertices as usize, rods as usize);
+            let frame = quantity.shape(counts);
             let expected = [&[frames], &frame[..]].concat();
             let found = npz.get_if_there::<f64>(quantity.name(), expected.len())?;
             let Some((shape, values)) = found else {

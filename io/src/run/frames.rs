@@ -1,7 +1,7 @@
 //! The frames of a run: one file that grows while it goes on.
 
 use super::RunError;
-use crate::format::{FrameData, WriteError};
+use crate::format::{FrameData, MeshCounts, Quantity, WriteError};
 use crate::scene::Setup;
 use crc::{CRC_64_XZ, Crc};
 use std::fs::File;
@@ -16,8 +16,8 @@ const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
 
 /// A file of frames of equal length: after the eight bytes `isofrm01`, for each frame time (seconds),
 /// positions (`3V`, metres) and, of runs that have them, the forces of the rods (newtons, tension positive),
-/// the forces of contact (`3V`, newtons) and the gaps of the vertices (metres), as little-endian `f64`, and
-/// the CRC-64 of these bytes.
+/// the forces of contact (`3V`, newtons), the gaps of the vertices (metres), the plastic angles of the edges (radians)
+/// and the plastic curvatures of the faces (`2F`, 1/m), as little-endian `f64`, and the CRC-64 of these bytes.
 #[derive(Debug)]
 pub(crate) struct FrameFile {
     path: PathBuf,
@@ -32,22 +32,14 @@ pub(crate) struct FrameFile {
 pub(crate) struct Frame {
     pub(crate) t: f64,
     pub(crate) x: Vec<f64>,
-    /// Empty in runs without them.
-    pub(crate) rod_forces: Vec<f64>,
-    /// Empty in runs without contact.
-    pub(crate) contact_forces: Vec<f64>,
-    /// Empty in runs without contact.
-    pub(crate) gaps: Vec<f64>,
+    /// Of each quantity the values, none in runs without it.
+    pub(crate) data: [Vec<f64>; Quantity::COUNT],
 }
 
 impl Frame {
     /// What the frame has besides positions.
     pub(crate) fn data(&self) -> FrameData<'_> {
-        FrameData {
-            rod_forces: &self.rod_forces,
-            contact_forces: &self.contact_forces,
-            gaps: &self.gaps,
-        }
+        FrameData::each(|quantity| &self.data[quantity as usize])
     }
 }
 
@@ -56,27 +48,36 @@ impl Frame {
 pub(crate) struct FrameShape {
     /// `3V`.
     pub(crate) coordinates: usize,
-    /// One for each rod, or zero.
-    pub(crate) rod_forces: usize,
-    /// One for each vertex, or zero. There are three times as many numbers of forces of contact.
-    pub(crate) gaps: usize,
+    /// Those of each quantity, zero of what there is not.
+    pub(crate) data: [usize; Quantity::COUNT],
 }
 
 impl FrameShape {
     /// That of the frames of a run.
     pub(crate) fn of(setup: &Setup) -> Self {
-        let coordinates = setup.start.x.len();
-        let if_there = |is_there: bool, count: usize| if is_there { count } else { 0 };
+        let model = &setup.model;
+        let topology = model.topology();
+        let counts = MeshCounts {
+            vertices: topology.vertex_count(),
+            edges: topology.edge_count(),
+            faces: topology.face_count(),
+        };
+        let is_there = |quantity| match quantity {
+            Quantity::RodForces => setup.has_rod_forces(),
+            Quantity::ContactForces | Quantity::Gaps => setup.contacts.is_some(),
+            Quantity::PlasticAngles => model.plastic_angles().is_some(),
+            Quantity::PlasticCurvatures => model.plastic_curvatures().is_some(),
+        };
+        let size = |q: Quantity| if is_there(q) { q.size(counts) } else { 0 };
         Self {
-            coordinates,
-            rod_forces: if_there(setup.has_rod_forces(), setup.model.rods().len()),
-            gaps: if_there(setup.contacts.is_some(), coordinates / 3),
+            coordinates: setup.start.x.len(),
+            data: Quantity::ALL.map(size),
         }
     }
 
     /// Length of a frame with its sum.
     fn bytes(self) -> usize {
-        8 * (2 + self.coordinates + self.rod_forces + 4 * self.gaps)
+        8 * (2 + self.coordinates + self.data.iter().sum::<usize>())
     }
 }
 
@@ -146,7 +147,8 @@ impl FrameFile {
     ) -> Result<(), WriteError> {
         self.record.clear();
         self.record.extend(t.to_le_bytes());
-        for numbers in [x, data.rod_forces, data.contact_forces, data.gaps] {
+        let further = Quantity::ALL.map(|quantity| quantity.of(data));
+        for numbers in std::iter::once(x).chain(further) {
             let bytes = numbers.iter().flat_map(|c| c.to_le_bytes());
             self.record.extend(bytes);
         }
@@ -244,9 +246,7 @@ impl<'a> Frames<'a> {
         Ok(Some(Frame {
             t: numbers.next().unwrap_or_default(),
             x: numbers.by_ref().take(shape.coordinates).collect(),
-            rod_forces: numbers.by_ref().take(shape.rod_forces).collect(),
-            contact_forces: numbers.by_ref().take(3 * shape.gaps).collect(),
-            gaps: numbers.collect(),
+            data: shape.data.map(|n| numbers.by_ref().take(n).collect()),
         }))
     }
 }
@@ -284,15 +284,18 @@ mod tests {
         let path = dir.path().join("frames.bin");
         let shape = FrameShape {
             coordinates: 6,
-            rod_forces: 1,
-            gaps: 2,
+            data: [1, 6, 2, 1, 2],
         };
         let frame = |k: usize| Frame {
             t: k as f64 / 3.0,
             x: (0..6).map(|i| (k * 6 + i) as f64 / 7.0).collect(),
-            rod_forces: vec![k as f64 - 0.5],
-            contact_forces: (0..6).map(|i| (k + i) as f64 / 11.0).collect(),
-            gaps: vec![1e-3, k as f64 * 1e-4],
+            data: [
+                vec![k as f64 - 0.5],
+                (0..6).map(|i| (k + i) as f64 / 11.0).collect(),
+                vec![1e-3, k as f64 * 1e-4],
+                vec![k as f64 + 0.1],
+                vec![k as f64 + 30.0, -0.2],
+            ],
         };
         let add =
             |file: &mut FrameFile, frame: &Frame| file.append(frame.t, &frame.x, &frame.data());
@@ -324,8 +327,7 @@ mod tests {
         let path = dir.path().join("frames.bin");
         let shape = FrameShape {
             coordinates: 3,
-            rod_forces: 0,
-            gaps: 0,
+            data: [0; Quantity::COUNT],
         };
         let mut file = FrameFile::create(&path).unwrap();
         for k in 0..3 {

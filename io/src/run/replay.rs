@@ -11,7 +11,8 @@ impl Replay {
     ///
     /// - the field "strain" ([`Field::edge_strain`]), where there are bodies "distance to obstacles" (see
     ///   [`Field::obstacle_distance`]), and where the trajectory has them the forces of the rods
-    ///   ([`Field::rod_forces`]), the forces of contact and the gaps of the vertices ([`Field::contact`]),
+    ///   ([`Field::rod_forces`]), the forces of contact and the gaps of the vertices ([`Field::contact`]), and what has
+    ///   yielded ([`Field::plastic`]),
     /// - the series of the history (see [`Series::of_history`]).
     ///
     /// Titles, pins and texts are left to the caller.
@@ -34,6 +35,7 @@ impl Replay {
         }
         fields.extend(Field::rod_forces(trajectory));
         fields.extend(Field::contact(trajectory));
+        fields.extend(Field::plastic(trajectory));
         let bodies = obstacles.iter().enumerate();
         let bodies =
             bodies.map(|(k, body)| Body::of_obstacle(&format!("obstacle[{k}]"), body, &times));

@@ -115,10 +115,15 @@ impl Stepping<'_> {
         let rod_forces = self.simulation.rod_forces().unwrap_or_default();
         let contact_forces = self.simulation.contact_forces().unwrap_or_default();
         let gaps = self.simulation.vertex_gaps().unwrap_or_default();
+        let model = self.simulation.model();
+        let plastic_angles = model.plastic_angles().unwrap_or_default();
+        let plastic_curvatures = model.plastic_curvatures().unwrap_or_default();
         let data = FrameData {
             rod_forces: &rod_forces,
             contact_forces: &contact_forces,
             gaps: &gaps,
+            plastic_angles: &plastic_angles,
+            plastic_curvatures: plastic_curvatures.as_flattened(),
         };
         Ok(self.frames.append(state.t, &state.x, &data)?)
     }

@@ -150,6 +150,39 @@ impl Field {
         forces.into_iter().chain(gaps).collect()
     }
 
+    /// What the trajectory has of yielding: of plates the principal value of the plastic curvature of each face (1/m)
+    /// that is larger in size, of edges that yield the plastic angle (degrees), positive for valleys.
+    pub fn plastic(trajectory: &Trajectory) -> Vec<Self> {
+        let frames = || 0..trajectory.len();
+        let first = |values: &[f64]| values.as_chunks::<2>().0.iter().map(|p| p[0]).collect();
+        let degrees = |values: &[f64]| values.iter().map(|a| a.to_degrees()).collect();
+        let curvatures = frames().map(|k| trajectory.plastic_curvatures(k).map(first));
+        let angles = frames().map(|k| trajectory.plastic_angles(k).map(degrees));
+        let field = |name: &str, unit: &str, place, values: Option<Vec<Vec<f64>>>| {
+            Some(Self {
+                name: name.into(),
+                unit: unit.into(),
+                place,
+                scale: Scale::Signed,
+                note: "What has yielded, and stays where no moment acts.".into(),
+                values: values?,
+            })
+        };
+        let curvatures = field(
+            "curvature that stays (valley +)",
+            "1/m",
+            Place::Face,
+            curvatures.collect(),
+        );
+        let angles = field(
+            "angle that stays (valley +)",
+            "°",
+            Place::Edge,
+            angles.collect(),
+        );
+        curvatures.into_iter().chain(angles).collect()
+    }
+
     pub(super) fn validate(
         &self,
         index: usize,

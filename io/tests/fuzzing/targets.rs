@@ -264,9 +264,14 @@ fn trajectory(data: &[u8]) {
     for k in 0..run.len() {
         let x = run.frame(k).expect("it counts the frames");
         assert_eq!(x.len(), 3 * vertices);
-        let kept = [run.rod_forces(k), run.contact_forces(k), run.gaps(k)];
-        let counts = [run.edges().len(), 3 * vertices, vertices];
-        for (kept, count) in kept.into_iter().zip(counts) {
+        let kept = [
+            (run.rod_forces(k), run.edges().len()),
+            (run.contact_forces(k), 3 * vertices),
+            (run.gaps(k), vertices),
+            (run.plastic_angles(k), run.edges().len()),
+            (run.plastic_curvatures(k), 2 * run.faces().len()),
+        ];
+        for (kept, count) in kept {
             let Some(kept) = kept else { continue };
             assert_eq!(kept.len(), count);
             assert!(kept.iter().all(|v| v.is_finite()));
@@ -291,7 +296,7 @@ pub(crate) fn with_file<T>(extension: &str, data: &[u8], read: impl Fn(&Path) ->
     value
 }
 
-/// A trajectory to begin with: three frames, with forces of the rods and of contact.
+/// A trajectory to begin with: three frames with all that frames may have.
 pub(crate) fn trajectories() -> [Vec<u8>; 1] {
     let sheet = generate::isotropic_square(0, 0.21).expect("valid");
     let mut run = Trajectory::new(&sheet);
@@ -301,6 +306,8 @@ pub(crate) fn trajectories() -> [Vec<u8>; 1] {
             rod_forces: &vec![f64::from(k); rods],
             contact_forces: &vec![0.5; n],
             gaps: &vec![1e-3; n / 3],
+            plastic_angles: &vec![0.1; rods],
+            plastic_curvatures: &vec![20.0; 2 * sheet.topology().face_count()],
         };
         run.push_with(0.1 * f64::from(k), sheet.positions(), &data)
             .expect("it fits");

@@ -52,8 +52,7 @@ fn rolled(sheet: &Sheet, curvature: f64) -> Vec<f64> {
 
 fn interior(sheet: &Sheet) -> impl Iterator<Item = usize> {
     let t = sheet.topology();
-    let inside =
-        |f: &isosheet_mesh::FaceId| t.face_edges(*f).iter().all(|e| !t.is_boundary_edge(*e));
+    let inside = |f: &FaceId| t.face_edges(*f).iter().all(|e| !t.is_boundary_edge(*e));
     t.face_ids().filter(inside).map(|f| f.index())
 }
 
@@ -216,7 +215,7 @@ fn a_rolled_sheet_keeps_the_curvature_beyond_the_yield() {
     );
     let curvatures = plate.plastic_curvatures();
     for face in interior(&sheet) {
-        let principal = curvatures[face].symmetric_eigenvalues();
+        let principal = curvatures[face].1.symmetric_eigenvalues();
         let (large, small) = (principal.max(), principal.min());
         assert!(
             (large - expected).abs() < 0.03 * expected,
@@ -230,7 +229,7 @@ fn a_rolled_sheet_keeps_the_curvature_beyond_the_yield() {
     let expected = (RIGIDITY * back + YIELD.moment) / (RIGIDITY + YIELD.hardening);
     let curvatures = plate.plastic_curvatures();
     for face in interior(&sheet) {
-        let least = curvatures[face].symmetric_eigenvalues().min();
+        let least = curvatures[face].1.symmetric_eigenvalues().min();
         assert!(
             (least - expected).abs() < 0.05 * curvature,
             "{least} {expected}"

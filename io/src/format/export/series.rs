@@ -81,8 +81,11 @@ pub struct SeriesField {
 /// and where the trajectory has them the fields
 ///
 /// - `rod_force`, the forces of the rods (newtons, tension positive),
-/// - `contact_force`, the forces of contact on the vertices (vectors, newtons), and
-/// - `gap`, the gaps of the vertices (metres, see [`Trajectory::gaps`]).
+/// - `contact_force`, the forces of contact on the vertices (vectors, newtons),
+/// - `gap`, the gaps of the vertices (metres, see [`Trajectory::gaps`]),
+/// - `plastic_angle`, the plastic angles of the edges (degrees, positive for valleys), and
+/// - `plastic_curvature_1` and `plastic_curvature_2`, the principal values of the plastic curvature of the faces (1/m, see
+///   [`Trajectory::plastic_curvatures`]).
 ///
 /// Of frames at the same time only the first is written: most formats cannot hold two.
 #[derive(Clone, Debug)]
@@ -158,8 +161,19 @@ impl<'a> Series<'a> {
         }
         let mut frames: Vec<usize> = (options.first..=last).step_by(options.every).collect();
         frames.dedup_by(|later, first| times[*later] == times[*first]);
-        let rod_forces = rod_forces(trajectory, &topology).into_iter();
-        let fields = rod_forces.chain(contact_fields(trajectory)).collect();
+        let on_edges = [
+            ("rod_force", Trajectory::rod_forces as Values, 1.0),
+            (
+                "plastic_angle",
+                Trajectory::plastic_angles,
+                1_f64.to_degrees(),
+            ),
+        ];
+        let on_edges = on_edges.into_iter();
+        let on_edges = on_edges.filter_map(|named| edge_field(trajectory, &topology, named));
+        let contact = contact_fields(trajectory);
+        let plastic = plastic_curvatures(trajectory);
+        let fields = on_edges.chain(contact).chain(plastic).collect();
         let start = trajectory.frame(0).unwrap_or_default();
         Ok(Self {
             uv: flat_coordinates(&topology, &rest_lengths, start),
@@ -391,22 +405,30 @@ fn edge_between(topology: &Topology, ends: [u32; 2]) -> Option<EdgeId> {
     (a != b).then(|| topology.find_edge(a, b)).flatten()
 }
 
-/// The forces of the rods as a field, in the order of the edges of the topology.
-fn rod_forces(trajectory: &Trajectory, topology: &Topology) -> Option<SeriesField> {
-    trajectory.rod_forces(0)?;
+/// The values of a frame of a trajectory.
+type Values = fn(&Trajectory, usize) -> Option<&[f64]>;
+
+/// A field of edges, in the order of the edges of the topology: its name, and its values with the unit in which they
+/// are written.
+fn edge_field(
+    trajectory: &Trajectory,
+    topology: &Topology,
+    (name, of, unit): (&str, Values, f64),
+) -> Option<SeriesField> {
+    of(trajectory, 0)?;
     let edges = trajectory.edges().iter();
     let order: Vec<Option<EdgeId>> = edges.map(|ends| edge_between(topology, *ends)).collect();
     let count = topology.edge_count();
     let mut values = vec![0.0; count * trajectory.len()];
     for (frame, values) in values.chunks_exact_mut(count).enumerate() {
-        for (edge, force) in order.iter().zip(trajectory.rod_forces(frame)?) {
+        for (edge, value) in order.iter().zip(of(trajectory, frame)?) {
             if let Some(edge) = edge {
-                values[edge.index()] = *force;
+                values[edge.index()] = unit * value;
             }
         }
     }
     Some(SeriesField {
-        name: "rod_force".to_owned(),
+        name: name.to_owned(),
         support: FieldSupport::Edges,
         values,
     })
@@ -414,7 +436,7 @@ fn rod_forces(trajectory: &Trajectory, topology: &Topology) -> Option<SeriesFiel
 
 /// What the trajectory has of contact as fields.
 fn contact_fields(trajectory: &Trajectory) -> Vec<SeriesField> {
-    let all = |of: fn(&Trajectory, usize) -> Option<&[f64]>| -> Option<Vec<f64>> {
+    let all = |of: Values| -> Option<Vec<f64>> {
         let frames = (0..trajectory.len()).map(|k| of(trajectory, k));
         frames.collect::<Option<Vec<_>>>().map(|f| f.concat())
     };
@@ -432,4 +454,23 @@ fn contact_fields(trajectory: &Trajectory) -> Vec<SeriesField> {
         })
     };
     [forces, gaps].into_iter().filter_map(field).collect()
+}
+
+/// The principal values of the plastic curvatures as two fields, if the trajectory has them.
+fn plastic_curvatures(trajectory: &Trajectory) -> Vec<SeriesField> {
+    let frames = (0..trajectory.len()).map(|k| trajectory.plastic_curvatures(k));
+    let Some(all) = frames.collect::<Option<Vec<_>>>() else {
+        return Vec::new();
+    };
+    let field = |(k, name): (usize, &str)| SeriesField {
+        name: name.to_owned(),
+        support: FieldSupport::Faces,
+        values: all
+            .iter()
+            .flat_map(|values| values.as_chunks::<2>().0)
+            .map(|p| p[k])
+            .collect(),
+    };
+    let names = ["plastic_curvature_1", "plastic_curvature_2"];
+    names.into_iter().enumerate().map(field).collect()
 }

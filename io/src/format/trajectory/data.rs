@@ -11,18 +11,56 @@ pub struct FrameData<'a> {
     pub contact_forces: &'a [f64],
     /// Gap of each vertex (length V, metres).
     pub gaps: &'a [f64],
+    /// Plastic angle of each edge (length E, radians, positive for valleys).
+    pub plastic_angles: &'a [f64],
+    /// Principal values of the plastic curvature of each face (length 2F, 1/m, the larger one in size first, positive
+    /// for valleys).
+    pub plastic_curvatures: &'a [f64],
+}
+
+impl<'a> FrameData<'a> {
+    /// What a function has of each quantity.
+    pub(crate) fn each(of: impl Fn(Quantity) -> &'a [f64]) -> Self {
+        Self {
+            rod_forces: of(Quantity::RodForces),
+            contact_forces: of(Quantity::ContactForces),
+            gaps: of(Quantity::Gaps),
+            plastic_angles: of(Quantity::PlasticAngles),
+            plastic_curvatures: of(Quantity::PlasticCurvatures),
+        }
+    }
+}
+
+/// How large a mesh is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct MeshCounts {
+    pub(crate) vertices: usize,
+    pub(crate) edges: usize,
+    pub(crate) faces: usize,
 }
 
 /// One kind of data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(crate) enum Quantity {
     RodForces,
     ContactForces,
     Gaps,
+    PlasticAngles,
+    PlasticCurvatures,
 }
 
 impl Quantity {
-    pub(super) const ALL: [Self; 3] = [Self::RodForces, Self::ContactForces, Self::Gaps];
+    /// How many there are.
+    pub(crate) const COUNT: usize = 5;
+
+    /// All, in the order of the enumeration.
+    pub(crate) const ALL: [Self; Self::COUNT] = [
+        Self::RodForces,
+        Self::ContactForces,
+        Self::Gaps,
+        Self::PlasticAngles,
+        Self::PlasticCurvatures,
+    ];
 
     /// The name of its array in a file.
     pub(super) fn name(self) -> &'static str {
@@ -30,30 +68,35 @@ impl Quantity {
             Self::RodForces => "rod_forces",
             Self::ContactForces => "contact_forces",
             Self::Gaps => "gaps",
+            Self::PlasticAngles => "plastic_angles",
+            Self::PlasticCurvatures => "plastic_curvatures",
         }
     }
 
-    /// The shape of one frame of it on a mesh with `vertices` and `edges`.
-    pub(super) fn shape(self, vertices: usize, edges: usize) -> Vec<u64> {
+    /// The shape of one frame of it on a mesh.
+    pub(super) fn shape(self, mesh: MeshCounts) -> Vec<u64> {
         match self {
-            Self::RodForces => vec![edges as u64],
-            Self::ContactForces => vec![vertices as u64, 3],
-            Self::Gaps => vec![vertices as u64],
+            Self::RodForces | Self::PlasticAngles => vec![mesh.edges as u64],
+            Self::ContactForces => vec![mesh.vertices as u64, 3],
+            Self::Gaps => vec![mesh.vertices as u64],
+            Self::PlasticCurvatures => vec![mesh.faces as u64, 2],
         }
     }
 
     /// The numbers in one frame of it.
-    pub(super) fn size(self, vertices: usize, edges: usize) -> usize {
-        let shape = self.shape(vertices, edges);
+    pub(crate) fn size(self, mesh: MeshCounts) -> usize {
+        let shape = self.shape(mesh);
         shape.iter().product::<u64>() as usize
     }
 
     /// What a frame has of it.
-    pub(super) fn of<'a>(self, data: &FrameData<'a>) -> &'a [f64] {
+    pub(crate) fn of<'a>(self, data: &FrameData<'a>) -> &'a [f64] {
         match self {
             Self::RodForces => data.rod_forces,
             Self::ContactForces => data.contact_forces,
             Self::Gaps => data.gaps,
+            Self::PlasticAngles => data.plastic_angles,
+            Self::PlasticCurvatures => data.plastic_curvatures,
         }
     }
 

@@ -22,10 +22,14 @@ fn sample() -> (Sheet, Trajectory) {
             .collect();
         let contact_forces: Vec<f64> = x.iter().map(|c| c * c - 0.2).collect();
         let gaps: Vec<f64> = (0..x.len() / 3).map(|v| 1e-3 / (v + 1) as f64).collect();
+        let count = 2 * sheet.topology().face_count();
+        let curvatures: Vec<f64> = (0..count).map(|f| f as f64 * 3.5 - k as f64).collect();
         let data = FrameData {
             rod_forces: &forces,
             contact_forces: &contact_forces,
             gaps: &gaps,
+            plastic_angles: &forces,
+            plastic_curvatures: &curvatures,
         };
         run.push_with(0.1 * k as f64, &x, &data).unwrap();
     }
@@ -55,6 +59,15 @@ fn comes_back_bit_for_bit() {
     assert_eq!((forces.len(), forces[4]), (63, x[4] * x[4] - 0.2));
     assert_eq!(back.gaps(1).unwrap()[1..3], [1e-3 / 2.0, 1e-3 / 3.0]);
     assert_eq!((back.contact_forces(5), back.gaps(5)), (None, None));
+    let curvatures = back.plastic_curvatures(4).unwrap();
+    assert_eq!(
+        (curvatures.len(), curvatures[3]),
+        (2 * sheet.topology().face_count(), 6.5)
+    );
+    assert_eq!(
+        (back.plastic_angles(4), back.plastic_angles(5)),
+        (Some(last), None)
+    );
     // Without forces, and without frames: still a file.
     let mut run = Trajectory::new(&sheet);
     run.push(0.0, sheet.positions()).unwrap();
@@ -77,7 +90,7 @@ fn equal_trajectories_are_equal_files() {
     let entries: Vec<usize> = (0..bytes.len() - 46)
         .filter(|k| bytes[*k..].starts_with(b"PK\x01\x02"))
         .collect();
-    assert_eq!(entries.len(), 8);
+    assert_eq!(entries.len(), 10);
     for k in entries {
         assert_eq!(bytes[k + 12..k + 16], [0, 0, 0x21, 0]);
     }
@@ -111,13 +124,21 @@ fn arrays_have_the_documented_names_types_and_shapes() {
             "edges",
             "faces",
             "gaps",
+            "plastic_angles",
+            "plastic_curvatures",
             "rest_lengths",
             "rod_forces",
             "t",
             "x"
         ]
     );
-    for (name, shape) in [("contact_forces", &[5, 21, 3][..]), ("gaps", &[5, 21])] {
+    let edges = sheet.topology().edge_count() as u64;
+    for (name, shape) in [
+        ("contact_forces", &[5, 21, 3][..]),
+        ("gaps", &[5, 21]),
+        ("plastic_angles", &[5, edges]),
+        ("plastic_curvatures", &[5, 28, 2]),
+    ] {
         let array = array_in(&mut npz, name);
         assert_eq!(
             (array.shape(), array.dtype().descr()),
@@ -182,10 +203,13 @@ fn bad_frames_are_refused() {
     x[4] = 0.0;
     let edges = sheet.lengths().len();
     let (rods, forces, gaps) = (vec![0.0; edges], vec![0.0; 63], vec![0.0; 21]);
+    let curvatures = vec![0.0; 2 * sheet.topology().face_count()];
     let whole = FrameData {
         rod_forces: &rods,
         contact_forces: &forces,
         gaps: &gaps,
+        plastic_angles: &rods,
+        plastic_curvatures: &curvatures,
     };
     let mut without = Trajectory::new(&sheet);
     without.push(0.0, &x).unwrap();
@@ -226,6 +250,26 @@ fn bad_frames_are_refused() {
         (
             &new,
             FrameData {
+                plastic_angles: few,
+                ..whole
+            },
+            "plastic_angles",
+            3,
+            edges,
+        ),
+        (
+            &run,
+            FrameData {
+                plastic_curvatures: none,
+                ..whole
+            },
+            "plastic_curvatures",
+            0,
+            curvatures.len(),
+        ),
+        (
+            &new,
+            FrameData {
                 rod_forces: few,
                 ..whole
             },
@@ -246,9 +290,8 @@ fn bad_frames_are_refused() {
         (
             &without,
             FrameData {
-                rod_forces: none,
-                contact_forces: none,
                 gaps: &gaps,
+                ..FrameData::default()
             },
             "gaps",
             21,
