@@ -6,6 +6,7 @@ mod finite;
 mod history;
 mod json;
 mod loads;
+mod measures;
 mod mesh_file;
 mod obj_write;
 mod trajectory;
@@ -21,6 +22,7 @@ pub use export::{
 pub use history::{HistoryError, HistoryRow, HistoryWriter, Row, RowWriter, read_history};
 pub use json::{JsonError, read_json, write_json};
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};
+pub use measures::{MeasureRow, MeasureWriter, read_measures};
 pub use mesh_file::{
     EdgeAssignment, FileCrease, FoldFrame, FoldProblem, GltfProblem, MeshFile, MeshFileError,
     MeshFileProblem, MeshFormat, MeshOptions, Place, Polygons, ReadingChanges, Repair,

@@ -7,6 +7,7 @@
 //! | `scene.toml` | the scene as it is run, edits included; mesh files are copied to `meshes/` |
 //! | `history.csv` | one row for each step ([`HistoryRow`](crate::HistoryRow)) |
 //! | `loads.csv` | the loads of each support and obstacle at each step ([`LoadRow`](crate::LoadRow)), if there are any |
+//! | `measures.csv` | what each measure of the scene shows at the start and at each step ([`MeasureRow`](crate::MeasureRow)), if there are any |
 //! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), when the run ends, fails or is stopped |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
 //! | `index.html` | the 3D page of the run ([`view`](crate::view)), unless the scene says `page = false` |
@@ -57,12 +58,14 @@ pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use page::write_page;
 pub use recording::Recording;
-pub use summary::{EndReason, Ending, SheetPlace, Summary};
+pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, VariationError};
 pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
-use crate::format::{HistoryWriter, LoadWriter, frame_path, read_json, write_json, write_obj};
+use crate::format::{
+    HistoryWriter, LoadWriter, MeasureWriter, frame_path, read_json, write_json, write_obj,
+};
 use crate::scene::{SceneFile, Setup, SupportForces};
 use crate::view::PageOptions;
 use checkpoint::Progress;
@@ -262,7 +265,7 @@ fn start<'a>(
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
     let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
-    let glued = setup.glued.clone();
+    let (glued, gauges) = (setup.glued.clone(), setup.measures.clone());
     let simulation = setup.start()?;
     let count = file.scene().support.len();
     let mut stepping = Stepping {
@@ -277,6 +280,10 @@ fn start<'a>(
         loads: bears_loads(file)
             .then(|| LoadWriter::create(&folder.path(RunFolder::LOADS)))
             .transpose()?,
+        measures: (!gauges.is_empty())
+            .then(|| MeasureWriter::create(&folder.path(RunFolder::MEASURES)))
+            .transpose()?,
+        gauges,
         frames: FrameFile::create(&folder.path(RunFolder::FRAMES))?,
         progress: Progress {
             scene: hash.to_string(),
@@ -313,7 +320,7 @@ fn resume<'a>(
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
     let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
-    let glued = setup.glued.clone();
+    let (glued, gauges) = (setup.glued.clone(), setup.measures.clone());
     let frames = FrameFile::resume(
         &folder.path(RunFolder::FRAMES),
         progress.frames,
@@ -333,6 +340,11 @@ fn resume<'a>(
         loads: progress
             .loads
             .map(|length| LoadWriter::resume(&folder.path(RunFolder::LOADS), length))
+            .transpose()?,
+        gauges,
+        measures: progress
+            .measures
+            .map(|length| MeasureWriter::resume(&folder.path(RunFolder::MEASURES), length))
             .transpose()?,
         frames,
         progress,
@@ -377,6 +389,7 @@ fn finish(
         factorisations: progress.factorisations,
         rejected: progress.rejected,
         elastic: progress.elastic,
+        measures: progress.measured.clone(),
         ending,
     };
     if output.page {

@@ -44,6 +44,7 @@ mod key;
 mod live;
 mod material;
 mod materials_page;
+mod measure;
 mod mesh;
 mod method;
 mod obstacles;
@@ -90,6 +91,7 @@ pub use key::{Key, KeyError, KeyPart};
 pub use live::{FailedStep, HoldError, LiveScene};
 pub use material::{Material, Plate};
 pub use materials_page::materials_page;
+pub use measure::{Gauge, Measure, Quantity};
 pub use mesh::{Diagonals, Mesh, MeshFile, PolygonFaces, UpAxis};
 pub use method::{Fallback, Integrator, Method, Taut};
 pub use obstacles::{Obstacle, Shape, Wall};
@@ -177,6 +179,9 @@ pub struct Scene {
     /// Contact of the sheet with itself and with obstacles.
     #[serde(default)]
     pub contact: Contact,
+    /// Lengths that are read off the sheet at each step.
+    #[serde(default)]
+    pub measure: Vec<Measure>,
     /// How the motion is computed.
     #[serde(default)]
     pub method: Method,
@@ -203,6 +208,7 @@ impl Scene {
             forces: Forces::default(),
             air: None,
             contact: Contact::default(),
+            measure: Vec::new(),
             method: Method::default(),
             stop: Stop::default(),
             output: Output::default(),
@@ -266,6 +272,12 @@ impl Scene {
                 sheets::check_reference(&self.sheet, Some(name), &key.entry(i), &mut checks);
             }
         }
+        for (k, measure) in self.measure.iter().enumerate() {
+            let key = root.name("measure").entry(k);
+            measure.check(&key, &mut checks);
+            is_known(&measure.sheet, &key, &mut checks);
+        }
+        measure::check_names(&self.measure, &root, &mut checks);
         self.method.check(&root.name("method"), &mut checks);
         self.check_method_fits(&mut checks);
         let step = self.method.step;

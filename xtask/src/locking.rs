@@ -11,7 +11,6 @@ mod cone;
 mod curved;
 mod disks;
 mod excess;
-mod lasting;
 pub(crate) mod meshes;
 mod model;
 mod nudge;
@@ -92,7 +91,6 @@ impl Yardstick {
             "e-cone" => excess::runs,
             "softening" => softening::runs,
             "curved-creases" => curved::runs,
-            "lasting" => lasting::runs,
             "buckling" => buckling::runs,
             name => panic!("no runs of the yardstick {name}"),
         };

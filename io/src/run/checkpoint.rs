@@ -2,11 +2,12 @@
 
 use super::RunError;
 use super::elastic::ElasticSummary;
-use super::summary::Ending;
+use super::summary::{Ending, Measured};
 use crate::format::write_atomically;
 use crc::{CRC_64_XZ, Crc};
 use isosheet_dynamics::Checkpoint;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
@@ -24,6 +25,12 @@ pub(crate) struct Progress {
     /// Length of the table of loads, bytes; none if nothing can bear a load.
     #[serde(default)]
     pub(crate) loads: Option<u64>,
+    /// Length of the table of measures, bytes; none if the scene names none.
+    #[serde(default)]
+    pub(crate) measures: Option<u64>,
+    /// What the measures showed so far.
+    #[serde(default)]
+    pub(crate) measured: BTreeMap<String, Measured>,
     /// Number of frames.
     pub(crate) frames: u64,
     /// Wall time of all processes up to here, seconds.

@@ -2,7 +2,7 @@
 
 use super::folder::RunFolder;
 use super::sweep::{Sweep, SweepError};
-use super::{Ending, Summary};
+use super::{Ending, Measured, Summary};
 use crate::format::{Finding, JsonError, check_finite, read_json, write_atomically};
 use std::path::{Path, PathBuf};
 
@@ -142,6 +142,7 @@ fn add_summary(row: &mut Row, summary: &Summary) {
         factorisations,
         rejected,
         elastic,
+        measures,
         ending,
     } = summary;
     let mut cell = |name: &str, value: String| row.push((name.to_owned(), value));
@@ -174,6 +175,16 @@ fn add_summary(row: &mut Row, summary: &Summary) {
     cell("iterations", iterations.to_string());
     cell("factorisations", factorisations.to_string());
     cell("rejected", rejected.to_string());
+    for (name, measured) in measures {
+        let Measured {
+            last,
+            least,
+            largest,
+        } = *measured;
+        for (kind, value) in [("last", last), ("least", least), ("largest", largest)] {
+            cell(&format!("measures.{name}.{kind}"), number(value));
+        }
+    }
     add_ending(row, ending);
 }
 

@@ -120,6 +120,7 @@ impl RunFolder {
     pub(crate) const FRAMES: &'static str = "frames.bin";
     pub(crate) const HISTORY: &'static str = "history.csv";
     pub(crate) const LOADS: &'static str = "loads.csv";
+    pub(crate) const MEASURES: &'static str = "measures.csv";
     pub(crate) const TRAJECTORY: &'static str = "trajectory.npz";
     pub(crate) const PAGE: &'static str = "index.html";
     pub(crate) const OBJ: &'static str = "obj";
@@ -212,6 +213,7 @@ impl RunFolder {
             Self::FRAMES,
             Self::HISTORY,
             Self::LOADS,
+            Self::MEASURES,
             Self::SCENE,
         ];
         let folders = [Self::OBJ, MESHES];

@@ -4,10 +4,11 @@ use super::checkpoint::{self, Progress};
 use super::elastic::ElasticSummary;
 use super::folder::RunFolder;
 use super::frames::FrameFile;
-use super::summary::{EndReason, Ending};
+use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
-use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
+use crate::format::{MeasureRow, MeasureWriter};
+use crate::scene::{FoldTargets, Gauge, Origins, Scene, SceneError, SceneFile, SupportForces};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::{Checkpoint, SheetModel, Simulation, StepError, StepProgress, StepReport};
 use isosheet_mesh::VertexId;
@@ -26,6 +27,9 @@ pub(crate) struct Stepping<'a> {
     pub(crate) history: HistoryWriter,
     /// The loads of supports and obstacles, if there are any.
     pub(crate) loads: Option<LoadWriter>,
+    pub(crate) gauges: Vec<Gauge>,
+    /// What the gauges show, if there are any.
+    pub(crate) measures: Option<MeasureWriter>,
     pub(crate) frames: FrameFile,
     pub(crate) progress: Progress,
     /// Since when the wall time in the progress counts.
@@ -106,6 +110,7 @@ impl Stepping<'_> {
         self.progress.start_energy = self.simulation.energy();
         self.history
             .append(&HistoryRow::of_start(&self.simulation))?;
+        self.record_measures()?;
         self.record_frame()?;
         self.save()
     }
@@ -156,6 +161,32 @@ impl Stepping<'_> {
         Ok(())
     }
 
+    /// Records what the gauges show.
+    fn record_measures(&mut self) -> Result<(), RunError> {
+        let Some(measures) = &mut self.measures else {
+            return Ok(());
+        };
+        let state = self.simulation.state();
+        for gauge in &self.gauges {
+            let row = MeasureRow {
+                t: state.t,
+                name: gauge.name.clone(),
+                value: gauge.value(&state.x),
+            };
+            measures.append(&row)?;
+            let first = Measured {
+                last: row.value,
+                least: row.value,
+                largest: row.value,
+            };
+            let measured = self.progress.measured.entry(row.name).or_insert(first);
+            measured.last = row.value;
+            measured.least = measured.least.min(row.value);
+            measured.largest = measured.largest.max(row.value);
+        }
+        Ok(())
+    }
+
     /// Takes and records a step. Says what has been reached, or nothing if the watch gave the step up: then a
     /// checkpoint of the state before it is written.
     pub(crate) fn step(&mut self, watch: &mut dyn Watch) -> Result<Option<Tick>, RunError> {
@@ -201,6 +232,7 @@ impl Stepping<'_> {
         self.observe_elastic();
         self.history.append(&self.row(&report))?;
         self.record_loads()?;
+        self.record_measures()?;
         let reason = self.end_reason(&report);
         let frame = scene.output.steps_per_frame(scene.method.step);
         if number.is_multiple_of(frame) || reason.is_some() {
@@ -320,6 +352,10 @@ impl Stepping<'_> {
         if let Some(loads) = &self.loads {
             loads.sync()?;
             self.progress.loads = Some(loads.length());
+        }
+        if let Some(measures) = &self.measures {
+            measures.sync()?;
+            self.progress.measures = Some(measures.length());
         }
         self.progress.frames = self.frames.count();
         self.progress.wall += self.clock.elapsed().as_secs_f64();

@@ -4,6 +4,7 @@ use super::elastic::ElasticSummary;
 use crate::scene::FoldResidual;
 use isosheet_mesh::Part;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The contents of `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,8 +45,22 @@ pub struct Summary {
     /// How the sheet was softened, stretched and bent, if it is elastic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elastic: Option<ElasticSummary>,
+    /// What the measures of the scene showed, by their names.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub measures: BTreeMap<String, Measured>,
     /// The state at the end.
     pub ending: Ending,
+}
+
+/// What a measure showed in a run, the start included, metres.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// At the end.
+    pub last: f64,
+    /// The smallest value.
+    pub least: f64,
+    /// The largest value.
+    pub largest: f64,
 }
 
 /// The state at the end of a run.

@@ -11,7 +11,7 @@ use super::pose::Motion;
 use super::problem::Problem;
 use super::sheet::{Bending, Elasticity, Isometry};
 use super::supports::{Hold, frame_motion};
-use super::{Air, Origins, Scene, Setup};
+use super::{Air, Measure, Origins, Scene, Setup};
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
     AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, PAPER_GRAVITY,
@@ -41,7 +41,16 @@ impl Scene {
         builder.perturb()?;
         builder.add_glue()?;
         let (contacts, obstacles) = builder.contacts(folder)?;
-        Ok(builder.finish(contacts, obstacles))
+        let gauge = |(k, measure): (usize, &Measure)| {
+            let key = Key::root().name("measure").entry(k);
+            measure.gauge(&key, &builder.sheets)
+        };
+        let measures = self.measure.iter().enumerate().map(gauge);
+        let measures = measures.collect::<Result<_, _>>()?;
+        Ok(Setup {
+            measures,
+            ..builder.finish(contacts, obstacles)
+        })
     }
 }
 
@@ -511,6 +520,7 @@ impl<'a> Builder<'a> {
             modelled: self.modelled,
             folding: self.folding,
             glued: self.glued,
+            measures: Vec::new(),
             origins: self.origins,
             text: None,
         }

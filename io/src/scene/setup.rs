@@ -1,11 +1,11 @@
 //! Everything that a simulation is made of.
 
-use super::Origins;
 use super::chart::Chart;
 use super::error::{SceneError, SceneText};
 use super::folding::FoldTargets;
 use super::key::Key;
 use super::problem::Problem;
+use super::{Gauge, Origins};
 use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
 use isosheet_dynamics::contact::Contact;
@@ -53,6 +53,8 @@ pub struct Setup {
     pub material: Option<String>,
     /// Where the creases are driven, if the scene folds to the angles of a FOLD file.
     pub folding: Option<FoldTargets>,
+    /// What is read off the sheet at each step.
+    pub measures: Vec<Gauge>,
     /// Which entry of the scene made what.
     pub origins: Origins,
     /// The text of the scene, if it is a file.

@@ -14,6 +14,7 @@ mod gallery;
 mod headless;
 mod live;
 mod live_page;
+mod measures;
 mod pages;
 mod rod_forces;
 #[path = "../shared/skip.rs"]
@@ -103,13 +104,11 @@ fn summary(folder: &Path) -> Summary {
 
 /// Everything but the wall time is the same, to the bit.
 fn assert_same(one: &Path, other: &Path) {
-    // Only scenes with supports or obstacles have loads.
-    let loads = [one, other].map(|folder| fs::read(folder.join("loads.csv")).ok());
-    assert!(
-        loads[0] == loads[1],
-        "loads.csv differs in {}",
-        other.display()
-    );
+    // Only scenes with supports or obstacles have loads, and only those that name measures have some.
+    for file in ["loads.csv", "measures.csv"] {
+        let [a, b] = [one, other].map(|folder| fs::read(folder.join(file)).ok());
+        assert!(a == b, "{file} differs in {}", other.display());
+    }
     for file in ["history.csv", "trajectory.npz", "frames.bin", "scene.toml"] {
         let [a, b] = [one, other].map(|folder| fs::read(folder.join(file)).unwrap());
         assert!(a == b, "{file} differs in {}", other.display());

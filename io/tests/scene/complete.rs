@@ -107,6 +107,31 @@ const ALL_KEYS: [&str; 5] = [
     [[contact.pair]]
     sheets = ["main", "main"]
     friction = 0.1
+    [[measure]]
+    name = "height"
+    sheet = "main"
+    at = "all"
+    quantity = "z"
+    [[measure]]
+    name = "x"
+    at = { vertices = [0] }
+    quantity = "x"
+    [[measure]]
+    name = "y"
+    at = { vertices = [0] }
+    quantity = "y"
+    [[measure]]
+    name = "away"
+    at = { vertices = [0] }
+    quantity = "displacement"
+    [[measure]]
+    name = "from-origin"
+    at = "boundary"
+    quantity = { distance_to_point = [0, 0, 0] }
+    [[measure]]
+    name = "width"
+    at = { vertices = [0] }
+    quantity = { distance_to = { vertices = [1] } }
     [method]
     integrator = "implicit_euler"
     step = 0.01

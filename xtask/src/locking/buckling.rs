@@ -3,11 +3,12 @@
 use super::meshes::{Grid, vertices, with_line};
 use super::model::{Model, PAPER, Plate};
 use super::runs::{Ran, Records, samples};
-use super::scene::{DAMPING, Scene};
+use super::scene::{DAMPING, run};
 use crate::report::Table;
 use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_mesh::Sheet;
+use isosheet_tests::implicit_euler;
 use serde::{Deserialize, Serialize};
 
 /// Free and clamped length, and width, metres.
@@ -104,7 +105,7 @@ fn aside(model: Model, flat: &Sheet, load: f64, plan: &Plan) -> Result<(f64, Cou
         .with_acceleration([0.0, -GRAVITY, -IMPERFECTION * GRAVITY])
         .with_damping(DAMPING)?
         .with_pins(clamped)?;
-    let (course, end) = Scene::damped(moved, flat).run(plan)?;
+    let (course, end) = run(moved, flat, implicit_euler(), plan)?;
     let tip = vertices(flat, |[x, ..]| x > LENGTH - 1e-9);
     Ok((end.mean(&tip, 2, f64::abs) / LENGTH, course))
 }

@@ -2,7 +2,7 @@
 
 use super::model::{Model, PAPER, Plate};
 use super::runs::{Ran, Records, samples};
-use super::scene::Scene;
+use super::scene::run;
 use crate::report::{Effort, Table};
 use crate::runs::Plan;
 use anyhow::Result;
@@ -130,11 +130,9 @@ fn measure(model: Model, job: &Job, plan: &Plan) -> Result<(Ran, Fallen)> {
         .with_gravity()
         .with_damping(DAMPING)?
         .with_pins(&pins)?;
-    let mut scene = Scene::new(moved, &sheet);
-    if let Some((_, method)) = damped().into_iter().find(|(name, _)| *name == job.method) {
-        scene = scene.by(method);
-    }
-    let (course, end) = scene.run(plan)?;
+    let named = |(name, method)| (name == job.method).then_some(method);
+    let method = damped().into_iter().find_map(named).unwrap_or_default();
+    let (course, end) = run(moved, &sheet, method, plan)?;
     let ran = Ran::of(model, &sheet, &course);
     let lowest = end.x.iter().skip(2).step_by(3).copied().fold(0.0, f64::min);
     let clamp = SheetModel::new(&sheet, MASS, MassKind::Lumped)?.with_pins(&pins)?;

@@ -1,21 +1,21 @@
 //! A disk that is pushed into a ring: the developable cone.
 
-use super::disks::{Disk, arcs, rim};
+use super::disks::{Disk, Job, RADIUS, arcs, rim};
 use super::meshes::{nearest, vertices};
 use super::model::{Model, PAPER, Plate};
 use super::nudge::{Nudge, Ring};
 use super::runs::{Ran, Records, Sample, samples};
-use super::scene::{DAMPING, Scene, until_rest};
+use super::scene::{DAMPING, run, until_rest};
 use crate::report::Table;
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::{PointProfile, Profile, SheetModel};
 use isosheet_mesh::Sheet;
+use isosheet_tests::implicit_euler;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Radius and depth, metres.
-const RADIUS: f64 = 0.1;
+/// Depth, metres.
 const DEPTH: f64 = 0.1 * RADIUS;
 
 /// How long the centre moves, and when the forces that choose the place of the fold are gone, seconds.
@@ -32,14 +32,6 @@ const NUDGE: f64 = 3.0;
 /// Lifts above the ring, as parts of the depth, that end a fold and that make one.
 const ENDS: f64 = 0.02;
 const FOLDS: f64 = 0.1;
-
-/// A mesh: the spacing is the radius over `rings`.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Job {
-    mesh: Disk,
-    #[serde(rename = "R/h")]
-    rings: usize,
-}
 
 /// What is measured; errors at rest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -93,9 +85,9 @@ fn model(of: Model, sheet: &Sheet, plate: Plate<'_>) -> Result<SheetModel> {
 }
 
 fn measure(of: Model, bound: f64, job: Job, plan: &Plan) -> Result<(Ran, Cone)> {
-    let sheet = job.mesh.mesh(job.rings, RADIUS)?;
+    let sheet = job.sheet()?;
     let plate = Plate { bound, ..PAPER };
-    let (course, end) = Scene::damped(model(of, &sheet, plate)?, &sheet).run(plan)?;
+    let (course, end) = run(model(of, &sheet, plate)?, &sheet, implicit_euler(), plan)?;
     let ran = Ran::of(of, &sheet, &course);
     let unit = PAPER.rigidity * (DEPTH / RADIUS).powi(2);
     let energy = of.energy(&sheet, plate, &end.x)? / unit;
@@ -121,13 +113,10 @@ fn measure(of: Model, bound: f64, job: Job, plan: &Plan) -> Result<(Ran, Cone)> 
 /// The runs of the yardstick.
 pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
-    let sizes: &[usize] = effort.quick_or(&[4], &[6, 10, 16]);
-    let kinds = effort.quick_or(&Disk::ALL[2..3], &Disk::ALL[..]);
-    let of = |&mesh: &Disk| sizes.iter().map(move |&rings| Job { mesh, rings });
-    let jobs: Vec<Job> = kinds.iter().flat_map(of).collect();
+    let jobs = Job::all(effort);
     let finest = Job {
         mesh: Disk::Delaunay1,
-        rings: 2 * sizes.last().copied().unwrap_or(1),
+        rings: 2 * jobs.last().map_or(1, |job| job.rings),
     };
     let beside = |model: Model| {
         let patience = effort.quick_or(5.0, 1200.0);

@@ -4,12 +4,13 @@ use super::meshes::vertices;
 use super::model::{Model, PAPER, Plate};
 use super::nudge::Nudge;
 use super::runs::{Ran, Records, samples};
-use super::scene::{DAMPING, Scene, until_rest};
+use super::scene::{DAMPING, run, until_rest};
 use crate::report::Table;
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::{CreaseSpring, CreaseSprings, Profile};
 use isosheet_mesh::{EdgeId, Sheet, VertexId, fold_angle, generate};
+use isosheet_tests::implicit_euler;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
@@ -121,7 +122,7 @@ fn measure(model: Model, job: Job, plan: &Plan) -> Result<(Ran, Folded)> {
         .with_damping(DAMPING)?
         .with_potential(job.springs(&sheet, creases)?)
         .with_potential(nudge(&sheet));
-    let (course, end) = Scene::damped(moved, &sheet).run(plan)?;
+    let (course, end) = run(moved, &sheet, implicit_euler(), plan)?;
     let ran = Ran::of(model, &sheet, &course);
     let angles = creases.iter();
     let angles = angles.filter_map(|e| fold_angle(sheet.topology(), &end.x, *e));

@@ -1,5 +1,6 @@
 //! Meshes of disks, and what their rims do.
 
+use crate::report::Effort;
 use anyhow::Result;
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{Sheet, VertexId};
@@ -24,6 +25,31 @@ pub(super) enum Disk {
     Delaunay3,
 }
 
+/// A mesh: the spacing is the radius over `rings`.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Job {
+    pub(super) mesh: Disk,
+    #[serde(rename = "R/h")]
+    pub(super) rings: usize,
+}
+
+/// Radius of disks that become cones, metres.
+pub(super) const RADIUS: f64 = 0.1;
+
+impl Job {
+    /// The meshes that are compared; the finest is the last of each kind.
+    pub(super) fn all(effort: Effort) -> Vec<Self> {
+        let sizes: &[usize] = effort.quick_or(&[4], &[6, 10, 16]);
+        let kinds = effort.quick_or(&Disk::ALL[2..3], &Disk::ALL[..]);
+        let of = |&mesh: &Disk| sizes.iter().map(move |&rings| Self { mesh, rings });
+        kinds.iter().flat_map(of).collect()
+    }
+
+    pub(super) fn sheet(self) -> Result<Sheet> {
+        self.mesh.sheet(self.rings, RADIUS)
+    }
+}
+
 /// Corners of irregular disks.
 const CORNERS: usize = 60;
 
@@ -37,7 +63,7 @@ impl Disk {
     ];
 
     /// The disk about the origin with the spacing `radius / rings` (metres).
-    pub(super) fn mesh(self, rings: usize, radius: f64) -> Result<Sheet> {
+    fn sheet(self, rings: usize, radius: f64) -> Result<Sheet> {
         let irregular = |seed: u64| -> Result<Sheet> {
             let corner = |k: usize| {
                 let (s, c) = (TAU * k as f64 / CORNERS as f64).sin_cos();
@@ -124,7 +150,7 @@ mod tests {
     #[test]
     fn disks_have_their_rim_on_the_circle() {
         for disk in Disk::ALL {
-            let sheet = disk.mesh(6, 0.1).unwrap();
+            let sheet = disk.sheet(6, 0.1).unwrap();
             assert_eq!(sheet.topology().boundary_loops().len(), 1, "{disk:?}");
             for (_, v) in rim(&sheet) {
                 let [x, y, _] = sheet.position(v);

@@ -1,21 +1,18 @@
 //! A disk with an inserted wedge: the excess cone.
 
-use super::disks::Disk;
+use super::disks::{Job, RADIUS};
 use super::meshes::SNAP;
 use super::model::{Model, PAPER};
 use super::runs::{Ran, Records, samples};
-use super::scene::{DAMPING, Scene, until_rest};
+use super::scene::{DAMPING, run, until_rest};
 use crate::report::Table;
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_mesh::{FlatCut, Sheet, fold_angle};
-use isosheet_tests::ExcessCone;
+use isosheet_tests::{ExcessCone, implicit_euler};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
-
-/// Radius, metres.
-const RADIUS: f64 = 0.1;
 
 /// The wedge, radians: 17 degrees. The folds are 14 degrees high.
 const EXCESS: f64 = 0.3;
@@ -31,7 +28,7 @@ type Place = [f64; 2];
 /// A disk with a wedge, folded to a pyramid: the angles of the flat disk are stretched, and every face lies in one of
 /// four flat sectors.
 fn pyramid(job: Job) -> Result<(Sheet, Vec<Place>)> {
-    let mut cut = FlatCut::of(&job.mesh.mesh(job.rings, RADIUS)?);
+    let mut cut = FlatCut::of(&job.sheet()?);
     for normal in [[1.0, 0.0], [0.0, 1.0]] {
         cut.split([0.0; 2], normal, SNAP * RADIUS / job.rings as f64);
     }
@@ -70,14 +67,6 @@ fn folded([radius, angle]: Place) -> Vector3<f64> {
     radius * (cos * first + sin * across)
 }
 
-/// A mesh: the spacing is the radius over `rings`.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Job {
-    mesh: Disk,
-    #[serde(rename = "R/h")]
-    rings: usize,
-}
-
 /// What is measured; errors at rest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Saddle {
@@ -94,7 +83,7 @@ struct Saddle {
 fn measure(model: Model, job: Job, plan: &Plan) -> Result<(Ran, Saddle)> {
     let (sheet, places) = pyramid(job)?;
     let moved = model.sheet(&sheet, PAPER)?.with_damping(DAMPING)?;
-    let (course, end) = Scene::damped(moved, &sheet).run(plan)?;
+    let (course, end) = run(moved, &sheet, implicit_euler(), plan)?;
     let ran = Ran::of(model, &sheet, &course);
     let faces = face_energies(model, &sheet, &end.x)?;
     let corners = sheet.topology().faces().iter();
@@ -202,16 +191,14 @@ fn apart(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
 /// The runs of the yardstick.
 pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
-    let sizes: &[usize] = effort.quick_or(&[4], &[6, 10, 16]);
-    let kinds = effort.quick_or(&Disk::ALL[2..3], &Disk::ALL[..]);
     let plan = until_rest(20.0, effort.quick_or(1.0, 40.0));
-    let of = |&mesh: &Disk| sizes.iter().map(move |&rings| Job { mesh, rings });
-    let jobs: Vec<Job> = kinds.iter().flat_map(of).collect();
+    let jobs = Job::all(effort);
     samples(&records.of_models(&jobs, |model, job| measure(model, *job, &plan))?)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::disks::Disk;
     use super::*;
     use isosheet_dynamics::{PlateBending, Potential};
 

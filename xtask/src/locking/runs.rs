@@ -172,34 +172,6 @@ pub(super) fn table<R: Serialize>(rows: impl Iterator<Item = R>) -> Result<Table
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Effort;
-    use crate::store::Remake;
-    use std::sync::atomic::{AtomicUsize, Ordering};
-
-    /// What an earlier report has computed is not computed again.
-    #[test]
-    fn runs_are_kept() {
-        let folder = tempfile::tempdir().unwrap();
-        let out = folder.path().join("out");
-        let store = Store::open(&out, "a", Effort::Quick, Remake::Never).unwrap();
-        let part = "strips";
-        let records = Records {
-            store: &store,
-            part,
-        };
-        let count = AtomicUsize::new(0);
-        let run = || {
-            records.runs("a name", &[0.1, 0.2], |k| {
-                count.fetch_add(1, Ordering::Relaxed);
-                Ok(k / 3.0)
-            })
-        };
-        let (first, second) = (run().unwrap(), run().unwrap());
-        assert_eq!((&first, first.len()), (&second, 2));
-        assert_eq!(count.into_inner(), 2);
-        let other = records.runs("another", &[0.0], |_| Ok(7.0));
-        assert_eq!(other.unwrap(), [7.0]);
-    }
 
     /// All digits of numbers are kept, and what is not there is missing.
     #[test]

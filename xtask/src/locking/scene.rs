@@ -1,12 +1,9 @@
-//! Scenes: what moves, from where, by which method, and where it ends.
+//! Runs of sheets from rest, and where they end.
 
 use crate::interrupt::Interrupted;
 use crate::runs::{Course, Ending, Plan, unseen};
-use anyhow::Result;
-use isosheet_collide::Contacts;
-use isosheet_dynamics::{Method, Reaction, SheetModel, Simulation, SimulationError, State};
+use isosheet_dynamics::{Method, Reaction, SheetModel, Simulation, State};
 use isosheet_mesh::{Sheet, VertexId};
-use isosheet_tests::implicit_euler;
 
 /// Rate of damping of scenes that come to rest, 1/s.
 pub(super) const DAMPING: f64 = 4.0;
@@ -38,74 +35,33 @@ impl End {
     }
 }
 
-/// A scene: what moves, where it starts and by which method.
-#[derive(Debug)]
-pub(super) struct Scene {
-    pub(super) model: SheetModel,
-    /// Positions at the start (3V, metres); the sheet starts at rest.
-    pub(super) start: Vec<f64>,
-    pub(super) method: Method,
-    pub(super) contacts: Option<Contacts>,
-}
-
-impl Scene {
-    /// A sheet at its rest shape, by the default method.
-    pub(super) fn new(model: SheetModel, sheet: &Sheet) -> Self {
-        Self {
-            model,
-            start: sheet.positions().to_vec(),
-            method: Method::default(),
-            contacts: None,
-        }
-    }
-
-    /// The same by implicit Euler.
-    pub(super) fn damped(model: SheetModel, sheet: &Sheet) -> Self {
-        Self::new(model, sheet).by(implicit_euler())
-    }
-
-    /// The same by another method.
-    pub(super) fn by(self, method: Method) -> Self {
-        Self { method, ..self }
-    }
-
-    /// The same with contact.
-    pub(super) fn touching(self, contacts: Contacts) -> Self {
-        let contacts = Some(contacts);
-        Self { contacts, ..self }
-    }
-
-    fn simulation(self) -> Result<Simulation, SimulationError> {
-        let start = State::at_rest(self.start);
-        let simulation = Simulation::new(self.model, start, self.method)?;
-        match self.contacts {
-            None => Ok(simulation),
-            Some(contacts) => simulation.with_contact(contacts),
-        }
-    }
-
-    /// Runs the scene. An error of the solver is an ending like others, and not an error of this function.
-    ///
-    /// # Errors
-    /// [`Interrupted`].
-    pub(super) fn run(self, plan: &Plan) -> Result<(Course, End), Interrupted> {
-        let mut course = Course::default();
-        let mut end = End {
-            x: self.start.clone(),
-            reactions: Vec::new(),
-        };
-        match self.simulation() {
-            Err(error) => course.ending = Ending::of(&error, &error),
-            Ok(mut simulation) => {
-                plan.go_on(&mut simulation, &mut course, &mut unseen)?;
-                end.x.copy_from_slice(&simulation.state().x);
-                if course.is_good() {
-                    end.reactions = simulation.reactions();
-                }
+/// Runs a sheet from its rest shape at rest. An error of the solver is an ending like others, and not an error of this
+/// function.
+///
+/// # Errors
+/// [`Interrupted`].
+pub(super) fn run(
+    model: SheetModel,
+    sheet: &Sheet,
+    method: Method,
+    plan: &Plan,
+) -> Result<(Course, End), Interrupted> {
+    let mut course = Course::default();
+    let mut end = End {
+        x: sheet.positions().to_vec(),
+        reactions: Vec::new(),
+    };
+    match Simulation::new(model, State::at_rest(end.x.clone()), method) {
+        Err(error) => course.ending = Ending::of(&error, &error),
+        Ok(mut simulation) => {
+            plan.go_on(&mut simulation, &mut course, &mut unseen)?;
+            end.x.copy_from_slice(&simulation.state().x);
+            if course.is_good() {
+                end.reactions = simulation.reactions();
             }
         }
-        Ok((course, end))
     }
+    Ok((course, end))
 }
 
 #[cfg(test)]
@@ -117,27 +73,22 @@ mod tests {
     #[test]
     fn runs_end_complete_out_of_time_or_with_an_error() {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
-        let falling = || {
-            Scene::new(
-                Model::Rods.sheet(&sheet, PAPER).unwrap().with_gravity(),
-                &sheet,
-            )
+        let falling = |start: &Sheet, plan: &Plan| {
+            let model = Model::Rods.sheet(&sheet, PAPER).unwrap().with_gravity();
+            run(model, start, Method::default(), plan).unwrap()
         };
         let plan = Plan::new(0.01, 0.1).within(60.0);
-        let (course, end) = falling().run(&plan).unwrap();
+        let (course, end) = falling(&sheet, &plan);
         assert_eq!((&course.ending, course.cost.steps), (&Ending::Complete, 10));
         // Damped methods of first and second order fall by g t^2 / 2 to within the order of a step.
         let all: Vec<VertexId> = sheet.topology().vertex_ids().collect();
         let height = end.mean(&all, 2, |z| z);
         assert!((height + 0.049).abs() < 0.006, "{height}");
-        let (course, _) = falling().run(&plan.within(0.0)).unwrap();
-        assert_eq!(
-            (course.ending.name(), course.cost.steps),
-            ("wall time over", 0)
-        );
-        let mut broken = falling();
-        broken.start[0] += 0.1;
-        let ending = broken.run(&plan).unwrap().0.ending;
+        let (course, _) = falling(&sheet, &plan.within(0.0));
+        let ended = (course.ending.name(), course.cost.steps);
+        assert_eq!(ended, ("wall time over", 0));
+        let broken = sheet.map_positions(|[x, y, z]| [1.1 * x, y, z]).unwrap();
+        let ending = falling(&broken, &plan).0.ending;
         assert!(ending.name().starts_with("Start"), "{ending:?}");
         assert!(!ending.message().is_empty());
     }

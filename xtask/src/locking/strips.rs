@@ -4,13 +4,13 @@ use super::meshes::{Grid, vertices, with_line};
 use super::model::{Model, PAPER, Plate};
 use super::nudge::Nudge;
 use super::runs::{Ran, Records, samples};
-use super::scene::{DAMPING, End, Scene, until_rest};
+use super::scene::{DAMPING, End, run, until_rest};
 use crate::report::Table;
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::{PointProfile, Profile, SheetModel, Support};
 use isosheet_mesh::{Sheet, VertexId};
-use isosheet_tests::{Elastica, buckled};
+use isosheet_tests::{Elastica, buckled, implicit_euler};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -245,8 +245,8 @@ fn measure(model: Model, bound: f64, job: Job, plan: &Plan) -> Result<(Ran, Rest
         clamped: &clamped,
         ..PAPER
     };
-    let scene = Scene::damped(strip.model(model, &sheet, plate)?, &sheet);
-    let (course, end) = scene.run(plan)?;
+    let moved = strip.model(model, &sheet, plate)?;
+    let (course, end) = run(moved, &sheet, implicit_euler(), plan)?;
     let ran = Ran::of(model, &sheet, &course);
     let elastic = model.energy(&sheet, plate, &end.x)?;
     let mut energy = elastic;
