@@ -235,7 +235,7 @@ fn paper(name: &str, degenerate: Degenerate, stepping: Stepping) -> Scheme {
 }
 
 /// The charts and methods with their names. Velocities follow from momenta by the sparse saddle-point system;
-/// other solvers are compared by size in [`solvers`](super::super::solvers).
+/// other solvers are timed by `cargo bench`.
 const CHARTS: [(ChartKind, &str); 2] = [
     (ChartKind::Cartesian, "Cartesian chart"),
     (ChartKind::Front, "front chart"),
