@@ -30,4 +30,5 @@ pub use mesh_file::{
 };
 pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
 pub use trajectory::{FrameData, Trajectory, TrajectoryError};
+#[cfg(feature = "run")]
 pub(crate) use trajectory::{MeshCounts, Quantity};
