@@ -3,7 +3,10 @@
 use anyhow::{Context, Result};
 use isosheet_dynamics::{Simulation, StepReport};
 use isosheet_io::Advice;
+use isosheet_io::run::{self, Outcome, RunError, StepPart, Summary, Tick, Watch};
+use isosheet_io::scene::SceneFile;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static REQUESTED: AtomicBool = AtomicBool::new(false);
@@ -43,12 +46,43 @@ pub(crate) fn check() -> Result<(), Interrupted> {
     }
 }
 
+/// Whether work goes on: until [`requested`].
+pub(crate) fn flow() -> ControlFlow<()> {
+    match requested() {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    }
+}
+
 /// An observer that ends a run after the step in which Ctrl-C was pressed. [`check`] says whether it did.
 pub(crate) fn observe(_simulation: &Simulation, _report: &StepReport) -> ControlFlow<()> {
-    if requested() {
-        ControlFlow::Break(())
-    } else {
-        ControlFlow::Continue(())
+    flow()
+}
+
+/// Runs a scene in a folder until its end, unless [`requested`]: then within a step. `step` sees every step.
+///
+/// # Errors
+/// [`Interrupted`]; what went wrong with the run stands inside.
+pub(crate) fn simulate(
+    file: &SceneFile,
+    folder: &Path,
+    step: &mut dyn FnMut(&Tick),
+) -> Result<Result<Summary, RunError>, Interrupted> {
+    struct Watching<'a>(&'a mut dyn FnMut(&Tick));
+    impl Watch for Watching<'_> {
+        fn within_step(&mut self, _: &StepPart) -> ControlFlow<()> {
+            flow()
+        }
+
+        fn step(&mut self, tick: &Tick) -> ControlFlow<()> {
+            (self.0)(tick);
+            flow()
+        }
+    }
+    match run::simulate(file, folder, &mut Watching(step)) {
+        Ok(Outcome::Complete(summary) | Outcome::AlreadyComplete(summary)) => Ok(Ok(*summary)),
+        Ok(Outcome::Interrupted) => Err(Interrupted),
+        Err(error) => Ok(Err(error)),
     }
 }
 

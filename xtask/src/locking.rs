@@ -184,7 +184,7 @@ fn write(store: &Store) -> Result<()> {
     let body = html! {
         p { (INTRODUCTION) }
         p {
-            "SI units, z upwards. Times are wall times of runs on one core each, with other runs beside. Machine: "
+            "SI units, z upwards. Times are seconds of the processor, of runs on one core each. Machine: "
             (machine()) "."
         }
         section #targets { h2 { "Measured against target" } (summary) }

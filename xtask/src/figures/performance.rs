@@ -316,6 +316,9 @@ fn contact_table(all: &[Tried]) -> Table {
                 let [step, solves] = [step, solves].map(|all| all / frames(&r.ours));
                 format!("{step:.1} ms, {solves:.0}").into()
             }),
+            ("CPU s per simulated s", &|r| {
+                r.ours.course.cpu_rate().into()
+            }),
             ("solves/s", &|r| {
                 let cost = &r.ours.course.cost;
                 format!("{:.0}", cost.iterations as f64 / cost.wall.max(1e-9)).into()

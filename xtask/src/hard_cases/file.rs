@@ -7,13 +7,12 @@ use crate::interrupt;
 use crate::report::{Bound, Effort, Limitation, number};
 use anyhow::{Context, Result, bail, ensure};
 use isosheet_io::read_history;
-use isosheet_io::run::{Outcome, RunError, Sweep, Variation, simulate};
+use isosheet_io::run::{RunError, Sweep, Variation};
 use isosheet_io::scene::SceneFile;
 use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -293,18 +292,13 @@ impl CaseFile {
 /// Runs a scene with edits.
 fn ran(scene: &Path, edits: Vec<String>) -> Result<Ran> {
     interrupt::check()?;
-    let file = SceneFile::read(scene, &edits)?;
+    // Summaries alone are judged.
+    let unseen = ["output.page=false", "output.trajectory=false"].map(str::to_owned);
+    let file = SceneFile::read(scene, &[&edits[..], &unseen].concat())?;
     let folder = tempfile::tempdir()?;
     let folder = folder.path().join("run");
-    let mut watch = |_: &_| match interrupt::requested() {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
-    };
-    let (summary, stopped) = match simulate(&file, &folder, &mut watch) {
-        Ok(Outcome::Complete(summary) | Outcome::AlreadyComplete(summary)) => {
-            (serde_json::to_value(summary)?, None)
-        }
-        Ok(Outcome::Interrupted) => return Err(interrupt::Interrupted.into()),
+    let (summary, stopped) = match interrupt::simulate(&file, &folder, &mut |_| ())? {
+        Ok(summary) => (serde_json::to_value(summary)?, None),
         Err(error @ (RunError::Step(_) | RunError::Scene(_))) => {
             let rows = read_history(&folder.join("history.csv")).unwrap_or_default();
             let strain = rows.iter().fold(0.0_f64, |most, row| most.max(row.strain));

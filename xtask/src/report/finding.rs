@@ -196,7 +196,6 @@ impl Finding {
         let shortfall = self.limitation.as_ref().map(|l| &l.shortfall);
         match (holds, shortfall) {
             (true, None | Some(Shortfall::Varies)) => Verdict::Passed,
-            (false, Some(Shortfall::Varies)) => Verdict::Limitation,
             (true, Some(_)) => Verdict::Cured,
             (false, Some(shortfall)) => self.compare(shortfall),
             (false, None) => Verdict::Failed,

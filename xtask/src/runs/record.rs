@@ -1,19 +1,16 @@
 //! Runs of scenes as figures are made of them: those of `isosheet simulate`, made once in DIR/runs.
 
 use super::{Course, FigureScene};
-use crate::interrupt::{self, Interrupted};
+use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::Cost;
 use crate::store::{Files, Store, Unit};
 use anyhow::{Result, ensure};
-use isosheet_io::run::simulate;
-use isosheet_io::run::{ElasticSummary, Outcome, Recording, StepPart, Summary, Tick, Watch};
+use isosheet_io::run::{ElasticSummary, Recording, Summary, Tick};
 use isosheet_io::{HistoryRow, LoadKind, LoadRow, Trajectory, read_loads};
 use isosheet_mesh::Sheet;
 use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
-use std::ops::ControlFlow;
-use std::path::Path;
 
 /// A run of rods with an edge strain from here on is an error: figures of rods promise that nothing stretches.
 const STRAIN: f64 = 1e-10;
@@ -173,7 +170,7 @@ impl Run {
     /// An up-to-date run of the scene, which is made now when there is none.
     ///
     /// # Errors
-    /// [`Interrupted`] after Ctrl-C; those of the simulation.
+    /// [`Interrupted`](interrupt::Interrupted) after Ctrl-C; those of the simulation.
     pub(crate) fn of(store: &Store, scene: FigureScene) -> Result<Self> {
         let unit = Unit {
             name: format!("run-{}", scene.name()),
@@ -246,49 +243,22 @@ struct Times {
     cpu: f64,
 }
 
-/// Shows the progress of a run and counts its time.
-struct Watching {
-    bar: Progress,
-    times: Times,
-}
-
-impl Watch for Watching {
-    fn within_step(&mut self, _: &StepPart) -> ControlFlow<()> {
-        match interrupt::requested() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    }
-
-    fn step(&mut self, tick: &Tick) -> ControlFlow<()> {
-        self.times.wall += tick.wall.as_secs_f64();
-        self.times.cpu += tick.cpu.as_secs_f64();
-        self.bar.step();
-        ControlFlow::Continue(())
-    }
-}
-
 /// Runs a scene. What came of it, and what its steps took.
 fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<(Summary, Times)> {
     let folder = files.folder(&folder(scene))?;
-    let mut watching = Watching {
-        bar: Progress::start(format!("run {}", scene.name()), scene.frames()),
-        times: Times::default(),
+    let bar = Progress::start(format!("run {}", scene.name()), scene.frames());
+    let mut times = Times::default();
+    let mut look = |tick: &Tick| {
+        times.wall += tick.wall.as_secs_f64();
+        times.cpu += tick.cpu.as_secs_f64();
+        bar.step();
     };
-    let summary = run(scene, &folder, &mut watching)?;
-    let (steps, wall) = (summary.steps, watching.times.wall);
-    watching.bar.finish(&format!(
-        "{steps} of {} frames, {:.1} frames/s",
+    let summary = interrupt::simulate(&scene.without_page()?, &folder, &mut look)??;
+    bar.finish(&format!(
+        "{} of {} frames, {:.1} frames/s",
+        summary.steps,
         scene.frames(),
-        steps as f64 / wall.max(1e-9)
+        summary.steps as f64 / times.wall.max(1e-9)
     ));
-    Ok((summary, watching.times))
-}
-
-fn run(scene: &FigureScene, folder: &Path, watching: &mut Watching) -> Result<Summary> {
-    let file = scene.without_page()?;
-    match simulate(&file, folder, watching)? {
-        Outcome::Complete(summary) | Outcome::AlreadyComplete(summary) => Ok(*summary),
-        Outcome::Interrupted => Err(Interrupted.into()),
-    }
+    Ok((summary, times))
 }
