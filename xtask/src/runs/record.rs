@@ -11,6 +11,7 @@ use isosheet_io::{HistoryRow, LoadKind, LoadRow, Trajectory, read_loads};
 use isosheet_mesh::Sheet;
 use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
+use std::fs;
 
 /// A run of rods with an edge strain from here on is an error: figures of rods promise that nothing stretches.
 const STRAIN: f64 = 1e-10;
@@ -254,6 +255,8 @@ fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<(Summary, Times)
         bar.step();
     };
     let summary = interrupt::simulate(&scene.without_page()?, &folder, &mut look)??;
+    // The trajectory has all of these frames, and a run that is complete needs no others.
+    fs::remove_file(folder.join("frames.bin"))?;
     bar.finish(&format!(
         "{} of {} frames, {:.1} frames/s",
         summary.steps,
