@@ -27,7 +27,7 @@ use session::Session;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
 const EXAMPLES: &str = "\
@@ -99,6 +99,7 @@ impl Live {
             board: board.clone(),
             commands: sender,
             end_is_asked: end_is_asked.clone(),
+            answering: AtomicUsize::new(0),
         };
         let server = Server::start(listener, shared).map_err(failed)?;
         print_result(format_args!("page: {address}\nCtrl-C ends the run"))?;

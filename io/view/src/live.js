@@ -23,6 +23,7 @@ export class Live {
     this.frame = null;
     this.plotted = null;
     this.isTouched = false;
+    this.isEnded = false;
     this.orders = new Orders((status) => this.refused(status));
     this.hand = new Hand($("view"), page.stage, this.orders, () => this.steers);
     this.arrange();
@@ -153,6 +154,8 @@ export class Live {
 
   /** The browser tries to come back by itself. */
   lost() {
+    // The answer to the command that ends a run may be cut off by the end.
+    if (this.isEnded) return;
     if (this.events.readyState === EventSource.CLOSED) return this.end("The run has ended, or another page is at its address.");
     this.isLost = true;
     this.role = null;
@@ -161,7 +164,12 @@ export class Live {
   }
 
   end(text) {
+    this.isEnded = true;
     this.events.close();
+    if (this.drawing) {
+      cancelAnimationFrame(this.drawing);
+      this.take(this.newest);
+    }
     this.role = null;
     this.showRole();
     this.frame = { ...this.frame, playing: false };

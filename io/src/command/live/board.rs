@@ -122,10 +122,6 @@ impl Board {
         self.state().role(viewer).steers
     }
 
-    pub(super) fn viewers(&self) -> usize {
-        self.state().viewers.len()
-    }
-
     /// Waits for news for a page; nothing if there are none for some time.
     pub(super) fn wait(&self, viewer: u64, told: &mut Told, patience: Duration) -> Option<News> {
         let mut state = self.state();

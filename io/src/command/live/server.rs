@@ -19,8 +19,9 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const SIGN: Duration = Duration::from_millis(500);
 /// Most connections at a time: a page has an open one, and some more for moments.
 const MOST_CONNECTIONS: usize = 64;
-/// How long the end of a run waits for pages to be told.
-const FAREWELL: Duration = Duration::from_millis(500);
+/// How long the end of a run waits for pages to be told, and for commands to be answered: longer than a browser on a
+/// busy machine leaves unread what has come.
+const FAREWELL: Duration = Duration::from_secs(2);
 
 /// What the connections of a server share.
 pub(super) struct Shared {
@@ -31,6 +32,8 @@ pub(super) struct Shared {
     pub(super) board: Arc<Board>,
     pub(super) commands: Sender<Command>,
     pub(super) end_is_asked: Arc<AtomicBool>,
+    /// The number of requests that are being answered.
+    pub(super) answering: AtomicUsize,
 }
 
 /// Listens on the loopback address alone; on a free port for 0.
@@ -43,7 +46,7 @@ pub(super) fn listen(port: u16) -> io::Result<TcpListener> {
 
 /// A server that serves until it is ended.
 pub(super) struct Server {
-    board: Arc<Board>,
+    shared: Arc<Shared>,
     port: u16,
     thread: thread::JoinHandle<()>,
 }
@@ -54,13 +57,14 @@ impl Server {
     /// # Errors
     /// [`io::Error`] if there is no thread for it.
     pub(super) fn start(listener: TcpListener, shared: Shared) -> io::Result<Self> {
-        let (board, port) = (shared.board.clone(), listener.local_addr()?.port());
+        let port = listener.local_addr()?.port();
         let shared = Arc::new(shared);
+        let serving = shared.clone();
         let name = |name: &str| thread::Builder::new().name(name.into());
         let accept = move || {
             let open = Arc::new(AtomicUsize::new(0));
             for connection in listener.incoming() {
-                if shared.board.is_closed() {
+                if serving.board.is_closed() {
                     return;
                 }
                 let Ok(mut connection) = connection else {
@@ -72,7 +76,7 @@ impl Server {
                     continue;
                 }
                 open.fetch_add(1, Ordering::SeqCst);
-                let (shared, count) = (shared.clone(), open.clone());
+                let (shared, count) = (serving.clone(), open.clone());
                 let serve = move || {
                     // A connection that breaks off needs no answer.
                     let _ = shared.serve(&mut connection);
@@ -84,7 +88,7 @@ impl Server {
             }
         };
         Ok(Self {
-            board,
+            shared,
             port,
             thread: name("live server").spawn(accept)?,
         })
@@ -92,9 +96,9 @@ impl Server {
 
     /// Tells all pages that the run has ended, and closes the port.
     pub(super) fn end(self) {
-        self.board.close();
+        self.shared.board.close();
         let begun = Instant::now();
-        while self.board.viewers() > 0 && begun.elapsed() < FAREWELL {
+        while self.shared.answering.load(Ordering::SeqCst) > 0 && begun.elapsed() < FAREWELL {
             thread::sleep(Duration::from_millis(5));
         }
         // A connection wakes the thread that waits for one.
@@ -114,6 +118,13 @@ impl Shared {
             Ok(request) => request,
             Err(status) => return answer::status(connection, status),
         };
+        self.answering.fetch_add(1, Ordering::SeqCst);
+        let answered = self.answer(connection, request);
+        self.answering.fetch_sub(1, Ordering::SeqCst);
+        answered
+    }
+
+    fn answer(&self, connection: &mut TcpStream, request: Request) -> io::Result<()> {
         let target = request.target.clone();
         let (host, origin) = (request.host.as_deref(), request.origin.as_deref());
         let Some(asked) = self.access.asked(&target, host, origin) else {
