@@ -4,13 +4,14 @@ use crate::arrays::{array, rows, slices};
 use crate::error::{of_run, plain};
 use crate::scene::Scene;
 use crate::value::to_python;
-use isosheet_io::HistoryRow;
 use isosheet_io::run::{self, Recording};
-use isosheet_io::view::PageOptions;
+use isosheet_io::view::{PageOptions, Series};
+use isosheet_io::{HistoryRow, LoadKind, LoadRow};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toml::Value;
 
@@ -217,6 +218,53 @@ impl Run {
             columns.set_item(name, array(py, &column))?;
         }
         Ok(columns)
+    }
+
+    /// What each `[[measure]]` of the scene shows by its name, metres, at the start and at the end of every step: at the
+    /// times of `history["time"]`.
+    #[getter]
+    fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let columns = PyDict::new(py);
+        for series in Series::of_measures(&self.recording.measures) {
+            columns.set_item(series.name, array(py, &series.values))?;
+        }
+        Ok(columns)
+    }
+
+    /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...: a dict of "time" of
+    /// shape (S,), seconds, "force" of shape (S, 3), newtons, and of obstacles "torque" about the origin of their own
+    /// frame of shape (S, 3), newton metres. The force of a support is that on the sheet, those of an obstacle are those
+    /// of the sheet on it.
+    #[getter]
+    fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let mut bodies: BTreeMap<String, Vec<&LoadRow>> = BTreeMap::new();
+        for row in &self.recording.loads {
+            let kind = match row.on {
+                LoadKind::Support => "support",
+                LoadKind::Obstacle => "obstacle",
+            };
+            let body = format!("{kind}[{}]", row.number);
+            bodies.entry(body).or_default().push(row);
+        }
+        let loads = PyDict::new(py);
+        for (body, steps) in bodies {
+            let columns = PyDict::new(py);
+            let times: Vec<f64> = steps.iter().map(|row| row.t).collect();
+            let forces: Vec<[f64; 3]> = steps.iter().map(|row| row.force).collect();
+            columns.set_item("time", array(py, &times))?;
+            columns.set_item("force", rows(py, &forces)?)?;
+            if steps
+                .iter()
+                .all(|row| row.torque.iter().all(Option::is_some))
+            {
+                let torques = steps
+                    .iter()
+                    .map(|row| row.torque.map(Option::unwrap_or_default));
+                columns.set_item("torque", rows(py, &torques.collect::<Vec<_>>())?)?;
+            }
+            loads.set_item(body, columns)?;
+        }
+        Ok(loads)
     }
 
     /// What `summary.json` says; None of a run that is not complete.

@@ -21,6 +21,10 @@ hold = { moving_pin = { z = { smooth_step = { to = 0.02, end = 0.2 } } } }
 [[obstacle]]
 shape = "half_space"
 pose = { position = [0, 0, -0.05] }
+[[measure]]
+name = "corner"
+at = { vertices = [20] }
+quantity = "z"
 [forces]
 gravity = [0, 0, -9.81]
 [method]
@@ -131,3 +135,20 @@ def test_the_command_of_the_wheel_is_the_command(tmp_path):
     assert len(list((tmp_path / "cloth-sweep").glob("*/summary.json"))) == 2
     module = subprocess.run([sys.executable, "-m", "isosheet", "--version"], capture_output=True, text=True)
     assert module.stdout == command("--version", cwd=tmp_path).stdout
+
+
+def test_a_run_has_its_measures_and_loads(folder):
+    run = isosheet.Run(folder)
+    assert list(run.measures) == ["corner"]
+    corner, time = run.measures["corner"], run.history["time"]
+    assert corner.shape == time.shape
+    assert corner[[0, -1]] == pytest.approx([0.0, 0.02], abs=1e-12)
+    assert run.x[-1, 20, 2] == corner[-1]
+    assert list(run.loads) == ["obstacle[0]", "support[0]"]
+    support, floor = run.loads["support[0]"], run.loads["obstacle[0]"]
+    assert np.array_equal(support["time"], time[1:])
+    assert np.isfinite(support["force"]).all() and support["force"].shape == (time.size - 1, 3)
+    assert "torque" not in support
+    assert floor["torque"].shape == floor["force"].shape == support["force"].shape
+    ending = run.summary["ending"]
+    assert ending["supports"][0] == pytest.approx(support["force"][-1])

@@ -4,13 +4,13 @@ use super::elastic::ElasticSummary;
 use super::recording::Recording;
 use super::{EndReason, RunError, SheetPlace, Summary, constraints};
 use crate::format::write_atomically;
-use crate::view::{Field, PageOptions, Replay, ViewError};
+use crate::view::{Field, PageOptions, Replay, Series, ViewError};
 use std::io::Write;
 use std::path::Path;
 
 impl Recording {
-    /// What the page of the run shows: [`Replay::of_motion`] with the pins and immobile vertices, the curves and surfaces that hold
-    /// vertices, a summary, the scene and how to make the run again.
+    /// What the page of the run shows: [`Replay::of_motion`] with the measures of the scene, the pins and immobile
+    /// vertices, the curves and surfaces that hold vertices, a summary, the scene and how to make the run again.
     ///
     /// # Errors
     /// [`ViewError::NoFrames`] of a run without a frame yet.
@@ -23,6 +23,7 @@ impl Recording {
         )?;
         let held = constraints::bodies(self.scene.scene(), &self.trajectory);
         replay.bodies.extend(held);
+        replay.series.extend(Series::of_measures(&self.measures));
         replay
             .fields
             .extend(Field::elastic(&self.model, &replay.positions));

@@ -3,7 +3,10 @@
 use super::folder::RunFolder;
 use super::frames::{FrameShape, read_frames};
 use super::{RunError, Summary};
-use crate::format::{HistoryRow, SeriesBody, Trajectory, read_history, read_json};
+use crate::format::{
+    HistoryError, HistoryRow, LoadRow, MeasureRow, SeriesBody, Trajectory, read_history, read_json,
+    read_loads, read_measures,
+};
 use crate::scene::SceneFile;
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
@@ -36,6 +39,10 @@ pub struct Recording {
     pub trajectory: Trajectory,
     /// One row for each step, that of the start first.
     pub history: Vec<HistoryRow>,
+    /// The loads of supports and obstacles at the end of each step.
+    pub loads: Vec<LoadRow>,
+    /// What the measures of the scene show at the start and at the end of each step.
+    pub measures: Vec<MeasureRow>,
     /// What came of the run, if it is complete.
     pub summary: Option<Summary>,
 }
@@ -73,6 +80,8 @@ impl Recording {
             obstacles: setup.obstacles,
             trajectory,
             history: read_history(&folder.join(RunFolder::HISTORY))?,
+            loads: rows(&folder.join(RunFolder::LOADS), read_loads)?,
+            measures: rows(&folder.join(RunFolder::MEASURES), read_measures)?,
             scene,
             summary,
         })
@@ -101,6 +110,17 @@ impl Recording {
         let bodies = self.obstacles.iter();
         bodies.map(|body| body.motion().pose(t)).collect()
     }
+}
+
+/// The rows of a file that only some runs have.
+fn rows<R>(
+    file: &Path,
+    read: fn(&Path) -> Result<Vec<R>, HistoryError>,
+) -> Result<Vec<R>, RunError> {
+    Ok(match file.is_file() {
+        true => read(file)?,
+        false => Vec::new(),
+    })
 }
 
 /// The name of a run: that of its folder without `-run`.

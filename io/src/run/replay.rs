@@ -1,6 +1,6 @@
 //! What the page shows of a recorded motion.
 
-use crate::format::{HistoryRow, Trajectory};
+use crate::format::{HistoryRow, MeasureRow, Trajectory};
 use crate::view::{Body, BodyShape, Field, Place, Pose, Replay, Scale, Series, ViewError};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_mesh::Sheet;
@@ -203,6 +203,27 @@ impl Series {
                 row.rejected as f64
             }),
         ]);
+        series
+    }
+
+    /// What each measure shows over time, metres, in the order of the scene.
+    pub fn of_measures(rows: &[MeasureRow]) -> Vec<Self> {
+        let mut series: Vec<Self> = Vec::new();
+        for row in rows {
+            let place = series.iter().position(|s| s.name == row.name);
+            let place = place.unwrap_or_else(|| {
+                series.push(Self {
+                    name: row.name.clone(),
+                    unit: "m".into(),
+                    scale: Scale::Linear,
+                    times: Vec::new(),
+                    values: Vec::new(),
+                });
+                series.len() - 1
+            });
+            series[place].times.push(row.t);
+            series[place].values.push(row.value);
+        }
         series
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{assert_same, code, killed, run, stderr, summary, with_scene};
 use isosheet_io::read_measures;
-use isosheet_io::run::Measured;
+use isosheet_io::run::{Measured, Recording};
 use isosheet_io::scene::StartingPoint;
 use std::fs;
 
@@ -61,6 +61,20 @@ fn measures_of_a_fall_are_those_of_the_closed_form() {
         };
         assert!((row.value - exact).abs() < 1e-12, "{row:?}: {exact}");
     }
+    // The page plots each of them.
+    let recording = Recording::read(&dir.join("run")).unwrap();
+    assert_eq!(recording.measures, rows);
+    let series = recording.replay().unwrap().series;
+    let height = series.iter().find(|s| s.name == "height").unwrap();
+    let of_height = rows.iter().filter(|row| row.name == "height");
+    let expected: Vec<(f64, f64)> = of_height.map(|row| (row.t, row.value)).collect();
+    let shown = height
+        .times
+        .iter()
+        .copied()
+        .zip(height.values.iter().copied());
+    assert_eq!(shown.collect::<Vec<_>>(), expected);
+    assert_eq!((height.unit.as_str(), expected.len()), ("m", 41));
     let measured = summary(&dir.join("run")).measures;
     assert_eq!(measured.len(), 5);
     let Measured {

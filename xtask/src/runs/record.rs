@@ -7,7 +7,7 @@ use crate::report::Cost;
 use crate::store::{Files, Store, Unit};
 use anyhow::{Result, ensure};
 use isosheet_io::run::{ElasticSummary, Recording, Summary, Tick};
-use isosheet_io::{HistoryRow, LoadKind, LoadRow, Trajectory, read_loads};
+use isosheet_io::{HistoryRow, LoadKind, LoadRow, Trajectory};
 use isosheet_mesh::Sheet;
 use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
@@ -179,19 +179,14 @@ impl Run {
             options: scene.options(),
         };
         let (summary, times) = store.keep(&unit, |files| record(&scene, files))?;
-        let folder = store.path(&folder(&scene));
-        let recorded = Recording::read(&folder)?;
-        let loads = folder.join("loads.csv");
+        let recorded = Recording::read(&store.path(&folder(&scene)))?;
         let summary = RunSummary::new(&scene, &summary, &recorded.history, times);
         summary.check()?;
         Ok(Self {
             sheet: recorded.sheet,
             trajectory: recorded.trajectory,
             history: recorded.history,
-            loads: match loads.is_file() {
-                true => read_loads(&loads)?,
-                false => Vec::new(),
-            },
+            loads: recorded.loads,
             summary,
             scene,
         })
