@@ -16,6 +16,7 @@ mod fig08;
 mod fig09;
 mod folds;
 mod jam;
+mod lasting;
 mod marks;
 mod origami;
 mod performance;

@@ -50,7 +50,6 @@ impl Shown {
 
 /// The scenes in the order of the picture.
 const SCENES: &[Shown] = &[
-    Shown::new(["hanging", "new --kind hanging"], [-62.0, 17.0], 0.24, &[]),
     Shown::new(["drape", "new --kind drape"], [-62.0, 24.0], 1.0, &[0]),
     Shown::new(
         ["stamp", "new --kind stamp"],
@@ -61,6 +60,12 @@ const SCENES: &[Shown] = &[
     Shown::new(["feed", "new --kind feed"], [-70.0, 18.0], 1.0, &[1]),
     Shown::new(["fold", "new --kind fold"], [-58.0, 38.0], 0.6, &[]),
     Shown::new(["fig12", "fig12: crumpling"], [-62.0, 17.0], 0.125, &[]),
+    Shown::new(
+        ["fig12-marks", "fig12-marks: marks stay"],
+        [-62.0, 24.0],
+        1.0,
+        &[],
+    ),
     Shown::new(["fig13", "fig13: stamping"], [-58.0, 30.0], 1.0, &[0, 1]),
     Shown::new(
         ["fig15-rings", "fig15-rings: draping"],

@@ -4,6 +4,7 @@ use crate::figures::{self, Made};
 use crate::interrupt;
 use crate::progress;
 use crate::report::{Options, Page, Part, Section, excerpt};
+use crate::runs::scene_fingerprint;
 use crate::selection::{self, PAPER};
 use crate::store::{Kept, Store, Unit};
 use anyhow::Result;
@@ -44,13 +45,15 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<()> {
     interrupt::afterwards(made, || write(&store))
 }
 
-/// What is kept of a figure.
-fn unit(store: &Store, figure: u8) -> Unit {
-    store.unit(format!("fig{figure:02}"), format!("figure {figure}"))
+/// What is kept of a figure. Its scenes are read from files.
+fn unit(store: &Store, figure: u8) -> Result<Unit> {
+    let mut unit = store.unit(format!("fig{figure:02}"), format!("figure {figure}"));
+    unit.options["scenes"] = json!(scene_fingerprint()?);
+    Ok(unit)
 }
 
 fn make(store: &Store, figure: u8) -> Result<()> {
-    let unit = unit(store, figure);
+    let unit = unit(store, figure)?;
     store.keep(&unit, |files| {
         let started = Instant::now();
         let made = figures::make(figure, store)?;
@@ -69,7 +72,8 @@ fn make(store: &Store, figure: u8) -> Result<()> {
 /// Writes `index.html` and `summary.json` of all figures made so far.
 fn write(store: &Store) -> Result<()> {
     let units = selection::all().map(|figure| unit(store, figure));
-    let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
+    let units = units.collect::<Result<Vec<_>>>()?;
+    let Kept::<Record> { records, left_out } = store.all_kept(units);
     let figures: Vec<&Value> = records.iter().map(|r| &r.summary).collect();
     let version = env!("CARGO_PKG_VERSION");
     write_json(

@@ -6,6 +6,8 @@ use isosheet_mesh::Sheet;
 use serde::de::DeserializeOwned;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
+use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use toml_edit::DocumentMut;
 
@@ -97,6 +99,22 @@ impl FigureScene {
         })
     }
 
+    /// The same scene with a sheet that never yields, under another name.
+    ///
+    /// # Errors
+    /// None that is known.
+    pub(crate) fn without_yield(&self, name: &str) -> Result<Self> {
+        let text = self.file.text();
+        let mut document: DocumentMut = text.text.parse()?;
+        if let Some(sheet) = document["sheet"].as_table_mut() {
+            sheet.remove("yield");
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            file: SceneFile::parse(document.to_string(), &text.path, &[])?,
+        })
+    }
+
     /// What the sheet is made of, in words.
     pub(crate) fn sheet_name(&self) -> &str {
         match &self.scene().sheet[0].material {
@@ -173,6 +191,21 @@ impl FigureScene {
     }
 }
 
+/// A number that changes with the files of the folder: what is made of their scenes is not up to date then.
+///
+/// # Errors
+/// A file that cannot be read.
+pub(crate) fn scene_fingerprint() -> Result<u64> {
+    let files = fs::read_dir(FOLDER)?.map(|file| Ok(file?.path()));
+    let mut files = files.collect::<Result<Vec<_>>>()?;
+    files.sort();
+    let mut hasher = DefaultHasher::new();
+    for file in &files {
+        (file, fs::read(file)?).hash(&mut hasher);
+    }
+    Ok(hasher.finish())
+}
+
 /// The edit that ends a run after a number of frames of `frame` seconds.
 pub(crate) fn for_frames(frames: usize, frame: f64) -> String {
     format!("stop.time={:?}", frames as f64 * frame)
@@ -184,7 +217,7 @@ mod tests {
 
     #[test]
     fn every_file_of_the_folder_makes_a_simulation() {
-        for file in std::fs::read_dir(FOLDER).unwrap() {
+        for file in fs::read_dir(FOLDER).unwrap() {
             let path = file.unwrap().path();
             let name = path.file_stem().unwrap().to_str().unwrap();
             let scene = FigureScene::of(name, name, &[]).unwrap();

@@ -1,0 +1,238 @@
+//! Fig. 12, and after: a sheet of paper that has been crumpled is pressed flat and let go. Marks that stay do not let it
+//! lie flat again.
+
+use super::show::View;
+use super::{Effort, Picture, Play, Row, Table, caption, compared, course};
+use crate::draw::{Drawing, Stroke, TEXT, flat_edges, flat_faces, palette, row};
+use crate::runs::{FigureScene, Run};
+use crate::store::Store;
+use anyhow::{Result, ensure};
+use serde::Serialize;
+use std::slice;
+
+/// Times of the pictures, seconds: before, between six plates, freed, pressed flat, and at the end.
+const TIMES: [f64; 5] = [0.0, 1.2, 1.6, 2.5, 4.0];
+
+/// How the runs are shown, without the plates.
+const VIEW: View = View {
+    azimuth: -62.0,
+    elevation: 24.0,
+    distance: 0.7,
+    depth: 0.0,
+    columns: 5,
+    pins: Vec::new(),
+    bodies: &[],
+};
+
+/// What Fig. 12 says of marks that stay.
+pub(super) struct Lasting {
+    pub(super) pictures: Vec<Picture>,
+    pub(super) pages: Vec<Play>,
+    pub(super) table: Table,
+    pub(super) facts: Vec<Facts>,
+}
+
+/// The numbers of a sheet that was crumpled and pressed flat.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Facts {
+    label: String,
+    /// Its height above its lowest point when it is pressed, and at the end, metres.
+    pressed: f64,
+    height: f64,
+    /// Dissipated by yielding, joules.
+    dissipated: f64,
+    marks: Option<PlasticMarks>,
+}
+
+/// Where the plastic curvature of a sheet lies.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct PlasticMarks {
+    /// The largest one, 1/m.
+    largest: f64,
+    /// The smallest part of the area that carries half of the integral of the square of the plastic curvature.
+    half: f64,
+}
+
+/// Sizes of the plastic curvatures of all faces at the end of a run (1/m), none of a sheet that does not yield.
+fn curvatures(run: &Run) -> Option<Vec<f64>> {
+    let last = run.trajectory.len() - 1;
+    let principal = run.trajectory.plastic_curvatures(last)?;
+    let faces = principal.as_chunks::<2>().0.iter();
+    Some(faces.map(|[a, b]| a.hypot(*b)).collect())
+}
+
+impl PlasticMarks {
+    fn of(run: &Run) -> Option<Self> {
+        let sizes = curvatures(run)?;
+        let areas = run.sheet.face_areas();
+        let mut faces: Vec<(f64, f64)> = sizes.iter().copied().zip(areas.iter().copied()).collect();
+        faces.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let half = 0.5 * faces.iter().map(|(k, area)| k * k * area).sum::<f64>();
+        let (mut carried, mut area) = (0.0, 0.0);
+        for (k, part) in &faces {
+            if carried >= half {
+                break;
+            }
+            carried += k * k * part;
+            area += part;
+        }
+        Some(Self {
+            largest: faces.first().map_or(0.0, |face| face.0),
+            half: area / run.sheet.area(),
+        })
+    }
+}
+
+/// A run, and what was measured of it.
+struct Crumpled {
+    run: Run,
+    facts: Facts,
+}
+
+impl Crumpled {
+    fn of(store: &Store, label: &str, scene: FigureScene) -> Result<Self> {
+        let run = Run::of(store, scene)?;
+        let times = run.trajectory.times();
+        let height = |t: f64| {
+            let frame = times
+                .partition_point(|time| *time < t - 1e-9)
+                .min(times.len() - 1);
+            let x = run.trajectory.frame(frame).unwrap_or_default();
+            let z = x.as_chunks::<3>().0.iter().map(|p| p[2]);
+            let [least, most] = z.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], z| {
+                [l.min(z), m.max(z)]
+            });
+            most - least
+        };
+        let cells: usize = run.scene.value("/sheet/mesh/rectangle/columns")?;
+        Ok(Self {
+            facts: Facts {
+                pressed: height(TIMES[3]),
+                height: height(TIMES[4]),
+                dissipated: run.summary.energy.plastic,
+                marks: PlasticMarks::of(&run),
+                label: format!("{label}, {cells} × {cells} cells"),
+            },
+            run,
+        })
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let facts = &self.facts;
+        let millimetres = |length: f64| format!("{:.3} mm", 1e3 * length);
+        let energy = &self.run.summary.energy;
+        let of_marks = |f: fn(&PlasticMarks) -> String| facts.marks.as_ref().map_or("–".into(), f);
+        let mut rows = vec![
+            ("height when it is pressed", millimetres(facts.pressed)),
+            ("height at the end", millimetres(facts.height)),
+            (
+                "dissipated by yielding",
+                format!("{:.2} mJ", 1e3 * facts.dissipated),
+            ),
+            (
+                "error of the energy balance",
+                format!("{:.2} mJ", 1e3 * energy.drift),
+            ),
+            (
+                "largest plastic curvature",
+                of_marks(|m| format!("{:.0} per m", m.largest)),
+            ),
+            (
+                "part of the area with half of the squared plastic curvature",
+                of_marks(|m| format!("{:.1} %", 100.0 * m.half)),
+            ),
+        ];
+        rows.extend(course(&self.run.summary));
+        rows
+    }
+
+    /// The flat sheet, darker where its bends stay; `full` is the curvature of the darkest colour, 1/m.
+    fn map(&self, full: f64) -> Drawing {
+        let mut drawing = Drawing::new();
+        let (sheet, sizes) = (&self.run.sheet, curvatures(&self.run).unwrap_or_default());
+        let scale = 200.0 / sheet.area().sqrt();
+        flat_faces(&mut drawing, sheet, scale, |f| {
+            palette::WHITE.mix(palette::VERMILION, (sizes[f.index()] / full).min(1.0))
+        });
+        flat_edges(&mut drawing, sheet, scale, |e| {
+            let is_rim = sheet.topology().is_boundary_edge(e);
+            is_rim.then(|| Stroke::new(palette::GREY, 0.6))
+        });
+        let below = drawing.bounds();
+        let at = [below.centre()[0], below.min[1] - 6.0];
+        caption(&mut drawing, at, TEXT, slice::from_ref(&self.facts.label));
+        drawing
+    }
+}
+
+/// Cells along a side of the sheets that yield, the coarser first, and of the elastic one.
+fn cells(effort: Effort) -> [usize; 2] {
+    effort.quick_or([6, 8], [16, 24])
+}
+
+/// The scene with so many cells along each side.
+fn scene(cells: usize, effort: Effort) -> Result<FigureScene> {
+    let mesh = ["columns", "rows"].map(|key| format!("sheet.mesh.rectangle.{key}={cells}"));
+    let mut edits = mesh.to_vec();
+    if effort == Effort::Quick {
+        edits.push("stop.time=0.2".to_owned());
+    }
+    FigureScene::of("fig12-marks", &format!("crumple-marks-{cells}"), &edits)
+}
+
+/// Makes the runs.
+pub(super) fn make(store: &Store) -> Result<Lasting> {
+    let effort = store.effort;
+    let [coarse, fine] = cells(effort);
+    let [coarse, fine] = [scene(coarse, effort)?, scene(fine, effort)?];
+    let springs = fine.without_yield("crumple-marks-elastic")?;
+    let springs = Crumpled::of(store, "never yields", springs)?;
+    let coarse = Crumpled::of(store, "yields", coarse)?;
+    let stays = Crumpled::of(store, "yields", fine)?;
+    let all = [&springs, &coarse, &stays];
+    // What the figure shows: the sheet that yields stands higher than it was pressed, the elastic one lies flat.
+    let [flat, high] = [&springs, &stays].map(|c| c.facts.height);
+    ensure!(
+        effort == Effort::Quick || flat < stays.facts.pressed && stays.facts.pressed < high,
+        "marks do not stay: the sheet that yields is {high:e} m high at the end, the elastic one {flat:e} m"
+    );
+    // Where bends were spread evenly, half of the area would carry half of the integral.
+    let half = stays.facts.marks.map_or(f64::INFINITY, |m| m.half);
+    ensure!(
+        effort == Effort::Quick || half < 0.25,
+        "marks are not localised: half of the squared plastic curvature takes {half} of the area"
+    );
+    let ends = all.map(|c| (c.facts.label.clone(), &c.run));
+    let full = [&coarse, &stays].map(|c| c.facts.marks.map_or(0.0, |m| m.largest));
+    let full = full.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+    let maps = row(&[coarse.map(full), stays.map(full)], 14.0);
+    let sequence =
+        "Paper that yields is pushed together by four plates, freed, pressed flat and let go";
+    let left =
+        "The sheets at the end: elastic paper lies flat, paper that yields stands on its marks";
+    let crescents =
+        "Where plastic curvature stays, in the flat sheet: at folds and around their corners";
+    Ok(Lasting {
+        pictures: vec![
+            VIEW.picture(&stays.run, effort, ["fig12-yields.png", sequence], &TIMES)?,
+            VIEW.ends(&ends, effort, ["fig12-released.png", left])?,
+            Picture::svg("fig12-plastic", &maps, crescents),
+        ],
+        pages: vec![
+            VIEW.play(
+                &springs.run,
+                effort,
+                12,
+                &format!("pressed flat, {}", springs.facts.label),
+            )?,
+            VIEW.play(
+                &stays.run,
+                effort,
+                12,
+                &format!("pressed flat, {}", stays.facts.label),
+            )?,
+        ],
+        table: compared(&all.map(|c| &c.facts.label[..]), &all.map(Crumpled::rows)),
+        facts: all.map(|c| c.facts.clone()).to_vec(),
+    })
+}
