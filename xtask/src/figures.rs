@@ -53,9 +53,9 @@ pub(crate) struct Play {
 /// A figure that has been made.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Made {
-    pub(crate) title: Cow<'static, str>,
+    pub(crate) title: &'static str,
     /// What the paper shows.
-    pub(crate) paper: Cow<'static, str>,
+    pub(crate) paper: &'static str,
     /// What is seen here.
     pub(crate) here: Cow<'static, str>,
     pub(crate) pictures: Vec<Picture>,

@@ -155,8 +155,8 @@ mod tests {
         drawing.line(&line, Stroke::new(palette::INK, 6.0));
         let png = |file, alt| Picture::png(file, vec![1, 2, 3], alt);
         let made = Made {
-            title: "A < B".into(),
-            paper: "said".into(),
+            title: "A < B",
+            paper: "said",
             here: "seen".into(),
             pictures: vec![
                 Picture::svg("a", &drawing, "a"),

@@ -9,7 +9,7 @@ use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series, palette};
 use crate::report::Cell;
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
-use anyhow::Result;
+use anyhow::{Result, bail, ensure};
 use isosheet_mesh::{Dof, Sheet};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -264,13 +264,17 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
     let all = of_both(scenes, store)?;
     let each: Vec<&Draped> = all.iter().collect();
     let alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
-    let rods = "The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown: the irregular \
-                triangulation, which has no such lines, is the check.";
+    if effort != Effort::Quick {
+        check_corners(&each[2 * levels.len() - 2..2 * levels.len()])?;
+    }
     Ok(Made {
-        title: "Rectangular cloth on a rectangular table".into(),
+        title: "Rectangular cloth on a rectangular table",
         paper: "A rectangular plastic tablecloth is draped over a rectangular table with M², and with a second resolution: the principal folds run from \
-                the table corners to the cloth corners.".into(),
-        here: format!("{rods} {}", along(&all)).into(),
+                the table corners to the cloth corners.",
+        here: "The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown: the irregular \
+               triangulation, which has no such lines, is the check. The first sequence is of rods; the second, on the finest mesh, of acetate \
+               film, an elastic sheet that resists bending: there a fold runs from every table corner to its cloth corner. The table counts them."
+            .into(),
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
             all[2 * levels.len() - 1].picture("fig14-elastic.png", effort)?,
@@ -283,49 +287,42 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
     })
 }
 
-/// At how many corners folds run from table corners to cloth corners, in a sentence.
-fn along(all: &[Draped]) -> String {
-    let count = |d: &Draped| {
-        let (along, corners, part) = d.folds.along;
-        let chance = part * corners as f64;
-        format!("{along} of {corners} ({}; {chance:.1} by chance)", d.label)
-    };
-    let [rods, plastic] = of_each(all, count);
-    format!(
-        "With rods a fold runs from table corner to cloth corner at {rods} corners; with {PLASTIC}, an elastic sheet that resists \
-         bending (the second sequence, on the finest mesh), at {plastic}."
-    )
-}
-
-/// A text for each cloth of rods, and for each of plastic.
-fn of_each(all: &[Draped], text: impl Fn(&Draped) -> String) -> [String; 2] {
-    [true, false].map(|rods| {
-        let some = all.iter().filter(|d| d.is_of_rods() == rods);
-        some.map(&text).collect::<Vec<_>>().join(", ")
-    })
-}
-
-/// What becomes of the folds with more and more corners, the last polygon being the roundest one, and with other films.
-fn trend(irregular: &[Draped], films: &[Draped]) -> String {
-    let folds = |d: &Draped| format!("{} ({})", d.hem.folds, d.label);
-    let [rods, plastic] = of_each(irregular, folds);
-    let [round_rods, round_plastic] = [true, false].map(|rods| {
-        let last = irregular.iter().rfind(|d| d.is_of_rods() == rods);
-        last.map_or(String::new(), |d| d.hem.pattern())
-    });
-    let film = |d: &Draped| {
+/// What is seen of the folds of film where the mesh is fine enough for them: on the finest regular mesh of the rectangle, and
+/// on the finer octagons.
+fn check_corners(fine: &[&Draped]) -> Result<()> {
+    for d in fine.iter().filter(|d| !d.is_of_rods()) {
         let (along, corners, _) = d.folds.along;
-        let folds = d.hem.folds;
-        format!("{folds} and {along} of {corners} ({})", d.sheet())
+        ensure!(
+            along == corners,
+            "folds of {} run along {along} of {corners} corner lines",
+            d.name()
+        );
+    }
+    Ok(())
+}
+
+/// What is seen of the number of folds and of their pattern: the stiffer the film, the fewer folds has a cloth; and film has
+/// more uniform folds than rods, on the roundest cloth with the finest mesh.
+fn check_folds(irregular: &[Draped], films: &[Draped]) -> Result<()> {
+    // Two cloths of each film.
+    for (softer, stiffer) in films.iter().zip(films.iter().skip(2)) {
+        let folds = [softer, stiffer].map(|d| d.hem.folds);
+        ensure!(
+            folds[0] > folds[1],
+            "{} and {} have {folds:?} folds",
+            softer.name(),
+            stiffer.name()
+        );
+    }
+    let [.., rods, film] = irregular else {
+        bail!("there are no irregular meshes");
     };
-    // The others are round.
-    let films: Vec<String> = films.iter().step_by(2).map(film).collect();
-    format!(
-        "With more and more corners, irregular meshes have {rods} folds with rods and {plastic} with {PLASTIC}; those of the last, \
-         round cloth are {round_rods} with rods and {round_plastic} with {PLASTIC}. The film decides how many folds there are and at \
-         how many corners, from the softest to the stiffest on the finer octagon: {}.",
-        films.join(", ")
-    )
+    let [rods, film] = [rods, film].map(|d| [d.hem.spacing_spread, d.hem.size_spread]);
+    ensure!(
+        film[0] < rods[0] && film[1] < rods[1],
+        "spacing and size of folds of rods spread by {rods:?}, those of film by {film:?}"
+    );
+    Ok(())
 }
 
 /// Corners and rings of the polygons with about as many faces as the octagon, whose rings are as wide as the
@@ -394,13 +391,20 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
     let irregular = &polygons[..irregular.count()];
     let is_shown = |d: &&Draped| SHOWN.contains(&d.label.as_str());
     let shown: Vec<&Draped> = polygons.iter().filter(is_shown).collect();
-    let here = "In the irregular meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
-                the meshes of concentric rings some do.";
+    if effort != Effort::Quick {
+        let finer = octagons.iter().filter(|d| d.label.starts_with("fine"));
+        check_corners(&finer.collect::<Vec<_>>())?;
+        check_folds(irregular, &films)?;
+    }
     Ok(Made {
-        title: "Octagonal cloth on an octagonal table".into(),
+        title: "Octagonal cloth on an octagonal table",
         paper: "An octagonal plastic tablecloth (244/440) is draped over an octagonal table: principal folds run from table corners to cloth corners, and for \
-                more and more corners the paper infers that uniform folding patterns will occur.".into(),
-        here: format!("{here} {} {}", along(&octagons), trend(irregular, &films)).into(),
+                more and more corners the paper infers that uniform folding patterns will occur.",
+        here: "In the irregular meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
+               the meshes of concentric rings some do. The first sequence is of rods, the second, on the finest mesh, of acetate film: on the \
+               finer meshes of film a fold runs from every table corner to its cloth corner. On round cloths folds of film are more evenly \
+               spaced and more alike than those of rods. The film decides how many folds there are: the stiffer, the fewer."
+            .into(),
         pictures: vec![
             octagons[0].picture("fig15.png", effort)?,
             // The last ones are the rings.
@@ -459,8 +463,7 @@ fn hem_table(all: &[Draped]) -> Table {
             ("spread of spacing", &|d| part(d.hem.spacing_spread)),
             ("spread of size", &|d| part(d.hem.size_spread)),
             ("uniform", &|d| {
-                let is_uniform = d.hem.is_even() == [true; 2];
-                if is_uniform { "yes" } else { "no" }.into()
+                if d.hem.is_uniform() { "yes" } else { "no" }.into()
             }),
             ("wave", &|d| {
                 let (wave, share) = d.hem.wave;

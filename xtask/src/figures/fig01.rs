@@ -68,9 +68,9 @@ pub(super) fn make() -> Result<Made> {
     let all = row(&panels, 14.0);
     let alt = "A square of two triangles and three successive 1-4 splits of it";
     Ok(Made {
-        title: "Refinement by the 1–4 split".into(),
+        title: "Refinement by the 1–4 split",
         paper: "A mesh is refined by splitting every triangle into four; Lemma 1 says that each step adds as many degrees of \
-                freedom as the coarser mesh has boundary edges.".into(),
+                freedom as the coarser mesh has boundary edges.",
         here: "The split is applied three times to two triangles; new edges are blue.".into(),
         pictures: svg(1, &all, alt),
         tables: vec![table],

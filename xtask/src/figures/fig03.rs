@@ -55,9 +55,9 @@ pub(super) fn make() -> Result<Made> {
     );
     let alt = "Crease lines of the one-way grid and of the union-jack grid with their directions";
     Ok(Made {
-        title: "Folding directions".into(),
+        title: "Folding directions",
         paper: "Meshes refined by the 1–4 split fold horizontally, vertically and along the diagonal from lower right to upper \
-                left, but not along the other diagonal: the pattern is anisotropic.".into(),
+                left, but not along the other diagonal: the pattern is anisotropic.",
         here: "Straight crease lines from boundary to boundary are found on the meshes and coloured by direction; the bars are \
                their total lengths by direction."
             .into(),

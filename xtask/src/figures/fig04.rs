@@ -77,9 +77,9 @@ pub(super) fn make() -> Result<Made> {
     let all = column(&[row(&upper, gap), row(&lower, gap)], 12.0);
     let alt = "Four levels of the isotropic square, as rectangles and as triangles";
     Ok(Made {
-        title: "Isotropic refinement".into(),
+        title: "Isotropic refinement",
         paper: "Rectangles (upper row) are split in four at each level and cut into eight triangles each (lower row); Lemma 2 \
-                says that the DOF double less three.".into(),
+                says that the DOF double less three.",
         here: "The rectangles are read off the triangle meshes: they are the stars of the vertices with both grid coordinates odd."
             .into(),
         tables: vec![table],

@@ -47,6 +47,11 @@ pub(super) fn make() -> Result<Made> {
     }
     let fold = fold_angle(sheet.topology(), &folded.concat(), edge)
         .context("the common edge is interior")?;
+    ensure!(
+        triples[1].iter().all(|end| (end.fold() - fold.abs()).abs() < 1e-12),
+        "the angles of an end give another fold: {:?}",
+        triples[1]
+    );
     let folded_by = format!("at time ~t~, folded by {}", degrees(fold.abs()));
     let names = [vec!["at rest".into()], vec![folded_by]];
     let all = captioned(panels, &names, 44.0);
@@ -71,10 +76,10 @@ pub(super) fn make() -> Result<Made> {
     );
     let alt = "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends";
     Ok(Made {
-        title: "Angle triples and the compatibility condition".into(),
+        title: "Angle triples and the compatibility condition",
         paper: "Two triangles that share an edge can only fold about it, so γᵗ ≤ α + β = γ⁰ at either end (Eq. 10), and one end's \
-                condition implies the other's.".into(),
-        here: format!("The angles are measured on a pair that is folded by {}.", degrees(fold.abs())).into(),
+                condition implies the other's.",
+        here: "The angles are measured on the folded pair (right), whose fold follows from the angles at either end.".into(),
         pictures: svg(5, &all, alt),
         tables: vec![table],
         facts: json!({

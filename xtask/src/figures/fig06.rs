@@ -23,9 +23,9 @@ pub(super) fn make() -> Result<Made> {
     let all = captioned(vec![rule_h()?, rule_g()?, f], &names, 30.0);
     let alt = "The placement functions h, g and f: one, two and three known neighbours";
     Ok(Made {
-        title: "Basic geometric relations".into(),
+        title: "Basic geometric relations",
         paper: "A vertex with one known neighbour takes two spherical coordinates, with two known neighbours one angle, with three \
-                none.".into(),
+                none.",
         here: "Known vertices are blue, and placed vertices red: the arcs of (a) are the two coordinates, (b) has five values of \
                the one coordinate, and the ghost of (c) is the other solution, the mirror image."
             .into(),

@@ -46,9 +46,9 @@ pub(super) fn make() -> Result<Made> {
     let alt =
         "Three known vertices on a bent and on a straight line and the places of a fourth vertex";
     Ok(Made {
-        title: "The degenerate case of function f".into(),
+        title: "The degenerate case of function f",
         paper: "When the three known vertices lie on a line (γ = π), the vertex can still turn about that line: one coordinate has \
-                to be assigned.".into(),
+                to be assigned.",
         here: "On the bent line (left) the function f has two solutions; on the straight line (right) it refuses, and the vertex \
                keeps the angle that it had before."
             .into(),

@@ -54,9 +54,9 @@ pub(super) fn make() -> Result<Made> {
     let count = |letter| assignment.rule_count(letter);
     let alt = "Fronts, rules and order of the assignment of system coordinates on M1";
     Ok(Made {
-        title: "Assignment of system coordinates".into(),
+        title: "Assignment of system coordinates",
         paper: "From the left-upper corner, front after front, each vertex is placed by the rule that its known neighbours \
-                allow; the number of coordinates is the number of degrees of freedom.".into(),
+                allow; the number of coordinates is the number of degrees of freedom.",
         here: "sys_coord_assnmt_single is applied to M¹; every rod is used exactly once, by the end that is placed later (b)."
             .into(),
         tables: vec![measured([

@@ -76,9 +76,9 @@ pub(super) fn make() -> Result<Made> {
     d.label(&middle(&q_arc), [6.0, 6.0], "~q~", PLACED);
     let alt = "A triangle at rest, aligned with the known edge, and turned about it";
     Ok(Made {
-        title: "Construction of function g".into(),
+        title: "Construction of function g",
         paper: "The rest triangle is turned by A(θ) so that its edge lies on the known edge at time t, then by A(q) about that edge: \
-                the system coordinate q places the third vertex.".into(),
+                the system coordinate q places the third vertex.",
         here: "The rest triangle (left) is aligned with the known edge by θ about r (blue) and turned by q (orange), by the Euler \
                parameters of the paper; the function g of the library has the same lengths and q, but no rotation matrix."
             .into(),

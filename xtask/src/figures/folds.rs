@@ -261,24 +261,9 @@ const SAMPLES: usize = 720;
 const UNIFORM: f64 = 0.2;
 
 impl Hem {
-    /// Whether its folds are evenly spaced, and whether they are of one size.
-    pub(super) fn is_even(&self) -> [bool; 2] {
-        [self.spacing_spread, self.size_spread].map(|spread| self.folds > 1 && spread < UNIFORM)
-    }
-
-    /// How even its folds are, in words.
-    pub(super) fn pattern(&self) -> String {
-        let [spacing, size] = self.is_even();
-        let [spacing, size] = [
-            if spacing { "evenly" } else { "unevenly" },
-            if size {
-                "of one size"
-            } else {
-                "of different sizes"
-            },
-        ];
-        let [a, b] = [self.spacing_spread, self.size_spread].map(|s| 100.0 * s);
-        format!("{spacing} spaced (spread {a:.0} %) and {size} (spread {b:.0} %)")
+    /// Whether its folds are evenly spaced and of one size.
+    pub(super) fn is_uniform(&self) -> bool {
+        self.folds > 1 && self.spacing_spread.max(self.size_spread) < UNIFORM
     }
 
     /// Measures the hem of positions `x` of a cloth around the z axis.

@@ -359,8 +359,8 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         view(&f.feed).play(&f.run, store.effort, 16, &label)
     };
     Ok(Made {
-        title: "Paper jam".into(),
-        paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1), and none is shown.".into(),
+        title: "Paper jam",
+        paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1), and none is shown.",
         here: "A strip that starts flat is pushed between two walls that turn downwards by 90°; bends let it through unless the outlet is \
                blocked (in the side view time goes from blue to vermilion)."
             .into(),

@@ -345,8 +345,8 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     let mut pages = vec![VIEW.play(&whole, store.effort, 17, "Miura's pattern")?];
     pages.extend(vertices.iter().map(|v| v.page.clone()));
     Ok(Made {
-        title: "Origami: crease patterns folded by driven angles".into(),
-        paper: "Origami is named as an application (Sec. 1), and no crease pattern is folded.".into(),
+        title: "Origami: crease patterns folded by driven angles",
+        paper: "Origami is named as an application (Sec. 1), and no crease pattern is folded.",
         here: "Springs drive the zigzag creases of a flat sheet alone, and geometry folds the rest; a vertex of degree four leaves the flat state one \
                way or the other by its mountains and valleys."
             .into(),

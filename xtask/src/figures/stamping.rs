@@ -241,22 +241,14 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     let alt = "Force of the sheet on the die over its stroke";
     let plot = Charts::row([rods.plot(), steel.plot()]);
     Ok(Made {
-        title: "Sheet metal stamping".into(),
-        paper: "A square die punches a sheet (M³, 289/512) upwards; the sequence shows how the buckled developable surface is formed.".into(),
-        here: format!(
-            "Four holders above the sides of the frame, which are not drawn, let the blank draw in at the sides and buckle at the \
-             corners; the holding conditions of the paper are not known. The first sequence is of rods, the second of an elastic {METAL}, \
-             which bends as half a millimetre of steel does and never yields: it presses the die with up to {:.0} N, and rods with up to \
-             {:.0} N. In the last two pictures the die withdraws: the blank of elastic steel springs back from {:.0} mm to {:.1} mm, and \
-             one that yields (S235, docs/materials.md) from {:.0} mm to {:.1} mm, a part that keeps its shape.",
-            steel.peak,
-            rods.peak,
-            1e3 * springs.largest,
-            1e3 * springs.height,
-            1e3 * stays.largest,
-            1e3 * stays.height,
-        )
-        .into(),
+        title: "Sheet metal stamping",
+        paper: "A square die punches a sheet (M³, 289/512) upwards; the sequence shows how the buckled developable surface is formed.",
+        here: "Four holders above the sides of the frame, which are not drawn, let the blank draw in at the sides and buckle at the \
+               corners; the holding conditions of the paper are not known. The first sequence is of rods, the second of an elastic steel sheet, \
+               which bends as half a millimetre of steel does and never yields: it presses the die far more than rods do. In the last two \
+               pictures the die withdraws: the blank of elastic steel springs back, and one that yields (S235, docs/materials.md) \
+               keeps its shape."
+            .into(),
         tables: vec![
             compared(&["rods", METAL], &[rods.rows()?, steel.rows()?]),
             compared(&both.map(|r| r.label), &both.map(Released::rows)),
