@@ -135,6 +135,12 @@ fn through_itself(scene: &FigureScene) -> &'static str {
 /// A quantity, and what was measured of it.
 type Row = (&'static str, String);
 
+/// Quantities, and what was measured of them: `rows! { "quantity" => text, ... }`.
+macro_rules! rows {
+    ($($quantity:expr => $text:expr),* $(,)?) => { vec![$(($quantity, String::from($text))),*] };
+}
+use rows;
+
 /// Quantities with what was measured of them.
 fn measured(rows: impl IntoIterator<Item = Row>) -> Table {
     compared(&["value"], &[rows.into_iter().collect()])
@@ -154,30 +160,22 @@ fn compared(names: &[&str], columns: &[Vec<Row>]) -> Table {
 }
 
 /// What the course of a run was.
-fn course(run: &RunSummary) -> [Row; 6] {
+fn course(run: &RunSummary) -> Vec<Row> {
     let course = &run.course;
     let steps = format!(
         "{} frames, {} rejected steps",
         course.cost.steps, course.cost.rejected
     );
     let rods = || "none: rods".into();
-    [
-        ("simulated", format!("{:.1} s, {steps}", course.time)),
-        (
-            "CPU seconds for a simulated second",
-            format!("{:.2}", course.cpu_rate().unwrap_or_default()),
-        ),
-        (
-            "factorisations for a frame",
-            format!(
-                "{:.1}",
-                course.cost.factorisations_per_step().unwrap_or_default()
-            ),
-        ),
-        ("largest strain", format!("{:.0e}", run.strain())),
-        ("membrane stiffness", run.stiffness().unwrap_or_else(rods)),
-        ("smallest gap", gap(course.gap)),
-    ]
+    rows! {
+        "simulated" => format!("{:.1} s, {steps}", course.time),
+        "CPU seconds for a simulated second" => format!("{:.2}", course.cpu_rate().unwrap_or_default()),
+        "factorisations for a frame" =>
+            format!("{:.1}", course.cost.factorisations_per_step().unwrap_or_default()),
+        "largest strain" => format!("{:.0e}", run.strain()),
+        "membrane stiffness" => run.stiffness().unwrap_or_else(rods),
+        "smallest gap" => gap(course.gap),
+    }
 }
 
 /// A smallest gap in words.

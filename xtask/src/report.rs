@@ -23,4 +23,4 @@ pub(crate) use number::{exponent, extremes, number, rounded, short};
 pub(crate) use options::{FullOptions, Options, one_of};
 pub(crate) use page::{Page, Section};
 pub(crate) use picture::{Picture, plot};
-pub(crate) use table::{Cell, Table};
+pub(crate) use table::{Cell, Table, columns};

@@ -2,7 +2,7 @@
 
 use super::marks::{self, Marks};
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Row, compared, course, through_itself};
+use super::{Effort, Made, Picture, Play, Row, compared, course, rows, through_itself};
 use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
 use crate::store::Store;
 use anyhow::{Result, ensure};
@@ -145,51 +145,26 @@ fn end_shape(run: &Run) -> Result<Shape> {
 fn describe(run: &Run, free: Option<&RunSummary>) -> Result<Vec<Row>> {
     let (scene, s) = (&run.scene, &run.summary);
     let (hanging, mass) = (Hanging::of(scene)?, runs::mass(scene)?);
-    let mut rows = vec![
-        (
-            "sheet",
-            format!(
-                "{:.0} mm, {:.0} g/m² ({:.2} g), lumped masses",
-                1e3 * hanging.side,
-                1e3 * mass / hanging.sheet.area(),
-                1e3 * mass
-            ),
+    let mut rows = rows! {
+        "sheet" => format!(
+            "{:.0} mm, {:.0} g/m² ({:.2} g), lumped masses", 1e3 * hanging.side,
+            1e3 * mass / hanging.sheet.area(), 1e3 * mass
         ),
-        (
-            "method",
-            format!(
-                "{}, damping {:.0}/s, friction with itself {}",
-                method_name(scene.scene().method.integrator),
-                scene.scene().sheet[0].damping,
-                scene.scene().contact.friction
-            ),
+        "method" => format!(
+            "{}, damping {:.0}/s, friction with itself {}", method_name(scene.scene().method.integrator),
+            scene.scene().sheet[0].damping, scene.scene().contact.friction
         ),
-    ];
+    };
     rows.extend(course(s));
     let times = |free: &RunSummary| format!("{:.1}", s.slowness() / free.slowness().max(1e-12));
     let shape = Shape::of(&hanging, run.end())?;
-    rows.extend([
-        (
-            "times as long as without self-contact",
-            free.map_or("–".into(), times),
-        ),
-        (
-            "kinetic energy at the end, of the potential energy released",
-            format!("{:.0e}", s.motion_left),
-        ),
-        (
-            "depth of the centre of mass at the end",
-            format!(
-                "{:.3} sides (a rigid plate: {:.3})",
-                shape.centre_depth,
-                runs::PLATE
-            ),
-        ),
-        (
-            "total bending at the end",
-            format!("{:.2} rad times the side", shape.bending),
-        ),
-    ]);
+    rows.extend(rows! {
+        "times as long as without self-contact" => free.map_or("–".into(), times),
+        "kinetic energy at the end, of the potential energy released" => format!("{:.0e}", s.motion_left),
+        "depth of the centre of mass at the end" =>
+            format!("{:.3} sides (a rigid plate: {:.3})", shape.centre_depth, runs::PLATE),
+        "total bending at the end" => format!("{:.2} rad times the side", shape.bending),
+    });
     Ok(rows)
 }
 

@@ -6,7 +6,7 @@ use super::folds::{Folds, Hem};
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Table, through_itself, whole_percent};
 use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series, palette};
-use crate::report::Cell;
+use crate::report::columns;
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, bail, ensure};
@@ -145,12 +145,7 @@ fn ends(file: &str, all: &[&Draped], effort: Effort) -> Result<Picture> {
     view.ends(&rows, effort, [file, &alt])
 }
 
-fn mesh(d: &Draped) -> Cell {
-    format!("{}/{}", d.run.summary.vertices, d.run.summary.faces).into()
-}
-
 fn fold_table(all: &[Draped]) -> Table {
-    let part = |part: f64| Cell::from(whole_percent(part));
     Table::of(
         "Principal folds at rest, in the part of the cloth that hangs beyond the first row of cells at the table's edge. Bending is edge length \
                   times size of the fold angle. A fold runs along a corner line, from a table corner to its cloth corner, if the cloth is in the \
@@ -161,31 +156,22 @@ fn fold_table(all: &[Draped]) -> Table {
                   from the table in the flat cloth. Triangles whose edges keep their lengths leave a cloth only as many internal degrees of freedom as it has \
                   boundary edges less three: it cannot shear as woven cloth does.",
         all,
-        &[
-            ("cloth", &|d| d.label.as_str().into()),
-            ("sheet", &|d| d.sheet().into()),
-            ("V/F", &|d| mesh(d)),
-            ("folds along corner lines", &|d| {
+        columns! { d;
+            "cloth" => d.label.as_str(),
+            "sheet" => d.sheet(),
+            "V/F" => d.run.summary.mesh(),
+            "folds along corner lines" => {
                 let (along, all, part) = d.folds.along;
-                format!("{along} of {all} ({})", whole_percent(part)).into()
-            }),
-            ("bending at the corners", &|d| {
-                part(d.folds.share_at_corners)
-            }),
-            ("edges there", &|d| part(d.folds.length_at_corners)),
-            ("density, all = 1", &|d| {
-                format!("{:.1}", d.folds.density_at_corners).into()
-            }),
-            ("strongest edges there", &|d| {
-                let [all, there] = d.folds.strongest;
-                format!("{there} of {all}").into()
-            }),
-            ("angle", &|d| {
-                format!("{:.0}° ({:.0}°)", d.folds.angle[0], d.folds.angle[1]).into()
-            }),
-            ("internal DOF", &|d| d.internal().into()),
-            ("drop", &|d| part(d.drop)),
-        ],
+                format!("{along} of {all} ({})", whole_percent(part))
+            },
+            "bending at the corners" => whole_percent(d.folds.share_at_corners),
+            "edges there" => whole_percent(d.folds.length_at_corners),
+            "density, all = 1" => format!("{:.1}", d.folds.density_at_corners),
+            "strongest edges there" => { let [all, there] = d.folds.strongest; format!("{there} of {all}") },
+            "angle" => format!("{:.0}° ({:.0}°)", d.folds.angle[0], d.folds.angle[1]),
+            "internal DOF" => d.internal(),
+            "drop" => whole_percent(d.drop),
+        },
     )
 }
 
@@ -218,31 +204,18 @@ fn runs_table(all: &[&Draped]) -> Table {
     Table::of(
         CONDITIONS,
         all,
-        &[
-            ("cloth", &|d| d.label.as_str().into()),
-            ("sheet", &|d| d.sheet().into()),
-            ("V/F", &|d| mesh(d)),
-            ("at rest from", &|d| {
-                let time = d.run.summary.at_rest_from;
-                time.map(|t| format!("{t:.1} s")).into()
-            }),
-            ("kinetic energy left", &|d| {
-                format!("{:.0e}", d.run.summary.motion_left).into()
-            }),
-            ("CPU s per simulated s", &|d| {
-                d.run.summary.course.cpu_rate().into()
-            }),
-            ("factorisations per frame", &|d| {
-                d.run.summary.course.cost.factorisations_per_step().into()
-            }),
-            ("largest strain", &|d| {
-                format!("{:.0e}", d.run.summary.strain()).into()
-            }),
-            ("membrane stiffness", &|d| d.run.summary.stiffness().into()),
-            ("smallest gap", &|d| {
-                super::gap(d.run.summary.course.gap).into()
-            }),
-        ],
+        columns! { d;
+            "cloth" => d.label.as_str(),
+            "sheet" => d.sheet(),
+            "V/F" => d.run.summary.mesh(),
+            "at rest from" => d.run.summary.at_rest_from.map(|t| format!("{t:.1} s")),
+            "kinetic energy left" => format!("{:.0e}", d.run.summary.motion_left),
+            "CPU s per simulated s" => d.run.summary.course.cpu_rate(),
+            "factorisations per frame" => d.run.summary.course.cost.factorisations_per_step(),
+            "largest strain" => format!("{:.0e}", d.run.summary.strain()),
+            "membrane stiffness" => d.run.summary.stiffness(),
+            "smallest gap" => super::gap(d.run.summary.course.gap),
+        },
     )
 }
 
@@ -444,37 +417,28 @@ fn hems(all: &[Draped]) -> Charts {
 }
 
 fn hem_table(all: &[Draped]) -> Table {
-    let part = |part: f64| Cell::from(whole_percent(part));
     Table::of(
         "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are standard deviations over means, of \
                   the angles between neighbouring folds and of how far the folds stand out: both are 0 for a uniform pattern. Wave: the wave number with the \
                   largest part of the variance of the hem's relative distance from the axis, and that part. Folds are outward bulges of the hem's distance from \
                   the axis, divided by that of the flat cloth, that stand out by more than 0.02; a pattern is uniform where both spreads are below 20 %.",
         all,
-        &[
-            ("cloth", &|d| d.label.as_str().into()),
-            ("sheet", &|d| d.sheet().into()),
-            ("V/F", &|d| mesh(d)),
-            ("folds", &|d| d.hem.folds.to_string().into()),
-            ("along corner lines", &|d| {
+        columns! { d;
+            "cloth" => d.label.as_str(),
+            "sheet" => d.sheet(),
+            "V/F" => d.run.summary.mesh(),
+            "folds" => d.hem.folds.to_string(),
+            "along corner lines" => {
                 let (along, _, part) = d.folds.along;
-                format!("{along} ({})", whole_percent(part)).into()
-            }),
-            ("spread of spacing", &|d| part(d.hem.spacing_spread)),
-            ("spread of size", &|d| part(d.hem.size_spread)),
-            ("uniform", &|d| {
-                if d.hem.is_uniform() { "yes" } else { "no" }.into()
-            }),
-            ("wave", &|d| {
-                let (wave, share) = d.hem.wave;
-                format!("{wave} ({})", whole_percent(share)).into()
-            }),
-            ("internal DOF", &|d| d.internal().into()),
-            ("drop", &|d| part(d.drop)),
-            ("at rest from", &|d| {
-                let time = d.run.summary.at_rest_from;
-                time.map(|t| format!("{t:.1} s")).into()
-            }),
-        ],
+                format!("{along} ({})", whole_percent(part))
+            },
+            "spread of spacing" => whole_percent(d.hem.spacing_spread),
+            "spread of size" => whole_percent(d.hem.size_spread),
+            "uniform" => if d.hem.is_uniform() { "yes" } else { "no" },
+            "wave" => { let (wave, share) = d.hem.wave; format!("{wave} ({})", whole_percent(share)) },
+            "internal DOF" => d.internal(),
+            "drop" => whole_percent(d.drop),
+            "at rest from" => d.run.summary.at_rest_from.map(|t| format!("{t:.1} s")),
+        },
     )
 }

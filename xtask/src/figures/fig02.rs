@@ -1,7 +1,7 @@
 //! Fig. 2: external and internal degrees of freedom.
 
 use super::sketch::{PLACED, Sketch, captioned};
-use super::{Made, degrees, measured, style, svg};
+use super::{Made, degrees, measured, rows, style, svg};
 use crate::draw::spatial::arc;
 use crate::draw::{Stroke, palette};
 use anyhow::Result;
@@ -59,7 +59,9 @@ pub(super) fn make() -> Result<Made> {
         paper: "A single triangle only moves rigidly (six external degrees of freedom); two triangles with a common edge have \
                 a seventh, internal one: the fold about that edge.",
         here: "The arrow is the path of the far vertex when the one internal coordinate grows from flat to the fold that is drawn.".into(),
-        tables: vec![measured([("fold that is drawn", degrees(FOLD))])],
+        tables: vec![measured(rows! {
+            "fold that is drawn" => degrees(FOLD),
+        })],
         pictures: svg(2, &all, alt),
         facts: json!({ "triangle": facts[0], "pair": facts[1], "fold": FOLD }),
         ..Made::default()

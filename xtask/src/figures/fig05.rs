@@ -4,6 +4,7 @@ use super::sketch::{Sketch, captioned};
 use super::{Made, Table, degrees, style, svg};
 use crate::draw::spatial::angle_arc;
 use crate::draw::{Colour, Drawing, Stroke, palette};
+use crate::report::columns;
 use anyhow::{Context, Result, ensure};
 use isosheet_coords::EulerParameters;
 use isosheet_mesh::{EdgeAngles, Sheet, VertexId, fold_angle};
@@ -48,7 +49,9 @@ pub(super) fn make() -> Result<Made> {
     let fold = fold_angle(sheet.topology(), &folded.concat(), edge)
         .context("the common edge is interior")?;
     ensure!(
-        triples[1].iter().all(|end| (end.fold() - fold.abs()).abs() < 1e-12),
+        triples[1]
+            .iter()
+            .all(|end| (end.fold() - fold.abs()).abs() < 1e-12),
         "the angles of an end give another fold: {:?}",
         triples[1]
     );
@@ -60,19 +63,19 @@ pub(super) fn make() -> Result<Made> {
     let table = Table::of(
         "Measured angles of the folded pair",
         rows,
-        &[
-            ("end of the edge", &|r| r.0.into()),
-            ("α", &|r| degrees(r.2.alpha).into()),
-            ("β", &|r| degrees(r.2.beta).into()),
-            ("α + β", &|r| degrees(r.2.alpha + r.2.beta).into()),
-            ("γ⁰", &|r| degrees(r.1).into()),
-            ("γᵗ", &|r| degrees(r.2.gamma).into()),
-            ("fold by these three", &|r| degrees(r.2.fold()).into()),
-            ("γᵗ ≤ α + β", &|r| {
+        columns! { r;
+            "end of the edge" => r.0,
+            "α" => degrees(r.2.alpha),
+            "β" => degrees(r.2.beta),
+            "α + β" => degrees(r.2.alpha + r.2.beta),
+            "γ⁰" => degrees(r.1),
+            "γᵗ" => degrees(r.2.gamma),
+            "fold by these three" => degrees(r.2.fold()),
+            "γᵗ ≤ α + β" => {
                 let holds = r.2.gamma <= r.2.alpha + r.2.beta;
-                if holds { "holds" } else { "violated" }.into()
-            }),
-        ],
+                if holds { "holds" } else { "violated" }
+            },
+        },
     );
     let alt = "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends";
     Ok(Made {

@@ -1,7 +1,7 @@
 //! Fig. 6: the three placement functions.
 
 use super::sketch::{PLACED, Sketch, captioned};
-use super::{Made, measured, style, svg};
+use super::{Made, measured, rows, style, svg};
 use crate::draw::spatial::{arc, axpy, dot, norm, sub, unit};
 use crate::draw::{Drawing, Stroke, palette};
 use anyhow::{Result, ensure};
@@ -29,7 +29,9 @@ pub(super) fn make() -> Result<Made> {
         here: "Known vertices are blue, and placed vertices red: the arcs of (a) are the two coordinates, (b) has five values of \
                the one coordinate, and the ghost of (c) is the other solution, the mirror image."
             .into(),
-        tables: vec![measured([("f returns the vertex to its first place, to (edge lengths)", format!("{error:.0e}"))])],
+        tables: vec![measured(rows! {
+            "f returns the vertex to its first place, to (edge lengths)" => format!("{error:.0e}"),
+        })],
         pictures: svg(6, &all, alt),
         facts: json!({ "f_error": error }),
         ..Made::default()

@@ -1,7 +1,7 @@
 //! Fig. 7: the degenerate case, three known vertices on a line.
 
 use super::sketch::{PLACED, Sketch, captioned};
-use super::{Made, degrees, measured, style, svg};
+use super::{Made, degrees, measured, rows, style, svg};
 use crate::draw::spatial::{arc, axpy, dot, norm, sub, unit};
 use crate::draw::{Drawing, palette};
 use anyhow::{Result, bail, ensure};
@@ -52,12 +52,12 @@ pub(super) fn make() -> Result<Made> {
         here: "On the bent line (left) the function f has two solutions; on the straight line (right) it refuses, and the vertex \
                keeps the angle that it had before."
             .into(),
-        tables: vec![measured([
-            ("bend of the line on the left", degrees(bend)),
-            ("sine of the smallest angle on the right", sine.to_string()),
-            ("limit below which f refuses", format!("{COLLINEAR:.0e}")),
-            ("change of the length of the middle rod, which is not used", format!("{worst:.0e}")),
-        ])],
+        tables: vec![measured(rows! {
+            "bend of the line on the left" => degrees(bend),
+            "sine of the smallest angle on the right" => sine.to_string(),
+            "limit below which f refuses" => format!("{COLLINEAR:.0e}"),
+            "change of the length of the middle rod, which is not used" => format!("{worst:.0e}"),
+        })],
         pictures: svg(7, &all, alt),
         facts: json!({ "sine": sine, "limit": COLLINEAR, "middle_rod_error": worst }),
         ..Made::default()

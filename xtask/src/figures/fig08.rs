@@ -1,6 +1,6 @@
 //! Fig. 8: fronts and rules of the assignment.
 
-use super::{Made, caption, measured, style, svg};
+use super::{Made, caption, measured, rows, style, svg};
 use crate::draw::{
     Anchor, Colour, Drawing, Marker, SMALL, Stroke, TEXT, Vertical, flat_edges, flat_faces,
     palette, plan, row,
@@ -59,14 +59,14 @@ pub(super) fn make() -> Result<Made> {
                 allow; the number of coordinates is the number of degrees of freedom.",
         here: "sys_coord_assnmt_single is applied to M¹; every rod is used exactly once, by the end that is placed later (b)."
             .into(),
-        tables: vec![measured([
-            ("fronts", assignment.front_count().to_string()),
-            ("vertices by rule h, two coordinates each", count('h').to_string()),
-            ("vertices by rule g, one coordinate each", count('g').to_string()),
-            ("vertices by rule f, no coordinate", count('f').to_string()),
-            ("coordinates, three of the start vertex included", assignment.dof().to_string()),
-            ("degrees of freedom", dof.to_string()),
-        ])],
+        tables: vec![measured(rows! {
+            "fronts" => assignment.front_count().to_string(),
+            "vertices by rule h, two coordinates each" => count('h').to_string(),
+            "vertices by rule g, one coordinate each" => count('g').to_string(),
+            "vertices by rule f, no coordinate" => count('f').to_string(),
+            "coordinates, three of the start vertex included" => assignment.dof().to_string(),
+            "degrees of freedom" => dof.to_string(),
+        })],
         pictures: svg(8, &all, alt),
         facts: json!({
             "dof": dof, "fronts": assignment.front_count(), "h": count('h'), "g": count('g'), "f": count('f'),

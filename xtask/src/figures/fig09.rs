@@ -1,7 +1,7 @@
 //! Fig. 9: the construction of function g.
 
 use super::sketch::{PLACED, Sketch};
-use super::{Made, degrees, measured, style, svg};
+use super::{Made, degrees, measured, rows, style, svg};
 use crate::draw::spatial::{angle_arc, arc, axpy, cross, dot, norm, sub, unit};
 use crate::draw::{Stroke, palette};
 use anyhow::{Result, ensure};
@@ -82,11 +82,11 @@ pub(super) fn make() -> Result<Made> {
         here: "The rest triangle (left) is aligned with the known edge by θ about r (blue) and turned by q (orange), by the Euler \
                parameters of the paper; the function g of the library has the same lengths and q, but no rotation matrix."
             .into(),
-        tables: vec![measured([
-            ("θ", degrees(theta)),
-            ("q", degrees(Q)),
-            ("distance of the two places (edge lengths)", format!("{error:.0e}")),
-        ])],
+        tables: vec![measured(rows! {
+            "θ" => degrees(theta),
+            "q" => degrees(Q),
+            "distance of the two places (edge lengths)" => format!("{error:.0e}"),
+        })],
         pictures: svg(9, &d.drawing, alt),
         facts: json!({ "theta": theta, "q": Q, "difference": error }),
         ..Made::default()

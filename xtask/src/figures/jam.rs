@@ -2,12 +2,12 @@
 
 use super::feed::{Feed, INNER, OUTER, PLATE};
 use super::show::View;
-use super::{Effort, Made, Picture, Table, measured};
+use super::{Effort, Made, Picture, Table, measured, rows};
 use crate::draw::{
     Anchor, Axis, Chart, Charts, Colour, Drawing, Series, Stroke, TEXT, Vertical, column, palette,
     row,
 };
-use crate::report::Cell;
+use crate::report::{Cell, columns};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::Result;
@@ -206,10 +206,9 @@ fn newtons(force: f64) -> String {
 /// What happens in front of the plate; `passing` is a force that the strip never needs to pass.
 fn describe(jam: &Fed, passing: f64) -> Vec<(&'static str, String)> {
     let (Some(arrival), Some((k, force))) = (jam.arrival(), jam.buckle(passing)) else {
-        return vec![(
-            "the strip reaches the plate",
-            "not in this run, which is too short".into(),
-        )];
+        return rows! {
+            "the strip reaches the plate" => "not in this run, which is too short",
+        };
     };
     let mm = |frame: usize| format!("{:.1} mm", 1e3 * jam.feed_length_at(frame));
     let column = jam.column(k);
@@ -225,42 +224,20 @@ fn describe(jam: &Fed, passing: f64) -> Vec<(&'static str, String)> {
     } else {
         mm(last)
     };
-    vec![
-        (
-            "displacement at which the strip reaches the plate",
-            mm(arrival),
-        ),
-        (
-            "displacement and force at which it buckles between nip and bend",
+    rows! {
+        "displacement at which the strip reaches the plate" => mm(arrival),
+        "displacement and force at which it buckles between nip and bend" =>
             format!("{}, {}", mm(k), newtons(force)),
+        "length of the straight part there" => format!("{:.0} mm", 1e3 * column),
+        "Euler's load of this length: both ends clamped, one hinged" => format!("{clamped}, {hinged}"),
+        "further falls of the force, into shorter waves" => (jam.buckles(passing).len() - 1).to_string(),
+        "displacement at the end" => end,
+        "inflections in the straight part at the end" => jam.inflections(last).to_string(),
+        "sharpest bend at the end" => format!(
+            "{:.0}° over {:.0} mm, {:.0} mm before the bend of the guide", turn.abs().to_degrees(),
+            1e3 * jam.feed.size[0] / jam.feed.cells[0] as f64, -1e3 * x
         ),
-        (
-            "length of the straight part there",
-            format!("{:.0} mm", 1e3 * column),
-        ),
-        (
-            "Euler's load of this length: both ends clamped, one hinged",
-            format!("{clamped}, {hinged}"),
-        ),
-        (
-            "further falls of the force, into shorter waves",
-            (jam.buckles(passing).len() - 1).to_string(),
-        ),
-        ("displacement at the end", end),
-        (
-            "inflections in the straight part at the end",
-            jam.inflections(last).to_string(),
-        ),
-        (
-            "sharpest bend at the end",
-            format!(
-                "{:.0}° over {:.0} mm, {:.0} mm before the bend of the guide",
-                turn.abs().to_degrees(),
-                1e3 * jam.feed.size[0] / jam.feed.cells[0] as f64,
-                -1e3 * x
-            ),
-        ),
-    ]
+    }
 }
 
 fn table(all: &[Fed]) -> Table {
@@ -270,32 +247,26 @@ fn table(all: &[Fed]) -> Table {
          integrator, which damps what it does not resolve; positive is the error of the work of the nip, by the trapezoidal rule \
          between forces that jump.",
         all,
-        &[
-            ("bend", &|f| f.label().into()),
-            ("displacement", &|f| {
+        columns! { f;
+            "bend" => f.label(),
+            "displacement" => {
                 let fed = f.feed_length_at(f.run.summary.course.cost.steps);
-                format!("{:.0} mm", 1e3 * fed).into()
-            }),
-            ("largest force", &|f| {
+                format!("{:.0} mm", 1e3 * fed)
+            },
+            "largest force" => {
                 let [fed, peak] = f.peak();
-                format!("{} at {:.0} mm", newtons(peak), 1e3 * fed).into()
-            }),
-            ("work of the nip", &|f| joules(f.run.summary.energy.work)),
-            ("stored", &|f| joules(-f.run.summary.energy.released)),
-            ("friction", &|f| joules(f.run.summary.energy.friction)),
-            ("damping", &|f| joules(f.run.summary.energy.damped)),
-            ("missing", &|f| joules(f.run.summary.energy.drift)),
-            ("strain", &|f| {
-                format!("{:.0e}", f.run.summary.course.strain).into()
-            }),
-            ("gap", &|f| super::gap(f.run.summary.course.gap).into()),
-            ("rejected", &|f| {
-                f.run.summary.course.cost.rejected.to_string().into()
-            }),
-            ("wall time", &|f| {
-                format!("{:.1} s", f.run.summary.course.cost.wall).into()
-            }),
-        ],
+                format!("{} at {:.0} mm", newtons(peak), 1e3 * fed)
+            },
+            "work of the nip" => joules(f.run.summary.energy.work),
+            "stored" => joules(-f.run.summary.energy.released),
+            "friction" => joules(f.run.summary.energy.friction),
+            "damping" => joules(f.run.summary.energy.damped),
+            "missing" => joules(f.run.summary.energy.drift),
+            "strain" => format!("{:.0e}", f.run.summary.course.strain),
+            "gap" => super::gap(f.run.summary.course.gap),
+            "rejected" => f.run.summary.course.cost.rejected.to_string(),
+            "wall time" => format!("{:.1} s", f.run.summary.course.cost.wall),
+        },
     )
 }
 
@@ -328,29 +299,18 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     let alt_force = "Force of the nip over its displacement in four guides";
     let alt_side = "The strip from the side at five times in each of the four guides";
     let (s, of_scene) = (&jam.feed, jam.run.scene.scene());
-    let mut rows = vec![
-        (
-            "strip of office paper",
-            format!(
-                "{:.0} mm x {:.0} mm, {:.0} g/m², flexural rigidity {:.0e} N m, {}/{} vertices/faces",
-                1e3 * s.size[0],
-                1e3 * s.size[1],
-                1e3 * of_scene.sheet[0].areal_density(),
-                s.rigidity,
-                jam.run.summary.vertices,
-                jam.run.summary.faces
-            ),
+    let mut rows = rows! {
+        "strip of office paper" => format!(
+            "{:.0} mm x {:.0} mm, {:.0} g/m², flexural rigidity {:.0e} N m, {}/{} vertices/faces",
+            1e3 * s.size[0], 1e3 * s.size[1], 1e3 * of_scene.sheet[0].areal_density(), s.rigidity,
+            jam.run.summary.vertices, jam.run.summary.faces
         ),
-        (
-            "guide",
-            format!(
-                "walls {:.0} mm apart, friction {} with them and itself",
-                1e3 * s.channel(),
-                of_scene.contact.friction
-            ),
+        "guide" => format!(
+            "walls {:.0} mm apart, friction {} with them and itself", 1e3 * s.channel(),
+            of_scene.contact.friction
         ),
-        ("speed of the nip", format!("{} m/s", s.speed())),
-    ];
+        "speed of the nip" => format!("{} m/s", s.speed()),
+    };
     rows.extend(describe(jam, passing));
     let side: Vec<Drawing> = all.iter().map(side_view).collect::<Result<_>>()?;
     let side = column(&[row(&side[..2], 30.0), row(&side[2..], 30.0)], 24.0);

@@ -3,7 +3,7 @@
 use super::crescent::Crescent;
 use super::{Table, degrees, whole_percent};
 use crate::draw::{Axis, Chart, Charts, Colour, Legend, Series, palette};
-use crate::report::Cell;
+use crate::report::{Cell, columns};
 use isosheet_io::Trajectory;
 use isosheet_mesh::{EdgeId, Sheet, fold_angle};
 use serde::Serialize;
@@ -157,32 +157,20 @@ pub(super) fn table(all: &[Marks]) -> Table {
     Table::of(
         caption,
         all,
-        &[
-            ("mesh", &|m| m.name.as_str().into()),
-            ("edges", &|m| {
-                format!("{} of {}", m.sharpest, m.edges).into()
-            }),
-            ("share at 0.2 s", &|m| share(m.at(0.2, 1))),
-            ("share at 0.6 s", &|m| share(m.at(0.6, 1))),
-            ("share, late", &|m| share(m.late(1))),
-            ("least of these, end", &|m| degrees(m.least).into()),
-            ("final marks present at 0.6 s", &|m| marks(m, m.at(0.6, 2))),
-            ("late", &|m| marks(m, m.late(2))),
-            ("edges of the largest mark", &|m| {
-                shape(m, |c| c.edges.to_string())
-            }),
-            ("opening", &|m| {
-                shape(m, |c| format!("{:.0}°", c.opening.to_degrees()))
-            }),
-            ("left by the arc", &|m| {
-                shape(m, |c| whole_percent(c.straightness))
-            }),
-            ("an arc", &|m| {
-                shape(m, |c| {
-                    if c.straightness <= ARC { "yes" } else { "no" }.into()
-                })
-            }),
-        ],
+        columns! { m;
+            "mesh" => m.name.as_str(),
+            "edges" => format!("{} of {}", m.sharpest, m.edges),
+            "share at 0.2 s" => share(m.at(0.2, 1)),
+            "share at 0.6 s" => share(m.at(0.6, 1)),
+            "share, late" => share(m.late(1)),
+            "least of these, end" => degrees(m.least),
+            "final marks present at 0.6 s" => marks(m, m.at(0.6, 2)),
+            "late" => marks(m, m.late(2)),
+            "edges of the largest mark" => shape(m, |c| c.edges.to_string()),
+            "opening" => shape(m, |c| format!("{:.0}°", c.opening.to_degrees())),
+            "left by the arc" => shape(m, |c| whole_percent(c.straightness)),
+            "an arc" => shape(m, |c| { if c.straightness <= ARC { "yes" } else { "no" }.into() }),
+        },
     )
 }
 

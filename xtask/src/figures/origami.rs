@@ -1,7 +1,7 @@
 //! Beyond the paper: crease patterns folded by driven angles.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, course, degrees, measured};
+use super::{Effort, Made, Picture, Play, course, degrees, measured, rows};
 use crate::draw::{Axis, Chart, Charts, Colour, Marker, Series, palette};
 use crate::runs::{FigureScene, Run, RunSummary};
 use crate::store::Store;
@@ -292,47 +292,24 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         let nearest = (0..folded.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
         whole.trajectory.times()[nearest.unwrap_or(0)]
     });
-    let mut rows = vec![
-        (
-            "sheet",
-            format!(
-                "{}/{} vertices/faces, panels of 20 mm with an angle of 60°, 80 g/m², no gravity",
-                run.vertices, run.faces
-            ),
+    let mut rows = rows! {
+        "sheet" => format!(
+            "{}/{} vertices/faces, panels of 20 mm with an angle of 60°, 80 g/m², no gravity", run.vertices,
+            run.faces
         ),
-        (
-            "fold of the zigzags from which errors count",
-            degrees(LEAST),
-        ),
-        (
-            "error of tan(s/2) = cos 60° tan(z/2) at the straight creases",
-            format!("{:.0e} rad", errors[0]),
-        ),
-        (
-            "fold of the panels, which are flat",
-            format!("{:.0e} rad", errors[1]),
-        ),
-        (
-            "difference of distances from the rigid pattern: inertia of the panels",
+        "fold of the zigzags from which errors count" => degrees(LEAST),
+        "error of tan(s/2) = cos 60° tan(z/2) at the straight creases" => format!("{:.0e} rad", errors[0]),
+        "fold of the panels, which are flat" => format!("{:.0e} rad", errors[1]),
+        "difference of distances from the rigid pattern: inertia of the panels" =>
             format!("{:.0e} m", errors[2]),
-        ),
-        (
-            "fold of the zigzags half a second after the drive has stopped",
-            degrees(last.zigzag),
-        ),
-        (
-            "fold of the straight creases then, and its error",
+        "fold of the zigzags half a second after the drive has stopped" => degrees(last.zigzag),
+        "fold of the straight creases then, and its error" =>
             format!("{}, {:.0e} rad", degrees(last.straight), last.errors[0]),
-        ),
-        (
-            "vertex of degree four, creases 1 and 3 alike: largest error",
+        "vertex of degree four, creases 1 and 3 alike: largest error" =>
             format!("{:.0e} rad", vertices[0].error),
-        ),
-        (
-            "vertex of degree four, creases 2 and 4 alike: largest error",
+        "vertex of degree four, creases 2 and 4 alike: largest error" =>
             format!("{:.0e} rad", vertices[1].error),
-        ),
-    ];
+    };
     let (work, lack) = (run.energy.work, run.energy.drift);
     rows.push((
         "work of the drive, and what the balance lacks",

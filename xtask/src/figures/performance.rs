@@ -1,7 +1,7 @@
 //! Fig. 10: the paper's table of performance, with ours beside it.
 
 use super::{Effort, Made, Picture, Play, Table, cloths, crumple, drape, stamping};
-use crate::report::{Cell, machine, rounded};
+use crate::report::{Cell, columns, machine, rounded};
 use crate::runs::{self, ChartSummary, Course, Ending, FigureScene, Run, RunSummary};
 use crate::store::Store;
 use anyhow::{Result, ensure};
@@ -173,7 +173,7 @@ impl Tried {
             p.steps,
             "",
         ];
-        let mesh = format!("{}/{}", self.ours.vertices, self.ours.faces);
+        let mesh = self.ours.mesh();
         let mut rows = vec![
             paper.map(str::to_owned).to_vec(),
             default_row(&mesh, &self.ours),
@@ -292,46 +292,33 @@ fn contact_table(all: &[Tried]) -> Table {
                   Energies (J) at the end: potential energy released, work of the die, losses to damping and friction, and what the balance lacks: what \
                   the implicit steps take out of fast motion.",
         all,
-        &[
-            ("Fig.", &|r| r.published.figure.to_string().into()),
-            ("V/F", &|r| {
-                format!("{}/{}", r.ours.vertices, r.ours.faces).into()
-            }),
-            ("slowness", &|r| format!("{:.2}", r.ours.slowness()).into()),
-            ("without self-contact", &|r| {
-                format!("{:.2}", r.free.slowness()).into()
-            }),
-            ("ratio", &|r| {
+        columns! { r;
+            "Fig." => r.published.figure.to_string(),
+            "V/F" => r.ours.mesh(),
+            "slowness" => format!("{:.2}", r.ours.slowness()),
+            "without self-contact" => format!("{:.2}", r.free.slowness()),
+            "ratio" => {
                 let ratio = r.ours.slowness() / r.free.slowness().max(1e-12);
-                format!("{ratio:.1}").into()
-            }),
-            ("frame, solves in it", &|r| {
-                let (step, solves) = (
-                    1e3 * r.ours.course.cost.wall,
-                    r.ours.course.cost.iterations as f64,
-                );
+                format!("{ratio:.1}")
+            },
+            "frame, solves in it" => {
+                let (step, solves) = (1e3 * r.ours.course.cost.wall, r.ours.course.cost.iterations as f64);
                 let [step, solves] = [step, solves].map(|all| all / frames(&r.ours));
-                format!("{step:.1} ms, {solves:.0}").into()
-            }),
-            ("CPU s per simulated s", &|r| {
-                r.ours.course.cpu_rate().into()
-            }),
-            ("solves/s", &|r| {
+                format!("{step:.1} ms, {solves:.0}")
+            },
+            "CPU s per simulated s" => r.ours.course.cpu_rate(),
+            "solves/s" => {
                 let cost = &r.ours.course.cost;
-                format!("{:.0}", cost.iterations as f64 / cost.wall.max(1e-9)).into()
-            }),
-            ("largest strain", &|r| {
-                format!("{:.0e}", r.ours.course.strain)
-                    .replace('-', "−")
-                    .into()
-            }),
-            ("smallest gap", &|r| super::gap(r.ours.course.gap).into()),
-            ("released", &|r| joules(r.ours.energy.released)),
-            ("work", &|r| joules(r.ours.energy.work)),
-            ("damping", &|r| joules(r.ours.energy.damped)),
-            ("friction", &|r| joules(r.ours.energy.friction)),
-            ("drift", &|r| joules(r.ours.energy.drift)),
-        ],
+                format!("{:.0}", cost.iterations as f64 / cost.wall.max(1e-9))
+            },
+            "largest strain" => format!("{:.0e}", r.ours.course.strain).replace('-', "−"),
+            "smallest gap" => super::gap(r.ours.course.gap),
+            "released" => joules(r.ours.energy.released),
+            "work" => joules(r.ours.energy.work),
+            "damping" => joules(r.ours.energy.damped),
+            "friction" => joules(r.ours.energy.friction),
+            "drift" => joules(r.ours.energy.drift),
+        },
     )
 }
 

@@ -1,6 +1,6 @@
 //! How a run is shown: its frames as a grid of shaded pictures, and a page that plays it in 3D.
 
-use super::{Picture, Play};
+use super::{Picture, Play, rows};
 use crate::draw::{Shot, Viewpoint};
 use crate::report::Effort;
 use crate::runs::{Run, RunSummary};
@@ -153,33 +153,22 @@ impl View {
 fn rows(run: &RunSummary) -> Vec<(String, String)> {
     let joules = |e: f64| format!("{e:.2e} J");
     let (course, cost, e) = (&run.course, &run.course.cost, &run.energy);
-    [
-        (
-            "time",
-            format!("{:.2} s in {} frames", course.time, cost.steps),
-        ),
-        (
-            "sub-steps",
-            format!("{}, {} rejected", cost.substeps, cost.rejected),
-        ),
-        (
-            "solver",
-            format!(
-                "{} iterations, {} factorisations",
-                cost.iterations, cost.factorisations
-            ),
-        ),
-        ("wall time", format!("{:.1} s", cost.wall)),
-        ("CPU time", format!("{:.1} s", cost.cpu)),
-        ("largest strain", format!("{:.1e}", course.strain)),
-        ("smallest gap", super::gap(course.gap)),
-        ("potential energy released", joules(e.released)),
-        ("work of bodies and forces", joules(e.work)),
-        ("taken out by damping", joules(e.damped)),
-        ("lost to friction", joules(e.friction)),
-        ("dissipated by yielding", joules(e.plastic)),
-        ("error of the energy balance", joules(e.drift)),
-    ]
-    .map(|(name, value)| (name.to_owned(), value))
-    .to_vec()
+    rows! {
+        "time" => format!("{:.2} s in {} frames", course.time, cost.steps),
+        "sub-steps" => format!("{}, {} rejected", cost.substeps, cost.rejected),
+        "solver" => format!("{} iterations, {} factorisations", cost.iterations, cost.factorisations),
+        "wall time" => format!("{:.1} s", cost.wall),
+        "CPU time" => format!("{:.1} s", cost.cpu),
+        "largest strain" => format!("{:.1e}", course.strain),
+        "smallest gap" => super::gap(course.gap),
+        "potential energy released" => joules(e.released),
+        "work of bodies and forces" => joules(e.work),
+        "taken out by damping" => joules(e.damped),
+        "lost to friction" => joules(e.friction),
+        "dissipated by yielding" => joules(e.plastic),
+        "error of the energy balance" => joules(e.drift),
+    }
+    .into_iter()
+    .map(|(name, value): (&str, String)| (name.to_owned(), value))
+    .collect()
 }

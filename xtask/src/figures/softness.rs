@@ -3,7 +3,7 @@
 use super::crumple::PAPER_SHEET;
 use super::{Effort, Picture, Table, whole_percent};
 use crate::draw::{Axis, Chart, Charts, Marker, Series, palette, superscript};
-use crate::report::{Cell, extremes};
+use crate::report::{Cell, columns, extremes};
 use crate::runs::{self, FigureScene, Member};
 use anyhow::{Result, ensure};
 use isosheet_mesh::Dof;
@@ -219,26 +219,24 @@ fn table(all: &[Level]) -> Table {
     let range = |l: &Level, digits: usize, f: fn(&Member) -> f64| {
         let v = l.values(f);
         let (mean, [low, high]) = (mean(&v), extremes(v.into_iter()).unwrap_or_default());
-        format!("{mean:.digits$} ({low:.digits$}–{high:.digits$})").into()
+        format!("{mean:.digits$} ({low:.digits$}–{high:.digits$})")
     };
     let early = format!("freedom of the fall at {EARLY} s");
+    let falls = format!("falls from up to {:.1} % of an edge", 100.0 * BUMP);
     let mut table = Table::of(
         ABOUT,
         all,
-        &[
-            ("mesh", &|l| l.name().into()),
-            ("sheet", &|l| l.sheet.as_str().into()),
-            ("V/F", &|l| format!("{}/{}", l.vertices, l.faces).into()),
-            ("internal DOF of rods", &|l| l.internal.to_string().into()),
-            (&early, &|l| whole_percent(l.early()).into()),
-            ("total bending", &|l| range(l, 2, bending)),
-            ("width", &|l| range(l, 2, |m| m.shape.extent)),
-            ("depth of the centre", &|l| {
-                range(l, 3, |m| m.shape.centre_depth)
-            }),
-            ("falls", &|l| l.falls.len().into()),
-            ("start, of an edge", &|_| format!("{:.1} %", 100.0 * BUMP).into()),
-        ],
+        columns! { l;
+            "mesh" => l.name(),
+            "sheet" => l.sheet.as_str(),
+            "V/F" => format!("{}/{}", l.vertices, l.faces),
+            "internal DOF of rods" => l.internal.to_string(),
+            &early => whole_percent(l.early()),
+            "total bending" => range(l, 2, bending),
+            "width" => range(l, 2, |m| m.shape.extent),
+            "depth of the centre" => range(l, 3, |m| m.shape.centre_depth),
+            &falls => l.falls.len(),
+        },
     );
     for (name, freedom, depth) in [
         ("rigid plate", 0.0, runs::PLATE),

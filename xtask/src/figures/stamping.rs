@@ -1,7 +1,7 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Row, compared, course, through_itself};
+use super::{Effort, Made, Picture, Play, Row, compared, course, rows, through_itself};
 use crate::draw::{Axis, Chart, Charts, Series, palette};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
@@ -122,28 +122,16 @@ impl Punched {
         );
         let motion = [self.stroke / self.full, self.stroke].map(millimetres);
         let holders = [value("/obstacle/2/shape/box/size/1")?, clearance].map(millimetres);
-        let mut rows = vec![
-            ("blank", blank),
-            (
-                "opening of the frame",
-                millimetres(value("/obstacle/1/shape/frame/opening")?),
-            ),
-            (
-                "width of the die",
-                millimetres(value("/obstacle/0/shape/box/size/0")?),
-            ),
-            ("speed and stroke of the die", motion.join("/s, ")),
-            (
-                "width of the holders, and their height above the frame",
-                holders.join(", "),
-            ),
-            (
-                "friction on all tools",
-                scene.scene().obstacle[DIE].friction.to_string(),
-            ),
-            ("largest force on the die", format!("{:.1} N", self.peak)),
-            ("weight of the blank", format!("{:.1} N", self.weight)),
-        ];
+        let mut rows = rows! {
+            "blank" => blank,
+            "opening of the frame" => millimetres(value("/obstacle/1/shape/frame/opening")?),
+            "width of the die" => millimetres(value("/obstacle/0/shape/box/size/0")?),
+            "speed and stroke of the die" => motion.join("/s, "),
+            "width of the holders, and their height above the frame" => holders.join(", "),
+            "friction on all tools" => scene.scene().obstacle[DIE].friction.to_string(),
+            "largest force on the die" => format!("{:.1} N", self.peak),
+            "weight of the blank" => format!("{:.1} N", self.weight),
+        };
         rows.extend(course(&self.run.summary));
         Ok(rows)
     }
@@ -209,13 +197,13 @@ impl Released {
             format!("at {:.1} N m/m, hardening {:.3} N m", y.moment, y.hardening)
         });
         let energy = &self.run.summary.energy;
-        let mut rows = vec![
-            ("yields", yields),
-            ("largest height of the blank", millimetres(self.largest)),
-            ("its height when the die is back", millimetres(self.height)),
-            ("work of the die", format!("{:.2} J", energy.work)),
-            ("dissipated by yielding", format!("{:.2} J", energy.plastic)),
-        ];
+        let mut rows = rows! {
+            "yields" => yields,
+            "largest height of the blank" => millimetres(self.largest),
+            "its height when the die is back" => millimetres(self.height),
+            "work of the die" => format!("{:.2} J", energy.work),
+            "dissipated by yielding" => format!("{:.2} J", energy.plastic),
+        };
         rows.extend(course(&self.run.summary));
         rows
     }

@@ -83,6 +83,14 @@ impl Cell {
 /// A column: its name, with the unit, and what it shows of a row.
 pub(crate) type Column<'a, R> = (&'a str, &'a dyn Fn(&R) -> Cell);
 
+/// The columns of a table, each with what it shows of a row: `columns! { row; "name" => cell, ... }`.
+macro_rules! columns {
+    ($row:ident; $($name:expr => $cell:expr),* $(,)?) => {
+        &[$(($name, &|$row| $crate::report::Cell::from($cell))),*]
+    };
+}
+pub(crate) use columns;
+
 /// A table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Table {

@@ -120,6 +120,11 @@ impl RunSummary {
         }
     }
 
+    /// Vertices and faces of the mesh.
+    pub(crate) fn mesh(&self) -> String {
+        format!("{}/{}", self.vertices, self.faces)
+    }
+
     /// Wall time over simulated time: below one is faster than real time.
     pub(crate) fn slowness(&self) -> f64 {
         self.course.cost.wall / self.course.time.max(1e-12)
