@@ -136,26 +136,23 @@ pub(super) fn plot([rods, paper]: [&[Marks]; 2]) -> Charts {
 /// A mark is an arc if the circle leaves at most this part of the mean square distance from the line.
 const ARC: f64 = 0.5;
 
+/// What the table shows.
+const ABOUT: &str = "\
+    Marks: the part of the sum of all sizes of fold angles that the sharpest of the inner edges carry, and how many of the edges that are \
+    sharpest at the end are among the sharpest earlier (to 1 %, as symmetric folds are equal). Late: mean over the second half of the run. \
+    There are marks where all of these edges are bent by a least angle. The largest connected mark at the end is compared, in the flat \
+    sheet, with the arc of a crescent: the angle in which the centre of the best circle sees it (a straight fold: near zero), and what is \
+    left of its mean square distance from the best line when the line is bent to the circle (a perfect arc: nothing). The last rows: \
+    what the sharpest edges would carry if all folds were equal and if they were normally distributed; the least angle of marks, and \
+    the most that an arc leaves. Rods have neither bending stiffness nor memory, and the elastic sheet has no memory: no fold is \
+    permanent by itself, and the table shows where folds gather and whether they stay there.";
+
 pub(super) fn table(all: &[Marks]) -> Table {
-    let caption = format!(
-        "Marks: the part of the sum of all sizes of fold angles that the sharpest {:.0} % of the inner edges carry ({:.0} % if all \
-             folds were equal, {:.0} % if they were normally distributed), and how many of the edges that are sharpest at the end are among \
-             the sharpest earlier (to 1 %, as symmetric folds are equal). Late: mean over the second half of the run. There are marks where all of these edges are bent by {:.1}° at least. The largest connected mark at the end is compared, in the flat \
-             sheet, with the arc of a crescent: the angle in which the centre of the best circle sees it (a straight fold: near zero), and \
-             what is left of its mean square distance from the best line when the line is bent to the circle (0 %: a perfect arc, at most {:.0} %: \
-             an arc). Rods have neither bending stiffness nor memory, and the elastic sheet has no memory: no fold is permanent by itself, and the table shows where folds gather and \
-             whether they stay there.",
-        100.0 * SHARPEST,
-        100.0 * SHARPEST,
-        100.0 * NORMAL,
-        MARK.to_degrees(),
-        100.0 * ARC
-    );
     let shape = |m: &Marks, f: fn(&Crescent) -> String| Cell::from(m.shape.as_ref().map(f));
     let share = |part: f64| Cell::from(whole_percent(part));
     let marks = |m: &Marks, part: f64| Cell::from((m.least >= MARK).then(|| whole_percent(part)));
-    Table::of(
-        caption,
+    let mut table = Table::of(
+        ABOUT,
         all,
         columns! { m;
             "mesh" => m.name.as_str(),
@@ -171,7 +168,12 @@ pub(super) fn table(all: &[Marks]) -> Table {
             "left by the arc" => shape(m, |c| whole_percent(c.straightness)),
             "an arc" => shape(m, |c| { if c.straightness <= ARC { "yes" } else { "no" }.into() }),
         },
-    )
+    );
+    let shares = |part: f64| [2, 3, 4].map(|column| (column, whole_percent(part)));
+    table.push_some("equal folds", &shares(SHARPEST));
+    table.push_some("normally distributed", &shares(NORMAL));
+    table.push_some("limit", &[(5, degrees(MARK)), (10, whole_percent(ARC))]);
+    table
 }
 
 #[cfg(test)]

@@ -10,34 +10,16 @@ use isosheet_io::scene::{Coordinates, Integrator};
 use serde_json::{Value, json};
 
 /// A row of the paper's table.
-struct Published {
-    figure: u8,
-    /// Level of the mesh M^level on which the paper's own scheme is tried: scenes without obstacles.
-    level: Option<u32>,
-    mesh: &'static str,
-    frames_per_second: &'static str,
-    steps: &'static str,
-}
+type Published = (u8, Option<u32>, [&'static str; 3]);
 
-impl Published {
-    const fn new(figure: u8, level: Option<u32>, columns: [&'static str; 3]) -> Self {
-        let [mesh, frames_per_second, steps] = columns;
-        Self {
-            figure,
-            level,
-            mesh,
-            frames_per_second,
-            steps,
-        }
-    }
-}
-
+/// Figure, level of the mesh M^level on which the paper's own scheme is tried (in scenes without obstacles), and the paper's
+/// mesh, frames per second and steps.
 const PUBLISHED: [Published; 5] = [
-    Published::new(11, Some(1), ["25/32", "33.33", "50/250"]),
-    Published::new(12, Some(2), ["81/128", "3.33", "18/150"]),
-    Published::new(13, None, ["289/512", "0.152", "0.2/10"]),
-    Published::new(14, None, ["81/128", "1.67", "2/150"]),
-    Published::new(15, None, ["244/440", "0.435", "1.5/30"]),
+    (11, Some(1), ["25/32", "33.33", "50/250"]),
+    (12, Some(2), ["81/128", "3.33", "18/150"]),
+    (13, None, ["289/512", "0.152", "0.2/10"]),
+    (14, None, ["81/128", "1.67", "2/150"]),
+    (15, None, ["244/440", "0.435", "1.5/30"]),
 ];
 
 /// The scene of a figure, with everything that the sheet meets.
@@ -122,7 +104,9 @@ fn variants(level: u32, effort: Effort) -> Result<[(&'static str, FigureScene); 
 
 /// The runs of a row of the paper's table.
 struct Tried {
-    published: &'static Published,
+    figure: u8,
+    /// The paper's mesh, frames per second and steps.
+    published: [&'static str; 3],
     ours: RunSummary,
     /// Without contact of the sheet with itself.
     free: RunSummary,
@@ -133,18 +117,19 @@ struct Tried {
 }
 
 impl Tried {
-    fn of(published: &'static Published, store: &Store) -> Result<Self> {
-        let (figure, effort) = (published.figure, store.effort);
+    fn of(&(figure, level, published): &Published, store: &Store) -> Result<Self> {
+        let effort = store.effort;
         let free = Run::of(store, free(figure, effort)?)?;
         let patience = effort.quick_or(0.5, 60.0);
         let mut charts = Vec::new();
-        if let Some(level) = published.level {
+        if let Some(level) = level {
             for (name, scene) in variants(level, effort)? {
                 let title = format!("published scheme, M^{level}");
                 charts.push((name, runs::chart_run(&title, &scene, patience)?));
             }
         }
         Ok(Self {
+            figure,
             published,
             ours: Run::of(store, ours(figure, effort)?)?.summary,
             page: page(figure, &free, effort)?,
@@ -164,31 +149,21 @@ impl Tried {
 
     /// Rows of the table: the paper's, ours, and the paper's scheme.
     fn rows(&self) -> Vec<Vec<String>> {
-        let (figure, p) = (self.published.figure.to_string(), self.published);
-        let paper = [
-            &figure,
-            p.mesh,
-            "the paper, its computer",
-            p.frames_per_second,
-            p.steps,
-            "",
-        ];
+        let [mesh, rate, steps] = self.published;
+        let figure = self.figure.to_string();
+        let paper = [&figure, mesh, "the paper, its computer", rate, steps, ""].map(str::to_owned);
         let mesh = self.ours.mesh();
-        let mut rows = vec![
-            paper.map(str::to_owned).to_vec(),
-            default_row(&mesh, &self.ours),
-        ];
-        rows.extend(
-            self.charts
-                .iter()
-                .map(|(name, s)| chart_row(&mesh, name, s)),
-        );
-        rows
+        let charts = self.charts.iter();
+        [paper, default_row(&mesh, &self.ours)]
+            .into_iter()
+            .chain(charts.map(|(name, s)| chart_row(&mesh, name, s)))
+            .map(Vec::from)
+            .collect()
     }
 
     fn facts(&self) -> Value {
         let charts: Vec<&ChartSummary> = self.charts.iter().map(|(_, s)| s).collect();
-        json!({ "figure": self.published.figure, "default": self.ours, "without_self_contact": self.free, "published_scheme": charts })
+        json!({ "figure": self.figure, "default": self.ours, "without_self_contact": self.free, "published_scheme": charts })
     }
 }
 
@@ -247,32 +222,28 @@ pub(super) fn make(store: &Store) -> Result<Made> {
 }
 
 fn milliseconds(range: [f64; 2]) -> String {
-    let text = |s: f64| {
-        let ms = 1e3 * s;
-        if ms >= 10.0 {
-            format!("{ms:.1}")
-        } else if ms >= 0.1 {
-            format!("{ms:.2}")
-        } else {
-            format!("{ms:.1e}")
-        }
+    let text = |s: f64| match 1e3 * s {
+        ms if ms >= 10.0 => format!("{ms:.1}"),
+        ms if ms >= 0.1 => format!("{ms:.2}"),
+        ms => format!("{ms:.1e}"),
     };
-    format!("{}/{}", text(range[0]), text(range[1]))
+    range.map(text).join("/")
 }
 
-fn default_row(mesh: &str, s: &RunSummary) -> Vec<String> {
-    vec![
+fn default_row(mesh: &str, s: &RunSummary) -> [String; 6] {
+    let method = crumple::method_name(Integrator::default());
+    let Course {
+        time, strain, cost, ..
+    } = &s.course;
+    [
         String::new(),
         mesh.into(),
-        format!(
-            "isosheet ({}), from exactly flat, with contact",
-            crumple::method_name(Integrator::default())
-        ),
+        format!("isosheet ({method}), from exactly flat, with contact"),
         format!("{:.0}", s.frames_per_second),
         s.step_range.map_or("–".into(), milliseconds),
         format!(
-            "{:.1} s, {} rejected steps, strain {:.0e}",
-            s.course.time, s.course.cost.rejected, s.course.strain
+            "{time:.1} s, {} rejected steps, strain {strain:.0e}",
+            cost.rejected
         ),
     ]
 }
@@ -293,7 +264,7 @@ fn contact_table(all: &[Tried]) -> Table {
                   the implicit steps take out of fast motion.",
         all,
         columns! { r;
-            "Fig." => r.published.figure.to_string(),
+            "Fig." => r.figure.to_string(),
             "V/F" => r.ours.mesh(),
             "slowness" => format!("{:.2}", r.ours.slowness()),
             "without self-contact" => format!("{:.2}", r.free.slowness()),
@@ -322,7 +293,7 @@ fn contact_table(all: &[Tried]) -> Table {
     )
 }
 
-fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> Vec<String> {
+fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> [String; 6] {
     let course = &s.course;
     let (t, strain) = (course.time, course.strain);
     let outcome = match &course.ending {
@@ -339,15 +310,12 @@ fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> Vec<String> {
         }
         _ => format!("{t:.1} s, strain {strain:.0e}"),
     };
-    vec![
+    let rate = (course.cost.steps > 0).then(|| format!("{:.2}", s.frames_per_second));
+    [
         String::new(),
         mesh.into(),
         name.into(),
-        if course.cost.steps > 0 {
-            format!("{:.2}", s.frames_per_second)
-        } else {
-            "–".into()
-        },
+        rate.unwrap_or("–".into()),
         s.step_range.map_or("–".into(), milliseconds),
         outcome,
     ]

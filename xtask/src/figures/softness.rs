@@ -3,7 +3,7 @@
 use super::crumple::PAPER_SHEET;
 use super::{Effort, Picture, Table, whole_percent};
 use crate::draw::{Axis, Chart, Charts, Marker, Series, palette, superscript};
-use crate::report::{Cell, columns, extremes};
+use crate::report::{columns, extremes};
 use crate::runs::{self, FigureScene, Member};
 use anyhow::{Result, ensure};
 use isosheet_mesh::Dof;
@@ -238,15 +238,8 @@ fn table(all: &[Level]) -> Table {
             &falls => l.falls.len(),
         },
     );
-    for (name, freedom, depth) in [
-        ("rigid plate", 0.0, runs::PLATE),
-        ("limit", 1.0, runs::LIMIT),
-    ] {
-        let mut row = vec![Cell::Missing; table.head.len()];
-        row[0] = name.into();
-        row[4] = whole_percent(freedom).into();
-        row[7] = format!("{depth:.4}").into();
-        table.push(row);
-    }
+    let part = |freedom: f64, depth: f64| [(4, whole_percent(freedom)), (7, format!("{depth:.4}"))];
+    table.push_some("rigid plate", &part(0.0, runs::PLATE));
+    table.push_some("limit", &part(1.0, runs::LIMIT));
     table
 }

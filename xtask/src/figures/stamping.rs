@@ -3,19 +3,26 @@
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Row, compared, course, rows, through_itself};
 use crate::draw::{Axis, Chart, Charts, Series, palette};
+use crate::report::extremes;
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use serde_json::{Value, json};
 
 /// What the elastic blank is made of.
 const METAL: &str = "steel sheet";
 
-/// The scene of the figure.
-pub(super) fn scene(effort: Effort) -> Result<FigureScene> {
+/// A scene of the figure, cut short and with a coarse mesh where the effort is small.
+fn scene_of(file: &str, name: &str, edits: &[&str], effort: Effort) -> Result<FigureScene> {
     let quick = ["sheet.mesh.square.level=1", "stop.time=0.13333333333333333"];
-    let edits = effort.quick_or(quick.map(str::to_owned).to_vec(), Vec::new());
-    FigureScene::of("fig13", "stamping", &edits)
+    let all = [edits, effort.quick_or(&quick[..], &[])].concat();
+    let all: Vec<String> = all.iter().map(|e| (*e).to_owned()).collect();
+    FigureScene::of(file, name, &all)
+}
+
+/// The scene that the paper shows.
+pub(super) fn scene(effort: Effort) -> Result<FigureScene> {
+    scene_of("fig13", "stamping", &[], effort)
 }
 
 /// Times of the pictures of the blank that the die leaves, seconds: before, half-way up, at the top, half-way down, and
@@ -25,17 +32,11 @@ const RELEASE: [f64; 5] = [0.0, 1.2, 2.4, 3.0, 4.0];
 /// The edit that makes the blank yield.
 const YIELDS: &str = "sheet.yield={}";
 
-/// The scene in which the die withdraws, with edits.
-fn release(name: &str, edits: &[&str], effort: Effort) -> Result<FigureScene> {
-    let quick = ["sheet.mesh.square.level=1", "stop.time=0.13333333333333333"];
-    let short = effort.quick_or(quick.to_vec(), Vec::new());
-    let edits: Vec<String> = edits
-        .iter()
-        .chain(&short)
-        .map(|e| (*e).to_owned())
-        .collect();
-    FigureScene::of("fig13-release", name, &edits)
-}
+/// A blank keeps its shape if its height at the end is at least this part of the largest one, and is flat again if not.
+const KEPT: f64 = 0.1;
+
+/// Steel presses the die by this factor more than rods do, at least.
+const HARDER: f64 = 10.0;
 
 /// The numbers of the die and the frame among the bodies; the holders follow.
 const DIE: usize = 0;
@@ -161,6 +162,12 @@ impl Punched {
     }
 }
 
+/// The highest point of positions above the lowest, metres.
+fn height(x: &[f64]) -> f64 {
+    let heights = x.iter().skip(2).step_by(3).copied();
+    extremes(heights).map_or(0.0, |[low, high]| high - low)
+}
+
 /// A blank that the die has left.
 struct Released {
     label: &'static str,
@@ -171,20 +178,13 @@ struct Released {
 }
 
 impl Released {
-    fn of(store: &Store, label: &'static str, scene: FigureScene) -> Result<Self> {
+    fn of(store: &Store, [name, label]: [&'static str; 2], edits: &[&str]) -> Result<Self> {
+        let scene = scene_of("fig13-release", name, edits, store.effort)?;
         let run = Run::of(store, scene)?;
-        let frames = 0..run.trajectory.len();
-        let height = |k: usize| {
-            let x = run.trajectory.frame(k).unwrap_or_default();
-            let z = x.as_chunks::<3>().0.iter().map(|p| p[2]);
-            let [least, most] = z.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], z| {
-                [l.min(z), m.max(z)]
-            });
-            most - least
-        };
+        let heights: Vec<f64> = run.frames().map(height).collect();
         Ok(Self {
-            height: frames.clone().map(height).next_back().unwrap_or_default(),
-            largest: frames.map(height).fold(0.0, f64::max),
+            height: heights.last().copied().unwrap_or_default(),
+            largest: heights.into_iter().fold(0.0, f64::max),
             label,
             run,
         })
@@ -219,11 +219,22 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     let rods = scene(effort)?;
     let steel = Punched::of(store, rods.made_of(METAL)?)?;
     let rods = Punched::of(store, rods)?;
-    let springs = release("stamping-release-elastic", &[], effort)?;
-    let springs = Released::of(store, "elastic steel", springs)?;
-    let stays = release("stamping-release", &[YIELDS], effort)?;
-    let stays = Released::of(store, "steel that yields", stays)?;
+    let springs = ["stamping-release-elastic", "elastic steel"];
+    let springs = Released::of(store, springs, &[])?;
+    let stays = ["stamping-release", "steel that yields"];
+    let stays = Released::of(store, stays, &[YIELDS])?;
     let both = [&springs, &stays];
+    let kept = both.map(|r| r.height / r.largest);
+    ensure!(
+        effort == Effort::Quick || kept[0] < KEPT && kept[1] > KEPT,
+        "elastic steel and steel that yields keep the parts {kept:?} of their heights"
+    );
+    ensure!(
+        effort == Effort::Quick || steel.peak > HARDER * rods.peak,
+        "steel presses the die with up to {:.0} N, rods with {:.0} N",
+        steel.peak,
+        rods.peak
+    );
     let ends = both.map(|r| (r.label.to_owned(), &r.run));
     let left = "The blank after the die has withdrawn: elastic steel is flat, steel that yields keeps a shape";
     let alt = "Force of the sheet on the die over its stroke";
