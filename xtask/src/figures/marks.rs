@@ -172,7 +172,10 @@ pub(super) fn table(all: &[Marks]) -> Table {
     let shares = |part: f64| [2, 3, 4].map(|column| (column, whole_percent(part)));
     table.push_some("equal folds", &shares(SHARPEST));
     table.push_some("normally distributed", &shares(NORMAL));
-    table.push_some("limit", &[(5, degrees(MARK)), (10, whole_percent(ARC))]);
+    table.push_some(
+        "marks and arcs",
+        &[(5, degrees(MARK)), (10, whole_percent(ARC))],
+    );
     table
 }
 

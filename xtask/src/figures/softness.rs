@@ -212,8 +212,8 @@ const ABOUT: &str = "\
     between the same masses welded to a rigid plate and free fall. The other columns: mean (range) of falls from flat up to a random \
     small part of an edge. Total bending, averaged over the run: sum of edge length (in sides) times fold angle, which does not depend \
     on how many edges share a bend. Width: largest horizontal distance at the end. Depth of the centre of mass at the end, in sides: it \
-    depends on the folds in which a sheet happens to come to rest, more than on the mesh. The last rows are the rigid plate and what no \
-    unstretchable sheet passes.";
+    depends on the folds in which a sheet happens to come to rest, more than on the mesh. The last rows are for \
+    comparison: the limits of the fall, and the depth that no unstretchable sheet passes.";
 
 fn table(all: &[Level]) -> Table {
     let range = |l: &Level, digits: usize, f: fn(&Member) -> f64| {
@@ -238,8 +238,10 @@ fn table(all: &[Level]) -> Table {
             &falls => l.falls.len(),
         },
     );
-    let part = |freedom: f64, depth: f64| [(4, whole_percent(freedom)), (7, format!("{depth:.4}"))];
-    table.push_some("rigid plate", &part(0.0, runs::PLATE));
-    table.push_some("limit", &part(1.0, runs::LIMIT));
+    let depth = |depth: f64| (7, format!("{depth:.4}"));
+    let freedom = |part: f64| (4, whole_percent(part));
+    table.push_some("rigid plate", &[freedom(0.0), depth(runs::PLATE)]);
+    table.push_some("free fall", &[freedom(1.0)]);
+    table.push_some("deepest unstretchable", &[depth(runs::LIMIT)]);
     table
 }
