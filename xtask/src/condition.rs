@@ -1,7 +1,7 @@
 //! `condition-table`: condition numbers of the mass matrix in three charts, by mesh level.
 
 use crate::draw::{
-    Axis, Chart, Charts, Colour, Legend, Marker, Series, Vector, palette, superscript,
+    Axis, Chart, Charts, Colour, Legend, Marker, Series, Vector, mesh_name, palette,
 };
 use crate::interrupt;
 use crate::progress::Progress;
@@ -149,7 +149,7 @@ pub(crate) fn plot(rows: &[ConditionRow]) -> Charts {
         let mut series: Vec<Series> = CHARTS.iter().map(of_chart).collect();
         let limit = ends.map(|x| [x, 1.0 / f64::EPSILON]).to_vec();
         series.push(Series::guide("1/ε of f64", limit));
-        let ticks = (0..=last).map(|k| (f64::from(k), format!("M{}", superscript(k))));
+        let ticks = (0..=last).map(|k| (f64::from(k), mesh_name(k)));
         let x = Axis::named("mesh", ends, ticks.collect());
         let y = Axis::decades("condition number of C", all());
         Chart::new(x, y, [170.0, 150.0], series).titled(title)

@@ -14,7 +14,7 @@ pub(crate) mod spatial;
 mod svg;
 mod text;
 
-pub(crate) use axis::{Axis, superscript};
+pub(crate) use axis::{Axis, mesh_name};
 pub(crate) use chart::{Chart, Charts, Legend};
 pub(crate) use colour::{Colour, palette};
 pub(crate) use drawing::{Anchor, Drawing, Stroke, Vertical, column, row};

@@ -148,8 +148,13 @@ impl ValueFormatter<f64> for Axis {
     }
 }
 
+/// The name of a mesh: M³.
+pub(crate) fn mesh_name(level: u32) -> String {
+    format!("M{}", superscript(level))
+}
+
 /// A number in superscript digits.
-pub(crate) fn superscript(number: u32) -> String {
+fn superscript(number: u32) -> String {
     let digits = number.to_string().into_bytes().into_iter();
     let raised =
         digits.map(|d| ["⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"][usize::from(d - b'0')]);

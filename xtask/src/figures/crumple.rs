@@ -3,6 +3,7 @@
 use super::marks::{self, Marks};
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Row, compared, course, rows, through_itself};
+use crate::draw::mesh_name;
 use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
 use crate::store::Store;
 use anyhow::{Result, ensure};
@@ -182,7 +183,7 @@ pub(super) fn method_name(integrator: Integrator) -> &'static str {
 }
 
 /// How a run is shown, and the level of its mesh.
-fn view(run: &Run) -> Result<(View, usize)> {
+fn view(run: &Run) -> Result<(View, u32)> {
     let hanging = Hanging::of(&run.scene)?;
     let view = View {
         azimuth: -62.0,
@@ -193,13 +194,13 @@ fn view(run: &Run) -> Result<(View, usize)> {
         pins: vec![hanging.pin],
         bodies: &[],
     };
-    Ok((view, hanging.level as usize))
+    Ok((view, hanging.level))
 }
 
 /// The page that plays a run.
 pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
     let (view, level) = view(run)?;
-    let (level, free) = (["M⁰", "M¹", "M²", "M³"][level], through_itself(&run.scene));
+    let (level, free) = (mesh_name(level), through_itself(&run.scene));
     let label = format!("crumpled paper, {level}, {}{free}", run.scene.sheet_name());
     view.play(run, effort, figure, &label)
 }

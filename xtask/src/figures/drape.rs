@@ -5,7 +5,7 @@ use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{Folds, Hem};
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Table, through_itself, whole_percent};
-use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series, palette};
+use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series, mesh_name, palette};
 use crate::report::columns;
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
@@ -105,6 +105,11 @@ impl Draped {
             "folds": self.hem.folds, "spacing_spread": self.hem.spacing_spread, "size_spread": self.hem.size_spread, "wave": self.hem.wave,
         } })
     }
+}
+
+/// The numbers of some cloths.
+fn facts(all: &[Draped]) -> Value {
+    all.iter().map(Draped::facts).collect()
 }
 
 /// How a cloth is shown.
@@ -224,14 +229,10 @@ const CONDITIONS: &str = "Rods of 0.2 kg/m², films of their own mass, velocity 
 
 pub(super) fn fig14(store: &Store) -> Result<Made> {
     let effort = store.effort;
-    let names = ["M¹", "M²", "M³", "M⁴"];
     let levels = effort.quick_or(&[2, 1][..], &[2, 3, 4]);
     let mut scenes = Vec::new();
     for &level in levels {
-        scenes.push((
-            names[level as usize - 1].to_owned(),
-            rectangle(level, effort)?,
-        ));
+        scenes.push((mesh_name(level), rectangle(level, effort)?));
     }
     scenes.push(("irregular".to_owned(), irregular(effort)?));
     let all = of_both(scenes, store)?;
@@ -256,7 +257,7 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
         ],
         pages: pages(14, &each, effort)?,
         tables: vec![fold_table(&all), runs_table(&each)],
-        facts: json!(all.iter().map(Draped::facts).collect::<Vec<_>>()),
+        facts: facts(&all),
     })
 }
 
@@ -395,9 +396,9 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
             runs_table(&all),
         ],
         facts: json!({
-            "octagons": octagons.iter().map(Draped::facts).collect::<Vec<_>>(),
-            "polygons": polygons.iter().map(Draped::facts).collect::<Vec<_>>(),
-            "films": films.iter().map(Draped::facts).collect::<Vec<_>>(),
+            "octagons": facts(&octagons),
+            "polygons": facts(&polygons),
+            "films": facts(&films),
         }),
     })
 }

@@ -2,7 +2,7 @@
 
 use super::crumple::PAPER_SHEET;
 use super::{Effort, Picture, Table, whole_percent};
-use crate::draw::{Axis, Chart, Charts, Marker, Series, palette, superscript};
+use crate::draw::{Axis, Chart, Charts, Marker, Series, mesh_name, palette};
 use crate::report::{columns, extremes};
 use crate::runs::{self, FigureScene, Member};
 use anyhow::{Result, ensure};
@@ -27,7 +27,7 @@ pub(super) struct Softness {
     pub(super) picture: Picture,
     pub(super) table: Table,
     /// How the total bending depends on the mesh.
-    pub(super) finding: &'static str,
+    pub(super) finding: String,
     pub(super) facts: Value,
 }
 
@@ -82,7 +82,7 @@ fn freedom(level: u32, material: Option<&str>) -> Result<Vec<[f64; 2]>> {
 
 impl Level {
     fn name(&self) -> String {
-        format!("M{}", superscript(self.level))
+        mesh_name(self.level)
     }
 
     fn early(&self) -> f64 {
@@ -137,7 +137,7 @@ pub(super) fn make(
     Ok(Softness {
         picture: Picture::svg("fig12-softness", &plots(&all), alt),
         table: table(&all),
-        finding: FINDING,
+        finding: FINDING.to_owned(),
         facts: Value::Array(
             all.iter()
                 .map(|l| json!({ "level": l.level, "sheet": l.sheet, "freedom": l.early(), "freedom_at": EARLY, "bump": BUMP, "falls": l.falls }))
@@ -175,7 +175,7 @@ fn plots(all: &[Level]) -> Charts {
     let top = series.iter().flat_map(|s| &s.bars).map(|b| b[3]);
     let top = 1.1 * top.fold(0.0, f64::max);
     let last = all.last().map_or(0, |l| l.level);
-    let ticks = (0..=last).map(|l| (f64::from(l), format!("M{}", superscript(l))));
+    let ticks = (0..=last).map(|l| (f64::from(l), mesh_name(l)));
     charts.push(Chart::new(
         Axis::named("mesh", [-0.25, f64::from(last) + 0.25], ticks.collect()),
         Axis::linear("total bending (rad · side)", [0.0, top]),
