@@ -132,6 +132,17 @@ fn through_itself(scene: &FigureScene) -> &'static str {
     }
 }
 
+/// The mean of some values.
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// The place of the value that is nearest to another one, 0 if there are none.
+fn nearest(values: impl IntoIterator<Item = f64>, wanted: f64) -> usize {
+    let off = values.into_iter().map(|v| (v - wanted).abs()).enumerate();
+    off.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(k, _)| k)
+}
+
 /// A quantity, and what was measured of it.
 type Row = (&'static str, String);
 

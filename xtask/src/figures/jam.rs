@@ -2,7 +2,7 @@
 
 use super::feed::{Feed, INNER, OUTER, PLATE};
 use super::show::View;
-use super::{Effort, Made, Picture, Table, measured, rows};
+use super::{Effort, Made, Picture, Row, Table, measured, rows};
 use crate::draw::{
     Anchor, Axis, Chart, Charts, Colour, Drawing, Series, Stroke, TEXT, Vertical, column, palette,
     row,
@@ -10,7 +10,7 @@ use crate::draw::{
 use crate::report::{Cell, columns};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
@@ -204,10 +204,10 @@ fn newtons(force: f64) -> String {
 }
 
 /// What happens in front of the plate; `passing` is a force that the strip never needs to pass.
-fn describe(jam: &Fed, passing: f64) -> Vec<(&'static str, String)> {
+fn describe(jam: &Fed, passing: f64) -> Vec<Row> {
     let (Some(arrival), Some((k, force))) = (jam.arrival(), jam.buckle(passing)) else {
         return rows! {
-            "the strip reaches the plate" => "not in this run, which is too short",
+            "displacement at which the strip reaches the plate" => "–",
         };
     };
     let mm = |frame: usize| format!("{:.1} mm", 1e3 * jam.feed_length_at(frame));
@@ -215,15 +215,6 @@ fn describe(jam: &Fed, passing: f64) -> Vec<(&'static str, String)> {
     let [clamped, hinged] = jam.euler(column).map(newtons);
     let last = jam.profiles.len() - 1;
     let [x, turn] = jam.sharpest(last);
-    let end = if jam.jammed {
-        format!(
-            "{}: the force passes {} N, and the nip slips",
-            mm(last),
-            jam.feed.limit
-        )
-    } else {
-        mm(last)
-    };
     rows! {
         "displacement at which the strip reaches the plate" => mm(arrival),
         "displacement and force at which it buckles between nip and bend" =>
@@ -231,7 +222,8 @@ fn describe(jam: &Fed, passing: f64) -> Vec<(&'static str, String)> {
         "length of the straight part there" => format!("{:.0} mm", 1e3 * column),
         "Euler's load of this length: both ends clamped, one hinged" => format!("{clamped}, {hinged}"),
         "further falls of the force, into shorter waves" => (jam.buckles(passing).len() - 1).to_string(),
-        "displacement at the end" => end,
+        "displacement at the end" => mm(last),
+        "force at which the nip slips" => format!("{} N", jam.feed.limit),
         "inflections in the straight part at the end" => jam.inflections(last).to_string(),
         "sharpest bend at the end" => format!(
             "{:.0}° over {:.0} mm, {:.0} mm before the bend of the guide", turn.abs().to_degrees(),
@@ -293,6 +285,11 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     let fed = |case| Fed::of(scene(case, store.effort)?, store);
     let all: Vec<Fed> = CASES.into_iter().map(fed).collect::<Result<_>>()?;
     let jam = &all[JAM];
+    let jams: Vec<bool> = all.iter().map(|f| f.jammed).collect();
+    ensure!(
+        store.effort == Effort::Quick || (0..all.len()).all(|k| jams[k] == (k == JAM)),
+        "the blocked guide alone jams, but these do: {jams:?}"
+    );
     let passing = 2.0 * all[OPEN].peak()[1];
     let times = SHOWN.map(|s| s * jam.run.summary.course.time);
     let alt = "A strip of paper is pushed round a bend against a plate, buckles and folds up";

@@ -1,7 +1,7 @@
 //! Crescent marks: how far the folds of a crumpled sheet concentrate in few edges.
 
 use super::crescent::Crescent;
-use super::{Table, degrees, whole_percent};
+use super::{Table, degrees, mean, nearest, whole_percent};
 use crate::draw::{Axis, Chart, Charts, Colour, Legend, Series, palette};
 use crate::report::{Cell, columns};
 use isosheet_io::Trajectory;
@@ -97,15 +97,12 @@ impl Marks {
             .filter(|s| s[0] >= 0.5 * end)
             .map(|s| s[column])
             .collect();
-        late.iter().sum::<f64>() / late.len().max(1) as f64
+        mean(&late)
     }
 
     fn at(&self, t: f64, column: usize) -> f64 {
-        let nearest = self
-            .shares
-            .iter()
-            .min_by(|a, b| (a[0] - t).abs().total_cmp(&(b[0] - t).abs()));
-        nearest.map_or(f64::NAN, |s| s[column])
+        let at = nearest(self.shares.iter().map(|s| s[0]), t);
+        self.shares.get(at).map_or(f64::NAN, |s| s[column])
     }
 }
 

@@ -1,11 +1,11 @@
 //! Beyond the paper: crease patterns folded by driven angles.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, course, degrees, measured, rows};
+use super::{Effort, Made, Picture, Play, course, degrees, mean, measured, nearest, rows};
 use crate::draw::{Axis, Chart, Charts, Colour, Marker, Series, palette};
 use crate::runs::{FigureScene, Run, RunSummary};
 use crate::store::Store;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use isosheet_io::scene::{AlikeCreases, DegreeFour, Mesh, Miura};
 use isosheet_mesh::generate::{FoldAssignment, FoldPattern, miura_zigzags};
 use isosheet_mesh::origami;
@@ -80,7 +80,6 @@ impl Folded {
                 a => straights.push(a.sign() * fold),
             }
         }
-        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
         let off = |v: &[f64], about: f64| v.iter().fold(0.0f64, |m, a| m.max((a - about).abs()));
         let zigzag = mean(&zigzags);
         let theta = 0.5 * zigzag;
@@ -135,6 +134,10 @@ fn vertex_angles(run: &Run) -> Result<Vec<[f64; 4]>> {
 /// Folds below this say more about round-off than about kinematics: the lengths, kept to 1e-12, fix an angle
 /// to that over the angle.
 const LEAST: f64 = 0.05;
+
+/// Largest error of the fold angles of a vertex, radians: rods change their lengths by less than 1e-10 in every run of a
+/// figure, and errors count from [`LEAST`] on.
+const EXACT: f64 = 1e-10 / LEAST;
 
 /// The crease, from 0, that folds most and is driven.
 fn lead(mode: origami::FoldingMode) -> usize {
@@ -281,6 +284,10 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     for mode in MODES {
         vertices.push(Vertex::of(mode, store)?);
     }
+    ensure!(
+        vertices.iter().all(|v| v.error < EXACT),
+        "the creases of a vertex of degree four do not fold as geometry says"
+    );
     let branches = Chart::new(
         Axis::linear("fold of crease 1 (°)", [0.0, 160.0]),
         Axis::linear("fold of crease 2 (°)", [-160.0, 0.0]),
@@ -288,10 +295,10 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         vertices.iter().flat_map(|v| v.series.clone()).collect(),
     );
     let times = [0.0, 30.0, 60.0, 90.0, 120.0, 150.0].map(|angle: f64| {
-        let off = |k: &usize| (folded[*k].zigzag.to_degrees() - angle).abs();
-        let nearest = (0..folded.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
-        whole.trajectory.times()[nearest.unwrap_or(0)]
+        let angles = folded.iter().map(|f| f.zigzag.to_degrees());
+        whole.trajectory.times()[nearest(angles, angle)]
     });
+    let (work, lack) = (run.energy.work, run.energy.drift);
     let mut rows = rows! {
         "sheet" => format!(
             "{}/{} vertices/faces, panels of 20 mm with an angle of 60°, 80 g/m², no gravity", run.vertices,
@@ -309,12 +316,8 @@ pub(super) fn make(store: &Store) -> Result<Made> {
             format!("{:.0e} rad", vertices[0].error),
         "vertex of degree four, creases 2 and 4 alike: largest error" =>
             format!("{:.0e} rad", vertices[1].error),
+        "work of the drive, and what the balance lacks" => format!("{work:.2e} J, {lack:.1e} J"),
     };
-    let (work, lack) = (run.energy.work, run.energy.drift);
-    rows.push((
-        "work of the drive, and what the balance lacks",
-        format!("{work:.2e} J, {lack:.1e} J"),
-    ));
     rows.extend(course(run));
     let alt = "A flat sheet with a Miura pattern folds up";
     let alt_folds = "Fold of the straight creases, and size of the sheet, over the fold of the zigzags: simulated and exact";

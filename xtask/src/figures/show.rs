@@ -1,6 +1,6 @@
 //! How a run is shown: its frames as a grid of shaded pictures, and a page that plays it in 3D.
 
-use super::{Picture, Play, rows};
+use super::{Picture, Play, nearest, rows};
 use crate::draw::{Shot, Viewpoint};
 use crate::report::Effort;
 use crate::runs::{Run, RunSummary};
@@ -29,12 +29,7 @@ pub(super) struct View {
 /// Frames nearest to the wanted times; a run that ends before half of the last shows four evenly spread.
 fn choose(times: &[f64], wanted: &[f64]) -> Vec<usize> {
     let end = times.last().copied().unwrap_or(0.0);
-    let nearest = |t: f64| {
-        let distance = |k: &usize| (times[*k] - t).abs();
-        let all = 0..times.len();
-        all.min_by(|a, b| distance(a).total_cmp(&distance(b)))
-            .unwrap_or(0)
-    };
+    let nearest = |t: f64| nearest(times.iter().copied(), t);
     let last = wanted.last().copied().unwrap_or(0.0);
     if end < 0.5 * last {
         return (0..4).map(|k| nearest(end * f64::from(k) / 3.0)).collect();

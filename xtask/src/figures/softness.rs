@@ -1,7 +1,7 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
 use super::crumple::PAPER_SHEET;
-use super::{Effort, Picture, Table, whole_percent};
+use super::{Effort, Picture, Table, mean, nearest, whole_percent};
 use crate::draw::{Axis, Chart, Charts, Marker, Series, mesh_name, palette};
 use crate::report::{columns, extremes};
 use crate::runs::{self, FigureScene, Member};
@@ -86,20 +86,13 @@ impl Level {
     }
 
     fn early(&self) -> f64 {
-        let nearest = self
-            .freedom
-            .iter()
-            .min_by(|a, b| (a[0] - EARLY).abs().total_cmp(&(b[0] - EARLY).abs()));
-        nearest.map_or(f64::NAN, |p| p[1])
+        let at = nearest(self.freedom.iter().map(|p| p[0]), EARLY);
+        self.freedom.get(at).map_or(f64::NAN, |p| p[1])
     }
 
     fn values(&self, f: impl Fn(&Member) -> f64) -> Vec<f64> {
         self.falls.iter().map(f).collect()
     }
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Measures the falls of the scenes that `fall` gives for each level.
