@@ -275,11 +275,12 @@ fn check_corners(fine: &[&Draped]) -> Result<()> {
     Ok(())
 }
 
-/// What is seen of the number of folds and of their pattern: the stiffer the film, the fewer folds has a cloth; and film has
+/// What is seen of the number of folds and of their pattern: the stiffer the film, the fewer folds has the octagon; and film has
 /// more uniform folds than rods, on the roundest cloth with the finest mesh.
 fn check_folds(irregular: &[Draped], films: &[Draped]) -> Result<()> {
-    // Two cloths of each film.
-    for (softer, stiffer) in films.iter().zip(films.iter().skip(2)) {
+    // Every second cloth is round.
+    let octagons: Vec<&Draped> = films.iter().step_by(2).collect();
+    for (softer, stiffer) in octagons.iter().zip(&octagons[1..]) {
         let folds = [softer, stiffer].map(|d| d.hem.folds);
         ensure!(
             folds[0] > folds[1],
@@ -377,7 +378,8 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
         here: "In the irregular meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
                the meshes of concentric rings some do. The first sequence is of rods, the second, on the finest mesh, of acetate film: on the \
                finer meshes of film a fold runs from every table corner to its cloth corner. On round cloths folds of film are more evenly \
-               spaced and more alike than those of rods. The film decides how many folds there are: the stiffer, the fewer."
+               spaced and more alike than those of rods. The film decides how many folds there are: the octagon has the \
+               fewer the stiffer it is."
             .into(),
         pictures: vec![
             octagons[0].picture("fig15.png", effort)?,
