@@ -246,8 +246,8 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
         paper: "A rectangular plastic tablecloth is draped over a rectangular table with M², and with a second resolution: the principal folds run from \
                 the table corners to the cloth corners.",
         here: "The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown: the irregular \
-               triangulation, which has no such lines, is the check. The first sequence is of rods; the second, on the finest mesh, of acetate \
-               film, an elastic sheet that resists bending: there a fold runs from every table corner to its cloth corner. The table counts them."
+               triangulation, which has no such lines, is the check. Of acetate film, an elastic sheet that resists bending (the second \
+               sequence, on the finest mesh), a fold runs from every table corner to its cloth corner, and of rods the table counts them."
             .into(),
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
@@ -376,10 +376,9 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
         paper: "An octagonal plastic tablecloth (244/440) is draped over an octagonal table: principal folds run from table corners to cloth corners, and for \
                 more and more corners the paper infers that uniform folding patterns will occur.",
         here: "In the irregular meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
-               the meshes of concentric rings some do. The first sequence is of rods, the second, on the finest mesh, of acetate film: on the \
-               finer meshes of film a fold runs from every table corner to its cloth corner. On round cloths folds of film are more evenly \
-               spaced and more alike than those of rods. The film decides how many folds there are: the octagon has the \
-               fewer the stiffer it is."
+               the meshes of concentric rings some do. On the finer meshes of acetate film (the second sequence) a fold runs from every table \
+               corner to its cloth corner, on round cloths its folds are more evenly spaced and more alike than those of rods, and the \
+               stiffer the film, the fewer folds has the octagon."
             .into(),
         pictures: vec![
             octagons[0].picture("fig15.png", effort)?,
