@@ -148,6 +148,11 @@ impl Convert {
                 .with_assignments(assignments)
                 .map_err(|e| input(&e))?;
         }
+        if !recording.parts.is_empty() {
+            series = series
+                .with_sheets(&recording.parts)
+                .map_err(|e| input(&e))?;
+        }
         let bodies = recording.exported_bodies();
         self.write_run(&series.with_bodies(bodies).map_err(|e| input(&e))?)
     }

@@ -6,11 +6,13 @@ mod error;
 mod flat;
 mod fold;
 mod gltf;
+mod moving;
 mod obj;
 mod off;
 mod pc2;
 mod ply;
 mod series;
+mod sheets;
 mod stl;
 #[cfg(test)]
 mod tests;
@@ -23,7 +25,8 @@ pub use gltf::MOST_KEY_FRAMES;
 pub use series::{FieldSupport, Series, SeriesField, SeriesOptions};
 
 use super::mesh_file::MeshFile;
-use series::Moving;
+use super::obj_write::Extras;
+use moving::Moving;
 use std::path::{Path, PathBuf};
 
 /// A format in which one mesh is written, as the extension of a file says.
@@ -145,7 +148,7 @@ pub fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
     let (x, faces) = (&mesh.positions[..], &mesh.faces[..]);
     error::check_mesh(x, faces)?;
     match format {
-        ExportMeshFormat::Obj => obj::write(path, faces, x, None),
+        ExportMeshFormat::Obj => obj::write(path, faces, x, &Extras::default()),
         ExportMeshFormat::Off => off::write(path, faces, x),
         ExportMeshFormat::Stl => stl::write(path, faces, x),
         ExportMeshFormat::Ply => ply::write(path, faces, x),
@@ -164,7 +167,9 @@ pub fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
 pub fn write_frame(path: &Path, series: &Series<'_>, frame: usize) -> Result<(), ExportError> {
     let mesh = series.mesh(frame)?;
     match by_extension(path, &ExportMeshFormat::ALL, ExportMeshFormat::extension)? {
-        ExportMeshFormat::Obj => obj::write(path, &mesh.faces, &mesh.positions, series.uv()),
+        ExportMeshFormat::Obj => {
+            obj::write(path, &mesh.faces, &mesh.positions, &obj::extras(series))
+        }
         ExportMeshFormat::Glb => gltf::write(path, &series.moving(&[frame])),
         ExportMeshFormat::Usda => usda::write(path, &series.moving(&[frame])),
         _ => write_mesh(path, &mesh),

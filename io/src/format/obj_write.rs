@@ -60,7 +60,7 @@ impl Advice for ObjWriteError {
 pub fn write_obj(path: &Path, topology: &Topology, x: &[f64]) -> Result<(), ObjWriteError> {
     check(topology, x)?;
     Ok(write_atomically(path, |w| {
-        write_lines(w, corners(topology), x, None)
+        write_lines(w, corners(topology), x, &Extras::default())
     })?)
 }
 
@@ -78,7 +78,7 @@ pub fn write_obj_to(
         path: PathBuf::new(),
         source,
     };
-    Ok(write_lines(w, corners(topology), x, None).map_err(failed)?)
+    Ok(write_lines(w, corners(topology), x, &Extras::default()).map_err(failed)?)
 }
 
 /// The file of frame `frame` in `folder`: `frame_00000.obj` and so on, so that names sort as frames do.
@@ -107,14 +107,23 @@ fn corners(topology: &Topology) -> impl ExactSizeIterator<Item = [u32; 3]> {
     topology.faces().iter().map(|f| f.map(|v| v.0))
 }
 
-/// The lines of a file; the positions are finite and the corners exist. `uv` are texture coordinates of vertices.
+/// What a file may have beside positions and faces.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Extras<'a> {
+    /// Texture coordinates of the vertices.
+    pub(crate) uv: Option<&'a [[f64; 2]]>,
+    /// Groups of faces that follow one another: the name of each, and the number of its first face, ascending.
+    pub(crate) groups: Vec<(&'a str, usize)>,
+}
+
+/// The lines of a file; the positions are finite and the corners exist.
 pub(crate) fn write_lines(
     w: &mut impl Write,
     faces: impl ExactSizeIterator<Item = [u32; 3]>,
     x: &[f64],
-    uv: Option<&[[f64; 2]]>,
+    extras: &Extras<'_>,
 ) -> io::Result<()> {
-    let vertices = x.len() / 3;
+    let (vertices, uv) = (x.len() / 3, extras.uv);
     writeln!(w, "# isosheet: {vertices} vertices, {} faces", faces.len())?;
     for p in x.chunks_exact(3) {
         writeln!(w, "v {} {} {}", p[0], p[1], p[2])?;
@@ -122,7 +131,11 @@ pub(crate) fn write_lines(
     for [u, v] in uv.into_iter().flatten() {
         writeln!(w, "vt {u} {v}")?;
     }
-    for corners in faces {
+    let mut groups = extras.groups.iter().peekable();
+    for (k, corners) in faces.enumerate() {
+        while let Some((name, _)) = groups.next_if(|(_, first)| *first <= k) {
+            writeln!(w, "g {name}")?;
+        }
         let [a, b, c] = corners.map(|v| v + 1);
         match uv {
             Some(_) => writeln!(w, "f {a}/{a} {b}/{b} {c}/{c}")?,

@@ -191,7 +191,7 @@ impl Advice for ExportError {
             Self::RestLength { .. } => Some("give a positive length"),
             Self::FieldNotFinite { .. } => Some("give finite values"),
             Self::FieldName { .. } => Some(
-                "rename one (strain, fold_angle, rod_force, contact_force, gap, plastic_angle, plastic_curvature_1 and _2, uv and TimeValue are \
+                "rename one (strain, fold_angle, sheet, rod_force, contact_force, gap, plastic_angle, plastic_curvature_1 and _2, uv and TimeValue are \
                  taken)",
             ),
             Self::NotFinite { .. } => Some("go back to the last state that was finite"),

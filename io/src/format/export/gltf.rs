@@ -1,7 +1,7 @@
 //! Binary glTF 2.0, with morph targets for motions.
 
 use super::error::{fits, single};
-use super::series::Moving;
+use super::moving::{Moving, MovingSheet};
 use super::{BodyPose, ExportError, Series, SeriesBody};
 use crate::format::atomic::write_atomically;
 use serde_json::{Value, json};
@@ -45,8 +45,10 @@ fn upright([x, y, z]: [f32; 3]) -> [f32; 3] {
 /// positions in metres. The format has y upwards: `(x, y, z)` becomes `(x, z, -y)`.
 pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError> {
     let mut file = File::default();
-    let node = file.sheet(moving)?;
-    let mut nodes = vec![node];
+    let mut nodes = Vec::new();
+    for sheet in &moving.sheets {
+        nodes.push(file.sheet(sheet, moving)?);
+    }
     for (body, poses) in &moving.bodies {
         nodes.push(file.body(body, poses)?);
     }
@@ -83,16 +85,21 @@ struct File {
 }
 
 impl File {
-    /// Adds the sheet, with a morph target for each state but the first, and returns its node.
-    fn sheet(&mut self, moving: &Moving<'_>) -> Result<Value, ExportError> {
-        let indices = self.buffer.push_faces(moving.faces);
+    /// Adds a sheet, with a morph target for each state but the first, and returns its node.
+    fn sheet(
+        &mut self,
+        sheet: &MovingSheet<'_>,
+        moving: &Moving<'_>,
+    ) -> Result<Value, ExportError> {
+        let indices = self.buffer.push_faces(&sheet.faces);
         let mut points = Vec::with_capacity(moving.states.len());
         for (_, x) in &moving.states {
-            points.push(single(x)?.into_iter().map(upright).collect::<Vec<_>>());
+            let own = sheet.own(x.as_chunks::<3>().0).as_flattened();
+            points.push(single(own)?.into_iter().map(upright).collect::<Vec<_>>());
         }
         let base = self.buffer.push_vectors(&points[0]);
         let mut attributes = json!({ "POSITION": base });
-        if let Some(uv) = moving.uv {
+        if let Some(uv) = moving.uv.map(|uv| sheet.own(uv)) {
             // Pictures begin at their upper left corner in this format.
             let flipped = uv.iter().flat_map(|[u, v]| [*u as f32, (1.0 - v) as f32]);
             let data = floats(&flipped.collect::<Vec<_>>());
@@ -113,14 +120,14 @@ impl File {
             .map(|p| json!({ "POSITION": self.buffer.push_vectors(&displacement(p)) }))
             .collect();
         let mut primitive = json!({ "attributes": attributes, "indices": indices, "material": 0 });
-        let mut mesh = json!({ "name": "sheet" });
+        let mut mesh = json!({ "name": sheet.name });
         if !targets.is_empty() {
             mesh["weights"] = json!(vec![0.0; targets.len()]);
             primitive["targets"] = json!(targets);
         }
         mesh["primitives"] = json!([primitive]);
         self.meshes.push(mesh);
-        Ok(json!({ "name": "sheet", "mesh": 0 }))
+        Ok(json!({ "name": sheet.name, "mesh": self.meshes.len() - 1 }))
     }
 
     /// Adds a body and returns its node, in the pose of the first state.
@@ -139,7 +146,7 @@ impl File {
         }))
     }
 
-    /// Adds the motion: at state k the k-th target of the sheet counts and no other, and bodies are in their
+    /// Adds the motion: at state k the k-th target of each sheet counts and no other, and bodies are in their
     /// poses.
     fn animate(&mut self, moving: &Moving<'_>) -> Result<(), ExportError> {
         let (states, targets) = (moving.states.len(), moving.states.len() - 1);
@@ -154,20 +161,23 @@ impl File {
         self.buffer.accessors[input]["max"] = json!([times[states - 1]]);
         let weight = |k: usize| f32::from(u8::from(k % targets + 1 == k / targets));
         let weights: Vec<f32> = (0..states * targets).map(weight).collect();
-        let mut outputs = vec![(0, "weights", weights, "SCALAR", states * targets)];
+        let sheets = moving.sheets.len();
+        let mut outputs = vec![(0..sheets, "weights", weights, "SCALAR", states * targets)];
         for (k, (_, poses)) in moving.bodies.iter().enumerate() {
             if poses.len() > 1 {
                 let [translations, rotations] = placements(poses)?;
-                outputs.push((k + 1, "translation", translations, "VEC3", states));
-                outputs.push((k + 1, "rotation", rotations, "VEC4", states));
+                let node = sheets + k..sheets + k + 1;
+                outputs.push((node.clone(), "translation", translations, "VEC3", states));
+                outputs.push((node, "rotation", rotations, "VEC4", states));
             }
         }
         let (mut samplers, mut channels) = (Vec::new(), Vec::new());
-        for (node, path, values, kind, count) in outputs {
+        for (nodes, path, values, kind, count) in outputs {
             let output = self.buffer.push(floats(&values), 0, FLOAT, kind, count);
-            channels.push(
-                json!({ "sampler": samplers.len(), "target": { "node": node, "path": path } }),
-            );
+            for node in nodes {
+                let target = json!({ "node": node, "path": path });
+                channels.push(json!({ "sampler": samplers.len(), "target": target }));
+            }
             samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
         }
         self.animation =

@@ -2,20 +2,29 @@
 
 use super::{ExportError, Series};
 use crate::format::atomic::write_atomically;
-use crate::format::obj_write::{frame_path, write_lines};
+use crate::format::obj_write::{Extras, frame_path, write_lines};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Writes one mesh, with texture coordinates if there are any.
+/// Writes one mesh.
 pub(super) fn write(
     path: &Path,
     faces: &[[u32; 3]],
     x: &[f64],
-    uv: Option<&[[f64; 2]]>,
+    extras: &Extras<'_>,
 ) -> Result<(), ExportError> {
     Ok(write_atomically(path, |w| {
-        write_lines(w, faces.iter().copied(), x, uv)
+        write_lines(w, faces.iter().copied(), x, extras)
     })?)
+}
+
+/// Texture coordinates, and a group for each of several sheets.
+pub(super) fn extras<'a>(series: &'a Series<'_>) -> Extras<'a> {
+    let sheets = series.sheets().iter();
+    Extras {
+        uv: series.uv(),
+        groups: sheets.map(|s| (&*s.name, s.part.faces.start)).collect(),
+    }
 }
 
 /// Writes one file for each frame in a folder, and beside it one with the bodies in their places, one object each;
@@ -32,9 +41,10 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
             files.push(file);
         }
     }
+    let extras = extras(series);
     for &frame in series.frames() {
         let file = frame_path(&folder, frame);
-        write(&file, series.faces(), series.state(frame).1, series.uv())?;
+        write(&file, series.faces(), series.state(frame).1, &extras)?;
         files.push(file);
     }
     Ok(files)

@@ -23,7 +23,7 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
         &mesh,
         series.faces(),
         series.state(series.frames()[0]).1,
-        series.uv(),
+        &obj::extras(series),
     )?;
     write_atomically(path, |w| {
         w.write_all(b"POINTCACHE2\0")?;

@@ -1,11 +1,13 @@
 //! Frames of a moving sheet that are to be written.
 
 use super::flat::flat_coordinates;
-use super::{BodyPose, ExportError, SeriesBody};
+use super::moving::{Moving, MovingSheet};
+use super::sheets::NamedPart;
+use super::{ExportError, SeriesBody};
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
 use crate::format::{Trajectory, TrajectoryError};
 use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{EdgeId, Topology, VertexId, fold_angle};
+use isosheet_mesh::{EdgeId, Part, Topology, VertexId, fold_angle};
 
 /// Which frames of a trajectory are written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,32 +102,8 @@ pub struct Series<'a> {
     /// Places of the vertices in a picture printed on the flat sheet, if it can be flat.
     uv: Option<Vec<[f64; 2]>>,
     bodies: Vec<SeriesBody>,
-}
-
-/// What is written of a mesh that may move, and of bodies beside it.
-pub(super) struct Moving<'a> {
-    pub(super) faces: &'a [[u32; 3]],
-    /// Times (seconds) and positions (metres).
-    pub(super) states: Vec<(f64, &'a [f64])>,
-    /// Places of the vertices in a picture, from 0 to 1 rightwards and upwards.
-    pub(super) uv: Option<&'a [[f64; 2]]>,
-    /// Bodies, each with a pose for each state, or a single one if it rests.
-    pub(super) bodies: Vec<(&'a SeriesBody, Vec<BodyPose>)>,
-    /// Frames a second.
-    pub(super) rate: f64,
-}
-
-impl<'a> Moving<'a> {
-    /// A mesh alone.
-    pub(super) fn still(faces: &'a [[u32; 3]], x: &'a [f64]) -> Self {
-        Self {
-            faces,
-            states: vec![(0.0, x)],
-            uv: None,
-            bodies: Vec::new(),
-            rate: SeriesOptions::default().rate,
-        }
-    }
+    /// The sheets, if there are several.
+    sheets: Vec<NamedPart>,
 }
 
 impl<'a> Series<'a> {
@@ -185,7 +163,28 @@ impl<'a> Series<'a> {
             fields,
             rate: options.rate,
             bodies: Vec::new(),
+            sheets: Vec::new(),
         })
+    }
+
+    /// With the sheets of which the mesh is the union, each with its name and its place in it, for formats that tell
+    /// them apart: objects in USD and glTF files, groups in OBJ files, and cell data `sheet`, the number of the
+    /// sheet from 0, in VTK files. Characters of names that formats refuse become `_`.
+    ///
+    /// # Errors
+    /// [`ExportError::Count`] if the sheets are not the whole mesh, one after the other.
+    pub fn with_sheets(self, sheets: &[(String, Part)]) -> Result<Self, ExportError> {
+        let t = &self.topology;
+        let counts = [t.vertex_count(), t.edge_count(), t.face_count()];
+        Ok(Self {
+            sheets: NamedPart::all(sheets, counts)?,
+            ..self
+        })
+    }
+
+    /// The sheets, if there are several.
+    pub(super) fn sheets(&self) -> &[NamedPart] {
+        &self.sheets
     }
 
     /// With the bodies that the sheet meets, for formats that have several meshes.
@@ -220,7 +219,16 @@ impl<'a> Series<'a> {
             _ => frames.iter().map(|&f| body.poses[f]).collect(),
         };
         Moving {
-            faces: self.faces(),
+            sheets: match &self.sheets[..] {
+                [] => vec![MovingSheet::whole(
+                    self.faces(),
+                    self.trajectory.vertex_count(),
+                )],
+                parts => parts
+                    .iter()
+                    .map(|part| MovingSheet::of(part, self.faces()))
+                    .collect(),
+            },
             states: frames.iter().map(|&f| self.state(f)).collect(),
             uv: self.uv(),
             bodies: self.bodies.iter().map(|b| (b, poses(b))).collect(),
@@ -275,7 +283,7 @@ impl<'a> Series<'a> {
                 value: values[index],
             });
         }
-        let reserved = ["strain", "fold_angle", "TimeValue", "uv"].contains(&&name[..]);
+        let reserved = ["strain", "fold_angle", "sheet", "TimeValue", "uv"].contains(&&name[..]);
         if reserved || self.fields.iter().any(|f| f.name == *name) {
             return Err(ExportError::FieldName { name: name.clone() });
         }

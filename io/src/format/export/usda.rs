@@ -1,7 +1,7 @@
 //! Universal Scene Description as text.
 
 use super::error::single;
-use super::series::Moving;
+use super::moving::Moving;
 use super::{BodyPose, ExportError, SeriesBody};
 use crate::format::atomic::{FileWriter, write_atomically};
 use std::fmt::Display;
@@ -33,27 +33,25 @@ pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError>
     let codes: Vec<f64> = samples.iter().map(|(code, _)| *code).collect();
     Ok(write_atomically(path, |w| {
         head(w, &codes, rate)?;
-        begin_mesh(w, "sheet", moving.faces, COLOURS[0])?;
-        if let Some(uv) = moving.uv {
-            let tuples = uv
-                .iter()
-                .map(|[u, v]| format!("({}, {})", *u as f32, *v as f32));
-            list(
-                w,
-                "        texCoord2f[] primvars:st = ",
-                tuples,
-                " (\n            interpolation = \"vertex\"\n        )",
-            )?;
+        for sheet in &moving.sheets {
+            begin_mesh(w, sheet.name, &sheet.faces, COLOURS[0])?;
+            if let Some(uv) = moving.uv {
+                let own = sheet.own(uv).iter();
+                let tuples = own.map(|[u, v]| format!("({}, {})", *u as f32, *v as f32));
+                list(
+                    w,
+                    "        texCoord2f[] primvars:st = ",
+                    tuples,
+                    " (\n            interpolation = \"vertex\"\n        )",
+                )?;
+            }
+            let points = samples.iter().map(|(_, points)| sheet.own(points));
+            let extents = points.clone().map(|p| extent(p).to_vec());
+            sampled(w, "float3[] extent", &codes, extents)?;
+            let points = points.map(<[_]>::to_vec);
+            sampled(w, "point3f[] points", &codes, points)?;
+            writeln!(w, "    }}")?;
         }
-        let points = samples.iter().map(|(_, points)| points);
-        sampled(
-            w,
-            "float3[] extent",
-            &codes,
-            points.clone().map(|p| extent(p).to_vec()),
-        )?;
-        sampled(w, "point3f[] points", &codes, points.cloned())?;
-        writeln!(w, "    }}")?;
         for (body, points, poses) in &bodies {
             begin_mesh(w, &body.name, &body.faces, COLOURS[1])?;
             list(

@@ -2,7 +2,7 @@
 
 use super::{ExportError, FieldSupport, Series};
 use crate::format::atomic::write_atomically;
-use isosheet_mesh::EdgeId;
+use isosheet_mesh::{EdgeId, Part};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -117,6 +117,16 @@ fn frame_file(series: &Series<'_>, frame: usize) -> Vec<u8> {
         .collect();
     file.floats("strain", "", &of_edges(series, &series.edge_strains(frame)));
     file.floats("fold_angle", "", &of_edges(series, &degrees));
+    if !series.sheets().is_empty() {
+        let numbers = |of: fn(&Part) -> usize| -> Vec<f64> {
+            let sheets = series.sheets().iter().enumerate();
+            let cells =
+                sheets.flat_map(|(k, sheet)| std::iter::repeat_n(k as f64, of(&sheet.part)));
+            cells.collect()
+        };
+        let [on_lines, on_faces] = [numbers(|p| p.edges.len()), numbers(|p| p.faces.len())];
+        file.floats("sheet", "", &[on_lines, on_faces].concat());
+    }
     for (field, values) in series.fields(frame) {
         match field.support {
             FieldSupport::Vertices | FieldSupport::VertexVectors => {}
