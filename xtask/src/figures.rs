@@ -32,7 +32,6 @@ use crate::runs::{FigureScene, RunSummary};
 use crate::store::{Files, Store};
 use anyhow::Result;
 use serde_json::Value;
-use std::borrow::Cow;
 
 /// A page that plays a run.
 #[derive(Clone, Debug)]
@@ -57,7 +56,7 @@ pub(crate) struct Made {
     /// What the paper shows.
     pub(crate) paper: &'static str,
     /// What is seen here.
-    pub(crate) here: Cow<'static, str>,
+    pub(crate) here: &'static str,
     pub(crate) pictures: Vec<Picture>,
     /// Pages that play its runs.
     pub(crate) pages: Vec<Play>,

@@ -54,9 +54,7 @@ pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
     let mut made = Made {
         title: ["Crumpled paper, M¹", "Crumpled paper, M²"][level as usize - 1],
         paper: PAPER[level as usize - 1],
-        here: "A square of office paper falls from exactly flat and horizontal (the side that was above is warm, the other one blue), first as \
-               rods, which do not resist bending and crumple, then as an elastic sheet, which bends as office paper does and does not crumple."
-            .into(),
+        here: HERE[level as usize - 1],
         pictures: vec![
             picture(&file(""), &run, store.effort)?,
             picture(&file("-elastic"), &elastic, store.effort)?,
@@ -83,6 +81,16 @@ const PAPER: [&str; 2] = [
      marks with a typical crescent shape (Amar and Pomeau).",
 ];
 
+const HERE: [&str; 2] = [
+    "A square of office paper falls from exactly flat and horizontal (the side that was above is warm, the other one blue), first as \
+     rods, which do not resist bending and crumple, then as an elastic sheet, which bends as office paper does and does not crumple.",
+    "A square of office paper falls from exactly flat and horizontal, first as rods, which do not resist bending and crumple the more the \
+     finer their mesh is (M³ is not in the paper), then as an elastic sheet, which does not crumple. In the last pictures office paper \
+     that yields (docs/materials.md), a square half as wide as A4, is crumpled between six plates, pressed to a height of 1.5 mm and let \
+     go: it stands on its marks, which take a small part of its area, while elastic paper lies flat again. How high it stands has not \
+     converged with the mesh: finer meshes fold more sharply, and more stays.",
+];
+
 /// What Fig. 12 has beside Fig. 11: a finer mesh, softness by mesh, and marks.
 fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
     if store.effort != Effort::Quick {
@@ -94,16 +102,12 @@ fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
             made.pictures.push(picture(file, &finer, store.effort)?);
             made.pages.push(page(12, &finer, store.effort)?);
         }
-        made.here += " The other two sequences are of M³, which the paper does not show.";
     }
     let part = super::softness::make(store.effort, without_contact)?;
     let both = [concentration(store, scene)?, concentration(store, elastic)?];
     let alt = "How much of the fold angles the sharpest edges carry over time, and how many of the final marks are there already";
     let plot = Picture::svg("fig12-marks", &marks::plot([&both[0], &both[1]]), alt);
     let all = both.concat();
-    *made.here.to_mut() += &part.finding;
-    *made.here.to_mut() += " ";
-    *made.here.to_mut() += LASTING;
     made.pictures.extend([part.picture, plot]);
     made.tables.extend([part.table, marks::table(&all)]);
     let lasting = super::lasting::make(store)?;
@@ -115,13 +119,6 @@ fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
     made.facts["marks"] = json!(all);
     Ok(())
 }
-
-/// What is seen of marks that stay.
-const LASTING: &str = "\
-    The last pictures show what the paper says of crumpling and its model leaves out: office paper that yields (docs/materials.md), a square \
-    half as wide as A4, is pushed together between six plates, freed, pressed to a height of 1.5 mm and let go. It stands on its marks, which \
-    take a small part of its area, while elastic paper lies flat again. How high it stands has not converged with the mesh: on \
-    finer meshes it folds more sharply, and more stays.";
 
 /// The scene of each level of the mesh.
 type Scenes = fn(u32, Effort) -> Result<FigureScene>;

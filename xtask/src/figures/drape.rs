@@ -247,8 +247,7 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
                 the table corners to the cloth corners.",
         here: "The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown: the irregular \
                triangulation, which has no such lines, is the check. Of acetate film, an elastic sheet that resists bending (the second \
-               sequence, on the finest mesh), a fold runs from every table corner to its cloth corner, and of rods the table counts them."
-            .into(),
+               sequence, on the finest mesh), a fold runs from every table corner to its cloth corner, and of rods the table counts them.",
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
             all[2 * levels.len() - 1].picture("fig14-elastic.png", effort)?,
@@ -378,13 +377,16 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
         here: "In the irregular meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
                the meshes of concentric rings some do. On the finer meshes of acetate film (the second sequence) a fold runs from every table \
                corner to its cloth corner, on round cloths its folds are more evenly spaced and more alike than those of rods, and the \
-               stiffer the film, the fewer folds has the octagon."
-            .into(),
+               stiffer the film, the fewer folds has the octagon.",
         pictures: vec![
             octagons[0].picture("fig15.png", effort)?,
             // The last ones are the rings.
             octagons[octagons.len() - 3].picture("fig15-elastic.png", effort)?,
-            ends("fig15-ends.png", &octagons.iter().collect::<Vec<_>>(), effort)?,
+            ends(
+                "fig15-ends.png",
+                &octagons.iter().collect::<Vec<_>>(),
+                effort,
+            )?,
             Picture::svg("fig15-folds", &profiles(&octagons), folds_alt),
             ends("fig15-polygons.png", &shown, effort)?,
             Picture::svg("fig15-hems", &hems(&polygons), alt),

@@ -71,7 +71,7 @@ pub(super) fn make() -> Result<Made> {
         title: "Refinement by the 1–4 split",
         paper: "A mesh is refined by splitting every triangle into four; Lemma 1 says that each step adds as many degrees of \
                 freedom as the coarser mesh has boundary edges.",
-        here: "The split is applied three times to two triangles; new edges are blue.".into(),
+        here: "The split is applied three times to two triangles; new edges are blue.",
         pictures: svg(1, &all, alt),
         tables: vec![table],
         facts: json!({ "levels": facts }),

@@ -58,7 +58,7 @@ pub(super) fn make() -> Result<Made> {
         title: "External and internal degrees of freedom",
         paper: "A single triangle only moves rigidly (six external degrees of freedom); two triangles with a common edge have \
                 a seventh, internal one: the fold about that edge.",
-        here: "The arrow is the path of the far vertex when the one internal coordinate grows from flat to the fold that is drawn.".into(),
+        here: "The arrow is the path of the far vertex when the one internal coordinate grows from flat to the fold that is drawn.",
         tables: vec![measured(rows! {
             "fold that is drawn" => degrees(FOLD),
         })],

@@ -59,8 +59,7 @@ pub(super) fn make() -> Result<Made> {
         paper: "Meshes refined by the 1–4 split fold horizontally, vertically and along the diagonal from lower right to upper \
                 left, but not along the other diagonal: the pattern is anisotropic.",
         here: "Straight crease lines from boundary to boundary are found on the meshes and coloured by direction; the bars are \
-               their total lengths by direction."
-            .into(),
+               their total lengths by direction.",
         tables: vec![anisotropy],
         pictures: svg(3, &all, alt),
         facts: json!({ "one_way": facts[0], "union_jack": facts[1] }),

@@ -80,8 +80,7 @@ pub(super) fn make() -> Result<Made> {
         title: "Isotropic refinement",
         paper: "Rectangles (upper row) are split in four at each level and cut into eight triangles each (lower row); Lemma 2 \
                 says that the DOF double less three.",
-        here: "The rectangles are read off the triangle meshes: they are the stars of the vertices with both grid coordinates odd."
-            .into(),
+        here: "The rectangles are read off the triangle meshes: they are the stars of the vertices with both grid coordinates odd.",
         tables: vec![table],
         pictures: svg(4, &all, alt),
         facts: json!({ "levels": facts }),

@@ -82,7 +82,7 @@ pub(super) fn make() -> Result<Made> {
         title: "Angle triples and the compatibility condition",
         paper: "Two triangles that share an edge can only fold about it, so γᵗ ≤ α + β = γ⁰ at either end (Eq. 10), and one end's \
                 condition implies the other's.",
-        here: "The angles are measured on the folded pair (right), whose fold follows from the angles at either end.".into(),
+        here: "The angles are measured on the folded pair (right), whose fold follows from the angles at either end.",
         pictures: svg(5, &all, alt),
         tables: vec![table],
         facts: json!({

@@ -27,8 +27,7 @@ pub(super) fn make() -> Result<Made> {
         paper: "A vertex with one known neighbour takes two spherical coordinates, with two known neighbours one angle, with three \
                 none.",
         here: "Known vertices are blue, and placed vertices red: the arcs of (a) are the two coordinates, (b) has five values of \
-               the one coordinate, and the ghost of (c) is the other solution, the mirror image."
-            .into(),
+               the one coordinate, and the ghost of (c) is the other solution, the mirror image.",
         tables: vec![measured(rows! {
             "f returns the vertex to its first place, to (edge lengths)" => format!("{error:.0e}"),
         })],

@@ -50,8 +50,7 @@ pub(super) fn make() -> Result<Made> {
         paper: "When the three known vertices lie on a line (γ = π), the vertex can still turn about that line: one coordinate has \
                 to be assigned.",
         here: "On the bent line (left) the function f has two solutions; on the straight line (right) it refuses, and the vertex \
-               keeps the angle that it had before."
-            .into(),
+               keeps the angle that it had before.",
         tables: vec![measured(rows! {
             "bend of the line on the left" => degrees(bend),
             "sine of the smallest angle on the right" => sine.to_string(),

@@ -57,8 +57,7 @@ pub(super) fn make() -> Result<Made> {
         title: "Assignment of system coordinates",
         paper: "From the left-upper corner, front after front, each vertex is placed by the rule that its known neighbours \
                 allow; the number of coordinates is the number of degrees of freedom.",
-        here: "sys_coord_assnmt_single is applied to M¹; every rod is used exactly once, by the end that is placed later (b)."
-            .into(),
+        here: "sys_coord_assnmt_single is applied to M¹; every rod is used exactly once, by the end that is placed later (b).",
         tables: vec![measured(rows! {
             "fronts" => assignment.front_count().to_string(),
             "vertices by rule h, two coordinates each" => count('h').to_string(),

@@ -80,8 +80,7 @@ pub(super) fn make() -> Result<Made> {
         paper: "The rest triangle is turned by A(θ) so that its edge lies on the known edge at time t, then by A(q) about that edge: \
                 the system coordinate q places the third vertex.",
         here: "The rest triangle (left) is aligned with the known edge by θ about r (blue) and turned by q (orange), by the Euler \
-               parameters of the paper; the function g of the library has the same lengths and q, but no rotation matrix."
-            .into(),
+               parameters of the paper; the function g of the library has the same lengths and q, but no rotation matrix.",
         tables: vec![measured(rows! {
             "θ" => degrees(theta),
             "q" => degrees(Q),

@@ -319,8 +319,7 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         title: "Paper jam",
         paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1), and none is shown.",
         here: "A strip that starts flat is pushed between two walls that turn downwards by 90°; bends let it through unless the outlet is \
-               blocked (in the side view time goes from blue to vermilion)."
-            .into(),
+               blocked (in the side view time goes from blue to vermilion).",
         pictures: vec![
             view(s).picture(&jam.run, store.effort, ["fig16.png", alt], &times)?,
             Picture::svg("fig16-force", &force_plot(&all), alt_force),

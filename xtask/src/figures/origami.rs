@@ -328,8 +328,7 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         title: "Origami: crease patterns folded by driven angles",
         paper: "Origami is named as an application (Sec. 1), and no crease pattern is folded.",
         here: "Springs drive the zigzag creases of a flat sheet alone, and geometry folds the rest; a vertex of degree four leaves the flat state one \
-               way or the other by its mountains and valleys."
-            .into(),
+               way or the other by its mountains and valleys.",
         pictures: vec![
             VIEW.picture(&whole, store.effort, ["fig17.png", alt], &times)?,
             Picture::svg("fig17-folds", &folds_plot(&exact, &folded), alt_folds),

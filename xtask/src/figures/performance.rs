@@ -209,8 +209,7 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         paper: "Frames per second and step sizes of the examples, on a Pentium III at 937 MHz.",
         here: "The chart has the condition number of the mass matrix of bent sheets: beyond 1/ε nothing is left of a dense solve. As \
                published, the scheme cannot start on either mesh: in the union jack every inner vertex of degree 4 keeps one of its creases \
-               straight, which is the degenerate case of Fig. 7."
-            .into(),
+               straight, which is the degenerate case of Fig. 7.",
         pictures: vec![Picture::svg("fig10-condition", &condition, alt)],
         pages: all.iter().map(|tried| tried.page.clone()).collect(),
         tables: vec![

@@ -26,8 +26,6 @@ const FINE: f64 = 1.0 / 2000.0;
 pub(super) struct Softness {
     pub(super) picture: Picture,
     pub(super) table: Table,
-    /// How the total bending depends on the mesh.
-    pub(super) finding: String,
     pub(super) facts: Value,
 }
 
@@ -43,9 +41,6 @@ struct Level {
     /// free fall (1).
     freedom: Vec<[f64; 2]>,
 }
-
-/// What is seen of the total bending.
-const FINDING: &str = " With finer meshes the total bending of rods over the run grows, in the mean of several falls.";
 
 /// Rods and paper.
 const SHEETS: [Option<&str>; 2] = [None, Some(PAPER_SHEET)];
@@ -130,7 +125,6 @@ pub(super) fn make(
     Ok(Softness {
         picture: Picture::svg("fig12-softness", &plots(&all), alt),
         table: table(&all),
-        finding: FINDING.to_owned(),
         facts: Value::Array(
             all.iter()
                 .map(|l| json!({ "level": l.level, "sheet": l.sheet, "freedom": l.early(), "freedom_at": EARLY, "bump": BUMP, "falls": l.falls }))

@@ -246,8 +246,7 @@ pub(super) fn make(store: &Store) -> Result<Made> {
                corners; the holding conditions of the paper are not known. The first sequence is of rods, the second of an elastic steel sheet, \
                which bends as half a millimetre of steel does and never yields: it presses the die far more than rods do. In the last two \
                pictures the die withdraws: the blank of elastic steel springs back, and one that yields (S235, docs/materials.md) \
-               keeps its shape."
-            .into(),
+               keeps its shape.",
         tables: vec![
             compared(&["rods", METAL], &[rods.rows()?, steel.rows()?]),
             compared(&both.map(|r| r.label), &both.map(Released::rows)),
