@@ -1,7 +1,7 @@
 //! A mesh that may move, as formats with several meshes take it.
 
 use super::sheets::NamedPart;
-use super::{BodyPose, SeriesBody, SeriesOptions};
+use super::{BodyPose, SeriesBody};
 use std::ops::Range;
 
 /// What is written of a mesh that may move, and of bodies beside it.
@@ -26,7 +26,8 @@ impl<'a> Moving<'a> {
             states: vec![(0.0, x)],
             uv: None,
             bodies: Vec::new(),
-            rate: SeriesOptions::default().rate,
+            // Its only state is at time 0.
+            rate: 1.0,
         }
     }
 }
