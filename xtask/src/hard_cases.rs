@@ -144,6 +144,6 @@ fn make(case: &Case, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
     let text = format!("{} ({:.1} s)", record.verdict().text(), record.wall);
     progress::note(case.name, &text);
     let shown = (found.pictures.as_slice(), found.tables.as_slice());
-    record.section = page::section(case, &record, &found.here, shown).into();
+    record.section = page::section(case, &record, found.here, shown).into();
     Ok(record)
 }

@@ -48,40 +48,54 @@ impl std::fmt::Debug for Case {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Naive {
     pub(crate) method: String,
-    pub(crate) outcome: String,
-    /// Whether it failed.
-    pub(crate) failed: bool,
+    /// What was measured, and the bound beyond which the method has failed.
+    pub(crate) finding: Finding,
+}
+
+impl Naive {
+    pub(super) fn failed(&self) -> bool {
+        self.finding.verdict() != Verdict::Passed
+    }
 }
 
 /// What was found in a case.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Findings {
     pub(crate) naive: Vec<Naive>,
-    pub(crate) here: String,
+    pub(crate) here: &'static str,
     pub(crate) checks: Vec<Finding>,
     pub(crate) pictures: Vec<Picture>,
     pub(crate) tables: Vec<Table>,
 }
 
 impl Findings {
-    /// What a naive method did, and whether it failed.
-    pub(super) fn naive(&mut self, method: &str, outcome: impl Into<String>, failed: bool) {
+    /// What a naive method did: a number, and the bound beyond which the method has failed.
+    pub(super) fn naive(
+        &mut self,
+        method: &str,
+        quantity: impl Into<String>,
+        value: f64,
+        bound: Bound,
+    ) -> &mut Finding {
+        let at = self.naive.len();
         self.naive.push(Naive {
             method: method.to_owned(),
-            outcome: outcome.into(),
-            failed,
+            finding: Finding::new(quantity, value, bound),
         });
+        &mut self.naive[at].finding
     }
 
     /// What a naive method did that may break down, which is a failure.
-    pub(super) fn naive_run<T>(
+    pub(super) fn naive_run(
         &mut self,
         method: &str,
-        outcome: Result<T, String>,
-        judge: impl FnOnce(T) -> (String, bool),
+        quantity: impl Into<String>,
+        outcome: Result<f64, String>,
+        bound: Bound,
     ) {
-        let (text, failed) = outcome.map_or_else(|e| (format!("{e}."), true), judge);
-        self.naive(method, text, failed);
+        let value = outcome.as_ref().copied().unwrap_or(f64::NAN);
+        let finding = self.naive(method, quantity, value, bound);
+        finding.remark(outcome.err());
     }
 
     /// A number with an upper bound.

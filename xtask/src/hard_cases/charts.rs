@@ -1,13 +1,14 @@
 //! The paper's coordinates and its scheme: condition, an error that does not vanish with the step, the
 //! degenerate placement of Fig. 7.
 
+use super::naive::NO_DIGITS;
 use super::scenes::{FRAME, apart, go, pinned, released};
 use super::{Case, Findings, Work, log_log};
 use crate::condition;
 use crate::draw::Series;
 use crate::draw::spatial::{norm, sub};
 use crate::interrupt;
-use crate::report::{Cell, Effort, Table, number};
+use crate::report::{Bound, Cell, Effort, Table, number};
 use crate::runs::{bumped, corner, hanging};
 use anyhow::Result;
 use isosheet_coords::assignment::Degenerate;
@@ -58,17 +59,14 @@ fn condition(f: &mut Findings, effort: Effort) -> Result<()> {
         let (dense, _) = velocity_error(level, front, MassSolverKind::DenseLu)?;
         let (sparse, said) = velocity_error(level, front, MassSolverKind::Saddle)?;
         let chosen = velocity_error(level, Coordinates::Cartesian, MassSolverKind::Saddle)?.0;
+        let method = "Dense LU of the mass matrix in the paper's coordinates";
+        let what = format!("M^{level}: relative error of the velocities");
+        let refused = dense.is_none().then(|| "refused".to_owned());
+        f.naive(method, what, dense.unwrap_or(f64::NAN), Bound::AtMost(1e-4))
+            .remark(refused);
         let condition = worst(TableChart::FrontCorner, level);
-        let condition = format!("condition number {condition:.0e}.");
-        let outcome = match dense {
-            Some(e) => format!(
-                "Relative error of the velocities {}; {condition}",
-                number(e)
-            ),
-            None => format!("Refused; {condition}"),
-        };
-        let method = format!("Dense LU of the mass matrix in the paper's coordinates, M^{level}");
-        f.naive(&method, outcome, dense.is_none_or(|e| e > 1e-4));
+        let what = format!("M^{level}: condition number of the mass matrix");
+        f.naive(method, what, condition, Bound::AtMost(NO_DIGITS));
         let what = format!(
             "M^{level}: relative error of velocities from momenta, saddle point in chosen coordinates"
         );
@@ -87,11 +85,8 @@ fn condition(f: &mut Findings, effort: Effort) -> Result<()> {
             ("chosen Cartesian, saddle point", &|r| show(r.1[2])),
         ],
     ));
-    f.here = format!(
-        "The mass matrix of any chart is solved with one sparse saddle-point matrix, and coordinates are chosen by a rank-revealing \
-         elimination: condition number {} on M^{finest}. A chart whose condition number leaves no digits is refused at the start.",
-        number(worst(TableChart::Cartesian, finest))
-    );
+    f.here = "The mass matrix of any chart is solved with one sparse saddle-point matrix, and coordinates are chosen by a rank-revealing \
+              elimination. A chart whose condition number leaves no digits is refused at the start.";
     let alt = "Condition number of the mass matrix of bent sheets by mesh level, in three systems of coordinates";
     f.drawing("chart-condition", &condition::plot(&rows), alt);
     Ok(())
@@ -207,21 +202,11 @@ fn literal(f: &mut Findings, effort: Effort) -> Result<()> {
     let em: Vec<f64> = em.collect::<Result<_>>()?;
     let last = counts.len() - 1;
     let order = |errors: &[f64]| orders(errors)[errors.len() - 2];
-    let step = |k: usize| number(1e3 * END / counts[k] as f64);
-    let outcome = format!(
-        "Position error after 0.3 s: {} m with steps of {} ms, {} m with {} ms; observed order {:.2}.",
-        number(published[0]),
-        step(0),
-        number(published[last]),
-        step(last),
-        order(&published)
-    );
-    let failed = order(&published).abs() < 0.2 && published[last] > 0.05;
-    f.naive(
-        "Forward Euler with the published equations, M^0",
-        outcome,
-        failed,
-    );
+    let method = "Forward Euler with the published equations, M^0";
+    let what = "position error after 0.3 s with the smallest step, m";
+    f.naive(method, what, published[last], Bound::AtMost(0.05));
+    let what = "observed order (exact: 1)";
+    f.naive(method, what, order(&published), Bound::AtLeast(0.2));
     let what = "momenta formed anew at every step: order (exact: 1)";
     f.at_least(what, order(&reformed), 0.9);
     f.at_least("energy-momentum: order (exact: 2)", order(&em), 1.9);
@@ -231,8 +216,7 @@ fn literal(f: &mut Findings, effort: Effort) -> Result<()> {
         "error of the published scheme over that of energy-momentum at the same smallest step";
     f.at_least(what, published[last] / em[last], 1e3);
     f.here = "The same sheet with momenta formed anew (first order), the full equations of Hamilton's principle (fourth order), and \
-              without a chart (second order), against RATTLE's fourth-order composition at 0.1 ms."
-        .into();
+              without a chart (second order), against RATTLE's fourth-order composition at 0.1 ms.";
     let line = |(k, name, errors): (usize, &str, Vec<f64>)| {
         let points = counts
             .iter()
@@ -306,10 +290,7 @@ fn collinear(f: &mut Findings, effort: Effort) -> Result<()> {
     placements(f)?;
     let outcome = paper_on_fold()?;
     let method = "The paper's assignment on M^1 folded along its middle line";
-    f.naive_run(method, outcome, |strain| {
-        let text = format!("Runs; edge strain {}.", number(strain));
-        (text, false)
-    });
+    f.naive_run(method, "edge strain", outcome, Bound::AtMost(1e-6));
     // Every interior vertex of degree 4 keeps one straight crease; the bumped M^1 has four of them next to
     // its boundary.
     let sheet = bumped(1, 0.1);
@@ -330,7 +311,7 @@ fn collinear(f: &mut Findings, effort: Effort) -> Result<()> {
         f.of(&c, format!("M^1 folded along its middle line, {name}"))
             .strain("edge strain in 1 s");
     }
-    f.here = "Placement has a typed refusal for the case and two ways on; the chart-free methods do not know it at all.".into();
+    f.here = "Placement has a typed refusal for the case and two ways on; the chart-free methods do not know it at all.";
     Ok(())
 }
 
@@ -341,9 +322,8 @@ fn placements(f: &mut Findings) -> Result<()> {
     let lengths = known.map(|k| norm(&sub(&vertex, &k)));
     let place = trilateration(known.map(Vector3::from), lengths);
     let off = (place - Vector3::from(vertex)).norm();
-    let [x, y, z]: [f64; 3] = place.into();
-    let outcome = format!("With three known vertices on the x axis the place is ({x}, {y}, {z}).");
-    f.naive("Trilateration", outcome, off.is_nan() || off > 1e-6);
+    let what = "three known vertices on a line: error of the place, m";
+    f.naive("Trilateration", what, off, Bound::AtMost(1e-6));
     let refused = place_f(known.each_ref(), lengths, Branch::Above, 1e-9);
     let what = "rule f refuses the exactly collinear case with a reason (1 yes, 0 no)";
     f.at_least(what, f64::from(u8::from(refused.is_err())), 1.0)

@@ -140,8 +140,7 @@ fn clamps(f: &mut Findings, effort: Effort) -> Result<()> {
     }
     f.tables.push(table_of(&all));
     f.here = "A sheet of rods folds along lines of edges only. Where it is clamped across them its rods lock, and the step is refused with the vertices that \
-              cannot move. What does not lock goes on to its end."
-        .into();
+              cannot move. What does not lock goes on to its end.";
     Ok(())
 }
 

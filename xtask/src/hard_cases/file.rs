@@ -4,7 +4,7 @@
 
 use super::case::{Case, Findings, Work};
 use crate::interrupt;
-use crate::report::{Bound, Effort, Limitation, number};
+use crate::report::{Bound, Effort, Limitation, Table};
 use anyhow::{Context, Result, bail, ensure};
 use isosheet_io::read_history;
 use isosheet_io::run::{RunError, Sweep, Variation};
@@ -279,12 +279,14 @@ impl CaseFile {
             .iter()
             .map(|e| format!(" --set '{e}'"))
             .collect();
-        found.here = format!(
-            "{} runs of {name}, whose summaries are judged; the first is that of isosheet simulate {name}{}. Largest strains and \
-             smallest gaps are of all accepted steps, those of runs that stop early included.",
-            number(ran.len() as f64),
-            first.concat()
-        );
+        let head = ["runs", "the first of them"];
+        let command = format!("isosheet simulate {name}{}", first.concat());
+        let row = vec![ran.len().to_string(), command];
+        found
+            .tables
+            .push(Table::new("The runs", &head).with_texts([row]));
+        found.here = "The summaries of all runs of a scene are judged. Largest strains and smallest gaps are of all accepted steps, those of runs that \
+                      stop early included.";
         Ok(())
     }
 }

@@ -1,11 +1,11 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
-use super::naive::{TEXTBOOK, textbook, textbook_steps};
+use super::naive::{NO_DIGITS, TEXTBOOK, textbook, textbook_steps};
 use super::scenes::{FRAME, VIEWPOINT, apart, course, go, pinned, released};
 use super::{Case, Findings, Work, log_log};
 use crate::draw::{Series, Shot, Viewpoint};
 use crate::interrupt;
-use crate::report::{Effort, Picture};
+use crate::report::{Bound, Effort, Picture, Table};
 use crate::runs::Course;
 use crate::runs::{bumped, corner};
 use anyhow::Result;
@@ -31,16 +31,21 @@ fn start(f: &mut Findings, effort: Effort) -> Result<()> {
     let sheet = bumped(1, 0.0);
     let model = pinned(&sheet, &[corner(1)])?;
     let condition = front_condition(&sheet, &model).map_err(|e| e.to_string());
-    f.naive_run("The paper's coordinates", condition, |condition| {
-        let text = format!("Their mass matrix has condition number {condition:.0e}.");
-        (text, condition > 1e15)
-    });
+    let what = "condition number of the mass matrix";
+    f.naive_run(
+        "The paper's coordinates",
+        what,
+        condition,
+        Bound::AtMost(NO_DIGITS),
+    );
     let outcome = textbook(&model, sheet.positions(), 1e-3, 1000);
-    let outcome = outcome.map_err(|e| format!("M^1, 1 ms, {e}"));
-    f.naive_run(TEXTBOOK, outcome, |(strain, _)| {
-        let text = format!("M^1, 1 ms, 1 s: largest edge strain {strain:.0e}.");
-        (text, strain.is_nan() || strain >= 1e-2)
-    });
+    let what = "M^1, a second of steps of 1 ms: largest edge strain";
+    f.naive_run(
+        TEXTBOOK,
+        what,
+        outcome.map(|(strain, _)| strain),
+        Bound::AtMost(1e-2),
+    );
     for level in effort.pick(1..=1, 1..=3, 1..=4) {
         let sheet = bumped(level, 0.0);
         for (name, method) in damped() {
@@ -55,14 +60,15 @@ fn start(f: &mut Findings, effort: Effort) -> Result<()> {
             judge.at_least("largest energy released, J", -potential, 0.1);
         }
     }
-    let rank = rod_rank(&model, sheet.positions()).map_or(String::new(), |r| {
-        let (dependent, all) = (r.deficiency, r.rods);
-        format!("At the start of M^1 {dependent} of {all} rods are dependent.")
-    });
-    f.here = format!(
-        "The damped methods minimise an incremental potential over the positions with the right lengths, which has a solution at any \
-         rank; a seeded perturbation decides which way the sheet folds. {rank}"
-    );
+    if let Some(rank) = rod_rank(&model, sheet.positions()) {
+        let columns = ["rods of M¹", "dependent at the start"];
+        let row = [rank.rods, rank.deficiency].map(|n| n.to_string());
+        let caption = "Rods whose lengths depend on those of the others";
+        f.tables
+            .push(Table::new(caption, &columns).with_texts([row.to_vec()]));
+    }
+    f.here = "The damped methods minimise an incremental potential over the positions with the right lengths, which has a solution at any \
+              rank; a seeded perturbation decides which way the sheet folds.";
     if effort != Effort::Quick {
         f.pictures.push(fall()?);
     }
@@ -163,14 +169,12 @@ const FOLDED: f64 = 1.1;
 const DURATION: f64 = 1.0;
 
 fn branch(f: &mut Findings, effort: Effort) -> Result<()> {
-    let off = |error: f64| {
-        (
-            format!("Ends {error:.0e} m from the exact motion."),
-            error > 0.05,
-        )
-    };
+    let (off, near) = (
+        "distance from the exact motion at the end, m",
+        Bound::AtMost(0.05),
+    );
     let method = "Explicit steps of 1 ms in fixed coordinates";
-    f.naive_run(method, in_fixed_coordinates()?, off);
+    f.naive_run(method, off, in_fixed_coordinates()?, near);
     let counts = [50, 100, 200, 400, 800, 1600];
     let counts = &counts[..effort.pick(2, 5, 6)];
     let mut lines = Vec::new();
@@ -183,8 +187,13 @@ fn branch(f: &mut Findings, effort: Effort) -> Result<()> {
     let (mut x, mut v) = (c.start.x.clone(), c.start.v.clone());
     let h = 0.01 * DURATION;
     let outcome = textbook_steps(&c.model, (&mut x, &mut v), h, 100, |_, _, _| {});
-    let method = format!("{TEXTBOOK}, started at the branch point");
-    f.naive_run(&method, outcome, |()| off(off_exact(&c.flap, &x)));
+    let outcome = outcome.map(|()| off_exact(&c.flap, &x));
+    f.naive_run(
+        TEXTBOOK,
+        format!("started at the branch point: {off}"),
+        outcome,
+        near,
+    );
     for (name, method) in methods() {
         let Crossing {
             flap, model, start, ..
@@ -200,12 +209,12 @@ fn branch(f: &mut Findings, effort: Effort) -> Result<()> {
         f.of(&c, what)
             .at_most("error, m", off_exact(&flap, &end), bound);
     }
-    f.here = format!(
-        "All methods step across the flat state at t = {:.3} s and converge to the closed form at their orders. The half-angle \
-         starts at {:.2} rad and passes {FRAC_PI_2:.2}.",
-        flat_at()?,
-        crossing(FOLDED)?.flap.start_angle
-    );
+    let head = ["half-angle at the start, rad", "flat (π/2) at, s"];
+    let row = [crossing(FOLDED)?.flap.start_angle, flat_at()?].map(|n| format!("{n:.3}"));
+    let exact = Table::new("The exact motion", &head).with_texts([row.to_vec()]);
+    f.tables.push(exact);
+    f.here =
+        "All methods step across the flat state and converge to the closed form at their orders.";
     let drawing = log_log("step, ms", "position error after 1 s, m", lines);
     let alt = "Error against the closed form after passing through flat";
     f.drawing("branch-point", &drawing, alt);

@@ -5,7 +5,7 @@ use super::scenes::{FRAME, apart, at_rest, course, go, pinned, tumbling};
 use super::{Case, Findings, Work, semi_log};
 use crate::draw::Series;
 use crate::interrupt;
-use crate::report::{Effort, number};
+use crate::report::{Bound, Effort, Table};
 use crate::runs::{Pairs, bumped, corner, hanging, on_table};
 use crate::threads::pool;
 use anyhow::Result;
@@ -38,14 +38,9 @@ fn reversal(f: &mut Findings, effort: Effort) -> Result<()> {
         }
     };
     let outcome = textbook_steps(&model, (&mut x, &mut v), STEP, 200, turn);
-    f.naive_run(TEXTBOOK, outcome, |()| {
-        let off = apart(&x, &start.x);
-        let text = format!(
-            "100 steps of 4 ms there and back: ends {} m from the start.",
-            number(off)
-        );
-        (text, off > 1e-6)
-    });
+    let outcome = outcome.map(|()| apart(&x, &start.x));
+    let what = "100 steps of 4 ms there and back: distance from the start, m";
+    f.naive_run(TEXTBOOK, what, outcome, Bound::AtMost(1e-6));
     let counts = [10, 20, 50, 100, 200, 500, 1000, 2000];
     let counts = effort.pick(&[10, 40][..], &counts[..7], &counts);
     let judged = effort.pick(40, 50, 50);
@@ -71,8 +66,7 @@ fn reversal(f: &mut Findings, effort: Effort) -> Result<()> {
         lines.push(Series::styled(k, name, points));
     }
     f.here = "M^1 folded, tumbling freely at about 2 rad/s, steps of 4 ms. Rounding grows with the motion's own instability and, for longer runs, decides; \
-              a damped method is not meant to come back."
-        .into();
+              a damped method is not meant to come back.";
     let drawing = semi_log(
         "time of the way out, s",
         "distance from the start, m",
@@ -210,11 +204,8 @@ fn symmetry(f: &mut Findings, effort: Effort) -> Result<()> {
         Ok((image.back)(&x))
     };
     let off = apart(&naive(&reference(1)?)?, &naive(&renumbered(1, 1)?)?);
-    let text = format!(
-        "Renumbered, M^1 is {} m away after 20 steps of 5 ms: the result depends on the order of the rods.",
-        number(off)
-    );
-    f.naive(GAUSS_SEIDEL, text, off > 1e-6);
+    let what = "M^1 with other numbers of its rods: difference after 20 steps of 5 ms, m";
+    f.naive(GAUSS_SEIDEL, what, off, Bound::AtMost(1e-6));
     let rounding = (f64::EPSILON, "rounding (2.2e-16 m)");
     let tolerance = (1e-12, "the tolerance of the lengths (1e-12 m)");
     // What a step is exact to: rounding, or the tolerance of the lengths.
@@ -290,8 +281,11 @@ fn compare_images(
     }
     if let Some(k) = growth.iter().position(|g| *g > 1e6) {
         let t = (k + 1) as f64 * H;
-        let text = format!("{name}: a difference has grown a million times after {t:.2} s. ");
-        f.here.push_str(&text);
+        let caption = format!("How fast differences grow, {name}");
+        let grown = "a difference has grown a million times after, s";
+        let row = vec![format!("{t:.2}")];
+        f.tables
+            .push(Table::new(caption, &[grown]).with_texts([row]));
     }
     let file = format!("symmetry-{}", name.to_lowercase());
     let alt = format!(
@@ -354,15 +348,11 @@ fn threads(f: &mut Findings, effort: Effort) -> Result<()> {
     });
     let offs = sums.iter().map(|s| (s - sums[0]).abs() / sums[0].abs());
     let spread = offs.fold(0.0, f64::max);
-    let text = format!(
-        "200 000 terms in 1 to 7 parts: the sums differ by {} relative.",
-        number(spread)
-    );
     let method = "A sum over as many parts as there are threads";
-    f.naive(method, text, spread > 0.0);
+    let what = "200 000 terms in 1 to 7 parts: relative difference of the sums";
+    f.naive(method, what, spread, Bound::AtMost(0.0));
     f.here = "Large factorisations share the subtrees of their elimination trees among threads and add them up in a fixed order; all else of a run is \
-              done by one thread. Compared: pools of 1, 2 and 4 threads, and two runs at the same time."
-        .into();
+              done by one thread. Compared: pools of 1, 2 and 4 threads, and two runs at the same time.";
     Ok(())
 }
 

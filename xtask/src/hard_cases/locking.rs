@@ -4,7 +4,7 @@ use super::scenes::{FRAME, VIEWPOINT, at_rest, go};
 use super::{Case, Findings, Work};
 use crate::draw::Shot;
 use crate::locking::meshes::nearest;
-use crate::report::{Effort, Picture, Table, extremes, number};
+use crate::report::{Bound, Effort, Picture, Table, extremes, number};
 use crate::runs::Course;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -160,20 +160,15 @@ fn drape(f: &mut Findings, effort: Effort) -> Result<()> {
         differences.push((difference, support.0));
         all.extend(ends);
     }
-    let listed = differences
-        .iter()
-        .map(|(d, how)| format!("{} m {how}", number(*d)));
-    let listed = listed.collect::<Vec<_>>().join(", ");
-    let text = format!(
-        "The centre of mass hangs higher or lower on another mesh of the same size, by up to {listed}."
-    );
-    let differ = differences.iter().any(|(d, _)| *d > 1e-3);
-    f.naive("Taking one triangulation for the sheet", text, differ);
+    for (difference, how) in differences {
+        let what = format!("{how}: difference of the depths of the centre of mass, m");
+        let method = "Taking one triangulation for the sheet";
+        f.naive(method, what, difference, Bound::AtMost(1e-3));
+    }
     f.tables.push(table_of(&all));
     f.here = "Lengths are exact and the sheets at rest; what differs is the shape. A smooth sheet would bend about any line. Its triangulation bends \
               about lines of edges; where they do not run through, bending needs crumpling of the triangles on the way, or does not take place. The \
-              round table prefers no direction: the folds of the overhang are where the lines of the mesh let them be."
-        .into();
+              round table prefers no direction: the folds of the overhang are where the lines of the mesh let them be.";
     Ok(())
 }
 

@@ -116,7 +116,7 @@ fn summary(records: &[Record]) -> Markup {
 }
 
 fn naive_word(r: &Record) -> &'static str {
-    let failed = r.naive.iter().filter(|n| n.failed).count();
+    let failed = r.naive.iter().filter(|n| n.failed()).count();
     match (failed, r.naive.len()) {
         (_, 0) => "none shown",
         (0, _) => "copes",
@@ -139,8 +139,15 @@ pub(super) fn section(
             p { (case.expected) }
             @if !r.naive.is_empty() {
                 h3 { "What a naive method does" }
-                ul { @for n in &r.naive {
-                    li { (n.method) ": " b { @if n.failed { "fails" } @else { "copes" } } ". " (n.outcome) }
+                div.scroll { table {
+                    thead { tr { th { "Method" } th { "Measured" } th { "Value" } th { "Fails unless" } th {} } }
+                    tbody { @for n in &r.naive { tr {
+                        td { (n.method) }
+                        td { (n.finding.quantity) @if let Some(text) = &n.finding.remark { br; small { (text) } } }
+                        td.number { (n.finding.measured()) }
+                        td.number { (n.finding.bound.text()) }
+                        td { @if n.failed() { "fails" } @else { "copes" } }
+                    } } }
                 } }
             }
             h3 { "What isosheet does" }
