@@ -27,7 +27,7 @@ mod stamping;
 mod style;
 
 use crate::draw::{Anchor, Drawing, Vertical, palette};
-use crate::report::{Effort, Picture, Table};
+use crate::report::{Effort, Picture, Table, extremes};
 use crate::runs::{FigureScene, RunSummary};
 use crate::store::{Files, Store};
 use anyhow::Result;
@@ -186,6 +186,12 @@ fn course(run: &RunSummary) -> Vec<Row> {
         "membrane stiffness" => run.stiffness().unwrap_or_else(rods),
         "smallest gap" => gap(course.gap),
     }
+}
+
+/// The highest point of positions above the lowest, metres.
+fn height(x: &[f64]) -> f64 {
+    let heights = x.iter().skip(2).step_by(3).copied();
+    extremes(heights).map_or(0.0, |[low, high]| high - low)
 }
 
 /// A smallest gap in words.

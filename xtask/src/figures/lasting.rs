@@ -2,7 +2,7 @@
 //! lie flat again.
 
 use super::show::View;
-use super::{Effort, Picture, Play, Row, Table, caption, compared, course};
+use super::{Effort, Picture, Play, Row, Table, caption, compared, course, height, rows};
 use crate::draw::{Drawing, Stroke, TEXT, flat_edges, flat_faces, palette, row};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
@@ -93,22 +93,16 @@ impl Crumpled {
     fn of(store: &Store, label: &str, scene: FigureScene) -> Result<Self> {
         let run = Run::of(store, scene)?;
         let times = run.trajectory.times();
-        let height = |t: f64| {
-            let frame = times
-                .partition_point(|time| *time < t - 1e-9)
-                .min(times.len() - 1);
-            let x = run.trajectory.frame(frame).unwrap_or_default();
-            let z = x.as_chunks::<3>().0.iter().map(|p| p[2]);
-            let [least, most] = z.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], z| {
-                [l.min(z), m.max(z)]
-            });
-            most - least
+        let at = |t: f64| {
+            let frame = times.partition_point(|time| *time < t - 1e-9);
+            let x = run.trajectory.frame(frame.min(times.len() - 1));
+            height(x.unwrap_or_default())
         };
         let cells: usize = run.scene.value("/sheet/mesh/rectangle/columns")?;
         Ok(Self {
             facts: Facts {
-                pressed: height(TIMES[3]),
-                height: height(TIMES[4]),
+                pressed: at(TIMES[3]),
+                height: at(TIMES[4]),
                 dissipated: run.summary.energy.plastic,
                 marks: PlasticMarks::of(&run),
                 label: format!("{label}, {cells} × {cells} cells"),
@@ -120,28 +114,17 @@ impl Crumpled {
     fn rows(&self) -> Vec<Row> {
         let facts = &self.facts;
         let millimetres = |length: f64| format!("{:.3} mm", 1e3 * length);
-        let energy = &self.run.summary.energy;
+        let millijoules = |energy: f64| format!("{:.2} mJ", 1e3 * energy);
         let of_marks = |f: fn(&PlasticMarks) -> String| facts.marks.as_ref().map_or("–".into(), f);
-        let mut rows = vec![
-            ("height when it is pressed", millimetres(facts.pressed)),
-            ("height at the end", millimetres(facts.height)),
-            (
-                "dissipated by yielding",
-                format!("{:.2} mJ", 1e3 * facts.dissipated),
-            ),
-            (
-                "error of the energy balance",
-                format!("{:.2} mJ", 1e3 * energy.drift),
-            ),
-            (
-                "largest plastic curvature",
-                of_marks(|m| format!("{:.0} per m", m.largest)),
-            ),
-            (
-                "part of the area with half of the squared plastic curvature",
+        let mut rows = rows! {
+            "height when it is pressed" => millimetres(facts.pressed),
+            "height at the end" => millimetres(facts.height),
+            "dissipated by yielding" => millijoules(facts.dissipated),
+            "error of the energy balance" => millijoules(self.run.summary.energy.drift),
+            "largest plastic curvature" => of_marks(|m| format!("{:.0} per m", m.largest)),
+            "part of the area with half of the squared plastic curvature" =>
                 of_marks(|m| format!("{:.1} %", 100.0 * m.half)),
-            ),
-        ];
+        };
         rows.extend(course(&self.run.summary));
         rows
     }

@@ -1,9 +1,8 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Row, compared, course, rows, through_itself};
+use super::{Effort, Made, Picture, Play, Row, compared, course, height, rows, through_itself};
 use crate::draw::{Axis, Chart, Charts, Series, palette};
-use crate::report::extremes;
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
@@ -160,12 +159,6 @@ impl Punched {
         } = self;
         json!({ "run": run.summary, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve })
     }
-}
-
-/// The highest point of positions above the lowest, metres.
-fn height(x: &[f64]) -> f64 {
-    let heights = x.iter().skip(2).step_by(3).copied();
-    extremes(heights).map_or(0.0, |[low, high]| high - low)
 }
 
 /// A blank that the die has left.
