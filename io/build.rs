@@ -1,7 +1,8 @@
 //! Finds git's log of HEAD, if the crate is built in a repository: the last line names the commit.
 //!
-//! The command reads the log when it is compiled (`src/bin/isosheet/commit.rs`). So a commit makes the command
-//! anew and nothing else: this script runs again only where the repository itself has changed its place.
+//! The command reads the log when it is compiled (`src/bin/isosheet/commit.rs`). So a commit makes the
+//! command anew and nothing else: this script runs again only where the repository itself has changed its
+//! place.
 
 use std::path::Path;
 use std::process::Command;

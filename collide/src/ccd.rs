@@ -190,8 +190,8 @@ const ADVANCE: f64 = 0.9;
 /// Gap, in units of the one that is to be left, at which advances end.
 pub(crate) const CLOSE_ENOUGH: f64 = 1.1;
 
-/// How far an advance may take two points that are `clear` of each other, of primitives whose gap is `gap` and
-/// is to stay at least `least`, metres.
+/// How far an advance may take two points that are `clear` of each other, of primitives whose gap is `gap`
+/// and is to stay at least `least`, metres.
 pub(crate) fn room(clear: f64, gap: f64, least: f64) -> f64 {
     clear - least.max((1.0 - ADVANCE) * gap)
 }

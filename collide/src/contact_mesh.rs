@@ -214,8 +214,8 @@ impl ContactMesh {
         }
     }
 
-    /// Counts the vertices of each pair as one, because they are glued to each other, so that primitives that have them
-    /// do not repel each other. Replaces pairs named before.
+    /// Counts the vertices of each pair as one, because they are glued to each other, so that primitives that
+    /// have them do not repel each other. Replaces pairs named before.
     ///
     /// # Panics
     /// If a vertex does not exist.

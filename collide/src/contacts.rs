@@ -210,8 +210,8 @@ impl Contacts {
         Ok(self)
     }
 
-    /// Tells of pairs of vertices that are glued to each other ([`isosheet_dynamics::Glue`]): what has them in common
-    /// does not repel each other, as neighbours in a mesh do not.
+    /// Tells of pairs of vertices that are glued to each other ([`isosheet_dynamics::Glue`]): what has them
+    /// in common does not repel each other, as neighbours in a mesh do not.
     ///
     /// # Panics
     /// If a vertex does not exist.
@@ -223,8 +223,8 @@ impl Contacts {
         self
     }
 
-    /// Sets the friction between two of several sheets, whose vertices these are, or of one of them with itself,
-    /// in place of that of [`Contacts::with_self_contact`].
+    /// Sets the friction between two of several sheets, whose vertices these are, or of one of them with
+    /// itself, in place of that of [`Contacts::with_self_contact`].
     ///
     /// # Errors
     /// [`ContactsError::Friction`].

@@ -1,8 +1,8 @@
-//! What bending stiffness costs: CPU seconds and factorisations for each simulated second of a square that hangs by a
-//! corner, with the mass (0.1 kg), the size (1 m) and the stiffness of office paper.
+//! What bending stiffness costs: CPU seconds and factorisations for each simulated second of a square that
+//! hangs by a corner, with the mass (0.1 kg), the size (1 m) and the stiffness of office paper.
 //!
-//! All models run one after another on one thread, and each is compared with bare rods in the same run. Arguments
-//! choose models whose names contain one of them.
+//! All models run one after another on one thread, and each is compared with bare rods in the same run.
+//! Arguments choose models whose names contain one of them.
 
 use cpu_time::ProcessTime;
 use isosheet_dynamics::{

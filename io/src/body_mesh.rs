@@ -46,8 +46,8 @@ impl BodyMesh {
     }
 }
 
-/// Two half balls about the ends of a segment on the z axis, and the tube between them. All corners are on the
-/// surface. A ball has no tube.
+/// Two half balls about the ends of a segment on the z axis, and the tube between them. All corners are on
+/// the surface. A ball has no tube.
 fn capsule(radius: f64, half_length: f64, sides: usize) -> BodyMesh {
     let quarter = sides.div_ceil(4);
     // Circles from below to above, each with its height above the middle of its half ball.

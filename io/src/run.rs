@@ -18,8 +18,9 @@
 //!
 //! A folder with a complete run of the same scene is left as it is. One with a part of it is continued, and
 //! gives the same bits as a run without a stop. A folder with another scene, with other files, or in use by
-//! another process is refused; [`simulate_anew`] deletes the run of another scene. When the process is killed, at most the steps since the last checkpoint are
-//! lost ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
+//! another process is refused; [`simulate_anew`] deletes the run of another scene. When the process is
+//! killed, at most the steps since the last checkpoint are lost
+//! ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
 //!
 //! A [`Sweep`] makes many runs of one scene, and [`Collection`] makes one table of their summaries.
 //! With the feature `picture` a `Gallery` is one page of many runs.
@@ -118,8 +119,8 @@ pub fn simulate(
     simulate_in(file, folder, Existing::Continue, watch)
 }
 
-/// Runs a scene in a folder from the start. A run that the folder holds, of whatever scene, is deleted before:
-/// the files that [`simulate`] writes, and no others.
+/// Runs a scene in a folder from the start. A run that the folder holds, of whatever scene, is deleted
+/// before: the files that [`simulate`] writes, and no others.
 ///
 /// # Errors
 /// As [`simulate`]. A folder that is not that of a run, or in which another process works, is refused, and

@@ -49,9 +49,10 @@
 //! its body.
 //!
 //! # Runs that go on
-//! [`Replay::to_live_html`] makes the page of a run that has not ended, of its first frame: with buttons, sliders
-//! ([`LivePage`]) and a hand that pulls at vertices in place of the bar of frames. It follows the server-sent events at
-//! the address `events` beside its own and posts what is to be done to `command`; `isosheet live` is the server.
+//! [`Replay::to_live_html`] makes the page of a run that has not ended, of its first frame: with buttons,
+//! sliders ([`LivePage`]) and a hand that pulls at vertices in place of the bar of frames. It follows the
+//! server-sent events at the address `events` beside its own and posts what is to be done to `command`;
+//! `isosheet live` is the server.
 //!
 //! # Encoding
 //! The data are JSON in the element `replay`. Integers are replaced by differences of order 0, 1 or 2 in

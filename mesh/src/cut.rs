@@ -5,8 +5,8 @@ use std::collections::HashMap;
 
 /// A flat triangle mesh that is being cut along straight lines of its plane; heights are left out.
 ///
-/// A grid that is turned against the outline of a sheet is made in this way: each side of the outline cuts the
-/// grid ([`FlatCut::split`]), and what lies beyond is dropped ([`FlatCut::keep`]).
+/// A grid that is turned against the outline of a sheet is made in this way: each side of the outline cuts
+/// the grid ([`FlatCut::split`]), and what lies beyond is dropped ([`FlatCut::keep`]).
 #[derive(Clone, Debug)]
 pub struct FlatCut {
     /// Places of the vertices, metres.
@@ -90,8 +90,8 @@ impl FlatCut {
         }
     }
 
-    /// Drops the triangles on the other side of the line through `point` than `normal` points to. The line has
-    /// been cut before: a triangle that it crosses goes by its centre.
+    /// Drops the triangles on the other side of the line through `point` than `normal` points to. The line
+    /// has been cut before: a triangle that it crosses goes by its centre.
     pub fn keep(&mut self, point: [f64; 2], normal: [f64; 2]) {
         let points = &self.points;
         self.faces.retain(|face| {
@@ -138,8 +138,8 @@ mod tests {
     use super::*;
     use crate::generate::{Diagonals, grid};
 
-    /// A square cut along an oblique line through two of its vertices, and without what lies beyond: areas are
-    /// known, and no edge crosses the line.
+    /// A square cut along an oblique line through two of its vertices, and without what lies beyond: areas
+    /// are known, and no edge crosses the line.
     #[test]
     fn a_square_loses_a_part() {
         let square = grid(8, 8, 1.0, 1.0, Diagonals::UnionJack).unwrap();

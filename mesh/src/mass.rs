@@ -77,7 +77,8 @@ impl MassMatrix {
         }
     }
 
-    /// The matrix of the [union](Sheet::union) of sheets with the given matrices, all of one kind, in the same order.
+    /// The matrix of the [union](Sheet::union) of sheets with the given matrices, all of one kind, in the
+    /// same order.
     ///
     /// # Panics
     /// If some are lumped and others are not.

@@ -3,8 +3,8 @@
 use crate::{EdgeId, FaceId, Sheet, VertexId};
 use std::ops::Range;
 
-/// The vertices, edges and faces of one sheet in a [union](Sheet::union) of several: each of the three is one range
-/// of numbers, because vertices and faces follow one another, and edges are numbered by their vertices.
+/// The vertices, edges and faces of one sheet in a [union](Sheet::union) of several: each of the three is one
+/// range of numbers, because vertices and faces follow one another, and edges are numbered by their vertices.
 ///
 /// ```
 /// use isosheet_mesh::{Part, Sheet, VertexId, generate};

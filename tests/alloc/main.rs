@@ -45,7 +45,8 @@ fn elastic(yields: Option<Yield>) -> Simulation {
     Simulation::new(model, start, Method::default()).expect("valid")
 }
 
-/// Allocations and reallocations, and factorisations, in 20 steps after warm-up, in which what can yield does.
+/// Allocations and reallocations, and factorisations, in 20 steps after warm-up, in which what can yield
+/// does.
 fn count(mut run: Simulation) -> (usize, usize) {
     let remembers = run.model().potentials().any(|p| !p.memory().is_empty());
     let mut plastic = 0.0;

@@ -117,9 +117,9 @@ fn a_strip_jams_between_walls_without_touching() {
         if step == 79 {
             // What the nip has paid for is stored in bending or lost.
             let stored = report.hamiltonian() - before;
-            // Which buckle it snaps into depends on the step. The work of the jamming pins is that of the trapezoidal
-            // rule, which errs where their force jumps as the strip snaps: by less than the smallest of what the
-            // balance is made of, but for the damping of a slow motion.
+            // Which buckle it snaps into depends on the step. The work of the jamming pins is that of the
+            // trapezoidal rule, which errs where their force jumps as the strip snaps: by less than the
+            // smallest of what the balance is made of, but for the damping of a slow motion.
             let parts = [stored, report.friction];
             let least = parts.into_iter().fold(f64::INFINITY, f64::min);
             assert!(least > 0.0 && report.dissipated > 0.0, "{report:?}");
@@ -130,8 +130,9 @@ fn a_strip_jams_between_walls_without_touching() {
             assert!(report.energy_drift.abs() < least, "{report:?}");
         }
     }
-    // The walls let it buckle, and hold the buckle: it carries more than a free strip that is clamped at both ends,
-    // 4 pi^2 D w / L^2, and less than it takes to buckle into two such waves, four times as much (Chai, 1998).
+    // The walls let it buckle, and hold the buckle: it carries more than a free strip that is clamped at both
+    // ends, 4 pi^2 D w / L^2, and less than it takes to buckle into two such waves, four times as much (Chai,
+    // 1998).
     let bends = LENGTH * (1.0 - 1.5 / cells as f64);
     let clamped = 4.0 * RIGIDITY * WIDTH * (PI / bends).powi(2);
     assert!(

@@ -163,8 +163,8 @@ fn a_refused_step_that_has_rebased_leaves_everything_as_it_was() {
     }
 }
 
-/// The drag of air is the same force in the paper's coordinates: motion there, which knows nothing of the implicit
-/// drag of damped methods, is the limit that BDF2 approaches at its order.
+/// The drag of air is the same force in the paper's coordinates: motion there, which knows nothing of the
+/// implicit drag of damped methods, is the limit that BDF2 approaches at its order.
 #[test]
 fn drag_in_a_chart_is_that_of_damped_methods() {
     let air = Air {

@@ -309,10 +309,11 @@ fn check_report(name: &str, report: &StepReport, start: f64, largest: f64) {
     );
 }
 
-/// Least and largest share of the largest kinetic energy that a method may have lost after N steps from rest. A fall
-/// in N steps loses 1/N by methods of the first order and 1/N^2 by BDF2, whose first step alone is of the first order;
-/// sheets that are held and snap lose from half of it to a few times as much, by BDF2 up to what the first order loses
-/// least. Energy-momentum keeps the energy. RATTLE and its composition err by the second and the fourth power of 1/N.
+/// Least and largest share of the largest kinetic energy that a method may have lost after N steps from rest.
+/// A fall in N steps loses 1/N by methods of the first order and 1/N^2 by BDF2, whose first step alone is of
+/// the first order; sheets that are held and snap lose from half of it to a few times as much, by BDF2 up to
+/// what the first order loses least. Energy-momentum keeps the energy. RATTLE and its composition err by the
+/// second and the fourth power of 1/N.
 fn loss(name: &str) -> [f64; 2] {
     let part = 1.0 / FALL as f64;
     match name {

@@ -74,8 +74,8 @@ fn refused(run: &mut Simulation, steps: usize) -> Option<(StepError, usize)> {
     })
 }
 
-/// Rods of an irregular sheet that is clamped over a quarter lock: the step is refused after a bounded effort, and
-/// the error names the vertices and the remedy.
+/// Rods of an irregular sheet that is clamped over a quarter lock: the step is refused after a bounded
+/// effort, and the error names the vertices and the remedy.
 #[test]
 fn sheets_that_lock_are_refused_with_a_remedy() {
     let sheet = irregular();

@@ -29,8 +29,8 @@ fn a_clamped_strip_of_paper_on_an_irregular_mesh_is_the_elastica() {
         let file = SceneFile::parse(scene(seed), Path::new("clamp.toml"), &edits).unwrap();
         let setup = file.build().unwrap();
         let sheet = setup.sheet.clone();
-        // The clamp ends where its faces do, along a line of edges that is not straight: in the mean over the width
-        // at this place.
+        // The clamp ends where its faces do, along a line of edges that is not straight: in the mean over the
+        // width at this place.
         let t = sheet.topology();
         let is_clamped = |x: &[f64; 3]| x[0] <= 1e-9;
         let points = sheet.positions().as_chunks::<3>().0;

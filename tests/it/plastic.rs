@@ -121,8 +121,8 @@ fn start(sheet: &Sheet, kind: Kind, section: Option<Yield>, method: Method) -> S
     Simulation::new(model(sheet, kind, section), start, method).expect("valid")
 }
 
-/// Curvature of the circle through three points of the middle line, the outer ones at a quarter of the length from the
-/// ends.
+/// Curvature of the circle through three points of the middle line, the outer ones at a quarter of the length
+/// from the ends.
 fn curvature(sheet: &Sheet, x: &[f64]) -> f64 {
     let at = |s: f64| {
         let points = sheet.positions().as_chunks::<3>().0.iter();
@@ -146,8 +146,8 @@ fn sprung_back(kind: Kind, section: Option<Yield>, h: f64) -> (f64, f64) {
     (curvature(&sheet, &run.state().x), report.plastic)
 }
 
-/// The closed form of springback, with perfect plasticity and with hardening, of both kinds of sheets; without a yield
-/// it comes back flat.
+/// The closed form of springback, with perfect plasticity and with hardening, of both kinds of sheets;
+/// without a yield it comes back flat.
 #[test]
 fn a_strip_springs_back_by_its_yield_moment() {
     for kind in [Kind::Rods, Kind::Elastic] {

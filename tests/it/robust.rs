@@ -101,8 +101,8 @@ fn energy_lost(name: &str, method: Method, width: f64, masses: [f64; 2]) -> f64 
     -last / kinetic
 }
 
-/// Mean energies lost by sheets of each damped method. No method may create energy, none can lose more than there
-/// was, and the method of second order loses less than those of first order.
+/// Mean energies lost by sheets of each damped method. No method may create energy, none can lose more than
+/// there was, and the method of second order loses less than those of first order.
 fn assert_energy_is_lost(sheets: usize, lost: impl Fn(&str, &Method, usize) -> f64) {
     let mean = |(name, method): (&'static str, Method)| {
         let sum: f64 = (0..sheets).map(|k| lost(name, &method, k)).sum();
@@ -131,8 +131,8 @@ fn damped_methods_do_not_create_energy() {
 
 #[test]
 fn damped_methods_do_not_create_energy_in_checkerboards_of_masses() {
-    // The result of single sheets depends on random displacements off flat patches; means are of twelve sheets
-    // whose light masses differ by half a percent each.
+    // The result of single sheets depends on random displacements off flat patches; means are of twelve
+    // sheets whose light masses differ by half a percent each.
     assert_energy_is_lost(12, |name, method, k| {
         let light = 0.004 * (1.0 + 0.005 * k as f64);
         energy_lost(name, method.clone(), 1.0, [light, 40.0])
@@ -142,8 +142,8 @@ fn damped_methods_do_not_create_energy_in_checkerboards_of_masses() {
 #[test]
 fn changing_steps_do_not_feed_energy() {
     let problem = Pendulum::default();
-    // Energy errors, relative to the energy at the start: damped methods only lose some, energy-momentum keeps it, and
-    // that of symplectic methods of the order p does not grow beyond (omega h)^p.
+    // Energy errors, relative to the energy at the start: damped methods only lose some, energy-momentum
+    // keeps it, and that of symplectic methods of the order p does not grow beyond (omega h)^p.
     let squared = problem.gravity / problem.length * 1e-4;
     let bounds = [
         ("BDF2", [-1.0, 1e-12]),

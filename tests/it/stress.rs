@@ -166,11 +166,11 @@ fn a_sheet_is_crumpled_from_four_sides() {
         bodies,
         0.2,
     );
-    // Steps that resolve how the flat sheet buckles when the plates arrive: with four times as long ones the height that
-    // it jumps to depends on whether that step is divided.
+    // Steps that resolve how the flat sheet buckles when the plates arrive: with four times as long ones the
+    // height that it jumps to depends on whether that step is divided.
     scene.run(0.35, 0.25 * H, |_, _| ());
-    // The plates are 0.6 SIDE + 2 margin apart. They have pushed the sheet together along both axes, and it is as wide
-    // as half of the space at least: folds that stand away from a plate are shorter than that.
+    // The plates are 0.6 SIDE + 2 margin apart. They have pushed the sheet together along both axes, and it
+    // is as wide as half of the space at least: folds that stand away from a plate are shorter than that.
     let room = 0.6 * SIDE + 2.0 * margin;
     for axis in [0, 1] {
         let [low, high] = extent(scene.x(), axis);
@@ -340,11 +340,11 @@ fn a_sheet_is_crumpled_between_closing_spheres() {
         let mut scene = Scene::new(model, start, vec![ball(1.0), ball(-1.0)], mu);
         scene.run(0.45, H, |_, _| ());
         let ([left, right], [low, high]) = (extent(scene.x(), 0), extent(scene.x(), 2));
-        // A sheet that is turned by the spheres but not wrapped round them keeps its width to a few percent. Round-off
-        // decides whether it folds along its sides or along a diagonal.
+        // A sheet that is turned by the spheres but not wrapped round them keeps its width to a few percent.
+        // Round-off decides whether it folds along its sides or along a diagonal.
         assert!(right - left < 0.9 * SIDE, "from {left} to {right} m");
-        // The outer parts, each half as long as the sheet, stand on end, one upwards and one downwards, by more than
-        // half of their length; no two points are further apart than the diagonal.
+        // The outer parts, each half as long as the sheet, stand on end, one upwards and one downwards, by
+        // more than half of their length; no two points are further apart than the diagonal.
         assert!(high - low < 2.0_f64.sqrt() * SIDE, "from {low} to {high} m");
         assert!(
             low < -0.25 * SIDE && high > 0.25 * SIDE,
@@ -408,9 +408,9 @@ fn a_strip_is_wrapped_round_a_cylinder_and_unrolled() {
     let up = wound(scene.x());
     scene.run(2.0 * half + 0.2, H, |_, _| ());
     let down = wound(scene.x());
-    // One and a quarter turns round the cylinder, each over the layer below, take up 0.236 m or more. What
-    // is left of 0.3 m, 0.064 m or less, hangs from a height of no more than the radius. What is wound is below the
-    // cylinder.
+    // One and a quarter turns round the cylinder, each over the layer below, take up 0.236 m or more. What is
+    // left of 0.3 m, 0.064 m or less, hangs from a height of no more than the radius. What is wound is below
+    // the cylinder.
     assert!((-0.064..-radius).contains(&up), "wound up to {up} m");
     // Once unrolled the sheet hangs from the pins at the height of the axis with nearly all of its length.
     assert!(

@@ -34,8 +34,8 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    /// A strip of 4 x 1 at a distance of 1.2 (Bartels, Numer. Math. 124, 2013, ex. 6.3, recomputed); and small
-    /// deflections, whose energy is `4 pi^2` times the shortening.
+    /// A strip of 4 x 1 at a distance of 1.2 (Bartels, Numer. Math. 124, 2013, ex. 6.3, recomputed); and
+    /// small deflections, whose energy is `4 pi^2` times the shortening.
     #[test]
     fn buckled_strips_are_known() {
         let [energy, height] = buckled(0.3);

@@ -12,8 +12,8 @@ pub struct Elastica {
     pub weight: f64,
 }
 
-/// Slope (radians, downwards), curvature (1/m), horizontal and downward place (metres) at an arc length, and the
-/// integrals of half the square of the curvature (1/m) and of the downward place (m2) up to there.
+/// Slope (radians, downwards), curvature (1/m), horizontal and downward place (metres) at an arc length, and
+/// the integrals of half the square of the curvature (1/m) and of the downward place (m2) up to there.
 type Point = [f64; 6];
 
 /// The strip at rest, for each metre of its width.
@@ -135,8 +135,8 @@ mod tests {
         }
     }
 
-    /// Published and recomputed values: Bartels, Numer. Math. 124, 2013, ex. 6.1 (a strip of 4 with the weight
-    /// 0.025 and unit rigidity), and the tip and the energy of bending for `q L^3 / D` = 1, 10, 100.
+    /// Published and recomputed values: Bartels, Numer. Math. 124, 2013, ex. 6.1 (a strip of 4 with the
+    /// weight 0.025 and unit rigidity), and the tip and the energy of bending for `q L^3 / D` = 1, 10, 100.
     #[test]
     fn known_strips_are_met() {
         let of = |length, weight| {

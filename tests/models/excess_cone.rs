@@ -3,28 +3,28 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The state of least energy of an inextensible disk with a wedge of the angle `phi` inserted: a cone with two folds
-/// up and two down.
+/// The state of least energy of an inextensible disk with a wedge of the angle `phi` inserted: a cone with
+/// two folds up and two down.
 ///
 /// A cone meets the unit sphere about its tip in a closed curve of the length `2 pi + phi`. A plate with the
-/// flexural rigidity `D` bends about the rays with the curvature `kappa / r`, where `kappa` is the geodesic curvature
-/// of that curve, so that the ring between the radii `a` and `b` has the energy
+/// flexural rigidity `D` bends about the rays with the curvature `kappa / r`, where `kappa` is the geodesic
+/// curvature of that curve, so that the ring between the radii `a` and `b` has the energy
 ///
 /// ```text
 /// E = D ln(b / a) integral kappa^2 / 2 ds.
 /// ```
 ///
-/// Curves of least energy are elastic curves of the sphere, `kappa'' + kappa^3 / 2 + c kappa = 0` with a multiplier
-/// `c` for the length. For small `phi` the energy is `3 D phi ln(b / a)` (M. M. Mueller, M. Ben Amar and J. Guven,
-/// "Conical defects in growing sheets", Phys. Rev. Lett. 101, 156104, 2008).
+/// Curves of least energy are elastic curves of the sphere, `kappa'' + kappa^3 / 2 + c kappa = 0` with a
+/// multiplier `c` for the length. For small `phi` the energy is `3 D phi ln(b / a)` (M. M. Mueller, M. Ben
+/// Amar and J. Guven, "Conical defects in growing sheets", Phys. Rev. Lett. 101, 156104, 2008).
 #[derive(Clone, Copy, Debug)]
 pub struct ExcessCone {
     excess: f64,
     start: Start,
 }
 
-/// The curve at a highest point: geodesic curvature (its derivative is zero there), the multiplier `c`, and the
-/// elevation above the equator, radians.
+/// The curve at a highest point: geodesic curvature (its derivative is zero there), the multiplier `c`, and
+/// the elevation above the equator, radians.
 type Start = Vector3<f64>;
 
 /// A point on the curve.
@@ -80,8 +80,8 @@ impl ExcessCone {
         self.start[2]
     }
 
-    /// The direction of the ray at the angle `s` (radians, in the disk) from one of the two highest ones, which is in
-    /// the plane of x and z.
+    /// The direction of the ray at the angle `s` (radians, in the disk) from one of the two highest ones,
+    /// which is in the plane of x and z.
     pub fn ray(&self, s: f64) -> Vector3<f64> {
         // A quarter of the disk further, the curve is turned by a right angle and upside down.
         let quarter = self.length() / 4.0;
@@ -97,8 +97,8 @@ impl ExcessCone {
         Rotation3::from_axis_angle(&Vector3::z_axis(), turns * FRAC_PI_2) * place
     }
 
-    /// What is zero an eighth of the curve from a highest point, by symmetry: curvature, height, and the distance
-    /// from the vertical plane at 45 degrees.
+    /// What is zero an eighth of the curve from a highest point, by symmetry: curvature, height, and the
+    /// distance from the vertical plane at 45 degrees.
     fn miss(&self) -> Vector3<f64> {
         let Point {
             place, curvature, ..
@@ -190,8 +190,8 @@ mod tests {
         assert!(ray(n / 8).z.abs() < 1e-9 && ray(n / 4).z < 0.0 && ray(-7).y < 0.0);
     }
 
-    /// Curves of the same length with elevations `a cos 2 theta + b cos 6 theta` have no less energy, and the best
-    /// of them nearly the same.
+    /// Curves of the same length with elevations `a cos 2 theta + b cos 6 theta` have no less energy, and the
+    /// best of them nearly the same.
     #[test]
     fn no_other_curve_has_less_energy() {
         let cone = ExcessCone::new(0.3);

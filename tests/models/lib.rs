@@ -1,7 +1,7 @@
 //! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a
-//! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for [`bumped`] sheets, for
-//! [`RigidBody`], which gives the motion of any sheet that cannot bend, and for states of rest: [`Elastica`],
-//! [`buckled`] strips and [`ExcessCone`].
+//! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for [`bumped`]
+//! sheets, for [`RigidBody`], which gives the motion of any sheet that cannot bend, and for states of rest:
+//! [`Elastica`], [`buckled`] strips and [`ExcessCone`].
 
 mod buckled;
 mod bumped;

@@ -28,32 +28,34 @@ pub(crate) enum Command {
     ///
     /// Figures 1-15 are those of the paper; 16, a paper jam, and 17, origami, are applications that it only
     /// names. Writes DIR/index.html (small pictures are inside and open the files beside it), DIR/figures,
-    /// DIR/scenes, DIR/runs and DIR/summary.json. What is already there and was made by the same program with the same options is kept; Ctrl-C stops at the next
-    /// frame, and the same command continues.
+    /// DIR/scenes, DIR/runs and DIR/summary.json. What is already there and was made by the same program with
+    /// the same options is kept; Ctrl-C stops at the next frame, and the same command continues.
     ReproduceFigures(ReproduceArgs),
     /// Tabulate and plot the condition numbers of three systems of coordinates, by mesh level
     ///
     /// Writes DIR/condition.csv and DIR/condition.svg and prints the table.
     ConditionTable(ConditionArgs),
-    /// Measure time against errors: every method on every problem, the scenes of other programs, and whole runs at the
-    /// sizes that people use
+    /// Measure time against errors: every method on every problem, the scenes of other programs, and whole
+    /// runs at the sizes that people use
     ///
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already
-    /// there and was made by the same program with the same effort is kept, row by row; `--works w1,w2e --force`
-    /// runs some rows anew. Times are CPU seconds: leave the machine alone meanwhile. The exit code is 0 unless an
-    /// order, a length or a gap is not as the documentation says.
+    /// there and was made by the same program with the same effort is kept, row by row; `--works w1,w2e
+    /// --force` runs some rows anew. Times are CPU seconds: leave the machine alone meanwhile. The exit code
+    /// is 0 unless an order, a length or a gap is not as the documentation says.
     Cost(CostArgs),
     /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks
     /// with references
     ///
-    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/tables (CSV) and DIR/plots (SVG and PNG) and prints
-    /// the tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not end is an entry
-    /// of a table. The exit code is 0 unless a finding is out of bounds that is not declared to be.
+    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/tables (CSV) and DIR/plots (SVG and PNG)
+    /// and prints the tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not
+    /// end is an entry of a table. The exit code is 0 unless a finding is out of bounds that is not declared
+    /// to be.
     Locking(LockingArgs),
-    /// Measure what each constant of a damped step is worth: halve and double it over eight starts of nine kinds of
-    /// scene, and count factorisations, CPU seconds and failures
+    /// Measure what each constant of a damped step is worth: halve and double it over eight starts of nine
+    /// kinds of scene, and count factorisations, CPU seconds and failures
     ///
-    /// Writes DIR/index.html, DIR/kinds.csv and DIR/constants.csv and prints the tables. What was measured is kept.
+    /// Writes DIR/index.html, DIR/kinds.csv and DIR/constants.csv and prints the tables. What was measured is
+    /// kept.
     Tuning(TuningArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
@@ -63,8 +65,8 @@ pub(crate) enum Command {
     HardCases(HardCasesArgs),
     /// Copy what the reports have measured into the book and the README
     ///
-    /// Each report writes DIR/measured.md, unless it is quick. This command copies these files to docs/measured, whose
-    /// parts the book includes, and fills the marked blocks of README.md.
+    /// Each report writes DIR/measured.md, unless it is quick. This command copies these files to
+    /// docs/measured, whose parts the book includes, and fills the marked blocks of README.md.
     Measured(MeasuredArgs),
     /// Make the pictures of the README: sixteen scenes that anybody can run, and a film of one of them
     ///

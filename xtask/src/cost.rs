@@ -1,7 +1,7 @@
 //! `cost`: what error costs how much time, by method, and what whole runs cost at the sizes that people use.
 //!
-//! Every part, and every row of the parts over sizes, is kept in the output folder, so that an interrupted run
-//! continues where it stopped.
+//! Every part, and every row of the parts over sizes, is kept in the output folder, so that an interrupted
+//! run continues where it stopped.
 
 mod accuracy;
 mod methods;

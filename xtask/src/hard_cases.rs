@@ -29,7 +29,7 @@ use crate::interrupt;
 use crate::progress;
 use crate::report::{Effort, FullOptions, demand, excerpt, one_of};
 use crate::store::{Files, Kept, Store, Unit};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -130,6 +130,11 @@ fn make(case: &Case, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
     let started = Instant::now();
     let mut found = Findings::default();
     case.find(&mut found, effort)?;
+    ensure!(
+        !found.here.is_empty(),
+        "the case {} does not say what isosheet does",
+        case.name
+    );
     for picture in &found.pictures {
         picture.write(files)?;
     }

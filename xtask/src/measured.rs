@@ -1,7 +1,7 @@
 //! `measured`: what the reports have measured becomes the numbers of the book and of the README.
 //!
-//! The book includes the files in `docs/measured` part by part. The README cannot include: it has blocks between
-//! `<!-- measured: REPORT PART -->` and `<!-- /measured -->`, which are copies of such parts.
+//! The book includes the files in `docs/measured` part by part. The README cannot include: it has blocks
+//! between `<!-- measured: REPORT PART -->` and `<!-- /measured -->`, which are copies of such parts.
 
 use crate::failure::ReportError;
 use crate::progress;

@@ -34,9 +34,9 @@ impl Glued {
         Self { lowest, shared }
     }
 
-    /// Whether two primitives have vertices that are the same or glued to each other, or are the two diagonals of one
-    /// quadrangle of glued vertices: where two sides of a seam overlap, one side may have the one and the other side
-    /// the other diagonal.
+    /// Whether two primitives have vertices that are the same or glued to each other, or are the two
+    /// diagonals of one quadrangle of glued vertices: where two sides of a seam overlap, one side may have
+    /// the one and the other side the other diagonal.
     pub(super) fn are_joined(&self, first: &[u32], second: &[u32]) -> bool {
         let lowest = |v: &u32| self.lowest[*v as usize];
         let mut pairs = first
@@ -84,7 +84,8 @@ mod tests {
         assert!(glued.are_joined(&[0, 2], &[5, 7]), "crossing diagonals");
         assert!(!glued.are_joined(&[0, 2], &[8, 9]));
         assert!(!glued.are_joined(&[3], &[4, 5, 6]));
-        // Opposite sides of the square: two of their ends are at the ends of a diagonal, which only one side has.
+        // Opposite sides of the square: two of their ends are at the ends of a diagonal, which only one side
+        // has.
         assert!(!glued.are_joined(&[0, 1], &[6, 7]));
         assert!(!glued.are_joined(&[0, 3], &[5, 6]));
     }

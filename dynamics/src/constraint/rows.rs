@@ -66,9 +66,9 @@ impl VertexRows {
         }
     }
 
-    /// Replaces the multipliers of one-sided constraints by their first-order estimates after the step `-dx`, the
-    /// equations being linearised: the negative part of `L + p (c - J dx)`. Returns the largest change and the
-    /// largest of them, kilogram metres.
+    /// Replaces the multipliers of one-sided constraints by their first-order estimates after the step `-dx`,
+    /// the equations being linearised: the negative part of `L + p (c - J dx)`. Returns the largest change
+    /// and the largest of them, kilogram metres.
     pub(crate) fn update_one_sided(&mut self, dx: &[f64]) -> [f64; 2] {
         let mut largest = [0.0_f64; 2];
         for i in 0..self.multipliers.len() {

@@ -173,8 +173,8 @@ fn load(model: &SheetModel, state: &State) -> f64 {
     others.fold(acceleration, f64::max)
 }
 
-/// Largest acceleration of a vertex by the potentials but for the elasticity in the plane of the sheet, whose forces
-/// on a start that is strained by round-off say nothing about loads; metres per second squared.
+/// Largest acceleration of a vertex by the potentials but for the elasticity in the plane of the sheet, whose
+/// forces on a start that is strained by round-off say nothing about loads; metres per second squared.
 fn largest_acceleration(model: &SheetModel, state: &State) -> f64 {
     let mut gradient = vec![0.0; state.x.len()];
     for p in model.outer_potentials() {

@@ -66,8 +66,8 @@ impl ContactLaws {
         }
     }
 
-    /// The coefficients of friction with a body, or where these four vertices of sheets meet, the first and the last of
-    /// which are of the two that do.
+    /// The coefficients of friction with a body, or where these four vertices of sheets meet, the first and
+    /// the last of which are of the two that do.
     pub(crate) fn coefficients(&self, body: Option<u32>, vertices: [u32; 4]) -> Coefficients {
         match body {
             None => {
@@ -82,9 +82,9 @@ impl ContactLaws {
         }
     }
 
-    /// Friction in a step of `h` seconds with a body, or between the sheets of the first and the last of four vertices
-    /// that meet ([`ActiveContact::vertices`](super::ActiveContact::vertices)); `None` without friction and in a
-    /// step without duration.
+    /// Friction in a step of `h` seconds with a body, or between the sheets of the first and the last of four
+    /// vertices that meet ([`ActiveContact::vertices`](super::ActiveContact::vertices)); `None` without
+    /// friction and in a step without duration.
     pub fn friction(&self, body: Option<u32>, vertices: [u32; 4], h: f64) -> Option<Friction> {
         let c = self.coefficients(body, vertices);
         if c.is_frictionless() {

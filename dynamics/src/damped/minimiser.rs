@@ -30,8 +30,8 @@ use workspace::Workspace;
 /// Finds the positions with the rest lengths that minimise the incremental potential of a step: a
 /// minimisation that always descends, in place of a root finder that may not converge.
 ///
-/// One iteration, [`Newton`], is applied in the phases of the table at [`Phase::table`] until one ends at a minimum
-/// that is not above the start.
+/// One iteration, [`Newton`], is applied in the phases of the table at [`Phase::table`] until one ends at a
+/// minimum that is not above the start.
 ///
 /// With contact every displacement is cut to the part that is proven to bring nothing into contact. Pins and
 /// bodies in motion start where they were and advance with the iterates.
@@ -130,8 +130,8 @@ impl Minimiser {
     /// positions to choose from, and there is no such bound.)
     ///
     /// # Errors
-    /// [`StepError::NotConverged`] with the reason of the last phase; [`StepError::Contact`] if the step would end in
-    /// contact.
+    /// [`StepError::NotConverged`] with the reason of the last phase; [`StepError::Contact`] if the step
+    /// would end in contact.
     pub(crate) fn minimise(
         &mut self,
         mut problem: StepProblem<'_>,
@@ -193,9 +193,9 @@ impl Minimiser {
     }
 
     /// Whether the incremental potential at the iterate is not above `bound`, but for what the tolerance of
-    /// the lengths and round-off allow. (Where multipliers were solved for no allowance is made for the lengths: at
-    /// rest they are those of round-off, and to correct round-off in the lengths of a nearly flat sheet would set it
-    /// in motion.)
+    /// the lengths and round-off allow. (Where multipliers were solved for no allowance is made for the
+    /// lengths: at rest they are those of round-off, and to correct round-off in the lengths of a nearly flat
+    /// sheet would set it in motion.)
     fn is_below(
         &mut self,
         bound: Option<&Merit>,

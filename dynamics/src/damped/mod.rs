@@ -1,4 +1,5 @@
-//! The damped methods: a step is a minimum over the positions with the rest lengths, or a projection onto them.
+//! The damped methods: a step is a minimum over the positions with the rest lengths, or a projection onto
+//! them.
 
 pub(crate) mod air_step;
 pub(crate) mod implicit;

@@ -54,8 +54,8 @@ pub(crate) struct RestorationGoal<'a> {
     /// Largest edge strain wanted.
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: usize,
-    /// Whether the positions may be far from the lengths: then a stationary iterate is left to the caller, who
-    /// takes a shorter step.
+    /// Whether the positions may be far from the lengths: then a stationary iterate is left to the caller,
+    /// who takes a shorter step.
     pub(crate) may_be_far: bool,
     /// Time of the vertex constraints, seconds.
     pub(crate) t: f64,
@@ -382,8 +382,8 @@ impl Restoration {
         }
     }
 
-    /// Projects `v` in place onto `G(x) v = 0` (and, at the vertex constraints that are equalities,
-    /// `J v + rate = 0` with `J` as last evaluated), nearest in the sense of the mass matrix, by passes of the
+    /// Projects `v` in place onto `G(x) v = 0` (and, at the vertex constraints that are equalities, `J v +
+    /// rate = 0` with `J` as last evaluated), nearest in the sense of the mass matrix, by passes of the
     /// method of multipliers with one factorisation, see [`ConstrainedSolver`].
     ///
     /// Returns the largest rate left, relative to the speed and the length of the rod.

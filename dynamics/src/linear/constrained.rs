@@ -68,8 +68,8 @@ impl RowValues {
 /// and `J` of those vertex constraints that are equalities, by way of the factorised matrix `K = H + A^T R A`
 /// with penalties `R`.
 ///
-/// With `K y = f + A^T (m + R r)` for given multipliers the equations have the residual `r - A y`. It vanishes
-/// for `m + dm` with
+/// With `K y = f + A^T (m + R r)` for given multipliers the equations have the residual `r - A y`. It
+/// vanishes for `m + dm` with
 ///
 /// ```text
 /// S dm = r - A y,   S = A K^-1 A^T.

@@ -22,10 +22,10 @@ use whole::WholeMatrix;
 /// Pairs without contact that keep their room, per pair and rod in use: room costs fill, analysing
 /// costs about ten factorisations.
 const EXTRA_LIMIT: usize = 2;
-/// Error of what conjugate gradients solve for, relative to what the factorised matrix alone leaves, in the norm of
-/// the matrix: each Newton iteration leaves so much of the error of the one before (Dembo, Eisenstat and Steihaug,
-/// SIAM J. Numer. Anal. 19, 1982). Hanging sheets of 289 and 1089 vertices take as many factorisations with 0.3, 0.1,
-/// 0.01 and 0.001 as with the whole matrix.
+/// Error of what conjugate gradients solve for, relative to what the factorised matrix alone leaves, in the
+/// norm of the matrix: each Newton iteration leaves so much of the error of the one before (Dembo, Eisenstat
+/// and Steihaug, SIAM J. Numer. Anal. 19, 1982). Hanging sheets of 289 and 1089 vertices take as many
+/// factorisations with 0.3, 0.1, 0.01 and 0.001 as with the whole matrix.
 const GRADIENT_ACCURACY: f64 = 0.1;
 
 /// The symmetric matrix
@@ -41,8 +41,8 @@ const GRADIENT_ACCURACY: f64 = 0.1;
 ///
 /// Potentials may couple vertices without a common edge. Bending couples some thirty to each vertex, and a
 /// factorisation with these couplings takes ten times as long as one without. So the matrix without them,
-/// with their substitutes ([`FarCouplings`]), is factorised where that is the cheaper way, and conjugate gradients
-/// on the whole matrix do the rest.
+/// with their substitutes ([`FarCouplings`]), is factorised where that is the cheaper way, and conjugate
+/// gradients on the whole matrix do the rest.
 pub(crate) struct PrimalMatrix {
     /// All but the far couplings.
     near: SparseLlt,
@@ -354,8 +354,8 @@ impl PrimalMatrix {
     /// Factorises the matrix that was assembled last, or without its far couplings.
     ///
     /// # Errors
-    /// [`LinalgError::NotPositiveDefinite`]. (Without far couplings some matrices that are not positive definite
-    /// are factorised; [`PrimalMatrix::solve_whole`] finds those that matter.)
+    /// [`LinalgError::NotPositiveDefinite`]. (Without far couplings some matrices that are not positive
+    /// definite are factorised; [`PrimalMatrix::solve_whole`] finds those that matter.)
     pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {
         if self.far.are_zero() {
             self.near.factorize()?;

@@ -29,15 +29,16 @@ const DEPENDENT_RODS: f64 = 1e-5;
 /// Largest number of rods for which the dense singular values are computed: a few seconds.
 const MAX_DENSE: usize = 1000;
 
-/// Singular values below this count as zero where they are counted with squares, whose round-off is its square.
+/// Singular values below this count as zero where they are counted with squares, whose round-off is its
+/// square.
 const ROUND_OFF_OF_SQUARES: f64 = 1e-7;
 
 /// Rank and smallest singular value of the rigidity matrix at positions `x`, rows scaled to
 /// unit rods, pinned vertices left out. `None` if a position is not finite, or memory runs out.
 ///
-/// Above a thousand rods singular values below 1e-7 count as zero: with the rigidity matrix `A` the matrix
-/// `A A^T - s^2 I` has as many negative eigenvalues as there are singular values below `s`, which a sparse factorisation
-/// `L D L^T` counts (Sylvester's law of inertia).
+/// Above a thousand rods singular values below 1e-7 count as zero: with the rigidity matrix `A` the matrix `A
+/// A^T - s^2 I` has as many negative eigenvalues as there are singular values below `s`, which a sparse
+/// factorisation `L D L^T` counts (Sylvester's law of inertia).
 pub fn rod_rank(model: &SheetModel, x: &[f64]) -> Option<RodRank> {
     let free = model.free_index();
     let columns = 3 * model.free_count();

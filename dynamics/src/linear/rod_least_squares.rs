@@ -4,8 +4,8 @@ use crate::SheetModel;
 use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRows};
 use crate::linear::primal::PrimalMatrix;
 
-/// Passes of the regularisation. Of a singular value `s` the part `(s0^2 / (s^2 + s0^2))^4` is left over: of ten times
-/// the bound 1e-8.
+/// Passes of the regularisation. Of a singular value `s` the part `(s0^2 / (s^2 + s0^2))^4` is left over: of
+/// ten times the bound 1e-8.
 const PASSES: usize = 4;
 
 /// Least-squares solutions of `A y = r` with the rigidity matrix `A` of unit rods, whose rows are
@@ -18,8 +18,8 @@ pub(crate) struct RodLeastSquares<'a> {
 }
 
 impl<'a> RodLeastSquares<'a> {
-    /// At positions `x` (`3V`, metres) with the bound `smallest` of singular values. Nothing if the memory for the
-    /// matrix runs out, or a position is not finite.
+    /// At positions `x` (`3V`, metres) with the bound `smallest` of singular values. Nothing if the memory
+    /// for the matrix runs out, or a position is not finite.
     pub(crate) fn new(model: &'a SheetModel, x: &[f64], smallest: f64) -> Option<Self> {
         let lengths = model.rods().lengths();
         let unit = model.mean_mass() / (smallest * smallest);

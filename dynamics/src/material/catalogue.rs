@@ -1,8 +1,8 @@
 //! Materials with names, and where their numbers are from.
 //!
-//! Metals and films are isotropic plates: their numbers follow from Young's modulus, thickness and density, for
-//! which handbooks and data sheets agree to a few per cent. Paper, cloth and leather differ from sort to sort by
-//! a factor of two, and from direction to direction as well: the numbers are typical ones.
+//! Metals and films are isotropic plates: their numbers follow from Young's modulus, thickness and density,
+//! for which handbooks and data sheets agree to a few per cent. Paper, cloth and leather differ from sort to
+//! sort by a factor of two, and from direction to direction as well: the numbers are typical ones.
 
 use super::plasticity::Yield;
 use super::{Isotropic, Material};
@@ -109,7 +109,8 @@ macro_rules! catalogue {
     };
 }
 
-/// Fibrous materials: density (kg/m2), membrane stiffness (N/m) and rigidity (N m) were measured each by itself.
+/// Fibrous materials: density (kg/m2), membrane stiffness (N/m) and rigidity (N m) were measured each by
+/// itself.
 const fn fibrous(density: f64, stiffness: f64, rigidity: f64, poisson: f64) -> Material {
     Material {
         density,
@@ -132,9 +133,9 @@ const fn plate(youngs: f64, thickness: f64, density: f64, poisson: f64) -> Mater
     material.sheet()
 }
 
-/// Paper of a thickness (m). Its moment is that of a section that has yielded in the whole of its thickness, `3 D e / h`
-/// with the elastic limit `e` = 0.5 % of tensile curves, and grows after that with a quarter of the slope before,
-/// `D H / (D + H) = D / 4`.
+/// Paper of a thickness (m). Its moment is that of a section that has yielded in the whole of its thickness,
+/// `3 D e / h` with the elastic limit `e` = 0.5 % of tensile curves, and grows after that with a quarter of
+/// the slope before, `D H / (D + H) = D / 4`.
 const fn creasing(paper: Material, thickness: f64) -> Material {
     let yields = Yield {
         moment: 3.0 * paper.rigidity * 5e-3 / thickness,

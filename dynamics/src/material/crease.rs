@@ -38,14 +38,15 @@ impl CreaseSpring {
     /// Makes springs those of creases in a sheet with bending stiffness, in place: a crease replaces what
     /// resists bending at its edge.
     ///
-    /// The dihedral angle of the two faces at an edge is the fold of the crease and the bend of the sheet over
-    /// these faces, `theta = theta_c + M / k_s`, with the stiffness `k_s = D l_e^2 / A_e` of the sheet
-    /// ([`CreaseSprings::bending`]). Springs of stiffness `k_i` at the edge, which carry the moment `M = sum k_i
-    /// (rest_i - theta_c)` together, act on that angle with `k_i k_s / (k_s + sum k_i)`: springs in series. A
-    /// sheet that nothing loads rests at the rest angle of its crease, flat on both sides; a crease that is much
-    /// stiffer than the sheet bends like the sheet. The sheet itself is made without stiffness at these edges
-    /// ([`CreaseSprings::bending_beside`], [`PlateBending::creased`](crate::PlateBending::creased)). Both carry the
-    /// same moment, so that a crease yields at the moment at which it yields by itself.
+    /// The dihedral angle of the two faces at an edge is the fold of the crease and the bend of the sheet
+    /// over these faces, `theta = theta_c + M / k_s`, with the stiffness `k_s = D l_e^2 / A_e` of the sheet
+    /// ([`CreaseSprings::bending`]). Springs of stiffness `k_i` at the edge, which carry the moment `M = sum
+    /// k_i (rest_i - theta_c)` together, act on that angle with `k_i k_s / (k_s + sum k_i)`: springs in
+    /// series. A sheet that nothing loads rests at the rest angle of its crease, flat on both sides; a crease
+    /// that is much stiffer than the sheet bends like the sheet. The sheet itself is made without stiffness
+    /// at these edges ([`CreaseSprings::bending_beside`],
+    /// [`PlateBending::creased`](crate::PlateBending::creased)). Both carry the same moment, so that a crease
+    /// yields at the moment at which it yields by itself.
     ///
     /// `rigidity` is the flexural rigidity `D` in newton metres; with zero the springs stay as they are.
     pub fn put_in_sheet<'a>(
@@ -165,8 +166,8 @@ impl Advice for CreaseError {
 /// exact where the spring is at rest.
 ///
 /// Springs that [yield](Yield) remember plastic angles `p_e` besides (radians, one for each layer, in
-/// [`Potential::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a step
-/// what they dissipate in it.
+/// [`Potential::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a
+/// step what they dissipate in it.
 #[derive(Debug)]
 pub struct CreaseSprings {
     hinges: Vec<Hinge>,
@@ -211,9 +212,9 @@ impl CreaseSprings {
         Self { hinges, plastic }
     }
 
-    /// Makes springs of the bending stiffness of a sheet ([`CreaseSprings::bending`]) yield as the sheet does, `yields`
-    /// being that of the sheet, per metre: at an edge of length `l_e` the moment is `M_y l_e`, and the curvature
-    /// `theta l_e / A_e`, so that the hardening is `H l_e^2 / A_e`.
+    /// Makes springs of the bending stiffness of a sheet ([`CreaseSprings::bending`]) yield as the sheet
+    /// does, `yields` being that of the sheet, per metre: at an edge of length `l_e` the moment is `M_y l_e`,
+    /// and the curvature `theta l_e / A_e`, so that the hardening is `H l_e^2 / A_e`.
     ///
     /// # Errors
     /// [`CreaseError::Yield`].

@@ -90,23 +90,23 @@ impl Advice for ElasticSheetError {
 /// ```
 ///
 /// with the rest areas `A_T`, Green's strain `E_T` of the face and its Frobenius norm `|E_T|`, the membrane
-/// stiffness `k_T` (newtons per metre), Poisson's ratio `nu` and the limit `m`. Green's strain is linear in the
-/// length errors of the three edges `c_e = (|x_a - x_b|^2 - l_e^2) / 2`: for the vector `e` of an edge at rest,
-/// `e^T E_T e = c_e`.
+/// stiffness `k_T` (newtons per metre), Poisson's ratio `nu` and the limit `m`. Green's strain is linear in
+/// the length errors of the three edges `c_e = (|x_a - x_b|^2 - l_e^2) / 2`: for the vector `e` of an edge at
+/// rest, `e^T E_T e = c_e`.
 ///
-/// *Limit.* With `p = (4 |E|^2 / m^2 - 1) / 3` the barrier is `b = -p^2 ln(1 - p)` for `0 < p < 1`: zero up to
-/// half the limit, twice continuously differentiable, convex in the strain and infinite at the limit. The norm
-/// bounds both principal strains and the strain of every edge, `|c_e| <= m l_e^2`. Each displacement is cut to a
-/// part that ends within the limit, so that no accepted step is beyond it. The
-/// stiffness `kappa` of the barrier (joules per square metre) is set where a simulation starts, from the weight
-/// and the kinetic energy of the sheet, and raised after steps in which it moves faster.
+/// *Limit.* With `p = (4 |E|^2 / m^2 - 1) / 3` the barrier is `b = -p^2 ln(1 - p)` for `0 < p < 1`: zero up
+/// to half the limit, twice continuously differentiable, convex in the strain and infinite at the limit. The
+/// norm bounds both principal strains and the strain of every edge, `|c_e| <= m l_e^2`. Each displacement is
+/// cut to a part that ends within the limit, so that no accepted step is beyond it. The stiffness `kappa` of
+/// the barrier (joules per square metre) is set where a simulation starts, from the weight and the kinetic
+/// energy of the sheet, and raised after steps in which it moves faster.
 ///
 /// *Stiffness.* A stiff membrane locks on coarse meshes: bends that the mesh cannot follow by folding stretch
 /// the sheet. With the flexural rigidity `D` of the sheet, [`ElasticSheet::softened`] lowers the stiffness of
 /// each face to what its size can bear.
 ///
-/// A strain limit by barrier: M. Li, D. M. Kaufman and C. Jiang, "Codimensional incremental potential contact",
-/// ACM Trans. Graph. 40(4), 2021, Sec. 5.
+/// A strain limit by barrier: M. Li, D. M. Kaufman and C. Jiang, "Codimensional incremental potential
+/// contact", ACM Trans. Graph. 40(4), 2021, Sec. 5.
 #[derive(Debug, Clone)]
 pub struct ElasticSheet {
     faces: Vec<Face>,
@@ -124,14 +124,14 @@ impl ElasticSheet {
     /// The limit of the strain unless another is asked for.
     pub const LIMIT: f64 = 0.01;
 
-    /// How many times the flexural rigidity over the square of the edge lengths the stiffness of a face may be:
-    /// `C` in [`ElasticSheet::softened`].
+    /// How many times the flexural rigidity over the square of the edge lengths the stiffness of a face may
+    /// be: `C` in [`ElasticSheet::softened`].
     ///
-    /// Two scenes pull in opposite directions. A disk of paper that is pushed into a ring has one fold, and stretches
-    /// to a cone without a fold where `C` is small; strips that bend much on meshes without lines across the bend
-    /// (4 squares wide; two turned and three irregular meshes) are too stiff where `C` is large. This value is the
-    /// largest of those measured for which the shape of the strips is right to 2 % (`cargo xtask locking
-    /// --yardsticks softening`):
+    /// Two scenes pull in opposite directions. A disk of paper that is pushed into a ring has one fold, and
+    /// stretches to a cone without a fold where `C` is small; strips that bend much on meshes without lines
+    /// across the bend (4 squares wide; two turned and three irregular meshes) are too stiff where `C` is
+    /// large. This value is the largest of those measured for which the shape of the strips is right to 2 %
+    /// (`cargo xtask locking --yardsticks softening`):
     ///
     /// | `C` | folds of the disk | its energy over that with the real stiffness | largest error of the strips |
     /// |---|---|---|---|
@@ -146,7 +146,8 @@ impl ElasticSheet {
     pub const SOFTENING: f64 = 2000.0;
 
     /// A sheet that is at rest in the shape of `sheet`, with the `stiffness` `E h` (Young's modulus times
-    /// thickness, newtons per metre; office paper 3e5), Poisson's ratio and the limit [`ElasticSheet::LIMIT`].
+    /// thickness, newtons per metre; office paper 3e5), Poisson's ratio and the limit
+    /// [`ElasticSheet::LIMIT`].
     ///
     /// # Errors
     /// [`ElasticSheetError`].
@@ -177,9 +178,9 @@ impl ElasticSheet {
     }
 
     /// With faces as stiff as they can be without locking: `k_T = min(E h, C D / h_T^2)`, with the flexural
-    /// rigidity `rigidity` of the sheet `D` (newton metres), the mean square `h_T^2` of the edge lengths of the
-    /// face, and `C` = 2000. Fine meshes have the stiffness of the material; on coarse ones the sheet is softer
-    /// up to half the limit of its strain. A sheet without bending stiffness is not softened.
+    /// rigidity `rigidity` of the sheet `D` (newton metres), the mean square `h_T^2` of the edge lengths of
+    /// the face, and `C` = 2000. Fine meshes have the stiffness of the material; on coarse ones the sheet is
+    /// softer up to half the limit of its strain. A sheet without bending stiffness is not softened.
     ///
     /// # Errors
     /// [`ElasticSheetError::Rigidity`].
@@ -254,8 +255,8 @@ impl ElasticSheet {
         self.faces.iter().map(|face| face.at(x).norm())
     }
 
-    /// The elastic energy of each face at positions `x` (`3V`, metres), joules, with that of the barrier; infinite
-    /// beyond the limit.
+    /// The elastic energy of each face at positions `x` (`3V`, metres), joules, with that of the barrier;
+    /// infinite beyond the limit.
     pub fn face_energies<'a>(&'a self, x: &'a [f64]) -> impl ExactSizeIterator<Item = f64> + 'a {
         self.faces
             .iter()
@@ -274,8 +275,8 @@ impl ElasticSheet {
         self.faces.iter().zip(bending).map(angle).collect()
     }
 
-    /// Edge length (root mean square of a face, metres) up to which faces of a sheet with this rigidity have the
-    /// stiffness of the material; infinite if faces were not softened. Of several sheets the smallest.
+    /// Edge length (root mean square of a face, metres) up to which faces of a sheet with this rigidity have
+    /// the stiffness of the material; infinite if faces were not softened. Of several sheets the smallest.
     pub fn unsoftened_size(&self) -> f64 {
         self.unsoftened_size
     }
@@ -304,8 +305,8 @@ impl ElasticSheet {
         self.limit.stiffness()
     }
 
-    /// Size of the round-off in the energy where the coordinates are of the given size (metres), joules: what the
-    /// round-off of positions makes of a sheet without strains.
+    /// Size of the round-off in the energy where the coordinates are of the given size (metres), joules: what
+    /// the round-off of positions makes of a sheet without strains.
     pub(crate) fn round_off(&self, size: f64) -> f64 {
         self.faces.iter().map(|face| face.round_off(size)).sum()
     }
@@ -320,8 +321,8 @@ impl ElasticSheet {
         self.faces.len()
     }
 
-    /// Adds `scale` times what the strains of second order in the displacement `dx` (`3V`, metres) change the gradient
-    /// at `x` by: the tangent law of each face times `|dx_a - dx_b|^2 / 2` for each edge.
+    /// Adds `scale` times what the strains of second order in the displacement `dx` (`3V`, metres) change the
+    /// gradient at `x` by: the tangent law of each face times `|dx_a - dx_b|^2 / 2` for each edge.
     pub(crate) fn add_second_order(&self, x: &[f64], dx: &[f64], scale: f64, gradient: &mut [f64]) {
         for face in &self.faces {
             face.add_second_order(x, dx, &self.limit, scale, gradient);
@@ -336,8 +337,8 @@ impl ElasticSheet {
             .all(|face| face.stays_within(x, end, limit))
     }
 
-    /// Largest part of the displacement `dx` (`3V`, metres), at most one, along which every face keeps a part of
-    /// its distance from the limit.
+    /// Largest part of the displacement `dx` (`3V`, metres), at most one, along which every face keeps a part
+    /// of its distance from the limit.
     pub(crate) fn safe_fraction(&self, x: &[f64], dx: &[f64]) -> f64 {
         let limit = self.limit();
         let cut = |part: f64, face: &Face| face.safe_part(x, dx, limit, part);

@@ -58,15 +58,15 @@ impl Advice for GlueError {
 /// V(t, x) = k/2 sum_p |x_a - x_b - (1 - s(t)) d_p|^2,
 /// ```
 ///
-/// with the stiffness `k` of each pair (newtons per metre), the difference `d_p` of its vertices where the glue was
-/// made, and the closing `s` from 0 (they stay as far apart as they were) to 1 (they coincide). A pair that carries
-/// the force `F` is `F / k` apart. The force is linear in the positions, and steps solve it exactly however stiff
-/// the glue is.
+/// with the stiffness `k` of each pair (newtons per metre), the difference `d_p` of its vertices where the
+/// glue was made, and the closing `s` from 0 (they stay as far apart as they were) to 1 (they coincide). A
+/// pair that carries the force `F` is `F / k` apart. The force is linear in the positions, and steps solve it
+/// exactly however stiff the glue is.
 ///
-/// The two sides of a seam may run in opposite directions, and be of one sheet or of two: a strip whose ends are
-/// glued is a band, and one that is twisted by half a turn a Moebius band, which no oriented mesh is. A seam along
-/// one line of vertices is a hinge without stiffness. Where two lines of vertices, one cell apart, are glued (an
-/// overlap), the curvature goes on across the seam.
+/// The two sides of a seam may run in opposite directions, and be of one sheet or of two: a strip whose ends
+/// are glued is a band, and one that is twisted by half a turn a Moebius band, which no oriented mesh is. A
+/// seam along one line of vertices is a hinge without stiffness. Where two lines of vertices, one cell apart,
+/// are glued (an overlap), the curvature goes on across the seam.
 ///
 /// ```
 /// use isosheet_dynamics::{Glue, Profile, SheetModel};
@@ -96,8 +96,8 @@ pub struct Glue {
 }
 
 impl Glue {
-    /// Glue between pairs of vertices at positions `x` (`3V`, metres), of the `stiffness` of each pair in newtons
-    /// per metre.
+    /// Glue between pairs of vertices at positions `x` (`3V`, metres), of the `stiffness` of each pair in
+    /// newtons per metre.
     ///
     /// # Errors
     /// [`GlueError`].

@@ -19,9 +19,9 @@ use serde::{Deserialize, Serialize};
 
 /// A material in the form of a sheet.
 ///
-/// [`Material::named`] looks one up, and each has a constructor of its own, whose documentation says where the
-/// numbers are from. [`Material::isotropic`] makes one of Young's modulus and thickness. The numbers can be
-/// changed after that:
+/// [`Material::named`] looks one up, and each has a constructor of its own, whose documentation says where
+/// the numbers are from. [`Material::isotropic`] makes one of Young's modulus and thickness. The numbers can
+/// be changed after that:
 ///
 /// ```
 /// use isosheet_dynamics::Material;
@@ -42,15 +42,16 @@ pub struct Material {
     pub density: f64,
     /// Membrane stiffness, Young's modulus times thickness `E h`, N/m.
     pub stiffness: f64,
-    /// Flexural rigidity `D`, N m. That of a plate is `E h^3 / (12 (1 - nu^2))`; paper and cloth, whose fibres
-    /// move against one another, are softer than this.
+    /// Flexural rigidity `D`, N m. That of a plate is `E h^3 / (12 (1 - nu^2))`; paper and cloth, whose
+    /// fibres move against one another, are softer than this.
     pub rigidity: f64,
     /// Poisson's ratio.
     pub poisson: f64,
     /// The largest principal strain that a sheet of this material may have: [`Material::STRAIN_LIMIT`], or
     /// more for materials that stretch visibly in use.
     pub strain_limit: f64,
-    /// When a sheet of this material yields in bending, per metre of its width; nothing where it is not known.
+    /// When a sheet of this material yields in bending, per metre of its width; nothing where it is not
+    /// known.
     #[serde(default)]
     pub yields: Option<Yield>,
 }
@@ -111,13 +112,15 @@ impl Material {
         Ok(sheet)
     }
 
-    /// The hardening of metals, in parts of the rigidity: after the yield a moment grows with a hundredth of the slope
-    /// before, `D H / (D + H) = D / 100`, as EN 1993-1-5 (Eurocode 3), C.6, has it for finite elements.
+    /// The hardening of metals, in parts of the rigidity: after the yield a moment grows with a hundredth of
+    /// the slope before, `D H / (D + H) = D / 100`, as EN 1993-1-5 (Eurocode 3), C.6, has it for finite
+    /// elements.
     const METAL_HARDENING: f64 = 1.0 / 99.0;
 
-    /// Makes it yield at a stress (Pa), as a metal of this thickness (metres) does: at the moment `stress thickness^2 /
-    /// 4` of a section that has yielded in the whole of its thickness, with the hardening of Eurocode 3. (It begins at two
-    /// thirds of this moment; [`Yield::in_layers`] takes into account what it bends in between.)
+    /// Makes it yield at a stress (Pa), as a metal of this thickness (metres) does: at the moment `stress
+    /// thickness^2 / 4` of a section that has yielded in the whole of its thickness, with the hardening of
+    /// Eurocode 3. (It begins at two thirds of this moment; [`Yield::in_layers`] takes into account what it
+    /// bends in between.)
     #[must_use]
     pub const fn with_yield_stress(self, thickness: f64, stress: f64) -> Self {
         let yields = Yield {
@@ -131,8 +134,8 @@ impl Material {
         }
     }
 
-    /// Checks the numbers. The ranges are far beyond those of all sheets; a strain limit has to be below 0.5, the
-    /// compression of an edge to nothing.
+    /// Checks the numbers. The ranges are far beyond those of all sheets; a strain limit has to be below 0.5,
+    /// the compression of an edge to nothing.
     ///
     /// # Errors
     /// [`OptionsError`] naming the number that makes no sense.
@@ -146,8 +149,8 @@ impl Material {
     }
 
     /// The elasticity in the plane of a sheet of this material: softened as far as the mesh needs
-    /// ([`ElasticSheet::softened`]), with the limit of the strain. The flexural rigidity is not part of it: add a
-    /// [`PlateBending`](crate::PlateBending).
+    /// ([`ElasticSheet::softened`]), with the limit of the strain. The flexural rigidity is not part of it:
+    /// add a [`PlateBending`](crate::PlateBending).
     ///
     /// # Errors
     /// [`ElasticSheetError`].

@@ -7,65 +7,68 @@ use serde::{Deserialize, Serialize};
 /// When a section yields in bending, and how it hardens: rate-independent plasticity with linear kinematic
 /// hardening (Prager), of the whole section at once or layer by layer (Besseling).
 ///
-/// The curvature `k` of a section (of a crease its fold angle) is the sum of an elastic part, which gives the moment
-/// `M = D (k - p)`, and a plastic part `p`, which stays when the moment goes. The section is elastic as long as
+/// The curvature `k` of a section (of a crease its fold angle) is the sum of an elastic part, which gives the
+/// moment `M = D (k - p)`, and a plastic part `p`, which stays when the moment goes. The section is elastic
+/// as long as
 ///
 /// ```text
 /// |M - H p| <= M_y,
 /// ```
 ///
-/// `D` the rigidity, `M_y` the [moment](Yield::moment) and `H` the [hardening](Yield::hardening). Beyond that `p`
-/// follows, and the moment grows with the slope `D H / (D + H)`. A section that was flat at first and is bent to
-/// `k > M_y / D` springs back to
+/// `D` the rigidity, `M_y` the [moment](Yield::moment) and `H` the [hardening](Yield::hardening). Beyond that
+/// `p` follows, and the moment grows with the slope `D H / (D + H)`. A section that was flat at first and is
+/// bent to `k > M_y / D` springs back to
 ///
 /// ```text
 /// p = (D k - M_y) / (D + H),
 /// ```
 ///
-/// which is `k - M_y / D` without hardening. What the section has yielded to one side makes it yield sooner to the
-/// other (Bauschinger's effect): from `M` backwards it is elastic over the range `2 M_y`.
+/// which is `k - M_y / D` without hardening. What the section has yielded to one side makes it yield sooner
+/// to the other (Bauschinger's effect): from `M` backwards it is elastic over the range `2 M_y`.
 ///
 /// # Layers
 ///
-/// A real section yields from its faces inwards. With `n` [layers](Yield::layers) each half of it is cut into layers of
-/// equal thickness, from `(i - 1) / n` to `i / n` of the way from the middle to a face, whose parts of the rigidity, the
-/// moment and the hardening are
+/// A real section yields from its faces inwards. With `n` [layers](Yield::layers) each half of it is cut into
+/// layers of equal thickness, from `(i - 1) / n` to `i / n` of the way from the middle to a face, whose parts
+/// of the rigidity, the moment and the hardening are
 ///
 /// ```text
 /// D_i = D (3 i^2 - 3 i + 1) / n^3,    M_i = M_y (2 i - 1) / n^2,    H_i = H D_i / D,    i = 1 .. n,
 /// ```
 ///
-/// the integrals of `3 z^2` and of `2 z` over it. All layers have the curvature `k` of the section, each has a plastic
-/// curvature `p_i` and yields by itself; `M = sum_i M_i(k)`, and `p` is the mean of the `p_i` weighted by the `D_i`. The
-/// moment grows from `2/3 M_y` on, about, to `M_y` (or beyond, by hardening), and is that of an elastic-perfectly
-/// plastic material,
+/// the integrals of `3 z^2` and of `2 z` over it. All layers have the curvature `k` of the section, each has
+/// a plastic curvature `p_i` and yields by itself; `M = sum_i M_i(k)`, and `p` is the mean of the `p_i`
+/// weighted by the `D_i`. The moment grows from `2/3 M_y` on, about, to `M_y` (or beyond, by hardening), and
+/// is that of an elastic-perfectly plastic material,
 ///
 /// ```text
 /// M = M_y (1 - (k_y / k)^2 / 3),    k_y = 2 M_y / (3 D),    k > k_y,
 /// ```
 ///
-/// with an error of second order in `1 / n`: at most 15 % of `M_y` for `n = 1`, where the section yields at once as
-/// above, 6 % for `n = 2`, and `0.25 / n^2` beyond, 1.5 % for `n = 4`. Between the layers stresses stay when the moment is gone. (F. J. Gardiner, "The spring back of
-/// metals", Trans. ASME 79, 1957; J. F. Besseling, "A theory of elastic, plastic, and creep deformations of an initially
-/// isotropic material", J. Appl. Mech. 25, 1958.)
+/// with an error of second order in `1 / n`: at most 15 % of `M_y` for `n = 1`, where the section yields at
+/// once as above, 6 % for `n = 2`, and `0.25 / n^2` beyond, 1.5 % for `n = 4`. Between the layers stresses
+/// stay when the moment is gone. (F. J. Gardiner, "The spring back of metals", Trans. ASME 79, 1957; J. F.
+/// Besseling, "A theory of elastic, plastic, and creep deformations of an initially isotropic material", J.
+/// Appl. Mech. 25, 1958.)
 ///
 /// # Moments in several directions
 ///
-/// A moment of three components, that of a plate, is measured by the norm of the 2 x 2 matrix, `|M|^2 = M_11^2 + 2
-/// M_12^2 + M_22^2`, the norm of the elastic energy. A sheet bends in one direction at a place, where this is the
-/// moment itself, as is von Mises' plane-stress norm; where it was bent in two directions in turn, von Mises' norm
-/// is another one, 0.7 to 1.2 times as large.
+/// A moment of three components, that of a plate, is measured by the norm of the 2 x 2 matrix, `|M|^2 =
+/// M_11^2 + 2 M_12^2 + M_22^2`, the norm of the elastic energy. A sheet bends in one direction at a place,
+/// where this is the moment itself, as is von Mises' plane-stress norm; where it was bent in two directions
+/// in turn, von Mises' norm is another one, 0.7 to 1.2 times as large.
 ///
 /// (J. C. Simo and T. J. R. Hughes, *Computational Inelasticity*, Springer 1998, sections 1.4 and 3.3.)
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Yield {
-    /// The moment `M_y` of a section that has yielded in the whole of its thickness: newton metres for a spring, newton
-    /// metres per metre of width for a sheet. A sheet of thickness `h` whose material yields at the stress `s` begins to
-    /// yield at `s h^2 / 6`, and has yielded in the whole of its section at `s h^2 / 4`.
+    /// The moment `M_y` of a section that has yielded in the whole of its thickness: newton metres for a
+    /// spring, newton metres per metre of width for a sheet. A sheet of thickness `h` whose material yields
+    /// at the stress `s` begins to yield at `s h^2 / 6`, and has yielded in the whole of its section at `s
+    /// h^2 / 4`.
     pub moment: f64,
-    /// The hardening `H`, what `M_y` is shifted by per plastic curvature: newton metres per radian for a spring,
-    /// newton metres for a sheet. Zero for a section that yields without hardening.
+    /// The hardening `H`, what `M_y` is shifted by per plastic curvature: newton metres per radian for a
+    /// spring, newton metres for a sheet. Zero for a section that yields without hardening.
     pub hardening: f64,
     /// The number of layers of each half of the section. With one, all of it yields at the same moment.
     #[serde(default = "one")]
@@ -83,8 +86,8 @@ pub(super) struct Flow<const N: usize> {
     pub(super) step: SVector<f64, N>,
     /// Derivative of `step` by the deformation: symmetric, between zero and the unit matrix.
     pub(super) slope: SMatrix<f64, N, N>,
-    /// The energy beside that of the elastic part of the deformation: of hardening, of the stresses between layers, and
-    /// what the growth dissipates.
+    /// The energy beside that of the elastic part of the deformation: of hardening, of the stresses between
+    /// layers, and what the growth dissipates.
     pub(super) energy: f64,
 }
 
@@ -98,8 +101,8 @@ struct Layer {
     hardening: f64,
 }
 
-/// A weighted mean of vectors, and their sum of squares about it (D. H. D. West, "Updating mean and variance estimates",
-/// Comm. ACM 22, 1979).
+/// A weighted mean of vectors, and their sum of squares about it (D. H. D. West, "Updating mean and variance
+/// estimates", Comm. ACM 22, 1979).
 #[derive(Clone, Copy, Debug)]
 struct Mean<const N: usize> {
     weight: f64,
@@ -123,7 +126,8 @@ impl<const N: usize> Mean<N> {
 }
 
 impl Layer {
-    /// The growth of its plastic part `p` and its slope. `e` is the elastic part if nothing yields in the step.
+    /// The growth of its plastic part `p` and its slope. `e` is the elastic part if nothing yields in the
+    /// step.
     fn flow<const N: usize>(
         &self,
         e: SVector<f64, N>,
@@ -143,7 +147,8 @@ impl Layer {
         (step, slope * (self.rigidity / whole))
     }
 
-    /// `H/2 |p + d|^2 + M_y |d|`: what hardening stores, and what the growth `d` of the plastic part `p` dissipates.
+    /// `H/2 |p + d|^2 + M_y |d|`: what hardening stores, and what the growth `d` of the plastic part `p`
+    /// dissipates.
     fn energy<const N: usize>(&self, p: SVector<f64, N>, d: SVector<f64, N>) -> f64 {
         0.5 * self.hardening * (p + d).norm_squared() + self.moment * d.norm()
     }
@@ -199,7 +204,8 @@ impl Yield {
         })
     }
 
-    /// The plastic part of a section, the mean of those of its layers, which are `N` numbers in `layers` each.
+    /// The plastic part of a section, the mean of those of its layers, which are `N` numbers in `layers`
+    /// each.
     pub(super) fn plastic<const N: usize>(&self, layers: &[f64]) -> SVector<f64, N> {
         let mut mean = Mean::NONE;
         for (layer, p) in self.of_section(1.0).zip(layers.as_chunks::<N>().0) {
@@ -208,9 +214,9 @@ impl Yield {
         mean.value
     }
 
-    /// What a section does in a step of time, from the elastic part `e` (of a section with stiffness `k`) that there is
-    /// if nothing yields in the step, the deformation less the [plastic part](Self::plastic), and the plastic parts
-    /// `p_i` of the layers before, which grow by
+    /// What a section does in a step of time, from the elastic part `e` (of a section with stiffness `k`)
+    /// that there is if nothing yields in the step, the deformation less the [plastic part](Self::plastic),
+    /// and the plastic parts `p_i` of the layers before, which grow by
     ///
     /// ```text
     /// argmin_d_i  sum_i k_i/2 |e_i - d_i|^2 + H_i/2 |p_i + d_i|^2 + M_i |d_i|,    e_i = e + p - p_i,

@@ -83,26 +83,26 @@ impl Advice for PlateBendingError {
 /// second order in the size of the faces on any mesh. (The stiffness of
 /// [`CreaseSprings::bending`](crate::CreaseSprings::bending) depends on how mesh and bend run.)
 ///
-/// Of the sheet that the plate is made of, the edge lengths alone count: where its rest positions are folded, the plate
-/// is flat at rest all the same, and a cone or another shape that no flat sheet has may be given in any positions with
-/// its lengths.
+/// Of the sheet that the plate is made of, the edge lengths alone count: where its rest positions are folded,
+/// the plate is flat at rest all the same, and a cone or another shape that no flat sheet has may be given in
+/// any positions with its lengths.
 ///
 /// The Hessian is constant and positive semidefinite. It couples vertices that have no common edge, some 30
 /// to each vertex. Implicit steps of all but small and very stiff sheets factorise a matrix without these
-/// couplings, and take them into account by conjugate gradients: a step costs about twice as much as with rods
-/// alone, and with the factorisation of the whole matrix ten times as much.
+/// couplings, and take them into account by conjugate gradients: a step costs about twice as much as with
+/// rods alone, and with the factorisation of the whole matrix ten times as much.
 ///
-/// A plate that [yields](Yield) has plastic curvatures `p_T` besides, symmetric 2 x 2 matrices that are constant on
-/// each face: of the energy of the curvatures `k_T` along the normal `n` of the face, `n . H_T x`, is left that of
-/// `k_T - p_T`,
+/// A plate that [yields](Yield) has plastic curvatures `p_T` besides, symmetric 2 x 2 matrices that are
+/// constant on each face: of the energy of the curvatures `k_T` along the normal `n` of the face, `n . H_T
+/// x`, is left that of `k_T - p_T`,
 ///
 /// ```text
 /// V(x) = sum_T A_T min_p [ D/2 |H_T x - n p|^2 + H/2 |p|^2 + M_y |p - p_T| ],
 /// ```
 ///
-/// with what hardening stores and what the step dissipates; of a section in layers it is the sum over their parts of
-/// `D`, `H` and `M_y`, each with a curvature `p_T` of its own. Of the Hessian, which is not constant any more where faces
-/// have yielded, a semidefinite part is given.
+/// with what hardening stores and what the step dissipates; of a section in layers it is the sum over their
+/// parts of `D`, `H` and `M_y`, each with a curvature `p_T` of its own. Of the Hessian, which is not constant
+/// any more where faces have yielded, a semidefinite part is given.
 ///
 /// (L. S. D. Morley, "The triangular equilibrium element in the solution of plate bending problems",
 /// Aeronautical Quarterly 19, 1968; elimination of the rotations from patches of faces as in E. Onate and F.
@@ -112,7 +112,8 @@ pub struct PlateBending {
     rigidity: f64,
     stencils: Stencils,
     plastic: Option<PlasticCurvature>,
-    /// The Hessian of the elastic plate: one multiple of the identity for each vertex, edge and further pair of vertices.
+    /// The Hessian of the elastic plate: one multiple of the identity for each vertex, edge and further pair
+    /// of vertices.
     at_vertices: Vec<f64>,
     at_edges: Vec<(EdgeId, f64)>,
     at_pairs: Vec<([VertexId; 2], f64)>,
@@ -142,9 +143,10 @@ impl PlateBending {
         Self::creased(sheet, rigidity, clamped, &[])
     }
 
-    /// As [`PlateBending::clamped`], of a sheet with creases: at the edges `creases` the slopes of the two sides
-    /// are independent, as at free edges, and no fit of slopes reaches across. What resists folding there are
-    /// the springs of the creases ([`CreaseSpring::put_in_sheet`](crate::CreaseSpring::put_in_sheet)).
+    /// As [`PlateBending::clamped`], of a sheet with creases: at the edges `creases` the slopes of the two
+    /// sides are independent, as at free edges, and no fit of slopes reaches across. What resists folding
+    /// there are the springs of the creases
+    /// ([`CreaseSpring::put_in_sheet`](crate::CreaseSpring::put_in_sheet)).
     ///
     /// # Errors
     /// [`PlateBendingError`].
@@ -199,8 +201,8 @@ impl PlateBending {
         })
     }
 
-    /// Makes the plate of `sheet` yield, from a state without plastic curvature on. (Without rigidity it has no
-    /// moments, and never yields.)
+    /// Makes the plate of `sheet` yield, from a state without plastic curvature on. (Without rigidity it has
+    /// no moments, and never yields.)
     ///
     /// # Errors
     /// [`PlateBendingError::Yield`].

@@ -59,8 +59,8 @@ fn an_unknown_name_is_answered_with_the_nearest_first() {
     }
 }
 
-/// A strip as a beam: the rigidity of a plate per width is that of a beam of Poisson's ratio zero, and larger by
-/// `1 / (1 - nu^2)` otherwise; the radius of gyration of a rectangle is `h / sqrt(12)`.
+/// A strip as a beam: the rigidity of a plate per width is that of a beam of Poisson's ratio zero, and larger
+/// by `1 / (1 - nu^2)` otherwise; the radius of gyration of a rectangle is `h / sqrt(12)`.
 #[test]
 fn a_plate_has_the_rigidity_of_its_thickness() {
     for (name, thickness, youngs) in PLATES {
@@ -86,9 +86,9 @@ fn a_plate_has_the_rigidity_of_its_thickness() {
     assert!((Material::steel_sheet().rigidity - 2.403_846).abs() < 1e-6);
 }
 
-/// Fibrous sheets are about as stiff in bending as plates of their stiffness and of the thickness of their form,
-/// or softer; board, whose outer plies are the stiff ones, is stiffer by a tenth. The rigidity of office paper is
-/// that of its stiffer direction.
+/// Fibrous sheets are about as stiff in bending as plates of their stiffness and of the thickness of their
+/// form, or softer; board, whose outer plies are the stiff ones, is stiffer by a tenth. The rigidity of
+/// office paper is that of its stiffer direction.
 #[test]
 fn fibrous_sheets_are_about_as_stiff_as_plates_or_softer() {
     for (name, thickness) in [
@@ -116,7 +116,8 @@ fn a_material_makes_an_elastic_sheet_that_the_mesh_can_bear() {
     let rubber = elastic(1, Material::rubber_sheet());
     assert_eq!(rubber.limit(), 0.2);
     assert!((rubber.stiffness() - 1800.0).abs() < 1e-9);
-    // Squares of 50 mm are too coarse for the stiffness of paper; without bending stiffness nothing is softened.
+    // Squares of 50 mm are too coarse for the stiffness of paper; without bending stiffness nothing is
+    // softened.
     let mut paper = Material::office_paper();
     assert!(elastic(1, paper).face_stiffnesses().all(|k| k < 1e3));
     paper.rigidity = 0.0;
@@ -160,8 +161,9 @@ fn numbers_without_sense_are_refused_by_name() {
     assert_eq!(isotropic(1e15, 1e12, 1e-3, 0.3), Err("stiffness"));
 }
 
-/// A section that has yielded throughout: `s h^2 / 4`, and a hundredth of the slope after that. Of paper the curvature at
-/// the yield is that of an elastic limit of 0.75 % at the surface, three halves of that of its tensile curve.
+/// A section that has yielded throughout: `s h^2 / 4`, and a hundredth of the slope after that. Of paper the
+/// curvature at the yield is that of an elastic limit of 0.75 % at the surface, three halves of that of its
+/// tensile curve.
 #[test]
 fn papers_and_metals_say_when_they_yield() {
     let steel = Material::steel_sheet();

@@ -14,20 +14,20 @@ pub struct ClampAcrossMesh {
     pub edge: Vec<VertexId>,
 }
 
-/// Distance of a vertex from a line, relative to the length of the line, up to which the vertex is on the line.
-/// It allows for the round-off of meshes from files with six digits.
+/// Distance of a vertex from a line, relative to the length of the line, up to which the vertex is on the
+/// line. It allows for the round-off of meshes from files with six digits.
 const OFF_LINE: f64 = 1e-5;
 
 impl SheetModel {
     /// The clamps of a sheet of rods along which the sheet cannot fold, at positions `x` (`3V`, metres).
     ///
     /// A clamp is a set of faces, connected by edges, all of whose vertices are pinned, be it that the pins
-    /// rest or move. A sheet of rods folds along lines of edges only: at a clamp it can do so where the pinned
-    /// vertices that have free neighbours are on one line. Elsewhere the sheet next to the clamp cannot move,
-    /// and most such sheets lock ([`StepError::Locked`](crate::StepError::Locked)). The check is geometric and
-    /// takes a time proportional to the size of the mesh. It errs on both sides: a sheet may fold along a line
-    /// of edges further away, and rods may lock elsewhere. `docs/troubleshooting.md` of the repository says how
-    /// often.
+    /// rest or move. A sheet of rods folds along lines of edges only: at a clamp it can do so where the
+    /// pinned vertices that have free neighbours are on one line. Elsewhere the sheet next to the clamp
+    /// cannot move, and most such sheets lock ([`StepError::Locked`](crate::StepError::Locked)). The check is
+    /// geometric and takes a time proportional to the size of the mesh. It errs on both sides: a sheet may
+    /// fold along a line of edges further away, and rods may lock elsewhere. `docs/troubleshooting.md` of the
+    /// repository says how often.
     ///
     /// None for elastic sheets.
     ///

@@ -41,9 +41,9 @@ impl Advice for HandError {
     }
 }
 
-/// A spring between a vertex and a point in space that is led from outside, `V(t, x) = k |x_v - p(t)|^2 / 2`: a hand
-/// that holds a vertex. Between two steps it is led elsewhere without a change of the simulation, and its work
-/// enters the energy balance. Clones are the same hand.
+/// A spring between a vertex and a point in space that is led from outside, `V(t, x) = k |x_v - p(t)|^2 / 2`:
+/// a hand that holds a vertex. Between two steps it is led elsewhere without a change of the simulation, and
+/// its work enters the energy balance. Clones are the same hand.
 ///
 /// ```
 /// use isosheet_dynamics::{Hand, Method, SheetModel, Simulation, State};
@@ -94,8 +94,8 @@ impl Way {
 }
 
 impl Hand {
-    /// A hand of a stiffness (N/m) that holds a vertex and is at a point (metres): where the vertex is, it pulls at
-    /// nothing yet.
+    /// A hand of a stiffness (N/m) that holds a vertex and is at a point (metres): where the vertex is, it
+    /// pulls at nothing yet.
     ///
     /// # Errors
     /// [`HandError`] naming the first argument that cannot be used.
@@ -144,8 +144,9 @@ impl Hand {
         self.way().at(t).into()
     }
 
-    /// Leads the hand from where it is at time `begin` to a point (metres) until time `end` (seconds), on a straight
-    /// way with a constant speed. `begin` is the time of the simulation: between two steps the energy does not jump.
+    /// Leads the hand from where it is at time `begin` to a point (metres) until time `end` (seconds), on a
+    /// straight way with a constant speed. `begin` is the time of the simulation: between two steps the
+    /// energy does not jump.
     ///
     /// # Errors
     /// [`HandError::Target`]; then nothing has changed.
@@ -334,8 +335,8 @@ mod tests {
         assert!((stretch - want).norm() < 1e-6, "{stretch}, {want}");
     }
 
-    /// The work of the hand that drags a sheet is the energy of the sheet and the spring, up to what the method damps,
-    /// which vanishes with the step.
+    /// The work of the hand that drags a sheet is the energy of the sheet and the spring, up to what the
+    /// method damps, which vanishes with the step.
     #[test]
     fn the_work_of_the_hand_is_counted() {
         let drift = |parts: u32| {

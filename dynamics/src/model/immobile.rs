@@ -286,8 +286,8 @@ mod tests {
         assert!(immobile_vertices(&moving, sheet.positions()).is_empty());
     }
 
-    /// Largest displacement along an axis, metres. Sheets that are displaced by a fifth of it stay nearly flat,
-    /// where length errors leave twenty times as much.
+    /// Largest displacement along an axis, metres. Sheets that are displaced by a fifth of it stay nearly
+    /// flat, where length errors leave twenty times as much.
     const SHAKE: f64 = 0.1;
 
     proptest! {
@@ -322,8 +322,8 @@ mod tests {
                 for v in found {
                     for k in 3 * v.index()..3 * v.index() + 3 {
                         // A length error of 1e-12 leaves 1e-6 of an edge across a straight line of rods, and
-                        // up to its root across a line that ends there. (At most 1.7e-4 in 1479 cases; half of
-                        // the sheets have a free vertex that is 0.08 away.)
+                        // up to its root across a line that ends there. (At most 1.7e-4 in 1479 cases; half
+                        // of the sheets have a free vertex that is 0.08 away.)
                         let moved = (x[k] - rest[k]).abs();
                         prop_assert!(moved < SHAKE / 200.0, "{} by {moved:e}", v.0);
                     }

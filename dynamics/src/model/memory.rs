@@ -11,8 +11,8 @@ impl SheetModel {
         self.potentials().any(|p| !p.memory().is_empty())
     }
 
-    /// The plastic angle of each edge (length E, radians, positive for valleys), 0 where nothing yields; `None` where no
-    /// edge can yield. It is what stays of a fold angle where the moment is zero.
+    /// The plastic angle of each edge (length E, radians, positive for valleys), 0 where nothing yields;
+    /// `None` where no edge can yield. It is what stays of a fold angle where the moment is zero.
     pub fn plastic_angles(&self) -> Option<Vec<f64>> {
         let known: Vec<(EdgeId, f64)> =
             self.potentials().flat_map(|p| p.plastic_angles()).collect();
@@ -26,9 +26,10 @@ impl SheetModel {
         Some(angles)
     }
 
-    /// The principal values of the plastic curvature of each face (length F, 1/m), the larger one in size first,
-    /// positive where the sheet is a valley as seen from the side from which faces are counter-clockwise; `None` where
-    /// no face can yield. They are what stays of the curvature where the moment is zero.
+    /// The principal values of the plastic curvature of each face (length F, 1/m), the larger one in size
+    /// first, positive where the sheet is a valley as seen from the side from which faces are
+    /// counter-clockwise; `None` where no face can yield. They are what stays of the curvature where the
+    /// moment is zero.
     pub fn plastic_curvatures(&self) -> Option<Vec<[f64; 2]>> {
         let known: Vec<(FaceId, Matrix2<f64>)> = self
             .potentials()
@@ -60,7 +61,8 @@ impl SheetModel {
         }
     }
 
-    /// Makes what the potentials remember that of the end of a step; the energy that has been dissipated, joules.
+    /// Makes what the potentials remember that of the end of a step; the energy that has been dissipated,
+    /// joules.
     pub(crate) fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
         self.potentials.iter_mut().map(|p| p.settle(t, x)).sum()
     }
@@ -99,8 +101,8 @@ mod tests {
         }
     }
 
-    /// Of two strips the second one yields: rolled to a cylinder, its plate keeps what is beyond the yield, and its
-    /// spring too. The first one has nothing.
+    /// Of two strips the second one yields: rolled to a cylinder, its plate keeps what is beyond the yield,
+    /// and its spring too. The first one has nothing.
     #[test]
     fn what_stays_has_its_place_among_several_sheets() {
         let (rigidity, moment, curvature) = (2.0, 0.5, 0.9);

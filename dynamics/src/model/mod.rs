@@ -145,7 +145,8 @@ impl SheetModel {
         self
     }
 
-    /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see [`ElasticSheet`].
+    /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see
+    /// [`ElasticSheet`].
     ///
     /// For BDF2 and implicit Euler; other methods and charts are refused.
     ///
@@ -260,8 +261,8 @@ impl SheetModel {
         self.elastic.as_ref()
     }
 
-    /// The potentials in the order in which they were added, and after them that of an elastic sheet, for an energy
-    /// balance of each of them.
+    /// The potentials in the order in which they were added, and after them that of an elastic sheet, for an
+    /// energy balance of each of them.
     pub fn potentials(&self) -> impl Iterator<Item = &dyn Potential> {
         let elastic = self.elastic.iter().map(|e| e as &dyn Potential);
         self.potentials.iter().map(Box::as_ref).chain(elastic)
@@ -272,9 +273,9 @@ impl SheetModel {
         self.potentials.iter().map(Box::as_ref)
     }
 
-    /// Sets the stiffness of the barrier of an elastic sheet for a simulation that goes on at a state with the largest
-    /// acceleration by constant forces (metres per second squared): to a known one (joules per square metre), or to
-    /// what the state asks for.
+    /// Sets the stiffness of the barrier of an elastic sheet for a simulation that goes on at a state with
+    /// the largest acceleration by constant forces (metres per second squared): to a known one (joules per
+    /// square metre), or to what the state asks for.
     pub(crate) fn set_strain_barrier(
         &mut self,
         state: &State,
@@ -290,8 +291,8 @@ impl SheetModel {
         }
     }
 
-    /// Raises the stiffness of the barrier of an elastic sheet to what a state asks for; the energy that this adds to
-    /// the sheet, joules.
+    /// Raises the stiffness of the barrier of an elastic sheet to what a state asks for; the energy that this
+    /// adds to the sheet, joules.
     pub(crate) fn raise_strain_barrier(&mut self, state: &State) -> f64 {
         let Some(elastic) = &self.elastic else {
             return 0.0;
@@ -310,7 +311,8 @@ impl SheetModel {
         self.elastic.is_some()
     }
 
-    /// Largest part of the displacement `dx`, at most one, that is proven to stay within the limit of the strain.
+    /// Largest part of the displacement `dx`, at most one, that is proven to stay within the limit of the
+    /// strain.
     pub(crate) fn fraction_within_limit(&self, x: &[f64], dx: &[f64]) -> f64 {
         self.elastic
             .as_ref()
@@ -411,8 +413,8 @@ impl SheetModel {
         }
     }
 
-    /// Adds the non-conservative forces without that of the air, at pinned vertices too: what is constant over
-    /// a step of a method that minimises.
+    /// Adds the non-conservative forces without that of the air, at pinned vertices too: what is constant
+    /// over a step of a method that minimises.
     pub(crate) fn add_explicit_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         for force in &self.forces {
             force.add_force(t, x, v, f);

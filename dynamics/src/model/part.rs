@@ -4,8 +4,9 @@ use crate::{CouplingKind, HessianSink, Potential, PotentialShape};
 use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
 use nalgebra::{Matrix2, Matrix3};
 
-/// A potential that was made for one sheet, in a model of the [union](isosheet_mesh::Sheet::union) of several: it sees
-/// the coordinates of its own vertices, and its derivatives go to the places that these have in the union.
+/// A potential that was made for one sheet, in a model of the [union](isosheet_mesh::Sheet::union) of
+/// several: it sees the coordinates of its own vertices, and its derivatives go to the places that these have
+/// in the union.
 ///
 /// ```
 /// use isosheet_dynamics::{PlateBending, PotentialOfPart, SheetModel};

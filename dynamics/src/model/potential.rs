@@ -45,12 +45,12 @@ pub trait Potential: Debug + Send + Sync {
         false
     }
 
-    /// Adds the energy of bending of each face (joules) at positions `x` to `faces`, for reports that compare it with
-    /// that of stretching ([`ElasticDeformation`](crate::ElasticDeformation)). The default adds none.
+    /// Adds the energy of bending of each face (joules) at positions `x` to `faces`, for reports that compare
+    /// it with that of stretching ([`ElasticDeformation`](crate::ElasticDeformation)). The default adds none.
     fn add_bending_energies(&self, _x: &[f64], _faces: &mut [f64]) {}
 
-    /// What the energy depends on besides time and positions: plastic deformations, for instance. The default has
-    /// none. A potential with memory is moved by methods that minimise it (BDF2, implicit Euler).
+    /// What the energy depends on besides time and positions: plastic deformations, for instance. The default
+    /// has none. A potential with memory is moved by methods that minimise it (BDF2, implicit Euler).
     fn memory(&self) -> &[f64] {
         &[]
     }
@@ -58,22 +58,23 @@ pub trait Potential: Debug + Send + Sync {
     /// Replaces the memory by another one of the same length, where a simulation goes on from a checkpoint.
     fn set_memory(&mut self, _memory: &[f64]) {}
 
-    /// Makes the memory that of time `t` (seconds) and positions `x` (`3V`, metres), at which a step of time has
-    /// ended; the energy that has been dissipated in the step, joules, by which the energy falls. It changes no force
-    /// at `x`, and as the energy before it is that of the step, nothing is dissipated where a step is refused.
+    /// Makes the memory that of time `t` (seconds) and positions `x` (`3V`, metres), at which a step of time
+    /// has ended; the energy that has been dissipated in the step, joules, by which the energy falls. It
+    /// changes no force at `x`, and as the energy before it is that of the step, nothing is dissipated where
+    /// a step is refused.
     fn settle(&mut self, _t: f64, _x: &[f64]) -> f64 {
         0.0
     }
 
-    /// The edges at which it can yield, with the plastic angles that stay there, radians, positive for valleys. The
-    /// default has none.
+    /// The edges at which it can yield, with the plastic angles that stay there, radians, positive for
+    /// valleys. The default has none.
     fn plastic_angles(&self) -> Vec<(EdgeId, f64)> {
         Vec::new()
     }
 
-    /// The faces on which it can yield, with the plastic curvature that stays there, 1/m, the first axis along the
-    /// first edge of the face, positive where the sheet is a valley as seen from the side from which faces are
-    /// counter-clockwise. The default has none.
+    /// The faces on which it can yield, with the plastic curvature that stays there, 1/m, the first axis
+    /// along the first edge of the face, positive where the sheet is a valley as seen from the side from
+    /// which faces are counter-clockwise. The default has none.
     fn plastic_curvatures(&self) -> Vec<(FaceId, Matrix2<f64>)> {
         Vec::new()
     }
@@ -87,8 +88,8 @@ pub trait Potential: Debug + Send + Sync {
 /// How stiff the couplings of vertices without a common edge are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CouplingKind {
-    /// Such as those of bending: a matrix may be factorised without them, where that is cheaper, and they are taken
-    /// into account by conjugate gradients.
+    /// Such as those of bending: a matrix may be factorised without them, where that is cheaper, and they are
+    /// taken into account by conjugate gradients.
     Soft,
     /// So stiff that conjugate gradients would not converge without them.
     Stiff,

@@ -194,8 +194,8 @@ impl SheetModel {
         }
     }
 
-    /// Work of non-conservative forces and air at the pins in motion between two states, joules, by the trapezoidal
-    /// rule: a part of what the pins do passes on to these forces.
+    /// Work of non-conservative forces and air at the pins in motion between two states, joules, by the
+    /// trapezoidal rule: a part of what the pins do passes on to these forces.
     pub(crate) fn applied_work_at_pins(&self, before: &State, after: &State) -> f64 {
         if !self.has_applied_forces() || self.moving_pins.is_empty() {
             return 0.0;

@@ -13,8 +13,8 @@ pub trait Observer {
     /// Called after every step. [`ControlFlow::Break`] ends the run after this step.
     fn step(&mut self, simulation: &Simulation, report: &StepReport) -> ControlFlow<()>;
 
-    /// Called before each factorisation within a step, see [`Simulation::step_watched`]. [`ControlFlow::Break`] ends
-    /// the run there, with [`StepError::Interrupted`].
+    /// Called before each factorisation within a step, see [`Simulation::step_watched`].
+    /// [`ControlFlow::Break`] ends the run there, with [`StepError::Interrupted`].
     fn within(&mut self, _progress: &StepProgress) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

@@ -226,8 +226,8 @@ impl Engine {
         Ok(())
     }
 
-    /// Largest number of factorisations from an accepted state to the next, for sheets that may lock: those of
-    /// rods with supports at two vertices or more, by methods that take dependent rods.
+    /// Largest number of factorisations from an accepted state to the next, for sheets that may lock: those
+    /// of rods with supports at two vertices or more, by methods that take dependent rods.
     fn work_limit(&self) -> Option<usize> {
         let may_lock = self.model.isometry() == Isometry::Rods
             && self.integrator.traits().demand == RodDemand::Nothing
@@ -319,8 +319,8 @@ impl Substeps<'_, '_> {
         }))
     }
 
-    /// The error of a sheet that may lock, if rods block its motion, or depend on each other while supports and
-    /// bodies rest. (A sheet has to follow what moves: many steps are divided before it buckles.)
+    /// The error of a sheet that may lock, if rods block its motion, or depend on each other while supports
+    /// and bodies rest. (A sheet has to follow what moves: many steps are divided before it buckles.)
     fn locked(&mut self) -> Option<StepError> {
         self.limit?;
         let rests = self.engine.surroundings_rest(self.lengths.end());

@@ -43,8 +43,8 @@ pub(crate) struct Proposal {
 pub(crate) struct StepAccount {
     /// Relative residual of the momentum balance.
     pub(crate) residual: f64,
-    /// Work of the non-conservative forces at the free vertices, joules; of methods that do not minimise with that of
-    /// the air.
+    /// Work of the non-conservative forces at the free vertices, joules; of methods that do not minimise with
+    /// that of the air.
     pub(crate) work: f64,
     /// Work of the air at the free vertices in a method that minimises, joules.
     pub(crate) air: f64,

@@ -61,7 +61,8 @@ pub struct StepReport {
     pub friction: f64,
     /// Energy dissipated by plastic bending ([`Yield`](crate::Yield)) since the start, joules.
     pub plastic: f64,
-    /// Energy error `T + V - work + dissipated + friction + plastic` relative to its value at the start, joules.
+    /// Energy error `T + V - work + dissipated + friction + plastic` relative to its value at the start,
+    /// joules.
     pub energy_drift: f64,
     /// Largest relative edge length error at the end.
     pub strain: f64,

@@ -24,8 +24,8 @@ pub enum TraceEvent {
         iteration: usize,
         /// Round of the method of multipliers, from 0.
         round: usize,
-        /// Decrease that the search direction promises, relative to the inertia term (root of the energy ratio);
-        /// zero where it is round-off.
+        /// Decrease that the search direction promises, relative to the inertia term (root of the energy
+        /// ratio); zero where it is round-off.
         residual: f64,
         /// Largest violation of the equations of isometry after the iteration.
         strain: f64,

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 macro_rules! tuning {
     ($( $(#[doc = $doc:literal])+ $name:ident = $value:literal, )+) => {
-        /// The constants of a step of the damped methods. Not an option: they are named in one place so that a report
-        /// can change them one at a time (`cargo xtask tuning`), and written at the head of a trace.
+        /// The constants of a step of the damped methods. Not an option: they are named in one place so that
+        /// a report can change them one at a time (`cargo xtask tuning`), and written at the head of a trace.
         #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
         pub struct Tuning {
             $( $(#[doc = $doc])+ pub $name: f64, )+
@@ -49,12 +49,12 @@ tuning! {
     /// default: a draping sheet needs three to six, an impact more where contact cuts them. With 1 a stamped
     /// sheet needs 1.4 times the factorisations.
     contact_iteration_share = 4.0,
-    /// Edge strain that iterates of the first phase may have, and largest displacement, in rod lengths, that opens
-    /// a flat patch in a restoration. From 0.005 to 0.2 hanging sheets and sheets on tables and balls cost the same
-    /// to a tenth.
+    /// Edge strain that iterates of the first phase may have, and largest displacement, in rod lengths, that
+    /// opens a flat patch in a restoration. From 0.005 to 0.2 hanging sheets and sheets on tables and balls
+    /// cost the same to a tenth.
     iterate_strain = 0.03,
-    /// Largest number of halvings of a search direction in the first phase and in restorations; after these the
-    /// next phase begins, which takes longer. Four in contact cost 6 % more over drapes and a stamp.
+    /// Largest number of halvings of a search direction in the first phase and in restorations; after these
+    /// the next phase begins, which takes longer. Four in contact cost 6 % more over drapes and a stamp.
     halvings = 8.0,
     /// Growth of the penalty from round to round. Ten keeps the iteration close to its quadratic range: with
     /// thirty a sheet draping on a floor needs twice the iterations.
@@ -110,8 +110,8 @@ tuning! {
     /// three times as many factorisations in steps of 0.25 ms; up to 512 triangles there is no difference.
     perturbation = 1e-4,
     /// Bound on the number of operations that a term of the merit function goes through, for its round-off;
-    /// its square for the squares of length errors that are themselves round-off of the positions. A minimum may be above
-    /// the start of its step by so many times the round-off of both.
+    /// its square for the squares of length errors that are themselves round-off of the positions. A minimum
+    /// may be above the start of its step by so many times the round-off of both.
     round_off_operations = 8.0,
     /// Penalty, over the masses, that a restoration starts from: a Gauss-Newton step to round-off wherever
     /// the rods are independent.
@@ -154,14 +154,14 @@ tuning! {
     /// Round-off of the energies and of the work, relative to their sizes: the restorations that end a step
     /// leave 1e-12 of the lengths, and forces of rods above the weight do work over that.
     energy_round_off = 1e-9,
-    /// The work of bodies, pins, moving constraints and air is known to the accuracy of the trapezoidal rule only:
-    /// this many times the gain that kinetic energy allows.
+    /// The work of bodies, pins, moving constraints and air is known to the accuracy of the trapezoidal rule
+    /// only: this many times the gain that kinetic energy allows.
     drive_uncertainty = 5.0,
 }
 
 impl Tuning {
-    /// The shortest part of a step that a line search tries: one that has been halved to it has stalled, and contact
-    /// that leaves less is in the way.
+    /// The shortest part of a step that a line search tries: one that has been halved to it has stalled, and
+    /// contact that leaves less is in the way.
     pub(crate) fn shortest_part(&self) -> f64 {
         0.5_f64.powi(self.halvings as i32)
     }

@@ -165,15 +165,15 @@ impl Run {
         self.numbers(py, |k| self.recording.trajectory.gaps(k))
     }
 
-    /// Plastic angles of the edges in the frames, radians, positive for valleys, of shape (T, E); None where no edge can
-    /// yield.
+    /// Plastic angles of the edges in the frames, radians, positive for valleys, of shape (T, E); None where
+    /// no edge can yield.
     #[getter]
     fn plastic_angles<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         self.numbers(py, |k| self.recording.trajectory.plastic_angles(k))
     }
 
-    /// Principal values of the plastic curvature of the faces in the frames, 1/m, the larger one in size first, positive
-    /// for valleys, of shape (T, F, 2); None where no face can yield.
+    /// Principal values of the plastic curvature of the faces in the frames, 1/m, the larger one in size
+    /// first, positive for valleys, of shape (T, F, 2); None where no face can yield.
     #[getter]
     fn plastic_curvatures<'py>(
         &self,
@@ -183,9 +183,9 @@ impl Run {
     }
 
     /// One array for each column of `history.csv`, with a row for the start and for every step: "time", "h",
-    /// "substeps", "iterations", "factorisations", "rejected", "kinetic", "potential", "total", "drift" (of the total
-    /// energy), "work", and what "damped", "friction" and "plastic" bending have dissipated (the last is NaN where nothing
-    /// can yield), "strain", "gap" (NaN without contact). Seconds, joules, metres.
+    /// "substeps", "iterations", "factorisations", "rejected", "kinetic", "potential", "total", "drift" (of
+    /// the total energy), "work", and what "damped", "friction" and "plastic" bending have dissipated (the
+    /// last is NaN where nothing can yield), "strain", "gap" (NaN without contact). Seconds, joules, metres.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let rows = &self.recording.history;
@@ -220,8 +220,8 @@ impl Run {
         Ok(columns)
     }
 
-    /// What each `[[measure]]` of the scene shows by its name, metres, at the start and at the end of every step: at the
-    /// times of `history["time"]`.
+    /// What each `[[measure]]` of the scene shows by its name, metres, at the start and at the end of every
+    /// step: at the times of `history["time"]`. Of a run that is not complete the last one may be missing.
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
@@ -231,23 +231,21 @@ impl Run {
         Ok(columns)
     }
 
-    /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...: a dict of "time" of
-    /// shape (S,), seconds, "force" of shape (S, 3), newtons, and of obstacles "torque" about the origin of their own
-    /// frame of shape (S, 3), newton metres. The force of a support is that on the sheet, those of an obstacle are those
-    /// of the sheet on it.
+    /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...: a dict of
+    /// "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and of obstacles "torque" about the
+    /// origin of their own frame of shape (S, 3), newton metres. The force of a support is that on the sheet,
+    /// those of an obstacle are those of the sheet on it.
     #[getter]
     fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let mut bodies: BTreeMap<String, Vec<&LoadRow>> = BTreeMap::new();
+        // Supports come first, and bodies by their numbers.
+        let mut bodies: BTreeMap<(bool, usize), Vec<&LoadRow>> = BTreeMap::new();
         for row in &self.recording.loads {
-            let kind = match row.on {
-                LoadKind::Support => "support",
-                LoadKind::Obstacle => "obstacle",
-            };
-            let body = format!("{kind}[{}]", row.number);
+            let body = (row.on == LoadKind::Obstacle, row.number);
             bodies.entry(body).or_default().push(row);
         }
         let loads = PyDict::new(py);
-        for (body, steps) in bodies {
+        for ((is_obstacle, number), steps) in bodies {
+            let kind = if is_obstacle { "obstacle" } else { "support" };
             let columns = PyDict::new(py);
             let times: Vec<f64> = steps.iter().map(|row| row.t).collect();
             let forces: Vec<[f64; 3]> = steps.iter().map(|row| row.force).collect();
@@ -262,7 +260,7 @@ impl Run {
                     .map(|row| row.torque.map(Option::unwrap_or_default));
                 columns.set_item("torque", rows(py, &torques.collect::<Vec<_>>())?)?;
             }
-            loads.set_item(body, columns)?;
+            loads.set_item(format!("{kind}[{number}]"), columns)?;
         }
         Ok(loads)
     }

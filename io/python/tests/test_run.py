@@ -144,7 +144,7 @@ def test_a_run_has_its_measures_and_loads(folder):
     assert corner.shape == time.shape
     assert corner[[0, -1]] == pytest.approx([0.0, 0.02], abs=1e-12)
     assert run.x[-1, 20, 2] == corner[-1]
-    assert list(run.loads) == ["obstacle[0]", "support[0]"]
+    assert list(run.loads) == ["support[0]", "obstacle[0]"]
     support, floor = run.loads["support[0]"], run.loads["obstacle[0]"]
     assert np.array_equal(support["time"], time[1:])
     assert np.isfinite(support["force"]).all() and support["force"].shape == (time.size - 1, 3)

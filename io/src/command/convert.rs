@@ -70,12 +70,12 @@ pub(crate) struct Convert {
     /// Of a run, write F frames a second: states between two frames of the run are interpolated linearly
     #[arg(long, value_name = "F")]
     fps: Option<f64>,
-    /// Of pictures, the size in pixels: width and height such as 1280x720, or the height alone for the width that
-    /// fits [default: 480]
+    /// Of pictures, the size in pixels: width and height such as 1280x720, or the height alone for the width
+    /// that fits [default: 480]
     #[arg(long, value_name = "SIZE")]
     size: Option<Size>,
-    /// Of pictures, where the viewer is: front, back, left, right, top, bottom, or degrees counter-clockwise from
-    /// the x axis and above the horizon [default: -60,25]
+    /// Of pictures, where the viewer is: front, back, left, right, top, bottom, or degrees counter-clockwise
+    /// from the x axis and above the horizon [default: -60,25]
     #[arg(long, value_name = "VIEW", allow_hyphen_values = true)]
     view: Option<View>,
     /// Of a mesh file, make vertices one that are at most T apart, in the unit of the file [default: 0 for

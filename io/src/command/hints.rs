@@ -7,8 +7,8 @@ use crate::mesh::{Sheet, VertexId};
 /// files in millimetres, points or pixels are.
 const WIDE: f64 = 20.0;
 
-/// Closed parts: they have `3V - E = 3 chi`, at most the six degrees of freedom of a rigid body, and almost all
-/// of them are rigid ([`Dof`](crate::mesh::Dof)).
+/// Closed parts: they have `3V - E = 3 chi`, at most the six degrees of freedom of a rigid body, and almost
+/// all of them are rigid ([`Dof`](crate::mesh::Dof)).
 pub(crate) fn closed(sheet: &Sheet) -> String {
     let t = sheet.topology();
     let parts = t.components();

@@ -1,4 +1,5 @@
-//! Ctrl-C: the first one asks the run to stop, which it does within a step, a second one ends the process at once.
+//! Ctrl-C: the first one asks the run to stop, which it does within a step, a second one ends the process at
+//! once.
 
 use super::failure::{Code, Failure};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -66,8 +66,8 @@ struct How {
     /// Number of threads, at most 1024; the results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads())]
     threads: u16,
-    /// Write what the iterations of every step did to a file, a JSON object a line: see the page "How a damped step
-    /// is found" of the book
+    /// Write what the iterations of every step did to a file, a JSON object a line: see the page "How a
+    /// damped step is found" of the book
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
     /// Open the page of the run in a browser, at its end

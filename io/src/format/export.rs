@@ -92,8 +92,8 @@ pub enum SeriesFormat {
     /// A point cache with the mesh of the first frame beside it, `.pc2` and `.obj`: 32-bit floats, no times.
     Pc2,
     /// A collection of VTK files, one for each frame: for `run.pvd`, `run/frame_00000.vtp` and so on. All
-    /// digits, times, strain and fold angle of the edges and the fields of the series. Bodies have a collection
-    /// of their own, `run-bodies.pvd`.
+    /// digits, times, strain and fold angle of the edges and the fields of the series. Bodies have a
+    /// collection of their own, `run-bodies.pvd`.
     Pvd,
     /// A table with a line for each vertex of each frame, `.csv`: frame, time, vertex, x, y, z and the fields
     /// of vertices, with all digits.
@@ -159,8 +159,8 @@ pub fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
 }
 
 /// Writes one frame of a moving sheet, atomically, as one file of the format that the extension names
-/// ([`ExportMeshFormat`]). OBJ, glTF and USD files have texture coordinates ([`Series::uv`]), glTF and USD files the
-/// bodies too.
+/// ([`ExportMeshFormat`]). OBJ, glTF and USD files have texture coordinates ([`Series::uv`]), glTF and USD
+/// files the bodies too.
 ///
 /// # Errors
 /// [`ExportError`]; nothing is written then.

@@ -44,8 +44,8 @@ pub struct HistoryRow {
     pub damped: f64,
     /// What friction has dissipated since the start, in joules.
     pub friction: f64,
-    /// What yielding has dissipated since the start, in joules; empty in the file for a run in which nothing can
-    /// yield. `dH - work + damped + friction + plastic` is the error of the energy balance.
+    /// What yielding has dissipated since the start, in joules; empty in the file for a run in which nothing
+    /// can yield. `dH - work + damped + friction + plastic` is the error of the energy balance.
     pub plastic: Option<f64>,
     /// Largest relative change of an edge length.
     pub strain: f64,

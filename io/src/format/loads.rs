@@ -14,7 +14,8 @@ pub enum LoadKind {
     Obstacle,
 }
 
-/// The load of a support or an obstacle at the end of a step. The field order is the column order of the file.
+/// The load of a support or an obstacle at the end of a step. The field order is the column order of the
+/// file.
 ///
 /// ```
 /// use isosheet_io::{LoadKind, LoadRow, LoadWriter, read_loads};

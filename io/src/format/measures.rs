@@ -4,8 +4,8 @@ use super::history::{HistoryError, Row, RowWriter, read_rows};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// What a measure of the scene shows at the start or at the end of a step. The field order is the column order of the
-/// file.
+/// What a measure of the scene shows at the start or at the end of a step. The field order is the column
+/// order of the file.
 ///
 /// ```
 /// use isosheet_io::{MeasureRow, MeasureWriter, read_measures};

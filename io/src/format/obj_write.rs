@@ -112,7 +112,8 @@ fn corners(topology: &Topology) -> impl ExactSizeIterator<Item = [u32; 3]> {
 pub(crate) struct Extras<'a> {
     /// Texture coordinates of the vertices.
     pub(crate) uv: Option<&'a [[f64; 2]]>,
-    /// Groups of faces that follow one another: the name of each, and the number of its first face, ascending.
+    /// Groups of faces that follow one another: the name of each, and the number of its first face,
+    /// ascending.
     pub(crate) groups: Vec<(&'a str, usize)>,
 }
 

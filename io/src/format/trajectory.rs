@@ -214,16 +214,17 @@ impl Trajectory {
         self.values(Quantity::Gaps, k)
     }
 
-    /// The plastic angle of each edge in a frame (length E, radians, positive for valleys, 0 where nothing yields): what
-    /// stays of its fold angle where its moment is zero. `None` when no edge can yield, or there is no such frame.
+    /// The plastic angle of each edge in a frame (length E, radians, positive for valleys, 0 where nothing
+    /// yields): what stays of its fold angle where its moment is zero. `None` when no edge can yield, or
+    /// there is no such frame.
     pub fn plastic_angles(&self, k: usize) -> Option<&[f64]> {
         self.values(Quantity::PlasticAngles, k)
     }
 
-    /// The two principal values of the plastic curvature of each face in a frame (length 2F, 1/m): the larger one in
-    /// size first, positive where the sheet is a valley as seen from the side from which faces are counter-clockwise.
-    /// It is what stays of the curvature where the moment is zero. `None` when no face can yield, or there is no such
-    /// frame.
+    /// The two principal values of the plastic curvature of each face in a frame (length 2F, 1/m): the larger
+    /// one in size first, positive where the sheet is a valley as seen from the side from which faces are
+    /// counter-clockwise. It is what stays of the curvature where the moment is zero. `None` when no face can
+    /// yield, or there is no such frame.
     pub fn plastic_curvatures(&self, k: usize) -> Option<&[f64]> {
         self.values(Quantity::PlasticCurvatures, k)
     }

@@ -4,8 +4,8 @@ use super::canvas::{Image, encoder, srgb_bytes};
 use super::error::PictureError;
 use rayon::prelude::*;
 
-/// An animated PNG file of `count` pictures of one size (pixels), which `picture` makes, several at a time on the
-/// threads that rayon has. Each is shown for `delay` milliseconds, and the whole is repeated without end.
+/// An animated PNG file of `count` pictures of one size (pixels), which `picture` makes, several at a time on
+/// the threads that rayon has. Each is shown for `delay` milliseconds, and the whole is repeated without end.
 /// Programs that know no animations show the first picture.
 ///
 /// # Errors

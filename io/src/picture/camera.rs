@@ -122,8 +122,8 @@ impl Camera {
         self.away(p) < self.nearest()
     }
 
-    /// Whether all points that are at most `margin` metres from a triangle are outside of the picture with this
-    /// width over height. The answer may be no for a triangle that passes by a corner of the picture.
+    /// Whether all points that are at most `margin` metres from a triangle are outside of the picture with
+    /// this width over height. The answer may be no for a triangle that passes by a corner of the picture.
     pub(super) fn is_outside(&self, corners: &[[f64; 3]; 3], margin: f64, aspect: f64) -> bool {
         let slope = self.half_height / self.distance;
         let beyond = |direction: &[f64; 3], slope: f64| {

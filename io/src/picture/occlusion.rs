@@ -14,12 +14,12 @@ use rayon::prelude::*;
 /// Rays sent from every point, on a fixed spiral: pictures are the same at every run.
 const RAYS: usize = 40;
 
-/// How far in from a crease a point lies, as part of the way to the centroid of its faces: a point on the crease
-/// would count the faces on the other side as touching.
+/// How far in from a crease a point lies, as part of the way to the centroid of its faces: a point on the
+/// crease would count the faces on the other side as touching.
 const INSET: f64 = 0.25;
 
-/// Faces at a vertex whose normals differ by less than this (cosine, 37 degrees) share one point: the surface is
-/// smooth there. Creases that are sharper keep the shadow on their hollow side.
+/// Faces at a vertex whose normals differ by less than this (cosine, 37 degrees) share one point: the surface
+/// is smooth there. Creases that are sharper keep the shadow on their hollow side.
 const SMOOTH: f64 = 0.8;
 
 /// A point from which rays are sent.
@@ -41,7 +41,8 @@ pub(super) struct Occlusion {
 }
 
 impl Occlusion {
-    /// The faces of a scene, each of which hides what is behind it out to `reach`, less and less with distance.
+    /// The faces of a scene, each of which hides what is behind it out to `reach`, less and less with
+    /// distance.
     pub(super) fn new(scene: &Triangles, reach: f64) -> Self {
         let corner = |v: usize| scene.x[v].into();
         let faces: Vec<[Vector; 3]> = scene.faces.iter().map(|f| f.map(corner)).collect();
@@ -55,9 +56,9 @@ impl Occlusion {
 
     /// Openness (0 dark to 1 free) at the three corners of every piece, on the side that is seen.
     ///
-    /// Pieces that meet smoothly in a vertex share one value there. Rays are distributed by the cosine law. The
-    /// results do not depend on the number of threads: every ray is followed by itself, and the nearest face is
-    /// the same in whatever order the faces are looked at.
+    /// Pieces that meet smoothly in a vertex share one value there. Rays are distributed by the cosine law.
+    /// The results do not depend on the number of threads: every ray is followed by itself, and the nearest
+    /// face is the same in whatever order the faces are looked at.
     pub(super) fn openness(&self, pieces: &[Piece], scene: &Triangles) -> Vec<[f64; 3]> {
         let (spots, of_corner) = spots(pieces, scene);
         let directions = spiral();

@@ -29,8 +29,9 @@ pub(super) struct Cutter<'a> {
 
 impl Cutter<'_> {
     /// The parts of all faces that the picture may show. Faces of the sheet stay whole. Those of bodies are
-    /// halved until they are small enough, and parts outside of the picture are left out on the way: the number
-    /// of pieces is bounded by the picture, however large a body is. New points are added to the scene.
+    /// halved until they are small enough, and parts outside of the picture are left out on the way: the
+    /// number of pieces is bounded by the picture, however large a body is. New points are added to the
+    /// scene.
     pub(super) fn pieces(&self, scene: &mut Triangles) -> Vec<Piece> {
         let mut pieces = Vec::new();
         let mut halves = Halves::default();
@@ -102,9 +103,10 @@ impl Cutter<'_> {
         (!is_hidden).then_some(Piece { back, ..piece })
     }
 
-    /// Cuts a face in two ways, each of which depends on the edge alone so that pieces of faces that share one fit
-    /// together: in space where the surface is curved or passes the viewer, then in the picture. The longest edge
-    /// is halved each time, and its halves are shorter than it was by the same measure, so that cutting ends.
+    /// Cuts a face in two ways, each of which depends on the edge alone so that pieces of faces that share
+    /// one fit together: in space where the surface is curved or passes the viewer, then in the picture. The
+    /// longest edge is halved each time, and its halves are shorter than it was by the same measure, so that
+    /// cutting ends.
     fn cut(
         &self,
         piece: Piece,
@@ -200,8 +202,8 @@ impl Cutter<'_> {
     fn is_turned_away(&self, points: &[[f64; 3]; 3], skin: &Skin) -> bool {
         let flat = normal(points);
         let eye = self.camera.eye();
-        // Between the corners the normal turns by no more than this, and its part towards the viewer grows by no
-        // more than the square of it.
+        // Between the corners the normal turns by no more than this, and its part towards the viewer grows by
+        // no more than the square of it.
         let turn = skin
             .radius()
             .map_or(0.0, |r| longest(points, distance).1 / r);
@@ -279,7 +281,8 @@ mod tests {
     use nalgebra::Isometry3;
     use std::collections::BTreeMap;
 
-    /// The pieces of a body below a sheet of 0.2 m, as a picture of 640 x 480 pixels shows it from an elevation.
+    /// The pieces of a body below a sheet of 0.2 m, as a picture of 640 x 480 pixels shows it from an
+    /// elevation.
     fn pieces(shape: Shape, below: f64, elevation: f64) -> (Vec<Piece>, Triangles, Camera) {
         let camera = Camera::new([0.0; 3], -60.0, elevation, 0.25, 1.2);
         let body = Obstacle::fixed(shape, Isometry3::translation(0.0, 0.0, -below)).unwrap();
@@ -307,7 +310,8 @@ mod tests {
         0.5 * dot(&n, &n).sqrt()
     }
 
-    /// A box that is seen as a whole: its three visible sides are cut, covered once, and the pieces fit together.
+    /// A box that is seen as a whole: its three visible sides are cut, covered once, and the pieces fit
+    /// together.
     #[test]
     fn pieces_are_small_and_fit_together() {
         let half = [0.05, 0.04, 0.03];
@@ -342,9 +346,10 @@ mod tests {
         );
     }
 
-    /// The number of pieces is bounded by the picture, not by the body: a body of a hundred kilometres is cut into
-    /// about as many as one of ten metres, of which the picture shows the same. Those that reach to the horizon
-    /// have some more rows of pieces whenever they are twice as large. The pieces cover all that is seen.
+    /// The number of pieces is bounded by the picture, not by the body: a body of a hundred kilometres is cut
+    /// into about as many as one of ten metres, of which the picture shows the same. Those that reach to the
+    /// horizon have some more rows of pieces whenever they are twice as large. The pieces cover all that is
+    /// seen.
     #[test]
     fn huge_bodies_have_no_more_pieces_than_large_ones() {
         for elevation in [0.0, 3.0, 25.0, 90.0] {

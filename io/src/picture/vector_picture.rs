@@ -8,12 +8,13 @@ use super::solid::{Skin, Triangles};
 use super::vector::axpy;
 use std::fmt::Write;
 
-/// Largest edge of a piece of a body, as a part of the height of the picture: pieces smaller than the faces of a usual
-/// sheet are in the right order before and behind these.
+/// Largest edge of a piece of a body, as a part of the height of the picture: pieces smaller than the faces
+/// of a usual sheet are in the right order before and behind these.
 const GRAIN: f64 = 0.025;
 
-/// How much farther away bodies count than they are, as a part of what the picture shows: most of what touches the
-/// sheet is behind it, and the faces of the sheet, whose mean depth counts, are larger than pieces of bodies.
+/// How much farther away bodies count than they are, as a part of what the picture shows: most of what
+/// touches the sheet is behind it, and the faces of the sheet, whose mean depth counts, are larger than
+/// pieces of bodies.
 const BEHIND: f64 = 0.04;
 
 /// Radius of the dot of a pin, pixels.
@@ -30,7 +31,8 @@ struct Mark {
 ///
 /// Faces are painted from the farthest to the nearest one (the painter's algorithm), by the mean depth of
 /// their corners; faces of bodies are cut into pieces for this. Where faces penetrate or overlap in a circle,
-/// no order is right. Light falls as in [`render`](super::render()), without the shadows of faces on each other.
+/// no order is right. Light falls as in [`render`](super::render()), without the shadows of faces on each
+/// other.
 ///
 /// # Errors
 /// Those of [`Look::validate`]; [`PictureError::Coordinates`], [`PictureError::NotFinite`] and

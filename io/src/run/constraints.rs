@@ -31,8 +31,8 @@ pub(super) fn bodies(scene: &Scene, trajectory: &Trajectory) -> Vec<Body> {
     held.into_iter().map(body).collect()
 }
 
-/// A curve or a surface that holds vertices, as it is drawn. Curves are thin tubes; lines, planes and cylinders,
-/// which have no ends, are drawn as far as the sheet comes.
+/// A curve or a surface that holds vertices, as it is drawn. Curves are thin tubes; lines, planes and
+/// cylinders, which have no ends, are drawn as far as the sheet comes.
 #[derive(Debug)]
 pub(crate) struct HoldingBody {
     /// The key of the support.

@@ -11,11 +11,11 @@ use std::fmt;
 pub struct ElasticSummary {
     /// Stiffness of the material, Young's modulus times thickness, N/m.
     pub stiffness: f64,
-    /// Smallest and largest stiffness of a face, N/m: less than that of the material where the mesh is so coarse that
-    /// it would lock ([`ElasticSheet::softened`]).
+    /// Smallest and largest stiffness of a face, N/m: less than that of the material where the mesh is so
+    /// coarse that it would lock ([`ElasticSheet::softened`]).
     pub used: [f64; 2],
-    /// Edge length up to which faces have the stiffness of the material, metres; none if no face is softened however
-    /// large.
+    /// Edge length up to which faces have the stiffness of the material, metres; none if no face is softened
+    /// however large.
     pub unsoftened_size: Option<f64>,
     /// Limit of the strain.
     pub limit: f64,
@@ -51,7 +51,8 @@ impl fmt::Display for Bend {
 }
 
 impl Bend {
-    /// Part by which chords of this angle are shorter than their arcs: the error of the shape that comes of the mesh.
+    /// Part by which chords of this angle are shorter than their arcs: the error of the shape that comes of
+    /// the mesh.
     pub fn shortening(&self) -> f64 {
         self.angle * self.angle / 24.0
     }
@@ -117,8 +118,8 @@ fn used(elastic: &ElasticSheet) -> [f64; 2] {
 }
 
 impl Field {
-    /// The strain of each face of an elastic sheet, and the part of stretching in its elastic energy, in each frame; none
-    /// for sheets of rods. `positions` has a list of length 3V for each frame.
+    /// The strain of each face of an elastic sheet, and the part of stretching in its elastic energy, in each
+    /// frame; none for sheets of rods. `positions` has a list of length 3V for each frame.
     pub(crate) fn elastic(model: &SheetModel, positions: &[Vec<f64>]) -> Vec<Self> {
         let frames = positions.iter().map(|x| model.elastic_deformation(x));
         let Some(frames) = frames.collect::<Option<Vec<ElasticDeformation>>>() else {

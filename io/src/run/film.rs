@@ -30,15 +30,16 @@ impl Default for FilmOptions {
     }
 }
 
-/// The largest side of a picture, pixels: four times that of a screen. A picture of this size each way takes 3 GB.
+/// The largest side of a picture, pixels: four times that of a screen. A picture of this size each way takes
+/// 3 GB.
 const LARGEST: usize = 16_384;
 
 impl FilmOptions {
     /// Whether the values make sense.
     ///
     /// # Errors
-    /// [`PictureError::Size`] for no pixels or more than 16 384 each way, [`PictureError::Angle`] for angles that
-    /// are not finite or an elevation beyond 90 degrees.
+    /// [`PictureError::Size`] for no pixels or more than 16 384 each way, [`PictureError::Angle`] for angles
+    /// that are not finite or an elevation beyond 90 degrees.
     pub fn validate(&self) -> Result<(), PictureError> {
         let (width, height) = (self.width.unwrap_or(self.height), self.height);
         if !(1..=LARGEST).contains(&width) || !(1..=LARGEST).contains(&height) {
@@ -76,8 +77,8 @@ const DISTANCE: f64 = 6.0;
 /// Margin around the sheet, part of the height of the picture.
 const MARGIN: f64 = 0.06;
 
-/// Corners of bodies that are outside of the box around the sheet by no more than this part of its size are in view
-/// too: a table below a cloth, a ball that falls on it, but not the far ends of a floor.
+/// Corners of bodies that are outside of the box around the sheet by no more than this part of its size are
+/// in view too: a table below a cloth, a ball that falls on it, but not the far ends of a floor.
 const BESIDE: f64 = 0.35;
 
 impl<'a> Film<'a> {
@@ -190,8 +191,8 @@ impl<'a> Film<'a> {
         draw(&picture, &self.camera, &self.look)
     }
 
-    /// All pictures as an animated PNG file, in real time. `drawn` is told the number of pictures that are drawn,
-    /// from whatever thread.
+    /// All pictures as an animated PNG file, in real time. `drawn` is told the number of pictures that are
+    /// drawn, from whatever thread.
     ///
     /// # Errors
     /// [`PictureError`] if a frame cannot be drawn.

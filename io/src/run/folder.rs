@@ -131,8 +131,8 @@ impl RunFolder {
         root.join(Self::SCENE).is_file() && root.join(LOCK).is_file()
     }
 
-    /// Whether the folder holds a complete run of the scene with all its files. Such a run is not touched: its
-    /// folder may be read-only.
+    /// Whether the folder holds a complete run of the scene with all its files. Such a run is not touched:
+    /// its folder may be read-only.
     pub(crate) fn is_complete(root: &Path, material: &Material<'_>) -> Result<bool, RunError> {
         let complete = root.join(Self::SUMMARY).is_file() && root.join(LOCK).is_file();
         if complete {

@@ -16,8 +16,9 @@ const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
 
 /// A file of frames of equal length: after the eight bytes `isofrm01`, for each frame time (seconds),
 /// positions (`3V`, metres) and, of runs that have them, the forces of the rods (newtons, tension positive),
-/// the forces of contact (`3V`, newtons), the gaps of the vertices (metres), the plastic angles of the edges (radians)
-/// and the plastic curvatures of the faces (`2F`, 1/m), as little-endian `f64`, and the CRC-64 of these bytes.
+/// the forces of contact (`3V`, newtons), the gaps of the vertices (metres), the plastic angles of the edges
+/// (radians) and the plastic curvatures of the faces (`2F`, 1/m), as little-endian `f64`, and the CRC-64 of
+/// these bytes.
 #[derive(Debug)]
 pub(crate) struct FrameFile {
     path: PathBuf,
@@ -212,8 +213,8 @@ impl<'a> Frames<'a> {
         })
     }
 
-    /// The numbers of the next frame as bytes; none at the end of the file, where the last frame may be a part
-    /// of one.
+    /// The numbers of the next frame as bytes; none at the end of the file, where the last frame may be a
+    /// part of one.
     fn next_record(&mut self) -> Result<Option<&[u8]>, RunError> {
         let path = || self.path.to_owned();
         let found = read_whole(&mut self.file, &mut self.record);

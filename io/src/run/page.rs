@@ -9,8 +9,9 @@ use std::io::Write;
 use std::path::Path;
 
 impl Recording {
-    /// What the page of the run shows: [`Replay::of_motion`] with the measures of the scene, the pins and immobile
-    /// vertices, the curves and surfaces that hold vertices, a summary, the scene and how to make the run again.
+    /// What the page of the run shows: [`Replay::of_motion`] with the measures of the scene, the pins and
+    /// immobile vertices, the curves and surfaces that hold vertices, a summary, the scene and how to make
+    /// the run again.
     ///
     /// # Errors
     /// [`ViewError::NoFrames`] of a run without a frame yet.

@@ -48,8 +48,8 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Reads the folder of a run. That of a run that goes on, that failed or was interrupted has the frames up
-    /// to now.
+    /// Reads the folder of a run. That of a run that goes on, that failed or was interrupted has the frames
+    /// up to now.
     ///
     /// # Errors
     /// [`RunError::NoRun`] if the folder is not that of a run, [`RunError`] if a file cannot be read.

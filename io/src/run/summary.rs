@@ -77,8 +77,8 @@ pub struct Ending {
     /// What yielding has dissipated, joules; none if nothing can yield.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plastic: Option<f64>,
-    /// Error of the energy balance, joules: energy less work of supports and forces, plus what damping, friction and
-    /// yielding took, minus the energy at the start.
+    /// Error of the energy balance, joules: energy less work of supports and forces, plus what damping,
+    /// friction and yielding took, minus the energy at the start.
     pub energy_drift: f64,
     /// Largest speed of a vertex, m/s.
     pub largest_speed: f64,

@@ -151,8 +151,8 @@ impl Sweep {
     /// Checks that every run can start, as `isosheet check` does it.
     ///
     /// # Errors
-    /// [`SweepError::Scene`] if the scene file cannot be read or an edit cannot be made, [`SweepError::Refused`] with all that is wrong
-    /// in any run.
+    /// [`SweepError::Scene`] if the scene file cannot be read or an edit cannot be made,
+    /// [`SweepError::Refused`] with all that is wrong in any run.
     pub fn check(&self) -> Result<(), SweepError> {
         let path = Path::new(&self.scene);
         let text = fs::read_to_string(path).map_err(|source| SceneFileError::Read {

@@ -30,8 +30,8 @@ impl Advice for RunWarning {
 }
 
 impl Summary {
-    /// Part by which the chord of the sharpest bend of an elastic sheet may be shorter than its arc before the mesh
-    /// counts as too coarse: one percent, 0.49 radians over a face.
+    /// Part by which the chord of the sharpest bend of an elastic sheet may be shorter than its arc before
+    /// the mesh counts as too coarse: one percent, 0.49 radians over a face.
     pub const CHORD_ERROR: f64 = 0.01;
 
     /// What to know before the results are used.

@@ -21,8 +21,8 @@ use serde::{Deserialize, Serialize};
 pub struct Contact {
     /// Whether the sheet meets itself; of several sheets, whether they meet themselves and one another.
     pub self_contact: bool,
-    /// Coefficient of friction of sheets with themselves and one another. (That of an obstacle is given with the
-    /// obstacle.)
+    /// Coefficient of friction of sheets with themselves and one another. (That of an obstacle is given with
+    /// the obstacle.)
     pub friction: f64,
     /// Friction between two of several sheets, where it is another.
     pub pair: Vec<SheetPair>,

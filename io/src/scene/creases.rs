@@ -31,8 +31,9 @@ pub struct Crease {
     pub sheet: Option<String>,
     /// Which edges.
     pub at: CreaseEdges,
-    /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre). It takes the place of
-    /// the bending stiffness of the sheet along the crease; springs `at = { pattern = "flat" }` act besides it.
+    /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre). It takes the place
+    /// of the bending stiffness of the sheet along the crease; springs `at = { pattern = "flat" }` act
+    /// besides it.
     pub stiffness: f64,
     /// Fold angle at rest, degrees: 0 for flat, positive for a valley as seen from the side from which faces
     /// are counter-clockwise, negative for a mountain.

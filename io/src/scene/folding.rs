@@ -19,10 +19,10 @@ use std::path::Path;
 /// Folding to the angles of the FOLD file that is the mesh of the sheet.
 ///
 /// A torsion spring at each crease drives it from the angle that it has at the start (before a perturbation)
-/// to its target. Panels of rods are kept flat, or made flat, by a stiffer spring at each edge inside of them;
-/// those of an elastic sheet bend as its material does, where `sheet.refine` divides them finely enough. Angles
-/// that no such shape has are approached as far as the springs come to an equilibrium: the summary of the run
-/// says how large the differences are at the end.
+/// to its target. Panels of rods are kept flat, or made flat, by a stiffer spring at each edge inside of
+/// them; those of an elastic sheet bend as its material does, where `sheet.refine` divides them finely
+/// enough. Angles that no such shape has are approached as far as the springs come to an equilibrium: the
+/// summary of the run says how large the differences are at the end.
 ///
 /// Mountains and valleys are driven to the angles that `edges_foldAngle` gives them; edges of the kinds `F`
 /// and `J` and the cuts of polygons stay flat; `U`, and `B` inside the sheet, are driven where their angle is
@@ -47,8 +47,9 @@ pub struct Folding {
     pub time: f64,
     /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre).
     pub stiffness: f64,
-    /// Torsional stiffness of a metre of the edges that stay flat, N. If left out, 50 times that of the creases in
-    /// a sheet of rods; an elastic sheet has no such springs then, since its bending stiffness keeps panels flat.
+    /// Torsional stiffness of a metre of the edges that stay flat, N. If left out, 50 times that of the
+    /// creases in a sheet of rods; an elastic sheet has no such springs then, since its bending stiffness
+    /// keeps panels flat.
     #[serde(default)]
     pub flat_stiffness: Option<f64>,
     /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on

@@ -8,8 +8,8 @@ use super::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Gravity on earth, the example of the schema. (Without features that other crates bring, `schemars` reads names
-/// and no arrays.)
+/// Gravity on earth, the example of the schema. (Without features that other crates bring, `schemars` reads
+/// names and no arrays.)
 const EARTH: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// Forces on the sheet besides those of supports and contact.

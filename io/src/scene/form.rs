@@ -1,5 +1,5 @@
-//! The form of a scene against the reference: unknown and replaced keys, and lists, tables and numbers that stand where
-//! the scene has something else. All of them are found at once, each at its place in the text.
+//! The form of a scene against the reference: unknown and replaced keys, and lists, tables and numbers that
+//! stand where the scene has something else. All of them are found at once, each at its place in the text.
 
 use super::key::{Key, KeyPart};
 use super::problem::Problem;

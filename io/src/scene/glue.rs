@@ -12,14 +12,15 @@ use isosheet_mesh::{Sheet as Mesh, VertexId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Vertices of one sheet or of two that are glued to each other in pairs: the first of one side to the first of the
-/// other side, and so on.
+/// Vertices of one sheet or of two that are glued to each other in pairs: the first of one side to the first
+/// of the other side, and so on.
 ///
-/// Pairs that coincide at the start stay together. Others are drawn together by a `closing` from 0 to 1. The sides of
-/// a seam may run in opposite directions: two ends of a strip make a band, and a Moebius band if one of them is
-/// given from its other end. A seam along one line is a hinge without stiffness; with a second one along the
-/// next lines of vertices (an overlap) the curvature goes on across it. Sides that overlap are drawn together through
-/// each other, so that with `contact.self_contact` an overlap has to be there at the start.
+/// Pairs that coincide at the start stay together. Others are drawn together by a `closing` from 0 to 1. The
+/// sides of a seam may run in opposite directions: two ends of a strip make a band, and a Moebius band if one
+/// of them is given from its other end. A seam along one line is a hinge without stiffness; with a second one
+/// along the next lines of vertices (an overlap) the curvature goes on across it. Sides that overlap are
+/// drawn together through each other, so that with `contact.self_contact` an overlap has to be there at the
+/// start.
 ///
 /// ```toml
 /// [[glue]]
@@ -40,9 +41,9 @@ pub struct Glue {
     /// How far the glue has drawn the two sides together: from 0, as at the start, to 1, closed.
     #[serde(default = "closed")]
     pub closing: Profile,
-    /// Stiffness of each pair, N/m. If left out, `1e4 (m g + D / L) / L` with the mass `m` of all sheets, gravity `g`
-    /// (9.8 m/s2 if there is none), the largest flexural rigidity `D` and the mean edge length `L`: a pair that carries
-    /// all of that is apart by a ten-thousandth of an edge.
+    /// Stiffness of each pair, N/m. If left out, `1e4 (m g + D / L) / L` with the mass `m` of all sheets,
+    /// gravity `g` (9.8 m/s2 if there is none), the largest flexural rigidity `D` and the mean edge length
+    /// `L`: a pair that carries all of that is apart by a ten-thousandth of an edge.
     #[serde(default)]
     pub stiffness: Option<f64>,
 }

@@ -23,8 +23,8 @@ pub enum Material {
     Plate(Plate),
 }
 
-/// A plate of one isotropic material: its mass is `density thickness`, its membrane stiffness `youngs thickness`
-/// and its flexural rigidity `youngs thickness^3 / (12 (1 - poisson^2))`.
+/// A plate of one isotropic material: its mass is `density thickness`, its membrane stiffness `youngs
+/// thickness` and its flexural rigidity `youngs thickness^3 / (12 (1 - poisson^2))`.
 ///
 /// ```toml
 /// [sheet]
@@ -42,8 +42,8 @@ pub struct Plate {
     /// Poisson's ratio, from 0 to 0.5.
     #[serde(default = "typical_poisson")]
     pub poisson: f64,
-    /// Stress at which the material yields, Pa: steel has from 2e8. It makes the sheet yield where `sheet.yield` says
-    /// so, at the moment `yield_stress thickness^2 / 4`.
+    /// Stress at which the material yields, Pa: steel has from 2e8. It makes the sheet yield where
+    /// `sheet.yield` says so, at the moment `yield_stress thickness^2 / 4`.
     #[serde(default)]
     pub yield_stress: Option<f64>,
 }

@@ -10,9 +10,9 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A length that is read off the sheet at the start and after each step: how deep a tip hangs, how far a corner is from
-/// its place, how wide a fold is. A run writes it to `measures.csv`, and its last, least and largest value to
-/// `summary.json` as `measures.NAME`.
+/// A length that is read off the sheet at the start and after each step: how deep a tip hangs, how far a
+/// corner is from its place, how wide a fold is. A run writes it to `measures.csv`, and its last, least and
+/// largest value to `summary.json` as `measures.NAME`.
 ///
 /// ```toml
 /// [[measure]]

@@ -37,9 +37,9 @@ pub struct Method {
     pub rod_stiffness: Option<f64>,
     /// Smallest part of a step that is tried where whole steps are rejected, from 1e-12 to 1.
     pub min_fraction: f64,
-    /// Most factorisations from one accepted part of a step to the next for sheets of rods with supports at two
-    /// vertices or more: then a sheet whose rods block its motion is refused, as it locks. No other result
-    /// depends on it.
+    /// Most factorisations from one accepted part of a step to the next for sheets of rods with supports at
+    /// two vertices or more: then a sheet whose rods block its motion is refused, as it locks. No other
+    /// result depends on it.
     pub max_factorisations: usize,
     /// What to do when even that is rejected.
     pub fallback: Fallback,

@@ -6,8 +6,8 @@ use super::problem::Problem;
 use isosheet_mesh::generate::{FoldAssignment, refine_isotropic};
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 
-/// A mesh and its refinement by [`refine_isotropic`], as often as `sheet.refine` says. Vertices of the mesh keep
-/// their numbers, and an edge of it becomes a row of edges.
+/// A mesh and its refinement by [`refine_isotropic`], as often as `sheet.refine` says. Vertices of the mesh
+/// keep their numbers, and an edge of it becomes a row of edges.
 pub(super) struct Refined {
     /// The mesh, and what each division of all faces makes of it.
     levels: Vec<Sheet>,
@@ -61,8 +61,8 @@ impl Refined {
         inside.filter(|e| !is_part[e.index()]).collect()
     }
 
-    /// The vertices of the refined mesh at positions `x` (`3V`) of those of the mesh: new ones in the middle of
-    /// edges.
+    /// The vertices of the refined mesh at positions `x` (`3V`) of those of the mesh: new ones in the middle
+    /// of edges.
     pub(super) fn positions(&self, mut x: Vec<f64>) -> Vec<f64> {
         for level in &self.levels[..self.levels.len() - 1] {
             for ends in level.topology().edges() {

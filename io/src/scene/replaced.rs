@@ -1,7 +1,7 @@
 //! Keys and choices of earlier versions, and what takes their place.
 
-/// What is wrong with a key that an earlier version had, and what to write instead; `None` for all others. The
-/// name is that of the key without numbers of entries, and with its value where the value is a name:
+/// What is wrong with a key that an earlier version had, and what to write instead; `None` for all others.
+/// The name is that of the key without numbers of entries, and with its value where the value is a name:
 /// `sheet.isometry.weak` for `isometry = { weak = {} }` and for `isometry = "weak"`.
 pub(crate) fn replaced(name: &str) -> Option<[&'static str; 2]> {
     let words = match name {

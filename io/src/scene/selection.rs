@@ -147,12 +147,13 @@ fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> VertexId {
     VertexId::from_index(best)
 }
 
-/// Largest distance of a vertex from a line that it is on, and of two that coincide, as a part of the size of the sheet:
-/// above the round-off of coordinates that went through a text file with seven digits, below any mesh.
+/// Largest distance of a vertex from a line that it is on, and of two that coincide, as a part of the size of
+/// the sheet: above the round-off of coordinates that went through a text file with seven digits, below any
+/// mesh.
 pub(super) const ON_LINE: f64 = 1e-6;
 
-/// The place of a point beside the line between two points, 0 where that begins and 1 where it ends; nothing if the
-/// point is farther from the line than `tolerance`, metres.
+/// The place of a point beside the line between two points, 0 where that begins and 1 where it ends; nothing
+/// if the point is farther from the line than `tolerance`, metres.
 pub(super) fn place_on_line(
     p: &[f64; 3],
     [from, to]: [&[f64; 3]; 2],

@@ -12,9 +12,10 @@ use isosheet_dynamics as engine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A sheet. A scene of several has a table `[[sheet]]` for each, with a `name` by which supports, creases and loads
-/// name it; where they name none, regions and points are of all sheets. All sheets are of rods or all are elastic, and
-/// they have the same `damping`, `thickness` and limit of strain. With `contact.self_contact` they meet one another.
+/// A sheet. A scene of several has a table `[[sheet]]` for each, with a `name` by which supports, creases and
+/// loads name it; where they name none, regions and points are of all sheets. All sheets are of rods or all
+/// are elastic, and they have the same `damping`, `thickness` and limit of strain. With
+/// `contact.self_contact` they meet one another.
 ///
 /// ```toml
 /// [sheet]
@@ -31,16 +32,17 @@ pub struct Sheet {
     pub name: Option<String>,
     /// Where the mesh comes from. Its shape is the rest shape: the one with the rest lengths.
     pub mesh: Mesh,
-    /// How often all faces of the mesh are divided into four, as the paper's Fig. 4 does: the middle of the longest
-    /// edge is joined to the opposite corner and to the middles of the other two. Vertices and edges of the mesh
-    /// keep their numbers and their creases; panels of a crease pattern can bend where they are divided.
+    /// How often all faces of the mesh are divided into four, as the paper's Fig. 4 does: the middle of the
+    /// longest edge is joined to the opposite corner and to the middles of the other two. Vertices and edges
+    /// of the mesh keep their numbers and their creases; panels of a crease pattern can bend where they are
+    /// divided.
     #[serde(default)]
     pub refine: usize,
     /// What the sheet is made of. Without it, the sheet is one of rigid rods, as in the paper.
     #[serde(default)]
     pub material: Option<Material>,
-    /// Mass of a square metre, kg/m2: steel of 1 mm has 7.8. If left out, that of the material; without one 0.08,
-    /// as office paper has. Not used if `mass` is given.
+    /// Mass of a square metre, kg/m2: steel of 1 mm has 7.8. If left out, that of the material; without one
+    /// 0.08, as office paper has. Not used if `mass` is given.
     #[serde(default)]
     pub density: Option<f64>,
     /// Mass of the whole sheet, kilograms; if left out, `density` times its area.
@@ -97,8 +99,8 @@ pub enum Isometry {
     /// Rigid rods along all edges: exact lengths, folds along the lines of the mesh alone.
     #[default]
     Rods,
-    /// The elasticity of the material, softened where the mesh is too coarse for its bends, and a limit of strain
-    /// that nothing exceeds. For `bdf2` and `implicit_euler`.
+    /// The elasticity of the material, softened where the mesh is too coarse for its bends, and a limit of
+    /// strain that nothing exceeds. For `bdf2` and `implicit_euler`.
     Elastic {
         /// Young's modulus times thickness, N/m: office paper has 3e5. If left out, that of the material.
         #[serde(default)]
@@ -106,8 +108,8 @@ pub enum Isometry {
         /// Poisson's ratio, from 0 to 0.5. If left out, that of the material; without one 0.3.
         #[serde(default)]
         poisson: Option<f64>,
-        /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. If left out, that of the
-        /// material; without one 0.01.
+        /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. If left out, that of
+        /// the material; without one 0.01.
         #[serde(default)]
         limit: Option<f64>,
     },
@@ -164,7 +166,8 @@ impl Sheet {
         self.material.as_ref().and_then(Material::numbers)
     }
 
-    /// Mass of a square metre, kg/m2, unless `mass` is given: as written, of the material, or of office paper.
+    /// Mass of a square metre, kg/m2, unless `mass` is given: as written, of the material, or of office
+    /// paper.
     pub fn areal_density(&self) -> f64 {
         let density = self.density.or(self.made_of().map(|m| m.density));
         density.unwrap_or(PAPER_DENSITY)
@@ -190,8 +193,8 @@ impl Sheet {
         }
     }
 
-    /// When the sheet yields in bending, per metre of its width: as written, or of the material. Nothing if it never
-    /// does.
+    /// When the sheet yields in bending, per metre of its width: as written, or of the material. Nothing if
+    /// it never does.
     pub fn yields(&self) -> Option<engine::Yield> {
         self.yields?.numbers(self.made_of().and_then(|m| m.yields))
     }
@@ -269,8 +272,8 @@ impl Sheet {
     }
 }
 
-/// Limits of strain. Smaller ones than a millionth come near the rounding of positions; at a strain of -0.5 an edge
-/// has no length.
+/// Limits of strain. Smaller ones than a millionth come near the rounding of positions; at a strain of -0.5
+/// an edge has no length.
 const LIMITS: [f64; 2] = [1e-6, 0.49];
 
 impl Isometry {

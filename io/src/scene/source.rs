@@ -167,8 +167,8 @@ impl SceneFile {
         Ok(setup)
     }
 
-    /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a crease pattern
-    /// among the meshes; `None` for an edge of which the pattern does not say it.
+    /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a
+    /// crease pattern among the meshes; `None` for an edge of which the pattern does not say it.
     ///
     /// # Errors
     /// [`SceneError`] if the mesh cannot be made.

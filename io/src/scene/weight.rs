@@ -7,8 +7,8 @@ use super::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A mass that some vertices share equally, beside that of the sheet: a clip at a corner, a batten in a hem. It is
-/// heavy and inert, and has no extent.
+/// A mass that some vertices share equally, beside that of the sheet: a clip at a corner, a batten in a hem.
+/// It is heavy and inert, and has no extent.
 ///
 /// ```toml
 /// [[weight]]

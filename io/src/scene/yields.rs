@@ -7,10 +7,10 @@ use isosheet_dynamics::Yield;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// When the sheet yields in bending, so that bends stay: the moment `M` of a metre of width is `D (k - p)` with the
-/// rigidity `D`, the curvature `k` and the plastic curvature `p`, which grows where `|M - hardening p|` would be more
-/// than `moment`. A sheet in `layers` begins to yield at its faces, at two thirds of that. For `bdf2` and
-/// `implicit_euler`.
+/// When the sheet yields in bending, so that bends stay: the moment `M` of a metre of width is `D (k - p)`
+/// with the rigidity `D`, the curvature `k` and the plastic curvature `p`, which grows where `|M - hardening
+/// p|` would be more than `moment`. A sheet in `layers` begins to yield at its faces, at two thirds of that.
+/// For `bdf2` and `implicit_euler`.
 ///
 /// ```toml
 /// [sheet]
@@ -21,15 +21,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SheetYield {
-    /// Moment at which a metre of the sheet yields, N m per m: `s h^2 / 4` where the material yields at the stress `s`
-    /// and is `h` thick. If left out, that of the material.
+    /// Moment at which a metre of the sheet yields, N m per m: `s h^2 / 4` where the material yields at the
+    /// stress `s` and is `h` thick. If left out, that of the material.
     pub moment: Option<f64>,
-    /// Growth of this moment by plastic curvature, N m. If left out, that of the material where `moment` is left out
-    /// too, and otherwise 0.
+    /// Growth of this moment by plastic curvature, N m. If left out, that of the material where `moment` is
+    /// left out too, and otherwise 0.
     pub hardening: Option<f64>,
-    /// Number of layers of equal thickness of each half of the sheet, each of which yields by itself. With 1, the sheet
-    /// yields in the whole of its thickness at once; with 4, the moment of a sheet that yields from its faces inwards has
-    /// an error of 1.5 % of `moment`.
+    /// Number of layers of equal thickness of each half of the sheet, each of which yields by itself. With 1,
+    /// the sheet yields in the whole of its thickness at once; with 4, the moment of a sheet that yields from
+    /// its faces inwards has an error of 1.5 % of `moment`.
     pub layers: usize,
 }
 
@@ -53,8 +53,9 @@ fn check_layers(key: &Key, layers: usize, checks: &mut Checks) {
     checks.within(key.name("layers"), layers as f64, [1.0, most]);
 }
 
-/// When a crease yields, so that it stays folded: its moment is `stiffness (angle - p)` with the plastic angle `p`,
-/// which grows where `|M - hardening p|` would be more than `moment`. For `bdf2` and `implicit_euler`.
+/// When a crease yields, so that it stays folded: its moment is `stiffness (angle - p)` with the plastic
+/// angle `p`, which grows where `|M - hardening p|` would be more than `moment`. For `bdf2` and
+/// `implicit_euler`.
 ///
 /// ```toml
 /// [[crease]]
@@ -65,14 +66,14 @@ fn check_layers(key: &Key, layers: usize, checks: &mut Checks) {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CreaseYield {
-    /// Moment at which a metre of the crease yields, N (newton metres per metre): `stiffness` times the angle in
-    /// radians from which it springs back.
+    /// Moment at which a metre of the crease yields, N (newton metres per metre): `stiffness` times the angle
+    /// in radians from which it springs back.
     pub moment: f64,
     /// Growth of this moment by plastic angle, N (newton metres per radian and metre).
     #[serde(default)]
     pub hardening: f64,
-    /// Number of layers of equal thickness of each half of its section, each of which yields by itself: with more than 1
-    /// it begins to yield at two thirds of `moment`, more and more of it up to that.
+    /// Number of layers of equal thickness of each half of its section, each of which yields by itself: with
+    /// more than 1 it begins to yield at two thirds of `moment`, more and more of it up to that.
     #[serde(default = "one_layer")]
     pub layers: usize,
 }

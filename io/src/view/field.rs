@@ -150,8 +150,9 @@ impl Field {
         forces.into_iter().chain(gaps).collect()
     }
 
-    /// What the trajectory has of yielding: of plates the principal value of the plastic curvature of each face (1/m)
-    /// that is larger in size, of edges that yield the plastic angle (degrees), positive for valleys.
+    /// What the trajectory has of yielding: of plates the principal value of the plastic curvature of each
+    /// face (1/m) that is larger in size, of edges that yield the plastic angle (degrees), positive for
+    /// valleys.
     pub fn plastic(trajectory: &Trajectory) -> Vec<Self> {
         let frames = || 0..trajectory.len();
         let first = |values: &[f64]| values.as_chunks::<2>().0.iter().map(|p| p[0]).collect();

@@ -89,7 +89,8 @@ impl Replay {
         }
     }
 
-    /// The page of a run that goes on, which gets all states but the first from the server that it comes from.
+    /// The page of a run that goes on, which gets all states but the first from the server that it comes
+    /// from.
     ///
     /// # Errors
     /// [`ViewError`] for a replay that is not valid.

@@ -34,7 +34,8 @@ const CASES: u64 = 1500;
 /// A case of a few kilobytes takes about a millisecond; scenes that are built and started take tens.
 const SLOW: Duration = Duration::from_secs(10);
 
-/// Bytes that all allocations of a case may add up to. A scene of 300 cells that is started takes about 30 MB.
+/// Bytes that all allocations of a case may add up to. A scene of 300 cells that is started takes about 30
+/// MB.
 const MOST_MEMORY: usize = 512 << 20;
 
 /// Files to begin with.

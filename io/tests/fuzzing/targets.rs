@@ -1,5 +1,5 @@
-//! What the readers are held to, one function for each of them. The program of cargo-fuzz (`io/fuzz`) includes
-//! this file, so that there is one list of targets.
+//! What the readers are held to, one function for each of them. The program of cargo-fuzz (`io/fuzz`)
+//! includes this file, so that there is one list of targets.
 //!
 //! A target may return a value or a typed error and has to panic on anything that neither of them may be:
 //! a number that is not finite, an index of nothing, a value that another call of the crate does not take.

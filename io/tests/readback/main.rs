@@ -66,8 +66,8 @@ fn run() -> (Sheet, Trajectory) {
     (sheet, trajectory)
 }
 
-/// A tetrahedron that turns about the z axis by one radian a second, from the place (0, 0.5, 1) along x at one metre
-/// a second, and one that rests at (0, 0, -1).
+/// A tetrahedron that turns about the z axis by one radian a second, from the place (0, 0.5, 1) along x at
+/// one metre a second, and one that rests at (0, 0, -1).
 fn bodies(trajectory: &Trajectory) -> Vec<SeriesBody> {
     let body = |name: &str, poses: Vec<BodyPose>| SeriesBody {
         name: name.to_owned(),

@@ -206,8 +206,8 @@ fn a_run_that_was_stopped_has_contact_up_to_there() {
     assert!(least > 0.0 && least < 1e-3, "{least}");
 }
 
-/// Loads are in a table for each step: at rest the box carries the weight, and its torque about the middle of the box is
-/// zero by symmetry; a sheet without supports and obstacles has no table.
+/// Loads are in a table for each step: at rest the box carries the weight, and its torque about the middle of
+/// the box is zero by symmetry; a sheet without supports and obstacles has no table.
 #[test]
 fn loads_are_in_a_table() {
     let dir = tempfile::tempdir().unwrap();

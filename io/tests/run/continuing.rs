@@ -97,8 +97,8 @@ fn ctrl_c_writes_a_checkpoint_and_the_same_command_continues() {
     let rows = read_history(&dir.join("stopped/history.csv"))
         .unwrap()
         .len();
-    // The interval of ten seconds would have lost all of these. (The run may be stopped in the step after the last row
-    // that was waited for.)
+    // The interval of ten seconds would have lost all of these. (The run may be stopped in the step after the
+    // last row that was waited for.)
     let partial = Recording::read(&dir.join("stopped")).unwrap();
     assert!(rows >= 100, "{rows}");
     // One row and one frame are those of the start; a frame is taken after every 17th step.
@@ -131,7 +131,8 @@ impl<F: FnMut(&StepPart) -> bool> Watch for GiveUp<F> {
     }
 }
 
-/// Steps of 0.3 s of a strip of rods are divided into sub-steps; the run is given up before, between and after them.
+/// Steps of 0.3 s of a strip of rods are divided into sub-steps; the run is given up before, between and
+/// after them.
 #[test]
 fn a_run_that_is_stopped_within_steps_continues_to_the_same_bits() {
     let dir = with_scene(StartingPoint::Feed);

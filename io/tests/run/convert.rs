@@ -299,7 +299,8 @@ fn size(png: &[u8]) -> [u32; 2] {
     [16, 20].map(|at| u32::from_be_bytes(png[at..at + 4].try_into().unwrap()))
 }
 
-/// Numbered pictures, all by one camera, in the size and from the side that are asked for; what to do for a film.
+/// Numbered pictures, all by one camera, in the size and from the side that are asked for; what to do for a
+/// film.
 #[test]
 fn films_are_numbered_pictures() {
     let dir = crate::with_scene(StartingPoint::Drape);

@@ -279,8 +279,8 @@ fn a_run_goes_on_when_nobody_reads_its_messages() {
     assert!(dir.path().join("run/summary.json").exists());
 }
 
-/// A strip of paper on a mesh far too coarse for its bends, and on one that is fine enough: what was softened is said,
-/// and the first run warns of its bends.
+/// A strip of paper on a mesh far too coarse for its bends, and on one that is fine enough: what was softened
+/// is said, and the first run warns of its bends.
 #[test]
 fn a_mesh_too_coarse_for_the_bends_is_named() {
     let dir = tempfile::tempdir().unwrap();

@@ -92,7 +92,8 @@ fn a_complete_folder_ends_at_once_and_is_not_touched() {
     assert!(summary.largest_strain < 2e-12);
 }
 
-/// `--force` replaces the run of a scene that was edited, and a complete one, and leaves alone what no run wrote.
+/// `--force` replaces the run of a scene that was edited, and a complete one, and leaves alone what no run
+/// wrote.
 #[test]
 fn force_replaces_a_run_and_nothing_else() {
     let dir = with_scene(StartingPoint::Fold);

@@ -63,8 +63,8 @@ fn a_sheet_of_others_is_folded_by_one_command() {
     self_test(&page, "1100,800");
 }
 
-/// The pleated hyperbolic paraboloid of others has no rigid folding. Its panels bend, and it becomes a saddle: the
-/// corners of a diagonal are above the middle, and those of the other one below.
+/// The pleated hyperbolic paraboloid of others has no rigid folding. Its panels bend, and it becomes a
+/// saddle: the corners of a diagonal are above the middle, and those of the other one below.
 #[test]
 fn a_pattern_without_rigid_folding_bends_its_panels() {
     let Some(data) = data_folder() else {

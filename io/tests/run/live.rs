@@ -362,7 +362,8 @@ fn play_gives_the_bits_of_a_run() {
     assert!(next["notice"].is_null());
 }
 
-/// A hand pulls a free corner sidewards and up: the corner follows, the lengths stay, and the hand is gone after.
+/// A hand pulls a free corner sidewards and up: the corner follows, the lengths stay, and the hand is gone
+/// after.
 #[test]
 fn a_dragged_corner_follows() {
     let folder = with_scene(StartingPoint::Hanging);

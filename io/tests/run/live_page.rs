@@ -1,7 +1,7 @@
 //! The page of a run that is played, used by its pointer and its keys in a browser without a window.
 //!
-//! The test runs where Chromium or Chrome is installed, and says so where it is not. `ISOSHEET_PICTURES` names a
-//! folder for pictures of what it sees.
+//! The test runs where Chromium or Chrome is installed, and says so where it is not. `ISOSHEET_PICTURES`
+//! names a folder for pictures of what it sees.
 
 use crate::devtools::{Driven, Pointer};
 use crate::live::{Served, time, vertex};

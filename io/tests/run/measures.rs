@@ -120,7 +120,8 @@ fn a_run_that_was_killed_goes_on_with_its_measures() {
     assert!(corner.least == 0.0 && corner.largest >= corner.last && corner.last > 0.0);
 }
 
-/// Names that files cannot have, names that stand twice, and vertices that are not there are refused at their keys.
+/// Names that files cannot have, names that stand twice, and vertices that are not there are refused at their
+/// keys.
 #[test]
 fn wrong_measures_are_refused() {
     let dir = tempfile::tempdir().unwrap();

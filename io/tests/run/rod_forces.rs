@@ -53,8 +53,8 @@ fn rods_of_a_strip_at_rest_carry_what_hangs_below() {
                 carried += force * (a[2] - b[2]).abs() / length;
             }
         }
-        // Each cell gives half of its mass to the vertices below it: what is below a cut through the middle of
-        // a cell has the mass of the area there.
+        // Each cell gives half of its mass to the vertices below it: what is below a cut through the middle
+        // of a cell has the mass of the area there.
         let area = 0.1 * (0.6 - 0.1 * (f64::from(row) + 0.5));
         let weight = 0.08 * area * 9.81;
         assert!(

@@ -17,7 +17,8 @@ gravity = [0, 0, -9.81]
 time = 0.1
 ";
 
-/// Every accepted step and the factorisations of the history are in the trace, and the run is the one without it.
+/// Every accepted step and the factorisations of the history are in the trace, and the run is the one without
+/// it.
 #[test]
 fn a_trace_tells_the_steps_and_changes_nothing() {
     let dir = tempfile::tempdir().unwrap();

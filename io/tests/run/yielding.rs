@@ -21,8 +21,8 @@ gravity = [0, 0, -9.81]
 time = 0.3
 ";
 
-/// The history says what has been dissipated where something can yield, and there alone; it ends with what the summary
-/// says.
+/// The history says what has been dissipated where something can yield, and there alone; it ends with what
+/// the summary says.
 #[test]
 fn a_history_says_what_yielding_has_dissipated() {
     let dir = tempfile::tempdir().unwrap();
@@ -55,8 +55,9 @@ const D: f64 = 5e-4;
 const MOMENT: f64 = 1e-3;
 const HARDENING: f64 = 1e-4;
 
-/// Clamped at both ends, the free part of a strip, 0.2 m long, is bent upwards to an arc of the curvature 5 / m, within a
-/// second, and back to the curvature `p` at which its moment is zero. It is light, so that no waves bend it further.
+/// Clamped at both ends, the free part of a strip, 0.2 m long, is bent upwards to an arc of the curvature 5 /
+/// m, within a second, and back to the curvature `p` at which its moment is zero. It is light, so that no
+/// waves bend it further.
 fn bent(p: f64) -> String {
     let arc = |k: f64| {
         [
@@ -112,7 +113,8 @@ fn recorded(dir: &Path, scene: &str) -> Recording {
     Recording::read(&dir.join("run")).unwrap()
 }
 
-/// A strip that is bent and let go keeps `(D k - M) / (D + H)`, in the frames, on the page and in converted files.
+/// A strip that is bent and let go keeps `(D k - M) / (D + H)`, in the frames, on the page and in converted
+/// files.
 #[test]
 fn the_curvature_that_stays_is_in_the_frames() {
     let dir = tempfile::tempdir().unwrap();
@@ -174,9 +176,9 @@ fn a_continued_run_keeps_what_stays() {
     assert_eq!(continued.trajectory, whole.trajectory);
 }
 
-/// A crease that is folded beyond its yield keeps its angle less that of the moment; other edges have none. The angle
-/// of a moment `M` is that of the crease, `M / 0.01 N`, and of the sheet over the faces beside it, whose middles are as far
-/// apart as the edges are long, `M l / D`: both are 0.2 rad.
+/// A crease that is folded beyond its yield keeps its angle less that of the moment; other edges have none.
+/// The angle of a moment `M` is that of the crease, `M / 0.01 N`, and of the sheet over the faces beside it,
+/// whose middles are as far apart as the edges are long, `M l / D`: both are 0.2 rad.
 #[test]
 fn the_angle_that_stays_is_in_the_frames() {
     let dir = tempfile::tempdir().unwrap();

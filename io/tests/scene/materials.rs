@@ -105,7 +105,8 @@ fn a_scene_says_what_the_material_gives_and_what_the_mesh_can_bear() {
     ] {
         assert!(said.contains(part), "{said}");
     }
-    // Cells of 0.1 m with diagonals: the edges of each face have a mean square of (0.1^2 + 0.1^2 + 0.02) / 3 m2.
+    // Cells of 0.1 m with diagonals: the edges of each face have a mean square of (0.1^2 + 0.1^2 + 0.02) / 3
+    // m2.
     let used: Vec<f64> = paper
         .model
         .elastic_sheet()

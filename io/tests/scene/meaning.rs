@@ -190,8 +190,8 @@ fn air_is_the_air_that_it_says() {
     }
 }
 
-/// The scenes to start from keep what is promised: lengths of rods to 1e-12, elastic sheets within their limit of
-/// strain, and open gaps.
+/// The scenes to start from keep what is promised: lengths of rods to 1e-12, elastic sheets within their
+/// limit of strain, and open gaps.
 #[test]
 fn starting_points_run_and_keep_their_promises() {
     for kind in StartingPoint::ALL {

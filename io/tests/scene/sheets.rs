@@ -60,8 +60,8 @@ fn sheets_that_do_not_meet_move_as_each_does_alone() {
     assert!(apart < 1e-6, "{apart}");
 }
 
-/// A small sheet on a large one, both tilted by gravity: it stays where friction is larger than the slope, and slides
-/// with `g (sin a - mu cos a)` where it is smaller.
+/// A small sheet on a large one, both tilted by gravity: it stays where friction is larger than the slope,
+/// and slides with `g (sin a - mu cos a)` where it is smaller.
 #[test]
 fn friction_between_two_sheets_is_that_of_their_pair() {
     let slope = 0.3_f64;

@@ -21,8 +21,8 @@ fn centre(simulation: &Simulation) -> Vector3<f64> {
     moment.sum::<Vector3<f64>>() / simulation.model().mass().total()
 }
 
-/// Its centre of mass flies along a parabola, `x0 + v t + g t^2 / 2`, and a flat sheet that spins about its normal stays
-/// flat and turns by `rate t`.
+/// Its centre of mass flies along a parabola, `x0 + v t + g t^2 / 2`, and a flat sheet that spins about its
+/// normal stays flat and turns by `rate t`.
 #[test]
 fn a_thrown_sheet_flies_along_a_parabola_and_turns() {
     let text = format!(
@@ -35,8 +35,8 @@ fn a_thrown_sheet_flies_along_a_parabola_and_turns() {
     run(&mut thrown, steps, h);
     let t = steps as f64 * h;
     let v = Vector3::new(1.0, 0.5, 2.0);
-    // The first of the two-step method's steps is one of implicit Euler, which falls by g h^2 / 2 too far; a third of
-    // the difference of two positions is carried into the next one, 1 / (1 - 1/3) of it in all.
+    // The first of the two-step method's steps is one of implicit Euler, which falls by g h^2 / 2 too far; a
+    // third of the difference of two positions is carried into the next one, 1 / (1 - 1/3) of it in all.
     let error = 1.5 * 0.5 * 9.81 * h * h;
     let flown = start + v * t - Vector3::z() * (0.5 * 9.81 * t * t);
     assert!((centre(&thrown) - flown).norm() < 1.01 * error);
@@ -56,7 +56,8 @@ fn a_thrown_sheet_flies_along_a_parabola_and_turns() {
     }
 }
 
-/// A spin about a point that is pinned leaves it where it is, and a pinned vertex of a thrown sheet does not move.
+/// A spin about a point that is pinned leaves it where it is, and a pinned vertex of a thrown sheet does not
+/// move.
 #[test]
 fn pins_hold_what_is_thrown() {
     let pinned = "[[support]]\nat = { vertices = [0] }\n";

@@ -5,8 +5,9 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// Says that the present test is skipped for want of something: on the terminal, and as a line of the file that
-/// `ISOSHEET_SKIPPED` names. `.ci/run` lists these lines, and fails where it knows that the thing is there.
+/// Says that the present test is skipped for want of something: on the terminal, and as a line of the file
+/// that `ISOSHEET_SKIPPED` names. `.ci/run` lists these lines, and fails where it knows that the thing is
+/// there.
 pub(crate) fn skipped(need: &str, reason: &str) {
     // The harness names the thread of a test after it.
     let thread = std::thread::current();
@@ -21,7 +22,8 @@ pub(crate) fn skipped(need: &str, reason: &str) {
     }
 }
 
-/// The folder with files of other people, which are not part of the repository. Without it the test is skipped.
+/// The folder with files of other people, which are not part of the repository. Without it the test is
+/// skipped.
 #[allow(
     dead_code,
     reason = "not every test binary reads the files of other people"

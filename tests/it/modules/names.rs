@@ -19,8 +19,8 @@ impl Import {
         self.name == "*"
     }
 
-    /// The imports of an item. Of a path that begins with `::`, which leads to another crate, the first segment
-    /// is empty.
+    /// The imports of an item. Of a path that begins with `::`, which leads to another crate, the first
+    /// segment is empty.
     pub(super) fn all_of(item: &ItemUse) -> Vec<Self> {
         let mut imports = Vec::new();
         let start = item.leading_colon.map(|_| String::new());
@@ -78,8 +78,8 @@ pub(super) struct Found {
 pub(super) struct Names(BTreeMap<Vec<String>, Module>);
 
 impl Names {
-    /// More modules and re-exports than any path leads over. Following a path ends there, since imports can lead
-    /// in a circle.
+    /// More modules and re-exports than any path leads over. Following a path ends there, since imports can
+    /// lead in a circle.
     const MOST_STEPS: usize = 16;
 
     /// Reads `lib.rs` in a folder and all modules that it reaches.

@@ -1,4 +1,5 @@
-//! The methods on two scenes that other programs have been measured on as well: a hanging sheet and a tablecloth.
+//! The methods on two scenes that other programs have been measured on as well: a hanging sheet and a
+//! tablecloth.
 
 mod penetration;
 mod report;

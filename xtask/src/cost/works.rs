@@ -84,8 +84,8 @@ pub(super) fn measure(store: &Store, works: &[&'static Work]) -> Result<()> {
     Ok(())
 }
 
-/// The part of the works that have been run, with its files; `None` if there is none. The titles of those that
-/// another build ran are added to `left_out`.
+/// The part of the works that have been run, with its files; `None` if there is none. The titles of those
+/// that another build ran are added to `left_out`.
 pub(super) fn record(store: &Store, left_out: &mut Vec<String>) -> Result<Option<Record>> {
     let mut rows: Vec<Row> = Vec::new();
     for work in WORKS {

@@ -5,7 +5,8 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 use plotters::coord::types::RangedCoordf64;
 use std::ops::Range;
 
-/// Relative room beyond the ends of a logarithmic axis, so that the rounding of logarithms leaves no tick out.
+/// Relative room beyond the ends of a logarithmic axis, so that the rounding of logarithms leaves no tick
+/// out.
 const ROOM: f64 = 1e-9;
 
 /// One axis of a chart.

@@ -48,8 +48,8 @@ pub(crate) struct Chart {
 #[derive(Clone, Debug)]
 pub(crate) struct Charts(pub(crate) Vec<Vec<Chart>>);
 
-/// Sizes of what is around the area inside the axes, points: labels of the axes, title, free room (also around all
-/// charts), and what a legend needs besides its lines and names.
+/// Sizes of what is around the area inside the axes, points: labels of the axes, title, free room (also
+/// around all charts), and what a legend needs besides its lines and names.
 const LEFT: f64 = 42.0;
 const BELOW: f64 = 28.0;
 const TITLE: f64 = 14.0;

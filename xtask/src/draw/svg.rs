@@ -47,7 +47,8 @@ impl Vector for Drawing {
     }
 }
 
-/// A document of a size in points, enlarged by a factor, with contents that fill `seen` in units of their own.
+/// A document of a size in points, enlarged by a factor, with contents that fill `seen` in units of their
+/// own.
 pub(super) fn paper(
     title: &str,
     (size, factor): ([f64; 2], f64),

@@ -14,8 +14,9 @@ use isosheet_mesh::{Dof, Sheet};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-/// What elastic tablecloths are made of. The bending length of this film, the third root of its rigidity over its weight,
-/// is 5 cm: longer than the edges of the finer meshes, and a fifth of the overhang. The page says how other films fold.
+/// What elastic tablecloths are made of. The bending length of this film, the third root of its rigidity over
+/// its weight, is 5 cm: longer than the edges of the finer meshes, and a fifth of the overhang. The page says
+/// how other films fold.
 const PLASTIC: &str = "acetate film";
 
 /// Films for the number of folds: softer, the same, and stiffer.
@@ -245,9 +246,9 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
         title: "Rectangular cloth on a rectangular table",
         paper: "A rectangular plastic tablecloth is draped over a rectangular table with M², and with a second resolution: the principal folds run from \
                 the table corners to the cloth corners.",
-        here: "The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown: the irregular \
-               triangulation, which has no such lines, is the check. Of acetate film, an elastic sheet that resists bending (the second \
-               sequence, on the finest mesh), a fold runs from every table corner to its cloth corner, and of rods the table counts them.",
+        here: "The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown; the irregular \
+               triangulation has no such lines. On the finest regular mesh of acetate film, an elastic sheet that resists bending (the second \
+               sequence), a fold runs from every table corner to its cloth corner; the table counts these folds on the other meshes and of rods.",
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
             all[2 * levels.len() - 1].picture("fig14-elastic.png", effort)?,
@@ -260,8 +261,8 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
     })
 }
 
-/// What is seen of the folds of film where the mesh is fine enough for them: on the finest regular mesh of the rectangle, and
-/// on the finer octagons.
+/// What is seen of the folds of film where the mesh is fine enough: on the finest regular mesh of the
+/// rectangle, and on the finer octagons.
 fn check_corners(fine: &[&Draped]) -> Result<()> {
     for d in fine.iter().filter(|d| !d.is_of_rods()) {
         let (along, corners, _) = d.folds.along;
@@ -274,8 +275,8 @@ fn check_corners(fine: &[&Draped]) -> Result<()> {
     Ok(())
 }
 
-/// What is seen of the number of folds and of their pattern: the stiffer the film, the fewer folds has the octagon; and film has
-/// more uniform folds than rods, on the roundest cloth with the finest mesh.
+/// What is seen of the folds: the stiffer the film, the fewer has the octagon; and on the roundest cloth with
+/// the finest mesh those of film are more uniform than those of rods.
 fn check_folds(irregular: &[Draped], films: &[Draped]) -> Result<()> {
     // Every second cloth is round.
     let octagons: Vec<&Draped> = films.iter().step_by(2).collect();

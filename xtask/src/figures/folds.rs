@@ -33,8 +33,8 @@ impl Outline {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Where the ray from the origin, which is inside, through a point leaves the outline: the distance of the
-    /// point over that of the outline.
+    /// Where the ray from the origin, which is inside, through a point leaves the outline: the distance of
+    /// the point over that of the outline.
     fn gauge(&self, [x, y]: [f64; 2]) -> f64 {
         let sides = self.corners.iter().zip(self.corners.iter().cycle().skip(1));
         let ratio = |([a, b], [c, d]): (&[f64; 2], &[f64; 2])| {
@@ -137,7 +137,8 @@ impl Folds {
 /// Parts of the way from the edge of the table to the hem at which a fold has to be seen.
 const STATIONS: [f64; 3] = [0.35, 0.65, 0.95];
 
-/// A fold runs in a direction, seen from the axis, if the cloth is in the outer half of an outward bulge there at all of
+/// A fold runs in a direction, seen from the axis, if the cloth is in the outer half of an outward bulge
+/// there at all of
 /// [`STATIONS`]: to how many corner lines that applies, how many there are, and to which part of all directions it
 /// applies, which is what chance would give the corners.
 fn along_corner_lines(
@@ -173,8 +174,8 @@ fn along_corner_lines(
     (along, cloth.corners.len(), part)
 }
 
-/// The curve of the cloth that was `level` times its outline in the flat cloth: the distance from the axis, divided by
-/// that in the flat cloth, by angle.
+/// The curve of the cloth that was `level` times its outline in the flat cloth: the distance from the axis,
+/// divided by that in the flat cloth, by angle.
 fn ring(sheet: &Sheet, x: &[f64], cloth: &Outline, level: f64) -> Vec<f64> {
     let t = sheet.topology();
     let mut points = Vec::new();

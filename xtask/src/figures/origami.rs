@@ -135,8 +135,8 @@ fn vertex_angles(run: &Run) -> Result<Vec<[f64; 4]>> {
 /// to that over the angle.
 const LEAST: f64 = 0.05;
 
-/// Largest error of the fold angles of a vertex, radians: rods change their lengths by less than 1e-10 in every run of a
-/// figure, and errors count from [`LEAST`] on.
+/// Largest error of the fold angles of a vertex, radians: rods change their lengths by less than 1e-10 in
+/// every run of a figure, and errors count from [`LEAST`] on.
 const EXACT: f64 = 1e-10 / LEAST;
 
 /// The crease, from 0, that folds most and is driven.

@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 /// A row of the paper's table.
 type Published = (u8, Option<u32>, [&'static str; 3]);
 
-/// Figure, level of the mesh M^level on which the paper's own scheme is tried (in scenes without obstacles), and the paper's
-/// mesh, frames per second and steps.
+/// Figure, level of the mesh M^level on which the paper's own scheme is tried (in scenes without obstacles),
+/// and the paper's mesh, frames per second and steps.
 const PUBLISHED: [Published; 5] = [
     (11, Some(1), ["25/32", "33.33", "50/250"]),
     (12, Some(2), ["81/128", "3.33", "18/150"]),

@@ -196,8 +196,8 @@ fn freedom_series(l: &Level) -> [Series; 3] {
 /// What the table shows.
 const ABOUT: &str = "\
     Softness by mesh. Freedom of the fall, soon after the sheet was let go from exactly flat: how far its centre of mass has sunk, \
-    between the same masses welded to a rigid plate and free fall. The other columns: mean (range) of falls from flat up to a random \
-    small part of an edge. Total bending, averaged over the run: sum of edge length (in sides) times fold angle, which does not depend \
+    between the same masses welded to a rigid plate and free fall. The other columns: mean (range) of falls that start flat but for random \
+    displacements of a small part of an edge. Total bending, averaged over the run: sum of edge length (in sides) times fold angle, which does not depend \
     on how many edges share a bend. Width: largest horizontal distance at the end. Depth of the centre of mass at the end, in sides: it \
     depends on the folds in which a sheet happens to come to rest, more than on the mesh. The last rows are for \
     comparison: the limits of the fall, and the depth that no unstretchable sheet passes.";
@@ -209,7 +209,7 @@ fn table(all: &[Level]) -> Table {
         format!("{mean:.digits$} ({low:.digits$}–{high:.digits$})")
     };
     let early = format!("freedom of the fall at {EARLY} s");
-    let falls = format!("falls from up to {:.1} % of an edge", 100.0 * BUMP);
+    let falls = format!("falls, displaced by up to {:.1} % of an edge", 100.0 * BUMP);
     let mut table = Table::of(
         ABOUT,
         all,

@@ -24,14 +24,15 @@ pub(super) fn scene(effort: Effort) -> Result<FigureScene> {
     scene_of("fig13", "stamping", &[], effort)
 }
 
-/// Times of the pictures of the blank that the die leaves, seconds: before, half-way up, at the top, half-way down, and
-/// with the die back.
+/// Times of the pictures of the blank that the die leaves, seconds: before, half-way up, at the top, half-way
+/// down, and with the die back.
 const RELEASE: [f64; 5] = [0.0, 1.2, 2.4, 3.0, 4.0];
 
 /// The edit that makes the blank yield.
 const YIELDS: &str = "sheet.yield={}";
 
-/// A blank keeps its shape if its height at the end is at least this part of the largest one, and is flat again if not.
+/// A blank keeps its shape if its height at the end is at least this part of the largest one, and is flat
+/// again if not.
 const KEPT: f64 = 0.1;
 
 /// Steel presses the die by this factor more than rods do, at least.

@@ -7,8 +7,8 @@ use crate::report::Bound;
 use isosheet_dynamics::SheetModel;
 use nalgebra::{DMatrix, DVector};
 
-/// A condition number from which on a solve in double precision leaves less than a digit: 2.2e-16 times it is more
-/// than a tenth.
+/// A condition number beyond which a solve in double precision leaves less than a digit: 2.2e-16 times this
+/// is 0.2.
 pub(super) const NO_DIGITS: f64 = 1e15;
 
 /// Lagrange multipliers from the second derivative of the constraints: `G M^-1 G^T lambda = -(G M^-1 f +

@@ -1,5 +1,5 @@
-//! What is read off the table of all runs of a yardstick, by the names of its columns: tables of groups of runs,
-//! requirements, figures.
+//! What is read off the table of all runs of a yardstick, by the names of its columns: tables of groups of
+//! runs, requirements, figures.
 
 use super::model::Model;
 use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series};
@@ -37,8 +37,8 @@ pub(super) struct Required {
     open: BTreeMap<String, String>,
 }
 
-/// Errors against the size of the mesh: a row of panels for each error, and in each panel a line for each model with
-/// the medians over the meshes on which the sheet comes to rest, and a band with all of them.
+/// Errors against the size of the mesh: a row of panels for each error, and in each panel a line for each
+/// model with the medians over the meshes on which the sheet comes to rest, and a band with all of them.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Figure {
@@ -112,19 +112,20 @@ fn median(mut values: Vec<f64>) -> f64 {
     0.5 * (values[(n - 1) / 2] + values[n / 2])
 }
 
-/// Relative errors below this are those of a sheet that has come to rest to within a speed, and of answers with four
-/// digits.
+/// Relative errors below this are those of a sheet that has come to rest to within a speed, and of answers
+/// with four digits.
 const FLOOR: f64 = 1e-4;
 
-/// Fitted power of the errors above [`FLOOR`], below which an error says nothing; nothing from fewer than two.
+/// Fitted power of the errors above [`FLOOR`], below which an error says nothing; nothing from fewer than
+/// two.
 fn order(points: &[[f64; 2]]) -> Option<f64> {
     let above = points.iter().filter(|p| p[1] > FLOOR);
     let above: Vec<[f64; 2]> = above.copied().collect();
     (above.len() > 1).then(|| exponent(&above)).flatten()
 }
 
-/// What is made of a column of some runs, by its name with a word before it; see `yardsticks.toml`. `size` is the column
-/// with the size of the mesh.
+/// What is made of a column of some runs, by its name with a word before it; see `yardsticks.toml`. `size` is
+/// the column with the size of the mesh.
 fn made(runs: &Table, of: &str, size: &str) -> Cell {
     let (kind, name) = kind(of);
     let cells = column(runs, name);
@@ -206,7 +207,8 @@ impl Summary {
 const QUICK: &str = "the meshes and times of the quick form are too small for it";
 
 impl Required {
-    /// What a model reaches. Where the largest or smallest value is asked for, it is missed if one is missing.
+    /// What a model reaches. Where the largest or smallest value is asked for, it is missed if one is
+    /// missing.
     fn on(
         &self,
         model: Model,
@@ -229,8 +231,8 @@ impl Required {
     }
 }
 
-/// What every accepted step guarantees: lengths to within the limit of the strain of 1 % that all models have, those of
-/// rods to 1e-12, and gaps above 0. Steps of runs that did not reach their end count.
+/// What every accepted step guarantees: lengths to within the limit of the strain of 1 % that all models
+/// have, those of rods to 1e-12, and gaps above 0. Steps of runs that did not reach their end count.
 const GUARANTEES: [(&str, Bound); 3] = [
     ("largest strain of an edge", Bound::AtMost(0.01)),
     (

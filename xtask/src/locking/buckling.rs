@@ -83,8 +83,9 @@ struct Bracket {
     low: f64,
     #[serde(rename = "upper bound")]
     high: f64,
-    /// How far the critical load is from the reference, relative: of rods the nearest load between both bounds, of the
-    /// others the load of the plate. (Membranes do not resist the first small twist: strains are quadratic in it.)
+    /// How far the critical load is from the reference, relative: of rods the nearest load between both
+    /// bounds, of the others the load of the plate. (Membranes do not resist the first small twist: strains
+    /// are quadratic in it.)
     error: Option<f64>,
     /// Why the search ended early.
     #[serde(rename = "not decided")]
@@ -110,7 +111,8 @@ fn aside(model: Model, flat: &Sheet, load: f64, plan: &Plan) -> Result<(f64, Cou
     Ok((end.mean(&tip, 2, f64::abs) / LENGTH, course))
 }
 
-/// Halves the interval of the logarithms of the loads so many times, or until a run neither moves aside nor ends.
+/// Halves the interval of the logarithms of the loads so many times, or until a run neither moves aside nor
+/// ends.
 fn search(model: Model, job: Job, halvings: usize, plan: &Plan) -> Result<(Ran, Bracket)> {
     let cell = WIDTH / job.across as f64;
     let sheet = job.mesh.rectangle([-CLAMP, 0.0], [LENGTH, WIDTH], cell)?;

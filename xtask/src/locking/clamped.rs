@@ -15,8 +15,8 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Depth of a sheet against that of the same sheet of elastic paper: from the first on it hangs as paper does,
-/// below the second it hardly moves.
+/// Depth of a sheet against that of the same sheet of elastic paper: from the first on it hangs as paper
+/// does, below the second it hardly moves.
 const AS_DEEP: f64 = 0.8;
 const HARDLY: f64 = 0.1;
 

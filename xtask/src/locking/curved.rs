@@ -15,8 +15,8 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
-/// Radius of the crease, and widths of the two panels beside it, metres. Panels of half the radius fold over: the
-/// sheet is pinched at four places, where the crease has corners and no curvature.
+/// Radius of the crease, and widths of the two panels beside it, metres. Panels of half the radius fold over:
+/// the sheet is pinched at four places, where the crease has corners and no curvature.
 const RADIUS: f64 = 0.1;
 const HALF: f64 = 0.02;
 
@@ -178,7 +178,8 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
 mod tests {
     use super::*;
 
-    /// The crease is the whole circle, and a polygon of 250 corners in the plane has the curvature of its circle.
+    /// The crease is the whole circle, and a polygon of 250 corners in the plane has the curvature of its
+    /// circle.
     #[test]
     fn flat_annuli_have_the_curvature_of_their_circle() {
         let job = Job {

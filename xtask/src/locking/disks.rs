@@ -113,8 +113,8 @@ pub(super) struct Arc {
     pub(super) height: f64,
 }
 
-/// The parts of a rim whose heights are above `bound`, between places that are interpolated; `rim` has angles and
-/// heights around the rim, in order.
+/// The parts of a rim whose heights are above `bound`, between places that are interpolated; `rim` has angles
+/// and heights around the rim, in order.
 pub(super) fn arcs(rim: &[[f64; 2]], bound: f64) -> Vec<Arc> {
     let n = rim.len();
     // Begin below, if any vertex is there.

@@ -17,16 +17,17 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// The wedge, radians: 17 degrees. The folds are 14 degrees high.
 const EXCESS: f64 = 0.3;
 
-/// Parts of the radius from which faces count and from which they count in full, with a weight between that is linear
-/// in the radius: the tip, which no mesh resolves, is left out. The energy of a thin ring is in proportion to
-/// `dr / r`, and the integral of the weight over `dr / r` is `(1 - ln 2) + ln 2 = 1`.
+/// Parts of the radius from which faces count and from which they count in full, with a weight between that
+/// is linear in the radius: the tip, which no mesh resolves, is left out. The energy of a thin ring is in
+/// proportion to `dr / r`, and the integral of the weight over `dr / r` is `(1 - ln 2) + ln 2 = 1`.
 const COUNTED: [f64; 2] = [0.25, 0.5];
 
-/// The place in the disk with the wedge: distance from the centre (metres) and angle (radians, of `2 pi + phi`).
+/// The place in the disk with the wedge: distance from the centre (metres) and angle (radians, of `2 pi +
+/// phi`).
 type Place = [f64; 2];
 
-/// A disk with a wedge, folded to a pyramid: the angles of the flat disk are stretched, and every face lies in one of
-/// four flat sectors.
+/// A disk with a wedge, folded to a pyramid: the angles of the flat disk are stretched, and every face lies
+/// in one of four flat sectors.
 fn pyramid(job: Job) -> Result<(Sheet, Vec<Place>)> {
     let mut cut = FlatCut::of(&job.sheet()?);
     for normal in [[1.0, 0.0], [0.0, 1.0]] {
@@ -101,7 +102,8 @@ fn measure(model: Model, job: Job, plan: &Plan) -> Result<(Ran, Saddle)> {
     Ok((ran, saddle))
 }
 
-/// The elastic energy of each face, joules; that of a spring belongs to both faces of its edge in equal parts.
+/// The elastic energy of each face, joules; that of a spring belongs to both faces of its edge in equal
+/// parts.
 fn face_energies(model: Model, sheet: &Sheet, x: &[f64]) -> Result<Vec<f64>> {
     if let Some(faces) = model.sheet(sheet, PAPER)?.elastic_deformation(x) {
         let sums = faces.stretching.iter().zip(&faces.bending);
@@ -130,8 +132,8 @@ fn weight(radius: f64) -> f64 {
     ((radius - COUNTED[0]) / (COUNTED[1] - COUNTED[0])).clamp(0.0, 1.0)
 }
 
-/// Root mean square of the distances from the nearest exact cone, over the height of its folds: the cone may be moved,
-/// turned, and its folds may be anywhere in the disk.
+/// Root mean square of the distances from the nearest exact cone, over the height of its folds: the cone may
+/// be moved, turned, and its folds may be anywhere in the disk.
 fn distance(places: &[Place], x: &[f64]) -> f64 {
     let cone = ExcessCone::new(EXCESS);
     let measured: Vec<Vector3<f64>> = x.as_chunks::<3>().0.iter().map(|p| (*p).into()).collect();
@@ -162,13 +164,14 @@ fn distance(places: &[Place], x: &[f64]) -> f64 {
     off(0.5 * (low + high)) / (RADIUS * cone.height().sin())
 }
 
-/// Shifts of the folds that are tried at first, and how often the interval about the best one is cut to two thirds: to
-/// 1e-4 of an angle.
+/// Shifts of the folds that are tried at first, and how often the interval about the best one is cut to two
+/// thirds: to 1e-4 of an angle.
 const TRIES: u32 = 12;
 const THIRDS: usize = 22;
 
-/// Root mean square of the distances between two sets of points, one of which is moved and turned so that it is least
-/// (W. Kabsch, "A solution for the best rotation to relate two sets of vectors", Acta Cryst. A32, 1976).
+/// Root mean square of the distances between two sets of points, one of which is moved and turned so that it
+/// is least (W. Kabsch, "A solution for the best rotation to relate two sets of vectors", Acta Cryst. A32,
+/// 1976).
 fn apart(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
     let n = a.len() as f64;
     let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / n;
@@ -202,8 +205,8 @@ mod tests {
     use super::*;
     use isosheet_dynamics::{PlateBending, Potential};
 
-    /// The angles about the centre are those of the disk and of the wedge, those about all other vertices inside are
-    /// 2 pi, and the pyramid is folded along four edges alone.
+    /// The angles about the centre are those of the disk and of the wedge, those about all other vertices
+    /// inside are 2 pi, and the pyramid is folded along four edges alone.
     #[test]
     fn pyramids_are_flat_but_for_the_centre() {
         for mesh in Disk::ALL {
@@ -227,8 +230,8 @@ mod tests {
         }
     }
 
-    /// A disk that has the exact shape is at no distance from it, however it lies and wherever its folds are; and its
-    /// plate has the exact energy.
+    /// A disk that has the exact shape is at no distance from it, however it lies and wherever its folds are;
+    /// and its plate has the exact energy.
     #[test]
     fn the_exact_cone_is_recognised() {
         let job = Job {

@@ -49,8 +49,8 @@ impl Grid {
         Self::Delaunay3,
     ];
 
-    /// A flat rectangle (corners `low` and `high`, metres) with squares of the side `cell`; an irregular mesh has edges
-    /// of the same mean length. A turned grid is cut along the outline, see [`FlatCut::split`].
+    /// A flat rectangle (corners `low` and `high`, metres) with squares of the side `cell`; an irregular mesh
+    /// has edges of the same mean length. A turned grid is cut along the outline, see [`FlatCut::split`].
     pub(super) fn rectangle(self, low: [f64; 2], high: [f64; 2], cell: f64) -> Result<Sheet> {
         let [width, height] = [high[0] - low[0], high[1] - low[1]];
         let irregular = |seed| -> Result<Sheet> {

@@ -125,8 +125,8 @@ mod tests {
     use isosheet_mesh::generate;
 
     /// A uniform stretch by 0.4 % along x stores `A K E^2 / 2` with Green's strain `E` and `K = E h / (1 -
-    /// nu^2)` in elastic sheets, and no bending energy. The softened stiffness is 2000 `D` over the mean square of
-    /// the edges of a face, four thirds of that of the side of a cell, 0.25 m.
+    /// nu^2)` in elastic sheets, and no bending energy. The softened stiffness is 2000 `D` over the mean
+    /// square of the edges of a face, four thirds of that of the side of a cell, 0.25 m.
     #[test]
     fn the_energies_of_a_stretched_square_are_known() {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();

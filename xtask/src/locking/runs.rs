@@ -1,5 +1,5 @@
-//! The runs of a yardstick: computed on all cores and kept in the output folder, so that an interrupted report
-//! continues where it stopped; and the table of all of them.
+//! The runs of a yardstick: computed on all cores and kept in the output folder, so that an interrupted
+//! report continues where it stopped; and the table of all of them.
 
 use super::model::Model;
 use crate::progress::Progress;
@@ -19,8 +19,8 @@ pub(super) struct Records<'a> {
     pub(super) part: &'a str,
 }
 
-/// A job done with a model, and what was measured. Their fields are columns of the table of all runs, by the names
-/// that serde gives them.
+/// A job done with a model, and what was measured. Their fields are columns of the table of all runs, by the
+/// names that serde gives them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Sample<J, M> {
     pub(super) job: J,
@@ -87,8 +87,8 @@ impl Ran {
 }
 
 impl Records<'_> {
-    /// The samples of all models, model by model, each in the order of the jobs. Those of a model are kept as soon as
-    /// they are complete.
+    /// The samples of all models, model by model, each in the order of the jobs. Those of a model are kept as
+    /// soon as they are complete.
     ///
     /// # Errors
     /// Those of [`Records::runs`].
@@ -146,7 +146,8 @@ pub(super) fn samples<J: Serialize, M: Serialize>(all: &[Sample<J, M>]) -> Resul
     table(all.iter().map(|s| (&s.job, &s.ran, &s.measured)))
 }
 
-/// A table whose columns are the fields of its rows, structs or tuples of structs, by the names that serde gives them.
+/// A table whose columns are the fields of its rows, structs or tuples of structs, by the names that serde
+/// gives them.
 ///
 /// # Errors
 /// A field is neither a number nor a text.

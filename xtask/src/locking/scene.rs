@@ -8,12 +8,12 @@ use isosheet_mesh::{Sheet, VertexId};
 /// Rate of damping of scenes that come to rest, 1/s.
 pub(super) const DAMPING: f64 = 4.0;
 
-/// A sheet is at rest when no vertex is faster, metres per second. Halving the bound does not change the first four
-/// digits of energies.
+/// A sheet is at rest when no vertex is faster, metres per second. Halving the bound does not change the
+/// first four digits of energies.
 pub(super) const REST: f64 = 1e-5;
 
-/// Until rest, in steps of 0.05 s of implicit Euler: long ones, which damp all motion. At most so many simulated seconds
-/// and seconds of wall time.
+/// Until rest, in steps of 0.05 s of implicit Euler: long ones, which damp all motion. At most so many
+/// simulated seconds and seconds of wall time.
 pub(super) fn until_rest(duration: f64, patience: f64) -> Plan {
     Plan::new(0.05, duration).within(patience).until_rest(REST)
 }
@@ -35,8 +35,8 @@ impl End {
     }
 }
 
-/// Runs a sheet from its rest shape at rest. An error of the solver is an ending like others, and not an error of this
-/// function.
+/// Runs a sheet from its rest shape at rest. An error of the solver is an ending like others, and not an
+/// error of this function.
 ///
 /// # Errors
 /// [`Interrupted`].

@@ -59,7 +59,8 @@ struct Job {
     across: usize,
 }
 
-/// What is measured of a strip: energies in joules, places of the tip or of the middle in metres; errors at rest.
+/// What is measured of a strip: energies in joules, places of the tip or of the middle in metres; errors at
+/// rest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Rested {
     #[serde(rename = "energy, J")]
@@ -205,7 +206,8 @@ impl Case {
     }
 }
 
-/// The place of the point (x, y) of the flat strip when the part between the clamps has the curvature `k`, metres.
+/// The place of the point (x, y) of the flat strip when the part between the clamps has the curvature `k`,
+/// metres.
 fn bent(k: f64, [x, y]: [f64; 2]) -> [f64; 3] {
     let s = x.clamp(0.0, LENGTH);
     // (sin ks) / k and (1 - cos ks) / k = tan(ks / 2) (sin ks) / k.
@@ -215,8 +217,8 @@ fn bent(k: f64, [x, y]: [f64; 2]) -> [f64; 3] {
     [along + beyond * cos, y, height + beyond * sin]
 }
 
-/// The moment of the pins on the moving clamp of a bent strip about its line, over D k per width; positive where it bends
-/// towards +z.
+/// The moment of the pins on the moving clamp of a bent strip about its line, over D k per width; positive
+/// where it bends towards +z.
 fn moment(sheet: &Sheet, end: &End) -> f64 {
     let line = Vector3::from(bent(CURVATURE, [LENGTH, 0.0]));
     let mut moment = 0.0;

@@ -1,5 +1,5 @@
-//! What the book shows of a report: `measured.md` beside the page of the report, in parts that the book includes
-//! by their names.
+//! What the book shows of a report: `measured.md` beside the page of the report, in parts that the book
+//! includes by their names.
 
 use super::{Effort, Table, machine};
 use crate::store::Store;

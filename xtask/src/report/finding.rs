@@ -1,5 +1,5 @@
-//! Findings: measured numbers with the bounds that the documentation claims. A report whose finding is out of bounds
-//! fails, unless that is declared an open limitation; a declaration that is wrong fails it as well.
+//! Findings: measured numbers with the bounds that the documentation claims. A report whose finding is out of
+//! bounds fails, unless that is declared an open limitation; a declaration that is wrong fails it as well.
 
 use super::{Table, number};
 use crate::failure::ReportError;
@@ -170,8 +170,8 @@ impl Finding {
         }
     }
 
-    /// The worst of some numbers of a model or a method, which are missing of runs that did not end; of no numbers at
-    /// all it is missing, too.
+    /// The worst of some numbers of a model or a method, which are missing of runs that did not end; of no
+    /// numbers at all it is missing, too.
     pub(crate) fn worst(
         of: impl Into<String>,
         quantity: impl Into<String>,
@@ -256,7 +256,8 @@ fn place(value: f64, [a, b]: [f64; 2]) -> Verdict {
     }
 }
 
-/// Findings with the part or the case of a report that each is of, as a table: the same columns in all reports.
+/// Findings with the part or the case of a report that each is of, as a table: the same columns in all
+/// reports.
 pub(crate) fn findings<'a>(
     caption: &str,
     all: impl IntoIterator<Item = (&'a str, &'a Finding)>,

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-/// Begins to measure the peak of the memory anew, where the system can (Linux). Elsewhere the peak stays that of
-/// the whole process.
+/// Begins to measure the peak of the memory anew, where the system can (Linux). Elsewhere the peak stays that
+/// of the whole process.
 pub(crate) fn reset_peak_memory() {
     // A system that refuses goes on with the old peak.
     let _ = fs::write("/proc/self/clear_refs", "5");

@@ -85,8 +85,8 @@ pub(crate) struct Course {
     pub(crate) cost: Cost,
     /// Most factorisations in one step.
     pub(crate) worst: usize,
-    /// Factorisations in vain before a sheet was refused because it locks ([`StepError::Locked`]), the most of
-    /// all runs.
+    /// Factorisations in vain before a sheet was refused because it locks ([`StepError::Locked`]), the most
+    /// of all runs.
     pub(crate) in_vain: Option<usize>,
     /// Largest relative error of an edge length.
     pub(crate) strain: f64,
@@ -219,7 +219,8 @@ pub(crate) struct Plan {
     /// The run ends early when the sheet is at rest: when the largest speed of a vertex (m/s) has been below
     /// this bound for [`QUIET`] steps. `None`: it does not end early.
     pub(crate) rest_speed: Option<f64>,
-    /// Longest wall time, seconds. A run ends in the step in which it is over, or after it, unless it is the last one.
+    /// Longest wall time, seconds. A run ends in the step in which it is over, or after it, unless it is the
+    /// last one.
     pub(crate) patience: f64,
 }
 
@@ -238,8 +239,8 @@ fn largest_speed(simulation: &Simulation) -> f64 {
     squares.fold(0.0, f64::max).sqrt()
 }
 
-/// Ends a run within a step when its wall time is over or Ctrl-C was pressed: a step of a sheet that locks can take
-/// minutes.
+/// Ends a run within a step when its wall time is over or Ctrl-C was pressed: a step of a sheet that locks
+/// can take minutes.
 struct Limit<'a> {
     begun: Instant,
     patience: f64,

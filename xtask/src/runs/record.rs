@@ -13,7 +13,8 @@ use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
 use std::fs;
 
-/// A run of rods with an edge strain from here on is an error: figures of rods promise that nothing stretches.
+/// A run of rods with an edge strain from here on is an error: figures of rods promise that nothing
+/// stretches.
 const STRAIN: f64 = 1e-10;
 
 /// A sheet with less kinetic energy than this part of the potential energy released is at rest.
@@ -135,7 +136,8 @@ impl RunSummary {
         self.elastic.map_or(self.course.strain, |e| e.strain)
     }
 
-    /// Membrane stiffness of an elastic sheet, softened where the mesh is coarse, and that of its material, in words.
+    /// Membrane stiffness of an elastic sheet, softened where the mesh is coarse, and that of its material,
+    /// in words.
     pub(crate) fn stiffness(&self) -> Option<String> {
         let e = self.elastic?;
         let [least, most] = e.used.map(brief);

@@ -76,7 +76,8 @@ impl FigureScene {
         self.edited(name, &[THROUGH_ITSELF.to_owned()])
     }
 
-    /// The same scene with an elastic sheet of a named material in place of rods. The material brings its own mass.
+    /// The same scene with an elastic sheet of a named material in place of rods. The material brings its own
+    /// mass.
     ///
     /// # Errors
     /// A name that no material has.
@@ -102,13 +103,13 @@ impl FigureScene {
     /// The same scene with a sheet that never yields, under another name.
     ///
     /// # Errors
-    /// None that is known.
+    /// A scene that has not one sheet that yields.
     pub(crate) fn without_yield(&self, name: &str) -> Result<Self> {
         let text = self.file.text();
         let mut document: DocumentMut = text.text.parse()?;
-        if let Some(sheet) = document["sheet"].as_table_mut() {
-            sheet.remove("yield");
-        }
+        let sheet = document["sheet"].as_table_mut();
+        let yields = sheet.and_then(|sheet| sheet.remove("yield"));
+        yields.context("the scene has not one sheet that yields")?;
         Ok(Self {
             name: name.to_owned(),
             file: SceneFile::parse(document.to_string(), &text.path, &[])?,
@@ -198,10 +199,11 @@ impl FigureScene {
 pub(crate) fn scene_fingerprint() -> Result<u64> {
     let files = fs::read_dir(FOLDER)?.map(|file| Ok(file?.path()));
     let mut files = files.collect::<Result<Vec<_>>>()?;
+    files.retain(|file| file.extension().is_some_and(|e| e == "toml"));
     files.sort();
     let mut hasher = DefaultHasher::new();
     for file in &files {
-        (file, fs::read(file)?).hash(&mut hasher);
+        (file.file_name(), fs::read(file)?).hash(&mut hasher);
     }
     Ok(hasher.finish())
 }

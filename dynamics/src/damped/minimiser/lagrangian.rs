@@ -112,8 +112,8 @@ impl HessianSink for HessianProduct<'_> {
     }
 }
 
-/// Largest part of a displacement of the iterate, at most one, that is proven to bring nothing into contact and to
-/// stay within the limit of the strain, see [`Iterate::safe_fraction`].
+/// Largest part of a displacement of the iterate, at most one, that is proven to bring nothing into contact
+/// and to stay within the limit of the strain, see [`Iterate::safe_fraction`].
 fn safe_fraction(iterate: &mut Iterate, problem: &mut StepProblem<'_>, dx: &[f64]) -> (f64, Cut) {
     let within_limit = problem.model.fraction_within_limit(iterate.x(), dx);
     let free = iterate.safe_fraction(problem.contact_mut(), dx);
@@ -392,8 +392,8 @@ impl Lagrangian {
     /// potentials.
     ///
     /// # Errors
-    /// [`StepError::Linalg`] if even that cannot be factorised, which takes a coefficient that is not a number;
-    /// [`StepError::Interrupted`].
+    /// [`StepError::Linalg`] if even that cannot be factorised, which takes a coefficient that is not a
+    /// number; [`StepError::Interrupted`].
     pub(super) fn factorize(
         &mut self,
         problem: &StepProblem<'_>,
@@ -564,8 +564,9 @@ impl Lagrangian {
         }
     }
 
-    /// Puts the iterate, which is at the start of the line search, at the part `length` of the step, or of a curved
-    /// step at what of it is safe in contact: that part, or nothing if the strain is beyond the limit there.
+    /// Puts the iterate, which is at the start of the line search, at the part `length` of the step, or of a
+    /// curved step at what of it is safe in contact: that part, or nothing if the strain is beyond the limit
+    /// there.
     pub(super) fn go_to(&mut self, problem: &mut StepProblem<'_>, length: f64) -> Option<f64> {
         match self.is_curved {
             true => self.move_along_curve(problem, length),
@@ -620,8 +621,8 @@ impl Lagrangian {
         self.iterate.advance_bodies(part);
     }
 
-    /// Puts the iterate where inertia alone would take the sheet, unless contact or the limit of the strain is in the way, and pins and
-    /// bodies to the ends of their motions.
+    /// Puts the iterate where inertia alone would take the sheet, unless contact or the limit of the strain
+    /// is in the way, and pins and bodies to the ends of their motions.
     pub(super) fn predict(&mut self, problem: &mut StepProblem<'_>) {
         self.start.copy_from_slice(problem.prediction);
         problem.model.place_pins(problem.t(), &mut self.start);
@@ -669,10 +670,10 @@ impl Lagrangian {
     /// by more than `least`; whether the iterate has moved. The matrix that is factorised has to be the
     /// modified one.
     ///
-    /// Factorising the Hessian `H` took out `N`, the pressure of the rods: `d^T N d` is the sum of
-    /// `max(-(L + r c), 0) |d_a - d_b|^2` over the rods. The curvature `d^T H d` is negative where the Rayleigh
-    /// quotient of `N` and `H + N` exceeds one. Power iterations that start from the direction that belongs
-    /// to `seed` find the largest quotient.
+    /// Factorising the Hessian `H` took out `N`, the pressure of the rods: `d^T N d` is the sum of `max(-(L +
+    /// r c), 0) |d_a - d_b|^2` over the rods. The curvature `d^T H d` is negative where the Rayleigh quotient
+    /// of `N` and `H + N` exceeds one. Power iterations that start from the direction that belongs to `seed`
+    /// find the largest quotient.
     pub(super) fn leave_saddle(
         &mut self,
         problem: &mut StepProblem<'_>,

@@ -53,13 +53,14 @@ enum Quality {
 /// (M + h^2 (V + B + D)'' + P + r G^T G) dx + G^T L = -grad Phi - r G^T c
 /// ```
 ///
-/// with `P` the geometric stiffness of the rods (its positive part where the matrix is indefinite). The phase says
-/// where the multipliers `L` come from: from the same linear system with `G dx = -c` (stabilised sequential
-/// quadratic programming; Gill, Kungurtsev and Robinson, Math. Program. 163, 2017), or from rounds with growing
-/// penalties `r` (augmented Lagrangian; Nocedal and Wright, "Numerical Optimization", 2006, Sec. 17.3). Both
-/// solve the same kind of system. Every step is cut to its safe part in contact, brought near the rest lengths
-/// where the phase asks for it (Waechter and Biegler, Math. Program. 106, 2006), and halved where the merit
-/// function `Phi + (L + r c / 2) c` does not decrease. At the end the lengths are restored exactly.
+/// with `P` the geometric stiffness of the rods (its positive part where the matrix is indefinite). The phase
+/// says where the multipliers `L` come from: from the same linear system with `G dx = -c` (stabilised
+/// sequential quadratic programming; Gill, Kungurtsev and Robinson, Math. Program. 163, 2017), or from rounds
+/// with growing penalties `r` (augmented Lagrangian; Nocedal and Wright, "Numerical Optimization", 2006, Sec.
+/// 17.3). Both solve the same kind of system. Every step is cut to its safe part in contact, brought near the
+/// rest lengths where the phase asks for it (Waechter and Biegler, Math. Program. 106, 2006), and halved
+/// where the merit function `Phi + (L + r c / 2) c` does not decrease. At the end the lengths are restored
+/// exactly.
 pub(super) struct Newton<'a, 'b, 'w> {
     work: &'a mut Workspace,
     problem: &'a mut StepProblem<'b>,
@@ -362,8 +363,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         limit
     }
 
-    /// Curves the step of an elastic sheet, unless contact cuts it as it is; the largest part to be tried. In contact, where
-    /// a curved step has to be checked again, whole steps stay straight.
+    /// Curves the step of an elastic sheet, unless contact cuts it as it is; the largest part to be tried. In
+    /// contact, where a curved step has to be checked again, whole steps stay straight.
     fn curve(&mut self, limit: f64) -> f64 {
         let is_curved = match self.work.lagrangian.cut() {
             Cut::StrainLimit => true,
@@ -377,9 +378,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         }
     }
 
-    /// Goes on along the step; the part of it that was taken. Where the step would mend the lengths against the
-    /// potential, the lengths are restored instead, which counts as a whole step: along exact lengths steps descend.
-    /// Nothing if there is no descent, but no more than round-off was promised.
+    /// Goes on along the step; the part of it that was taken. Where the step would mend the lengths against
+    /// the potential, the lengths are restored instead, which counts as a whole step: along exact lengths
+    /// steps descend. Nothing if there is no descent, but no more than round-off was promised.
     fn advance(
         &mut self,
         limit: f64,
@@ -402,8 +403,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         }
     }
 
-    /// Goes on by up to `limit` of the step, not far from the rest lengths; the part of the step, or nothing if
-    /// it does not decrease the merit function, and what cut it.
+    /// Goes on by up to `limit` of the step, not far from the rest lengths; the part of the step, or nothing
+    /// if it does not decrease the merit function, and what cut it.
     fn line_search(&mut self, limit: f64, direction: &Direction) -> (Option<f64>, Cut) {
         let mut length = limit;
         let mut cut = None;
@@ -470,9 +471,10 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// Lags friction anew at the iterate, unless it has settled or been renewed too often; whether it was
     /// renewed.
     ///
-    /// In programming friction follows after every full step, not only where the minimisation with lagged friction has
-    /// converged: sheets of 289 vertices on a table need three quarters of the factorisations. In rounds, which begin far
-    /// from the minimum, a flat sheet between closing plates would use all iterations.
+    /// In programming friction follows after every full step, not only where the minimisation with lagged
+    /// friction has converged: sheets of 289 vertices on a table need three quarters of the factorisations.
+    /// In rounds, which begin far from the minimum, a flat sheet between closing plates would use all
+    /// iterations.
     fn renew_friction(&mut self, quality: Quality) -> bool {
         let is_early =
             self.phase.multipliers == Multipliers::Rounds && quality == Quality::Descends;
@@ -543,8 +545,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             && lagrangian.solve(self.problem.model, self.effort).is_ok()
     }
 
-    /// Ends at a point that has converged: whether its lengths are exact now. Otherwise the next round begins, or the
-    /// iteration goes on.
+    /// Ends at a point that has converged: whether its lengths are exact now. Otherwise the next round
+    /// begins, or the iteration goes on.
     fn finish(&mut self) -> Result<bool, Reason> {
         let is_last = self.round + 1 == self.phase.rounds;
         if self.phase.multipliers == Multipliers::Rounds {

@@ -35,8 +35,8 @@ impl Faces {
 /// Where a phase starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Start {
-    /// At the positions at the start of the step; without contact, where supports have moved on, at the prediction
-    /// if its merit is lower.
+    /// At the positions at the start of the step; without contact, where supports have moved on, at the
+    /// prediction if its merit is lower.
     Lower,
     /// Where inertia alone would take the sheet, unless contact or the limit of the strain is in the way.
     Prediction,
@@ -85,9 +85,10 @@ pub(super) struct Phase {
     pub(super) halvings: usize,
     /// Rounds of the method of multipliers.
     pub(super) rounds: usize,
-    /// Whether the Hessian stays semidefinite once it was indefinite, instead of being tried whole in every iteration. (What
-    /// makes it indefinite rarely ends within a step, but in rounds the multipliers of rods do change it: with this,
-    /// strips that jam and blanks that are stamped take 1.3 and 1.7 times the factorisations.)
+    /// Whether the Hessian stays semidefinite once it was indefinite, instead of being tried whole in every
+    /// iteration. (What makes it indefinite rarely ends within a step, but in rounds the multipliers of rods
+    /// do change it: with this, strips that jam and blanks that are stamped take 1.3 and 1.7 times the
+    /// factorisations.)
     pub(super) stays_semidefinite: bool,
     /// Strain from which the restoration at the end is a small displacement.
     pub(super) small_strain: f64,
@@ -107,16 +108,16 @@ impl Phase {
     /// | prediction | prediction | none; by rounds | free | many loose ones in contact |
     /// | exact rounds | start of the step | none; by rounds | free | many exact ones in contact |
     ///
-    /// Elastic sheets have no rods to solve for, and pins that move in contact stall programming: both begin with the
-    /// second row. Slivers begin with it without contact, with its own multipliers of the step before. At rest and
-    /// without contact the last row would repeat the second one.
+    /// Elastic sheets have no rods to solve for, and pins that move in contact stall programming: both begin
+    /// with the second row. Slivers begin with it without contact, with its own multipliers of the step
+    /// before. At rest and without contact the last row would repeat the second one.
     ///
-    /// A whole step of rods among bodies and supports at rest tries the first two rows, and is divided where both
-    /// fail: sheets that buckle, or touch while they are exactly flat, take fewer iterations in its parts. In contact
-    /// the second row has the iterations of the first one (sheets of 289 vertices that fall onto a table take 2000 to
-    /// 3000 factorisations in half a second, and 3000 to 12 000 where whole steps try all rows); without contact it has
-    /// the restoration of the first one at its end (a sheet of 4225 vertices that hangs for a second takes 1535
-    /// factorisations instead of 2375).
+    /// A whole step of rods among bodies and supports at rest tries the first two rows, and is divided where
+    /// both fail: sheets that buckle, or touch while they are exactly flat, take fewer iterations in its
+    /// parts. In contact the second row has the iterations of the first one (sheets of 289 vertices that fall
+    /// onto a table take 2000 to 3000 factorisations in half a second, and 3000 to 12 000 where whole steps
+    /// try all rows); without contact it has the restoration of the first one at its end (a sheet of 4225
+    /// vertices that hangs for a second takes 1535 factorisations instead of 2375).
     pub(super) fn table(
         problem: &StepProblem<'_>,
         faces: Faces,
@@ -161,9 +162,9 @@ impl Phase {
 
     fn programming(problem: &StepProblem<'_>, options: &ImplicitOptions, tuning: &Tuning) -> Self {
         let has_contact = problem.has_contact();
-        // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that mends
-        // lengths against the barrier. And the multipliers of nearly dependent rods are arbitrary from step to
-        // step.
+        // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that
+        // mends lengths against the barrier. And the multipliers of nearly dependent rods are arbitrary from
+        // step to step.
         Self {
             name: "programming",
             start: Start::Lower,
@@ -232,8 +233,8 @@ impl Phase {
         }
     }
 
-    /// All rounds solved exactly, leaving nothing to the restoration: for nearly flat sheets, which fold by the root
-    /// of their length error.
+    /// All rounds solved exactly, leaving nothing to the restoration: for nearly flat sheets, which fold by
+    /// the root of their length error.
     fn exact(self, options: &ImplicitOptions) -> Self {
         Self {
             name: "exact rounds",

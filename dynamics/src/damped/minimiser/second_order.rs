@@ -62,20 +62,21 @@ impl Lagrangian {
         self.safe_part(problem)
     }
 
-    /// Curves the step `-dx` of an elastic sheet, so that it turns faces and does not stretch them; whether it has
-    /// become curved. The matrix of the step has to be the one that is factorised, and no pin may be on its way.
+    /// Curves the step `-dx` of an elastic sheet, so that it turns faces and does not stretch them; whether
+    /// it has become curved. The matrix of the step has to be the one that is factorised, and no pin may be
+    /// on its way.
     ///
-    /// The linear system knows strains to first order: along a straight step, a face that turns by an angle `a` is
-    /// stretched by `a^2 / 2`, beyond a limit of one per cent from eight degrees on. The step of length `s` becomes
-    /// `-s dx - s^2 w`, with the `w` that takes back what is of second order, by the matrix `K` of the step and the
-    /// tangent law `C` of the faces,
+    /// The linear system knows strains to first order: along a straight step, a face that turns by an angle
+    /// `a` is stretched by `a^2 / 2`, beyond a limit of one per cent from eight degrees on. The step of
+    /// length `s` becomes `-s dx - s^2 w`, with the `w` that takes back what is of second order, by the
+    /// matrix `K` of the step and the tangent law `C` of the faces,
     ///
     /// ```text
     /// K w = h^2 sum_T (dc/dx)^T C_T (|dx_a - dx_b|^2 / 2),
     /// ```
     ///
-    /// for a solve and no factorisation, as in the second-order correction of constraints (Nocedal and Wright,
-    /// "Numerical Optimization", 2006, Sec. 15.6).
+    /// for a solve and no factorisation, as in the second-order correction of constraints (Nocedal and
+    /// Wright, "Numerical Optimization", 2006, Sec. 15.6).
     pub(super) fn correct_strains(&mut self, problem: &StepProblem<'_>) -> bool {
         let model = problem.model;
         let Some(elastic) = model.elastic_sheet() else {
@@ -91,8 +92,8 @@ impl Lagrangian {
         true
     }
 
-    /// Puts the iterate at what is safe of the chord from the start of the line search to the part `length` of the
-    /// curved step; that part of the step, or nothing if the strain is beyond the limit there.
+    /// Puts the iterate at what is safe of the chord from the start of the line search to the part `length`
+    /// of the curved step; that part of the step, or nothing if the strain is beyond the limit there.
     pub(super) fn move_along_curve(
         &mut self,
         problem: &mut StepProblem<'_>,

@@ -251,8 +251,8 @@ fn a_restoration_is_a_projection_to_first_order() {
     assert!(left[1] < 0.3 * left[0], "{left:?}");
 }
 
-/// A step of a hanging sheet with bending stiffness ends at the same minimum whether the whole matrix is factorised or
-/// far couplings are left to conjugate gradients.
+/// A step of a hanging sheet with bending stiffness ends at the same minimum whether the whole matrix is
+/// factorised or far couplings are left to conjugate gradients.
 #[test]
 fn the_minimum_does_not_depend_on_what_is_factorised() {
     let sheet = generate::isotropic_square(3, 1.0).unwrap();

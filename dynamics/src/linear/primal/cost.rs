@@ -3,8 +3,9 @@
 use isosheet_coords::linalg::SparseLlt;
 use std::ops::{Add, Sub};
 
-/// A multiplication of a solve takes as long as so many of a factorisation, whose dense kernels use each number that
-/// they read several times: 4 to 5 for sheets of 289 and 1089 vertices, with and without the couplings of a plate.
+/// A multiplication of a solve takes as long as so many of a factorisation, whose dense kernels use each
+/// number that they read several times: 4 to 5 for sheets of 289 and 1089 vertices, with and without the
+/// couplings of a plate.
 const SOLVE_WEIGHT: f64 = 4.0;
 
 /// Costs of a factorisation and of a solve with it.
@@ -23,8 +24,8 @@ impl Direct {
         }
     }
 
-    /// The number of iterations with this factorisation, beside a product of `product` multiplications each, from
-    /// which the factorisation and the solve of `whole` are cheaper.
+    /// The number of iterations with this factorisation, beside a product of `product` multiplications each,
+    /// from which the factorisation and the solve of `whole` are cheaper.
     pub(super) fn iterations_worth(self, product: f64, whole: Self) -> usize {
         let saved = whole.factorisation + whole.solve - self.factorisation - self.solve;
         (saved / (self.solve + SOLVE_WEIGHT * product)).max(0.0) as usize
@@ -53,15 +54,15 @@ impl Sub for Direct {
     }
 }
 
-/// The number of iterations that conjugate gradients are expected to take until the error is `relative` times the one
-/// at the start, for a matrix whose far couplings have substitutes of the norm `substitutes` beside masses of the
-/// norm `masses`.
+/// The number of iterations that conjugate gradients are expected to take until the error is `relative` times
+/// the one at the start, for a matrix whose far couplings have substitutes of the norm `substitutes` beside
+/// masses of the norm `masses`.
 ///
-/// In units of the masses the bending stiffness reaches from 0 to a largest value `s`, and grows as the fourth power
-/// of the wave number `k`; with substitutes it grows as the square, to the same `s` at the largest `k`. The ratio
-/// `(1 + s t^2) / (1 + s t)`, `t` from 0 to 1, lies between `2 / (1 + s^(1/2))` and 1, and its bounds give the
-/// convergence of conjugate gradients. On a lattice `x_{i-1} - 2 x_i + x_{i+1}` the largest stiffness is eight
-/// times the substitutes of a vertex.
+/// In units of the masses the bending stiffness reaches from 0 to a largest value `s`, and grows as the
+/// fourth power of the wave number `k`; with substitutes it grows as the square, to the same `s` at the
+/// largest `k`. The ratio `(1 + s t^2) / (1 + s t)`, `t` from 0 to 1, lies between `2 / (1 + s^(1/2))` and 1,
+/// and its bounds give the convergence of conjugate gradients. On a lattice `x_{i-1} - 2 x_i + x_{i+1}` the
+/// largest stiffness is eight times the substitutes of a vertex.
 pub(super) fn expected_iterations(substitutes: f64, masses: f64, relative: f64) -> f64 {
     let condition = 0.5 * (1.0 + (8.0 * substitutes / masses).sqrt());
     let root = condition.max(1.0).sqrt();

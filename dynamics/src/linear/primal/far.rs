@@ -8,20 +8,21 @@ use nalgebra::{Matrix3, Vector3};
 /// Part of the square of a block's norm by which the block may differ from one of rank one: round-off.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
-/// The blocks `B_ij` of a symmetric matrix for the pairs of free vertices that potentials couple and that have
-/// no common edge.
+/// The blocks `B_ij` of a symmetric matrix for the pairs of free vertices that potentials couple and that
+/// have no common edge.
 ///
 /// In a matrix without these blocks the vertices get *substitutes* instead: each pair adds `|B_ij| = (B_ij
-/// B_ij^T)^(1/2)` to the block of `i`, and `(B_ij^T B_ij)^(1/2)` to that of `j`. A pair thus differs by the form
+/// B_ij^T)^(1/2)` to the block of `i`, and `(B_ij^T B_ij)^(1/2)` to that of `j`. A pair thus differs by the
+/// form
 ///
 /// ```text
 /// (x_i, x_j) [ |B|  -B ; -B^T  |B^T| ] (x_i, x_j) >= 0,
 /// ```
 ///
-/// so that the matrix with substitutes is never less than the one that it replaces. Bending couples vertices far
-/// from each other with the sign of a spring that pushes: `B_ij` is positive, and the form is `B (x_i - x_j)^2`. Then
-/// translations keep their zero energy, and what is left of the bending energy is that of edges which are springs:
-/// as stiff as the sheet for bends of the length of an edge, and stiffer for longer ones.
+/// so that the matrix with substitutes is never less than the one that it replaces. Bending couples vertices
+/// far from each other with the sign of a spring that pushes: `B_ij` is positive, and the form is `B (x_i -
+/// x_j)^2`. Then translations keep their zero energy, and what is left of the bending energy is that of edges
+/// which are springs: as stiff as the sheet for bends of the length of an edge, and stiffer for longer ones.
 #[derive(Debug)]
 pub(super) struct FarCouplings {
     /// Pairs of free vertices (in free numbers, larger first), sorted.

@@ -50,16 +50,16 @@ impl ConjugateGradients {
         }
     }
 
-    /// Solves `(M + E) x = b` with the factorised `M`, not less than `M + E`, and the difference `E` that the far
-    /// couplings make.
+    /// Solves `(M + E) x = b` with the factorised `M`, not less than `M + E`, and the difference `E` that the
+    /// far couplings make.
     ///
-    /// The iteration starts at `x = M^-1 b`, which is exact where `E` does not matter, as along stiff rods: the
-    /// residual is `-E x`, and what is measured from there on is the error in soft directions. Since
-    /// directions are `p = M^-1 r + beta p`, their products `M p = r + beta M p` need no multiplication by `M`. Each
-    /// iteration takes `alpha r . M^-1 r` off the square of the error in the norm of `M + E`; the iteration ends where
-    /// that falls below a part of what all iterations have taken off, and of `-x . E x`, what `M` was too stiff by for
-    /// the first `x`. (S. G. Nash and A. Sofer, "Assessing a search
-    /// direction within a truncated-Newton method", Oper. Res. Lett. 9, 1990.)
+    /// The iteration starts at `x = M^-1 b`, which is exact where `E` does not matter, as along stiff rods:
+    /// the residual is `-E x`, and what is measured from there on is the error in soft directions. Since
+    /// directions are `p = M^-1 r + beta p`, their products `M p = r + beta M p` need no multiplication by
+    /// `M`. Each iteration takes `alpha r . M^-1 r` off the square of the error in the norm of `M + E`; the
+    /// iteration ends where that falls below a part of what all iterations have taken off, and of `-x . E x`,
+    /// what `M` was too stiff by for the first `x`. (S. G. Nash and A. Sofer, "Assessing a search direction
+    /// within a truncated-Newton method", Oper. Res. Lett. 9, 1990.)
     pub(super) fn solve(
         &mut self,
         matrix: &mut SparseLlt,

@@ -60,8 +60,8 @@ fn wave(model: &SheetModel, k: f64) -> Vec<f64> {
     wave
 }
 
-/// The matrix with substitutes is never less than the whole one, and as stiff against translations of what bending
-/// couples.
+/// The matrix with substitutes is never less than the whole one, and as stiff against translations of what
+/// bending couples.
 #[test]
 fn substitutes_are_never_less_than_what_they_replace() {
     for (model, x) in [
@@ -95,8 +95,8 @@ fn substitutes_are_never_less_than_what_they_replace() {
     assert!(blocks > 100, "{blocks}");
 }
 
-/// Whichever way a sheet is solved with, the direction is that of the whole matrix to the accuracy asked for, in the
-/// norm of the matrix.
+/// Whichever way a sheet is solved with, the direction is that of the whole matrix to the accuracy asked for,
+/// in the norm of the matrix.
 #[test]
 fn directions_are_those_of_the_whole_matrix() {
     for (model, x) in [
@@ -167,8 +167,8 @@ fn the_way_follows_from_size_and_stiffness() {
     }
 }
 
-/// Where the iteration takes longer than a factorisation of the whole matrix, that takes its place until the next
-/// step.
+/// Where the iteration takes longer than a factorisation of the whole matrix, that takes its place until the
+/// next step.
 #[test]
 fn slow_iterations_end_with_the_whole_matrix() {
     let (model, x) = paper(3, plate(5e3));

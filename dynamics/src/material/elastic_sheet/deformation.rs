@@ -2,8 +2,8 @@
 
 use crate::SheetModel;
 
-/// How an elastic sheet is deformed, one value for each face: what a report needs to say whether the mesh is fine
-/// enough ([`SheetModel::elastic_deformation`]).
+/// How an elastic sheet is deformed, one value for each face: what a report needs to say whether the mesh is
+/// fine enough ([`SheetModel::elastic_deformation`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElasticDeformation {
     /// The Frobenius norm of Green's strain, see [`ElasticSheet`](crate::ElasticSheet).
@@ -12,9 +12,9 @@ pub struct ElasticDeformation {
     pub stretching: Vec<f64>,
     /// Energy of bending, joules.
     pub bending: Vec<f64>,
-    /// The angle by which the sheet bends over the size of the face, radians: `sqrt(2 V / (D A)) h`, with the bending
-    /// energy `V`, the flexural rigidity `D`, the area `A` and the root mean square `h` of the edge lengths. A chord is
-    /// shorter than its arc by a part of `angle^2 / 24`. Zero without bending stiffness.
+    /// The angle by which the sheet bends over the size of the face, radians: `sqrt(2 V / (D A)) h`, with the
+    /// bending energy `V`, the flexural rigidity `D`, the area `A` and the root mean square `h` of the edge
+    /// lengths. A chord is shorter than its arc by a part of `angle^2 / 24`. Zero without bending stiffness.
     pub angle: Vec<f64>,
 }
 
@@ -24,7 +24,8 @@ impl ElasticDeformation {
         share(self.stretching[face], self.bending[face])
     }
 
-    /// The part of the stretching in the elastic energy of the whole sheet, from 0 to 1; 0 where there is no energy.
+    /// The part of the stretching in the elastic energy of the whole sheet, from 0 to 1; 0 where there is no
+    /// energy.
     pub fn total_share(&self) -> f64 {
         share(self.stretching.iter().sum(), self.bending.iter().sum())
     }
@@ -42,9 +43,10 @@ fn share(stretching: f64, bending: f64) -> f64 {
 }
 
 impl SheetModel {
-    /// How an elastic sheet is deformed at positions `x` (`3V`, metres); nothing for a sheet of rods. Bending is that
-    /// of the potentials that know it by face ([`Potential::add_bending_energies`](crate::Potential)), and has an angle
-    /// if the sheet was told its rigidity ([`ElasticSheet::softened`](crate::ElasticSheet::softened)).
+    /// How an elastic sheet is deformed at positions `x` (`3V`, metres); nothing for a sheet of rods. Bending
+    /// is that of the potentials that know it by face
+    /// ([`Potential::add_bending_energies`](crate::Potential)), and has an angle if the sheet was told its
+    /// rigidity ([`ElasticSheet::softened`](crate::ElasticSheet::softened)).
     ///
     /// # Panics
     /// If `x` is not of length `3V`.

@@ -17,8 +17,8 @@ pub(super) struct Face {
     squared_lengths: [f64; 3],
     /// Rest area, m2.
     area: f64,
-    /// The components `(E_11, sqrt(2) E_12, E_22)` of Green's strain, whose Euclidean norm is that of the strain,
-    /// by the length errors of the edges; per square metre.
+    /// The components `(E_11, sqrt(2) E_12, E_22)` of Green's strain, whose Euclidean norm is that of the
+    /// strain, by the length errors of the edges; per square metre.
     strains: Matrix3<f64>,
     /// `k_T`, N/m.
     stiffness: f64,
@@ -145,7 +145,8 @@ impl Face {
         elastic + self.area * limit.value(at.strain.norm_squared())
     }
 
-    /// Size of the round-off in the energy of a sheet at rest whose coordinates are of the given size, metres.
+    /// Size of the round-off in the energy of a sheet at rest whose coordinates are of the given size,
+    /// metres.
     pub(super) fn round_off(&self, size: f64) -> f64 {
         let squared = self.mean_squared_length();
         let error = f64::EPSILON * (squared.sqrt() * size + squared);
@@ -186,8 +187,8 @@ impl Face {
         }
     }
 
-    /// Adds `scale` times the change of the gradient by the part of the length errors that is of second order in the
-    /// displacement `dx`, `|dx_a - dx_b|^2 / 2`.
+    /// Adds `scale` times the change of the gradient by the part of the length errors that is of second order
+    /// in the displacement `dx`, `|dx_a - dx_b|^2 / 2`.
     pub(super) fn add_second_order(
         &self,
         x: &[f64],
@@ -209,7 +210,8 @@ impl Face {
         limit - KEPT_MARGIN * (limit - at.norm())
     }
 
-    /// Whether a displacement from `x` to `end` ends within the limit, and keeps a part of the distance from it.
+    /// Whether a displacement from `x` to `end` ends within the limit, and keeps a part of the distance from
+    /// it.
     pub(super) fn stays_within(&self, x: &[f64], end: &[f64], limit: f64) -> bool {
         self.at(end).norm() <= self.bound(&self.at(x), limit)
     }
@@ -243,12 +245,12 @@ impl Face {
         }
     }
 
-    /// Largest part of the displacement `dx`, at most `most`, along which the strain keeps its distance from the
-    /// limit but for [`KEPT_MARGIN`] of it.
+    /// Largest part of the displacement `dx`, at most `most`, along which the strain keeps its distance from
+    /// the limit but for [`KEPT_MARGIN`] of it.
     ///
-    /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients in
-    /// Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval is
-    /// halved.
+    /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients
+    /// in Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval
+    /// is halved.
     pub(super) fn safe_part(&self, x: &[f64], dx: &[f64], limit: f64, most: f64) -> f64 {
         let at = self.at(x);
         let changes = self.edge_vectors(dx);
@@ -289,7 +291,8 @@ impl Face {
 fn is_negative(powers: &[f64; 5], from: f64, to: f64) -> bool {
     /// Binomial coefficients `4 over k`.
     const OVER: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
-    // Taylor's coefficients at the start of the interval, by repeated synthetic division, in units of its length.
+    // Taylor's coefficients at the start of the interval, by repeated synthetic division, in units of its
+    // length.
     let mut taylor = *powers;
     for k in 0..5 {
         for i in (k..4).rev() {

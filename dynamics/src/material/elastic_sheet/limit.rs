@@ -1,7 +1,7 @@
 //! The barrier at the limit of the strain.
 
-/// The barrier `kappa b(p)` of the square of a strain, `p = (4 |E|^2 / m^2 - 1) / 3`, `b = -p^2 ln(1 - p)` for `0 <
-/// p < 1` and zero below: from half the limit `m` on, infinite at the limit.
+/// The barrier `kappa b(p)` of the square of a strain, `p = (4 |E|^2 / m^2 - 1) / 3`, `b = -p^2 ln(1 - p)`
+/// for `0 < p < 1` and zero below: from half the limit `m` on, infinite at the limit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StrainLimit {
     limit: f64,
@@ -47,8 +47,8 @@ impl StrainLimit {
         }
     }
 
-    /// First and second derivative by the square of the strain, joules per square metre; not numbers at the limit
-    /// and beyond.
+    /// First and second derivative by the square of the strain, joules per square metre; not numbers at the
+    /// limit and beyond.
     pub(super) fn derivatives(&self, squared: f64) -> [f64; 2] {
         let [p, slope] = self.part(squared);
         if p <= 0.0 {

@@ -34,7 +34,8 @@ fn deformed(sheet: &Sheet, f: Matrix2<f64>) -> Vec<f64> {
     x
 }
 
-/// `V = A { K / 2 [(1 - nu) |E|^2 + nu (tr E)^2] + kappa b }`, `E = (F^T F - 1) / 2`, below half the limit and above.
+/// `V = A { K / 2 [(1 - nu) |E|^2 + nu (tr E)^2] + kappa b }`, `E = (F^T F - 1) / 2`, below half the limit
+/// and above.
 #[test]
 fn homogeneous_deformations_have_the_energy_of_the_material() {
     let sheet = delaunay(0.3);
@@ -128,8 +129,8 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
     assert!(left > 0.0, "{left}");
 }
 
-/// Along a straight displacement that turns a sheet the strain grows with the square of its length, along the curved
-/// one of a step with the fourth power.
+/// Along a straight displacement that turns a sheet the strain grows with the square of its length, along the
+/// curved one of a step with the fourth power.
 #[test]
 fn a_displacement_that_turns_is_curved_so_that_it_does_not_stretch() {
     let sheet = delaunay(0.3);
@@ -160,7 +161,8 @@ fn a_displacement_that_turns_is_curved_so_that_it_does_not_stretch() {
     assert!(energy(0.1, 1.0) < 0.01 * energy(0.1, 0.0));
 }
 
-/// The faces where the barrier begins have continuous second derivatives, and those at the limit no finite energy.
+/// The faces where the barrier begins have continuous second derivatives, and those at the limit no finite
+/// energy.
 #[test]
 fn the_barrier_begins_at_half_the_limit_and_ends_at_it() {
     let sheet = generate::isotropic_square(0, 1.0).unwrap();
@@ -180,8 +182,8 @@ fn the_barrier_begins_at_half_the_limit_and_ends_at_it() {
 }
 
 proptest! {
-    /// Along the part of a displacement that is called safe no strain comes near the limit, and the part is as large
-    /// as it can be to a few per cent.
+    /// Along the part of a displacement that is called safe no strain comes near the limit, and the part is
+    /// as large as it can be to a few per cent.
     #[test]
     fn displacements_stay_within_the_limit(
         seed in 0..1000u64, strained in 0.0..0.002_f64, size in -4.0..1.0_f64,
@@ -236,7 +238,8 @@ fn coarse_faces_are_softened_and_fine_ones_are_not() {
     assert!(bare.face_stiffnesses().all(|k| k == stiffness));
 }
 
-/// A sheet rolled onto a cylinder: each face bends by its size over the radius, up to the faces at the free edges.
+/// A sheet rolled onto a cylinder: each face bends by its size over the radius, up to the faces at the free
+/// edges.
 #[test]
 fn faces_bend_by_their_size_over_the_radius() {
     let (rigidity, radius) = (0.3, 2.0);
@@ -281,8 +284,8 @@ fn faces_bend_by_their_size_over_the_radius() {
     assert!(flat.angle.iter().all(|a| *a < 1e-6) && flat.strain.iter().all(|s| *s < 1e-12));
 }
 
-/// A sheet that hangs by one end: its weight stretches it by `rho g L / (2 E h)` to first order, an eighth of the
-/// stretch at an eighth of the compliance.
+/// A sheet that hangs by one end: its weight stretches it by `rho g L / (2 E h)` to first order, an eighth of
+/// the stretch at an eighth of the compliance.
 #[test]
 fn strains_are_of_first_order_in_the_compliance() {
     let sheet = generate::grid(2, 8, 0.1, 0.8, generate::Diagonals::UnionJack).unwrap();
@@ -427,8 +430,8 @@ fn pins_in_motion_stay_within_the_limit() {
     assert!((x[0] - want[0]).abs() < 1e-12 && (x[2] - want[1]).abs() < 1e-12);
 }
 
-/// A disk 11 cm across, so stiff that the stored energy of a step drowns in the round-off of its stretching: an
-/// iteration that has converged ends, although noise cuts its last step in line searches for ever.
+/// A disk 11 cm across, so stiff that the stored energy of a step drowns in the round-off of its stretching:
+/// an iteration that has converged ends, although noise cuts its last step in line searches for ever.
 #[test]
 fn the_noise_of_a_stiff_sheet_does_not_keep_a_step_from_ending() {
     let sheet = generate::disk(5, 0.057_444_895_105_385_91).unwrap();

@@ -83,7 +83,8 @@ fn derivatives_match_differences() {
     }
 }
 
-/// A triangle that hangs by glue on a pinned one: each pair carries its share of the weight, `k d = m g / pairs`.
+/// A triangle that hangs by glue on a pinned one: each pair carries its share of the weight, `k d = m g /
+/// pairs`.
 #[test]
 fn glue_gives_way_by_its_load_over_its_stiffness() {
     let sheet = two_triangles();
@@ -112,8 +113,8 @@ fn glue_gives_way_by_its_load_over_its_stiffness() {
     }
 }
 
-/// A strip whose ends are glued by a driven closing, with and without half a turn, by rods and elastic: the seam
-/// closes, and the sheet does what a band does.
+/// A strip whose ends are glued by a driven closing, with and without half a turn, by rods and elastic: the
+/// seam closes, and the sheet does what a band does.
 #[test]
 fn strips_close_to_bands() {
     let (columns, length, width) = (32, 0.3, 0.02);
@@ -146,7 +147,8 @@ fn strips_close_to_bands() {
             // The moment of the bent strip over its width, as a force on the glue.
             assert!(gap < 1e-4 * length, "{gap}");
         }
-        // The strip has left its plane, and its middle is about as far from the seam as a circle of its length.
+        // The strip has left its plane, and its middle is about as far from the seam as a circle of its
+        // length.
         let middle = point(x, VertexId(row / 2));
         let far = (middle - point(x, pairs[0][0])).norm();
         assert!(far > 0.2 * length, "{far}");

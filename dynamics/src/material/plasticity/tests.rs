@@ -61,8 +61,8 @@ fn the_growth_minimises_the_energy() {
     }
 }
 
-/// Layers that have different plastic parts keep energy where the section has no moment; what a step dissipates is what
-/// the energy falls by.
+/// Layers that have different plastic parts keep energy where the section has no moment; what a step
+/// dissipates is what the energy falls by.
 #[test]
 fn energy_falls_by_what_is_dissipated() {
     let section = SECTION.in_layers(4);
@@ -155,8 +155,8 @@ fn a_section_springs_back_and_yields_sooner_to_the_other_side() {
     assert!((other - (top - 2.0 * moment - 0.5 * slope)).abs() < 1e-9);
 }
 
-/// The moment of an elastic-perfectly plastic section beyond its first yield, in parts of that of a section that has
-/// yielded throughout (Gardiner).
+/// The moment of an elastic-perfectly plastic section beyond its first yield, in parts of that of a section
+/// that has yielded throughout (Gardiner).
 fn of_whole_section(k: f64) -> f64 {
     let first = 2.0 * SECTION.moment / (3.0 * STIFFNESS);
     if k < first {
@@ -166,8 +166,8 @@ fn of_whole_section(k: f64) -> f64 {
     }
 }
 
-/// The largest error of the moment that a section in layers has, in parts of that of a section that has yielded
-/// throughout.
+/// The largest error of the moment that a section in layers has, in parts of that of a section that has
+/// yielded throughout.
 fn error_of_moment(layers: usize) -> f64 {
     let section = Yield::perfect(SECTION.moment).in_layers(layers);
     let curvatures = (1..4000).map(|i| 2e-3 * f64::from(i));
@@ -189,8 +189,9 @@ fn layers_have_the_moment_of_a_section_that_yields_from_its_faces() {
     }
 }
 
-/// Springback of an elastic-perfectly plastic section (Gardiner): `R / R_f = 4 q^3 - 3 q + 1` with `q = R s / (E t)`, half
-/// the curvature of the first yield in parts of that to which it is bent. Between layers stresses stay.
+/// Springback of an elastic-perfectly plastic section (Gardiner): `R / R_f = 4 q^3 - 3 q + 1` with `q = R s /
+/// (E t)`, half the curvature of the first yield in parts of that to which it is bent. Between layers
+/// stresses stay.
 #[test]
 fn a_section_in_layers_springs_back_as_one_that_yields_from_its_faces() {
     for layers in [4, 8, 16] {
@@ -213,8 +214,9 @@ fn a_section_in_layers_springs_back_as_one_that_yields_from_its_faces() {
     }
 }
 
-/// Bent the other way, a section in layers has the curve of the first bend in twice its size (Masing): from `k_1` on it is
-/// `M(k_1) - 2 M_0((k_1 - k) / 2)`, `M_0` being the first curve, until it meets that curve on the other side.
+/// Bent the other way, a section in layers has the curve of the first bend in twice its size (Masing): from
+/// `k_1` on it is `M(k_1) - 2 M_0((k_1 - k) / 2)`, `M_0` being the first curve, until it meets that curve on
+/// the other side.
 #[test]
 fn the_second_bend_the_other_way_is_the_first_one_doubled() {
     for hardening in [0.0, 0.3] {

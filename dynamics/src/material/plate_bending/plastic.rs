@@ -16,11 +16,11 @@ pub(super) struct PlasticCurvature {
     /// Flexural rigidity `D`, newton metres.
     rigidity: f64,
     faces: Vec<PlasticFace>,
-    /// Of each pair of vertices of each stencil, the second one being before the first, where its block of the
-    /// Hessian is.
+    /// Of each pair of vertices of each stencil, the second one being before the first, where its block of
+    /// the Hessian is.
     slots: Vec<Slot>,
-    /// Plastic curvature of each layer of each face, 1/m: the components `(11, sqrt(2) 12, 22)`, the first axis along
-    /// the first edge of the face.
+    /// Plastic curvature of each layer of each face, 1/m: the components `(11, sqrt(2) 12, 22)`, the first
+    /// axis along the first edge of the face.
     curvatures: Vec<f64>,
     /// Room for the blocks, so that no step allocates.
     blocks: Mutex<Blocks>,
@@ -93,8 +93,8 @@ impl Blocks {
     }
 }
 
-/// A face at positions, `B` being the second derivatives of the positions, `n` the unit normal and `p` the plastic
-/// curvature at the end of the step.
+/// A face at positions, `B` being the second derivatives of the positions, `n` the unit normal and `p` the
+/// plastic curvature at the end of the step.
 pub(super) struct BentFace {
     corners: [VertexId; 3],
     normal: Vector3<f64>,
@@ -110,8 +110,8 @@ pub(super) struct BentFace {
 }
 
 impl BentFace {
-    /// The derivatives of the energy by the corners, as far as they are those of the normal: with the hats `g_j` it
-    /// is `dn = -sum_j g_j (n . dx_j)`.
+    /// The derivatives of the energy by the corners, as far as they are those of the normal: with the hats
+    /// `g_j` it is `dn = -sum_j g_j (n . dx_j)`.
     pub(super) fn turning_forces(&self) -> [(VertexId, Vector3<f64>); 3] {
         let moved = self.elastic * self.plastic;
         let force = |k: usize| self.normal * self.hats[k].dot(&moved);
@@ -227,8 +227,8 @@ impl PlasticCurvature {
         }
     }
 
-    /// The energy of a face, joules: of what is bent elastically, of hardening, of the stresses between layers, and what
-    /// is dissipated in the step.
+    /// The energy of a face, joules: of what is bent elastically, of hardening, of the stresses between
+    /// layers, and what is dissipated in the step.
     pub(super) fn energy(&self, face: usize, bent: &BentFace) -> f64 {
         0.5 * bent.elastic.norm_squared() + self.faces[face].area * bent.flow.energy
     }
@@ -245,11 +245,13 @@ impl PlasticCurvature {
         dissipated
     }
 
-    /// What the plastic curvatures add to the Hessian of the elastic plate; nothing as long as no face has yielded.
+    /// What the plastic curvatures add to the Hessian of the elastic plate; nothing as long as no face has
+    /// yielded.
     ///
-    /// The Hessian is that of `|P (dB - dn p^T)|^2 + n . dB (1 - slope) dB^T n`, with the projection `P` along the
-    /// normal, and of `max(0, p . (k - p)) |dn|^2`: it is positive semidefinite, and differs from the second derivatives
-    /// by terms that vanish where the sheet is isometric and no face is bent against its plastic curvature.
+    /// The Hessian is that of `|P (dB - dn p^T)|^2 + n . dB (1 - slope) dB^T n`, with the projection `P`
+    /// along the normal, and of `max(0, p . (k - p)) |dn|^2`: it is positive semidefinite, and differs from
+    /// the second derivatives by terms that vanish where the sheet is isometric and no face is bent against
+    /// its plastic curvature.
     pub(super) fn blocks(&self, stencils: &Stencils, x: &[f64]) -> Option<MutexGuard<'_, Blocks>> {
         let mut blocks = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
         let mut is_elastic = true;

@@ -164,8 +164,8 @@ fn the_hessian_matches_differences_of_the_gradient() {
     }
 }
 
-/// A sheet at its plastic curvature has no moments, and turning it costs nothing: the part of its Hessian that turns
-/// normals cancels that of the curvature.
+/// A sheet at its plastic curvature has no moments, and turning it costs nothing: the part of its Hessian
+/// that turns normals cancels that of the curvature.
 #[test]
 fn a_sheet_at_its_plastic_curvature_is_at_rest_and_turns_freely() {
     let sheet = sheet();

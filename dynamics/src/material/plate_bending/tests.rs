@@ -170,8 +170,8 @@ impl HessianSink for Upwards<'_> {
     }
 }
 
-/// Tip deflection of a strip of length 0.3 m and flexural rigidity 1 under a uniform load of 1, linear theory; a
-/// quarter of the strip is clamped. Half way to its end is a crease, if it has a stiffness.
+/// Tip deflection of a strip of length 0.3 m and flexural rigidity 1 under a uniform load of 1, linear
+/// theory; a quarter of the strip is clamped. Half way to its end is a crease, if it has a stiffness.
 fn cantilever(cells: usize, diagonals: Diagonals, jitter: f64, crease: Option<f64>) -> f64 {
     let (length, overhang) = (0.3, 0.1);
     let size = [length + overhang, 0.1];
@@ -217,8 +217,8 @@ fn cantilever(cells: usize, diagonals: Diagonals, jitter: f64, crease: Option<f6
     tip.iter().sum::<f64>() / tip.len() as f64
 }
 
-/// Without a crease `q L^4 / (8 D)`. A crease of stiffness `k` per length turns by `M / k` with the moment `M = q
-/// (L/2)^2 / 2` of the outer half, which hangs `L/2 M / k` deeper.
+/// Without a crease `q L^4 / (8 D)`. A crease of stiffness `k` per length turns by `M / k` with the moment `M
+/// = q (L/2)^2 / 2` of the outer half, which hangs `L/2 M / k` deeper.
 #[test]
 fn a_crease_is_in_series_with_the_sheet() {
     let length = 0.3_f64;
@@ -237,8 +237,8 @@ fn a_crease_is_in_series_with_the_sheet() {
     }
 }
 
-/// A strip of two flat panels that meet in a crease at its rest angle has no energy and no force, whatever the
-/// stiffness of sheet and crease and the size of the mesh.
+/// A strip of two flat panels that meet in a crease at its rest angle has no energy and no force, whatever
+/// the stiffness of sheet and crease and the size of the mesh.
 #[test]
 fn a_sheet_rests_at_the_rest_angle_of_its_crease() {
     let angle = 1.5_f64;

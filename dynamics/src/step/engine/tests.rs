@@ -359,7 +359,8 @@ fn a_fallback_that_gains_energy_is_refused() {
     assert_eq!(engine.state(), &before);
 }
 
-/// An attempt that the limit of the effort ends is made again without a limit, and what is accepted is the same.
+/// An attempt that the limit of the effort ends is made again without a limit, and what is accepted is the
+/// same.
 #[test]
 fn the_limit_of_the_effort_changes_nothing_that_is_accepted() {
     use Answer::Diverge;

@@ -194,8 +194,8 @@ fn there_are_no_forces_without_rods_or_multipliers() {
 }
 
 /// Forces of rods that depend on each other are the least ones that balance what the sheet carries: in a flat
-/// sheet that lies between pins, where any self-stress could be added, and in a tablecloth, whose flat parts would
-/// carry weight with a thousand times its size.
+/// sheet that lies between pins, where any self-stress could be added, and in a tablecloth, whose flat parts
+/// would carry weight with a thousand times its size.
 #[test]
 fn forces_of_dependent_rods_are_of_the_size_of_their_load() {
     let sheet = generate::isotropic_square(2, 1.0).unwrap();

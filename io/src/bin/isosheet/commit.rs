@@ -1,7 +1,7 @@
 //! The commit that the command was built from.
 
-/// Git's log of HEAD, of which only the hash in its last line gets into the program. The log is empty where the
-/// command is built outside of a repository.
+/// Git's log of HEAD, of which only the hash in its last line gets into the program. The log is empty where
+/// the command is built outside of a repository.
 #[cfg(isosheet_log_of_head)]
 const LOG: &[u8] = include_bytes!(env!("ISOSHEET_LOG_OF_HEAD"));
 #[cfg(not(isosheet_log_of_head))]

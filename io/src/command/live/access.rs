@@ -30,9 +30,9 @@ impl Access {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    /// What a request asks for: the part of its target behind the token. Nothing for a request that is refused: under
-    /// another name than that of this machine (a page of another site whose name leads here), from a page of another
-    /// origin, or with a wrong token.
+    /// What a request asks for: the part of its target behind the token. Nothing for a request that is
+    /// refused: under another name than that of this machine (a page of another site whose name leads here),
+    /// from a page of another origin, or with a wrong token.
     pub(super) fn asked<'a>(
         &self,
         target: &'a str,
@@ -52,7 +52,8 @@ impl Access {
         self.is_token(token).then_some(rest)
     }
 
-    /// Compares all bytes, whatever the first ones are: the time that it takes says nothing of where they differ.
+    /// Compares all bytes, whatever the first ones are: the time that it takes says nothing of where they
+    /// differ.
     fn is_token(&self, token: &str) -> bool {
         let (own, other) = (self.token.as_bytes(), token.as_bytes());
         let differences = own.iter().zip(other).map(|(a, b)| a ^ b);

@@ -38,8 +38,8 @@ impl Status {
 const COMMON: &str = "Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\n\
                       X-Frame-Options: DENY\r\nConnection: close\r\n";
 
-/// The content security policy of the page: it runs its own scripts, which have the nonce, and speaks to the server
-/// that it came from alone.
+/// The content security policy of the page: it runs its own scripts, which have the nonce, and speaks to the
+/// server that it came from alone.
 pub(super) fn policy(nonce: &str) -> String {
     format!(
         "default-src 'none'; script-src 'nonce-{nonce}'; style-src 'unsafe-inline'; img-src data:; \

@@ -4,8 +4,8 @@ use super::message::Role;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Where the run puts its newest state, and pages wait for it. A page that is slow misses states, and gets the newest
-/// one next. The page that came first steers; when it leaves, the next one does.
+/// Where the run puts its newest state, and pages wait for it. A page that is slow misses states, and gets
+/// the newest one next. The page that came first steers; when it leaves, the next one does.
 #[derive(Debug, Default)]
 pub(super) struct Board {
     state: Mutex<State>,

@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-/// Keeps a run from being faster than real time, and measures how fast it is. Times are seconds on the wall from any
-/// beginning.
+/// Keeps a run from being faster than real time, and measures how fast it is. Times are seconds on the wall
+/// from any beginning.
 #[derive(Debug)]
 pub(super) struct Clock {
     /// When the next step may begin.
@@ -29,8 +29,8 @@ impl Clock {
         (self.due - now).max(0.0)
     }
 
-    /// A step of `h` seconds has ended that began at a time. What it was late is made up for by no more than one step:
-    /// after a slow one the run does not hurry.
+    /// A step of `h` seconds has ended that began at a time. What it was late is made up for by no more than
+    /// one step: after a slow one the run does not hurry.
     pub(super) fn stepped(&mut self, h: f64, began: f64, now: f64) {
         self.due = (self.due + h).max(began);
         self.steps.push_back([now, h]);

@@ -19,8 +19,8 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const SIGN: Duration = Duration::from_millis(500);
 /// Most connections at a time: a page has an open one, and some more for moments.
 const MOST_CONNECTIONS: usize = 64;
-/// How long the end of a run waits for pages to be told, and for commands to be answered: longer than a browser on a
-/// busy machine leaves unread what has come.
+/// How long the end of a run waits at most until pages have been told and commands answered. A browser on a
+/// busy machine may leave unread for a second what has come.
 const FAREWELL: Duration = Duration::from_secs(2);
 
 /// What the connections of a server share.
@@ -167,8 +167,8 @@ impl Shared {
         let viewer = self.board.join();
         let told = self.tell(connection, viewer);
         let leave = self.board.leave(viewer);
-        // What nobody steers any more holds nothing, and what nobody sees does not go on. Where the player has ended
-        // nothing is left to be done.
+        // What nobody steers any more holds nothing, and what nobody sees does not go on. Where the player
+        // has ended nothing is left to be done.
         if leave.steered {
             let _ = self.commands.send(Command::Release);
         }

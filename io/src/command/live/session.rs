@@ -89,7 +89,8 @@ impl Session {
         self.is_playing
     }
 
-    /// The series that are plotted, at the present state: energies, strain, and the gap in scenes with contact.
+    /// The series that are plotted, at the present state: energies, strain, and the gap in scenes with
+    /// contact.
     pub(super) fn plotted(&self) -> Vec<Series> {
         let is_contact = self.live.simulation().contacts().is_some();
         let row = HistoryRow {
@@ -138,8 +139,8 @@ impl Session {
         }
     }
 
-    /// Takes a step, after what has been asked for before it. After a failure the state is that of the last accepted
-    /// part of the step.
+    /// Takes a step, after what has been asked for before it. After a failure the state is that of the last
+    /// accepted part of the step.
     pub(super) fn step(
         &mut self,
         watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,

@@ -90,8 +90,8 @@ mod of_obstacle {
     const SIDES: usize = 64;
 
     impl SeriesBody {
-        /// An obstacle of a scene at the times (seconds) of the frames of a trajectory. Of a half-space there is
-        /// a square in its plane, about the origin of its frame and with this half side (metres).
+        /// An obstacle of a scene at the times (seconds) of the frames of a trajectory. Of a half-space there
+        /// is a square in its plane, about the origin of its frame and with this half side (metres).
         pub fn of_obstacle(name: String, obstacle: &Obstacle, times: &[f64], half: f64) -> Self {
             // The sides are enough for any shape.
             let mesh = BodyMesh::of(obstacle.shape(), SIDES).ok().flatten();
@@ -101,7 +101,8 @@ mod of_obstacle {
                 let pose = obstacle.motion().pose(*t);
                 let q = pose.rotation.quaternion();
                 let mut rotation = [q.i, q.j, q.k, q.w];
-                // A quaternion and its negative are one rotation, and programs interpolate between neighbours.
+                // A quaternion and its negative are one rotation, and programs interpolate between
+                // neighbours.
                 let dot = |p: &BodyPose| (0..4).map(|k| p.rotation[k] * rotation[k]).sum::<f64>();
                 if poses.last().is_some_and(|p| dot(p) < 0.0) {
                     rotation = rotation.map(|c| -c);

@@ -2,12 +2,13 @@
 
 use isosheet_mesh::{FaceId, Topology};
 
-/// How exactly the lengths of edges that close a ring of faces have to agree, as a part of the size of the sheet:
-/// far above rounding, and far below what is seen of a printed picture.
+/// How exactly the lengths of edges that close a ring of faces have to agree, as a part of the size of the
+/// sheet: far above rounding, and far below what is seen of a printed picture.
 const CLOSING: f64 = 1e-6;
 
-/// Places of the vertices of the flat sheet with these rest lengths, from 0 to 1: scaled alike in both directions
-/// so that the larger side is 1, and turned as the sheet lies at the positions `start` as seen from its front.
+/// Places of the vertices of the flat sheet with these rest lengths, from 0 to 1: scaled alike in both
+/// directions so that the larger side is 1, and turned as the sheet lies at the positions `start` as seen
+/// from its front.
 ///
 /// Faces are laid down one after the other along shared edges. `None` if the ends do not meet, as on a closed
 /// cylinder or around the tip of a cone.
@@ -93,8 +94,8 @@ fn lay_down(
     Some(())
 }
 
-/// Turns and shifts a part so that it fits the shadow that the sheet casts along its mean normal, in which the
-/// x axis points to the right, or the y axis where the sheet faces along x.
+/// Turns and shifts a part so that it fits the shadow that the sheet casts along its mean normal, in which
+/// the x axis points to the right, or the y axis where the sheet faces along x.
 fn turn(
     places: &mut [Option<[f64; 2]>],
     vertices: &[usize],

@@ -41,8 +41,8 @@ fn upright([x, y, z]: [f32; 3]) -> [f32; 3] {
     [x, z, -y]
 }
 
-/// Writes a mesh that may move, and bodies that may: times in seconds, counted from the first one in the file,
-/// positions in metres. The format has y upwards: `(x, y, z)` becomes `(x, z, -y)`.
+/// Writes a mesh that may move, and bodies that may: times in seconds, counted from the first one in the
+/// file, positions in metres. The format has y upwards: `(x, y, z)` becomes `(x, z, -y)`.
 pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError> {
     let mut file = File::default();
     let mut nodes = Vec::new();

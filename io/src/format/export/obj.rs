@@ -27,8 +27,8 @@ pub(super) fn extras<'a>(series: &'a Series<'_>) -> Extras<'a> {
     }
 }
 
-/// Writes one file for each frame in a folder, and beside it one with the bodies in their places, one object each;
-/// of bodies that rest a single one.
+/// Writes one file for each frame in a folder, and beside it one with the bodies in their places, one object
+/// each; of bodies that rest a single one.
 pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
     let folder = path.with_extension("");
     let mut files = Vec::new();

@@ -18,8 +18,8 @@ pub struct SeriesOptions {
     pub last: Option<usize>,
     /// Every so many frames one is taken, beginning with the first: 1 (the default) for all.
     pub every: usize,
-    /// Frames a second at which programs for animations show the motion, so that it has its own speed; 24 (the
-    /// default) is that of films. It changes no frame: [`Trajectory::at_rate`] does.
+    /// Frames a second at which programs for animations show the motion, so that it has its own speed; 24
+    /// (the default) is that of films. It changes no frame: [`Trajectory::at_rate`] does.
     pub rate: f64,
 }
 
@@ -167,9 +167,9 @@ impl<'a> Series<'a> {
         })
     }
 
-    /// With the sheets of which the mesh is the union, each with its name and its place in it, for formats that tell
-    /// them apart: objects in USD and glTF files, groups in OBJ files, and cell data `sheet`, the number of the
-    /// sheet from 0, in VTK files. Characters of names that formats refuse become `_`.
+    /// With the sheets of which the mesh is the union, each with its name and its place in it, for formats
+    /// that tell them apart: objects in USD and glTF files, groups in OBJ files, and cell data `sheet`, the
+    /// number of the sheet from 0, in VTK files. Characters of names that formats refuse become `_`.
     ///
     /// # Errors
     /// [`ExportError::Count`] if the sheets are not the whole mesh, one after the other.
@@ -190,8 +190,8 @@ impl<'a> Series<'a> {
     /// With the bodies that the sheet meets, for formats that have several meshes.
     ///
     /// # Errors
-    /// [`ExportError::Poses`] for a number of poses that is neither 1 nor that of the frames of the trajectory,
-    /// [`ExportError`] for a mesh that is none.
+    /// [`ExportError::Poses`] for a number of poses that is neither 1 nor that of the frames of the
+    /// trajectory, [`ExportError`] for a mesh that is none.
     pub fn with_bodies(self, bodies: Vec<SeriesBody>) -> Result<Self, ExportError> {
         for body in &bodies {
             body.validate(self.trajectory.len())?;
@@ -204,10 +204,10 @@ impl<'a> Series<'a> {
         &self.bodies
     }
 
-    /// Places of the vertices in a picture that is printed on the sheet, from 0 to 1 rightwards and upwards: the
-    /// flat rest shape, scaled alike in both directions so that its larger side is 1, and turned as the sheet
-    /// lies in the first frame of the trajectory. `None` if the rest lengths are not those of a flat sheet, as on
-    /// closed cylinders.
+    /// Places of the vertices in a picture that is printed on the sheet, from 0 to 1 rightwards and upwards:
+    /// the flat rest shape, scaled alike in both directions so that its larger side is 1, and turned as the
+    /// sheet lies in the first frame of the trajectory. `None` if the rest lengths are not those of a flat
+    /// sheet, as on closed cylinders.
     pub fn uv(&self) -> Option<&[[f64; 2]]> {
         self.uv.as_deref()
     }
@@ -416,8 +416,8 @@ fn edge_between(topology: &Topology, ends: [u32; 2]) -> Option<EdgeId> {
 /// The values of a frame of a trajectory.
 type Values = fn(&Trajectory, usize) -> Option<&[f64]>;
 
-/// A field of edges, in the order of the edges of the topology: its name, and its values with the unit in which they
-/// are written.
+/// A field of edges, in the order of the edges of the topology: its name, and its values with the unit in
+/// which they are written.
 fn edge_field(
     trajectory: &Trajectory,
     topology: &Topology,

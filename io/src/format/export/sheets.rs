@@ -41,9 +41,11 @@ impl NamedPart {
         }
         let mut named: Vec<Self> = Vec::new();
         for (k, (name, part)) in sheets.iter().enumerate() {
-            let mut name = identifier(name);
-            if named.iter().any(|sheet| sheet.name == name) {
-                name = format!("{name}_{k}");
+            let plain = identifier(name);
+            let (mut name, mut number) = (plain.clone(), k);
+            while named.iter().any(|sheet| sheet.name == name) {
+                name = format!("{plain}_{number}");
+                number += 1;
             }
             let part = part.clone();
             named.push(Self { name, part });
@@ -52,14 +54,17 @@ impl NamedPart {
     }
 }
 
-/// A name of ASCII letters, digits and `_` that does not begin with a digit.
+/// A name of ASCII letters, digits and `_` that begins neither with a digit nor as those of bodies do.
 fn identifier(name: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let plain: String = name
         .chars()
         .map(|c| if is_plain(c) { c } else { '_' })
         .collect();
-    match plain.starts_with(|c: char| c.is_ascii_digit()) {
+    let is_other = plain.is_empty()
+        || plain.starts_with(|c: char| c.is_ascii_digit())
+        || plain.starts_with("obstacle_");
+    match is_other {
         true => format!("_{plain}"),
         false => plain,
     }
@@ -67,6 +72,7 @@ fn identifier(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::NamedPart;
     use crate::format::Trajectory;
     use crate::{ExportError, Series, SeriesOptions, read_mesh, write_series};
     use isosheet_mesh::{Part, Sheet, generate};
@@ -176,5 +182,16 @@ mod tests {
             matches!(wrong, ExportError::Count { got: 0, .. }),
             "{wrong}"
         );
+    }
+
+    #[test]
+    fn names_are_identifiers_of_their_own() {
+        let part = Part::default();
+        let names = ["a_b_2", "a b", "a_b", "a-b", "", "obstacle_0"];
+        let sheets = names.map(|name| (name.to_owned(), part.clone()));
+        let named = NamedPart::all(&sheets, [0; 3]).unwrap();
+        let names: Vec<&str> = named.iter().map(|sheet| &*sheet.name).collect();
+        let expected = ["a_b_2", "a_b", "a_b_3", "a_b_4", "_", "_obstacle_0"];
+        assert_eq!(names, expected);
     }
 }

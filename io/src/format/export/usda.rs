@@ -14,9 +14,9 @@ const COLOURS: [[f32; 3]; 2] = [[0.86, 0.78, 0.62], [0.49, 0.49, 0.47]];
 /// A body with its points as 32-bit floats.
 type Body<'a> = (&'a SeriesBody, Vec<[f32; 3]>, &'a [BodyPose]);
 
-/// Writes a mesh that may move, and bodies that may, below one root: times in seconds and positions in metres, z
-/// upwards. There are as many time codes a second as frames, and programs interpolate between them, places
-/// linearly and rotations along the great circle.
+/// Writes a mesh that may move, and bodies that may, below one root: times in seconds and positions in
+/// metres, z upwards. There are as many time codes a second as frames, and programs interpolate between them,
+/// places linearly and rotations along the great circle.
 pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError> {
     let rate = moving.rate;
     let mut samples = Vec::with_capacity(moving.states.len());

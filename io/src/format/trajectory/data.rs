@@ -13,8 +13,8 @@ pub struct FrameData<'a> {
     pub gaps: &'a [f64],
     /// Plastic angle of each edge (length E, radians, positive for valleys).
     pub plastic_angles: &'a [f64],
-    /// Principal values of the plastic curvature of each face (length 2F, 1/m, the larger one in size first, positive
-    /// for valleys).
+    /// Principal values of the plastic curvature of each face (length 2F, 1/m, the larger one in size first,
+    /// positive for valleys).
     pub plastic_curvatures: &'a [f64],
 }
 

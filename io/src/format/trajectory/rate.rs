@@ -10,8 +10,8 @@ impl Trajectory {
     /// The motion from frame `first` to frame `last`, with `rate` frames a second instead of those that were
     /// recorded. The first frame stays, and the others follow at its time plus `k / rate` as long as there is
     /// a state at that time. Between two recorded frames every number is interpolated linearly in time:
-    /// vertices are on the straight lines between their places, so that lengths are kept in the recorded frames
-    /// only. Of frames at one time the last one counts.
+    /// vertices are on the straight lines between their places, so that lengths are kept in the recorded
+    /// frames only. Of frames at one time the last one counts.
     ///
     /// # Errors
     /// [`TrajectoryError::Rate`] for a rate that is not positive or gives more than 86 400 frames, and for

@@ -7,8 +7,8 @@ use isosheet_dynamics::{Hand, HandError};
 use isosheet_mesh::{Advice, VertexId};
 use thiserror::Error;
 
-/// The stretch of the spring of a hand under the whole weight of the sheet, as a part of its size: a vertex that
-/// carries all of it seems to be where the hand is, and light sheets do not shake at it.
+/// The stretch of the spring of a hand under the whole weight of the sheet, as a part of its size: a vertex
+/// that carries all of it seems to be where the hand is, and light sheets do not shake at it.
 const STRETCH: f64 = 0.01;
 
 /// Standard gravity, m/s2: a sheet without weight is held as firmly as one with it.
@@ -43,9 +43,9 @@ impl Advice for HoldError {
 
 impl LiveScene {
     /// Holds a vertex by a spring from now on, in place of any held before. It pulls at nothing until
-    /// [`Hand::lead`] moves its other end, which costs nothing. Its stiffness is `M g / (d / 100)` with the mass `M`
-    /// of the sheet, standard gravity `g` and the diagonal `d` of the box around the rest shape: the weight of the
-    /// whole sheet stretches it by a hundredth of that. What it does is work.
+    /// [`Hand::lead`] moves its other end, which costs nothing. Its stiffness is `M g / (d / 100)` with the
+    /// mass `M` of the sheet, standard gravity `g` and the diagonal `d` of the box around the rest shape: the
+    /// weight of the whole sheet stretches it by a hundredth of that. What it does is work.
     ///
     /// ```
     /// use isosheet_io::scene::{LiveScene, SceneFile, StartingPoint};
@@ -80,7 +80,8 @@ impl LiveScene {
         Ok(hand)
     }
 
-    /// Lets go of the vertex that is held; the energy of the spring is gone, as work. Nothing if none is held.
+    /// Lets go of the vertex that is held; the energy of the spring is gone, as work. Nothing if none is
+    /// held.
     ///
     /// # Errors
     /// [`SceneError`] if the scene cannot be built, such as for a mesh file that has been deleted since.

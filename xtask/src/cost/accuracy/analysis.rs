@@ -7,8 +7,8 @@ use crate::report::exponent;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measure {
     pub(crate) name: &'static str,
-    /// The largest error that is of use, a power of ten: coarser runs are cheap, but no motion. Position errors
-    /// of sheets of 1 m.
+    /// The largest error that is of use, a power of ten: coarser runs are cheap, but no motion. Position
+    /// errors of sheets of 1 m.
     pub(crate) useful: i32,
     pub(crate) of: fn(&Errors) -> f64,
 }

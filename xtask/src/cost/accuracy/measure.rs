@@ -64,8 +64,8 @@ struct Pass {
 /// Most repetitions of short runs.
 const REPETITIONS: usize = 5;
 
-/// Measures a method at a fineness. Runs that take longer than `patience` seconds are given up; those that took
-/// less than `again` seconds together are repeated.
+/// Measures a method at a fineness. Runs that take longer than `patience` seconds are given up; those that
+/// took less than `again` seconds together are repeated.
 pub(crate) fn point(
     problem: Problem,
     scheme: &Scheme,
@@ -237,9 +237,9 @@ const BLOWN_UP: f64 = 100.0;
 /// Most halvings of the step.
 const HALVINGS: u32 = 14;
 
-/// Runs that are made on the smooth problems however long they take, each with half the step of the one before:
-/// the orders that are required of the methods are fitted to the finest of them, and must not depend on how
-/// fast the machine is.
+/// Runs that are made on the smooth problems however long they take, each with half the step of the one
+/// before: the orders that are required of the methods are fitted to the finest of them, and must not depend
+/// on how fast the machine is.
 const RUNS_FOR_ORDERS: u32 = 10;
 
 /// All runs of a method together may take so many times the longest.

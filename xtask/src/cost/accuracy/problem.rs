@@ -43,8 +43,8 @@ impl Problem {
         (Self::Cloth(2), "cloth-2"),
     ];
 
-    /// Whether the motion is so smooth that the orders of the methods show: sheets flutter on finer scales than
-    /// their steps.
+    /// Whether the motion is so smooth that the orders of the methods show: sheets flutter on finer scales
+    /// than their steps.
     pub(crate) fn is_smooth(self) -> bool {
         matches!(self, Self::Pendulum | Self::Triangle)
     }

@@ -359,7 +359,8 @@ mod tests {
         let svg = study.plot().to_svg("t");
         assert!(svg.contains("RATTLE composition"));
         assert_eq!(study.table().rows.len(), Scheme::all().len());
-        // Second order shows in a few milliseconds already; a busy machine may take longer than the quick limit.
+        // Second order shows in a few milliseconds already; a busy machine may take longer than the quick
+        // limit.
         let schemes = Scheme::all();
         let rattle = schemes.iter().find(|s| s.name == "RATTLE").unwrap();
         let points = sweep(Problem::Pendulum, rattle, &study.reference, 0.2).unwrap();
@@ -373,7 +374,8 @@ mod tests {
                 .fold(0.0, f64::max)
         };
         assert!(strain(DEFAULT) < 1e-11 && strain("published scheme") > 1e-4);
-        // The default reaches small errors on the front of the methods that take any state, in this or that time.
+        // The default reaches small errors on the front of the methods that take any state, in this or that
+        // time.
         let fronts = study.fronts();
         assert!(
             fronts

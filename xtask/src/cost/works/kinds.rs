@@ -44,8 +44,8 @@ const fn single(name: &'static str, title: &'static str, file: &'static str) -> 
     }
 }
 
-/// The crane's mesh in the folder that `ISOSHEET_DATA` names: a crease pattern of the folder is no part of the
-/// repository.
+/// The crane's mesh in the folder that `ISOSHEET_DATA` names: a crease pattern of the folder is no part of
+/// the repository.
 const CRANE: &str = "fold/crane_rabbitear.fold";
 
 /// All of them.
