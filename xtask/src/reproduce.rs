@@ -157,7 +157,7 @@ mod tests {
         let made = Made {
             title: "A < B",
             paper: "said",
-            here: "seen".into(),
+            here: "seen",
             pictures: vec![
                 Picture::svg("a", &drawing, "a"),
                 png("b.png", "b \"quoted\""),
