@@ -274,17 +274,28 @@ impl CaseFile {
             check.judge(found, &ran)?;
         }
         let name = self.scene.file_name().unwrap_or_default().to_string_lossy();
-        let first: Vec<String> = ran[0]
-            .edits
-            .iter()
-            .map(|e| format!(" --set '{e}'"))
-            .collect();
-        let head = ["runs", "the first of them"];
-        let command = format!("isosheet simulate {name}{}", first.concat());
-        let row = vec![ran.len().to_string(), command];
-        found
-            .tables
-            .push(Table::new("The runs", &head).with_texts([row]));
+        let command = |run: &Ran| {
+            let edits = run.edits.iter().map(|e| format!(" --set '{e}'"));
+            format!("isosheet simulate {name}{}", edits.collect::<String>())
+        };
+        let of = |run: &Ran, path: &str| run.summary.pointer(path).and_then(Value::as_f64).into();
+        found.tables.push(Table::of(
+            "The runs",
+            &ran,
+            &[
+                ("command", &|run| command(run).into()),
+                ("steps", &|run| of(run, "/steps")),
+                ("rejected", &|run| of(run, "/rejected")),
+                ("edge strain", &|run| of(run, "/largest_strain")),
+                ("smallest gap, m", &|run| of(run, "/smallest_gap")),
+                ("energy drift at the end, J", &|run| {
+                    of(run, "/ending/energy_drift")
+                }),
+                ("stops early at, s", &|run| {
+                    run.stopped.as_ref().map(|(t, _)| *t).into()
+                }),
+            ],
+        ));
         found.here = "The summaries of all runs of a scene are judged. Largest strains and smallest gaps are of all accepted steps, those of runs that \
                       stop early included.";
         Ok(())
