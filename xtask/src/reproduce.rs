@@ -41,19 +41,22 @@ struct Record {
 pub(crate) fn run(args: &ReproduceArgs) -> Result<()> {
     let store = args.options.open("reproduce-figures")?;
     let figures: BTreeSet<u8> = args.figures.iter().cloned().flatten().collect();
-    let made = figures.into_iter().try_for_each(|n| make(&store, n));
-    interrupt::afterwards(made, || write(&store))
+    let scenes = scene_fingerprint()?;
+    let made = figures
+        .into_iter()
+        .try_for_each(|n| make(&store, n, scenes));
+    interrupt::afterwards(made, || write(&store, scenes))
 }
 
-/// What is kept of a figure. Its scenes are read from files.
-fn unit(store: &Store, figure: u8) -> Result<Unit> {
+/// What is kept of a figure; `scenes` is the fingerprint of the files of scenes that figures are made of.
+fn unit(store: &Store, figure: u8, scenes: u64) -> Unit {
     let mut unit = store.unit(format!("fig{figure:02}"), format!("figure {figure}"));
-    unit.options["scenes"] = json!(scene_fingerprint()?);
-    Ok(unit)
+    unit.options["scenes"] = json!(scenes);
+    unit
 }
 
-fn make(store: &Store, figure: u8) -> Result<()> {
-    let unit = unit(store, figure)?;
+fn make(store: &Store, figure: u8, scenes: u64) -> Result<()> {
+    let unit = unit(store, figure, scenes);
     store.keep(&unit, |files| {
         let started = Instant::now();
         let made = figures::make(figure, store)?;
@@ -70,10 +73,9 @@ fn make(store: &Store, figure: u8) -> Result<()> {
 }
 
 /// Writes `index.html` and `summary.json` of all figures made so far.
-fn write(store: &Store) -> Result<()> {
-    let units = selection::all().map(|figure| unit(store, figure));
-    let units = units.collect::<Result<Vec<_>>>()?;
-    let Kept::<Record> { records, left_out } = store.all_kept(units);
+fn write(store: &Store, scenes: u64) -> Result<()> {
+    let units = selection::all().map(|figure| unit(store, figure, scenes));
+    let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
     let figures: Vec<&Value> = records.iter().map(|r| &r.summary).collect();
     let version = env!("CARGO_PKG_VERSION");
     write_json(

@@ -3,7 +3,7 @@
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::{Cell, Cost, Effort, Options, Page, Part, Table, excerpt, machine};
-use crate::runs::FigureScene;
+use crate::runs::{FigureScene, scene_fingerprint};
 use crate::store::Store;
 use anyhow::{Context, Result};
 use clap::Args;
@@ -12,6 +12,7 @@ use isosheet_dynamics::{Constant, Tuning};
 use isosheet_io::scene::StartingPoint;
 use maud::html;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 /// Arguments of `tuning`.
 #[derive(Debug, Args)]
@@ -172,7 +173,9 @@ pub(crate) fn run(args: &TuningArgs) -> Result<()> {
 /// Measures all kinds of scene with some constants.
 fn all_kinds(store: &Store, name: &str, tuning: Tuning, starts: u64) -> Result<Vec<Measured>> {
     let file = name.replace(' ', "-");
-    store.keep(&store.unit(file, name), |_| {
+    let mut unit = store.unit(file, name);
+    unit.options["scenes"] = json!(scene_fingerprint()?);
+    store.keep(&unit, |_| {
         let bar = Progress::start(name, KINDS.len());
         let mut all = Vec::new();
         for kind in &KINDS {

@@ -82,21 +82,13 @@ impl FigureScene {
     /// # Errors
     /// A name that no material has.
     pub(crate) fn made_of(&self, material: &str) -> Result<Self> {
-        let text = self.file.text();
-        let mut document: DocumentMut = text.text.parse()?;
-        for key in ["mass", "density"] {
-            document["sheet"]
-                .as_table_mut()
-                .map(|sheet| sheet.remove(key));
-        }
-        document["sheet"]["material"] = toml_edit::value(material);
-        Ok(Self {
-            name: format!(
-                "{}-{}",
-                self.name,
-                material.replace(' ', "-").to_lowercase()
-            ),
-            file: SceneFile::parse(document.to_string(), &text.path, &[])?,
+        let suffix = material.replace(' ', "-").to_lowercase();
+        self.with_sheet(format!("{}-{suffix}", self.name), |sheet| {
+            for key in ["mass", "density"] {
+                sheet.remove(key);
+            }
+            sheet["material"] = toml_edit::value(material);
+            Ok(())
         })
     }
 
@@ -105,15 +97,24 @@ impl FigureScene {
     /// # Errors
     /// A scene that has not one sheet that yields.
     pub(crate) fn without_yield(&self, name: &str) -> Result<Self> {
+        self.with_sheet(name.to_owned(), |sheet| {
+            let yields = sheet.remove("yield");
+            yields.context("the sheet does not yield").map(drop)
+        })
+    }
+
+    /// The same scene with a change of its one table `[sheet]`, under another name.
+    fn with_sheet(
+        &self,
+        name: String,
+        change: impl FnOnce(&mut toml_edit::Table) -> Result<()>,
+    ) -> Result<Self> {
         let text = self.file.text();
         let mut document: DocumentMut = text.text.parse()?;
         let sheet = document["sheet"].as_table_mut();
-        let yields = sheet.and_then(|sheet| sheet.remove("yield"));
-        yields.context("the scene has not one sheet that yields")?;
-        Ok(Self {
-            name: name.to_owned(),
-            file: SceneFile::parse(document.to_string(), &text.path, &[])?,
-        })
+        change(sheet.context("the scene has not one table [sheet]")?)?;
+        let file = SceneFile::parse(document.to_string(), &text.path, &[])?;
+        Ok(Self { name, file })
     }
 
     /// What the sheet is made of, in words.
