@@ -157,13 +157,12 @@ fn search(model: Model, job: Job, halvings: usize, plan: &Plan) -> Result<(Ran, 
 /// The runs of the yardstick.
 pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
-    let plan = Plan::new(STEP, effort.quick_or(5.0, 20.0))
-        .within(effort.quick_or(0.2, 6.0))
-        .until_rest(REST);
+    let plan = Plan::new(STEP, effort.quick_or(5.0, 20.0)).until_rest(REST);
     let halvings = effort.quick_or(3, 8);
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4]);
     let of = |mesh: Grid| sizes.iter().map(move |&across| Job { mesh, across });
-    let jobs: Vec<Job> = Grid::ALL[..5].iter().copied().flat_map(of).collect();
+    let meshes = effort.quick_or(&Grid::ALL[..2], &Grid::ALL[..5]);
+    let jobs: Vec<Job> = meshes.iter().copied().flat_map(of).collect();
     samples(&records.of_models(&jobs, |model, job| search(model, *job, halvings, &plan))?)
 }
 

@@ -166,7 +166,7 @@ fn jobs(effort: Effort) -> Vec<Job> {
 pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
     let duration = effort.quick_or(0.5, 2.0);
-    let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.3, 2.0));
+    let plan = Plan::new(1.0 / 60.0, duration);
     let mut all = records.of_models(&jobs(effort), |model, job| measure(model, job, &plan))?;
     let papers = all
         .iter()

@@ -118,15 +118,14 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
         mesh: Disk::Delaunay1,
         rings: 2 * jobs.last().map_or(1, |job| job.rings),
     };
+    let plan = until_rest(effort.quick_or(2.0, 20.0));
     let beside = |model: Model| {
-        let patience = effort.quick_or(5.0, 1200.0);
         records.runs(&format!("reference, {model}"), &[finest], |&job| {
-            let (ran, measured) = measure(model, PAPER.bound, job, &until_rest(20.0, patience))?;
+            let (ran, measured) = measure(model, PAPER.bound, job, &plan)?;
             Ok(Sample { job, ran, measured })
         })
     };
     let reference = beside(Model::Material)?;
-    let plan = until_rest(20.0, effort.quick_or(1.0, 40.0));
     let mut all =
         records.of_models(&jobs, |model, job| measure(model, PAPER.bound, *job, &plan))?;
     all.extend(beside(Model::Elastic)?);
@@ -153,13 +152,8 @@ pub(super) fn with_bound(
     model: Model,
     bound: f64,
     rings: usize,
-    patience: f64,
+    plan: &Plan,
 ) -> Result<(Ran, Cone)> {
     let mesh = Disk::Delaunay1;
-    measure(
-        model,
-        bound,
-        Job { mesh, rings },
-        &until_rest(20.0, patience),
-    )
+    measure(model, bound, Job { mesh, rings }, plan)
 }

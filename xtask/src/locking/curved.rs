@@ -170,7 +170,7 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
     let of = |stiffness| sizes.iter().map(move |&across| Job { across, stiffness });
     let jobs: Vec<Job> = STIFFNESSES.into_iter().flat_map(of).collect();
-    let plan = until_rest(30.0, effort.quick_or(1.0, 120.0)).until_rest(REST);
+    let plan = until_rest(effort.quick_or(2.0, 30.0)).until_rest(REST);
     samples(&records.of_models(&jobs, |model, job| measure(model, *job, &plan))?)
 }
 

@@ -194,7 +194,7 @@ fn apart(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
 /// The runs of the yardstick.
 pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
-    let plan = until_rest(20.0, effort.quick_or(1.0, 40.0));
+    let plan = until_rest(effort.quick_or(2.0, 20.0));
     let jobs = Job::all(effort);
     samples(&records.of_models(&jobs, |model, job| measure(model, *job, &plan))?)
 }

@@ -2,6 +2,7 @@
 
 use super::model::{Model, PAPER};
 use super::runs::{Ran, Records, table};
+use super::scene::until_rest;
 use super::{cone, strips};
 use crate::report::Table;
 use anyhow::Result;
@@ -44,12 +45,12 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
             across,
         }));
     }
-    let patience = effort.quick_or(1.0, 120.0);
+    let plan = until_rest(effort.quick_or(2.0, 30.0));
     let found = records.runs("bounds", &jobs, |&job| {
         let model = job.bound.map_or(Model::Material, |_| Model::Elastic);
         let bound = job.bound.unwrap_or(PAPER.bound);
-        let (ran, cone) = cone::with_bound(model, bound, job.rings, patience)?;
-        let [energy, place] = strips::with_bound(model, bound, job.across, patience)?;
+        let (ran, cone) = cone::with_bound(model, bound, job.rings, &plan)?;
+        let [energy, place] = strips::with_bound(model, bound, job.across, &plan)?;
         Ok((job, ran, cone, Strips { energy, place }))
     })?;
     table(

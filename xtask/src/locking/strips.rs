@@ -281,7 +281,7 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
     let grids: &[Grid] = effort.quick_or(&[Grid::Aligned, Grid::Delaunay1], &Grid::ALL);
-    let plan = until_rest(30.0, effort.quick_or(0.5, 60.0));
+    let plan = until_rest(effort.quick_or(2.0, 30.0));
     let mut jobs = Vec::new();
     for strip in Case::ALL {
         for &mesh in grids {
@@ -301,7 +301,7 @@ pub(super) fn with_bound(
     model: Model,
     bound: f64,
     across: usize,
-    patience: f64,
+    plan: &Plan,
 ) -> Result<[Option<f64>; 2]> {
     let mut worst = [Some(0.0_f64); 2];
     for strip in [Case::Heavy100, Case::Pushed] {
@@ -314,7 +314,7 @@ pub(super) fn with_bound(
                 mesh,
                 across,
             };
-            let (_, rested) = measure(model, bound, job, &until_rest(30.0, patience))?;
+            let (_, rested) = measure(model, bound, job, plan)?;
             let errors = [rested.energy_error, rested.place_error];
             worst = std::array::from_fn(|k| worst[k].zip(errors[k]).map(|(a, b)| a.max(b)));
         }
@@ -363,7 +363,7 @@ mod tests {
             mesh: Grid::Aligned,
             across: 4,
         };
-        let plan = until_rest(20.0, 60.0);
+        let plan = until_rest(20.0);
         let (ran, rested) = measure(Model::Elastic, PAPER.bound, job, &plan).unwrap();
         assert_eq!(ran.is_good, 1, "{ran:?}");
         for error in [rested.energy_error, rested.place_error, rested.moment_error] {
