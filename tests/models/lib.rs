@@ -31,7 +31,7 @@ pub use methods::{
 };
 pub use pendulum::Pendulum;
 pub use rigid_body::RigidBody;
-pub use strip::{HangingStrip, laguerre, laguerre_zeros};
+pub use strip::{HangingStrip, laguerre, laguerre_zeros, strip_faces};
 pub use triangle::FreeTriangle;
 pub use tumbling::tumbling;
 

@@ -38,6 +38,16 @@ pub fn laguerre_zeros(n: usize) -> Vec<f64> {
     zeros
 }
 
+/// The faces of a strip of rows of two vertices, `rows` of them below the first: each of its quadrilaterals is
+/// cut by a diagonal.
+pub fn strip_faces(rows: u32) -> Vec<[u32; 3]> {
+    let between = |row: u32| {
+        let i = 2 * row;
+        [[i, i + 2, i + 1], [i + 1, i + 2, i + 3]]
+    };
+    (0..rows).flat_map(between).collect()
+}
+
 /// A strip of rows of two vertices hanging from its pinned top row, equal vertex masses.
 ///
 /// Its side rods carry the weight of the rows below, so out of the plane each column is a
@@ -85,11 +95,7 @@ impl HangingStrip {
 
     /// The sheet; vertices 0 and 1 are pinned.
     pub fn model(&self) -> SheetModel {
-        let mut faces = Vec::new();
-        for row in 0..self.rows as u32 {
-            let i = 2 * row;
-            faces.extend([[i, i + 2, i + 1], [i + 1, i + 2, i + 3]]);
-        }
+        let faces = strip_faces(self.rows as u32);
         let sheet = Sheet::new(self.place(0.0), &faces).expect("a strip");
         let mass = MassMatrix::from_vertex_masses(vec![0.01; 2 * self.rows + 2]).expect("positive");
         SheetModel::with_mass(&sheet, mass)

@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod methods;
+mod ran;
 mod works;
 
 use crate::interrupt;
@@ -34,7 +35,7 @@ enum Part {
 impl Part {
     /// All parts with their names, in the order of the page.
     fn named() -> Vec<(&'static str, Self)> {
-        let problems = Problem::ALL.map(|(problem, name)| (name, Self::Problem(problem)));
+        let problems = Problem::ALL.map(|(problem, name, _)| (name, Self::Problem(problem)));
         let others = [
             ("hanging", Self::Methods(Scene::Hanging)),
             ("tablecloth", Self::Methods(Scene::Tablecloth)),
@@ -116,7 +117,9 @@ fn measure(store: &Store, name: &str, part: Part) -> Result<()> {
     let effort = store.effort;
     let unit = Part::unit(store, name);
     match part {
-        Part::Problem(problem) => store.keep(&unit, |files| accuracy::make(problem, effort, files)),
+        Part::Problem(problem) => {
+            store.keep(&unit, |files| accuracy::make(problem, name, effort, files))
+        }
         Part::Methods(scene) => {
             store.keep(&unit, |files| methods::make(scene, name, effort, files))
         }
@@ -135,7 +138,7 @@ fn report(store: &Store) -> Result<()> {
     let works = works::record(store, &mut left_out)?;
     records.splice(0..0, works);
     let fronts: Vec<Front> = records.iter().flat_map(|r| r.fronts.clone()).collect();
-    let fronts = Front::table(&fronts);
+    let fronts = accuracy::fronts(&fronts)?;
     let mut parts = vec![Excerpt::table(&*fronts.name, &fronts)];
     parts.extend(records.iter().flat_map(|r| r.excerpt.clone()));
     excerpt::write(store, "cost", &parts)?;

@@ -3,7 +3,7 @@
 
 use super::model::Model;
 use crate::progress::Progress;
-use crate::report::{Cell, Table};
+use crate::report::Table;
 use crate::runs::Course;
 use crate::store::Store;
 use anyhow::Result;
@@ -138,63 +138,13 @@ impl Records<'_> {
     }
 }
 
+/// The caption of the table of all runs.
+pub(super) const EVERY_RUN: &str = "Every run";
+
 /// The table of some samples.
 ///
 /// # Errors
-/// As [`table`].
+/// As [`Table::of_fields`].
 pub(super) fn samples<J: Serialize, M: Serialize>(all: &[Sample<J, M>]) -> Result<Table> {
-    table(all.iter().map(|s| (&s.job, &s.ran, &s.measured)))
-}
-
-/// A table whose columns are the fields of its rows, structs or tuples of structs, by the names that serde
-/// gives them.
-///
-/// # Errors
-/// A field is neither a number nor a text.
-pub(super) fn table<R: Serialize>(rows: impl Iterator<Item = R>) -> Result<Table> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    let bytes = writer.into_inner()?;
-    let mut reader = csv::Reader::from_reader(&*bytes);
-    let mut table = Table::new("Every run", &reader.headers()?.iter().collect::<Vec<_>>());
-    for record in reader.records() {
-        let cell = |text: &str| match (text, text.parse::<f64>()) {
-            ("", _) => Cell::Missing,
-            (_, Ok(value)) => value.into(),
-            _ => text.into(),
-        };
-        table.push(record?.iter().map(cell).collect());
-    }
-    Ok(table)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// All digits of numbers are kept, and what is not there is missing.
-    #[test]
-    fn fields_are_columns() {
-        #[derive(Serialize)]
-        struct Job {
-            #[serde(rename = "h, m")]
-            spacing: f64,
-            model: Model,
-        }
-        #[derive(Serialize)]
-        struct Found {
-            error: Option<f64>,
-        }
-        let row = |spacing, error| {
-            let model = Model::Material;
-            (Job { spacing, model }, Found { error })
-        };
-        let table = table([row(0.1 + 0.2, None), row(1.0, Some(1e-20))].into_iter()).unwrap();
-        assert_eq!(table.head, ["h, m", "model", "error"]);
-        let text = || Cell::from("real stiffness");
-        let first = [(0.1 + 0.2).into(), text(), Cell::Missing];
-        assert_eq!(table.rows, [first, [1.0.into(), text(), 1e-20.into()]]);
-    }
+    Table::of_fields(EVERY_RUN, all.iter().map(|s| (&s.job, &s.ran, &s.measured)))
 }

@@ -1,7 +1,7 @@
 //! How stiff the faces of an elastic sheet may be: a disk that must not stretch, strips that must not lock.
 
 use super::model::{Model, PAPER};
-use super::runs::{Ran, Records, table};
+use super::runs::{EVERY_RUN, Ran, Records};
 use super::scene::until_rest;
 use super::{cone, strips};
 use crate::report::Table;
@@ -53,7 +53,8 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
         let [energy, place] = strips::with_bound(model, bound, job.across, &plan)?;
         Ok((job, ran, cone, Strips { energy, place }))
     })?;
-    table(
+    Table::of_fields(
+        EVERY_RUN,
         found.iter().map(
             |(job, ran, cone, strips): &(Job, Ran, cone::Cone, Strips)| (job, ran, cone, strips),
         ),

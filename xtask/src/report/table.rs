@@ -5,6 +5,7 @@ use crate::store::Files;
 use anyhow::Result;
 use isosheet_io::write_atomically;
 use maud::{Markup, Render, html};
+use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 
@@ -86,7 +87,11 @@ pub(crate) type Column<'a, R> = (&'a str, &'a dyn Fn(&R) -> Cell);
 /// The columns of a table, each with what it shows of a row: `columns! { row; "name" => cell, ... }`.
 macro_rules! columns {
     ($row:ident; $($name:expr => $cell:expr),* $(,)?) => {
-        &[$(($name, &|$row| $crate::report::Cell::from($cell))),*]
+        &[$(($name, &|$row| {
+            // Some columns have the same entry in all rows.
+            let _ = $row;
+            $crate::report::Cell::from($cell)
+        })),*]
     };
 }
 pub(crate) use columns;
@@ -126,6 +131,33 @@ impl Table {
             table.push(columns.iter().map(|(_, cell)| cell(&row)).collect());
         }
         table
+    }
+
+    /// A table whose columns are the fields of its rows, structs or tuples of structs, by the names that
+    /// serde gives them.
+    ///
+    /// # Errors
+    /// A field is neither a number nor a text.
+    pub(crate) fn of_fields<R: Serialize>(
+        caption: impl Into<String>,
+        rows: impl IntoIterator<Item = R>,
+    ) -> Result<Self> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for row in rows {
+            writer.serialize(row)?;
+        }
+        let bytes = writer.into_inner()?;
+        let mut reader = csv::Reader::from_reader(&*bytes);
+        let mut table = Self::new(caption, &reader.headers()?.iter().collect::<Vec<_>>());
+        for record in reader.records() {
+            let cell = |text: &str| match (text, text.parse::<f64>()) {
+                ("", _) => Cell::Missing,
+                (_, Ok(value)) => value.into(),
+                _ => text.into(),
+            };
+            table.push(record?.iter().map(cell).collect());
+        }
+        Ok(table)
     }
 
     /// The same table as the file `name.csv`.
@@ -283,5 +315,35 @@ mod tests {
         for value in [0.1, -1.0 / 3.0, 1e-300, 2.5e17, 12345.678, 0.0, 9e-5] {
             assert_eq!(Cell::from(value).exact().parse::<f64>().unwrap(), value);
         }
+    }
+
+    /// All digits of numbers are kept, and what is not there is missing.
+    #[test]
+    fn fields_are_columns() {
+        #[derive(Serialize)]
+        struct Job {
+            #[serde(rename = "h, m")]
+            spacing: f64,
+            model: Model,
+        }
+        #[derive(Serialize)]
+        enum Model {
+            #[serde(rename = "real stiffness")]
+            Material,
+        }
+        #[derive(Serialize)]
+        struct Found {
+            error: Option<f64>,
+        }
+        let row = |spacing, error| {
+            let model = Model::Material;
+            (Job { spacing, model }, Found { error })
+        };
+        let rows = [row(0.1 + 0.2, None), row(1.0, Some(1e-20))];
+        let table = Table::of_fields("runs", rows).unwrap();
+        assert_eq!(table.head, ["h, m", "model", "error"]);
+        let text = || Cell::from("real stiffness");
+        let first = [(0.1 + 0.2).into(), text(), Cell::Missing];
+        assert_eq!(table.rows, [first, [1.0.into(), text(), 1e-20.into()]]);
     }
 }

@@ -199,13 +199,11 @@ impl Clocks {
     }
 
     /// Sets the times of a run that had taken `before` seconds when the clocks started, without the time that
-    /// looking at it has taken. Returns the seconds of wall time since then.
-    fn cost(&self, looking: &Spent, before: (f64, f64), cost: &mut Cost) -> f64 {
+    /// looking at it has taken.
+    fn cost(&self, looking: &Spent, before: (f64, f64), cost: &mut Cost) {
         let spent = self.spent();
-        let wall = spent.wall.saturating_sub(looking.wall).as_secs_f64();
-        cost.wall = before.0 + wall;
+        cost.wall = before.0 + spent.wall.saturating_sub(looking.wall).as_secs_f64();
         cost.cpu = before.1 + spent.cpu.saturating_sub(looking.cpu).as_secs_f64();
-        wall
     }
 }
 
@@ -219,8 +217,8 @@ pub(crate) struct Plan {
     /// The run ends early when the sheet is at rest: when the largest speed of a vertex (m/s) has been below
     /// this bound for [`QUIET`] steps. `None`: it does not end early.
     pub(crate) rest_speed: Option<f64>,
-    /// Longest wall time, seconds. A run ends in the step in which it is over, or after it, unless it is the
-    /// last one.
+    /// Longest wall time of a course, seconds. A run ends in the step in which it is over, or after it, unless
+    /// it is the last one.
     pub(crate) patience: f64,
 }
 
@@ -332,11 +330,11 @@ impl Plan {
             looking.wall += seen.wall;
             looking.cpu += seen.cpu;
             seen_until_now.set(looking.wall);
-            let wall = clocks.cost(&looking, before, &mut course.cost);
+            clocks.cost(&looking, before, &mut course.cost);
             if enough.is_continue() {
                 if quiet >= QUIET {
                     stopped = Ending::Rest;
-                } else if wall > self.patience && report.t < end {
+                } else if course.cost.wall > self.patience && report.t < end {
                     stopped = Ending::WallTime(self.patience);
                 } else {
                     return ControlFlow::Continue(());

@@ -94,41 +94,31 @@ impl CouplingSink for Along<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::problem::Problem;
+    use super::super::problem::{Problem, TABLE_TOP};
     use super::*;
     use isosheet_mesh::EdgeId;
+    use nalgebra::Vector3;
 
-    /// Full matrix of the blocks.
-    struct Dense<'a> {
+    /// The product of the matrix of the blocks with a direction that is the same at all vertices.
+    struct Product<'a> {
         topology: &'a Topology,
-        n: usize,
-        values: Vec<f64>,
+        direction: Vector3<f64>,
+        product: Vec<Vector3<f64>>,
     }
 
-    impl Dense<'_> {
-        fn add(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
-            for r in 0..3 {
-                for c in 0..3 {
-                    self.values[(3 * a.index() + r) * self.n + 3 * b.index() + c] += block[(r, c)];
-                }
-            }
-        }
-    }
-
-    impl HessianSink for Dense<'_> {
+    impl HessianSink for Product<'_> {
         fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
-            self.add(v, v, block);
+            self.product[v.index()] += block * self.direction;
         }
 
         fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>) {
             let [a, b] = self.topology.edges()[e.index()];
-            self.add(a, b, block);
-            self.add(b, a, &block.transpose());
+            self.add_pair(a, b, block);
         }
 
         fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
-            self.add(a, b, block);
-            self.add(b, a, &block.transpose());
+            self.product[a.index()] += block * self.direction;
+            self.product[b.index()] += block.transpose() * self.direction;
         }
     }
 
@@ -136,51 +126,54 @@ mod tests {
     /// push straight down sees, against differences.
     #[test]
     fn the_barrier_has_the_derivatives_of_its_energy() {
-        let problem = Problem::Cloth(1);
-        let sheet = problem.sheet().unwrap();
-        let contacts = problem.contacts().unwrap().unwrap();
-        let mut x = sheet.positions().to_vec();
+        let setup = Problem::Cloth(1).setup().unwrap();
+        let contacts = setup.contacts.unwrap();
         let depth = contacts.options().activation;
-        let start = problem.start().unwrap();
-        let barrier = Barrier::new(contacts, &problem.without_contact().unwrap(), &start).unwrap();
-        assert_eq!(
-            barrier.energy(0.0, &x),
-            0.0,
-            "the cloth starts out of reach"
-        );
+        let mut x = setup.state.x.clone();
+        let barrier = Barrier::new(contacts, &setup.model, &setup.state).unwrap();
+        let far = barrier.energy(0.0, &x);
+        assert_eq!(far, 0.0, "the cloth starts out of reach");
         // Flat, half-way into the reach, and not quite level.
-        let top = super::super::problem::TABLE_TOP;
         for (i, p) in x.as_chunks_mut::<3>().0.iter_mut().enumerate() {
             p[0] += 0.013;
             p[1] += 0.007;
-            p[2] = top + depth * (0.5 + 0.05 * (i as f64).sin());
+            p[2] = TABLE_TOP + depth * (0.5 + 0.05 * (i as f64).sin());
         }
-        let mut gradient = vec![0.0; x.len()];
-        barrier.add_gradient(0.0, &x, &mut gradient);
-        let mut dense = Dense {
-            topology: sheet.topology(),
-            n: x.len(),
-            values: vec![0.0; x.len() * x.len()],
+        let gradient = |x: &[f64]| {
+            let mut gradient = vec![0.0; x.len()];
+            barrier.add_gradient(0.0, x, &mut gradient);
+            gradient
         };
-        barrier.add_hessian(0.0, &x, &mut dense);
-        let down: Vec<f64> = (0..x.len()).map(|i| f64::from(i % 3 == 2)).collect();
+        let upwards = |values: &[f64]| values.iter().skip(2).step_by(3).copied().collect();
         let h = 1e-4 * depth;
-        let moved = |s: f64| -> Vec<f64> { x.iter().zip(&down).map(|(x, d)| x + s * d).collect() };
-        let slope = (barrier.energy(0.0, &moved(h)) - barrier.energy(0.0, &moved(-h))) / (2.0 * h);
-        let along: f64 = gradient.iter().zip(&down).map(|(g, d)| g * d).sum();
+        let [low, up] = [-h, h].map(|shift| {
+            let mut moved = x.clone();
+            moved
+                .iter_mut()
+                .skip(2)
+                .step_by(3)
+                .for_each(|z| *z += shift);
+            moved
+        });
+        let slope = (barrier.energy(0.0, &up) - barrier.energy(0.0, &low)) / (2.0 * h);
+        let along: Vec<f64> = upwards(&gradient(&x));
+        let along: f64 = along.iter().sum();
         assert!(
             slope < 0.0 && (slope / along - 1.0).abs() < 1e-6,
             "{slope} {along}"
         );
-        let (mut up, mut low) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-        barrier.add_gradient(0.0, &moved(h), &mut up);
-        barrier.add_gradient(0.0, &moved(-h), &mut low);
-        for i in (2..x.len()).step_by(3) {
-            let want = (up[i] - low[i]) / (2.0 * h);
-            let row = &dense.values[i * x.len()..(i + 1) * x.len()];
-            let found: f64 = row.iter().zip(&down).map(|(k, d)| k * d).sum();
-            let scale = dense.values.iter().fold(0.0_f64, |m, k| m.max(k.abs()));
-            assert!((found - want).abs() < 1e-5 * scale, "{i}: {found} {want}");
+        let mut found = Product {
+            topology: setup.model.topology(),
+            direction: Vector3::z(),
+            product: vec![Vector3::zeros(); x.len() / 3],
+        };
+        barrier.add_hessian(0.0, &x, &mut found);
+        let [low, up]: [Vec<f64>; 2] = [low, up].map(|x| upwards(&gradient(&x)));
+        let scale = found.product.iter().map(|f| f.z.abs()).fold(0.0, f64::max);
+        assert!(scale > 0.0);
+        for (found, (up, low)) in found.product.iter().zip(up.iter().zip(&low)) {
+            let want = (up - low) / (2.0 * h);
+            assert!((found.z - want).abs() < 1e-5 * scale, "{found} {want}");
         }
     }
 }

@@ -1,39 +1,38 @@
 //! Reference motions, and how long they mean something.
 
-use super::problem::{CHECKPOINTS, Problem};
-use super::scheme::{Fineness, Scheme};
-use crate::report::Effort;
+use super::motion::Motion;
+use super::problem::{CHECKPOINTS, Problem, Setup};
+use super::scheme::Scheme;
+use crate::report::{Effort, Table, columns};
 use crate::runs::Plan;
-use anyhow::{Context, Result};
-use isosheet_dynamics::{Method, Simulation, State, StepReport, leave_flat};
+use anyhow::{Context, Result, ensure};
+use isosheet_dynamics::{Simulation, StepReport, leave_flat};
 use isosheet_tests::max_difference;
 use std::ops::ControlFlow;
 
 /// Positions that errors are measured against.
 #[derive(Clone, Debug)]
-pub(crate) struct Reference {
-    duration: f64,
-    states: Vec<Vec<f64>>,
-    /// How far the second opinion is away at each checkpoint, metres.
-    doubts: Vec<f64>,
-    usable: usize,
+pub(super) struct Reference {
+    /// Time between checkpoints, seconds.
+    pub(super) interval: f64,
+    /// Positions at the checkpoints at which it can be trusted.
+    pub(super) states: Vec<Vec<f64>>,
+    /// Largest distance between it and its second opinion at these checkpoints, metres.
+    pub(super) doubt: f64,
     /// Largest kinetic energy at the checkpoints, joules: the scale of energy errors.
-    pub(crate) energy: f64,
-    /// What it is and what it was compared with, in words.
-    pub(crate) source: String,
-    /// How fast neighbouring motions part.
-    pub(crate) growth: Option<Growth>,
+    pub(super) energy: f64,
+    /// What it is and what it was compared with.
+    sources: [(&'static str, Source); 2],
+    /// Mean rate at which neighbouring motions part, `ln(end / start) / time`, 1/s.
+    parting: Option<f64>,
 }
 
-/// Growth of a small difference at the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Growth {
-    /// Largest distance of a vertex at the start, metres.
-    pub(crate) start: f64,
-    /// The largest at a checkpoint, metres.
-    pub(crate) end: f64,
-    /// Mean rate up to there, `ln(end / start) / time`, 1/s.
-    pub(crate) rate: f64,
+/// How a motion was made.
+#[derive(Clone, Copy, Debug)]
+struct Source {
+    motion: &'static str,
+    /// Its steps, seconds, and how far their last halving moved it, metres; nothing of exact motions.
+    steps: Option<[f64; 2]>,
 }
 
 /// Largest distance between the reference and its second opinion at which it is compared with, metres (sheets
@@ -41,37 +40,29 @@ pub(crate) struct Growth {
 const TRUST: f64 = 1e-5;
 
 impl Reference {
-    /// Time between checkpoints, seconds.
-    pub(crate) fn interval(&self) -> f64 {
-        self.duration / CHECKPOINTS as f64
-    }
-
-    /// Number of checkpoints at which it can be trusted.
-    pub(crate) fn usable(&self) -> usize {
-        self.usable
-    }
-
-    /// The time over which it can be trusted, seconds.
-    pub(crate) fn meaningful(&self) -> f64 {
-        self.interval() * self.usable as f64
-    }
-
-    /// Positions at the checkpoints at which it can be trusted.
-    pub(crate) fn positions(&self) -> &[Vec<f64>] {
-        &self.states[..self.usable]
-    }
-
-    /// Largest distance between it and its second opinion at these checkpoints, metres.
-    pub(crate) fn doubt(&self) -> f64 {
-        self.doubts[..self.usable]
-            .iter()
-            .fold(1e-15, |m: f64, d| m.max(*d))
+    /// How it was made and how far it goes.
+    pub(super) fn table(&self) -> Table {
+        Table::of(
+            "The reference and its second opinion: two motions by other methods or other steps, how far the last halving of their \
+             steps moved them, the largest distance between them over the time that is compared, and the rate at which a \
+             displaced start parts from the reference. After that time the two part, and nothing is compared",
+            &self.sources,
+            columns! { row;
+                "motion" => row.0,
+                "made_by" => row.1.motion,
+                "step_s" => row.1.steps.map(|[step, _]| step),
+                "last_halving_m" => row.1.steps.map(|[_, change]| change),
+                "compared_for_s" => self.interval * self.states.len() as f64,
+                "distance_m" => self.doubt,
+                "rate_of_parting_1_per_s" => self.parting,
+            },
+        )
     }
 }
 
 /// Work of a run: factorisations times vertices. A step counts as at least as many factorisations as a
 /// Runge-Kutta step has stages: what factorises less often evaluates forces instead.
-pub(crate) type Work = u64;
+type Work = u64;
 
 /// Work of about a tenth of a second: the energy-momentum method takes 0.14 s for the 1149 factorisations of
 /// one second of the hanging sheet M^1, which has 25 vertices, on one core at 2.6 GHz.
@@ -94,68 +85,78 @@ pub(super) fn budget(problem: Problem, effort: Effort) -> Work {
 /// Stages of a Runge-Kutta step.
 const STAGES: usize = 4;
 
-/// A motion sampled at the checkpoints.
-struct Track {
-    states: Vec<Vec<f64>>,
-    energy: f64,
+/// A motion in steps that were halved until nothing changed any more, or as far as the work allowed.
+struct Refined {
+    motion: Motion,
+    name: &'static str,
     /// Steps between checkpoints.
     steps: usize,
     /// Distance to the run with half as many steps, metres.
     change: f64,
 }
 
+impl Refined {
+    fn source(&self, interval: f64) -> Source {
+        Source {
+            motion: self.name,
+            steps: Some([interval / self.steps as f64, self.change]),
+        }
+    }
+}
+
 /// The reference of a problem; either half of the work may take `budget` units, see [`Work`].
 ///
 /// Neither the reference nor the time over which it is trusted depends on the clock: the work is counted.
-pub(crate) fn compute(problem: Problem, budget: Work) -> Result<Reference> {
-    let duration = problem.duration();
-    let times = (1..=CHECKPOINTS).map(|k| duration * k as f64 / CHECKPOINTS as f64);
-    let times: Vec<f64> = times.collect();
+pub(super) fn compute(problem: Problem, budget: Work) -> Result<Reference> {
+    let interval = problem.interval();
+    let times: Vec<f64> = (1..=CHECKPOINTS).map(|k| interval * k as f64).collect();
     let (fine, second) = rayon::join(
         || refine(problem, &Scheme::reference(), budget, None),
         || second_opinion(problem, budget),
     );
-    let fine = fine?.with_context(|| format!("{problem}: the reference method refused it"))?;
-    let composition = format!(
-        "the fourth-order composition of RATTLE with steps of {:.1e} s (its last halving moved it by {:.0e} m)",
-        times[0] / fine.steps as f64,
-        fine.change
-    );
-    let (states, other, source) = match problem.exact(&times) {
-        Some(exact) => (
-            exact,
-            fine.states,
-            format!("Reference: the exact solution. Second opinion: {composition}"),
-        ),
+    let fine = fine?.context("the reference method refused it")?;
+    let composition = fine.source(interval);
+    let (mut states, other, sources) = match problem.exact(&times) {
+        Some(exact) => {
+            let exactly = Source {
+                motion: "the exact solution",
+                steps: None,
+            };
+            (exact, fine.motion.states, [exactly, composition])
+        }
         None => {
-            let (name, second) = second?;
-            let source = format!(
-                "Reference: {composition}. Second opinion: {name}, steps of {:.1e} s",
-                times[0] / second.steps as f64
-            );
-            (fine.states, second.states, source)
+            let second = second?.context("no second opinion on the reference")?;
+            let opinion = second.source(interval);
+            (
+                fine.motion.states,
+                second.motion.states,
+                [composition, opinion],
+            )
         }
     };
     let pairs = states.iter().zip(&other);
     let doubts: Vec<f64> = pairs.map(|(a, b)| max_difference(a, b)).collect();
-    let usable = doubts.iter().take_while(|d| **d <= TRUST).count();
+    let trusted = doubts.iter().take_while(|d| **d <= TRUST).count();
     // Without a trusted checkpoint there is nothing to compare with.
-    anyhow::ensure!(
-        usable > 0,
-        "{problem}: the reference and its second opinion are {:e} m apart at the first checkpoint",
-        doubts.first().copied().unwrap_or(f64::INFINITY)
+    ensure!(
+        trusted > 0,
+        "the reference and its second opinion are {:e} m apart at the first checkpoint",
+        doubts[0]
     );
-    let growth = growth(problem, times[0], usable, fine.steps.div_ceil(2), budget)?;
+    states.truncate(trusted);
+    let [reference, opinion] = sources;
     Ok(Reference {
-        duration,
+        interval,
         states,
-        doubts,
-        usable,
-        energy: fine.energy,
-        source,
-        growth,
+        doubt: doubts[..trusted].iter().copied().fold(ROUND_OFF, f64::max),
+        energy: fine.motion.energy,
+        sources: [("reference", reference), ("second opinion", opinion)],
+        parting: parting(problem, trusted, fine.steps.div_ceil(2), budget)?,
     })
 }
+
+/// Round-off of positions of sheets of 1 m, metres.
+const ROUND_OFF: f64 = 1e-15;
 
 /// Halves the steps until nothing changes any more or the budget is used up; with an `order`, the last two
 /// runs are then extrapolated to steps of zero. `None` when there are no two runs.
@@ -164,43 +165,49 @@ fn refine(
     scheme: &Scheme,
     budget: Work,
     order: Option<f64>,
-) -> Result<Option<Track>> {
-    let mut spent = 0;
-    let mut tracks: Vec<Track> = Vec::new();
+) -> Result<Option<Refined>> {
+    let (mut spent, mut runs) = (0, Vec::<Refined>::new());
     for k in 2..=14 {
-        let limit = if tracks.len() < 2 {
+        let limit = if runs.len() < 2 {
             FIRST * budget
         } else {
             budget.saturating_sub(spent)
         };
-        let (track, work) = sample(problem, scheme, 1 << k, limit)?;
+        let (steps, interval) = (1 << k, problem.interval());
+        let plan = Plan::new(interval / steps as f64, interval);
+        let (motion, work) = sample(scheme, problem.setup()?, plan, CHECKPOINTS, limit)?;
         spent += work;
-        match track {
-            Some(mut track) => {
-                if let Some(before) = tracks.last() {
-                    track.change = distance(&track.states, &before.states);
-                    // Once it grows again round-off has taken over.
-                    if before.change < ROUNDED && track.change > before.change {
-                        break;
-                    }
+        match motion {
+            Some(motion) => {
+                let before = runs.last();
+                let change = before.map(|b| distance(&motion.states, &b.motion.states));
+                // Once it grows again round-off has taken over.
+                let is_worse = |b: &Refined| b.change < ROUNDED && change > Some(b.change);
+                if before.is_some_and(is_worse) {
+                    break;
                 }
-                tracks.push(track);
+                runs.push(Refined {
+                    motion,
+                    name: scheme.name,
+                    steps,
+                    change: change.unwrap_or(f64::INFINITY),
+                });
             }
             // Steps too coarse for the method may be too coarse no longer.
-            None if tracks.is_empty() && spent < budget => continue,
+            None if runs.is_empty() && spent < budget => continue,
             None => break,
         }
         let late = 2 * work > budget.saturating_sub(spent);
-        let settled = tracks.last().is_some_and(|t| t.change < SETTLED);
-        if tracks.len() > 1 && (settled || late) {
+        let settled = runs.last().is_some_and(|run| run.change < SETTLED);
+        if runs.len() > 1 && (settled || late) {
             break;
         }
     }
-    let (Some(mut fine), Some(coarse)) = (tracks.pop(), tracks.pop()) else {
+    let (Some(mut fine), Some(coarse)) = (runs.pop(), runs.pop()) else {
         return Ok(None);
     };
     if let Some(order) = order {
-        richardson(&mut fine, &coarse, order);
+        richardson(&mut fine.motion.states, &coarse.motion.states, order);
     }
     Ok(Some(fine))
 }
@@ -214,30 +221,21 @@ const ROUNDED: f64 = 1e-9;
 /// The first two runs may take so many times the budget: without them there is no reference at all.
 const FIRST: Work = 10;
 
-/// `(2^p x(h/2) - x(h)) / (2^p - 1)`.
-fn richardson(fine: &mut Track, coarse: &Track, order: f64) {
+/// `(2^p x(h/2) - x(h)) / (2^p - 1)`, in place of `x(h/2)`.
+fn richardson(fine: &mut [Vec<f64>], coarse: &[Vec<f64>], order: f64) {
     let weight = 2f64.powf(order);
-    for (f, c) in fine.states.iter_mut().zip(&coarse.states) {
-        for (f, c) in f.iter_mut().zip(c) {
-            *f += (*f - c) / (weight - 1.0);
-        }
+    for (f, c) in fine.iter_mut().flatten().zip(coarse.iter().flatten()) {
+        *f += (*f - c) / (weight - 1.0);
     }
 }
 
 /// Runge-Kutta in a chart where it gets through, else the energy-momentum method, extrapolated.
-fn second_opinion(problem: Problem, budget: Work) -> Result<(&'static str, Track)> {
+fn second_opinion(problem: Problem, budget: Work) -> Result<Option<Refined>> {
     let chart = refine(problem, &Scheme::runge_kutta(), budget, None)?;
-    if let Some(track) = chart
-        && track.change < 1e-7
-    {
-        return Ok(("Runge-Kutta in a Cartesian chart", track));
+    match chart.filter(|run| run.change < 1e-7) {
+        Some(run) => Ok(Some(run)),
+        None => refine(problem, &Scheme::energy_momentum(), budget, Some(2.0)),
     }
-    let track = refine(problem, &Scheme::energy_momentum(), budget, Some(2.0))?;
-    let track = track.with_context(|| format!("{problem}: no second opinion on the reference"))?;
-    Ok((
-        "the energy-momentum method, its last two step sizes extrapolated to zero",
-        track,
-    ))
 }
 
 fn distance(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
@@ -245,142 +243,104 @@ fn distance(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     pairs.fold(0.0, |m, (a, b)| m.max(max_difference(a, b)))
 }
 
-/// A run and its work; no run if it failed or its work exceeded the limit.
+/// A run to so many checkpoints, as planned from each of them to the next one, and its work; no run if it
+/// failed or its work exceeded the limit.
 fn sample(
-    problem: Problem,
     scheme: &Scheme,
-    steps: usize,
-    limit: Work,
-) -> Result<(Option<Track>, Work)> {
-    let interval = problem.duration() / CHECKPOINTS as f64;
-    match scheme.start(problem, Fineness::Step(interval / steps as f64))? {
-        Ok(mut run) => follow(&mut run, interval, CHECKPOINTS, steps, limit),
-        Err(_) => Ok((None, 0)),
-    }
-}
-
-fn follow(
-    run: &mut Simulation,
-    interval: f64,
+    setup: Setup,
+    plan: Plan,
     checkpoints: usize,
-    steps: usize,
     limit: Work,
-) -> Result<(Option<Track>, Work)> {
-    let mut track = Track {
-        states: Vec::new(),
-        energy: run.model().kinetic_energy(&run.state().v),
-        steps,
-        change: f64::INFINITY,
+) -> Result<(Option<Motion>, Work)> {
+    let Ok(mut run) = scheme.start(setup, plan.step) else {
+        return Ok((None, 0));
     };
-    let h = interval / steps as f64;
     let vertices = run.state().x.len() / 3;
     let mut work = 0;
-    for _ in 0..checkpoints {
-        let mut look = |_: &Simulation, report: &StepReport| {
-            let factorisations = report.factorisations.max(STAGES * report.substeps);
-            work += (factorisations * vertices) as Work;
-            if work > limit {
-                return ControlFlow::Break(());
-            }
-            ControlFlow::Continue(())
-        };
-        if !Plan::new(h, interval).run(run, &mut look)?.is_good() {
-            return Ok((None, work));
+    let mut look = |_: &Simulation, report: &StepReport| {
+        let factorisations = report.factorisations.max(STAGES * report.substeps);
+        work += (factorisations * vertices) as Work;
+        match work > limit {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
         }
-        track.energy = track.energy.max(run.model().kinetic_energy(&run.state().v));
-        track.states.push(run.state().x.clone());
-    }
-    Ok((Some(track), work))
+    };
+    let motion = Motion::of(&mut run, plan, checkpoints, &mut look)?;
+    Ok((Some(motion).filter(|m| m.course.is_good()), work))
 }
 
 /// Random displacement of the perturbed start, mean edge lengths.
 const PERTURBATION: f64 = 1e-7;
 
-/// How a perturbed start parts from the unperturbed one, by the reference method at a moderate step.
-fn growth(
-    problem: Problem,
-    interval: f64,
-    usable: usize,
-    steps: usize,
-    budget: Work,
-) -> Result<Option<Growth>> {
-    let mut tracks = Vec::new();
-    let mut starts = Vec::new();
+/// The mean rate at which a perturbed start parts from the unperturbed one up to the trusted checkpoint where
+/// they are farthest apart, by the reference method at a moderate step.
+fn parting(problem: Problem, trusted: usize, steps: usize, budget: Work) -> Result<Option<f64>> {
+    let interval = problem.interval();
+    let plan = Plan::new(interval / steps.max(1) as f64, interval);
+    let (mut starts, mut motions) = (Vec::new(), Vec::new());
     for amplitude in [0.0, PERTURBATION] {
-        let State { mut x, v, .. } = problem.start()?;
-        leave_flat(&problem.model()?, &mut x, amplitude, 1)?;
-        starts.push(x.clone());
-        let method = Method::RattleComposition(Default::default());
-        let Ok(mut run) = problem.simulation(&method, State::moving(x, v))? else {
-            return Ok(None);
-        };
-        match follow(&mut run, interval, usable, steps.max(1), budget)?.0 {
-            Some(track) => tracks.push(track.states),
-            None => return Ok(None),
-        }
+        let mut setup = problem.setup()?;
+        leave_flat(&setup.model, &mut setup.state.x, amplitude, 1)?;
+        starts.push(setup.state.x.clone());
+        let (motion, _) = sample(&Scheme::reference(), setup, plan, trusted, budget)?;
+        motions.extend(motion.map(|motion| motion.states));
     }
+    let [unperturbed, perturbed] = &motions[..] else {
+        return Ok(None);
+    };
     let start = max_difference(&starts[0], &starts[1]);
-    let parted = (1..).zip(tracks[0].iter().zip(&tracks[1]));
-    let largest = parted
-        .map(|(k, (a, b))| (k, max_difference(a, b)))
-        .max_by(|a, b| a.1.total_cmp(&b.1));
-    Ok(largest.map(|(k, end)| Growth {
-        start,
-        end,
-        rate: (end / start).ln() / (interval * f64::from(k)),
-    }))
+    let pairs = (1..).zip(unperturbed.iter().zip(perturbed));
+    let parted = pairs.map(|(k, (a, b))| (k, max_difference(a, b)));
+    let farthest = parted.max_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(farthest.map(|(k, end)| (end / start).ln() / (interval * f64::from(k))))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_exact_pendulum_and_the_reference_method_agree() {
-        let reference = compute(Problem::Pendulum, BUDGET).unwrap();
-        assert_eq!(reference.usable(), CHECKPOINTS);
-        assert!(reference.doubt() < 1e-8, "{:e}", reference.doubt());
-        let growth = reference.growth.unwrap();
-        // Neighbouring pendulums part in proportion to time only.
-        assert!((1.0..100.0).contains(&(growth.end / growth.start)));
-    }
-
     /// Work for some hundred steps of the pendulum between checkpoints.
     const BUDGET: Work = 100_000;
 
     #[test]
+    fn the_exact_pendulum_and_the_reference_method_agree() {
+        let reference = compute(Problem::Pendulum, BUDGET).unwrap();
+        assert_eq!(reference.states.len(), CHECKPOINTS);
+        assert!(reference.doubt < 1e-8, "{:e}", reference.doubt);
+        // Neighbouring pendulums part in proportion to time only.
+        let rate = reference.parting.unwrap();
+        let time = reference.interval * CHECKPOINTS as f64;
+        assert!((0.0..100f64.ln() / time).contains(&rate), "{rate}");
+    }
+
+    #[test]
     fn more_work_gives_a_finer_reference_and_the_same_work_the_same_bits() {
         let scheme = Scheme::reference();
-        let track = |budget| {
-            refine(Problem::Pendulum, &scheme, budget, None)
-                .unwrap()
-                .unwrap()
+        let refined = |budget| {
+            let run = refine(Problem::Pendulum, &scheme, budget, None).unwrap();
+            run.expect("two runs")
         };
-        let (coarse, fine, again) = (track(BUDGET / 50), track(BUDGET), track(BUDGET));
-        assert!(
-            fine.steps > coarse.steps && fine.change < coarse.change,
-            "{} {}",
-            fine.steps,
-            coarse.steps
-        );
-        assert!(fine.steps == again.steps && fine.states == again.states);
+        let (coarse, fine, again) = (refined(BUDGET / 50), refined(BUDGET), refined(BUDGET));
+        assert!(fine.steps > coarse.steps && fine.change < coarse.change);
+        assert!(fine.steps == again.steps && fine.motion.states == again.motion.states);
         // The work of a run grows with its steps, and a run beyond its limit is given up.
-        let (run, work) = sample(Problem::Pendulum, &scheme, 8, Work::MAX).unwrap();
+        let interval = Problem::Pendulum.interval();
+        let plan = Plan::new(interval / 8.0, interval);
+        let sample = |limit| {
+            let setup = Problem::Pendulum.setup().unwrap();
+            sample(&scheme, setup, plan, CHECKPOINTS, limit).unwrap()
+        };
+        let (run, work) = sample(Work::MAX);
         assert!(run.is_some() && work >= (8 * CHECKPOINTS * STAGES * 3) as Work);
-        let (run, cut) = sample(Problem::Pendulum, &scheme, 8, work / 2).unwrap();
+        let (run, cut) = sample(work / 2);
         assert!(run.is_none() && cut > work / 2 && cut < work);
     }
 
     #[test]
     fn extrapolation_removes_the_leading_error() {
-        let track = |h: f64| Track {
-            states: vec![vec![1.0 + h * h]],
-            energy: 0.0,
-            steps: 1,
-            change: 0.0,
-        };
-        let mut fine = track(0.1);
-        richardson(&mut fine, &track(0.2), 2.0);
-        assert!((fine.states[0][0] - 1.0).abs() < 1e-15);
+        let states = |h: f64| vec![vec![1.0 + h * h]];
+        let mut fine = states(0.1);
+        richardson(&mut fine, &states(0.2), 2.0);
+        assert!((fine[0][0] - 1.0).abs() < 1e-15);
     }
 }

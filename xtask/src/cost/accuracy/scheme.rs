@@ -1,268 +1,228 @@
 //! The methods that are compared.
 
-use super::problem::Problem;
+use super::problem::Setup;
 use crate::cost::DEFAULT;
+use crate::draw::{Colour, Marker, palette};
 use anyhow::Result;
-use isosheet_coords::assignment::Degenerate;
-use isosheet_coords::{
-    AssignmentOptions, CartesianChart, Chart, ChartError, Choice, FrontChart, RodSystem,
+use isosheet_dynamics::chart::MassSolverKind;
+use isosheet_dynamics::{Method, Simulation};
+use isosheet_io::scene::{
+    Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
+    Substep,
 };
-use isosheet_dynamics::chart::{
-    ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind, PositionUpdate, Rebase,
-};
-use isosheet_dynamics::{Method, Simulation, SimulationError};
+use isosheet_mesh::Sheet;
 use isosheet_tests::{conservative, damped, energy_momentum, rattle_composition};
 
 /// A method, with everything but its step.
 #[derive(Clone, Debug)]
-pub(crate) struct Scheme {
+pub(super) struct Scheme {
     /// Name for people and files; unique.
-    pub(crate) name: String,
-    pub(crate) kind: Kind,
+    pub(super) name: &'static str,
+    pub(super) kind: Kind,
+    /// How it is drawn, if it is: of those in charts, those in one chart only.
+    pub(super) look: Option<(Colour, Marker)>,
 }
 
 /// What kind of method.
 #[derive(Clone, Debug)]
-pub(crate) enum Kind {
+pub(super) enum Kind {
     /// Without a chart.
     Free(Method),
-    /// In a chart: the full equations of motion with exact positions, or the scheme of Liu, Tang and Joneja
-    /// 2007, forward Euler with momenta carried over and positions to first order.
-    Chart {
-        chart: ChartKind,
-        degenerate: Degenerate,
-        /// Options with everything but the step control.
-        options: ChartOptions,
-        stepping: Stepping,
-    },
-}
-
-/// How the published scheme chooses its steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stepping {
-    /// As published: the largest step that changes the Hamiltonian by less than a tolerance.
-    Adaptive,
-    /// All alike.
-    Fixed,
-}
-
-/// Which coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ChartKind {
-    Front,
-    Cartesian,
-}
-
-/// How fine a run is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Fineness {
-    /// Fixed steps of so many seconds.
-    Step(f64),
-    /// Steps that change the Hamiltonian by less than so many joules.
-    Tolerance(f64),
-}
-
-/// Why a run could not start, which is a result.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum StartError {
-    #[error(transparent)]
-    Chart(#[from] ChartError),
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
+    /// In a chart, in steps that are all alike.
+    Fixed(Chart),
+    /// In a chart, in the longest steps that change the Hamiltonian by less than a tolerance, as published.
+    Adaptive(Chart),
 }
 
 /// Largest number of coordinates for which the paper's scheme uses Cramer's rule, as published; beyond, dense
 /// LU.
 const CRAMER: usize = 16;
 
-/// Most steps of the paper's scheme between two checkpoints, a second or so. The finest runs that finish take
-/// some 10^4.
+/// Most steps in a chart between two checkpoints, a second or so of the paper's scheme. The finest runs that
+/// finish take some 10^4.
 const CRAWL: usize = 1 << 17;
 
-/// The same with more coordinates than [`CRAMER`].
+/// The same of the paper's scheme with more coordinates than [`CRAMER`].
 const LARGE_CRAWL: usize = 1 << 14;
 
 /// Methods that take any state, flat ones included.
-pub(crate) const ROBUST: [&str; 3] = ["implicit Euler", DEFAULT, "projection"];
-
-/// Whether a name is that of a variant of the paper's scheme.
-pub(crate) fn is_paper(name: &str) -> bool {
-    name.starts_with("published scheme")
-}
+pub(super) const ROBUST: [&str; 3] = ["implicit Euler", DEFAULT, "projection"];
 
 impl Scheme {
-    fn free(name: &str, method: Method) -> Self {
+    fn free(name: &'static str, method: Method) -> Self {
+        let kind = Kind::Free(method);
         Self {
-            name: name.into(),
-            kind: Kind::Free(method),
+            name,
+            kind,
+            look: None,
         }
     }
 
     /// The fourth-order composition of RATTLE, by which references are computed.
-    pub(crate) fn reference() -> Self {
-        Self::free("RATTLE composition", rattle_composition())
+    pub(super) fn reference() -> Self {
+        let name = "the fourth-order composition of RATTLE";
+        Self::free(name, rattle_composition())
     }
 
     /// The energy-momentum method, the second opinion on references where charts end.
-    pub(crate) fn energy_momentum() -> Self {
-        Self::free("energy-momentum", energy_momentum())
+    pub(super) fn energy_momentum() -> Self {
+        let name = "the energy-momentum method, its last two step sizes extrapolated to zero";
+        Self::free(name, energy_momentum())
     }
 
     /// Runge-Kutta in a chart, the second opinion on references.
-    pub(crate) fn runge_kutta() -> Self {
-        chart(ChartKind::Cartesian, ChartMethod::RungeKutta4)
-    }
-
-    /// All methods: chart-free ones, the published scheme, and every method in every chart.
-    pub(crate) fn all() -> Vec<Self> {
-        let [_, euler, projection] = damped();
-        let mut all: Vec<Self> = [euler, (DEFAULT, Method::default()), projection]
-            .into_iter()
-            .chain(conservative())
-            .map(|(name, method)| Self::free(name, method))
-            .collect();
-        let creases = "published scheme, free creases";
-        let fixed = "published scheme, free creases, fixed steps";
-        all.extend([
-            paper("published scheme", Degenerate::Carry, Stepping::Adaptive),
-            paper(creases, Degenerate::Assign, Stepping::Adaptive),
-            paper(fixed, Degenerate::Assign, Stepping::Fixed),
-        ]);
-        for (kind, _) in CHARTS {
-            all.extend(METHODS.map(|(method, _)| chart(kind, method)));
+    pub(super) fn runge_kutta() -> Self {
+        Self {
+            name: "Runge-Kutta in a Cartesian chart",
+            kind: Kind::Fixed(Chart::default()),
+            look: None,
         }
-        all
     }
 
-    /// Whether the method adapts its steps to a tolerance.
-    pub(crate) fn is_adaptive(&self) -> bool {
-        matches!(self.kind, Kind::Chart { stepping, .. } if stepping == Stepping::Adaptive)
+    /// All methods: chart-free ones, the published scheme, and every method in every chart. Velocities in
+    /// charts follow from momenta by the sparse saddle-point system; other solvers are timed by `cargo
+    /// bench`.
+    pub(super) fn all() -> Vec<Self> {
+        let [_, euler, projection] = damped();
+        let [momentum, rattle, composition] = conservative();
+        let default = (DEFAULT, Method::default());
+        let free = [euler, default, projection, momentum, rattle, composition];
+        let chart = |coordinates, scheme| Chart {
+            coordinates,
+            scheme,
+            ..Chart::default()
+        };
+        let published = |coordinates| Chart {
+            equations: ChartEquations::Published,
+            positions: ChartPositions::Linear,
+            solver: ChartSolver::Cramer,
+            singular: NearSingularity::Refuse,
+            ..chart(coordinates, ChartScheme::ForwardEuler)
+        };
+        let (cartesian, front) = (
+            Coordinates::Cartesian,
+            Coordinates::FrontWithStraightCreases,
+        );
+        let [euler, runge_kutta] = [ChartScheme::ForwardEuler, ChartScheme::RungeKutta4];
+        let in_charts = [
+            (
+                "published scheme",
+                Kind::Adaptive(published(Coordinates::Front)),
+            ),
+            (
+                "published scheme, free creases",
+                Kind::Adaptive(published(front)),
+            ),
+            (
+                "published scheme, free creases, fixed steps",
+                Kind::Fixed(published(front)),
+            ),
+            (
+                "Runge-Kutta 4, Cartesian chart",
+                Kind::Fixed(chart(cartesian, runge_kutta)),
+            ),
+            (
+                "forward Euler, Cartesian chart",
+                Kind::Fixed(chart(cartesian, euler)),
+            ),
+            (
+                "Runge-Kutta 4, front chart",
+                Kind::Fixed(chart(front, runge_kutta)),
+            ),
+            (
+                "forward Euler, front chart",
+                Kind::Fixed(chart(front, euler)),
+            ),
+        ];
+        let free = free.map(|(name, method)| (name, Kind::Free(method)));
+        let mut looks = LOOKS.into_iter();
+        let all = free.into_iter().chain(in_charts);
+        let drawn = all.map(|(name, kind)| Self {
+            name,
+            kind,
+            look: looks.next(),
+        });
+        drawn.collect()
     }
 
-    /// Whether the method, asked to go on for some time, takes fixed steps of its own on the way.
-    pub(crate) fn steps_itself(&self) -> bool {
-        matches!(self.kind, Kind::Chart { stepping, .. } if stepping == Stepping::Fixed)
-    }
-
-    /// The problem at its start. The inner error is that of the method.
-    pub(crate) fn start(
-        &self,
-        problem: Problem,
-        fineness: Fineness,
-    ) -> Result<Result<Simulation, StartError>> {
-        let state = problem.start()?;
-        let (chart, degenerate, mut options) = match &self.kind {
-            Kind::Free(method) => {
-                return Ok(problem.simulation(method, state)?.map_err(Into::into));
+    /// The problem at its start, in steps of `fineness` seconds, or of methods that adapt them, which change
+    /// the Hamiltonian by less than so many joules.
+    ///
+    /// # Errors
+    /// A start that the method refuses.
+    pub(super) fn start(&self, setup: Setup, fineness: f64) -> Result<Simulation> {
+        let (settings, substep) = match &self.kind {
+            Kind::Free(method @ (Method::Bdf2(_) | Method::ImplicitEuler(_))) => {
+                let run = Simulation::new(setup.model, setup.state, method.clone())?;
+                return Ok(match setup.contacts {
+                    Some(contacts) => run.with_contact(contacts)?,
+                    None => run,
+                });
             }
-            Kind::Chart {
-                chart,
-                degenerate,
-                options,
-                ..
-            } => (*chart, *degenerate, *options),
+            Kind::Free(method) => {
+                let (model, state) = setup.with_barrier()?;
+                return Ok(Simulation::new(model, state, method.clone())?);
+            }
+            Kind::Fixed(settings) => (settings, Substep::Fixed(fineness)),
+            Kind::Adaptive(settings) => {
+                let substep = Substep::Adaptive {
+                    tolerance: fineness,
+                    // A two-hundredth of the paper's smallest.
+                    min: 1e-6,
+                    // The paper's largest step.
+                    max: 0.25,
+                };
+                (settings, substep)
+            }
         };
-        options.control = match fineness {
-            Fineness::Step(h) => ChartStepControl::Fixed(h),
-            Fineness::Tolerance(tolerance) => ChartStepControl::Adaptive {
-                tolerance,
-                // A two-hundredth of the paper's smallest.
-                min: 1e-6,
-                // The paper's largest step.
-                max: 0.25,
-            },
+        let (model, state) = setup.with_barrier()?;
+        let sheet = Sheet::from_topology(model.topology().clone(), state.x.clone())?;
+        let settings = Chart {
+            substep,
+            ..settings.clone()
         };
-        if is_paper(&self.name) && freedoms(problem)? > CRAMER {
+        let chart = settings.build(&sheet, &model.pins(), &state.x)?;
+        let mut options = settings.options();
+        options.max_steps = CRAWL;
+        if settings.solver == ChartSolver::Cramer && chart.dimension() > CRAMER {
             (options.solver, options.max_steps) = (MassSolverKind::DenseLu, LARGE_CRAWL);
         }
-        let model = problem.model()?;
-        Ok(
-            build(problem, chart, degenerate, &state.x)?.and_then(|chart| {
-                Simulation::in_chart(model, state, chart, options).map_err(Into::into)
-            }),
-        )
+        Ok(Simulation::in_chart(model, state, chart, options)?)
     }
 }
 
-fn freedoms(problem: Problem) -> Result<usize> {
-    Ok(RodSystem::new(&problem.sheet()?, &problem.pins())?.dof())
-}
-
-fn build(
-    problem: Problem,
-    kind: ChartKind,
-    degenerate: Degenerate,
-    x: &[f64],
-) -> Result<Result<Box<dyn Chart>, StartError>> {
-    let (sheet, pins) = (problem.sheet()?, problem.pins());
-    let chart: Result<Box<dyn Chart>, ChartError> = match kind {
-        ChartKind::Cartesian => {
-            let system = RodSystem::new(&sheet, &pins)?;
-            CartesianChart::new(system, Choice::Auto, x).map(|c| Box::new(c) as _)
-        }
-        ChartKind::Front => {
-            let options = AssignmentOptions {
-                pins,
-                degenerate,
-                ..Default::default()
-            };
-            FrontChart::new(&sheet, &options, x).map(|c| Box::new(c) as _)
-        }
-    };
-    Ok(chart.map_err(Into::into))
-}
-
-/// The scheme as published.
-fn paper(name: &str, degenerate: Degenerate, stepping: Stepping) -> Scheme {
-    let options = ChartOptions {
-        method: ChartMethod::ForwardEuler,
-        equations: Equations::Published,
-        position: PositionUpdate::Linear,
-        solver: MassSolverKind::Cramer,
-        rebase: Rebase::Never,
-        max_steps: CRAWL,
-        ..ChartOptions::default()
-    };
-    Scheme {
-        name: name.into(),
-        kind: Kind::Chart {
-            chart: ChartKind::Front,
-            degenerate,
-            options,
-            stepping,
-        },
-    }
-}
-
-/// The charts and methods with their names. Velocities follow from momenta by the sparse saddle-point system;
-/// other solvers are timed by `cargo bench`.
-const CHARTS: [(ChartKind, &str); 2] = [
-    (ChartKind::Cartesian, "Cartesian chart"),
-    (ChartKind::Front, "front chart"),
+/// How the first of the methods are drawn, in their order.
+const LOOKS: [(Colour, Marker); 11] = [
+    (palette::SKY, Marker::Disc),
+    (palette::BLUE, Marker::Disc),
+    (palette::GREEN, Marker::Square),
+    (palette::ORANGE, Marker::Triangle),
+    (palette::VERMILION, Marker::Diamond),
+    (palette::PURPLE, Marker::Diamond),
+    (palette::BLACK, Marker::Square),
+    (palette::GREY, Marker::Square),
+    (palette::BLACK, Marker::Diamond),
+    (palette::INK, Marker::Triangle),
+    (palette::GREY, Marker::Diamond),
 ];
-const METHODS: [(ChartMethod, &str); 2] = [
-    (ChartMethod::RungeKutta4, "Runge-Kutta 4"),
-    (ChartMethod::ForwardEuler, "forward Euler"),
-];
-/// The name of something that has one.
-fn named<T: PartialEq>(all: &[(T, &'static str)], one: &T) -> &'static str {
-    let found = all.iter().find(|(other, _)| other == one);
-    found.map_or("", |(_, name)| name)
-}
 
-fn chart(chart: ChartKind, method: ChartMethod) -> Scheme {
-    let (steps, coordinates) = (named(&METHODS, &method), named(&CHARTS, &chart));
-    Scheme {
-        name: format!("{steps}, {coordinates}"),
-        kind: Kind::Chart {
-            chart,
-            degenerate: Degenerate::Assign,
-            options: ChartOptions {
-                method,
-                solver: MassSolverKind::Saddle,
-                ..ChartOptions::default()
-            },
-            stepping: Stepping::Fixed,
-        },
+#[cfg(test)]
+mod tests {
+    use super::super::problem::Problem;
+    use super::*;
+
+    /// Contact as such where the default has a place for it, elsewhere as a potential.
+    #[test]
+    fn starts_fit_their_models() {
+        for (problem, name, _) in Problem::ALL {
+            let schemes = Scheme::all();
+            let [damped, free] = [1, 5].map(|k| {
+                let start = schemes[k].start(problem.setup().unwrap(), 1e-3);
+                start.unwrap_or_else(|e| panic!("{name}, {}: {e}", schemes[k].name))
+            });
+            let touches = matches!(problem, Problem::Cloth(_));
+            assert_eq!(damped.contacts().is_some(), touches, "{name}");
+            assert!(free.contacts().is_none(), "{name}");
+        }
     }
 }
