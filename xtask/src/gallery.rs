@@ -1,6 +1,7 @@
 //! `gallery`: scenes that anybody can run, each as a labelled picture, and a film of one of them.
 
-use crate::draw::{Shot, Viewpoint};
+use crate::draw::Viewpoint;
+use crate::figures::shots;
 use crate::progress::Progress;
 use crate::report::Options;
 use crate::runs::{FigureScene, Run};
@@ -110,7 +111,7 @@ pub(crate) fn run(args: &GalleryArgs) -> Result<()> {
     for (shown, run) in SCENES.iter().zip(&runs) {
         let last = run.trajectory.len() - 1;
         let frame = (shown.moment * last as f64).round() as usize;
-        let shots = [shown.shot(run, frame)?];
+        let shots = shots(run, &[frame], shown.bodies)?;
         let image = shown.view(run).frame(&shots, SIZE)?.remove(0);
         let label = shown.label.to_owned();
         pictures.push(Labelled { image, label });
@@ -120,10 +121,9 @@ pub(crate) fn run(args: &GalleryArgs) -> Result<()> {
     let (shown, run) = (&SCENES[FILMED], &runs[FILMED]);
     let last = END * (run.trajectory.len() - 1) as f64;
     let frame = |k: usize| (last * k as f64 / (FRAMES - 1) as f64).round() as usize;
-    let shots = (0..FRAMES).map(|k| shown.shot(run, frame(k)));
-    let images = shown
-        .view(run)
-        .frame(&shots.collect::<Result<Vec<_>>>()?, FILM)?;
+    let frames: Vec<usize> = (0..FRAMES).map(frame).collect();
+    let shots = shots(run, &frames, shown.bodies)?;
+    let images = shown.view(run).frame(&shots, FILM)?;
     let film = animated_png(FILM, DELAY, FRAMES, |k| {
         bar.step();
         Ok(images[k].clone())
@@ -147,19 +147,6 @@ impl Shown {
         }
     }
 
-    fn shot<'a>(&self, run: &'a Run, frame: usize) -> Result<Shot<'a>> {
-        let bodies = run.scene.setup()?.obstacles;
-        let t = run.trajectory.times()[frame];
-        let solids = self.bodies.iter().map(|b| Solid::of(&bodies[*b], t));
-        Ok(Shot {
-            sheet: &run.sheet,
-            x: run.trajectory.frame(frame).unwrap_or_default(),
-            pins: &[],
-            solids: solids.collect::<Result<_, _>>()?,
-            label: String::new(),
-        })
-    }
-
     fn view(&self, run: &Run) -> Viewpoint {
         let points = run.sheet.positions().as_chunks::<3>().0;
         let size = (0..3).map(|k| {
@@ -172,7 +159,6 @@ impl Shown {
             elevation: self.seen_from[1],
             distance: DISTANCE * size,
             depth: 0.5 * size,
-            height: SIZE[1],
         }
     }
 }

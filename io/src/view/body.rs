@@ -2,9 +2,12 @@
 
 use super::check;
 use super::error::ViewError;
+use super::pack::{packed_doubles, packed_triangles};
+use serde::Serialize;
 
 /// The form of a body in its own frame. Lengths in metres.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum BodyShape {
     /// Everything with `z <= 0`. The page shows a finite patch of the plane with a grid.
     HalfSpace,
@@ -35,8 +38,10 @@ pub enum BodyShape {
     /// Triangles, shown from both sides.
     Mesh {
         /// Positions of the N corners (length 3N).
+        #[serde(serialize_with = "packed_doubles")]
         vertices: Vec<f64>,
         /// Corners of the triangles, counted from 0.
+        #[serde(serialize_with = "packed_triangles")]
         faces: Vec<[u32; 3]>,
     },
 }

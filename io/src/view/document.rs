@@ -15,7 +15,7 @@ pub(super) struct Document<'a> {
     program: &'static str,
     version: &'static str,
     title: &'a str,
-    up: char,
+    up: Axis,
     vertices: usize,
     frames: usize,
     frames_of_run: usize,
@@ -42,28 +42,17 @@ pub(super) struct Document<'a> {
 #[derive(Serialize)]
 struct BodyData<'a> {
     name: &'a str,
-    shape: ShapeData,
+    shape: &'a BodyShape,
     /// Seven numbers for each pose: quaternion and translation.
     poses: String,
-}
-
-#[derive(Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-enum ShapeData {
-    HalfSpace,
-    Cuboid { half: [f64; 3] },
-    Sphere { radius: f64 },
-    Cylinder { radius: f64, half_height: f64 },
-    Capsule { radius: f64, half_length: f64 },
-    Mesh { vertices: String, faces: String },
 }
 
 #[derive(Serialize)]
 struct FieldData<'a> {
     name: &'a str,
     unit: &'a str,
-    place: &'static str,
-    scale: &'static str,
+    place: Place,
+    scale: Scale,
     note: &'a str,
     low: f64,
     step: f64,
@@ -74,7 +63,7 @@ struct FieldData<'a> {
 struct SeriesData<'a> {
     name: &'a str,
     unit: &'a str,
-    scale: &'static str,
+    scale: Scale,
     times: String,
     values: String,
 }
@@ -98,11 +87,7 @@ impl<'a> Document<'a> {
             program: "isosheet",
             version: env!("CARGO_PKG_VERSION"),
             title: &replay.title,
-            up: match replay.up {
-                Axis::X => 'x',
-                Axis::Y => 'y',
-                Axis::Z => 'z',
-            },
+            up: replay.up,
             vertices: replay.rest.len() / 3,
             frames: kept.len(),
             frames_of_run: replay.times.len(),
@@ -147,29 +132,6 @@ impl<'a> Document<'a> {
 }
 
 fn body_data<'a>(body: &'a Body, kept: &[usize]) -> BodyData<'a> {
-    let shape = match &body.shape {
-        BodyShape::HalfSpace => ShapeData::HalfSpace,
-        &BodyShape::Cuboid { half } => ShapeData::Cuboid { half },
-        &BodyShape::Sphere { radius } => ShapeData::Sphere { radius },
-        &BodyShape::Cylinder {
-            radius,
-            half_height,
-        } => ShapeData::Cylinder {
-            radius,
-            half_height,
-        },
-        &BodyShape::Capsule {
-            radius,
-            half_length,
-        } => ShapeData::Capsule {
-            radius,
-            half_length,
-        },
-        BodyShape::Mesh { vertices, faces } => ShapeData::Mesh {
-            vertices: pack_doubles(vertices.iter().copied()),
-            faces: pack_indices(faces.as_flattened()),
-        },
-    };
     let poses: Vec<_> = match body.poses.as_slice() {
         [pose] => vec![pose],
         poses => kept.iter().map(|&k| &poses[k]).collect(),
@@ -179,7 +141,7 @@ fn body_data<'a>(body: &'a Body, kept: &[usize]) -> BodyData<'a> {
         .flat_map(|p| p.rotation.into_iter().chain(p.translation));
     BodyData {
         name: &body.name,
-        shape,
+        shape: &body.shape,
         poses: pack_doubles(numbers),
     }
 }
@@ -190,12 +152,8 @@ fn field_data<'a>(field: &'a Field, kept: &[usize]) -> FieldData<'a> {
     FieldData {
         name: &field.name,
         unit: &field.unit,
-        place: match field.place {
-            Place::Vertex => "vertex",
-            Place::Edge => "edge",
-            Place::Face => "face",
-        },
-        scale: scale_name(field.scale),
+        place: field.place,
+        scale: field.scale,
         note: &field.note,
         low: quantised.low,
         step: quantised.step,
@@ -208,19 +166,11 @@ fn series_data(series: &Series) -> SeriesData<'_> {
         name: &series.name,
         unit: &series.unit,
         scale: match series.scale {
-            Scale::Linear | Scale::Signed | Scale::Magnitude => "linear",
-            Scale::Logarithmic => "logarithmic",
+            // Signs and magnitudes are matters of colour.
+            Scale::Linear | Scale::Signed | Scale::Magnitude => Scale::Linear,
+            Scale::Logarithmic => Scale::Logarithmic,
         },
         times: pack_doubles(series.times.iter().copied()),
         values: pack_doubles(series.values.iter().copied()),
-    }
-}
-
-fn scale_name(scale: Scale) -> &'static str {
-    match scale {
-        Scale::Linear => "linear",
-        Scale::Logarithmic => "logarithmic",
-        Scale::Signed => "signed",
-        Scale::Magnitude => "magnitude",
     }
 }

@@ -5,9 +5,11 @@ use isosheet_mesh::Topology;
 
 use super::check;
 use super::error::ViewError;
+use serde::Serialize;
 
 /// Where the values of a [`Field`] belong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Place {
     /// One value for each vertex.
     Vertex,
@@ -18,7 +20,8 @@ pub enum Place {
 }
 
 /// How values are laid out along a scale of colours or an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Scale {
     /// By value.
     #[default]

@@ -6,7 +6,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// Unsigned integers of one or two bytes, in rows of equal length: one row for each frame.
 #[derive(Serialize)]
@@ -82,6 +82,22 @@ pub(super) fn pack_doubles(values: impl IntoIterator<Item = f64>) -> String {
 /// Packs indices.
 pub(super) fn pack_indices(values: &[u32]) -> String {
     compress(&planes(values.iter().map(|v| v.to_le_bytes()).collect(), 4))
+}
+
+/// Writes doubles as [`pack_doubles`] packs them.
+pub(super) fn packed_doubles<S: Serializer>(
+    values: &[f64],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&pack_doubles(values.iter().copied()))
+}
+
+/// Writes the corners of triangles as [`pack_indices`] packs them.
+pub(super) fn packed_triangles<S: Serializer>(
+    faces: &[[u32; 3]],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&pack_indices(faces.as_flattened()))
 }
 
 /// Packs a text.

@@ -6,9 +6,11 @@ use super::body::Body;
 use super::check;
 use super::error::ViewError;
 use super::field::{Field, Series};
+use serde::Serialize;
 
 /// An axis of space.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Axis {
     /// The x axis.
     X,

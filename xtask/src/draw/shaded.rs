@@ -16,7 +16,7 @@ pub(crate) struct Shot<'a> {
     pub(crate) label: String,
 }
 
-/// Where pictures are seen from, and how large they are.
+/// Where pictures are seen from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Viewpoint {
     /// Where the viewer is, degrees.
@@ -26,8 +26,6 @@ pub(crate) struct Viewpoint {
     pub(crate) distance: f64,
     /// Bodies are framed down to this depth below the start of the sheet, metres.
     pub(crate) depth: f64,
-    /// Height of a picture, pixels.
-    pub(crate) height: usize,
 }
 
 impl Viewpoint {
@@ -43,11 +41,11 @@ impl Viewpoint {
         (camera.framing(points, aspect, 0.04), aspect)
     }
 
-    /// The pictures, all of the size that fits.
-    fn pictures(&self, shots: &[Shot<'_>]) -> Result<Vec<Image>> {
+    /// The pictures of a height (pixels) and of the width that fits.
+    fn pictures(&self, shots: &[Shot<'_>], height: usize) -> Result<Vec<Image>> {
         let (_, aspect) = self.camera(shots, None);
-        let width = (self.height as f64 * aspect).round().max(1.0) as usize;
-        self.frame(shots, [width, self.height])
+        let width = (height as f64 * aspect).round().max(1.0) as usize;
+        self.frame(shots, [width, height])
     }
 
     /// The pictures in a size, pixels.
@@ -70,18 +68,23 @@ impl Viewpoint {
         shots.iter().map(picture).collect()
     }
 
-    /// The pictures with their labels in rows.
-    pub(crate) fn montage(&self, shots: Vec<Shot<'_>>, columns: usize) -> Result<Image> {
-        let images = self.pictures(&shots)?.into_iter();
+    /// The pictures with their labels in rows, each of a height in pixels.
+    pub(crate) fn montage(
+        &self,
+        shots: Vec<Shot<'_>>,
+        columns: usize,
+        height: usize,
+    ) -> Result<Image> {
+        let images = self.pictures(&shots, height)?.into_iter();
         let labels = shots.into_iter().map(|shot| shot.label);
         let labelled = images.zip(labels);
         let labelled = labelled.map(|(image, label)| Labelled { image, label });
         Ok(montage(&labelled.collect::<Vec<_>>(), columns)?)
     }
 
-    /// One picture as a PNG file.
-    pub(crate) fn single(&self, shot: Shot<'_>) -> Result<Vec<u8>> {
-        let images = self.pictures(&[shot])?;
+    /// One picture of a height in pixels as a PNG file.
+    pub(crate) fn single(&self, shot: Shot<'_>, height: usize) -> Result<Vec<u8>> {
+        let images = self.pictures(&[shot], height)?;
         Ok(images[0].to_png()?)
     }
 }

@@ -3,7 +3,7 @@
 use super::marks::{self, Marks};
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Row, compared, course, rows, through_itself};
-use crate::draw::mesh_name;
+use crate::draw::{Viewpoint, mesh_name};
 use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
 use crate::store::Store;
 use anyhow::{Result, ensure};
@@ -182,10 +182,12 @@ pub(super) fn method_name(integrator: Integrator) -> &'static str {
 fn view(run: &Run) -> Result<(View, u32)> {
     let hanging = Hanging::of(&run.scene)?;
     let view = View {
-        azimuth: -62.0,
-        elevation: 17.0,
-        distance: 6.0 * hanging.side,
-        depth: 0.0,
+        from: Viewpoint {
+            azimuth: -62.0,
+            elevation: 17.0,
+            distance: 6.0 * hanging.side,
+            depth: 0.0,
+        },
         columns: 5,
         pins: vec![hanging.pin],
         bodies: &[],

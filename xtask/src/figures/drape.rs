@@ -5,7 +5,7 @@ use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{Folds, Hem};
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Table, through_itself, whole_percent};
-use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series, mesh_name, palette};
+use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series, Viewpoint, mesh_name, palette};
 use crate::report::columns;
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
@@ -115,13 +115,15 @@ fn facts(all: &[Draped]) -> Value {
 
 /// How a cloth is shown.
 const VIEW: View = View {
-    azimuth: -62.0,
-    elevation: 24.0,
-    distance: 6.0,
+    from: Viewpoint {
+        azimuth: -62.0,
+        elevation: 24.0,
+        distance: 6.0,
+        depth: 0.4,
+    },
     columns: 3,
     pins: Vec::new(),
     bodies: &[0],
-    depth: 0.4,
 };
 
 /// The page that plays the run of a cloth.

@@ -4,8 +4,8 @@ use super::feed::{Feed, INNER, OUTER, PLATE};
 use super::show::View;
 use super::{Effort, Made, Picture, Row, Table, measured, rows};
 use crate::draw::{
-    Anchor, Axis, Chart, Charts, Colour, Drawing, Series, Stroke, TEXT, Vertical, column, palette,
-    row,
+    Anchor, Axis, Chart, Charts, Colour, Drawing, Series, Stroke, TEXT, Vertical, Viewpoint,
+    column, palette, row,
 };
 use crate::report::{Cell, columns};
 use crate::runs::{FigureScene, Run};
@@ -265,16 +265,18 @@ fn table(all: &[Fed]) -> Table {
 /// How a run is shown: without the outer wall, which would hide the strip.
 fn view(feed: &Feed) -> View {
     View {
-        azimuth: -72.0,
-        elevation: 12.0,
-        distance: 0.8,
+        from: Viewpoint {
+            azimuth: -72.0,
+            elevation: 12.0,
+            distance: 0.8,
+            depth: 0.08,
+        },
         columns: 2,
         pins: Vec::new(),
         bodies: match feed.plate() {
             None => &[INNER],
             Some(_) => &[INNER, PLATE],
         },
-        depth: 0.08,
     }
 }
 

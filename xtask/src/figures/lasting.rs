@@ -3,7 +3,7 @@
 
 use super::show::View;
 use super::{Effort, Picture, Play, Row, Table, caption, compared, course, height, rows};
-use crate::draw::{Drawing, Stroke, TEXT, flat_edges, flat_faces, palette, row};
+use crate::draw::{Drawing, Stroke, TEXT, Viewpoint, flat_edges, flat_faces, palette, row};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
@@ -15,10 +15,12 @@ const TIMES: [f64; 5] = [0.0, 1.2, 1.6, 2.5, 4.0];
 
 /// How the runs are shown, without the plates.
 const VIEW: View = View {
-    azimuth: -62.0,
-    elevation: 24.0,
-    distance: 0.7,
-    depth: 0.0,
+    from: Viewpoint {
+        azimuth: -62.0,
+        elevation: 24.0,
+        distance: 0.7,
+        depth: 0.0,
+    },
     columns: 5,
     pins: Vec::new(),
     bodies: &[],

@@ -2,7 +2,7 @@
 
 use super::show::View;
 use super::{Effort, Made, Picture, Play, course, degrees, mean, measured, nearest, rows};
-use crate::draw::{Axis, Chart, Charts, Colour, Marker, Series, palette};
+use crate::draw::{Axis, Chart, Charts, Colour, Marker, Series, Viewpoint, palette};
 use crate::runs::{FigureScene, Run, RunSummary};
 use crate::store::Store;
 use anyhow::{Context, Result, bail, ensure};
@@ -149,13 +149,15 @@ fn lead(mode: origami::FoldingMode) -> usize {
 
 /// How the runs are shown.
 const VIEW: View = View {
-    azimuth: -62.0,
-    elevation: 38.0,
-    distance: 1.2,
+    from: Viewpoint {
+        azimuth: -62.0,
+        elevation: 38.0,
+        distance: 1.2,
+        depth: 0.0,
+    },
     columns: 3,
     pins: Vec::new(),
     bodies: &[],
-    depth: 0.0,
 };
 
 /// Every so many frames are marked in plots.

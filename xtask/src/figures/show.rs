@@ -13,11 +13,7 @@ use isosheet_mesh::VertexId;
 /// How a run is shown.
 #[derive(Clone, Debug)]
 pub(super) struct View {
-    /// Where the viewer is, see [`Viewpoint`].
-    pub(super) azimuth: f64,
-    pub(super) elevation: f64,
-    pub(super) distance: f64,
-    pub(super) depth: f64,
+    pub(super) from: Viewpoint,
     /// Pictures in a row.
     pub(super) columns: usize,
     /// Vertices marked with a dot.
@@ -37,34 +33,34 @@ fn choose(times: &[f64], wanted: &[f64]) -> Vec<usize> {
     wanted.iter().map(|t| nearest(*t)).collect()
 }
 
+/// Frames of a run with some of its bodies, by number.
+///
+/// # Errors
+/// As [`FigureScene::setup`](crate::runs::FigureScene::setup); a body that cannot be drawn.
+pub(crate) fn shots<'a>(run: &'a Run, frames: &[usize], bodies: &[usize]) -> Result<Vec<Shot<'a>>> {
+    let all = run.scene.setup()?.obstacles;
+    let shot = |&k: &usize| {
+        let t = run.trajectory.times()[k];
+        let solids = bodies.iter().map(|b| Solid::of(&all[*b], t));
+        Ok(Shot {
+            sheet: &run.sheet,
+            x: run.trajectory.frame(k).unwrap_or_default(),
+            pins: &[],
+            solids: solids.collect::<Result<_, _>>()?,
+            label: format!("{t:.2} s"),
+        })
+    };
+    frames.iter().map(shot).collect()
+}
+
 /// Height of a thumbnail, pixels.
 const THUMBNAIL: usize = 130;
 
 impl View {
-    fn from(&self, height: usize) -> Viewpoint {
-        Viewpoint {
-            azimuth: self.azimuth,
-            elevation: self.elevation,
-            distance: self.distance,
-            depth: self.depth,
-            height,
-        }
-    }
-
     fn shots<'a>(&'a self, run: &'a Run, frames: &[usize]) -> Result<Vec<Shot<'a>>> {
-        let bodies = run.scene.setup()?.obstacles;
-        let shot = |k: &usize| {
-            let t = run.trajectory.times()[*k];
-            let solids = self.bodies.iter().map(|b| Solid::of(&bodies[*b], t));
-            Ok(Shot {
-                sheet: &run.sheet,
-                x: run.trajectory.frame(*k).unwrap_or_default(),
-                pins: &self.pins,
-                solids: solids.collect::<Result<_, _>>()?,
-                label: format!("{t:.2} s"),
-            })
-        };
-        frames.iter().map(shot).collect()
+        let shots = shots(run, frames, self.bodies)?.into_iter();
+        let pins = &self.pins[..];
+        Ok(shots.map(|shot| Shot { pins, ..shot }).collect())
     }
 
     /// The frames of a run nearest to some times (seconds) as a picture.
@@ -102,8 +98,8 @@ impl View {
         effort: Effort,
         [file, alt]: [&str; 2],
     ) -> Result<Picture> {
-        let seen = self.from(effort.quick_or(170, 470));
-        Picture::shaded(file, &seen.montage(shots, self.columns)?, alt)
+        let height = effort.quick_or(170, 470);
+        Picture::shaded(file, &self.from.montage(shots, self.columns, height)?, alt)
     }
 
     /// The page that plays a run, with what tells it from the other runs of the figure.
@@ -128,7 +124,7 @@ impl View {
         // Where the figure leaves bodies out, they would hide the sheet.
         let is_hidden = self.bodies.len() < bodies.len();
         let last = self.shots(run, &[trajectory.len() - 1])?.remove(0);
-        let end = self.from(THUMBNAIL).single(last)?;
+        let end = self.from.single(last, THUMBNAIL)?;
         let alt = format!("Figure {figure}, {label}, at the end");
         Ok(Play {
             scene: (

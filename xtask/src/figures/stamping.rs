@@ -2,7 +2,7 @@
 
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Row, compared, course, height, rows, through_itself};
-use crate::draw::{Axis, Chart, Charts, Series, palette};
+use crate::draw::{Axis, Chart, Charts, Series, Viewpoint, palette};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
@@ -47,13 +47,15 @@ const STROKES: [f64; 6] = [0.0, 0.3, 0.5, 0.7, 0.85, 1.0];
 
 /// How the run is shown. The holders would hide the sheet.
 const VIEW: View = View {
-    azimuth: -58.0,
-    elevation: 30.0,
-    distance: 3.0,
+    from: Viewpoint {
+        azimuth: -58.0,
+        elevation: 30.0,
+        distance: 3.0,
+        depth: 0.03,
+    },
     columns: 3,
     pins: Vec::new(),
     bodies: &[DIE, FRAME],
-    depth: 0.03,
 };
 
 /// The page that plays a run.

@@ -3,7 +3,7 @@
 use super::naive::{NO_DIGITS, TEXTBOOK, textbook, textbook_steps};
 use super::scenes::{FRAME, VIEWPOINT, apart, course, go, pinned, released};
 use super::{Case, Findings, Work, log_log};
-use crate::draw::{Series, Shot, Viewpoint};
+use crate::draw::{Series, Shot};
 use crate::interrupt;
 use crate::report::{Bound, Effort, Picture, Table};
 use crate::runs::Course;
@@ -106,13 +106,9 @@ fn fall() -> Result<Picture> {
         }
     };
     let shots = [0, 6, 15, 24, 36, 60].map(shot).into();
-    let seen = Viewpoint {
-        height: 400,
-        ..VIEWPOINT
-    };
     let alt = "M^2 released from exactly flat and horizontal, held at a corner (BDF2, 1/60 s). Warm: the upper side at the start; blue: \
                the lower one.";
-    Picture::shaded("flat-start.png", &seen.montage(shots, 6)?, alt)
+    Picture::shaded("flat-start.png", &VIEWPOINT.montage(shots, 6, 400)?, alt)
 }
 
 pub(crate) const BRANCH: Case = Case {

@@ -231,5 +231,5 @@ fn picture(ends: &[End<'_>]) -> Result<Picture> {
     let how = ends[0].how;
     let file = format!("locking-{}.png", how.replace(' ', "-"));
     let alt = format!("At rest, {how}: union jack, one-way grid, irregular mesh.");
-    Picture::shaded(&file, &VIEWPOINT.montage(shots, 3)?, &alt)
+    Picture::shaded(&file, &VIEWPOINT.montage(shots, 3, 300)?, &alt)
 }

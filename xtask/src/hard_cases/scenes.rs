@@ -18,7 +18,6 @@ pub(super) const VIEWPOINT: Viewpoint = Viewpoint {
     elevation: 17.0,
     distance: 6.0,
     depth: f64::INFINITY,
-    height: 300,
 };
 
 /// Bound for the relative edge length error of accepted steps, unless the rounding of the coordinates is
