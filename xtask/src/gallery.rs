@@ -9,7 +9,6 @@ use crate::store::Store;
 use anyhow::Result;
 use clap::Args;
 use isosheet_io::picture::{Labelled, Solid, animated_png, montage};
-use isosheet_io::scene::StartingPoint;
 
 /// Arguments of `gallery`.
 #[derive(Debug, Args)]
@@ -140,11 +139,7 @@ impl Shown {
     fn scene(&self, store: &Store) -> Result<FigureScene> {
         let quick = ["stop.time=0.1".to_owned()];
         let edits = store.effort.quick_or(&quick[..], &[]);
-        let kind = StartingPoint::ALL.iter().find(|k| k.name() == self.scene);
-        match kind {
-            Some(kind) => FigureScene::starting_at(*kind, edits),
-            None => FigureScene::of(self.scene, self.scene, edits),
-        }
+        FigureScene::named(self.scene, self.scene, edits)
     }
 
     fn view(&self, run: &Run) -> Viewpoint {

@@ -19,7 +19,7 @@ pub(crate) use finding::{Bound, Finding, LENGTHS, Limitation, Shortfall, Verdict
 pub(crate) use finding::{demand, findings, write_findings};
 pub(crate) use machine::machine;
 pub(crate) use memory::{peak_memory, reset_peak_memory};
-pub(crate) use number::{exponent, extremes, number, rounded, short};
+pub(crate) use number::{exponent, extremes, median, number, rounded, short};
 pub(crate) use options::{FullOptions, Options, one_of};
 pub(crate) use page::{Page, Section};
 pub(crate) use picture::{Picture, plot};

@@ -12,7 +12,7 @@ mod shape;
 
 pub(crate) use isosheet_tests::{bumped, corner};
 
-pub(crate) use bumped::{BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, hanging, on_table};
+pub(crate) use bumped::{Bumped, CLEARANCE, Pairs, STEP, TABLE, hanging, on_table};
 pub(crate) use chart_run::{ChartSummary, chart_run};
 pub(crate) use course::{Course, Ending, Plan, unseen};
 pub(crate) use ensemble::{Member, ensemble};

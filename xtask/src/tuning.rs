@@ -9,7 +9,6 @@ use anyhow::{Context, Result};
 use clap::Args;
 use cpu_time::ThreadTime;
 use isosheet_dynamics::{Constant, Tuning};
-use isosheet_io::scene::StartingPoint;
 use maud::html;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -200,11 +199,7 @@ impl Kind {
         edits.push(format!(
             "sheet.start={{perturbation={perturbation:?},seed={seed}}}"
         ));
-        let start = StartingPoint::ALL.iter().find(|s| s.name() == self.scene);
-        let scene = match start {
-            Some(start) => FigureScene::starting_at(*start, &edits)?,
-            None => FigureScene::of(self.scene, self.name, &edits)?,
-        };
+        let scene = FigureScene::named(self.scene, self.name, &edits)?;
         let mut simulation = scene.setup()?.start()?.with_tuning(tuning)?;
         let clock = ThreadTime::now();
         for _ in 0..effort.quick_or(3, self.steps) {

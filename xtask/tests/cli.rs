@@ -320,7 +320,12 @@ fn ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on() {
 #[test]
 fn cost_measures_parts_and_works_and_keeps_them() {
     let (_keep, out) = folder();
-    let run = |list| run(&["cost", "--quick", "--works", "w1", "--parts", list], &out);
+    let run = |list| {
+        run(
+            &["cost", "--quick", "--works", "w1,hanging", "--parts", list],
+            &out,
+        )
+    };
     let (code, text) = run("triangle,pendulum");
     assert_eq!(code, Some(0), "{text}");
     let files = [
@@ -334,17 +339,20 @@ fn cost_measures_parts_and_works_and_keeps_them() {
         "index.html",
     ];
     assert_written(&out, 500, &files);
-    let (code, text) = run("hanging,triangle");
+    let (code, text) = run("strip-2,triangle");
     assert_eq!(code, Some(0), "{text}");
-    assert_eq!(text.matches("up to date").count(), 2, "{text}");
+    // A problem, a row of w1 and six of the hanging sheet.
+    assert_eq!(text.matches("up to date").count(), 8, "{text}");
     let page = read(out.join("index.html"));
-    for part in ["triangle", "hanging", "pendulum", "works"].map(|id| format!("id=\"{id}\"")) {
+    for part in
+        ["triangle", "hanging", "pendulum", "strip-2", "works"].map(|id| format!("id=\"{id}\""))
+    {
         assert!(page.contains(&part), "{part} is missing");
     }
     assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("NaN"));
     let (code, text) = run("moon");
     assert_eq!(code, Some(2), "{text}");
-    assert!(text.contains("hanging, tablecloth"), "{text}");
+    assert!(text.contains("pendulum, triangle"), "{text}");
 }
 
 #[test]

@@ -31,20 +31,15 @@ const FRONTS: &str = "The cheapest method for an error of positions or of energy
     the default; CPU seconds for a simulated second (s/s)";
 
 /// The table of the fronts of all problems.
-pub(super) fn fronts(rows: &[Front]) -> Result<Table> {
+pub(super) fn fronts<'a>(rows: impl Iterator<Item = &'a Front>) -> Result<Table> {
     Ok(Table::of_fields(FRONTS, rows)?.named("fronts"))
 }
 
 /// Makes the part of a problem.
-pub(super) fn make(
-    problem: Problem,
-    name: &str,
-    effort: Effort,
-    files: &mut Files<'_>,
-) -> Result<Record> {
-    let study = Study::of(problem, name, effort)?;
+pub(super) fn make(problem: Problem, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
+    let (name, title) = (problem.name(), problem.title());
+    let study = Study::of(problem, effort)?;
     study.data()?.named(name).write(files)?;
-    let title = problem.title();
     let alt = format!("{title}: errors against CPU time, by method");
     let figure = plot(files, name, &study.plot(), &alt)?;
     let inside = html! {
@@ -59,7 +54,7 @@ pub(super) fn make(
     };
     Ok(Record {
         findings: study.findings(),
-        fronts: study.fronts(name),
+        fronts: study.fronts(),
         ..Record::new(name, inside)
     })
 }

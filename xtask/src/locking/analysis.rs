@@ -4,7 +4,7 @@
 use super::model::Model;
 use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series};
 use crate::report::{Bound, Cell, Effort, Finding, Shortfall, Table, Verdict};
-use crate::report::{exponent, extremes, number};
+use crate::report::{exponent, extremes, median, number};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -100,16 +100,6 @@ fn only(table: &Table, wanted: &Only) -> Table {
     wanted.iter().fold(table.clone(), |runs, (name, entry)| {
         with(&runs, name, entry)
     })
-}
-
-/// The median; NaN of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    if n == 0 {
-        return f64::NAN;
-    }
-    0.5 * (values[(n - 1) / 2] + values[n / 2])
 }
 
 /// Relative errors below this are those of a sheet that has come to rest to within a speed, and of answers
@@ -310,7 +300,7 @@ impl Figure {
                 let at = with(&of, size, &n.to_string());
                 let values: Vec<f64> = column(&at, error).filter_map(value).collect();
                 let [low, high] = extremes(values.iter().copied())?;
-                Some([*n, low, median(values), high])
+                Some([*n, low, median(values)?, high])
             };
             let curve: Vec<[f64; 4]> = sizes.iter().filter_map(at).collect();
             let band: Vec<[f64; 3]> = curve.iter().map(|c| [c[0], c[1], c[3]]).collect();
@@ -434,6 +424,5 @@ mod tests {
         let series = figure.series(&runs(), "error", ("n", &[2.0, 4.0]));
         let middle = &series.last().expect("a line").points;
         assert_eq!(middle, &[[2.0, 0.25], [4.0, 0.0625]]);
-        assert_eq!(median(vec![4.0, 1.0]), 2.5);
     }
 }

@@ -23,6 +23,13 @@ pub(crate) fn extremes(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     pairs.reduce(|[low, high], [a, b]| [low.min(a), high.max(b)])
 }
 
+/// The median of some values; nothing of none.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    (n > 0).then(|| 0.5 * (values[(n - 1) / 2] + values[n / 2]))
+}
+
 /// Exponent `p` of the least-squares fit `y ~ x^p`; `None` from fewer than two different `x`.
 pub(crate) fn exponent(points: &[[f64; 2]]) -> Option<f64> {
     let n = points.len() as f64;
@@ -116,6 +123,13 @@ mod tests {
     fn extremes_of_values() {
         assert_eq!(extremes([2.0, -1.0, 5.0].into_iter()), Some([-1.0, 5.0]));
         assert_eq!(extremes(std::iter::empty()), None);
+    }
+
+    #[test]
+    fn medians_of_values() {
+        assert_eq!(median(vec![5.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(vec![4.0, 1.0]), Some(2.5));
+        assert_eq!(median(Vec::new()), None);
     }
 
     #[test]

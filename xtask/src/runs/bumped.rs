@@ -6,10 +6,9 @@ use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet};
 use isosheet_tests::{bumped, corner};
 use nalgebra::Isometry3;
-use serde::{Deserialize, Serialize};
 
 /// Height of the bump, metres: nearly flat, so that the length constraints are nearly dependent.
-pub(crate) const BUMP: f64 = 1e-3;
+const BUMP: f64 = 1e-3;
 
 /// Step, seconds.
 pub(crate) const STEP: f64 = 1.0 / 60.0;
@@ -24,7 +23,7 @@ pub(crate) const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
 const MASS: f64 = 0.1;
 
 /// Which pairs repel each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pairs {
     /// Sheet and table.
     Table,
@@ -32,16 +31,16 @@ pub(crate) enum Pairs {
     TableAndItself,
 }
 
-/// A scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Work {
+/// A scene that other programs have been measured on, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bumped {
     /// A nearly flat sheet held at a corner, one second.
     Hanging,
     /// The same sheet, free, above a table, 1.5 seconds.
     Tablecloth(Pairs),
 }
 
-impl Work {
+impl Bumped {
     /// Simulated time, seconds.
     pub(crate) fn duration(self) -> f64 {
         match self {
@@ -50,11 +49,11 @@ impl Work {
         }
     }
 
-    /// The sheet `M^level` with a bump of the given height (metres) at the start of the scene.
-    pub(crate) fn start(self, level: u32, bump: f64, method: Method) -> Result<Simulation> {
+    /// The sheet `M^level` at the start of the scene.
+    pub(crate) fn start(self, level: u32, method: Method) -> Result<Simulation> {
         match self {
-            Self::Hanging => hanging(level, bump, method),
-            Self::Tablecloth(pairs) => tablecloth(&bumped(level, bump), pairs, method),
+            Self::Hanging => hanging(level, BUMP, method),
+            Self::Tablecloth(pairs) => tablecloth(&bumped(level, BUMP), pairs, method),
         }
     }
 }

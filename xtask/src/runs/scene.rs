@@ -44,14 +44,18 @@ impl FigureScene {
         })
     }
 
-    /// A scene that `isosheet new` writes, with edits.
+    /// A scene that `isosheet new` writes if there is one of that kind, or else a file of `xtask/scenes`, with
+    /// edits.
     ///
     /// # Errors
-    /// Edits that make no sense.
-    pub(crate) fn starting_at(start: StartingPoint, edits: &[String]) -> Result<Self> {
-        let path = Path::new(start.name()).with_extension("toml");
+    /// As [`FigureScene::of`].
+    pub(crate) fn named(file: &str, name: &str, edits: &[String]) -> Result<Self> {
+        let Some(start) = StartingPoint::ALL.iter().find(|start| start.name() == file) else {
+            return Self::of(file, name, edits);
+        };
+        let path = Path::new(file).with_extension("toml");
         Ok(Self {
-            name: start.name().to_owned(),
+            name: name.to_owned(),
             file: SceneFile::parse(start.text().to_owned(), &path, edits)?,
         })
     }

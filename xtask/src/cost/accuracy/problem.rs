@@ -48,7 +48,7 @@ impl Setup {
 
 impl Problem {
     /// All of them with their names and their titles, easy ones first.
-    pub(crate) const ALL: [(Self, &str, &str); 10] = [
+    pub(super) const ALL: [(Self, &str, &str); 10] = [
         (Self::Pendulum, "pendulum", "Triangle pinned along an edge"),
         (Self::Triangle, "triangle", "Free triangle"),
         (Self::Strip(2), "strip-2", "Hanging strip of 2 links"),
@@ -67,10 +67,30 @@ impl Problem {
         matches!(self, Self::Pendulum | Self::Triangle)
     }
 
+    /// All of them with their names.
+    pub(crate) fn named() -> Vec<(&'static str, Self)> {
+        let all = Self::ALL.into_iter();
+        all.map(|(problem, name, _)| (name, problem)).collect()
+    }
+
+    fn words(self) -> [&'static str; 2] {
+        let words = Self::ALL.iter().find(|(problem, ..)| *problem == self);
+        words.map_or([""; 2], |(_, name, title)| [name, title])
+    }
+
+    /// Name on the command line and in tables.
+    pub(crate) fn name(self) -> &'static str {
+        self.words()[0]
+    }
+
     /// Title for people, with the mark-up of drawings.
     pub(super) fn title(self) -> &'static str {
-        let named = Self::ALL.iter().find(|(problem, ..)| *problem == self);
-        named.map_or("", |(.., title)| title)
+        self.words()[1]
+    }
+
+    /// Whether quick reports have no time for it.
+    pub(crate) fn is_costly(self) -> bool {
+        matches!(self, Self::Strip(64) | Self::Sheet(2 | 3))
     }
 
     /// The set-up in words.

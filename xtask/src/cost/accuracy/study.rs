@@ -62,9 +62,9 @@ const ENERGY_FLOOR: f64 = 1e-13;
 
 impl Study {
     /// Runs all methods on a problem.
-    pub(super) fn of(problem: Problem, name: &str, effort: Effort) -> Result<Self> {
+    pub(super) fn of(problem: Problem, effort: Effort) -> Result<Self> {
         let schemes = Scheme::all();
-        let bar = Progress::start(name, schemes.len() + 1);
+        let bar = Progress::start(problem.name(), schemes.len() + 1);
         let reference = reference::compute(problem, reference::budget(problem, effort))?;
         bar.step();
         let mut points = Vec::new();
@@ -85,7 +85,7 @@ impl Study {
 
     /// All points, for programs.
     pub(super) fn data(&self) -> Result<Table> {
-        Table::of_fields("", self.points.iter().map(|point| (point, &point.ran)))
+        Table::of_fields("", &self.points)
     }
 
     fn by<'a>(&'a self, method: &'a str) -> impl Iterator<Item = &'a Point> {
@@ -113,7 +113,7 @@ impl Study {
     }
 
     /// The cheapest methods by error, of all and of those that take any state, beside the default.
-    pub(super) fn fronts(&self, problem: &str) -> Vec<Front> {
+    pub(super) fn fronts(&self) -> Vec<Front> {
         let robust = || self.points.iter().filter(|p| ROBUST.contains(&p.method));
         let mut all = Vec::new();
         for measure in [POSITION, ENERGY] {
@@ -124,14 +124,14 @@ impl Study {
                 };
                 let robust = cheapest(robust(), measure, level);
                 all.push(Front {
-                    problem: problem.to_owned(),
+                    problem: self.problem.name().to_owned(),
                     error: measure.name.to_owned(),
                     at_most: level,
                     cheapest: best.method.to_owned(),
-                    rate: best.cpu(),
+                    rate: best.cpu_s_per_simulated_s,
                     cheapest_from_flat_states: robust.map(|p| p.method.to_owned()),
-                    its_rate: robust.map(Point::cpu),
-                    default: cheapest(self.by(DEFAULT), measure, level).map(Point::cpu),
+                    its_rate: robust.map(cpu),
+                    default: cheapest(self.by(DEFAULT), measure, level).map(cpu),
                 });
             }
         }
@@ -141,9 +141,9 @@ impl Study {
     /// Methods, their fitted orders and the time they take for given errors.
     pub(super) fn table(&self) -> Table {
         let order = |name, measure, floor| order(&self.points, name, measure, floor);
-        let cost = |name, level| cheapest(self.by(name), POSITION, level).map(Point::cpu);
+        let cost = |name, level| cheapest(self.by(name), POSITION, level).map(cpu);
         let least = |name, m: Measure| self.by(name).filter_map(m.of).reduce(f64::min);
-        let failed = |name| self.by(name).filter(|p| !p.is_good());
+        let failed = |name| self.by(name).filter(|p| p.failure.is_some());
         Table::of(
             "Orders fitted to the finest steps; CPU seconds for a simulated second to get below a position error; runs that did not \
              come to the end, and why the last of them did not",
@@ -161,18 +161,18 @@ impl Study {
                 "largest strain" => self.by(name).filter_map(STRAIN.of).reduce(f64::max),
                 "runs" => self.by(name).count(),
                 "not finished" => failed(name).count(),
-                "remark" => failed(name).last().and_then(|p| p.ran.failure.clone()),
+                "remark" => failed(name).last().and_then(|p| p.failure.clone()),
             },
         )
     }
 
     /// Three log-log panels: time against each error.
     pub(super) fn plot(&self) -> Charts {
-        let good = || self.points.iter().filter(|p| p.is_good());
+        let good = || self.points.iter().filter(|p| p.failure.is_none());
         let panel = |(measure, label, legend): (Measure, &str, Legend)| {
             let series = |scheme: &Scheme| {
                 let (colour, marker) = scheme.look?;
-                let place = |p: &Point| Some([p.cpu(), (measure.of)(p)?.max(CLIP)]);
+                let place = |p: &Point| Some([cpu(p), (measure.of)(p)?.max(CLIP)]);
                 let points: Vec<_> = self.by(scheme.name).filter_map(place).collect();
                 let line = Series::line(scheme.name, colour, points).marked(marker);
                 let is_free = matches!(scheme.kind, Kind::Free(_));
@@ -182,7 +182,7 @@ impl Study {
             let series: Vec<Series> = self.schemes.iter().filter_map(series).collect();
             let errors = series.iter().flat_map(|s| &s.points);
             let errors: Vec<f64> = errors.map(|p| p[1].min(LARGEST)).collect();
-            let x = Axis::decades("CPU time / simulated time", good().map(Point::cpu));
+            let x = Axis::decades("CPU time / simulated time", good().map(cpu));
             let y = Axis::decades(label, errors);
             Chart::new(x, y, [150.0, 160.0], series).with_legend(legend)
         };
@@ -194,6 +194,11 @@ impl Study {
         ];
         Charts::row(panels.map(panel))
     }
+}
+
+/// CPU seconds for a simulated second.
+fn cpu(point: &Point) -> f64 {
+    point.cpu_s_per_simulated_s
 }
 
 /// Errors below this are drawn as this: round-off, and zero has no logarithm.
@@ -209,7 +214,7 @@ mod tests {
 
     #[test]
     fn a_quick_study_of_the_pendulum_holds_together() {
-        let study = Study::of(Problem::Pendulum, "pendulum", Effort::Quick).unwrap();
+        let study = Study::of(Problem::Pendulum, Effort::Quick).unwrap();
         let csv = String::from_utf8(study.data().unwrap().csv().unwrap()).unwrap();
         assert_eq!(csv.lines().count(), 1 + study.points.len());
         assert!(csv.contains("BDF2 (default),"), "{csv}");
@@ -228,7 +233,7 @@ mod tests {
         assert!(strain(DEFAULT) < 1e-11 && strain("published scheme") > 1e-4);
         // The default reaches small errors on the front of the methods that take any state, in this or that
         // time.
-        let fronts = study.fronts("pendulum");
+        let fronts = study.fronts();
         assert!(!fronts.is_empty());
         let is_slower = |f: &Front| f.default.is_none_or(|cpu| cpu >= f.rate);
         assert!(fronts.iter().all(is_slower));

@@ -1,21 +1,22 @@
-//! The runs of a row: from several starts, on a number of threads.
+//! The runs of a row: from several starts, by a method, on a number of threads.
 
-use super::Work;
+use super::Task;
+use super::kinds::Start;
+use super::penetration::depth;
 use crate::progress::Progress;
-use crate::report::{Effort, extremes, peak_memory, reset_peak_memory};
-use crate::runs::{Course, Ending, FigureScene, Plan};
+use crate::report::{Effort, extremes, median, peak_memory, reset_peak_memory, rounded, short};
+use crate::runs::{Course, Ending, Plan};
 use crate::threads;
 use anyhow::{Context, Result};
 use cpu_time::{ProcessTime, ThreadTime};
 use isosheet_dynamics::{Simulation, StepReport};
-use isosheet_io::scene::SupportForces;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::time::Duration;
 
 /// How much is run.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Extent {
+struct Extent {
     starts: u64,
     /// Steps after which a run ends.
     steps: usize,
@@ -24,7 +25,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    pub(super) fn of(effort: Effort) -> Self {
+    fn of(effort: Effort) -> Self {
         let (starts, steps, patience) = effort.pick(
             (1, 4, 10.0),
             (3, usize::MAX, 300.0),
@@ -39,208 +40,291 @@ impl Extent {
 }
 
 /// A run from one start.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Run {
-    pub(super) course: Course,
-    /// CPU seconds of all threads.
-    pub(super) cpu: f64,
-    /// Largest strain of an edge of rods, or of a face of an elastic sheet.
-    pub(super) strain: f64,
+#[derive(Clone, Debug, Default)]
+struct Run {
+    /// Its CPU time is that of all threads, its strain that of the edges of rods or of the faces of an elastic
+    /// sheet.
+    course: Course,
+    /// Change of the energy at the end, and the largest one on the way, joules.
+    changes: [f64; 2],
+    /// Potential energy at the start less that at the end, joules.
+    released: f64,
+    /// Depth of the deepest vertex in the table, metres, and pairs of an edge and a face that cross, over all
+    /// steps; of works that are checked.
+    penetration: Option<(f64, usize)>,
     /// Peak of the memory, bytes, where the system tells.
     peak: Option<f64>,
 }
 
-/// A row of the table.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+impl Run {
+    /// A change of the energy as part of the potential energy released; 0 if none was.
+    fn part(&self, k: usize) -> f64 {
+        let part = self.changes[k] / self.released;
+        if self.released > 0.0 { part } else { 0.0 }
+    }
+}
+
+/// A row of the table: medians over the starts where nothing else is said. The fields are the columns, by
+/// their names.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Row {
-    /// Name and title of the work.
     pub(super) work: String,
-    pub(super) title: String,
-    /// Its size in words.
+    pub(super) what_happens: String,
     pub(super) size: String,
+    pub(super) vertices: usize,
     /// What the sheet is made of: rods, or an elastic sheet.
     pub(super) model: String,
-    pub(super) vertices: usize,
+    /// Where it is not that of a scene file.
+    pub(super) method: Option<String>,
+    pub(super) step_s: f64,
     pub(super) threads: usize,
-    /// Scene and edits.
-    pub(super) command: String,
-    pub(super) runs: Vec<Run>,
+    pub(super) starts: usize,
+    pub(super) simulated_s: Option<f64>,
+    pub(super) cpu_s: Option<f64>,
+    pub(super) cpu_s_per_simulated_s: Option<f64>,
+    /// As a multiple of that of the fastest method that keeps lengths; made with the table.
+    pub(super) times_fastest_exact: Option<f64>,
+    pub(super) wall_s: Option<f64>,
+    pub(super) wall_s_per_simulated_s: Option<f64>,
+    pub(super) factorisations_per_step: Option<f64>,
+    pub(super) iterations_per_step: Option<f64>,
+    /// Factorisations: the most of a start as a multiple of the fewest.
+    pub(super) largest_over_smallest: Option<f64>,
+    pub(super) most_in_a_step: usize,
+    /// Parts of steps, and those that were rejected.
+    pub(super) steps: Option<f64>,
+    pub(super) rejected: Option<f64>,
+    /// The largest.
+    pub(super) strain: f64,
+    /// The smallest.
+    pub(super) smallest_gap_m: Option<f64>,
+    /// At the end, and the largest on the way, as part of the potential energy released.
+    pub(super) energy_balance: Option<f64>,
+    pub(super) largest_energy_change: Option<f64>,
+    /// The largest, and the sum.
+    pub(super) depth_m: Option<f64>,
+    pub(super) crossings: Option<usize>,
+    /// The largest.
+    pub(super) peak_bytes: Option<f64>,
+    /// Starts whose runs came to their ends.
+    pub(super) ended: usize,
+    /// How far the last run came that did not come to its end, and why.
+    pub(super) failure: Option<String>,
+    /// Scene file and edits.
+    pub(super) scene: Option<String>,
 }
 
 impl Row {
-    /// The median over the starts of a number that all runs have.
-    pub(super) fn median(&self, of: impl Fn(&Run) -> Option<f64>) -> Option<f64> {
-        let mut all = self.runs.iter().map(of).collect::<Option<Vec<f64>>>()?;
-        all.sort_by(f64::total_cmp);
-        let n = all.len();
-        (n > 0).then(|| 0.5 * (all[(n - 1) / 2] + all[n / 2]))
-    }
-
-    /// Median of the CPU seconds for a simulated second.
-    pub(super) fn rate(&self) -> Option<f64> {
-        self.median(|r| (r.course.time > 0.0).then(|| r.cpu / r.course.time))
-    }
-
-    /// Median of the factorisations of a step.
-    pub(super) fn factorisations(&self) -> Option<f64> {
-        self.median(|r| r.course.cost.factorisations_per_step())
-    }
-
     /// Whether all runs came to their ends.
     pub(super) fn is_good(&self) -> bool {
-        self.runs.iter().all(|r| r.course.is_good())
+        self.failure.is_none()
     }
 
-    pub(super) fn strain(&self) -> f64 {
-        self.runs.iter().map(|r| r.strain).fold(0.0, f64::max)
+    /// CPU seconds for a simulated second, of runs that came to their ends.
+    pub(super) fn rate(&self) -> Option<f64> {
+        self.cpu_s_per_simulated_s.filter(|_| self.is_good())
     }
 
-    pub(super) fn gap(&self) -> Option<f64> {
-        self.runs
-            .iter()
-            .filter_map(|r| r.course.gap)
-            .reduce(f64::min)
+    /// Factorisations of a step, of runs that came to their ends.
+    pub(super) fn factorisations(&self) -> Option<f64> {
+        self.factorisations_per_step.filter(|_| self.is_good())
     }
 
-    /// Smallest and largest number of factorisations of the starts, the larger one as a multiple.
-    pub(super) fn spread(&self) -> Option<f64> {
-        let all = self
-            .runs
-            .iter()
-            .map(|r| r.course.cost.factorisations as f64);
-        let [low, high] = extremes(all).filter(|_| self.runs.len() > 1)?;
-        Some(high / low)
-    }
-
-    pub(super) fn peak(&self) -> Option<f64> {
-        self.runs.iter().filter_map(|r| r.peak).reduce(f64::max)
+    /// The same row with what its runs gave.
+    fn with(self, runs: &[Run]) -> Self {
+        // The median of a number that all runs have.
+        let median = |of: &dyn Fn(&Run) -> Option<f64>| {
+            let all: Option<Vec<f64>> = runs.iter().map(of).collect();
+            all.and_then(median)
+        };
+        let factorisations = runs.iter().map(|r| r.course.cost.factorisations as f64);
+        let spread = extremes(factorisations).filter(|_| runs.len() > 1);
+        let failed = runs.iter().rfind(|r| !r.course.is_good());
+        let failure = failed.and_then(|r| Some((r.course.time, r.course.failure()?)));
+        let gaps = runs.iter().filter_map(|r| r.course.gap);
+        let penetrations = || runs.iter().filter_map(|r| r.penetration);
+        Self {
+            starts: runs.len(),
+            simulated_s: median(&|r| Some(r.course.time)),
+            cpu_s: median(&|r| Some(r.course.cost.cpu)),
+            cpu_s_per_simulated_s: median(&|r| r.course.cpu_rate()),
+            wall_s: median(&|r| Some(r.course.cost.wall)),
+            wall_s_per_simulated_s: median(&|r| r.course.rate()),
+            factorisations_per_step: median(&|r| r.course.cost.factorisations_per_step()),
+            iterations_per_step: median(&|r| r.course.cost.iterations_per_step()),
+            largest_over_smallest: spread.map(|[low, high]| high / low),
+            most_in_a_step: runs.iter().map(|r| r.course.worst).max().unwrap_or(0),
+            steps: median(&|r| Some(r.course.cost.substeps as f64)),
+            rejected: median(&|r| Some(r.course.cost.rejected as f64)),
+            strain: runs.iter().map(|r| r.course.strain).fold(0.0, f64::max),
+            smallest_gap_m: gaps.reduce(f64::min),
+            energy_balance: median(&|r| Some(r.part(0))),
+            largest_energy_change: median(&|r| Some(r.part(1))),
+            depth_m: penetrations().map(|(depth, _)| depth).reduce(f64::max),
+            crossings: penetrations().map(|(_, count)| count).reduce(|a, b| a + b),
+            peak_bytes: runs.iter().filter_map(|r| r.peak).reduce(f64::max),
+            ended: runs.iter().filter(|r| r.course.is_good()).count(),
+            failure: failure.map(|(t, why)| format!("at {} s: {}", short(t), rounded(&why))),
+            ..self
+        }
     }
 }
 
-/// Runs a work at a size from all starts. After a run that does not end in its time, no other start is tried.
+/// Runs a work from all starts. After a run that does not come to its end, no other start is tried.
 ///
 /// # Errors
 /// A scene of which no simulation can be made; [`Interrupted`](crate::interrupt::Interrupted).
-pub(super) fn measure(work: &Work, size: u32, threads: usize, extent: Extent) -> Result<Row> {
-    let scene = |start| {
-        let scene = work.scene(size, start)?;
-        scene.context("the mesh is gone")
+pub(super) fn measure(task: &Task, effort: Effort) -> Result<Row> {
+    let (work, extent) = (task.work, Extent::of(effort));
+    let pool = threads::pool(task.threads)?;
+    let bar = Progress::start(&task.unit.title, extent.starts as usize);
+    let start = |number| {
+        let start = work.start(task.size, task.method.as_ref(), number)?;
+        start.context("the mesh is gone")
     };
-    let setup = scene(1)?.setup()?;
-    let is_elastic = setup.model.elastic_sheet().is_some();
-    let mut row = Row {
+    let first = start(1)?;
+    let model = first.simulation.model();
+    let is_elastic = model.elastic_sheet().is_some();
+    let row = Row {
         work: work.name.to_owned(),
-        title: work.title.to_owned(),
-        size: work.size_name(size),
+        what_happens: work.title.to_owned(),
+        size: work.size_name(task.size),
+        vertices: model.topology().vertex_count(),
         model: if is_elastic { "elastic" } else { "rods" }.to_owned(),
-        vertices: setup.sheet.topology().vertex_count(),
-        threads,
-        command: work.command(size),
-        runs: Vec::new(),
+        method: task
+            .method
+            .as_ref()
+            .map(|((name, _), _)| (*name).to_owned()),
+        step_s: first.step,
+        threads: task.threads,
+        scene: work.command(task.size),
+        ..Row::default()
     };
-    let pool = threads::pool(threads)?;
-    let bar = Progress::start(work.row_name(size, threads), extent.starts as usize);
-    for start in 1..=extent.starts {
-        let scene = scene(start)?;
-        let run = pool.install(|| run(&scene, extent))?;
+    let mut runs = Vec::new();
+    for number in 1..=extent.starts {
+        let start = start(number)?;
+        runs.push(pool.install(|| run(start, extent))?);
         bar.step();
-        let is_late = matches!(run.course.ending, Ending::WallTime(_));
-        row.runs.push(run);
-        if is_late {
+        if !runs.iter().all(|r| r.course.is_good()) {
             break;
         }
     }
-    bar.finish(&format!("{:.2} CPU s/s", row.rate().unwrap_or(f64::NAN)));
+    let row = row.with(&runs);
+    let rate = row.cpu_s_per_simulated_s;
+    bar.finish(&format!("{:.2} CPU s/s", rate.unwrap_or(f64::NAN)));
     Ok(row)
 }
 
-fn run(scene: &FigureScene, extent: Extent) -> Result<Run> {
-    let setup = scene.setup()?;
-    let origins = setup.origins.clone();
-    let mut simulation = setup.start()?;
-    let supports = SupportForces::new(origins, &simulation, scene.scene().support.len());
-    let stop = &scene.scene().stop;
-    let (mut strain, mut looking, mut slips) = (0.0_f64, Duration::ZERO, false);
+fn run(start: Start, extent: Extent) -> Result<Run> {
+    let Start {
+        mut simulation,
+        step,
+        steps,
+        is_over,
+        checker,
+    } = start;
+    let potential = |s: &Simulation| s.model().potential_energy(s.state().t, &s.state().x);
+    let (energy, height) = (simulation.energy(), potential(&simulation));
+    let (mut strain, mut looking, mut ends) = (0.0_f64, Duration::ZERO, false);
+    let mut penetration = checker.is_some().then_some((0.0_f64, 0));
     let mut look = |simulation: &Simulation, report: &StepReport| {
         let begun = ThreadTime::now();
-        let faces = simulation
-            .model()
-            .elastic_deformation(&simulation.state().x);
-        strain = match faces {
+        let x = &simulation.state().x;
+        strain = match simulation.model().elastic_deformation(x) {
             Some(faces) => faces.strain.into_iter().fold(strain, f64::max),
             None => strain.max(report.strain),
         };
-        slips = stop.is_force_reached(|| supports.of(simulation));
+        if let (Some(checker), Some((deepest, crossings))) = (&checker, &mut penetration) {
+            *deepest = deepest.max(depth(x));
+            *crossings += checker.crossings(x);
+        }
+        ends = is_over(simulation);
         looking += begun.elapsed();
-        if slips {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+        match ends {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
         }
     };
-    let steps = scene.frames().min(extent.steps);
-    let plan = Plan::new(scene.frame(), steps as f64 * scene.frame()).within(extent.patience);
+    let steps = steps.min(extent.steps);
+    let plan = Plan::new(step, steps as f64 * step).within(extent.patience);
     reset_peak_memory();
     let clock = ProcessTime::now();
     let mut course = plan.run(&mut simulation, &mut look)?;
-    let cpu = clock.elapsed().saturating_sub(looking).as_secs_f64();
-    if slips {
-        // The scene ends there.
+    course.cost.cpu = clock.elapsed().saturating_sub(looking).as_secs_f64();
+    course.strain = strain;
+    if ends {
         course.ending = Ending::Complete;
     }
     Ok(Run {
+        changes: [simulation.energy() - energy, course.drift],
+        released: height - potential(&simulation),
         course,
-        cpu,
-        strain,
+        penetration,
         peak: peak_memory(),
     })
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::kinds::{WORKS, Work, single};
     use super::*;
 
     #[test]
     fn medians_are_those_of_all_starts() {
-        let run = |cpu: f64, factorisations: usize| {
+        let run = |cpu: f64, factorisations: usize, ending| {
             let mut course = Course {
                 time: 2.0,
+                strain: 1e-12 * cpu,
+                ending,
                 ..Course::default()
             };
-            course.cost.factorisations = factorisations;
+            (course.cost.cpu, course.cost.factorisations) = (cpu, factorisations);
             Run {
                 course,
-                cpu,
-                strain: 1e-12 * cpu,
-                peak: None,
+                ..Run::default()
             }
         };
-        let mut row = Row {
-            work: "w".into(),
-            title: String::new(),
-            size: String::new(),
-            model: String::new(),
-            vertices: 9,
-            threads: 1,
-            command: String::new(),
-            runs: vec![run(5.0, 10), run(1.0, 10), run(2.0, 15)],
-        };
-        assert_eq!((row.rate(), row.spread()), (Some(1.0), Some(1.5)));
-        assert_eq!((row.strain(), row.gap()), (5e-12, None));
-        row.runs.push(run(4.0, 10));
-        assert_eq!(row.rate(), Some(1.5));
-        assert!(row.is_good());
-        row.runs[0].course.ending = Ending::WallTime(1.0);
-        assert!(!row.is_good());
+        let good = |cpu, factorisations| run(cpu, factorisations, Ending::Complete);
+        let mut runs = vec![good(5.0, 10), good(1.0, 10), good(2.0, 15)];
+        let row = Row::default().with(&runs);
+        let found = (row.rate(), row.largest_over_smallest, row.strain);
+        assert_eq!(found, (Some(1.0), Some(1.5), 5e-12));
+        assert!(row.smallest_gap_m.is_none() && row.crossings.is_none());
+        runs.push(run(4.0, 10, Ending::WallTime(4.0)));
+        let row = Row::default().with(&runs);
+        assert_eq!((row.cpu_s_per_simulated_s, row.rate()), (Some(1.5), None));
+        assert_eq!((row.starts, row.ended), (4, 3));
+        let failure = row.failure.unwrap();
+        assert_eq!(failure, "at 2.0 s: 4 s of wall time were over");
+    }
+
+    fn of(work: &Work) -> Run {
+        let size = work.sizes(Effort::Quick)[0];
+        let method = work.methods().swap_remove(0);
+        let start = work.start(size, method.as_ref(), 1).unwrap();
+        run(start.expect("a mesh"), Extent::of(Effort::Full)).unwrap()
     }
 
     /// The strip is pushed until its support bears 3 mN.
     #[test]
     fn a_support_that_slips_ends_a_run_well() {
-        let edits = ["stop.time=0.05", "stop.support_force=0.003"].map(str::to_owned);
-        let scene = FigureScene::of("fig16", "jam", &edits).unwrap();
-        let run = run(&scene, Extent::of(Effort::Full)).unwrap();
-        assert!(run.course.is_good() && run.course.time < 0.05, "{run:?}");
-        assert!(run.strain < 1e-11 && run.cpu > 0.0);
+        let edits = &["stop.time=0.05", "stop.support_force=0.003"];
+        let slips = of(&single("jam", "", "fig16").edited(edits));
+        let course = &slips.course;
+        assert!(course.is_good() && course.time < 0.05, "{slips:?}");
+        assert!(course.strain < 1e-11 && course.cost.cpu > 0.0);
+    }
+
+    #[test]
+    fn the_sheets_of_other_programs_come_to_their_ends() {
+        let named = |name| WORKS.iter().find(|work| work.name == name).unwrap();
+        let hanging = of(named("hanging"));
+        assert_eq!((hanging.course.cost.steps, hanging.penetration), (60, None));
+        assert!((-0.9..0.01).contains(&hanging.part(0)), "{hanging:?}");
+        let cloth = of(named("tablecloth-itself"));
+        let course = &cloth.course;
+        assert!(course.is_good() && (course.time - 1.5).abs() < 1e-9);
+        assert!(course.strain < 1e-10 && course.gap.is_some_and(|gap| gap > 0.0));
+        assert_eq!(cloth.penetration, Some((0.0, 0)));
     }
 }
