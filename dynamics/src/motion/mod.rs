@@ -1,4 +1,4 @@
-//! Prescribed motions of points and of rigid bodies, as data or as functions of time.
+//! Prescribed motions of points and of rigid bodies: by profiles, by poses, or as functions of time.
 
 pub(crate) mod profile;
 mod rigid;
@@ -11,7 +11,6 @@ use crate::motion::profile::{Profile, ProfileError};
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::Arc;
 
@@ -84,7 +83,7 @@ impl Advice for MotionError {
     }
 }
 
-/// The prescribed motion of a point as data: `offset + (x(t), y(t), z(t))`.
+/// The prescribed motion of a point by profiles: `offset + (x(t), y(t), z(t))`.
 ///
 /// ```
 /// use isosheet_dynamics::{PointProfile, Profile};
@@ -96,8 +95,7 @@ impl Advice for MotionError {
 /// };
 /// assert_eq!(lift.position(2.0), [0.2, 0.0, 0.1 + 0.05]);
 /// ```
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PointProfile {
     /// Where the point is as long as the displacement is zero, metres: with profiles that begin at zero,
     /// where the vertex is in the start state.

@@ -1,27 +1,19 @@
-//! Scalar functions of time as data: what prescribed motions, driven creases and loads are made of.
+//! Scalar functions of time: what prescribed motions, driven creases and loads are made of.
 
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 #[cfg(test)]
 pub(crate) mod tests;
 
-/// A scalar function of time (seconds), written and read as data. Its unit is that of what it drives: metres
-/// for a displacement, radians for an angle, newtons for a load.
-///
-/// In JSON `{"ramp": {"from": 0.0, "to": 0.1, "begin": 0.5, "end": 2.0}}` or `{"constant": 0.1}`; in TOML
-///
-/// ```toml
-/// x.sine = { amplitude = 0.02, frequency = 1.5 }
-/// z.keyframes = { interpolation = "monotone_cubic", keys = [[0.0, 0.0], [0.5, 0.1], [2.0, 0.0]] }
-/// ```
+/// A scalar function of time (seconds). Its unit is that of what it drives: metres for a displacement,
+/// radians for an angle, newtons for a load. (Files have profiles as scenes have them, in
+/// `isosheet_io::scene`.)
 ///
 /// The derivatives are exact. Where one of them jumps, which is at the ends of a ramp and at keyframes, it is
 /// the value to the right: that of the motion that begins there.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Profile {
     /// The same value at all times.
     Constant(f64),
@@ -55,8 +47,7 @@ pub enum Profile {
     /// with the constant rate: how a feed gets going. The value at `end` is
     /// `from + rate (end - begin) / 2`. The rate is continuous (C1).
     RunUp {
-        /// Value up to `begin`; zero if a file leaves it out.
-        #[serde(default)]
+        /// Value up to `begin`.
         from: f64,
         /// Rate from `end` on, per second.
         rate: f64,
@@ -67,21 +58,18 @@ pub enum Profile {
     },
     /// `mean + amplitude sin(2 pi frequency t + phase)`.
     Sine {
-        /// Mean value; zero if a file leaves it out.
-        #[serde(default)]
+        /// Mean value.
         mean: f64,
         /// Amplitude.
         amplitude: f64,
         /// Frequency, hertz.
         frequency: f64,
-        /// Phase at time zero, radians; zero if a file leaves it out.
-        #[serde(default)]
+        /// Phase at time zero, radians.
         phase: f64,
     },
     /// Through pairs `[time, value]` in the order of time; constant before the first and after the last.
     Keyframes {
-        /// The course between keyframes; linear if a file leaves it out.
-        #[serde(default)]
+        /// The course between keyframes.
         interpolation: Interpolation,
         /// Time (seconds) and value of each keyframe.
         keys: Vec<[f64; 2]>,
@@ -89,8 +77,7 @@ pub enum Profile {
 }
 
 /// The course of a [`Profile::Keyframes`] between two keyframes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Interpolation {
     /// Linear; the rate jumps at keyframes.
     #[default]

@@ -5,26 +5,22 @@ use super::{
     vector_derivatives,
 };
 use crate::motion::profile::Profile;
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
-use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
 /// A pose to be reached at a time.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keyframe {
     /// Time, seconds.
     pub t: f64,
     /// Position and orientation of the body's frame, metres.
-    #[serde(with = "pose_data")]
     pub pose: Isometry3<f64>,
 }
 
 /// A rotation about an axis that keeps its direction.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct AxisRotation {
     /// A point of the axis as long as the displacement is zero, metres.
     pub centre: [f64; 3],
@@ -58,11 +54,9 @@ impl AxisRotation {
 ///
 /// The sheet meets a body on the straight and evenly turning motion between its poses at the two ends of a
 /// step: a step in which it turns by half a turn or more leaves the sense of the rotation open.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RigidDisplacement {
     /// The pose as long as translation and angle are zero, metres.
-    #[serde(with = "pose_data")]
     pub pose: Isometry3<f64>,
     /// Translation along x, metres.
     pub x: Profile,
@@ -136,9 +130,8 @@ impl RigidDisplacement {
     }
 }
 
-/// A rigid motion as data.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+/// A rigid motion that is given by profiles or by poses.
+#[derive(Debug, Clone, PartialEq)]
 pub enum RigidProfile {
     /// Translation and rotation by profiles.
     Displacement(Box<RigidDisplacement>),
@@ -401,66 +394,5 @@ impl Kinematics {
 
     fn arm(&self, p: &Vector3<f64>) -> Vector3<f64> {
         p - self.pose.translation.vector
-    }
-}
-
-/// Poses as `{position: [x, y, z], rotation: [x, y, z, w]}`, the rotation a unit quaternion with its real
-/// part last.
-mod pose_data {
-    use super::*;
-
-    /// Quaternions whose norm differs from one by less than this are kept bit by bit, as products of
-    /// rotations have it; others, such as those typed in with a few digits, are normalised.
-    const UNIT: f64 = 1e-12;
-
-    #[derive(Serialize, Deserialize)]
-    #[serde(rename = "pose", default, deny_unknown_fields)]
-    struct PoseData {
-        position: [f64; 3],
-        rotation: [f64; 4],
-    }
-
-    impl Default for PoseData {
-        fn default() -> Self {
-            Self {
-                position: [0.0; 3],
-                rotation: [0.0, 0.0, 0.0, 1.0],
-            }
-        }
-    }
-
-    pub(super) fn serialize<S: Serializer>(
-        pose: &Isometry3<f64>,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        let data = PoseData {
-            position: pose.translation.vector.into(),
-            rotation: pose.rotation.coords.into(),
-        };
-        data.serialize(serializer)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<Isometry3<f64>, D::Error> {
-        let data = PoseData::deserialize(deserializer)?;
-        let quaternion = Quaternion::from(data.rotation);
-        let norm = quaternion.norm();
-        if !(norm.is_finite() && norm > 0.0) {
-            let [x, y, z, w] = data.rotation;
-            return Err(de::Error::custom(format!(
-                "the rotation [{x}, {y}, {z}, {w}] is no quaternion of a rotation; give \
-                 [x, y, z, w] with w = 1 for none"
-            )));
-        }
-        let rotation = if (norm - 1.0).abs() < UNIT {
-            UnitQuaternion::new_unchecked(quaternion)
-        } else {
-            UnitQuaternion::new_normalize(quaternion)
-        };
-        Ok(Isometry3::from_parts(
-            Translation3::from(data.position),
-            rotation,
-        ))
     }
 }

@@ -1,10 +1,9 @@
 //! Kinematics against differences, motions by profiles against the same motions by functions, and refusals.
 
 use super::*;
-use crate::motion::profile::tests::profiles;
 use crate::{Method, ModelError, SheetModel, Simulation, State, leave_flat};
 use isosheet_mesh::{MassKind, VertexId, generate};
-use nalgebra::{Isometry3, Point3, UnitQuaternion};
+use nalgebra::{Isometry3, Point3};
 use proptest::prelude::*;
 
 fn vector() -> impl Strategy<Value = [f64; 3]> {
@@ -116,26 +115,6 @@ proptest! {
             prop_assert!((motion.acceleration(t, 0.03) - acceleration).norm() < 1e-5);
         }
     }
-
-    #[test]
-    fn files_keep_every_bit(
-        motion in displacements(profiles().boxed()), offset in vector(), poses in proptest::collection::vec(pose(), 1..4)
-    ) {
-        let [x, y, z] = [&motion.x, &motion.y, &motion.z].map(Clone::clone);
-        let point = PointProfile { offset, x, y, z };
-        let text = serde_json::to_string(&point).unwrap();
-        let read: PointProfile = serde_json::from_str(&text).unwrap();
-        prop_assert_eq!(read, point);
-        let times = (0..).map(f64::from);
-        let keys: Vec<Keyframe> = times.zip(poses).map(|(t, pose)| Keyframe { t, pose }).collect();
-        for motion in [RigidProfile::from(motion), RigidProfile::from(keys)] {
-            let text = serde_json::to_string(&motion).unwrap();
-            let read: RigidProfile = serde_json::from_str(&text).unwrap();
-            let bytes = postcard::to_stdvec(&motion).unwrap();
-            prop_assert_eq!(&postcard::from_bytes::<RigidProfile>(&bytes).unwrap(), &motion);
-            prop_assert_eq!(format!("{read:?}"), format!("{motion:?}"));
-        }
-    }
 }
 
 #[test]
@@ -182,29 +161,6 @@ fn a_rolling_wheel_rests_where_it_touches_the_ground() {
     assert!(ground.norm() < 1e-15, "{ground}");
     let top = now.velocity_at(&Vector3::new(x, 0.0, 2.0 * r));
     assert!((top - Vector3::new(r * angle, 0.0, 0.0)).norm() < 1e-14);
-}
-
-#[test]
-fn poses_are_written_as_position_and_quaternion() {
-    let text = r#"{"displacement": {"pose": {"position": [0, 0, 1], "rotation": [0, 0, 0.7, 0.7]},
-        "z": {"constant": 0.5}}}"#;
-    let motion: RigidProfile = serde_json::from_str(text).unwrap();
-    let pose = motion.kinematics(0.0).pose;
-    let quarter = UnitQuaternion::from_euler_angles(0.0, 0.0, std::f64::consts::FRAC_PI_2);
-    assert!(pose.rotation.angle_to(&quarter) < 1e-15);
-    assert_eq!(pose.translation.vector, Vector3::new(0.0, 0.0, 1.5));
-    let text = r#"{"keyframes": {"keys": [{"t": 0, "pose": {}}, {"t": 1, "pose": {"position": [1, 0, 0]}}]}}"#;
-    let motion: RigidProfile = serde_json::from_str(text).unwrap();
-    assert_eq!(motion.kinematics(0.5).velocity, Vector3::x());
-    for wrong in [
-        r#"{"displacement": {"pose": {"rotation": [0, 0, 0, 0]}}}"#,
-        r#"{"displacement": {"pose": {"postion": [0, 0, 0]}}}"#,
-        r#"{"displacement": {"w": {"constant": 0.5}}}"#,
-        r#"{"orbit": {}}"#,
-    ] {
-        let error = serde_json::from_str::<RigidProfile>(wrong).unwrap_err();
-        assert!(!error.to_string().is_empty(), "{wrong}");
-    }
 }
 
 #[test]
