@@ -303,9 +303,9 @@ fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> [String; 6] {
             let reason = rounded(message);
             format!("stopped at t = {t:.3} s, strain {strain:.0e}: {reason}")
         }
-        Ending::WallTime(_) => {
-            let wall = course.cost.wall;
-            format!("given up at t = {t:.3} s after {wall:.0} s of wall time, strain {strain:.0e}")
+        Ending::CpuTime(_) => {
+            let cpu = course.cost.cpu;
+            format!("given up at t = {t:.3} s after {cpu:.0} s of CPU time, strain {strain:.0e}")
         }
         _ => format!("{t:.1} s, strain {strain:.0e}"),
     };

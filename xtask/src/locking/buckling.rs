@@ -106,7 +106,7 @@ fn aside(model: Model, flat: &Sheet, load: f64, plan: &Plan) -> Result<(f64, Cou
         .with_acceleration([0.0, -GRAVITY, -IMPERFECTION * GRAVITY])
         .with_damping(DAMPING)?
         .with_pins(clamped)?;
-    let (course, end) = run(moved, flat, implicit_euler(), plan)?;
+    let (course, end) = run(model, moved, flat, implicit_euler(), plan)?;
     let tip = vertices(flat, |[x, ..]| x > LENGTH - 1e-9);
     Ok((end.mean(&tip, 2, f64::abs) / LENGTH, course))
 }

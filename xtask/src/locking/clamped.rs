@@ -132,7 +132,7 @@ fn measure(model: Model, job: &Job, plan: &Plan) -> Result<(Ran, Fallen)> {
         .with_pins(&pins)?;
     let named = |(name, method)| (name == job.method).then_some(method);
     let method = damped().into_iter().find_map(named).unwrap_or_default();
-    let (course, end) = run(moved, &sheet, method, plan)?;
+    let (course, end) = run(model, moved, &sheet, method, plan)?;
     let ran = Ran::of(model, &sheet, &course);
     let lowest = end.x.iter().skip(2).step_by(3).copied().fold(0.0, f64::min);
     let clamp = SheetModel::new(&sheet, MASS, MassKind::Lumped)?.with_pins(&pins)?;

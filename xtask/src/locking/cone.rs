@@ -87,7 +87,13 @@ fn model(of: Model, sheet: &Sheet, plate: Plate<'_>) -> Result<SheetModel> {
 fn measure(of: Model, bound: f64, job: Job, plan: &Plan) -> Result<(Ran, Cone)> {
     let sheet = job.sheet()?;
     let plate = Plate { bound, ..PAPER };
-    let (course, end) = run(model(of, &sheet, plate)?, &sheet, implicit_euler(), plan)?;
+    let (course, end) = run(
+        of,
+        model(of, &sheet, plate)?,
+        &sheet,
+        implicit_euler(),
+        plan,
+    )?;
     let ran = Ran::of(of, &sheet, &course);
     let unit = PAPER.rigidity * (DEPTH / RADIUS).powi(2);
     let energy = of.energy(&sheet, plate, &end.x)? / unit;

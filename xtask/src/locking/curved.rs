@@ -122,7 +122,7 @@ fn measure(model: Model, job: Job, plan: &Plan) -> Result<(Ran, Folded)> {
         .with_damping(DAMPING)?
         .with_potential(job.springs(&sheet, creases)?)
         .with_potential(nudge(&sheet));
-    let (course, end) = run(moved, &sheet, implicit_euler(), plan)?;
+    let (course, end) = run(model, moved, &sheet, implicit_euler(), plan)?;
     let ran = Ran::of(model, &sheet, &course);
     let angles = creases.iter();
     let angles = angles.filter_map(|e| fold_angle(sheet.topology(), &end.x, *e));

@@ -84,7 +84,7 @@ struct Saddle {
 fn measure(model: Model, job: Job, plan: &Plan) -> Result<(Ran, Saddle)> {
     let (sheet, places) = pyramid(job)?;
     let moved = model.sheet(&sheet, PAPER)?.with_damping(DAMPING)?;
-    let (course, end) = run(moved, &sheet, implicit_euler(), plan)?;
+    let (course, end) = run(model, moved, &sheet, implicit_euler(), plan)?;
     let ran = Ran::of(model, &sheet, &course);
     let faces = face_energies(model, &sheet, &end.x)?;
     let corners = sheet.topology().faces().iter();

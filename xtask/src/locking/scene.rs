@@ -1,5 +1,6 @@
 //! Runs of sheets from rest, and where they end.
 
+use super::model::Model;
 use crate::interrupt::Interrupted;
 use crate::runs::{Course, Ending, Plan, unseen};
 use isosheet_dynamics::{Method, Reaction, SheetModel, Simulation, State};
@@ -17,6 +18,10 @@ pub(super) const REST: f64 = 1e-5;
 pub(super) fn until_rest(duration: f64) -> Plan {
     Plan::new(0.05, duration).until_rest(REST)
 }
+
+/// How long a sheet of rods may take, seconds of the processor: one that locks and is held at fewer than two
+/// vertices is not refused.
+const PATIENCE: f64 = 60.0;
 
 /// The end of a run.
 #[derive(Clone, Debug)]
@@ -41,11 +46,16 @@ impl End {
 /// # Errors
 /// [`Interrupted`].
 pub(super) fn run(
+    of: Model,
     model: SheetModel,
     sheet: &Sheet,
     method: Method,
     plan: &Plan,
 ) -> Result<(Course, End), Interrupted> {
+    let plan = match of {
+        Model::Rods => &plan.within(PATIENCE),
+        Model::Material | Model::Elastic => plan,
+    };
     let mut course = Course::default();
     let mut end = End {
         x: sheet.positions().to_vec(),
@@ -66,7 +76,7 @@ pub(super) fn run(
 
 #[cfg(test)]
 mod tests {
-    use super::super::model::{Model, PAPER};
+    use super::super::model::PAPER;
     use super::*;
     use isosheet_mesh::generate;
 
@@ -75,7 +85,7 @@ mod tests {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
         let falling = |start: &Sheet, plan: &Plan| {
             let model = Model::Rods.sheet(&sheet, PAPER).unwrap().with_gravity();
-            run(model, start, Method::default(), plan).unwrap()
+            run(Model::Rods, model, start, Method::default(), plan).unwrap()
         };
         let plan = Plan::new(0.01, 0.1);
         let (course, end) = falling(&sheet, &plan);

@@ -248,7 +248,7 @@ fn measure(model: Model, bound: f64, job: Job, plan: &Plan) -> Result<(Ran, Rest
         ..PAPER
     };
     let moved = strip.model(model, &sheet, plate)?;
-    let (course, end) = run(moved, &sheet, implicit_euler(), plan)?;
+    let (course, end) = run(model, moved, &sheet, implicit_euler(), plan)?;
     let ran = Ran::of(model, &sheet, &course);
     let elastic = model.energy(&sheet, plate, &end.x)?;
     let mut energy = elastic;

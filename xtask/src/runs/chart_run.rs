@@ -5,6 +5,7 @@ use super::{Course, Ending, FigureScene};
 use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::{Context, Result};
+use cpu_time::ThreadTime;
 use isosheet_dynamics::chart::{ChartDynamicsError, ChartSimulation};
 use serde::Serialize;
 use std::time::Instant;
@@ -22,7 +23,7 @@ pub(crate) struct ChartSummary {
 }
 
 /// Runs a scene in a chart until it ends or cannot go on, which is a result and not an error; it is given up
-/// after `patience` seconds of wall time.
+/// after `patience` seconds of the processor.
 ///
 /// Unlike [`Simulation::step`](isosheet_dynamics::Simulation::step), which cuts the last part of a step
 /// short, the scheme chooses the length of all its steps here: these lengths are what the paper reports.
@@ -41,7 +42,7 @@ pub(crate) fn chart_run(name: &str, scene: &FigureScene, patience: f64) -> Resul
     match start(scene)? {
         Err(error) => course.ending = Ending::of(&error, &error),
         Ok(mut simulation) => {
-            let (clock, mut frames) = (Instant::now(), 0);
+            let (clock, cpu, mut frames) = (Instant::now(), ThreadTime::now(), 0);
             // The scheme chooses the lengths of its steps, so that their number is not known beforehand.
             while simulation.time() < scene.scene().stop.time && course.is_good() {
                 interrupt::check()?;
@@ -54,8 +55,9 @@ pub(crate) fn chart_run(name: &str, scene: &FigureScene, patience: f64) -> Resul
                     bar.step();
                 }
                 course.cost.wall = clock.elapsed().as_secs_f64();
-                if course.is_good() && course.cost.wall > patience {
-                    course.ending = Ending::WallTime(patience);
+                course.cost.cpu = cpu.elapsed().as_secs_f64();
+                if course.is_good() && course.cost.cpu > patience {
+                    course.ending = Ending::CpuTime(patience);
                 }
             }
             course.time = simulation.time();

@@ -19,8 +19,8 @@ pub(crate) enum Ending {
     Rest,
     /// Whoever looked at the steps had seen enough.
     Stopped,
-    /// The limit of wall time, seconds, was reached.
-    WallTime(f64),
+    /// The limit of the time of the processor, seconds, was reached.
+    CpuTime(f64),
     /// The solver returned an error: its kind and its message.
     Error { kind: String, message: String },
 }
@@ -57,7 +57,7 @@ impl Ending {
             Self::Complete => "complete",
             Self::Rest => "at rest",
             Self::Stopped => "stopped",
-            Self::WallTime(_) => "wall time over",
+            Self::CpuTime(_) => "CPU time over",
             Self::Error { kind, .. } => kind,
         }
     }
@@ -153,7 +153,7 @@ impl Course {
         match &self.ending {
             Ending::Complete | Ending::Rest => None,
             Ending::Stopped => Some("stopped".into()),
-            Ending::WallTime(limit) => Some(format!("{limit} s of wall time were over")),
+            Ending::CpuTime(limit) => Some(format!("{limit} s of CPU time were over")),
             Ending::Error { message, .. } => Some(message.clone()),
         }
     }
@@ -217,7 +217,7 @@ pub(crate) struct Plan {
     /// The run ends early when the sheet is at rest: when the largest speed of a vertex (m/s) has been below
     /// this bound for [`QUIET`] steps. `None`: it does not end early.
     pub(crate) rest_speed: Option<f64>,
-    /// Longest wall time of a course, seconds. A run ends in the step in which it is over, or after it, unless
+    /// Longest time of the processor on the thread of a course, seconds. A run ends in the step in which it is over, or after it, unless
     /// it is the last one.
     pub(crate) patience: f64,
 }
@@ -237,10 +237,10 @@ fn largest_speed(simulation: &Simulation) -> f64 {
     squares.fold(0.0, f64::max).sqrt()
 }
 
-/// Ends a run within a step when its wall time is over or Ctrl-C was pressed: a step of a sheet that locks
+/// Ends a run within a step when its time of the processor is over or Ctrl-C was pressed: a step of a sheet that locks
 /// can take minutes.
 struct Limit<'a> {
-    begun: Instant,
+    begun: ThreadTime,
     patience: f64,
     /// The time of looking at steps, which does not count.
     seen: &'a Cell<Duration>,
@@ -252,8 +252,8 @@ impl Observer for Limit<'_> {
     }
 
     fn within(&mut self, _: &StepProgress) -> ControlFlow<()> {
-        let wall = self.begun.elapsed().saturating_sub(self.seen.get());
-        match interrupt::requested() || wall.as_secs_f64() > self.patience {
+        let cpu = self.begun.elapsed().saturating_sub(self.seen.get());
+        match interrupt::requested() || cpu.as_secs_f64() > self.patience {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
@@ -279,7 +279,7 @@ impl Plan {
         }
     }
 
-    /// The same with a limit of wall time, seconds.
+    /// The same with a limit of the time of the processor, seconds.
     pub(crate) fn within(self, patience: f64) -> Self {
         Self { patience, ..self }
     }
@@ -314,8 +314,8 @@ impl Plan {
         let clocks = Clocks::start();
         let (mut looking, mut quiet, mut stopped) = (Spent::default(), 0, Ending::Stopped);
         let mut limit = Limit {
-            begun: clocks.wall,
-            patience: self.patience - before.0,
+            begun: clocks.cpu,
+            patience: self.patience - before.1,
             seen: &Cell::default(),
         };
         let seen_until_now = limit.seen;
@@ -329,13 +329,13 @@ impl Plan {
             let seen = begun.spent();
             looking.wall += seen.wall;
             looking.cpu += seen.cpu;
-            seen_until_now.set(looking.wall);
+            seen_until_now.set(looking.cpu);
             clocks.cost(&looking, before, &mut course.cost);
             if enough.is_continue() {
                 if quiet >= QUIET {
                     stopped = Ending::Rest;
-                } else if course.cost.wall > self.patience && report.t < end {
-                    stopped = Ending::WallTime(self.patience);
+                } else if course.cost.cpu > self.patience && report.t < end {
+                    stopped = Ending::CpuTime(self.patience);
                 } else {
                     return ControlFlow::Continue(());
                 }
@@ -353,7 +353,7 @@ impl Plan {
         course.ending = match end {
             Ok(RunEnd::Complete | RunEnd::Taut) => Ending::Complete,
             Ok(RunEnd::Stopped) => stopped,
-            Err(StepError::Interrupted { .. }) => Ending::WallTime(self.patience),
+            Err(StepError::Interrupted { .. }) => Ending::CpuTime(self.patience),
             Err(error) => {
                 let ending = Ending::of_step(&error);
                 if let StepError::Locked { factorisations, .. } = error {
@@ -413,7 +413,7 @@ mod tests {
         let rest = run(plan.until_rest(100.0));
         assert_eq!((&rest.ending, rest.cost.steps), (&Ending::Rest, QUIET));
         let late = run(plan.within(0.0));
-        assert_eq!((&late.ending, late.cost.steps), (&Ending::WallTime(0.0), 0));
+        assert_eq!((&late.ending, late.cost.steps), (&Ending::CpuTime(0.0), 0));
         assert_eq!((late.rate(), late.cpu_rate()), (None, None));
         assert_eq!(whole.rate(), Some(whole.cost.wall / whole.time));
         assert_eq!(whole.cpu_rate(), Some(whole.cost.cpu / whole.time));

@@ -20,7 +20,7 @@ struct Extent {
     starts: u64,
     /// Steps after which a run ends.
     steps: usize,
-    /// Longest run, seconds of wall time.
+    /// Longest run, seconds of the processor.
     patience: f64,
 }
 
@@ -290,12 +290,12 @@ mod tests {
         let found = (row.rate(), row.largest_over_smallest, row.strain);
         assert_eq!(found, (Some(1.0), Some(1.5), 5e-12));
         assert!(row.smallest_gap_m.is_none() && row.crossings.is_none());
-        runs.push(run(4.0, 10, Ending::WallTime(4.0)));
+        runs.push(run(4.0, 10, Ending::CpuTime(4.0)));
         let row = Row::default().with(&runs);
         assert_eq!((row.cpu_s_per_simulated_s, row.rate()), (Some(1.5), None));
         assert_eq!((row.starts, row.ended), (4, 3));
         let failure = row.failure.unwrap();
-        assert_eq!(failure, "at 2.0 s: 4 s of wall time were over");
+        assert_eq!(failure, "at 2.0 s: 4 s of CPU time were over");
     }
 
     fn of(work: &Work) -> Run {
