@@ -30,6 +30,7 @@ mod collect;
 mod commit;
 mod constraints;
 mod elastic;
+mod energy;
 mod error;
 #[cfg(feature = "picture")]
 mod film;
@@ -51,6 +52,7 @@ pub use commit::note_commit;
 #[cfg(feature = "cli")]
 pub(crate) use constraints::HoldingBody;
 pub use elastic::{Bend, ElasticSummary};
+pub use energy::EnergySummary;
 pub use error::RunError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
@@ -267,6 +269,7 @@ fn start<'a>(
 ) -> Result<Stepping<'a>, RunError> {
     let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
     let (glued, gauges) = (setup.glued.clone(), setup.measures.clone());
+    let start = setup.start.x.clone();
     let simulation = setup.start()?;
     let count = file.scene().support.len();
     let mut stepping = Stepping {
@@ -276,6 +279,7 @@ fn start<'a>(
         folding,
         glued,
         simulation,
+        start,
         origins,
         history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
         loads: bears_loads(file)
@@ -322,6 +326,7 @@ fn resume<'a>(
 ) -> Result<Stepping<'a>, RunError> {
     let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
     let (glued, gauges) = (setup.glued.clone(), setup.measures.clone());
+    let start = setup.start.x.clone();
     let frames = FrameFile::resume(
         &folder.path(RunFolder::FRAMES),
         progress.frames,
@@ -336,6 +341,7 @@ fn resume<'a>(
         folding,
         glued,
         simulation,
+        start,
         origins,
         history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,
         loads: progress
@@ -385,6 +391,8 @@ fn finish(
         steps: progress.steps,
         frames: progress.frames,
         largest_strain: progress.strain,
+        largest_displacement: progress.displacement,
+        energy: progress.energy,
         smallest_gap: progress.gap,
         iterations: progress.iterations,
         factorisations: progress.factorisations,

@@ -2,6 +2,7 @@
 
 use super::RunError;
 use super::elastic::ElasticSummary;
+use super::energy::EnergySummary;
 use super::summary::{Ending, Measured};
 use crate::format::write_atomically;
 use crc::{CRC_64_XZ, Crc};
@@ -41,6 +42,10 @@ pub(crate) struct Progress {
     pub(crate) slow_since: Option<f64>,
     /// Largest edge strain so far.
     pub(crate) strain: f64,
+    /// Largest displacement of a vertex so far, metres.
+    pub(crate) displacement: f64,
+    /// Extremes of the energies so far.
+    pub(crate) energy: EnergySummary,
     /// Smallest gap so far, metres.
     pub(crate) gap: Option<f64>,
     /// Newton iterations so far.

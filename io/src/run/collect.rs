@@ -2,7 +2,7 @@
 
 use super::folder::RunFolder;
 use super::sweep::{Sweep, SweepError};
-use super::{Ending, Measured, Summary};
+use super::{Ending, EnergySummary, Measured, Summary};
 use crate::format::{Finding, JsonError, check_finite, read_json, write_atomically};
 use std::path::{Path, PathBuf};
 
@@ -137,6 +137,8 @@ fn add_summary(row: &mut Row, summary: &Summary) {
         steps,
         frames,
         largest_strain,
+        largest_displacement,
+        energy,
         smallest_gap,
         iterations,
         factorisations,
@@ -169,6 +171,28 @@ fn add_summary(row: &mut Row, summary: &Summary) {
         cell(
             "sharpest_bend",
             number(elastic.sharpest.map_or(0.0, |b| b.angle)),
+        );
+    }
+    cell("largest_displacement", number(*largest_displacement));
+    let EnergySummary {
+        largest_kinetic,
+        least_potential,
+        largest_error,
+        largest_gain,
+        relative_error,
+        relative_gain,
+    } = *energy;
+    for (name, value) in [
+        ("largest_kinetic", Some(largest_kinetic)),
+        ("least_potential", Some(least_potential)),
+        ("largest_error", Some(largest_error)),
+        ("largest_gain", Some(largest_gain)),
+        ("relative_error", relative_error),
+        ("relative_gain", relative_gain),
+    ] {
+        cell(
+            &format!("energy.{name}"),
+            value.map(number).unwrap_or_default(),
         );
     }
     cell("smallest_gap", smallest_gap.map(number).unwrap_or_default());

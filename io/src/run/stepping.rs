@@ -2,6 +2,7 @@
 
 use super::checkpoint::{self, Progress};
 use super::elastic::ElasticSummary;
+use super::energy::EnergySummary;
 use super::folder::RunFolder;
 use super::frames::FrameFile;
 use super::summary::{EndReason, Ending, Measured};
@@ -20,6 +21,8 @@ pub(crate) struct Stepping<'a> {
     pub(crate) file: &'a SceneFile,
     pub(crate) folder: &'a RunFolder,
     pub(crate) simulation: Simulation,
+    /// The positions at the start.
+    pub(crate) start: Vec<f64>,
     pub(crate) origins: Origins,
     pub(crate) supports: SupportForces,
     pub(crate) folding: Option<FoldTargets>,
@@ -108,8 +111,9 @@ impl Stepping<'_> {
         self.progress.elastic = ElasticSummary::of(self.simulation.model());
         self.observe_elastic();
         self.progress.start_energy = self.simulation.energy();
-        self.history
-            .append(&HistoryRow::of_start(&self.simulation))?;
+        let row = HistoryRow::of_start(&self.simulation);
+        self.progress.energy = EnergySummary::of_start(row.kinetic, row.potential);
+        self.history.append(&row)?;
         self.record_measures()?;
         self.record_frame()?;
         self.save()
@@ -253,8 +257,11 @@ impl Stepping<'_> {
     }
 
     fn count(&mut self, report: &StepReport) {
+        let displacement = self.displacement();
         let progress = &mut self.progress;
         progress.strain = progress.strain.max(report.strain);
+        progress.displacement = progress.displacement.max(displacement);
+        progress.energy.observe(report);
         progress.iterations += report.iterations as u64;
         progress.factorisations += report.factorisations as u64;
         progress.rejected += report.rejected as u64;
@@ -296,6 +303,14 @@ impl Stepping<'_> {
             }
         }
         (self.progress.steps >= step_count(scene)).then_some(EndReason::Time)
+    }
+
+    /// Largest distance of a vertex from its place at the start, metres.
+    fn displacement(&self) -> f64 {
+        let now = self.simulation.state().x.as_chunks::<3>().0;
+        let pairs = now.iter().zip(self.start.as_chunks::<3>().0);
+        let distances = pairs.map(|(p, q)| (Vector3::from(*p) - Vector3::from(*q)).norm());
+        distances.fold(0.0, f64::max)
     }
 
     fn largest_speed(&self) -> f64 {

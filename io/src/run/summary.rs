@@ -1,6 +1,7 @@
 //! What a complete run says of itself.
 
 use super::elastic::ElasticSummary;
+use super::energy::EnergySummary;
 use crate::scene::FoldResidual;
 use isosheet_mesh::Part;
 use serde::{Deserialize, Serialize};
@@ -34,6 +35,10 @@ pub struct Summary {
     pub frames: u64,
     /// Largest relative change of an edge length in any step.
     pub largest_strain: f64,
+    /// Largest distance of a vertex from its place at the start after any step, metres.
+    pub largest_displacement: f64,
+    /// Extremes of the energies, and the largest errors of their balance.
+    pub energy: EnergySummary,
     /// Smallest gap in any step, metres; none without contact, or if nothing ever came close.
     pub smallest_gap: Option<f64>,
     /// Newton iterations.

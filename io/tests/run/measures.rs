@@ -2,7 +2,7 @@
 
 use crate::{assert_same, code, killed, run, stderr, summary, with_scene};
 use isosheet_io::read_measures;
-use isosheet_io::run::{Measured, Recording};
+use isosheet_io::run::{EnergySummary, Measured, Recording};
 use isosheet_io::scene::StartingPoint;
 use std::fs;
 
@@ -97,6 +97,58 @@ fn measures_of_a_fall_are_those_of_the_closed_form() {
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
     assert!(!dir.join("none/measures.csv").exists());
     assert!(summary(&dir.join("none")).measures.is_empty());
+}
+
+/// The extremes of a fall by 0.8 m are those of the closed form. Implicit Euler falls by `g t h / 2` farther, whose
+/// potential energy is lost.
+#[test]
+fn the_extremes_of_a_fall_are_those_of_the_closed_form() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("fall.toml"), SCENE).unwrap();
+    for (integrator, loss) in [("rattle", 0.0), ("implicit_euler", 0.02)] {
+        let set = format!("method.integrator={integrator}");
+        let done = run(
+            dir,
+            &["simulate", "fall.toml", "--out", integrator, "--set", &set],
+        );
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        let found = summary(&dir.join(integrator));
+        let energy = found.energy;
+        for (value, exact) in [
+            (found.largest_displacement, 0.8 + loss),
+            (energy.largest_kinetic, 0.8),
+            (energy.least_potential, -0.8 - loss),
+            (energy.largest_error, loss),
+            (energy.largest_gain, 0.0),
+            (energy.relative_error.unwrap(), loss / 0.8),
+            (energy.relative_gain.unwrap(), 0.0),
+        ] {
+            assert!(
+                (value - exact).abs() < 1e-12,
+                "{integrator}: {value}, {exact}"
+            );
+        }
+    }
+    let set = "forces={}";
+    let done = run(
+        dir,
+        &["simulate", "fall.toml", "--out", "still", "--set", set],
+    );
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let still = summary(&dir.join("still"));
+    assert_eq!(still.largest_displacement, 0.0);
+    assert_eq!(still.energy, EnergySummary::default());
+    let done = run(dir, &["collect", "rattle", "still", "--out", "runs.csv"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let table = fs::read_to_string(dir.join("runs.csv")).unwrap();
+    assert!(
+        table
+            .lines()
+            .next()
+            .unwrap()
+            .contains(",largest_displacement,energy.largest_kinetic,")
+    );
 }
 
 /// The extremes before a kill count as well.

@@ -1,0 +1,56 @@
+//! What a run says of its energies.
+
+use isosheet_dynamics::StepReport;
+use serde::{Deserialize, Serialize};
+
+/// The extremes of the energies in a run, the start included, and the largest errors of their balance.
+///
+/// The error of the balance after a step is energy less work of supports and forces, plus what damping,
+/// friction and yielding took, minus the energy at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EnergySummary {
+    /// Largest kinetic energy, joules.
+    pub largest_kinetic: f64,
+    /// Least potential energy, joules.
+    pub least_potential: f64,
+    /// Largest size of an error, joules.
+    pub largest_error: f64,
+    /// Largest error by which energy was gained, joules; 0 if none ever was.
+    pub largest_gain: f64,
+    /// `largest_error` over `largest_kinetic`; none if the sheet never moved.
+    pub relative_error: Option<f64>,
+    /// `largest_gain` over `largest_kinetic`; none if the sheet never moved.
+    pub relative_gain: Option<f64>,
+}
+
+impl EnergySummary {
+    /// Of a run at its start, with its energies in joules.
+    pub(crate) fn of_start(kinetic: f64, potential: f64) -> Self {
+        let mut start = Self {
+            largest_kinetic: kinetic,
+            least_potential: potential,
+            ..Self::default()
+        };
+        start.compare();
+        start
+    }
+
+    /// Takes in a step.
+    pub(crate) fn observe(&mut self, report: &StepReport) {
+        self.largest_kinetic = self.largest_kinetic.max(report.kinetic);
+        self.least_potential = self.least_potential.min(report.potential);
+        self.largest_error = self.largest_error.max(report.energy_drift.abs());
+        self.largest_gain = self.largest_gain.max(report.energy_drift);
+        self.compare();
+    }
+
+    /// Compares the errors with the largest kinetic energy.
+    fn compare(&mut self) {
+        let relative = |error: f64| {
+            let moved = self.largest_kinetic > 0.0;
+            moved.then(|| error / self.largest_kinetic)
+        };
+        self.relative_error = relative(self.largest_error);
+        self.relative_gain = relative(self.largest_gain);
+    }
+}
