@@ -4,7 +4,7 @@ use super::error::SceneError;
 use super::key::Key;
 use super::outline::Outline;
 use super::pattern::{
-    DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
+    DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura, check_angle,
 };
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
@@ -67,6 +67,16 @@ pub enum Mesh {
         segments: usize,
         /// Number of rings of triangles.
         rings: usize,
+    },
+    /// A circular sector in triangles about one vertex, that with the number 0: glued along its straight sides
+    /// it is a cone.
+    Fan {
+        /// Radius, metres.
+        radius: f64,
+        /// Angle, degrees, below 360.
+        opening: f64,
+        /// Number of triangles.
+        triangles: usize,
     },
     /// An irregular triangulation of a polygon.
     Polygon {
@@ -263,6 +273,7 @@ impl Mesh {
             Self::Rectangle { .. } => "rectangle",
             Self::Disk { .. } => "disk",
             Self::Annulus { .. } => "annulus",
+            Self::Fan { .. } => "fan",
             Self::Polygon { .. } => "polygon",
             Self::PolygonRings { .. } => "polygon_rings",
             Self::Octagon { .. } => "octagon",
@@ -310,6 +321,15 @@ impl Mesh {
                 length("outer", *outer);
                 checks.count(key.name("segments"), *segments, 3);
                 checks.count(key.name("rings"), *rings, 1);
+            }
+            Self::Fan {
+                radius,
+                opening,
+                triangles,
+            } => {
+                length("radius", *radius);
+                check_angle(key.name("opening"), *opening, 360.0, checks);
+                checks.count(key.name("triangles"), *triangles, 1);
             }
             Self::Polygon {
                 outline, spacing, ..
@@ -375,6 +395,11 @@ impl Mesh {
                 segments,
                 rings,
             } => generate::annulus(*segments, *rings, *inner, *outer),
+            Self::Fan {
+                radius,
+                opening,
+                triangles,
+            } => generate::fan(*triangles, *radius, opening.to_radians()),
             Self::Polygon {
                 outline,
                 spacing,

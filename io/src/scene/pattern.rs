@@ -349,7 +349,7 @@ impl SquareTwist {
 }
 
 /// An angle in degrees between 0 and `most`, both excluded.
-fn check_angle(key: Key, angle: f64, most: f64, checks: &mut Checks) {
+pub(super) fn check_angle(key: Key, angle: f64, most: f64, checks: &mut Checks) {
     if !(angle > 0.0 && angle < most) {
         let message = format!("`{key}` is {angle} degrees");
         checks.report(

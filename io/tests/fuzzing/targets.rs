@@ -153,6 +153,7 @@ fn is_small(scene: &Scene) -> bool {
         Mesh::Annulus {
             segments, rings, ..
         } => segments.saturating_mul(*rings),
+        Mesh::Fan { triangles, .. } => *triangles,
         Mesh::Miura(miura) => miura.columns.saturating_mul(miura.rows),
         Mesh::PolygonRings { outline, rings } => {
             let sides = match outline {

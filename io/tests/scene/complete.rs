@@ -229,6 +229,7 @@ pub(crate) fn scenes() -> Vec<SceneFile> {
     let meshes = [
         "{ disk = { radius = 1, rings = 2 } }",
         "{ annulus = { inner = 1, outer = 2, segments = 5, rings = 1 } }",
+        "{ fan = { radius = 1, opening = 90, triangles = 3 } }",
         "{ polygon = { outline = [[0, 0], [1, 0], [0, 1]], spacing = 0.2, seed = 1 } }",
         "{ polygon_rings = { outline = [[1, 0], [0, 1], [-1, -1]], rings = 2 } }",
         "{ octagon = { radius = 1 } }",

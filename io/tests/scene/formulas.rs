@@ -3,12 +3,13 @@
 use crate::{parse, simulation};
 use isosheet_io::collide::{Shape, TriangleSurface};
 use isosheet_io::mesh::generate::{
-    FoldAssignment, FoldPattern, GenerateError, degree_four, delaunay, hypar, kresling, miura,
+    FoldAssignment, FoldPattern, GenerateError, degree_four, delaunay, fan, hypar, kresling, miura,
     miura_zigzags, octagon_244, polygon_rings, regular_outline, square_twist, waterbomb, yoshimura,
 };
 use isosheet_io::mesh::origami::{DegreeFour, FoldingMode};
 use isosheet_io::mesh::{Sheet, fold_angle};
 use isosheet_io::scene::Setup;
+use std::f64::consts::PI;
 
 /// What is made of a scene with a mesh and more.
 fn setup(mesh: &str, more: &str) -> Setup {
@@ -35,6 +36,8 @@ fn meshes_are_those_of_their_generators() {
     same(&irregular.sheet, &delaunay(&outline, 0.1, 2).unwrap());
     let octagon = setup("octagon = { radius = 0.6 }", "");
     same(&octagon.sheet, &octagon_244(0.6).unwrap());
+    let sector = setup("fan = { radius = 0.2, opening = 270, triangles = 9 }", "");
+    same(&sector.sheet, &fan(9, 0.2, 1.5 * PI).unwrap());
     let vertex = DegreeFour {
         sectors: [60_f64, 80.0].map(f64::to_radians),
     };
