@@ -22,7 +22,7 @@ mod scales;
 mod scenes;
 mod steps;
 
-pub(crate) use case::{Case, Findings, Record, Work};
+pub(crate) use case::{Case, Code, Findings, Record, Work};
 
 use crate::draw::{Chart, Charts, Series};
 use crate::interrupt;
@@ -35,8 +35,7 @@ use rayon::prelude::*;
 use std::time::Instant;
 
 /// The cases that are code, in the order of the report.
-static CASES: [&Case; 23] = [
-    &flat::START,
+static CASES: [&Case; 17] = [
     &flat::BRANCH,
     &charts::CONDITION,
     &charts::LITERAL,
@@ -44,21 +43,26 @@ static CASES: [&Case; 23] = [
     &scales::SLIVERS,
     &scales::MASSES,
     &scales::SIZES,
-    &meshes::LONG,
-    &meshes::IRREGULAR,
     &rigid::CLOSED,
     &plate::PLATE,
-    &pins::OVER_PINNED,
     &pins::TAUT,
-    &steps::SIZES,
     &steps::FREE_FALL,
-    &long::REST,
     &long::MILLION,
     &invariance::REVERSAL,
     &invariance::SYMMETRY,
     &invariance::THREADS,
     &locking::DRAPE,
     &clamps::CLAMPS,
+];
+
+/// What code adds to the cases that are files, by their names.
+static BESIDE: [(&str, Code); 6] = [
+    ("fan-and-strip", meshes::long),
+    ("flat-start", flat::start),
+    ("irregular", meshes::irregular),
+    ("over-pinned", pins::over_pinned),
+    ("rest", long::rest),
+    ("step-sizes", steps::sizes),
 ];
 
 /// All cases in the order of the report.
@@ -119,7 +123,7 @@ fn semi_log(x: &str, y: &str, series: Vec<Series>) -> Charts {
 
 fn unit(store: &Store, case: &Case) -> Unit {
     let mut unit = store.unit(format!("case-{}", case.name), case.name);
-    if let Work::File(file) = case.run {
+    if let Work::File(file, _) = case.run {
         unit.options["file"] = file.options();
     }
     unit

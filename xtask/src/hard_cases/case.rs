@@ -19,13 +19,16 @@ pub(crate) struct Case {
     pub(crate) run: Work,
 }
 
+/// Finds what there is to be found in a case, or a part of it.
+pub(crate) type Code = fn(&mut Findings, Effort) -> Result<()>;
+
 /// What is done in a case.
 #[derive(Clone, Copy)]
 pub(crate) enum Work {
     /// Whatever the function does.
-    Code(fn(&mut Findings, Effort) -> Result<()>),
-    /// What a file says.
-    File(&'static CaseFile),
+    Code(Code),
+    /// What a file says, and what a function adds to it: naive methods, closed forms, pictures.
+    File(&'static CaseFile, Option<Code>),
 }
 
 impl Case {
@@ -33,7 +36,10 @@ impl Case {
     pub(super) fn find(&self, found: &mut Findings, effort: Effort) -> Result<()> {
         match self.run {
             Work::Code(work) => work(found, effort),
-            Work::File(file) => file.run(found, effort),
+            Work::File(file, beside) => {
+                file.run(found, effort)?;
+                beside.map_or(Ok(()), |code| code(found, effort))
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
 use super::naive::{NO_DIGITS, TEXTBOOK, textbook, textbook_steps};
-use super::scenes::{FRAME, VIEWPOINT, apart, course, go, pinned, released};
+use super::scenes::{FRAME, VIEWPOINT, apart, go, pinned, released};
 use super::{Case, Findings, Work, log_log};
 use crate::draw::{Series, Shot};
 use crate::interrupt;
@@ -16,18 +16,11 @@ use isosheet_dynamics::chart::{ChartOptions, Rebase};
 use isosheet_dynamics::{Frames, Method, SheetModel, Simulation, State, rod_rank};
 use isosheet_mesh::{MassMatrix, Sheet};
 use isosheet_tests::{Flap, orders};
-use isosheet_tests::{Named, conservative, damped, methods};
+use isosheet_tests::{Named, conservative, methods};
 use std::f64::consts::FRAC_PI_2;
 
-pub(crate) const START: Case = Case {
-    name: "flat-start",
-    title: "Exactly flat start",
-    expected: "A flat sheet held at a corner and released falls. In the flat state one rod for every interior vertex depends on the \
-               others, so rod forces are not unique and the paper's coordinates do not exist; the motion does.",
-    run: Work::Code(start),
-};
-
-fn start(f: &mut Findings, effort: Effort) -> Result<()> {
+/// What naive methods do to a flat sheet, which rods depend on others there, and a picture of the fall.
+pub(super) fn start(f: &mut Findings, effort: Effort) -> Result<()> {
     let sheet = bumped(1, 0.0);
     let model = pinned(&sheet, &[corner(1)])?;
     let condition = front_condition(&sheet, &model).map_err(|e| e.to_string());
@@ -46,20 +39,6 @@ fn start(f: &mut Findings, effort: Effort) -> Result<()> {
         outcome.map(|(strain, _)| strain),
         Bound::AtMost(1e-2),
     );
-    for level in effort.pick(1..=1, 1..=3, 1..=4) {
-        let sheet = bumped(level, 0.0);
-        for (name, method) in damped() {
-            let mut run = released(&sheet, &[corner(level)], method)?;
-            let mut potential = 0.0_f64;
-            let c = course(&mut run, FRAME, 60, |r, _| {
-                potential = potential.min(r.potential);
-            })?;
-            let mut judge = f.of(&c, format!("M^{level}, {name}"));
-            judge.strain("largest edge strain in a second");
-            judge.at_most("rejected steps", c.cost.rejected as f64, 0.0);
-            judge.at_least("largest energy released, J", -potential, 0.1);
-        }
-    }
     if let Some(rank) = rod_rank(&model, sheet.positions()) {
         let columns = ["rods of M¹", "dependent at the start"];
         let row = [rank.rods, rank.deficiency].map(|n| n.to_string());
@@ -67,8 +46,6 @@ fn start(f: &mut Findings, effort: Effort) -> Result<()> {
         f.tables
             .push(Table::new(caption, &columns).with_texts([row.to_vec()]));
     }
-    f.here = "The damped methods minimise an incremental potential over the positions with the right lengths, which has a solution at any \
-              rank; a seeded perturbation decides which way the sheet folds.";
     if effort != Effort::Quick {
         f.pictures.push(fall()?);
     }

@@ -1,9 +1,7 @@
 //! Long runs: rest stays rest, and energy over a million steps.
 
 use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel, textbook, textbook_steps};
-use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, course, pinned, released, top_row, tumbling, upright,
-};
+use super::scenes::{FRAME, STRAIN, apart, course, pinned, released, top_row, tumbling, upright};
 use super::{Case, Findings, Work, log_log};
 use crate::draw::Series;
 use crate::report::{Bound, Effort, Shortfall, Table};
@@ -11,17 +9,10 @@ use crate::runs::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{Simulation, State};
 use isosheet_mesh::generate;
-use isosheet_tests::{energy_momentum, methods};
+use isosheet_tests::energy_momentum;
 
-pub(crate) const REST: Case = Case {
-    name: "rest",
-    title: "Rest stays rest",
-    expected: "A flat sheet that hangs upright from its top edge is at rest in a state with dependent rods, and stays there for as long as one \
-               looks: no drift, no spin, no creeping.",
-    run: Work::Code(rest),
-};
-
-fn rest(f: &mut Findings, effort: Effort) -> Result<()> {
+/// What naive methods do to a sheet that hangs at rest.
+pub(super) fn rest(f: &mut Findings, _: Effort) -> Result<()> {
     let sheet = upright(&generate::isotropic_square(1, 1.0)?)?;
     let model = || pinned(&sheet, &top_row());
     let start = sheet.positions();
@@ -41,27 +32,6 @@ fn rest(f: &mut Findings, effort: Effort) -> Result<()> {
         strain,
         Bound::AtMost(1e-2),
     );
-    let mut lines = Vec::new();
-    for (k, (name, method)) in methods().enumerate() {
-        let is_long = ["BDF2", "energy-momentum"].contains(&name);
-        let steps = effort.pick(300, if is_long { 100_000 } else { 10_000 }, 100_000);
-        let mut run = at_rest(model()?, start, method)?;
-        let (mut worst, mut n, mut points) = (0.0_f64, 0_usize, Vec::new());
-        let c = course(&mut run, FRAME, steps, |_, state| {
-            n += 1;
-            worst = worst.max(apart(&state.x, start));
-            if is_sample(n) {
-                points.push([n as f64, worst.max(1e-18)]);
-            }
-        })?;
-        let quantity = format!("largest displacement in {steps} steps, m");
-        f.of(&c, name).at_most(&quantity, worst, 1e-9);
-        lines.push(Series::curve(k, name, points));
-    }
-    f.here = "M^1, steps of 1/60 s, vertex by vertex compared with the start after every step.";
-    let drawing = log_log("steps", "largest displacement, m", lines);
-    let alt = "Displacement of a hanging sheet at rest (1e-18 stands for none)";
-    f.drawing("rest", &drawing, alt);
     Ok(())
 }
 

@@ -1,87 +1,28 @@
 //! Too many pins, and sheets pulled taut.
 
 use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel, textbook};
-use super::scenes::{FRAME, apart, at_rest, go, pinned, released, top_row, upright};
+use super::scenes::{FRAME, apart, at_rest, go, pinned, top_row, upright};
 use super::{Case, Findings, Work};
 use crate::report::{Bound, Effort, Shortfall, number};
 use crate::runs::bumped;
 use anyhow::Result;
-use isosheet_coords::{BentState, bent_square};
 use isosheet_dynamics::{Potential, PotentialShape, SheetModel};
 use isosheet_mesh::{MassMatrix, Sheet, VertexId, generate};
-use isosheet_tests::{damped, methods};
-
-pub(crate) const OVER_PINNED: Case = Case {
-    name: "over-pinned",
-    title: "Over-constrained pins",
-    expected: "More pins than the sheet has room for leave it where it is, to the last bit where nothing is free, and otherwise as far as rounding tells \
-               lengths apart; pins that leave room act as such. Nothing blows up, and a refusal names its reason.",
-    run: Work::Code(over_pinned),
-};
-
-fn over_pinned(f: &mut Findings, effort: Effort) -> Result<()> {
-    let n = 5;
-    let all: Vec<VertexId> = (0..n * n).map(VertexId).collect();
-    let is_outer = |k: u32| k == 0 || k == n - 1;
-    let on_boundary = |v: &VertexId| is_outer(v.0 % n) || is_outer(v.0 / n);
-    let boundary: Vec<VertexId> = all.iter().copied().filter(on_boundary).collect();
-    let corners = [0, n - 1, n * (n - 1), n * n - 1].map(VertexId);
-    let steps = effort.pick(15, 60, 240);
-    let flat = bumped(1, 0.0);
-    held_all_around(f, &flat, &boundary, steps)?;
-    // Sheets with exact room, and flat ones without any.
-    let bump = bumped(1, 0.1);
-    let cylinder = bent_square(&flat, 1, BentState::Cylinder);
-    let bent = Sheet::new(cylinder, &flat.face_indices())?;
-    let three = &corners[..3];
-    // What is held, the sheet and its pins.
-    let scenes: [(&str, &Sheet, &[VertexId]); 8] = [
-        ("everything held", &flat, &all),
-        ("bumped, held all around", &bump, &boundary),
-        ("bent to a cylinder, held at three corners", &bent, three),
-        ("bent to a cylinder, held at four corners", &bent, &corners),
-        (
-            "bumped with straight sides, held at three corners",
-            &bump,
-            three,
-        ),
-        (
-            "bumped with straight sides, held at four corners",
-            &bump,
-            &corners,
-        ),
-        (
-            "flat, held along one side by two corners",
-            &flat,
-            &corners[..2],
-        ),
-        ("flat, held all around", &flat, &boundary),
-    ];
-    for (what, sheet, pins) in scenes {
-        for (name, method) in damped() {
-            let (c, end) = go(released(sheet, pins, method)?, FRAME, steps)?;
-            let mut judge = f.of(&c, format!("{what}, {name}"));
-            judge.strain(&format!("edge strain in {steps} steps"));
-            let moved = apart(&end, sheet.positions());
-            match what {
-                "everything held" => judge.at_most("largest displacement, m", moved, 0.0),
-                "flat, held all around" => judge.at_most("largest displacement, m", moved, 1e-4),
-                _ => continue,
-            };
-        }
-    }
-    f.here = "Pinned vertices have no unknowns and never move by a bit; vertices on a straight line of rods between two pins are held as they are.";
-    Ok(())
-}
+use isosheet_tests::methods;
 
 /// What naive methods do to a flat sheet that is held all around.
-fn held_all_around(f: &mut Findings, flat: &Sheet, pins: &[VertexId], steps: usize) -> Result<()> {
+pub(super) fn over_pinned(f: &mut Findings, effort: Effort) -> Result<()> {
+    let (n, steps) = (5, effort.pick(15, 60, 240));
+    let is_outer = |k: u32| k == 0 || k == n - 1;
+    let on_boundary = |v: &VertexId| is_outer(v.0 % n) || is_outer(v.0 / n);
+    let pins: Vec<VertexId> = (0..n * n).map(VertexId).filter(on_boundary).collect();
+    let flat = bumped(1, 0.0);
     let start = flat.positions();
-    let outcome = textbook(&pinned(flat, pins)?, start, 1e-3, 1000);
+    let outcome = textbook(&pinned(&flat, &pins)?, start, 1e-3, 1000);
     let what = "flat M^1 held all around, 1000 steps of 1 ms: edge strain";
     let exact = Bound::AtMost(1e-6);
     f.naive_run(TEXTBOOK, what, outcome.map(|(strain, _)| strain), exact);
-    let (strain, x) = gauss_seidel(&pinned(flat, pins)?, start, FRAME, steps, SWEEPS);
+    let (strain, x) = gauss_seidel(&pinned(&flat, &pins)?, start, FRAME, steps, SWEEPS);
     let what = format!("flat M^1 held all around, {steps} steps of 1/60 s");
     f.naive(GAUSS_SEIDEL, format!("{what}: edge strain"), strain, exact);
     f.naive(

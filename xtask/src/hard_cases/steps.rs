@@ -6,23 +6,12 @@ use super::{Case, Findings, Work, log_log};
 use crate::draw::Series;
 use crate::report::{Bound, Effort, Shortfall, number};
 use crate::runs::Course;
-use crate::runs::{bumped, hanging};
+use crate::runs::bumped;
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State, leave_flat};
 use isosheet_mesh::{MassKind, Sheet};
 use isosheet_tests::Pendulum;
-use isosheet_tests::{Named, damped, methods};
-
-pub(crate) const SIZES: Case = Case {
-    name: "step-sizes",
-    title: "Steps from 1e-6 s to 0.1 s",
-    expected: "Very short steps are as good as any: errors go down to round-off and stay there. Very long ones lose accuracy, not exact lengths.",
-    run: Work::Code(sizes),
-};
-
-/// What tiny steps meet near the flat state.
-const TINY_AND_FLAT: &str = "While the folds are still so small that the displacement of a step is near the tolerance of the lengths, the minimisation of a \
-                             damped step does not get below its start and refuses it.";
+use isosheet_tests::{Named, methods};
 
 /// Why RATTLE refuses some falls of exactly flat sheets.
 const ROUND_OFF: &str = "RATTLE solves for the rods' impulses also where they are zero; dependent rods answer round-off in their lengths with impulses that \
@@ -31,7 +20,8 @@ const ROUND_OFF: &str = "RATTLE solves for the rods' impulses also where they ar
 /// Time after which pendulums are compared, seconds.
 const END: f64 = 0.1;
 
-fn sizes(f: &mut Findings, effort: Effort) -> Result<()> {
+/// The pendulum in steps of many sizes, by the methods and by a naive one.
+pub(super) fn sizes(f: &mut Findings, effort: Effort) -> Result<()> {
     let counts: &[usize] = effort.quick_or(
         &[1, 10, 100, 1000],
         &[1, 3, 10, 30, 100, 1000, 10_000, 100_000],
@@ -40,19 +30,6 @@ fn sizes(f: &mut Findings, effort: Effort) -> Result<()> {
     for (k, named) in methods().enumerate() {
         let points = pendulum(f, &named, counts, effort)?;
         lines.push(Series::styled(k, named.0, points));
-    }
-    // The sheet at its extremes.
-    let extremes = [
-        (1e-6, effort.pick(100, 2000, 10_000)),
-        (0.1, effort.pick(10, 30, 300)),
-    ];
-    for extreme in extremes {
-        for named in methods() {
-            bumped_sheet(f, named, extreme)?;
-        }
-    }
-    for named in damped() {
-        flat_sheet(f, &named, effort)?;
     }
     let problem = Pendulum::default();
     for h in [1e-3, 0.1] {
@@ -74,8 +51,6 @@ fn sizes(f: &mut Findings, effort: Effort) -> Result<()> {
             Bound::AtMost(1e-2),
         );
     }
-    f.here = "Conservative steps solve for impulses, which stay moderate when the step goes to zero; lengths are relative. The curves flatten where \
-              rounding of the positions takes over.";
     let drawing = log_log("step, s", "position error after 0.1 s, m", lines);
     let alt = "A triangle held at an edge (exact pendulum): error against the step";
     f.drawing("step-sizes", &drawing, alt);
@@ -112,45 +87,6 @@ fn pendulum(
     judge.strain(&steps);
     judge.at_most("position error at the shortest step, m", error, bound);
     Ok(points)
-}
-
-/// `M^1` hanging by a corner from a bump.
-fn bumped_sheet(f: &mut Findings, (name, method): Named, (h, steps): (f64, usize)) -> Result<()> {
-    let (c, _) = go(hanging(1, 0.05, method)?, h, steps)?;
-    let (size, scale) = (number(h), c.most_kinetic.max(1e-12));
-    f.of(&c, format!("M^1, {name}, {steps} steps of {size} s"))
-        .strain("edge strain");
-    let mut judge = f.of(&c, format!("M^1, {name}, steps of {size} s"));
-    if damped().iter().any(|d| d.0 == name) {
-        let quantity = "energy gained, of the largest kinetic energy";
-        judge.at_most(quantity, c.gain / scale, 0.15);
-    } else if name == "energy-momentum" && h > 1e-3 {
-        let quantity = "energy error, of the largest kinetic energy";
-        judge.at_most(quantity, c.drift / scale, 1e-8);
-    }
-    Ok(())
-}
-
-/// `M^1` hanging by a corner from exactly flat.
-fn flat_sheet(f: &mut Findings, (name, method): &Named, effort: Effort) -> Result<()> {
-    for h in [1e-6, 0.1] {
-        let steps = effort.pick(30, if h < 1e-3 { 4000 } else { 30 }, 4000);
-        let (c, _) = go(hanging(1, 0.0, method.clone())?, h, steps)?;
-        let what = format!("M^1 from exactly flat, {name}, steps of {} s", number(h));
-        let mut judge = f.of(&c, what);
-        let check = judge.strain("edge strain");
-        // Measured from twelve sheets whose masses differ by half a percent each: BDF2 3.9e-4 to 1.9e-3 s,
-        // implicit Euler 2.2e-4 s, projection 4.7e-4 s. The quick run ends after 3e-5 s.
-        let stops = match *name {
-            "BDF2" => Shortfall::stops([2e-4, 3.9e-3], "would create"),
-            "implicit Euler" => Shortfall::stops([6e-5, 6e-4], "would create"),
-            _ => Shortfall::stops([1.5e-4, 1.5e-3], "Newton's method stopped"),
-        };
-        if h < 1e-3 && effort != Effort::Quick {
-            check.limited(TINY_AND_FLAT, stops);
-        }
-    }
-    Ok(())
 }
 
 pub(crate) const FREE_FALL: Case = Case {

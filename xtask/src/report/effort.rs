@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// How much work a report puts in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Effort {
     /// Seconds: shows that everything works, and no result.
