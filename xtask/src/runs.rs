@@ -19,5 +19,5 @@ pub(crate) use ensemble::{Member, ensemble};
 pub(crate) use fall::{fall, free_fall, plate_fall};
 pub(crate) use hanging::{Hanging, mass};
 pub(crate) use record::{Run, RunSummary};
-pub(crate) use scene::{FigureScene, for_frames, scene_fingerprint};
+pub(crate) use scene::{FigureScene, displaced, for_frames, scene_fingerprint};
 pub(crate) use shape::{LIMIT, PLATE, Shape};

@@ -1,13 +1,11 @@
 //! `tuning`: what each constant of a damped step is worth, measured by changing it.
 
-use crate::interrupt;
 use crate::progress::Progress;
-use crate::report::{Cell, Cost, Effort, Options, Page, Part, Table, excerpt, machine};
-use crate::runs::{FigureScene, scene_fingerprint};
+use crate::report::{Cost, Effort, Options, Page, Part, Table, columns, excerpt, machine};
+use crate::runs::{FigureScene, Plan, displaced, scene_fingerprint, unseen};
 use crate::store::Store;
 use anyhow::{Context, Result};
 use clap::Args;
-use cpu_time::ThreadTime;
 use isosheet_dynamics::{Constant, Tuning};
 use maud::html;
 use serde::{Deserialize, Serialize};
@@ -180,7 +178,6 @@ fn all_kinds(store: &Store, name: &str, tuning: Tuning, starts: u64) -> Result<V
         for kind in &KINDS {
             let mut measured = Measured::default();
             for seed in 1..=starts {
-                interrupt::check()?;
                 kind.run(seed, tuning, store.effort, &mut measured)
                     .with_context(|| kind.name)?;
             }
@@ -195,23 +192,13 @@ fn all_kinds(store: &Store, name: &str, tuning: Tuning, starts: u64) -> Result<V
 impl Kind {
     fn run(&self, seed: u64, tuning: Tuning, effort: Effort, sum: &mut Measured) -> Result<()> {
         let mut edits: Vec<String> = self.edits.iter().map(|&edit| edit.to_owned()).collect();
-        let Self { perturbation, .. } = self;
-        edits.push(format!(
-            "sheet.start={{perturbation={perturbation:?},seed={seed}}}"
-        ));
+        edits.push(displaced(self.perturbation, seed));
         let scene = FigureScene::named(self.scene, self.name, &edits)?;
         let mut simulation = scene.setup()?.start()?.with_tuning(tuning)?;
-        let clock = ThreadTime::now();
-        for _ in 0..effort.quick_or(3, self.steps) {
-            match simulation.step(scene.frame()) {
-                Ok(report) => sum.cost.add(&report),
-                Err(_) => {
-                    sum.failures += 1;
-                    break;
-                }
-            }
-        }
-        sum.cost.cpu += clock.elapsed().as_secs_f64();
+        let time = scene.frame() * effort.quick_or(3, self.steps) as f64;
+        let course = Plan::new(scene.frame(), time).run(&mut simulation, &mut unseen)?;
+        sum.cost.add_run(&course.cost);
+        sum.failures += usize::from(!course.is_good());
         Ok(())
     }
 }
@@ -220,15 +207,13 @@ fn base_table(base: &[Measured], starts: u64) -> Table {
     Table::of(
         format!("What {starts} starts of each kind cost with the constants as they are."),
         KINDS.iter().zip(base),
-        &[
-            ("kind", &|(k, _)| k.name.into()),
-            ("steps", &|(_, m)| m.cost.steps.into()),
-            ("factorisations per step", &|(_, m)| {
-                m.cost.factorisations_per_step().into()
-            }),
-            ("CPU seconds", &|(_, m)| m.cost.cpu.into()),
-            ("failures", &|(_, m)| m.failures.into()),
-        ],
+        columns! { row;
+            "kind" => row.0.name,
+            "steps" => row.1.cost.steps,
+            "factorisations per step" => row.1.cost.factorisations_per_step(),
+            "CPU seconds" => row.1.cost.cpu,
+            "failures" => row.1.failures,
+        },
     )
     .named("kinds")
 }
@@ -258,34 +243,28 @@ fn ratios(
 }
 
 fn table(base: &[Measured], changed: &[Changed]) -> Table {
-    let factorisations = |c: &Changed, k: usize| {
-        let (mean, far, kind) = ratios(base, &c.kinds[k], |cost| cost.factorisations as f64);
-        Cell::from(format!("{mean:.2} ({kind} {far:.2})"))
+    let factorisations = |kinds: &[Measured]| {
+        let (mean, far, kind) = ratios(base, kinds, |cost| cost.factorisations as f64);
+        format!("{mean:.2} ({kind} {far:.2})")
     };
-    let cpu = |c: &Changed, k: usize| {
-        let (mean, ..) = ratios(base, &c.kinds[k], |cost| cost.cpu);
-        Cell::from(format!("{mean:.2}"))
-    };
-    let failures = |of: &[Measured]| of.iter().map(|m| m.failures).sum::<usize>();
-    let more = |c: &Changed, k: usize| {
-        let more = failures(&c.kinds[k]) as i64 - failures(base) as i64;
-        Cell::from(format!("{more:+}"))
-    };
+    let cpu = |kinds: &[Measured]| format!("{:.2}", ratios(base, kinds, |cost| cost.cpu).0);
+    let failures = |of: &[Measured]| of.iter().map(|m| m.failures).sum::<usize>() as i64;
+    let more = |kinds: &[Measured]| format!("{:+}", failures(kinds) - failures(base));
     Table::of(
         "The constants, with factorisations a step, CPU seconds a step and failures where a constant is halved and doubled, against those \
          with the constants as they are: geometric means over the kinds, in brackets the kind that differs most.",
         changed,
-        &[
-            ("constant", &|c| c.constant.name.into()),
-            ("value", &|c| c.constant.value.into()),
-            ("factorisations, halved", &|c| factorisations(c, 0)),
-            ("doubled", &|c| factorisations(c, 1)),
-            ("CPU, halved", &|c| cpu(c, 0)),
-            ("CPU, doubled", &|c| cpu(c, 1)),
-            ("failures, halved", &|c| more(c, 0)),
-            ("failures, doubled", &|c| more(c, 1)),
-            ("what it is", &|c| c.constant.reason.trim().into()),
-        ],
+        columns! { row;
+            "constant" => row.constant.name,
+            "value" => row.constant.value,
+            "factorisations, halved" => factorisations(&row.kinds[0]),
+            "doubled" => factorisations(&row.kinds[1]),
+            "CPU, halved" => cpu(&row.kinds[0]),
+            "CPU, doubled" => cpu(&row.kinds[1]),
+            "failures, halved" => more(&row.kinds[0]),
+            "failures, doubled" => more(&row.kinds[1]),
+            "what it is" => row.constant.reason.trim(),
+        },
     )
     .named("constants")
 }

@@ -217,8 +217,8 @@ pub(crate) struct Plan {
     /// The run ends early when the sheet is at rest: when the largest speed of a vertex (m/s) has been below
     /// this bound for [`QUIET`] steps. `None`: it does not end early.
     pub(crate) rest_speed: Option<f64>,
-    /// Longest time of the processor on the thread of a course, seconds. A run ends in the step in which it is over, or after it, unless
-    /// it is the last one.
+    /// Longest time of the processor on the thread of a course, seconds. A run ends in the step in which it is
+    /// over, or after it, unless it is the last one.
     pub(crate) patience: f64,
 }
 
@@ -237,8 +237,8 @@ fn largest_speed(simulation: &Simulation) -> f64 {
     squares.fold(0.0, f64::max).sqrt()
 }
 
-/// Ends a run within a step when its time of the processor is over or Ctrl-C was pressed: a step of a sheet that locks
-/// can take minutes.
+/// Ends a run within a step when its time of the processor is over or Ctrl-C was pressed: a step of a sheet
+/// that locks can take minutes.
 struct Limit<'a> {
     begun: ThreadTime,
     patience: f64,

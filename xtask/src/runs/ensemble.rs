@@ -1,6 +1,6 @@
 //! The same fall many times, each from another slightly uneven start.
 
-use super::{FigureScene, Hanging, Shape};
+use super::{FigureScene, Hanging, Shape, displaced};
 use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::Result;
@@ -28,8 +28,8 @@ pub(crate) fn ensemble(scene: &FigureScene, bump: f64, members: u64) -> Result<V
     let bar = Progress::start(format!("falls of M^{}", hanging.level), members as usize);
     let mut all = Vec::new();
     for seed in 1..=members {
-        let uneven = format!("sheet.start={{perturbation={bump:?},seed={seed}}}");
-        let setup = scene.edited(scene.name(), &[uneven])?.setup()?;
+        let uneven = scene.edited(scene.name(), &[displaced(bump, seed)])?;
+        let setup = uneven.setup()?;
         let start = setup.model.potential_energy(0.0, &setup.start.x);
         let mut simulation = setup.start()?;
         let mut frames = Frames::every(1);

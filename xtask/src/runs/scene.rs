@@ -218,6 +218,11 @@ pub(crate) fn for_frames(frames: usize, frame: f64) -> String {
     format!("stop.time={:?}", frames as f64 * frame)
 }
 
+/// The edit by which each start of a scene has other random displacements, as a part of the mean edge length.
+pub(crate) fn displaced(perturbation: f64, seed: u64) -> String {
+    format!("sheet.start={{perturbation={perturbation:?},seed={seed}}}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,9 +1,8 @@
 //! A run from checkpoint to checkpoint.
 
-use crate::runs::{Course, Plan};
+use crate::runs::{Course, Plan, unseen};
 use anyhow::Result;
-use isosheet_dynamics::{Simulation, StepReport};
-use std::ops::ControlFlow;
+use isosheet_dynamics::Simulation;
 
 /// What a run gave up to the last checkpoint that it reached; up to its failure if it reached none.
 #[derive(Clone, Debug)]
@@ -16,17 +15,11 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Runs a simulation to so many checkpoints, as planned from each of them to the next one. `look` may
-    /// end it.
+    /// Runs a simulation to so many checkpoints, as planned from each of them to the next one.
     ///
     /// # Errors
     /// [`Interrupted`](crate::interrupt::Interrupted).
-    pub(super) fn of(
-        run: &mut Simulation,
-        plan: Plan,
-        checkpoints: usize,
-        look: &mut dyn FnMut(&Simulation, &StepReport) -> ControlFlow<()>,
-    ) -> Result<Self> {
+    pub(super) fn of(run: &mut Simulation, plan: Plan, checkpoints: usize) -> Result<Self> {
         let kinetic = |run: &Simulation| run.model().kinetic_energy(&run.state().v);
         let mut motion = Self {
             states: Vec::new(),
@@ -35,7 +28,7 @@ impl Motion {
         };
         for _ in 0..checkpoints {
             let mut course = motion.course.clone();
-            plan.go_on(run, &mut course, look)?;
+            plan.go_on(run, &mut course, &mut unseen)?;
             if !course.is_good() && !motion.states.is_empty() {
                 // Whether a run has blown up shows on the way to its failure.
                 (motion.course.ending, motion.course.drift) = (course.ending, course.drift);

@@ -5,7 +5,7 @@ use super::problem::Problem;
 use super::reference::Reference;
 use super::scheme::{Kind, Scheme};
 use crate::report::{exponent, rounded};
-use crate::runs::{Plan, unseen};
+use crate::runs::Plan;
 use anyhow::{Context, Result};
 use isosheet_tests::max_difference;
 use serde::Serialize;
@@ -141,7 +141,7 @@ fn point(
                 return Ok(point);
             }
         };
-        let motion = Motion::of(&mut run, plan, checkpoints, &mut unseen)?;
+        let motion = Motion::of(&mut run, plan, checkpoints)?;
         point.repetitions += 1;
         let cpu = |motion: &Motion| motion.course.cost.cpu;
         let is_last = !motion.course.is_good() || point.repetitions == REPETITIONS;

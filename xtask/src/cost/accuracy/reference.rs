@@ -2,13 +2,12 @@
 
 use super::motion::Motion;
 use super::problem::{CHECKPOINTS, Problem, Setup};
-use super::scheme::Scheme;
+use super::scheme::{ENERGY_MOMENTUM, REFERENCE, RUNGE_KUTTA, Scheme};
 use crate::report::{Effort, Table, columns};
 use crate::runs::Plan;
 use anyhow::{Context, Result, ensure};
-use isosheet_dynamics::{Simulation, StepReport, leave_flat};
+use isosheet_dynamics::leave_flat;
 use isosheet_tests::max_difference;
-use std::ops::ControlFlow;
 
 /// Positions that errors are measured against.
 #[derive(Clone, Debug)]
@@ -21,18 +20,11 @@ pub(super) struct Reference {
     pub(super) doubt: f64,
     /// Largest kinetic energy at the checkpoints, joules: the scale of energy errors.
     pub(super) energy: f64,
-    /// What it is and what it was compared with.
-    sources: [(&'static str, Source); 2],
+    /// What it is and what it was compared with: by which method, with which steps, seconds, and how far their
+    /// last halving moved it, metres.
+    sources: [(&'static str, Option<[f64; 2]>); 2],
     /// Mean rate at which neighbouring motions part, `ln(end / start) / time`, 1/s.
     parting: Option<f64>,
-}
-
-/// How a motion was made.
-#[derive(Clone, Copy, Debug)]
-struct Source {
-    motion: &'static str,
-    /// Its steps, seconds, and how far their last halving moved it, metres; nothing of exact motions.
-    steps: Option<[f64; 2]>,
 }
 
 /// Largest distance between the reference and its second opinion at which it is compared with, metres (sheets
@@ -43,15 +35,16 @@ impl Reference {
     /// How it was made and how far it goes.
     pub(super) fn table(&self) -> Table {
         Table::of(
-            "The reference and its second opinion: two motions by other methods or other steps, how far the last halving of their \
-             steps moved them, the largest distance between them over the time that is compared, and the rate at which a \
-             displaced start parts from the reference. After that time the two part, and nothing is compared",
-            &self.sources,
+            "The reference and its second opinion: two motions by other methods or other steps (those of the energy-momentum method \
+             extrapolated to zero), how far the last halving of their steps moved them, the largest distance between them over \
+             the time that is compared, and the rate at which a displaced start parts from the reference. After that time the \
+             two part, and nothing is compared",
+            ["reference", "second opinion"].iter().zip(self.sources),
             columns! { row;
-                "motion" => row.0,
-                "made_by" => row.1.motion,
-                "step_s" => row.1.steps.map(|[step, _]| step),
-                "last_halving_m" => row.1.steps.map(|[_, change]| change),
+                "motion" => *row.0,
+                "made_by" => row.1.0,
+                "step_s" => row.1.1.map(|[step, _]| step),
+                "last_halving_m" => row.1.1.map(|[_, change]| change),
                 "compared_for_s" => self.interval * self.states.len() as f64,
                 "distance_m" => self.doubt,
                 "rate_of_parting_1_per_s" => self.parting,
@@ -96,11 +89,9 @@ struct Refined {
 }
 
 impl Refined {
-    fn source(&self, interval: f64) -> Source {
-        Source {
-            motion: self.name,
-            steps: Some([interval / self.steps as f64, self.change]),
-        }
+    fn source(&self, problem: Problem) -> (&'static str, Option<[f64; 2]>) {
+        let step = problem.interval() / self.steps as f64;
+        (self.name, Some([step, self.change]))
     }
 }
 
@@ -111,27 +102,20 @@ pub(super) fn compute(problem: Problem, budget: Work) -> Result<Reference> {
     let interval = problem.interval();
     let times: Vec<f64> = (1..=CHECKPOINTS).map(|k| interval * k as f64).collect();
     let (fine, second) = rayon::join(
-        || refine(problem, &Scheme::reference(), budget, None),
+        || refine(problem, &Scheme::named(REFERENCE), budget, None),
         || second_opinion(problem, budget),
     );
     let fine = fine?.context("the reference method refused it")?;
-    let composition = fine.source(interval);
+    let composition = fine.source(problem);
     let (mut states, other, sources) = match problem.exact(&times) {
         Some(exact) => {
-            let exactly = Source {
-                motion: "the exact solution",
-                steps: None,
-            };
+            let exactly = ("the exact solution", None);
             (exact, fine.motion.states, [exactly, composition])
         }
         None => {
             let second = second?.context("no second opinion on the reference")?;
-            let opinion = second.source(interval);
-            (
-                fine.motion.states,
-                second.motion.states,
-                [composition, opinion],
-            )
+            let sources = [composition, second.source(problem)];
+            (fine.motion.states, second.motion.states, sources)
         }
     };
     let pairs = states.iter().zip(&other);
@@ -144,14 +128,13 @@ pub(super) fn compute(problem: Problem, budget: Work) -> Result<Reference> {
         doubts[0]
     );
     states.truncate(trusted);
-    let [reference, opinion] = sources;
     Ok(Reference {
         interval,
         states,
         doubt: doubts[..trusted].iter().copied().fold(ROUND_OFF, f64::max),
         energy: fine.motion.energy,
-        sources: [("reference", reference), ("second opinion", opinion)],
-        parting: parting(problem, trusted, fine.steps.div_ceil(2), budget)?,
+        sources,
+        parting: parting(problem, trusted, fine.steps.div_ceil(2))?,
     })
 }
 
@@ -168,14 +151,14 @@ fn refine(
 ) -> Result<Option<Refined>> {
     let (mut spent, mut runs) = (0, Vec::<Refined>::new());
     for k in 2..=14 {
-        let limit = if runs.len() < 2 {
-            FIRST * budget
-        } else {
-            budget.saturating_sub(spent)
-        };
-        let (steps, interval) = (1 << k, problem.interval());
-        let plan = Plan::new(interval / steps as f64, interval);
-        let (motion, work) = sample(scheme, problem.setup()?, plan, CHECKPOINTS, limit)?;
+        let steps = 1 << k;
+        let (motion, work) = sample(
+            scheme,
+            problem.setup()?,
+            problem.interval(),
+            steps,
+            CHECKPOINTS,
+        )?;
         spent += work;
         match motion {
             Some(motion) => {
@@ -197,6 +180,7 @@ fn refine(
             None if runs.is_empty() && spent < budget => continue,
             None => break,
         }
+        // A run costs about twice the one before. Without two of them there is no reference at all.
         let late = 2 * work > budget.saturating_sub(spent);
         let settled = runs.last().is_some_and(|run| run.change < SETTLED);
         if runs.len() > 1 && (settled || late) {
@@ -218,9 +202,6 @@ const SETTLED: f64 = 1e-13;
 /// Change below which a growing one is due to round-off and not to coarse steps, metres.
 const ROUNDED: f64 = 1e-9;
 
-/// The first two runs may take so many times the budget: without them there is no reference at all.
-const FIRST: Work = 10;
-
 /// `(2^p x(h/2) - x(h)) / (2^p - 1)`, in place of `x(h/2)`.
 fn richardson(fine: &mut [Vec<f64>], coarse: &[Vec<f64>], order: f64) {
     let weight = 2f64.powf(order);
@@ -231,10 +212,10 @@ fn richardson(fine: &mut [Vec<f64>], coarse: &[Vec<f64>], order: f64) {
 
 /// Runge-Kutta in a chart where it gets through, else the energy-momentum method, extrapolated.
 fn second_opinion(problem: Problem, budget: Work) -> Result<Option<Refined>> {
-    let chart = refine(problem, &Scheme::runge_kutta(), budget, None)?;
+    let chart = refine(problem, &Scheme::named(RUNGE_KUTTA), budget, None)?;
     match chart.filter(|run| run.change < 1e-7) {
         Some(run) => Ok(Some(run)),
-        None => refine(problem, &Scheme::energy_momentum(), budget, Some(2.0)),
+        None => refine(problem, &Scheme::named(ENERGY_MOMENTUM), budget, Some(2.0)),
     }
 }
 
@@ -243,29 +224,22 @@ fn distance(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     pairs.fold(0.0, |m, (a, b)| m.max(max_difference(a, b)))
 }
 
-/// A run to so many checkpoints, as planned from each of them to the next one, and its work; no run if it
-/// failed or its work exceeded the limit.
+/// A run to so many checkpoints with so many steps between two of them, and its work; no run if it failed.
 fn sample(
     scheme: &Scheme,
     setup: Setup,
-    plan: Plan,
+    interval: f64,
+    steps: usize,
     checkpoints: usize,
-    limit: Work,
 ) -> Result<(Option<Motion>, Work)> {
+    let plan = Plan::new(interval / steps as f64, interval);
     let Ok(mut run) = scheme.start(setup, plan.step) else {
         return Ok((None, 0));
     };
-    let vertices = run.state().x.len() / 3;
-    let mut work = 0;
-    let mut look = |_: &Simulation, report: &StepReport| {
-        let factorisations = report.factorisations.max(STAGES * report.substeps);
-        work += (factorisations * vertices) as Work;
-        match work > limit {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    };
-    let motion = Motion::of(&mut run, plan, checkpoints, &mut look)?;
+    let motion = Motion::of(&mut run, plan, checkpoints)?;
+    let cost = &motion.course.cost;
+    let factorisations = cost.factorisations.max(STAGES * cost.substeps);
+    let work = (factorisations * run.state().x.len() / 3) as Work;
     Ok((Some(motion).filter(|m| m.course.is_good()), work))
 }
 
@@ -274,15 +248,14 @@ const PERTURBATION: f64 = 1e-7;
 
 /// The mean rate at which a perturbed start parts from the unperturbed one up to the trusted checkpoint where
 /// they are farthest apart, by the reference method at a moderate step.
-fn parting(problem: Problem, trusted: usize, steps: usize, budget: Work) -> Result<Option<f64>> {
-    let interval = problem.interval();
-    let plan = Plan::new(interval / steps.max(1) as f64, interval);
+fn parting(problem: Problem, trusted: usize, steps: usize) -> Result<Option<f64>> {
+    let (scheme, interval) = (Scheme::named(REFERENCE), problem.interval());
     let (mut starts, mut motions) = (Vec::new(), Vec::new());
     for amplitude in [0.0, PERTURBATION] {
         let mut setup = problem.setup()?;
         leave_flat(&setup.model, &mut setup.state.x, amplitude, 1)?;
         starts.push(setup.state.x.clone());
-        let (motion, _) = sample(&Scheme::reference(), setup, plan, trusted, budget)?;
+        let (motion, _) = sample(&scheme, setup, interval, steps, trusted)?;
         motions.extend(motion.map(|motion| motion.states));
     }
     let [unperturbed, perturbed] = &motions[..] else {
@@ -315,7 +288,7 @@ mod tests {
 
     #[test]
     fn more_work_gives_a_finer_reference_and_the_same_work_the_same_bits() {
-        let scheme = Scheme::reference();
+        let scheme = Scheme::named(REFERENCE);
         let refined = |budget| {
             let run = refine(Problem::Pendulum, &scheme, budget, None).unwrap();
             run.expect("two runs")
@@ -323,17 +296,10 @@ mod tests {
         let (coarse, fine, again) = (refined(BUDGET / 50), refined(BUDGET), refined(BUDGET));
         assert!(fine.steps > coarse.steps && fine.change < coarse.change);
         assert!(fine.steps == again.steps && fine.motion.states == again.motion.states);
-        // The work of a run grows with its steps, and a run beyond its limit is given up.
-        let interval = Problem::Pendulum.interval();
-        let plan = Plan::new(interval / 8.0, interval);
-        let sample = |limit| {
-            let setup = Problem::Pendulum.setup().unwrap();
-            sample(&scheme, setup, plan, CHECKPOINTS, limit).unwrap()
-        };
-        let (run, work) = sample(Work::MAX);
+        // The work of a run grows with its steps.
+        let setup = Problem::Pendulum.setup().unwrap();
+        let (run, work) = sample(&scheme, setup, 0.1, 8, CHECKPOINTS).unwrap();
         assert!(run.is_some() && work >= (8 * CHECKPOINTS * STAGES * 3) as Work);
-        let (run, cut) = sample(work / 2);
-        assert!(run.is_none() && cut > work / 2 && cut < work);
     }
 
     #[test]

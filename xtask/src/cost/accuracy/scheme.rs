@@ -11,7 +11,7 @@ use isosheet_io::scene::{
     Substep,
 };
 use isosheet_mesh::Sheet;
-use isosheet_tests::{conservative, damped, energy_momentum, rattle_composition};
+use isosheet_tests::{conservative, damped};
 
 /// A method, with everything but its step.
 #[derive(Clone, Debug)]
@@ -48,35 +48,21 @@ const LARGE_CRAWL: usize = 1 << 14;
 /// Methods that take any state, flat ones included.
 pub(super) const ROBUST: [&str; 3] = ["implicit Euler", DEFAULT, "projection"];
 
+/// The method by which references are computed, of fourth order.
+pub(super) const REFERENCE: &str = "RATTLE composition";
+
+/// The second opinion on references, and that where charts end.
+pub(super) const RUNGE_KUTTA: &str = "Runge-Kutta 4, Cartesian chart";
+pub(super) const ENERGY_MOMENTUM: &str = "energy-momentum";
+
 impl Scheme {
-    fn free(name: &'static str, method: Method) -> Self {
-        let kind = Kind::Free(method);
-        Self {
-            name,
-            kind,
-            look: None,
-        }
-    }
-
-    /// The fourth-order composition of RATTLE, by which references are computed.
-    pub(super) fn reference() -> Self {
-        let name = "the fourth-order composition of RATTLE";
-        Self::free(name, rattle_composition())
-    }
-
-    /// The energy-momentum method, the second opinion on references where charts end.
-    pub(super) fn energy_momentum() -> Self {
-        let name = "the energy-momentum method, its last two step sizes extrapolated to zero";
-        Self::free(name, energy_momentum())
-    }
-
-    /// Runge-Kutta in a chart, the second opinion on references.
-    pub(super) fn runge_kutta() -> Self {
-        Self {
-            name: "Runge-Kutta in a Cartesian chart",
-            kind: Kind::Fixed(Chart::default()),
-            look: None,
-        }
+    /// One of the methods.
+    ///
+    /// # Panics
+    /// If there is none of that name.
+    pub(super) fn named(name: &str) -> Self {
+        let mut all = Self::all().into_iter();
+        all.find(|scheme| scheme.name == name).expect(name)
     }
 
     /// All methods: chart-free ones, the published scheme, and every method in every chart. Velocities in
@@ -117,10 +103,7 @@ impl Scheme {
                 "published scheme, free creases, fixed steps",
                 Kind::Fixed(published(front)),
             ),
-            (
-                "Runge-Kutta 4, Cartesian chart",
-                Kind::Fixed(chart(cartesian, runge_kutta)),
-            ),
+            (RUNGE_KUTTA, Kind::Fixed(chart(cartesian, runge_kutta))),
             (
                 "forward Euler, Cartesian chart",
                 Kind::Fixed(chart(cartesian, euler)),
@@ -215,10 +198,9 @@ mod tests {
     #[test]
     fn starts_fit_their_models() {
         for (problem, name, _) in Problem::ALL {
-            let schemes = Scheme::all();
-            let [damped, free] = [1, 5].map(|k| {
-                let start = schemes[k].start(problem.setup().unwrap(), 1e-3);
-                start.unwrap_or_else(|e| panic!("{name}, {}: {e}", schemes[k].name))
+            let [damped, free] = [DEFAULT, REFERENCE].map(|scheme| {
+                let start = Scheme::named(scheme).start(problem.setup().unwrap(), 1e-3);
+                start.unwrap_or_else(|e| panic!("{name}, {scheme}: {e}"))
             });
             let touches = matches!(problem, Problem::Cloth(_));
             assert_eq!(damped.contacts().is_some(), touches, "{name}");

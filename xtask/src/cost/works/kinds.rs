@@ -3,7 +3,7 @@
 use super::penetration::Checker;
 use crate::cost::DEFAULT;
 use crate::report::Effort;
-use crate::runs::{Bumped, FigureScene, Pairs, STEP};
+use crate::runs::{Bumped, FigureScene, Pairs, Plan, STEP, displaced};
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method, ProjectionStepOptions, Simulation};
 use isosheet_io::scene::SupportForces;
@@ -44,10 +44,7 @@ pub(super) type Stepped = (Named, f64);
 /// A run before its first step.
 pub(super) struct Start {
     pub(super) simulation: Simulation,
-    /// Length of a step, seconds.
-    pub(super) step: f64,
-    /// Number of steps, unless the run ends before.
-    pub(super) steps: usize,
+    pub(super) plan: Plan,
     /// Whether the scene ends before.
     pub(super) is_over: Box<dyn Fn(&Simulation) -> bool + Send>,
     /// The check beside the contact code that nothing is penetrated.
@@ -255,10 +252,7 @@ impl Work {
             };
             *edit = edit.replace("CRANE", path);
         }
-        let Self { perturbation, .. } = self;
-        edits.push(format!(
-            "sheet.start={{perturbation={perturbation:?},seed={start}}}"
-        ));
+        edits.push(displaced(self.perturbation, start));
         FigureScene::named(file, self.name, &edits).map(Some)
     }
 
@@ -282,8 +276,7 @@ impl Work {
             };
             return Ok(Some(Start {
                 checker,
-                step: *step,
-                steps: (bumped.duration() / step).round() as usize,
+                plan: Plan::new(*step, bumped.duration()),
                 is_over: Box::new(|_| false),
                 simulation,
             }));
@@ -298,8 +291,7 @@ impl Work {
         let stop = scene.scene().stop.clone();
         Ok(Some(Start {
             checker: None,
-            step: scene.frame(),
-            steps: scene.frames(),
+            plan: Plan::new(scene.frame(), scene.frames() as f64 * scene.frame()),
             is_over: Box::new(move |s| stop.is_force_reached(|| supports.of(s))),
             simulation,
         }))

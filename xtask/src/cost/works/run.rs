@@ -14,31 +14,6 @@ use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-/// How much is run.
-#[derive(Clone, Copy, Debug)]
-struct Extent {
-    starts: u64,
-    /// Steps after which a run ends.
-    steps: usize,
-    /// Longest run, seconds of the processor.
-    patience: f64,
-}
-
-impl Extent {
-    fn of(effort: Effort) -> Self {
-        let (starts, steps, patience) = effort.pick(
-            (1, 4, 10.0),
-            (3, usize::MAX, 300.0),
-            (5, usize::MAX, 1800.0),
-        );
-        Self {
-            starts,
-            steps,
-            patience,
-        }
-    }
-}
-
 /// A run from one start.
 #[derive(Clone, Debug, Default)]
 struct Run {
@@ -90,7 +65,6 @@ pub(super) struct Row {
     pub(super) iterations_per_step: Option<f64>,
     /// Factorisations: the most of a start as a multiple of the fewest.
     pub(super) largest_over_smallest: Option<f64>,
-    pub(super) most_in_a_step: usize,
     /// Parts of steps, and those that were rejected.
     pub(super) steps: Option<f64>,
     pub(super) rejected: Option<f64>,
@@ -153,7 +127,6 @@ impl Row {
             factorisations_per_step: median(&|r| r.course.cost.factorisations_per_step()),
             iterations_per_step: median(&|r| r.course.cost.iterations_per_step()),
             largest_over_smallest: spread.map(|[low, high]| high / low),
-            most_in_a_step: runs.iter().map(|r| r.course.worst).max().unwrap_or(0),
             steps: median(&|r| Some(r.course.cost.substeps as f64)),
             rejected: median(&|r| Some(r.course.cost.rejected as f64)),
             strain: runs.iter().map(|r| r.course.strain).fold(0.0, f64::max),
@@ -175,9 +148,15 @@ impl Row {
 /// # Errors
 /// A scene of which no simulation can be made; [`Interrupted`](crate::interrupt::Interrupted).
 pub(super) fn measure(task: &Task, effort: Effort) -> Result<Row> {
-    let (work, extent) = (task.work, Extent::of(effort));
+    // Starts, steps after which a run ends, and its longest time of the processor, seconds.
+    let (starts, steps, patience) = effort.pick(
+        (1, 4.0, 10.0),
+        (3, f64::INFINITY, 300.0),
+        (5, f64::INFINITY, 1800.0),
+    );
+    let work = task.work;
     let pool = threads::pool(task.threads)?;
-    let bar = Progress::start(&task.unit.title, extent.starts as usize);
+    let bar = Progress::start(&task.unit.title, starts as usize);
     let start = |number| {
         let start = work.start(task.size, task.method.as_ref(), number)?;
         start.context("the mesh is gone")
@@ -195,15 +174,17 @@ pub(super) fn measure(task: &Task, effort: Effort) -> Result<Row> {
             .method
             .as_ref()
             .map(|((name, _), _)| (*name).to_owned()),
-        step_s: first.step,
+        step_s: first.plan.step,
         threads: task.threads,
         scene: work.command(task.size),
         ..Row::default()
     };
     let mut runs = Vec::new();
-    for number in 1..=extent.starts {
-        let start = start(number)?;
-        runs.push(pool.install(|| run(start, extent))?);
+    for number in 1..=starts {
+        let mut start = start(number)?;
+        let Plan { step, duration, .. } = start.plan;
+        start.plan = Plan::new(step, duration.min(steps * step)).within(patience);
+        runs.push(pool.install(|| run(start))?);
         bar.step();
         if !runs.iter().all(|r| r.course.is_good()) {
             break;
@@ -215,11 +196,10 @@ pub(super) fn measure(task: &Task, effort: Effort) -> Result<Row> {
     Ok(row)
 }
 
-fn run(start: Start, extent: Extent) -> Result<Run> {
+fn run(start: Start) -> Result<Run> {
     let Start {
         mut simulation,
-        step,
-        steps,
+        plan,
         is_over,
         checker,
     } = start;
@@ -245,8 +225,6 @@ fn run(start: Start, extent: Extent) -> Result<Run> {
             false => ControlFlow::Continue(()),
         }
     };
-    let steps = steps.min(extent.steps);
-    let plan = Plan::new(step, steps as f64 * step).within(extent.patience);
     reset_peak_memory();
     let clock = ProcessTime::now();
     let mut course = plan.run(&mut simulation, &mut look)?;
@@ -302,7 +280,7 @@ mod tests {
         let size = work.sizes(Effort::Quick)[0];
         let method = work.methods().swap_remove(0);
         let start = work.start(size, method.as_ref(), 1).unwrap();
-        run(start.expect("a mesh"), Extent::of(Effort::Full)).unwrap()
+        run(start.expect("a mesh")).unwrap()
     }
 
     /// The strip is pushed until its support bears 3 mN.
