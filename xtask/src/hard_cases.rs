@@ -35,13 +35,12 @@ use rayon::prelude::*;
 use std::time::Instant;
 
 /// The cases that are code, in the order of the report.
-static CASES: [&Case; 17] = [
+static CASES: [&Case; 16] = [
     &flat::BRANCH,
     &charts::CONDITION,
     &charts::LITERAL,
     &charts::COLLINEAR,
     &scales::SLIVERS,
-    &scales::MASSES,
     &scales::SIZES,
     &rigid::CLOSED,
     &plate::PLATE,
@@ -56,10 +55,11 @@ static CASES: [&Case; 17] = [
 ];
 
 /// What code adds to the cases that are files, by their names.
-static BESIDE: [(&str, Code); 6] = [
+static BESIDE: [(&str, Code); 7] = [
     ("fan-and-strip", meshes::long),
     ("flat-start", flat::start),
     ("irregular", meshes::irregular),
+    ("mass-ratio", scales::masses),
     ("over-pinned", pins::over_pinned),
     ("rest", long::rest),
     ("step-sizes", steps::sizes),

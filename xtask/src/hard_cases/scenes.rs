@@ -58,23 +58,6 @@ pub(super) fn released(sheet: &Sheet, pins: &[VertexId], method: Method) -> Resu
     at_rest(pinned(sheet, pins)?, sheet.positions(), method)
 }
 
-/// How many of some simulations that differ a little stop before the end of their steps of [`FRAME`], and the
-/// largest edge strain of all steps. Whether a chaotic run gets through is a matter of chance; how many of
-/// them do is not.
-pub(super) fn stopped(
-    runs: u32,
-    steps: usize,
-    build: impl Fn(u32) -> Result<Simulation>,
-) -> Result<(u32, f64)> {
-    let (mut stopped, mut strain) = (0, 0.0_f64);
-    for k in 0..runs {
-        let (course, _) = go(build(k)?, FRAME, steps)?;
-        stopped += u32::from(course.cost.steps < steps);
-        strain = strain.max(course.strain);
-    }
-    Ok((stopped, strain))
-}
-
 /// The top row of `M^1`.
 pub(super) fn top_row() -> Vec<VertexId> {
     (20..25).map(VertexId).collect()
