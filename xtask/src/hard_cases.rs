@@ -55,13 +55,12 @@ static CASES: [&Case; 16] = [
 ];
 
 /// What code adds to the cases that are files, by their names.
-static BESIDE: [(&str, Code); 7] = [
+static BESIDE: [(&str, Code); 6] = [
     ("fan-and-strip", meshes::long),
     ("flat-start", flat::start),
     ("irregular", meshes::irregular),
     ("mass-ratio", scales::masses),
     ("over-pinned", pins::over_pinned),
-    ("rest", long::rest),
     ("step-sizes", steps::sizes),
 ];
 

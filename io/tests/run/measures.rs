@@ -99,8 +99,8 @@ fn measures_of_a_fall_are_those_of_the_closed_form() {
     assert!(summary(&dir.join("none")).measures.is_empty());
 }
 
-/// The extremes of a fall by 0.8 m are those of the closed form. Implicit Euler falls by `g t h / 2` farther, whose
-/// potential energy is lost.
+/// The extremes of a fall by 0.8 m are those of the closed form. Implicit Euler falls by `g t h / 2` farther,
+/// whose potential energy is lost.
 #[test]
 fn the_extremes_of_a_fall_are_those_of_the_closed_form() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,39 +1,14 @@
-//! Long runs: rest stays rest, and energy over a million steps.
+//! Energy over a million steps.
 
-use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel, textbook, textbook_steps};
-use super::scenes::{FRAME, STRAIN, apart, course, pinned, released, top_row, tumbling, upright};
+use super::naive::{TEXTBOOK, textbook_steps};
+use super::scenes::{STRAIN, course, released, top_row, tumbling};
 use super::{Case, Findings, Work, log_log};
 use crate::draw::Series;
 use crate::report::{Bound, Effort, Shortfall, Table};
 use crate::runs::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{Simulation, State};
-use isosheet_mesh::generate;
 use isosheet_tests::energy_momentum;
-
-/// What naive methods do to a sheet that hangs at rest.
-pub(super) fn rest(f: &mut Findings, _: Effort) -> Result<()> {
-    let sheet = upright(&generate::isotropic_square(1, 1.0)?)?;
-    let model = || pinned(&sheet, &top_row());
-    let start = sheet.positions();
-    let (moved, still) = ("displacement in 1000 steps, m", Bound::AtMost(1e-6));
-    let outcome = textbook(&model()?, start, FRAME, 1000);
-    f.naive_run(
-        TEXTBOOK,
-        moved,
-        outcome.map(|(_, x)| apart(&x, start)),
-        still,
-    );
-    let (strain, x) = gauss_seidel(&model()?, start, FRAME, 1000, SWEEPS);
-    f.naive(GAUSS_SEIDEL, moved, apart(&x, start), still);
-    f.naive(
-        GAUSS_SEIDEL,
-        "edge strain in 1000 steps",
-        strain,
-        Bound::AtMost(1e-2),
-    );
-    Ok(())
-}
 
 /// Whether a step is one of about four in each octave.
 fn is_sample(n: usize) -> bool {

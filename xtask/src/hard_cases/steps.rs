@@ -116,7 +116,6 @@ fn free_fall(f: &mut Findings, effort: Effort) -> Result<()> {
         }
         let what = format!("M^{level}, {state}");
         let outcome = textbook(&thrown(&sheet)?, &x, H, STEPS);
-        let outcome = outcome.map(|(strain, _)| strain);
         f.naive_run(
             TEXTBOOK,
             format!("{what}: edge strain"),

@@ -63,8 +63,8 @@ fn the_worst_run_is_judged() {
     );
 }
 
-/// The runs are those of all entries of variants, and edits of the effort come last. What is for greater effort
-/// is not checked in quick reports.
+/// The runs are those of all entries of variants, and edits of the effort come last. What is for greater
+/// effort is not checked in quick reports.
 #[test]
 fn entries_of_variants_have_their_own_runs() {
     let file = read(
