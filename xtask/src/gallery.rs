@@ -8,7 +8,7 @@ use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::Result;
 use clap::Args;
-use isosheet_io::picture::{Labelled, Solid, animated_png, montage};
+use isosheet_io::picture::{Labelled, animated_png, montage};
 
 /// Arguments of `gallery`.
 #[derive(Debug, Args)]
@@ -161,6 +161,7 @@ impl Shown {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isosheet_io::picture::Solid;
 
     #[test]
     fn every_scene_is_there_with_the_bodies_that_are_drawn() {

@@ -6,6 +6,7 @@ use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet};
 use isosheet_tests::{bumped, corner};
 use nalgebra::Isometry3;
+use serde::Deserialize;
 
 /// Height of the bump, metres: nearly flat, so that the length constraints are nearly dependent.
 const BUMP: f64 = 1e-3;
@@ -23,7 +24,8 @@ pub(crate) const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
 const MASS: f64 = 0.1;
 
 /// Which pairs repel each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum Pairs {
     /// Sheet and table.
     Table,
@@ -32,7 +34,8 @@ pub(crate) enum Pairs {
 }
 
 /// A scene that other programs have been measured on, too.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum Bumped {
     /// A nearly flat sheet held at a corner, one second.
     Hanging,

@@ -3,39 +3,60 @@
 use super::penetration::Checker;
 use crate::cost::DEFAULT;
 use crate::report::Effort;
-use crate::runs::{Bumped, FigureScene, Pairs, Plan, STEP, displaced};
+use crate::runs::{Bumped, FigureScene, Plan, STEP, displaced};
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method, ProjectionStepOptions, Simulation};
 use isosheet_io::scene::SupportForces;
 use isosheet_tests::{Named, energy_momentum, implicit_euler};
+use serde::Deserialize;
 use std::path::Path;
 
 /// A kind of run, at several sizes.
-#[derive(Debug)]
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(in crate::cost) struct Work {
     /// Its name on the command line and in tables.
-    pub(super) name: &'static str,
+    pub(super) name: String,
     /// What happens, for people.
-    pub(super) title: &'static str,
-    pub(super) scene: Scene,
+    pub(super) title: String,
+    scene: Scene,
     /// Edits of a scene file besides those of the size and of the start.
-    edits: &'static [&'static str],
+    #[serde(default)]
+    pub(super) edits: Vec<String>,
     /// The keys that are the size.
-    keys: &'static [&'static str],
+    #[serde(default)]
+    keys: Vec<String>,
     /// Sizes of quick runs, of standard ones, and of full ones.
-    sizes: [&'static [u32]; 3],
+    #[serde(default = "one")]
+    sizes: [Vec<u32>; 3],
     /// Random displacements of the start as a part of the mean edge length.
+    #[serde(default = "small")]
     perturbation: f64,
-    pub(super) threads: &'static [usize],
+    #[serde(default = "single")]
+    pub(super) threads: Vec<usize>,
+}
+
+/// The only size of a scene without keys.
+fn one() -> [Vec<u32>; 3] {
+    [0; 3].map(|size| vec![size])
+}
+
+fn small() -> f64 {
+    1e-3
+}
+
+fn single() -> Vec<usize> {
+    vec![1]
 }
 
 /// What a run is made of.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Scene {
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Scene {
     /// A file of `xtask/scenes`, or a kind of `isosheet new`.
-    File(&'static str),
-    /// A scene that other programs have been measured on, by several methods.
-    Elsewhere(Bumped),
+    File(String),
+    /// A scene that other programs have been measured on, by several methods: a square M^k of the size k.
+    Bumped(Bumped),
 }
 
 /// A method with its step, seconds.
@@ -51,135 +72,24 @@ pub(super) struct Start {
     pub(super) checker: Option<Checker>,
 }
 
-const LEVEL: &[&str] = &["sheet.mesh.square.level"];
-const SQUARES: [&[u32]; 3] = [&[2], &[2, 3, 4], &[2, 3, 4, 5]];
-const SMALL_SQUARES: [&[u32]; 3] = [&[1], &[1, 2, 3, 4], &[1, 2, 3, 4]];
-
 /// The crane's mesh in the folder that `ISOSHEET_DATA` names: a crease pattern of the folder is no part of
 /// the repository.
 const CRANE: &str = "fold/crane_rabbitear.fold";
 
-/// All of them.
-pub(super) static WORKS: &[Work] = &[
-    // From a random displacement ten times as large 4225 vertices have no way back to their lengths.
-    single("w1", "square of rods hangs by a corner", "cost-hanging")
-        .sized(LEVEL, SQUARES)
-        .displaced(1e-4),
-    single(
-        "w1e",
-        "elastic square hangs by a corner",
-        "cost-hanging-elastic",
-    )
-    .sized(LEVEL, SQUARES),
-    single("w2", "square of rods falls flat on a table", "cost-table")
-        .sized(LEVEL, [&[2], &[2, 3, 4], &[2, 3, 4]]),
-    single(
-        "w2e",
-        "elastic square falls flat on a table",
-        "cost-table-elastic",
-    )
-    .sized(LEVEL, SQUARES),
-    single("star", "star of rods falls on a ball", "cost-star"),
-    single("disk", "disk of rods falls on a ball", "cost-disk"),
-    single("jam", "strip of paper jams in a guide", "fig16").displaced(1e-4),
-    single("stamping", "die punches a blank", "fig13").displaced(1e-4),
-    single("crane", "crane is folded flat", "fold").edited(&[
-        "sheet.mesh={file={path=\"CRANE\",polygons=\"triangulate\",scale=0.15}}",
-        "crease[0].angle.smooth_step.to=175.0",
-        "contact={self_contact=true,friction=0.3}",
-    ]),
-    single(
-        "annulus",
-        "annulus of paper is folded along a curved crease",
-        "cost-annulus",
-    ),
-    single("miura", "Miura's pattern is folded", "fig17")
-        .sized(
-            &["sheet.mesh.miura.columns", "sheet.mesh.miura.rows"],
-            [&[10], &[42], &[42]],
-        )
-        .displaced(1e-4),
-    single(
-        "turnover",
-        "gravity on a hanging elastic sheet is turned over",
-        "cost-turnover",
-    )
-    .sized(
-        &["sheet.mesh.rectangle.columns", "sheet.mesh.rectangle.rows"],
-        [&[32], &[32], &[32, 64, 128]],
-    ),
-    Work {
-        threads: &[1, 2],
-        ..single("ball", "plastic film drapes over a ball", "cost-ball")
-            .sized(&["sheet.mesh.disk.rings"], [&[14], &[28], &[28, 57]])
-    },
-    elsewhere("hanging", "hanging sheet", Bumped::Hanging),
-    elsewhere(
-        "tablecloth",
-        "tablecloth, table",
-        Bumped::Tablecloth(Pairs::Table),
-    ),
-    elsewhere(
-        "tablecloth-itself",
-        "tablecloth, table and itself",
-        Bumped::Tablecloth(Pairs::TableAndItself),
-    ),
-];
-
-/// A scene file of one size on one thread.
-pub(super) const fn single(name: &'static str, title: &'static str, file: &'static str) -> Work {
-    Work {
-        name,
-        title,
-        scene: Scene::File(file),
-        edits: &[],
-        keys: &[],
-        sizes: [&[0]; 3],
-        perturbation: 1e-3,
-        threads: &[1],
-    }
-}
-
-/// A scene that other programs have been measured on.
-const fn elsewhere(name: &'static str, title: &'static str, scene: Bumped) -> Work {
-    Work {
-        scene: Scene::Elsewhere(scene),
-        ..single(name, title, "").sized(LEVEL, SMALL_SQUARES)
-    }
-}
-
 impl Work {
-    const fn sized(self, keys: &'static [&'static str], sizes: [&'static [u32]; 3]) -> Self {
-        Self {
-            keys,
-            sizes,
-            ..self
-        }
-    }
-
-    pub(super) const fn edited(self, edits: &'static [&'static str]) -> Self {
-        Self { edits, ..self }
-    }
-
-    const fn displaced(self, perturbation: f64) -> Self {
-        Self {
-            perturbation,
-            ..self
-        }
-    }
-
     /// The sizes that an effort has time for, smallest first.
-    pub(super) fn sizes(&self, effort: Effort) -> &'static [u32] {
-        let [quick, standard, full] = self.sizes;
+    pub(super) fn sizes(&self, effort: Effort) -> &[u32] {
+        let [quick, standard, full] = &self.sizes;
         effort.pick(quick, standard, full)
     }
 
     /// A size in words; empty where there is one only.
     pub(super) fn size_name(&self, size: u32) -> String {
-        match self.keys {
-            [] => String::new(),
-            keys if keys == LEVEL => format!("M^{size}"),
-            _ => size.to_string(),
+        let is_level = |key: &String| key == "sheet.mesh.square.level";
+        match &self.scene {
+            Scene::File(_) if self.keys.is_empty() => String::new(),
+            Scene::File(_) if !self.keys.iter().all(is_level) => size.to_string(),
+            _ => format!("M^{size}"),
         }
     }
 
@@ -187,9 +97,8 @@ impl Work {
     /// file names its own.
     pub(super) fn methods(&self) -> Vec<Option<Stepped>> {
         let default = (DEFAULT, Method::default());
-        let bumped = match self.scene {
-            Scene::File(_) => return vec![None],
-            Scene::Elsewhere(bumped) => bumped,
+        let Scene::Bumped(bumped) = &self.scene else {
+            return vec![None];
         };
         if let Bumped::Tablecloth(_) = bumped {
             let euler = ("implicit Euler", implicit_euler());
@@ -220,13 +129,13 @@ impl Work {
 
     /// The edits of a size, as `isosheet simulate --set` takes them.
     fn edits(&self, size: u32) -> impl Iterator<Item = String> {
-        let fixed = self.edits.iter().map(|&edit| edit.to_owned());
+        let fixed = self.edits.iter().cloned();
         fixed.chain(self.keys.iter().map(move |key| format!("{key}={size}")))
     }
 
     /// The scene file with the edits that make it the row of the table, for people.
     pub(super) fn command(&self, size: u32) -> Option<String> {
-        let Scene::File(file) = self.scene else {
+        let Scene::File(file) = &self.scene else {
             return None;
         };
         let words: Vec<String> = self.edits(size).collect();
@@ -239,7 +148,7 @@ impl Work {
     /// # Errors
     /// A scene file that cannot be read or edited.
     pub(super) fn file(&self, size: u32, start: u64) -> Result<Option<FigureScene>> {
-        let Scene::File(file) = self.scene else {
+        let Scene::File(file) = &self.scene else {
             return Ok(None);
         };
         let mut edits: Vec<String> = self.edits(size).collect();
@@ -253,7 +162,7 @@ impl Work {
             *edit = edit.replace("CRANE", path);
         }
         edits.push(displaced(self.perturbation, start));
-        FigureScene::named(file, self.name, &edits).map(Some)
+        FigureScene::named(file, &self.name, &edits).map(Some)
     }
 
     /// The run from one of its starts, by number; those of scenes that are no files are alike. `None` if the
@@ -267,12 +176,12 @@ impl Work {
         method: Option<&Stepped>,
         start: u64,
     ) -> Result<Option<Start>> {
-        if let (Scene::Elsewhere(bumped), Some(((_, method), step))) = (self.scene, method) {
+        if let (Scene::Bumped(bumped), Some(((_, method), step))) = (&self.scene, method) {
             let simulation = bumped.start(size, method.clone())?;
             let topology = simulation.model().topology();
             let checker = match bumped {
                 Bumped::Hanging => None,
-                Bumped::Tablecloth(pairs) => Some(Checker::new(topology, pairs)?),
+                Bumped::Tablecloth(pairs) => Some(Checker::new(topology, *pairs)?),
             };
             return Ok(Some(Start {
                 checker,

@@ -165,8 +165,8 @@ pub(super) fn measure(task: &Task, effort: Effort) -> Result<Row> {
     let model = first.simulation.model();
     let is_elastic = model.elastic_sheet().is_some();
     let row = Row {
-        work: work.name.to_owned(),
-        what_happens: work.title.to_owned(),
+        work: work.name.clone(),
+        what_happens: work.title.clone(),
         size: work.size_name(task.size),
         vertices: model.topology().vertex_count(),
         model: if is_elastic { "elastic" } else { "rods" }.to_owned(),
@@ -244,7 +244,7 @@ fn run(start: Start) -> Result<Run> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::kinds::{WORKS, Work, single};
+    use super::super::{kinds::Work, named};
     use super::*;
 
     #[test]
@@ -286,8 +286,9 @@ mod tests {
     /// The strip is pushed until its support bears 3 mN.
     #[test]
     fn a_support_that_slips_ends_a_run_well() {
-        let edits = &["stop.time=0.05", "stop.support_force=0.003"];
-        let slips = of(&single("jam", "", "fig16").edited(edits));
+        let jam = "name = 'jam'\ntitle = ''\nscene = { file = 'fig16' }\n\
+            edits = ['stop.time=0.05', 'stop.support_force=0.003']";
+        let slips = of(&toml::from_str(jam).unwrap());
         let course = &slips.course;
         assert!(course.is_good() && course.time < 0.05, "{slips:?}");
         assert!(course.strain < 1e-11 && course.cost.cpu > 0.0);
@@ -295,11 +296,11 @@ mod tests {
 
     #[test]
     fn the_sheets_of_other_programs_come_to_their_ends() {
-        let named = |name| WORKS.iter().find(|work| work.name == name).unwrap();
-        let hanging = of(named("hanging"));
+        let work = |name| named().into_iter().find(|(n, _)| *n == name).unwrap().1;
+        let hanging = of(work("hanging"));
         assert_eq!((hanging.course.cost.steps, hanging.penetration), (60, None));
         assert!((-0.9..0.01).contains(&hanging.part(0)), "{hanging:?}");
-        let cloth = of(named("tablecloth-itself"));
+        let cloth = of(work("tablecloth-itself"));
         let course = &cloth.course;
         assert!(course.is_good() && (course.time - 1.5).abs() < 1e-9);
         assert!(course.strain < 1e-10 && course.gap.is_some_and(|gap| gap > 0.0));
