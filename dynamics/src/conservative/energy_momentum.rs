@@ -1,9 +1,7 @@
 //! The energy-momentum integrator.
 
-use super::mean_pin_velocities;
-use crate::constraint::conservative::ConservativeRows;
-use crate::linear::saddle::{SaddleMatrix, System};
-use crate::model::round_off::{strain_floor, velocity_round_off};
+use super::newton::{Newton, Terms};
+use crate::model::round_off::strain_floor;
 use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
@@ -62,18 +60,13 @@ const QUADRATIC_BELOW: f64 = 1e-2;
 /// The energy-momentum method, see [`Method::EnergyMomentum`](crate::Method::EnergyMomentum).
 pub(crate) struct EnergyMomentum {
     options: EnergyMomentumOptions,
-    matrix: SaddleMatrix,
-    impulse: Vec<f64>,
+    /// Its velocity is that at the middle of the step.
+    newton: Newton,
     density: Vec<f64>,
-    w: Vec<f64>,
-    x1: Vec<f64>,
     xm: Vec<f64>,
     force: Vec<f64>,
     applied: Vec<f64>,
-    momentum: Vec<f64>,
     difference: Vec<f64>,
-    rods: Vec<f64>,
-    constraints: ConservativeRows,
 }
 
 impl EnergyMomentum {
@@ -88,18 +81,12 @@ impl EnergyMomentum {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         Ok(Self {
             options,
-            matrix: SaddleMatrix::new(model)?,
-            impulse: vec![0.0; m],
+            newton: Newton::new(model)?,
             density: vec![0.0; m],
-            w: vec![0.0; n],
-            x1: vec![0.0; n],
             xm: vec![0.0; n],
             force: vec![0.0; n],
             applied: vec![0.0; n],
-            momentum: vec![0.0; n],
             difference: vec![0.0; n],
-            rods: vec![0.0; m],
-            constraints: ConservativeRows::new(model.constrained_vertices()),
         })
     }
 
@@ -111,15 +98,16 @@ impl EnergyMomentum {
             return;
         }
         // Gonzalez: correct the midpoint force along M dx so that its work is exactly -dV.
-        for i in 0..self.w.len() {
-            self.difference[i] = self.x1[i] - state.x[i];
+        for i in 0..self.newton.u.len() {
+            self.difference[i] = self.newton.x1[i] - state.x[i];
         }
-        model.apply_mass(&self.difference, &mut self.momentum);
-        let squared = dot(&self.difference, &self.momentum);
+        model.apply_mass(&self.difference, &mut self.newton.momentum);
+        let squared = dot(&self.difference, &self.newton.momentum);
         if squared > 0.0 {
-            let change = model.potential_energy(t, &self.x1) - model.potential_energy(t, &state.x);
+            let change =
+                model.potential_energy(t, &self.newton.x1) - model.potential_energy(t, &state.x);
             let correction = (change + dot(&self.force, &self.difference)) / squared;
-            for (f, m) in self.force.iter_mut().zip(&self.momentum) {
+            for (f, m) in self.force.iter_mut().zip(&self.newton.momentum) {
                 *f -= correction * m;
             }
         }
@@ -136,14 +124,16 @@ impl EnergyMomentum {
         model.potential_force(t, &state.x, &mut self.force);
         model.applied_force(t, &state.x, &state.v, &mut self.applied);
         let mass = &model.mass().vertex;
-        for i in 0..self.w.len() {
-            self.w[i] = state.v[i] + 0.5 * h * (self.force[i] + self.applied[i]) / mass[i / 3];
-            self.xm[i] = state.x[i] + 0.5 * h * self.w[i];
+        for i in 0..self.newton.u.len() {
+            self.newton.u[i] =
+                state.v[i] + 0.5 * h * (self.force[i] + self.applied[i]) / mass[i / 3];
+            self.xm[i] = state.x[i] + 0.5 * h * self.newton.u[i];
         }
         let rods = model.rods();
-        rods.apply(&self.xm, &self.w, &mut self.rods);
-        let round_off = 16.0 * f64::EPSILON * norm_inf(&self.w);
-        self.rods
+        rods.apply(&self.xm, &self.newton.u, &mut self.newton.rods);
+        let round_off = 16.0 * f64::EPSILON * norm_inf(&self.newton.u);
+        self.newton
+            .rods
             .iter()
             .zip(rods.lengths())
             .all(|(r, l)| r.abs() <= round_off * l)
@@ -151,68 +141,56 @@ impl EnergyMomentum {
 
     /// Mean forces of the supports over the step.
     fn set_balance(&self, model: &SheetModel, state: &State, h: f64, balance: &mut Balance) {
-        let (w, v) = (&self.w, &state.v);
+        let (w, v) = (&self.newton.u, &state.v);
         if !balance.begin(model, |i| 2.0 * (w[i] - v[i]) / h) {
             return;
         }
         let t = state.t + 0.5 * h;
         balance.add_potentials(model, t, &self.xm, 1.0);
-        balance.add_applied(model, t, &self.xm, &self.w, 1.0);
-        balance.add_rods(model, &self.xm, &self.impulse, -1.0 / h);
-        balance.add_loads(self.constraints.loads(&self.constraints.impulses, 1.0 / h));
+        balance.add_applied(model, t, &self.xm, &self.newton.u, 1.0);
+        balance.add_rods(model, &self.xm, &self.newton.impulse, -1.0 / h);
+        balance.add_loads(
+            self.newton
+                .constraints
+                .loads(&self.newton.constraints.impulses, 1.0 / h),
+        );
         balance.finish(model);
     }
 
     /// Sets the negative residuals; returns the relative momentum residual and the strain.
     fn residuals(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
-        for i in 0..self.w.len() {
-            self.x1[i] = state.x[i] + h * self.w[i];
-            self.xm[i] = state.x[i] + 0.5 * h * self.w[i];
+        self.newton.set_end(model, state, h);
+        for i in 0..self.xm.len() {
+            self.xm[i] = state.x[i] + 0.5 * h * self.newton.u[i];
         }
-        model.place_pins(state.t + h, &mut self.x1);
         self.discrete_force(model, state, h);
-        model.applied_force(state.t + 0.5 * h, &self.xm, &self.w, &mut self.applied);
-        for i in 0..self.w.len() {
-            self.difference[i] = 2.0 * (self.w[i] - state.v[i]);
+        model.applied_force(
+            state.t + 0.5 * h,
+            &self.xm,
+            &self.newton.u,
+            &mut self.applied,
+        );
+        for i in 0..self.newton.u.len() {
+            self.difference[i] = 2.0 * (self.newton.u[i] - state.v[i]);
         }
-        model.apply_mass(&self.difference, &mut self.momentum);
+        model.apply_mass(&self.difference, &mut self.newton.momentum);
         let mass = &model.mass().vertex;
         let mut scale = 0.0_f64;
-        for i in 0..self.w.len() {
+        for i in 0..self.newton.u.len() {
             let f = h * (self.force[i] + self.applied[i]);
-            scale = scale.max((self.momentum[i].abs() + f.abs()) / mass[i / 3]);
-            self.momentum[i] = f - self.momentum[i];
+            scale = scale.max((self.newton.momentum[i].abs() + f.abs()) / mass[i / 3]);
+            self.newton.momentum[i] = f - self.newton.momentum[i];
         }
-        model
-            .rods()
-            .apply_transpose_add(&self.xm, &self.impulse, &mut self.momentum);
-        self.constraints.push_between(
+        self.newton.constraints.push_between(
             model.constraints(),
             state.t + 0.5 * h,
-            (&state.x, &self.xm, &self.x1),
+            (&state.x, &self.xm, &self.newton.x1),
             -0.5 * h,
         );
-        self.constraints
-            .add_impulses(&self.constraints.impulses, &mut self.momentum);
-        self.constraints
-            .linearise(model.constraints(), state.t + h, &self.x1, 1.0 / h);
-        model.clear_pinned(&mut self.momentum);
-        let worst = model.largest_acceleration(&self.momentum);
-        model.rods().residual_into(&self.x1, &mut self.rods);
-        self.rods.iter_mut().for_each(|c| *c = -*c / h);
         // Where nothing pushes, the speed sets the scale.
-        let speed = self
-            .w
-            .iter()
-            .chain(&state.v)
-            .fold(0.0_f64, |m, v| m.max(v.abs()));
-        let relative = if worst > velocity_round_off(state, h) {
-            worst / (scale + 1e-3 * speed).max(f64::MIN_POSITIVE)
-        } else {
-            0.0
-        };
-        let strain = model.rods().max_strain(&self.x1);
-        (relative, self.constraints.worst(strain))
+        let speed = norm_inf(&self.newton.u).max(norm_inf(&state.v));
+        self.newton
+            .close(model, state, h, &self.xm, scale + 1e-3 * speed)
     }
 }
 
@@ -235,22 +213,22 @@ impl Integrator for EnergyMomentum {
         // Impulses of dependent rods are not unique, and what a regularised solve makes of round-off in their
         // lengths would buckle the next step: they are found anew there.
         if outcome == StepOutcome::Newton {
-            let constraints = self.constraints.full_impulses();
+            let constraints = self.newton.constraints.full_impulses();
             solver
                 .history
                 .multipliers
-                .set(h, &self.impulse, constraints);
+                .set(h, &self.newton.impulse, constraints);
         } else {
             solver.history.multipliers.clear();
         }
         self.set_balance(model, state, h, &mut solver.balance);
-        for i in 0..self.w.len() {
-            solver.state.v[i] = 2.0 * self.w[i] - state.v[i];
+        for i in 0..self.newton.u.len() {
+            solver.state.v[i] = 2.0 * self.newton.u[i] - state.v[i];
         }
         model.set_pin_velocities(state.t + h, h, &mut solver.state.v);
-        solver.state.x.copy_from_slice(&self.x1);
+        solver.state.x.copy_from_slice(&self.newton.x1);
         solver.state.t = state.t + h;
-        let work = h * dot(&self.applied, &self.w);
+        let work = h * dot(&self.applied, &self.newton.u);
         proposal.account = StepAccount::without_contact(residual, work, outcome);
         Ok(())
     }
@@ -260,23 +238,14 @@ impl EnergyMomentum {
     /// First guess: the impulses of the step before, scaled to this one, and the velocity at the start.
     fn begin(&mut self, model: &SheetModel, attempt: &Attempt<'_>) {
         let (state, h) = (attempt.state, attempt.h);
-        let (ratio, last) = attempt.scaled_multipliers();
-        for (e, l) in self.impulse.iter_mut().enumerate() {
-            *l = last.rods.get(e).map_or(0.0, |i| ratio * i);
-        }
-        self.constraints.begin(
-            model.constraints(),
-            state.t,
-            &state.x,
-            ratio,
-            &last.constraints,
-        );
+        self.newton
+            .begin(model, state, attempt.scaled_multipliers());
         if self.falls_freely(model, state, h) {
-            self.impulse.fill(0.0);
+            self.newton.impulse.fill(0.0);
         } else {
-            self.w.copy_from_slice(&state.v);
+            self.newton.u.copy_from_slice(&state.v);
         }
-        mean_pin_velocities(model, state, h, &mut self.x1, &mut self.w);
+        self.newton.set_pins(model, state, h);
     }
 
     /// Newton's method; returns the relative residual and how it was reached.
@@ -315,37 +284,17 @@ impl EnergyMomentum {
             }
             previous = residual;
             iterations += 1;
-            effort.iterations += 1;
-            for (d, l) in self.density.iter_mut().zip(&self.impulse) {
+            for (d, l) in self.density.iter_mut().zip(&self.newton.impulse) {
                 *d = -0.5 * h * l;
             }
-            let system = System {
+            let terms = Terms {
                 mass: 2.0,
                 density: &self.density,
-                left: &self.xm,
-                right: &self.x1,
+                left: Some(&self.xm),
                 potentials: Some((state.t + 0.5 * h, &self.xm, 0.5 * h * h)),
-                constraints: &self.constraints.blocks,
             };
-            let used = self
-                .matrix
-                .solve(
-                    model,
-                    &system,
-                    &mut self.momentum,
-                    &mut self.rods,
-                    &mut self.constraints.rhs,
-                    effort,
-                )
-                .map_err(|source| StepError::Linalg { t: state.t, source })?;
+            let used = self.newton.correct(model, state.t, &terms, effort)?;
             outcome = outcome.max(used);
-            for (w, d) in self.w.iter_mut().zip(&self.momentum) {
-                *w += d;
-            }
-            for (l, d) in self.impulse.iter_mut().zip(&self.rods) {
-                *l += d;
-            }
-            self.constraints.correct();
             (residual, strain) = self.residuals(model, state, h);
         };
         if !converged {

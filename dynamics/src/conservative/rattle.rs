@@ -1,8 +1,6 @@
 //! RATTLE and its fourth-order composition.
 
-use super::mean_pin_velocities;
-use crate::constraint::conservative::ConservativeRows;
-use crate::linear::saddle::{SaddleMatrix, System};
+use super::newton::{Newton, Terms};
 use crate::model::round_off::{strain_floor, velocity_round_off};
 use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
@@ -50,20 +48,15 @@ impl RattleOptions {
 /// RATTLE, see [`Method::Rattle`](crate::Method::Rattle).
 pub(crate) struct Rattle {
     options: RattleOptions,
-    matrix: SaddleMatrix,
-    impulse: Vec<f64>,
+    /// Its velocity is that after the first half of the forces.
+    newton: Newton,
     rates: Vec<f64>,
     none: Vec<f64>,
-    u: Vec<f64>,
-    x1: Vec<f64>,
     force: Vec<f64>,
     applied: Vec<f64>,
-    momentum: Vec<f64>,
     kick: Vec<f64>,
     difference: Vec<f64>,
     change: Vec<f64>,
-    rods: Vec<f64>,
-    constraints: ConservativeRows,
     /// Impulses of the vertex constraints on the velocity.
     pushes: Vec<Vector2<f64>>,
     balance: Balance,
@@ -78,20 +71,14 @@ impl Rattle {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         Ok(Self {
             options,
-            matrix: SaddleMatrix::new(model)?,
-            impulse: vec![0.0; m],
+            newton: Newton::new(model)?,
             rates: vec![0.0; m],
             none: vec![0.0; m],
-            u: vec![0.0; n],
-            x1: vec![0.0; n],
             force: vec![0.0; n],
             applied: vec![0.0; n],
-            momentum: vec![0.0; n],
             kick: vec![0.0; n],
             difference: vec![0.0; n],
             change: vec![0.0; n],
-            rods: vec![0.0; m],
-            constraints: ConservativeRows::new(model.constrained_vertices()),
             pushes: Vec::new(),
             balance: Balance::new(model, ForceTime::Mean),
         })
@@ -100,41 +87,23 @@ impl Rattle {
     /// Sets `momentum` and `rods` to the negative residuals at the iterate; returns the
     /// relative momentum residual and the strain.
     fn residuals(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
-        for i in 0..self.u.len() {
-            self.x1[i] = state.x[i] + h * self.u[i];
-            self.difference[i] = self.u[i] - state.v[i];
+        self.newton.set_end(model, state, h);
+        for i in 0..self.difference.len() {
+            self.difference[i] = self.newton.u[i] - state.v[i];
         }
-        model.place_pins(state.t + h, &mut self.x1);
-        model.apply_mass(&self.difference, &mut self.momentum);
+        model.apply_mass(&self.difference, &mut self.newton.momentum);
         let mass = &model.mass().vertex;
         // The speed sets the scale, not the impulses: those of nearly dependent rods can be as
         // large as they are wrong.
         let mut scale = 0.0_f64;
-        for i in 0..self.u.len() {
-            let change = self.momentum[i].abs() / mass[i / 3];
+        for i in 0..self.newton.u.len() {
+            let change = self.newton.momentum[i].abs() / mass[i / 3];
             scale = scale.max(
                 state.v[i].abs() + self.kick[i].abs() / mass[i / 3] + IMPULSE_ROUND_OFF * change,
             );
-            self.momentum[i] = self.kick[i] - self.momentum[i];
+            self.newton.momentum[i] = self.kick[i] - self.newton.momentum[i];
         }
-        model
-            .rods()
-            .apply_transpose_add(&state.x, &self.impulse, &mut self.momentum);
-        self.constraints
-            .add_impulses(&self.constraints.impulses, &mut self.momentum);
-        self.constraints
-            .linearise(model.constraints(), state.t + h, &self.x1, 1.0 / h);
-        model.clear_pinned(&mut self.momentum);
-        let worst = model.largest_acceleration(&self.momentum);
-        model.rods().residual_into(&self.x1, &mut self.rods);
-        self.rods.iter_mut().for_each(|c| *c = -*c / h);
-        let relative = if worst > velocity_round_off(state, h) {
-            worst / scale.max(f64::MIN_POSITIVE)
-        } else {
-            0.0
-        };
-        let strain = model.rods().max_strain(&self.x1);
-        (relative, self.constraints.worst(strain))
+        self.newton.close(model, state, h, &state.x, scale)
     }
 
     /// Finds `u`, `L` and `x1`.
@@ -156,20 +125,12 @@ impl Rattle {
         } else {
             h / multipliers.step
         };
-        for (e, l) in self.impulse.iter_mut().enumerate() {
-            *l = multipliers.rods.get(e).map_or(0.0, |i| ratio * i);
-        }
-        self.constraints.begin(
-            model.constraints(),
-            state.t,
-            &state.x,
-            ratio,
-            &multipliers.constraints,
-        );
-        self.constraints
+        self.newton.begin(model, state, (ratio, multipliers));
+        self.newton
+            .constraints
             .push_at(model.constraints(), state.t, &state.x);
-        self.u.copy_from_slice(&state.v);
-        mean_pin_velocities(model, state, h, &mut self.x1, &mut self.u);
+        self.newton.u.copy_from_slice(&state.v);
+        self.newton.set_pins(model, state, h);
         let (mut residual, mut strain) = self.residuals(model, state, h);
         let mut outcome = StepOutcome::Newton;
         let mut iterations = 0;
@@ -193,38 +154,18 @@ impl Rattle {
                 ));
             }
             iterations += 1;
-            effort.iterations += 1;
-            let system = System {
+            let terms = Terms {
                 mass: 1.0,
                 density: &self.none,
-                left: &state.x,
-                right: &self.x1,
+                left: Some(&state.x),
                 potentials: None,
-                constraints: &self.constraints.blocks,
             };
-            let used = self
-                .matrix
-                .solve(
-                    model,
-                    &system,
-                    &mut self.momentum,
-                    &mut self.rods,
-                    &mut self.constraints.rhs,
-                    effort,
-                )
-                .map_err(|source| StepError::Linalg { t: state.t, source })?;
+            let used = self.newton.correct(model, state.t, &terms, effort)?;
             outcome = outcome.max(used);
-            for (u, d) in self.u.iter_mut().zip(&self.momentum) {
-                *u += d;
-            }
-            for (l, d) in self.impulse.iter_mut().zip(&self.rods) {
-                *l += d;
-            }
-            self.constraints.correct();
             (residual, strain) = self.residuals(model, state, h);
         }
-        let constraints = self.constraints.full_impulses();
-        multipliers.set(h, &self.impulse, constraints);
+        let constraints = self.newton.constraints.full_impulses();
+        multipliers.set(h, &self.newton.impulse, constraints);
         Ok((residual, outcome))
     }
 
@@ -232,23 +173,23 @@ impl Rattle {
     /// equations: the largest rate of a rod and the largest velocity not accounted for, both
     /// relative to the speed before and after.
     fn velocity_errors(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
-        for i in 0..self.u.len() {
+        for i in 0..self.newton.u.len() {
             self.kick[i] = 0.5 * h * (self.force[i] + self.applied[i]);
         }
-        let speed = norm_inf(&self.u)
-            + norm_inf(&self.momentum)
+        let speed = norm_inf(&self.newton.u)
+            + norm_inf(&self.newton.momentum)
             + model.largest_acceleration(&self.kick)
             + velocity_round_off(state, h) / VELOCITY_TOLERANCE;
         let rods = model.rods();
-        rods.apply(&self.x1, &self.momentum, &mut self.rates);
+        rods.apply(&self.newton.x1, &self.newton.momentum, &mut self.rates);
         let rate = self
             .rates
             .iter()
             .zip(rods.lengths())
             .fold(0.0_f64, |m, (r, l)| m.max(r.abs() / l))
             .max(self.constraint_rate(model, state.t + h, h));
-        for i in 0..self.u.len() {
-            self.difference[i] = self.momentum[i] - self.u[i];
+        for i in 0..self.newton.u.len() {
+            self.difference[i] = self.newton.momentum[i] - self.newton.u[i];
         }
         self.kick.iter_mut().for_each(|k| *k = -*k);
         model.apply_mass(&self.difference, &mut self.change);
@@ -257,11 +198,13 @@ impl Rattle {
         }
         self.rates
             .iter_mut()
-            .zip(&self.rods)
+            .zip(&self.newton.rods)
             .for_each(|(t, r)| *t = -r);
-        rods.apply_transpose_add(&self.x1, &self.rates, &mut self.kick);
+        rods.apply_transpose_add(&self.newton.x1, &self.rates, &mut self.kick);
         self.pushes.iter_mut().for_each(|p| *p = -*p);
-        self.constraints.add_impulses(&self.pushes, &mut self.kick);
+        self.newton
+            .constraints
+            .add_impulses(&self.pushes, &mut self.kick);
         self.pushes.iter_mut().for_each(|p| *p = -*p);
         model.clear_pinned(&mut self.kick);
         (rate / speed, model.largest_acceleration(&self.kick) / speed)
@@ -272,9 +215,11 @@ impl Rattle {
         if model.constraints().is_empty() {
             return 0.0;
         }
-        let rates = model.constraint_rates(t, h, &self.x1);
-        self.constraints.set_rates(&self.momentum, &rates);
-        self.constraints.largest_rate()
+        let rates = model.constraint_rates(t, h, &self.newton.x1);
+        self.newton
+            .constraints
+            .set_rates(&self.newton.momentum, &rates);
+        self.newton.constraints.largest_rate()
     }
 
     /// Right-hand sides of the rods' rates, the velocities of moving pins at the end being given.
@@ -283,46 +228,50 @@ impl Rattle {
             self.difference.fill(0.0);
             model.set_pin_velocities(t, h, &mut self.difference);
             for i in model.moving_pins().flat_map(|v| 3 * v..3 * v + 3) {
-                self.difference[i] -= self.u[i];
+                self.difference[i] -= self.newton.u[i];
             }
             model.apply_mass(&self.difference, &mut self.change);
-            for (m, c) in self.momentum.iter_mut().zip(&self.change) {
+            for (m, c) in self.newton.momentum.iter_mut().zip(&self.change) {
                 *m -= c;
             }
         }
-        self.difference.copy_from_slice(&self.u);
+        self.difference.copy_from_slice(&self.newton.u);
         model.set_pin_velocities(t, h, &mut self.difference);
         model
             .rods()
-            .apply(&self.x1, &self.difference, &mut self.rods);
+            .apply(&self.newton.x1, &self.difference, &mut self.newton.rods);
     }
 
     /// Mean forces of the supports over the step, up to the velocity `u`.
     fn begin_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
-        let (u, v) = (&self.u, &state.v);
+        let (u, v) = (&self.newton.u, &state.v);
         if !self.balance.begin(model, |i| (u[i] - v[i]) / h) {
             return;
         }
         let (t, end) = (state.t, state.t + h);
         let balance = &mut self.balance;
         balance.add_potentials(model, t, &state.x, 0.5);
-        balance.add_potentials(model, end, &self.x1, 0.5);
+        balance.add_potentials(model, end, &self.newton.x1, 0.5);
         balance.add_applied(model, t, &state.x, &state.v, 0.5);
-        balance.add_applied(model, end, &self.x1, &self.u, 0.5);
-        balance.add_rods(model, &state.x, &self.impulse, -1.0 / h);
-        balance.add_loads(self.constraints.loads(&self.constraints.impulses, 1.0 / h));
+        balance.add_applied(model, end, &self.newton.x1, &self.newton.u, 0.5);
+        balance.add_rods(model, &state.x, &self.newton.impulse, -1.0 / h);
+        balance.add_loads(
+            self.newton
+                .constraints
+                .loads(&self.newton.constraints.impulses, 1.0 / h),
+        );
     }
 
     /// The rest of them, up to the velocity in `momentum`.
     fn finish_balance(&mut self, model: &SheetModel, h: f64) {
-        let (u, v) = (&self.u, &self.momentum);
+        let (u, v) = (&self.newton.u, &self.newton.momentum);
         let balance = &mut self.balance;
         balance.add_inertia(model, |i| (v[i] - u[i]) / h);
         if !model.has_supports() {
             return;
         }
-        balance.add_rods(model, &self.x1, &self.rods, -1.0 / h);
-        balance.add_loads(self.constraints.loads(&self.pushes, 1.0 / h));
+        balance.add_rods(model, &self.newton.x1, &self.newton.rods, -1.0 / h);
+        balance.add_loads(self.newton.constraints.loads(&self.pushes, 1.0 / h));
         balance.finish(model);
     }
 
@@ -338,52 +287,46 @@ impl Rattle {
     ) -> Result<StepAccount, StepError> {
         model.potential_force(state.t, &state.x, &mut self.force);
         model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
-        for i in 0..self.u.len() {
+        for i in 0..self.newton.u.len() {
             self.kick[i] = 0.5 * h * (self.force[i] + self.applied[i]);
         }
         let mut work: f64 = 0.5 * h * dot(&self.applied, &state.v);
         let (residual, outcome) = self.solve_positions(model, state, multipliers, h, effort)?;
         // Velocity: the momentum after the second half kick, projected onto G(x1) v = 0.
-        model.potential_force(state.t + h, &self.x1, &mut self.force);
-        model.applied_force(state.t + h, &self.x1, &self.u, &mut self.applied);
+        model.potential_force(state.t + h, &self.newton.x1, &mut self.force);
+        model.applied_force(
+            state.t + h,
+            &self.newton.x1,
+            &self.newton.u,
+            &mut self.applied,
+        );
         // Solved for the change of velocity, so that round-off is relative to it.
-        for i in 0..self.u.len() {
-            self.momentum[i] = 0.5 * h * (self.force[i] + self.applied[i]);
+        for i in 0..self.newton.u.len() {
+            self.newton.momentum[i] = 0.5 * h * (self.force[i] + self.applied[i]);
         }
         self.begin_balance(model, state, h);
         self.ask_rod_rates(model, state.t + h, h);
-        let rates = model.constraint_rates(state.t + h, h, &self.x1);
-        self.constraints
-            .push_at(model.constraints(), state.t + h, &self.x1);
-        self.constraints.set_rates(&self.u, &rates);
-        self.rods.iter_mut().for_each(|r| *r = -*r);
-        let system = System {
+        let rates = model.constraint_rates(state.t + h, h, &self.newton.x1);
+        self.newton
+            .constraints
+            .push_at(model.constraints(), state.t + h, &self.newton.x1);
+        self.newton.constraints.set_rates(&self.newton.u, &rates);
+        self.newton.rods.iter_mut().for_each(|r| *r = -*r);
+        let terms = Terms {
             mass: 1.0,
             density: &self.none,
-            left: &self.x1,
-            right: &self.x1,
+            left: None,
             potentials: None,
-            constraints: &self.constraints.blocks,
         };
-        let projected = self
-            .matrix
-            .solve(
-                model,
-                &system,
-                &mut self.momentum,
-                &mut self.rods,
-                &mut self.constraints.rhs,
-                effort,
-            )
-            .map_err(|source| StepError::Linalg { t: state.t, source })?;
-        for (m, u) in self.momentum.iter_mut().zip(&self.u) {
+        let projected = self.newton.solve(model, state.t, &terms, effort)?;
+        for (m, u) in self.newton.momentum.iter_mut().zip(&self.newton.u) {
             *m += u;
         }
-        model.set_pin_velocities(state.t + h, h, &mut self.momentum);
-        self.pushes.clone_from(&self.constraints.rhs);
+        model.set_pin_velocities(state.t + h, h, &mut self.newton.momentum);
+        self.pushes.clone_from(&self.newton.constraints.rhs);
         let (rate, balance) = self.velocity_errors(model, state, h);
         if rate > VELOCITY_TOLERANCE || balance > VELOCITY_TOLERANCE || rate.is_nan() {
-            let strain = model.rods().max_strain(&self.x1);
+            let strain = model.rods().max_strain(&self.newton.x1);
             return Err(not_converged(
                 state.t,
                 h,
@@ -393,10 +336,10 @@ impl Rattle {
                 strain,
             ));
         }
-        work += 0.5 * h * dot(&self.applied, &self.momentum);
+        work += 0.5 * h * dot(&self.applied, &self.newton.momentum);
         self.finish_balance(model, h);
-        state.x.copy_from_slice(&self.x1);
-        state.v.copy_from_slice(&self.momentum);
+        state.x.copy_from_slice(&self.newton.x1);
+        state.v.copy_from_slice(&self.newton.momentum);
         state.t += h;
         Ok(StepAccount::without_contact(
             residual,
