@@ -149,8 +149,8 @@ impl Part {
     }
 }
 
-/// The parts of the works that have been run, with their files. The titles of those that another build ran are
-/// added to `left_out`.
+/// The parts of the works that have been run, with their files. The titles of those that another build ran
+/// are added to `left_out`.
 pub(super) fn records(store: &Store, left_out: &mut Vec<String>) -> Result<Vec<Record>> {
     let mut records = Vec::new();
     for part in &CONTENTS.part {

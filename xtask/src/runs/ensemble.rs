@@ -1,10 +1,9 @@
 //! The same fall many times, each from another slightly uneven start.
 
 use super::{FigureScene, Hanging, Shape, displaced};
-use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::Result;
-use isosheet_dynamics::{Frames, State};
+use isosheet_dynamics::State;
 use serde::{Deserialize, Serialize};
 
 /// What became of one member of an ensemble.
@@ -32,13 +31,7 @@ pub(crate) fn ensemble(scene: &FigureScene, bump: f64, members: u64) -> Result<V
         let setup = uneven.setup()?;
         let start = setup.model.potential_energy(0.0, &setup.start.x);
         let mut simulation = setup.start()?;
-        let mut frames = Frames::every(1);
-        simulation.run(
-            scene.scene().stop.time,
-            scene.frame(),
-            &mut [&mut frames, &mut interrupt::observe],
-        )?;
-        interrupt::check()?;
+        let frames = scene.play(&mut simulation)?;
         let mut sum = 0.0;
         for state in &frames.states()[1..] {
             sum += Shape::of(&hanging, &state.x)?.bending;

@@ -2,9 +2,7 @@
 
 use super::hanging::gravity;
 use super::{FigureScene, Hanging, Shape};
-use crate::interrupt;
 use anyhow::Result;
-use isosheet_dynamics::Frames;
 use isosheet_mesh::{MassKind, MassMatrix};
 
 /// Time and depth of the centre of mass (seconds, sides) while a sheet falls from exactly flat, frame by
@@ -15,13 +13,7 @@ use isosheet_mesh::{MassKind, MassMatrix};
 pub(crate) fn fall(scene: &FigureScene) -> Result<Vec<[f64; 2]>> {
     let hanging = Hanging::of(scene)?;
     let mut simulation = scene.setup()?.start()?;
-    let mut frames = Frames::every(1);
-    simulation.run(
-        scene.scene().stop.time,
-        scene.frame(),
-        &mut [&mut frames, &mut interrupt::observe],
-    )?;
-    interrupt::check()?;
+    let frames = scene.play(&mut simulation)?;
     let later = frames.states()[1..]
         .iter()
         .map(|s| Ok([s.t, Shape::of(&hanging, &s.x)?.centre_depth]));

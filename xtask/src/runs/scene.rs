@@ -1,6 +1,8 @@
 //! The scenes of the figures: files of the folder `xtask/scenes`, which `isosheet simulate` runs too.
 
+use crate::interrupt;
 use anyhow::{Context, Result};
+use isosheet_dynamics::{Frames, Observer, Simulation};
 use isosheet_io::scene::{Material, Scene, SceneFile, Setup, StartingPoint};
 use isosheet_mesh::Sheet;
 use serde::de::DeserializeOwned;
@@ -186,6 +188,18 @@ impl FigureScene {
     /// Values of which no simulation can be made.
     pub(crate) fn setup(&self) -> Result<Setup> {
         Ok(self.file.build()?)
+    }
+
+    /// Runs a simulation of the scene to its end, with all frames.
+    ///
+    /// # Errors
+    /// Ctrl-C and errors of the simulation.
+    pub(super) fn play(&self, simulation: &mut Simulation) -> Result<Frames> {
+        let mut frames = Frames::every(1);
+        let mut observers: [&mut dyn Observer; 2] = [&mut frames, &mut interrupt::observe];
+        simulation.run(self.scene().stop.time, self.frame(), &mut observers)?;
+        interrupt::check()?;
+        Ok(frames)
     }
 
     /// The sheet at rest, placed in space.
