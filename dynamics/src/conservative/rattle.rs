@@ -45,9 +45,12 @@ impl RattleOptions {
     }
 }
 
-/// RATTLE, see [`Method::Rattle`](crate::Method::Rattle).
+/// RATTLE and Suzuki's composition of its steps, see [`Method::Rattle`](crate::Method::Rattle) and
+/// [`Method::RattleComposition`](crate::Method::RattleComposition).
 pub(crate) struct Rattle {
     options: RattleOptions,
+    /// The parts of a step, one of which may be negative.
+    parts: Vec<f64>,
     /// Its velocity is that after the first half of the forces.
     newton: Newton,
     rates: Vec<f64>,
@@ -68,9 +71,30 @@ impl Rattle {
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
     pub(crate) fn new(model: &SheetModel, options: RattleOptions) -> Result<Self, LinalgError> {
+        Self::of_parts(vec![1.0], model, options)
+    }
+
+    /// The composition of fourth order.
+    ///
+    /// # Errors
+    /// [`LinalgError::Symbolic`] if memory runs out.
+    pub(crate) fn composed(
+        model: &SheetModel,
+        options: RattleOptions,
+    ) -> Result<Self, LinalgError> {
+        let a = 1.0 / (4.0 - 4.0_f64.cbrt());
+        Self::of_parts(vec![a, a, 1.0 - 4.0 * a, a, a], model, options)
+    }
+
+    fn of_parts(
+        parts: Vec<f64>,
+        model: &SheetModel,
+        options: RattleOptions,
+    ) -> Result<Self, LinalgError> {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         Ok(Self {
             options,
+            parts,
             newton: Newton::new(model)?,
             rates: vec![0.0; m],
             none: vec![0.0; m],
@@ -373,62 +397,20 @@ impl Integrator for Rattle {
         proposal: &mut Proposal,
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
-        let solver = &mut proposal.solver;
-        solver.state.copy_from(attempt.state);
-        let multipliers = &mut solver.history.multipliers;
-        multipliers.copy_from(attempt.multipliers());
-        let state = &mut solver.state;
-        proposal.account = self.advance(scene.model, state, multipliers, attempt.h, effort)?;
-        solver.balance.copy_from(&self.balance);
-        Ok(())
-    }
-}
-
-/// Suzuki's composition of RATTLE steps, see [`Method::RattleComposition`](crate::Method::RattleComposition).
-pub(crate) struct RattleComposition {
-    rattle: Rattle,
-}
-
-impl RattleComposition {
-    /// Analyses the model.
-    ///
-    /// # Errors
-    /// [`LinalgError::Symbolic`] if memory runs out.
-    pub(crate) fn new(model: &SheetModel, options: RattleOptions) -> Result<Self, LinalgError> {
-        let rattle = Rattle::new(model, options)?;
-        Ok(Self { rattle })
-    }
-}
-
-impl Integrator for RattleComposition {
-    fn traits(&self) -> MethodTraits {
-        MethodTraits::conservative()
-    }
-
-    fn propose(
-        &mut self,
-        scene: Scene<'_>,
-        attempt: Attempt<'_>,
-        proposal: &mut Proposal,
-        effort: &mut SolverEffort<'_>,
-    ) -> Result<(), StepError> {
         let (model, h) = (scene.model, attempt.h);
-        let a = 1.0 / (4.0 - 4.0_f64.cbrt());
         let solver = &mut proposal.solver;
         solver.state.copy_from(attempt.state);
         let multipliers = &mut solver.history.multipliers;
         multipliers.copy_from(attempt.multipliers());
         solver.balance.clear();
         let mut total = StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton);
-        for part in [a, a, 1.0 - 4.0 * a, a, a] {
-            let state = &mut solver.state;
-            let done = self
-                .rattle
-                .advance(model, state, multipliers, part * h, effort)?;
+        for k in 0..self.parts.len() {
+            let (part, state) = (self.parts[k], &mut solver.state);
+            let done = self.advance(model, state, multipliers, part * h, effort)?;
             total.residual = total.residual.max(done.residual);
             total.work += done.work;
             total.outcome = total.outcome.max(done.outcome);
-            solver.balance.add_share(&self.rattle.balance, part);
+            solver.balance.add_share(&self.balance, part);
         }
         solver.state.t = attempt.state.t + h;
         proposal.account = total;

@@ -10,70 +10,34 @@ use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 
-/// Implicit Euler, see [`Method::ImplicitEuler`](crate::Method::ImplicitEuler).
-pub(crate) struct ImplicitEuler {
-    minimiser: Minimiser,
-}
-
-impl ImplicitEuler {
-    /// Analyses the model.
-    ///
-    /// # Errors
-    /// [`LinalgError::Symbolic`] if memory runs out.
-    pub(crate) fn new(
-        model: &SheetModel,
-        options: ImplicitOptions,
-        tuning: &Tuning,
-    ) -> Result<Self, LinalgError> {
-        Ok(Self {
-            minimiser: Minimiser::new(model, options, tuning)?,
-        })
-    }
-}
-
-impl Integrator for ImplicitEuler {
-    fn traits(&self) -> MethodTraits {
-        MethodTraits::minimising()
-    }
-
-    fn propose(
-        &mut self,
-        scene: Scene<'_>,
-        attempt: Attempt<'_>,
-        proposal: &mut Proposal,
-        effort: &mut SolverEffort<'_>,
-    ) -> Result<(), StepError> {
-        proposal.solver.history.previous = None;
-        two_step(&mut self.minimiser, scene, attempt, None, proposal, effort)
-    }
-}
-
 /// Largest growth of the step that the two-step formula is used over: variable-step BDF2 is
 /// unstable from 1 + sqrt 2 on.
 const MAX_STEP_RATIO: f64 = 2.0 + 1e-9;
 
-/// The second-order backward differentiation formula, see [`Method::Bdf2`](crate::Method::Bdf2).
-pub(crate) struct Bdf2 {
+/// Implicit Euler and the second-order backward differentiation formula, see
+/// [`Method::ImplicitEuler`](crate::Method::ImplicitEuler) and [`Method::Bdf2`](crate::Method::Bdf2).
+pub(crate) struct Implicit {
+    formula: Formula,
     minimiser: Minimiser,
 }
 
-impl Bdf2 {
+impl Implicit {
     /// Analyses the model.
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
     pub(crate) fn new(
+        formula: Formula,
         model: &SheetModel,
         options: ImplicitOptions,
         tuning: &Tuning,
     ) -> Result<Self, LinalgError> {
-        Ok(Self {
-            minimiser: Minimiser::new(model, options, tuning)?,
-        })
+        let minimiser = Minimiser::new(model, options, tuning)?;
+        Ok(Self { formula, minimiser })
     }
 }
 
-impl Integrator for Bdf2 {
+impl Integrator for Implicit {
     fn traits(&self) -> MethodTraits {
         MethodTraits::minimising()
     }
@@ -85,19 +49,16 @@ impl Integrator for Bdf2 {
         proposal: &mut Proposal,
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
-        let (state, h) = (attempt.state, attempt.h);
+        let (state, h, minimiser) = (attempt.state, attempt.h, &mut self.minimiser);
+        if self.formula == Formula::OneStep {
+            proposal.solver.history.previous = None;
+            return two_step(minimiser, scene, attempt, None, proposal, effort);
+        }
         let previous = attempt
             .previous()
             .filter(|before| h <= MAX_STEP_RATIO * (state.t - before.t));
         let damping = (-scene.model.damping() * h).exp();
-        two_step(
-            &mut self.minimiser,
-            scene,
-            attempt,
-            previous,
-            proposal,
-            effort,
-        )?;
+        two_step(minimiser, scene, attempt, previous, proposal, effort)?;
         let history = &mut proposal.solver.history;
         history.set_previous(Some(state));
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as

@@ -1,7 +1,8 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
 use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
-use crate::damped::implicit::ImplicitEuler;
+use crate::damped::air_step::Formula;
+use crate::damped::implicit::Implicit;
 use crate::linear::rank::rod_rank;
 use crate::material::elastic_sheet::ElasticSheet;
 use crate::model::immobile::immobile_vertices;
@@ -546,7 +547,10 @@ fn fallback(
     tuning: &Tuning,
 ) -> Result<Option<Box<dyn Integrator>>, SimulationError> {
     Ok(match &control.fallback {
-        Fallback::ImplicitEuler(o) => Some(Box::new(ImplicitEuler::new(model, o.clone(), tuning)?)),
+        Fallback::ImplicitEuler(o) => {
+            let formula = Formula::OneStep;
+            Some(Box::new(Implicit::new(formula, model, o.clone(), tuning)?))
+        }
         Fallback::Refuse => None,
     })
 }

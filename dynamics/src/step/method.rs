@@ -1,8 +1,9 @@
 //! Integrators and step control.
 
 use crate::conservative::energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
-use crate::conservative::rattle::{Rattle, RattleComposition, RattleOptions};
-use crate::damped::implicit::{Bdf2, ImplicitEuler};
+use crate::conservative::rattle::{Rattle, RattleOptions};
+use crate::damped::air_step::Formula;
+use crate::damped::implicit::Implicit;
 use crate::damped::options::ImplicitOptions;
 use crate::damped::projection_step::{ProjectionStep, ProjectionStepOptions};
 use crate::options::OptionsError;
@@ -89,11 +90,11 @@ impl Method {
         Ok(match self.clone() {
             Self::ImplicitEuler(o) => {
                 o.validate()?;
-                Box::new(ImplicitEuler::new(model, o, tuning)?)
+                Box::new(Implicit::new(Formula::OneStep, model, o, tuning)?)
             }
             Self::Bdf2(o) => {
                 o.validate()?;
-                Box::new(Bdf2::new(model, o, tuning)?)
+                Box::new(Implicit::new(Formula::TwoStep, model, o, tuning)?)
             }
             Self::Projection(o) => {
                 o.validate()?;
@@ -109,7 +110,7 @@ impl Method {
             }
             Self::RattleComposition(o) => {
                 o.validate()?;
-                Box::new(RattleComposition::new(model, o)?)
+                Box::new(Rattle::composed(model, o)?)
             }
         })
     }

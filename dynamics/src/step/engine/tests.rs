@@ -307,8 +307,13 @@ fn the_fallback_starts_without_a_history() {
         let expected = |engine: &mut Engine, memory| {
             let traits = engine.integrator.traits();
             let mut proposal = Proposal::new(&engine.model, traits);
-            let mut method =
-                ImplicitEuler::new(&engine.model, Default::default(), &engine.tuning).unwrap();
+            let mut method = Implicit::new(
+                Formula::OneStep,
+                &engine.model,
+                Default::default(),
+                &engine.tuning,
+            )
+            .unwrap();
             let scene = Scene {
                 model: &engine.model,
                 contact: None,
