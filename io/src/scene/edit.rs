@@ -118,8 +118,13 @@ fn replace(table: &mut Table, mut new: Table) {
     *table = new;
 }
 
-/// The item at a part of a key in another one; keys of tables are made where they are missing.
+/// The item at a part of a key in another one; keys of tables are made where they are missing. A list with one
+/// entry is named as its entry is: `sheet.mass` of one `[[sheet]]`.
 fn descend<'a>(item: &'a mut Item, part: &KeyPart) -> Option<&'a mut Item> {
+    let item = match part {
+        KeyPart::Name(_) if has_one_entry(item) => item.get_mut(0)?,
+        _ => item,
+    };
     match (item, part) {
         (
             item @ (Item::None | Item::Table(_) | Item::Value(Value::InlineTable(_))),
@@ -130,6 +135,15 @@ fn descend<'a>(item: &'a mut Item, part: &KeyPart) -> Option<&'a mut Item> {
             KeyPart::Entry(number),
         ) => item.get_mut(*number),
         _ => None,
+    }
+}
+
+/// Whether an item is a list with one entry.
+pub(super) fn has_one_entry(item: &Item) -> bool {
+    match item {
+        Item::ArrayOfTables(tables) => tables.len() == 1,
+        Item::Value(Value::Array(values)) => values.len() == 1,
+        _ => false,
     }
 }
 

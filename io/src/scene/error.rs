@@ -1,5 +1,6 @@
 //! Errors of a scene, shown at their place in its text.
 
+use super::edit::has_one_entry;
 use super::key::{Key, KeyPart};
 use super::problem::Problem;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -28,6 +29,9 @@ impl SceneText {
         };
         let (mut item, mut span) = (document.as_item(), 0..0);
         for part in key.parts() {
+            if matches!(part, KeyPart::Name(_)) && has_one_entry(item) {
+                item = &item[0];
+            }
             let next: Option<&Item> = match part {
                 KeyPart::Name(name) => item.get(name.as_str()),
                 KeyPart::Entry(number) => item.get(*number),

@@ -3,13 +3,11 @@
 use super::error::SceneError;
 use super::mesh::RestMesh;
 use super::pattern::EdgeRoles;
-use super::pose::Pose;
 use super::problem::Problem;
 use super::refined::Refined;
 use super::sheets::sheet_key;
 use super::{Key, Selection, Sheet as SheetOfScene, Weight, sheets};
 use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
-use nalgebra::Point3;
 use std::path::Path;
 
 /// A sheet in its place.
@@ -113,7 +111,7 @@ impl<'a> PlacedSheet<'a> {
         let unplaced = Refined::new(sheet, of.refine, &key.name("refine"))?;
         let placed = unplaced
             .sheet()
-            .map_positions(|p| place(pose, p))
+            .map_positions(|p| pose.place(p))
             .map_err(|e| Problem::from_error(mesh_key, &e))?;
         let x = match &of.start.file {
             None => placed.positions().to_vec(),
@@ -127,7 +125,7 @@ impl<'a> PlacedSheet<'a> {
                 }
                 let x = unplaced.positions(start.positions);
                 let points = x.as_chunks::<3>().0.iter();
-                points.flat_map(|&p| place(pose, p)).collect()
+                points.flat_map(|&p| pose.place(p)).collect()
             }
         };
         let by_area = of.areal_density() * placed.area();
@@ -155,12 +153,4 @@ fn triangles(faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
     }
     triangles.sort_unstable();
     triangles
-}
-
-/// A point of the mesh in space.
-fn place(pose: &Pose, p: [f64; 3]) -> [f64; 3] {
-    if *pose == Pose::default() {
-        return p;
-    }
-    (pose.isometry() * Point3::from(p)).coords.into()
 }

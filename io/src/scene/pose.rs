@@ -57,12 +57,35 @@ impl Pose {
         Isometry3::from_parts(translation, rotation.unwrap_or_default())
     }
 
+    /// Where a point comes to lie, metres, by the formula of Rodrigues: quarter turns about a coordinate axis
+    /// are exact.
+    pub(crate) fn place(&self, p: [f64; 3]) -> [f64; 3] {
+        let p = Vector3::from(p);
+        let turned = self.turn.as_ref().map_or(p, |turn| {
+            let axis = Vector3::from(turn.axis).normalize();
+            let (sin, cos) = sin_cos(turn.angle);
+            cos * p + sin * axis.cross(&p) + (1.0 - cos) * axis.dot(&p) * axis
+        });
+        (turned + Vector3::from(self.position)).into()
+    }
+
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.finite(key.name("position"), &self.position, Unit::Metre);
         if let Some(turn) = &self.turn {
             checks.direction(key.name("turn.axis"), &turn.axis);
             checks.number(key.name("turn.angle"), turn.angle, Unit::Degree);
         }
+    }
+}
+
+/// Sine and cosine of an angle in degrees, those of quarter turns exactly.
+fn sin_cos(degrees: f64) -> (f64, f64) {
+    match degrees.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => degrees.to_radians().sin_cos(),
     }
 }
 
@@ -136,6 +159,40 @@ impl Motion {
             rotation
                 .angle
                 .check(key.name("angle"), Unit::Degree, checks);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The formula of Rodrigues is the rotation by a quaternion, and upright sheets are upright to the last
+    /// bit.
+    #[test]
+    fn sheets_are_placed_as_bodies_are_and_quarter_turns_are_exact() {
+        let pose = |axis, angle| Pose {
+            position: [0.1, -0.2, 0.3],
+            turn: Some(Turn { axis, angle }),
+        };
+        let p = [0.7, 0.4, -0.9];
+        for angle in [-500.0, -90.0, 0.0, 33.0, 90.0, 180.0, 270.0, 450.0] {
+            let pose = pose([1.0, 2.0, -0.5], angle);
+            let placed = Vector3::from(pose.place(p));
+            let expected = pose.isometry() * nalgebra::Point3::from(p);
+            assert!((placed - expected.coords).norm() < 1e-14, "{angle}");
+        }
+        for (angle, expected) in [
+            (90.0, [0.0, -3.0, 2.0]),
+            (180.0, [0.0, -2.0, -3.0]),
+            (-90.0, [0.0, 3.0, -2.0]),
+            (360.0, [0.0, 2.0, 3.0]),
+        ] {
+            let upright = Pose {
+                position: [0.0; 3],
+                ..pose([2.0, 0.0, 0.0], angle)
+            };
+            assert_eq!(upright.place([0.0, 2.0, 3.0]), expected, "{angle}");
         }
     }
 }

@@ -151,7 +151,8 @@ without `forces.gravity` there is no gravity, without `air` no air, without obst
 
 `isosheet new NAME --kind hanging|clamp|drape|stamp|feed|fold|flag|leaf|stack|moebius` writes a commented scene to start from,
 `isosheet check SCENE` says what is wrong with one, and `--set key=value` changes a key for one run, for example
-`--set stop.time=0.5 --set 'obstacle[0].friction=0.3'`. An unknown key is an error, which names the nearest known one.
+`--set stop.time=0.5 --set 'obstacle[1].friction=0.3'`; the number of the only entry of a list may be left out. An
+unknown key is an error, which names the nearest known one.
 
 Where a key has several choices, a choice with keys of its own is a table with one entry
 (`shape = { sphere = { radius = 0.1 } }`), and one without keys is its name (`shape = \"half_space\"`).

@@ -218,6 +218,21 @@ fn damaged_checkpoints_are_refused() {
     );
 }
 
+/// The mesh file of the only entry of a list of sheets is found as that of a table is.
+#[test]
+fn a_list_of_one_sheet_may_have_a_mesh_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let scene =
+        "version = 1\n[[sheet]]\nmesh = { file = { path = \"a.obj\" } }\n[stop]\ntime = 0.1\n";
+    fs::write(dir.join("s.toml"), scene).unwrap();
+    let done = run(dir, &["simulate", "s.toml", "--set", "sheet.mass=2"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let wrong = run(dir, &["check", "s.toml", "--set", "sheet.mass=-2"]);
+    assert!(stderr(&wrong).contains("mass = -2"), "{}", stderr(&wrong));
+}
+
 /// A scene with a mesh file can be continued from its folder alone.
 #[test]
 fn mesh_files_travel_with_the_run() {

@@ -247,3 +247,31 @@ fn entries_of_lists_of_tables_are_replaced_in_their_place() {
         assert!(error.to_string().contains(wrong), "{error}");
     }
 }
+
+/// A list with one entry is named as its entry is.
+#[test]
+fn the_number_of_the_only_entry_may_be_left_out() {
+    for (text, edit, expected) in [
+        (
+            "[[sheet]]\nmass = 1\n",
+            "sheet.mass=2",
+            "[[sheet]]\nmass = 2\n",
+        ),
+        (
+            "sheet = [{ mass = 1 }]\n",
+            "sheet.mass=2",
+            "sheet = [{ mass = 2 }]\n",
+        ),
+        (
+            "[[body]]\n[[body.part]]\na = 1\n",
+            "body.part.a=2",
+            "[[body]]\n[[body.part]]\na = 2\n",
+        ),
+    ] {
+        let mut document: DocumentMut = text.parse().unwrap();
+        apply(&mut document, &[edit.to_owned()]).unwrap();
+        assert_eq!(document.to_string(), expected);
+    }
+    let mut two: DocumentMut = "[[sheet]]\n[[sheet]]\n".parse().unwrap();
+    assert!(apply(&mut two, &["sheet.mass=2".to_owned()]).is_err());
+}
