@@ -2,7 +2,11 @@
 
 /// A number with three significant digits, without zeros at the end.
 pub(crate) fn number(value: f64) -> String {
-    if value == 0.0 || value.fract() == 0.0 && value.abs() < 1e5 {
+    if value == 0.0 {
+        // The sum of no numbers is -0.
+        return "0".into();
+    }
+    if value.fract() == 0.0 && value.abs() < 1e5 {
         return format!("{value:.0}");
     }
     if !(1e-3..1e5).contains(&value.abs()) {
@@ -92,6 +96,7 @@ mod tests {
     fn numbers_have_three_digits() {
         for (value, text) in [
             (0.0, "0"),
+            (-0.0, "0"),
             (15.0, "15"),
             (0.13294, "0.133"),
             (22.512, "22.5"),
