@@ -3,15 +3,18 @@
 use crate::bundle_view::{self, BundleViewArgs};
 use crate::condition::{self, ConditionArgs};
 use crate::cost::{self, CostArgs};
-use crate::failure::EXIT_CODES;
+use crate::failure::{self, EXIT_CODES, ReportError};
 use crate::gallery::{self, GalleryArgs};
 use crate::hard_cases::{self, HardCasesArgs};
+use crate::interrupt;
 use crate::locking::{self, LockingArgs};
 use crate::measured::{self, MeasuredArgs};
 use crate::reproduce::{self, ReproduceArgs};
 use crate::tuning::{self, TuningArgs};
 use anyhow::Result;
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
+use std::ffi::OsStr;
+use std::path::PathBuf;
 
 /// Commands of the isosheet workspace.
 #[derive(Debug, Parser)]
@@ -63,6 +66,11 @@ pub(crate) enum Command {
     /// prints a table. The exit code is 0 unless a case fails that is not declared an open limitation.
     /// Finished cases are kept, as in `reproduce-figures`.
     HardCases(HardCasesArgs),
+    /// Make the figures, the table of condition numbers and all reports, one after another
+    ///
+    /// Each is written to its own folder, DIR/REPORT. One that fails is reported, and the next one begins; the
+    /// exit code is 0 if none fails. What is finished is kept, as in `reproduce-figures`.
+    All(AllArgs),
     /// Copy what the reports have measured into the book and the README
     ///
     /// Each report writes DIR/measured.md, unless it is quick. This command copies these files to
@@ -89,9 +97,54 @@ impl Command {
             Self::Locking(args) => locking::run(args),
             Self::Tuning(args) => tuning::run(args),
             Self::HardCases(args) => hard_cases::run(args),
+            Self::All(args) => args.run(),
             Self::Measured(args) => measured::run(args),
             Self::Gallery(args) => gallery::run(args),
             Self::BundleView(args) => bundle_view::run(args),
         }
+    }
+}
+
+/// Arguments of `all`.
+#[derive(Debug, Args)]
+pub(crate) struct AllArgs {
+    /// Folder with a folder for each report
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+
+    /// Short runs on small meshes, as with each of the reports
+    #[arg(long)]
+    quick: bool,
+}
+
+/// The reports, with their options for short runs.
+const REPORTS: [(&str, &[&str]); 6] = [
+    ("reproduce-figures", &["--quick"]),
+    ("condition-table", &["--level", "2"]),
+    ("hard-cases", &["--quick"]),
+    ("locking", &["--quick"]),
+    ("tuning", &["--quick"]),
+    ("cost", &["--quick"]),
+];
+
+impl AllArgs {
+    fn run(&self) -> Result<()> {
+        let mut failed = Vec::new();
+        for (report, quick) in REPORTS {
+            let folder = self.out.join(report);
+            let words = ["xtask", report, "--out"].map(OsStr::new);
+            let mut words = [&words[..], &[folder.as_os_str()]].concat();
+            words.extend(quick.iter().filter(|_| self.quick).map(OsStr::new));
+            if let Err(error) = Cli::try_parse_from(words)?.command.run() {
+                interrupt::check()?;
+                failure::report(&error);
+                failed.push(report);
+            }
+        }
+        if failed.is_empty() {
+            return Ok(());
+        }
+        let names = failed.join(", ");
+        Err(ReportError::Reports { names }.into())
     }
 }

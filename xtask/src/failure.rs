@@ -35,6 +35,8 @@ pub(crate) enum ReportError {
     Part { file: PathBuf, part: String },
     #[error("findings are out of bounds, or not out of them as declared: {names}")]
     Findings { names: String },
+    #[error("these reports failed: {names}")]
+    Reports { names: String },
 }
 
 impl Advice for ReportError {
@@ -45,6 +47,7 @@ impl Advice for ReportError {
                 "run the whole report, without --quick, and `cargo xtask measured` again"
             }
             Self::Findings { .. } => "see the page, or findings.csv",
+            Self::Reports { .. } => "see what each of them said above",
         })
     }
 }
@@ -90,7 +93,9 @@ fn code(error: &Error) -> u8 {
         if let Some(report) = cause.downcast_ref() {
             return Some(match report {
                 ReportError::NotQuick { .. } | ReportError::OtherReport { .. } => 4,
-                ReportError::Part { .. } | ReportError::Findings { .. } => 1,
+                ReportError::Part { .. }
+                | ReportError::Findings { .. }
+                | ReportError::Reports { .. } => 1,
             });
         }
         if cause.is::<WriteError>() || cause.is::<std::io::Error>() {

@@ -6,6 +6,7 @@
 //!   whole runs at the sizes that people use.
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
+//! * `all`: the figures and all reports, one after another.
 //! * `measured`: what the reports measured, as numbers of the book and the README.
 //! * `gallery`: pictures of ten scenes, and a film.
 //! * `bundle-view`: the program of the 3D page of a run.

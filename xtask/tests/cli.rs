@@ -387,3 +387,29 @@ fn yardsticks_of_locking_are_kept() {
     assert_eq!(code, Some(2), "{text}");
     assert!(text.contains("clamped, strips, d-cone"), "{text}");
 }
+
+/// All reports have folders of their own below one; what is wrong with one of them does not keep the others.
+#[test]
+fn a_report_that_fails_does_not_keep_the_others() {
+    let (_dir, out) = folder();
+    for report in [
+        "reproduce-figures",
+        "hard-cases",
+        "locking",
+        "tuning",
+        "cost",
+    ] {
+        fs::create_dir_all(out.join(report)).unwrap();
+        fs::write(out.join(report).join("mine.txt"), "mine").unwrap();
+    }
+    let (code, said) = run(&["all", "--quick"], &out);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(
+        out.join("condition-table/condition.csv").is_file(),
+        "{said}"
+    );
+    assert!(
+        said.contains("reproduce-figures, hard-cases, locking, tuning, cost"),
+        "{said}"
+    );
+}
