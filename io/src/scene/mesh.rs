@@ -73,7 +73,7 @@ pub enum Mesh {
     Fan {
         /// Radius, metres.
         radius: f64,
-        /// Angle, degrees, below 360.
+        /// Angle, degrees, below 360, and below 180 for each triangle.
         opening: f64,
         /// Number of triangles.
         triangles: usize,
@@ -328,7 +328,8 @@ impl Mesh {
                 triangles,
             } => {
                 length("radius", *radius);
-                check_angle(key.name("opening"), *opening, 360.0, checks);
+                let most = 360_f64.min(180.0 * (*triangles).max(1) as f64);
+                check_angle(key.name("opening"), *opening, most, checks);
                 checks.count(key.name("triangles"), *triangles, 1);
             }
             Self::Polygon {

@@ -205,6 +205,24 @@ fn all_range_errors_are_reported_at_once() {
     assert_eq!(keys, expected);
 }
 
+/// A fan may be as wide as its triangles are, in the unit of the scene.
+#[test]
+fn fans_that_are_too_wide_are_refused_in_degrees() {
+    for (triangles, opening, most) in [(1, 200, 180), (1, 180, 180), (3, 360, 360)] {
+        let found = problems(&format!(
+            "version = 1
+            [sheet]
+            mesh = {{ fan = {{ radius = 1, opening = {opening}, triangles = {triangles} }} }}
+            [stop]
+            time = 0.1"
+        ));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].key, "sheet.mesh.fan.opening");
+        let remedy = format!("give more than 0 and less than {most}");
+        assert_eq!(found[0].remedy.as_ref(), Some(&remedy));
+    }
+}
+
 #[test]
 fn all_unknown_keys_are_reported_at_once_in_their_order() {
     let wrong = RIGHT
