@@ -65,12 +65,17 @@ static BESIDE: [(&str, Code); 6] = [
 ];
 
 /// All cases in the order of the report.
-fn cases() -> impl Iterator<Item = &'static Case> {
-    CASES.iter().chain(file::all()).copied()
+///
+/// # Errors
+/// What is wrong with a file.
+fn cases() -> Result<Vec<&'static Case>> {
+    Ok(CASES.into_iter().chain(file::all()?).collect())
 }
 
-fn named() -> Vec<(&'static str, &'static Case)> {
-    cases().map(|case| (case.name, case)).collect()
+/// The names of all cases: a file that is wrong has one, too, so that the other commands go on.
+fn named() -> Vec<(&'static str, &'static str)> {
+    let names = CASES.iter().map(|case| case.name).chain(file::names());
+    names.map(|name| (name, name)).collect()
 }
 
 /// Arguments of `hard-cases`.
@@ -78,7 +83,7 @@ fn named() -> Vec<(&'static str, &'static Case)> {
 pub(crate) struct HardCasesArgs {
     /// Cases to run, such as flat-start,slivers; all when left out
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = one_of(named))]
-    cases: Vec<&'static Case>,
+    cases: Vec<&'static str>,
 
     #[command(flatten)]
     options: FullOptions,
@@ -87,9 +92,9 @@ pub(crate) struct HardCasesArgs {
 /// Runs the command.
 pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
     let store = args.options.open("hard-cases")?;
-    let is_wanted = |case: &Case| args.cases.iter().any(|c| c.name == case.name);
-    let wanted = cases().filter(|case| args.cases.is_empty() || is_wanted(case));
-    let wanted: Vec<&Case> = wanted.collect();
+    let cases = cases()?;
+    let is_wanted = |case: &&&Case| args.cases.is_empty() || args.cases.contains(&case.name);
+    let wanted: Vec<&Case> = cases.iter().filter(is_wanted).copied().collect();
     let results: Vec<Result<Record>> = wanted
         .into_par_iter()
         .with_max_len(1)
@@ -97,7 +102,7 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
         .collect();
     let made = results.into_iter().try_for_each(|made| made.map(drop));
     interrupt::afterwards(made, || {
-        let units = cases().map(|case| unit(&store, case));
+        let units = cases.iter().map(|case| unit(&store, case));
         let kept: Kept<Record> = store.all_kept(units.collect());
         let records = &kept.records;
         print!("{}", page::text(records));

@@ -17,8 +17,8 @@ use isosheet_io::scene::SceneFile;
 use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Value, json};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 use variants::Variants;
 
 /// The folder of the files.
@@ -63,22 +63,32 @@ struct Ran {
     stopped: Option<(f64, String)>,
 }
 
+/// The names of the cases in the folder, whatever is in the files; none without the folder.
+pub(super) fn names() -> Vec<&'static str> {
+    let paths = of_kind(Path::new(FOLDER), "toml").unwrap_or_default();
+    paths.iter().map(|path| leaked(&stem(path))).collect()
+}
+
 /// The cases in the folder, by name.
 ///
-/// # Panics
-/// If a file of the folder is wrong; it says which and why.
-pub(super) fn all() -> &'static [&'static Case] {
-    static ALL: OnceLock<Vec<&'static Case>> = OnceLock::new();
-    ALL.get_or_init(|| {
-        let read = || -> Result<Vec<&'static Case>> {
-            let paths = of_kind(Path::new(FOLDER), "toml")?;
-            let cases = paths
-                .iter()
-                .map(|path| Ok(&*Box::leak(Box::new(case(path)?))));
-            cases.collect()
-        };
-        read().unwrap_or_else(|error| panic!("{FOLDER}: {error:#}"))
-    })
+/// # Errors
+/// What is wrong with a file of the folder.
+pub(super) fn all() -> Result<Vec<&'static Case>> {
+    let paths = of_kind(Path::new(FOLDER), "toml").context(FOLDER)?;
+    let cases = paths
+        .iter()
+        .map(|path| Ok(&*Box::leak(Box::new(case(path)?))));
+    cases.collect()
+}
+
+/// The name of a file without its extension.
+fn stem(path: &Path) -> Cow<'_, str> {
+    path.file_stem().unwrap_or_default().to_string_lossy()
+}
+
+/// A text for as long as the program runs.
+fn leaked(text: &str) -> &'static str {
+    Box::leak(text.to_owned().into_boxed_str())
 }
 
 /// The files of a folder whose names have an extension, in order.
@@ -95,16 +105,15 @@ fn of_kind(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
 /// The case of a file.
 fn case(path: &Path) -> Result<Case> {
     let file = CaseFile::read(path).with_context(|| path.display().to_string())?;
-    let leak = |text: &str| -> &'static str { Box::leak(text.to_owned().into_boxed_str()) };
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = stem(path);
     let beside = BESIDE
         .iter()
         .find(|(of, _)| *of == name)
         .map(|(_, code)| *code);
     Ok(Case {
-        name: leak(&name),
-        title: leak(&file.contents.title),
-        expected: leak(&file.contents.expected),
+        name: leaked(&name),
+        title: leaked(&file.contents.title),
+        expected: leaked(&file.contents.expected),
         run: Work::File(Box::leak(Box::new(file)), beside),
     })
 }
@@ -129,6 +138,7 @@ impl CaseFile {
         for mesh in of_kind(scene.parent().unwrap_or(Path::new(".")), "obj")? {
             texts.push(read(&mesh)?);
         }
+        ensure!(!contents.check.is_empty(), "there is no check");
         for check in &contents.check {
             check.validate(&contents.variants)?;
         }
@@ -164,18 +174,20 @@ impl CaseFile {
         Ok(runs)
     }
 
-    /// Judges what the runs of an effort say.
-    fn judge(&self, found: &mut Findings, ran: &[Ran], effort: Effort) -> Result<()> {
+    /// Whether each check is for a run of full reports, which have the runs of all others.
+    fn require_runs(&self) -> Result<()> {
+        let runs = self.runs(Effort::Full)?;
+        for check in &self.contents.check {
+            let any = runs.iter().any(|edits| check.is_for(edits));
+            ensure!(any, "no run is one of `{}`", check.words());
+        }
+        Ok(())
+    }
+
+    /// Judges what runs say. A check may be for variants that reports of less effort do not have.
+    fn judge(&self, found: &mut Findings, ran: &[Ran]) -> Result<()> {
         for check in &self.contents.check {
             let runs: Vec<&Ran> = ran.iter().filter(|r| check.is_for(&r.edits)).collect();
-            // A check may be for variants that reports of less effort do not have.
-            let is_later = |edits: &Vec<String>| check.is_for(edits);
-            let later = effort < Effort::Full && self.runs(Effort::Full)?.iter().any(is_later);
-            ensure!(
-                !runs.is_empty() || later,
-                "no run is one of `{}`",
-                check.words()
-            );
             if !runs.is_empty() {
                 check.judge(found, &runs)?;
             }
@@ -185,6 +197,7 @@ impl CaseFile {
 
     /// Runs all variants, and judges what they say.
     pub(super) fn run(&self, found: &mut Findings, effort: Effort) -> Result<()> {
+        self.require_runs()?;
         let edits = self.runs(effort)?;
         let ran: Result<Vec<Ran>> = edits
             .into_par_iter()
@@ -192,7 +205,7 @@ impl CaseFile {
             .map(|edits| ran(&self.scene, edits))
             .collect();
         let ran = ran?;
-        self.judge(found, &ran, effort)?;
+        self.judge(found, &ran)?;
         let name = self.scene.file_name().unwrap_or_default().to_string_lossy();
         let command = |run: &Ran| {
             let edits = run.edits.iter().map(|e| format!(" --set '{e}'"));

@@ -38,6 +38,23 @@ impl FileCheck {
             count == 1 || self.limitation.is_none(),
             "a limitation is of one bound: `{quantity}`"
         );
+        let mut values = [self.at_most, self.at_least].into_iter().flatten();
+        ensure!(
+            values.all(f64::is_finite),
+            "a bound of `{quantity}` is not finite"
+        );
+        if let Some(
+            Shortfall::Value([low, high])
+            | Shortfall::Stops {
+                at: [low, high], ..
+            },
+        ) = self.limitation.as_ref().map(|l| &l.shortfall)
+        {
+            ensure!(
+                low <= high,
+                "the limitation of `{quantity}` ends before it begins"
+            );
+        }
         for key in self.only.keys() {
             let known = variants.iter().any(|v| v.varies(key));
             ensure!(known, "`{key}` of `only` is none of the variants");

@@ -166,22 +166,48 @@ fn wrong_files_are_refused() {
         .run(&mut Findings::default(), Effort::Quick)
         .expect_err("wrong");
     assert!(error.to_string().contains("no number `speed`"), "{error}");
-    let file = read("check = []\n[[variants]]\n'sheet.start.seed' = '3..1'").expect("right");
-    let error = file
-        .run(&mut Findings::default(), Effort::Quick)
-        .expect_err("wrong");
-    assert!(error.to_string().contains("`3..1` is no range"), "{error}");
+    assert!(said("check = []").contains("there is no check"));
+    let text = said("[[check]]\nquantity = 'steps'\nat_most = nan");
+    assert!(text.contains("a bound of `steps` is not finite"), "{text}");
+    let text = said(
+        "[[check]]\nquantity = 'steps'\nat_most = 0\nlimitation = { why = 'w', between = [2, 1] }",
+    );
+    assert!(text.contains("ends before it begins"), "{text}");
+    let check = "[[check]]\nquantity = 'steps'\nat_most = 0\n";
+    let text = said(&format!("{check}[[variants]]\n'stop.time' = 0.1"));
+    assert!(text.contains("the values of a key are a list"), "{text}");
+    for (variants, only, problem) in [
+        ("'sheet.start.seed' = '3..1'", "", "`3..1` is no range"),
+        (
+            "'sheet.start.seed' = '1..1000000'",
+            "",
+            "more runs than the 100000",
+        ),
+        (
+            "'stop.time' = [0.1]",
+            "only = { 'stop.time' = 0.2 }",
+            "no run is one of `stop.time = 0.2: steps`",
+        ),
+    ] {
+        let file = read(&format!("{check}{only}\n[[variants]]\n{variants}")).expect("right");
+        let error = file
+            .run(&mut Findings::default(), Effort::Quick)
+            .expect_err("wrong");
+        assert!(error.to_string().contains(problem), "{error}");
+    }
 }
 
 #[test]
 fn the_files_of_the_folder_are_cases() {
-    for case in all() {
+    let all = all().expect("right files");
+    assert_eq!(names(), all.iter().map(|c| c.name).collect::<Vec<_>>());
+    for case in &all {
         assert!(
             !case.title.is_empty() && case.expected.ends_with('.'),
             "{case:?}"
         );
     }
     for (name, _) in BESIDE {
-        assert!(all().iter().any(|case| case.name == name), "{name}");
+        assert!(all.iter().any(|case| case.name == name), "{name}");
     }
 }

@@ -1,7 +1,7 @@
 //! The variants of the scene of a case: all combinations of some values of some keys.
 
 use crate::report::Effort;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use isosheet_io::run::{Sweep, Variation};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -23,7 +23,10 @@ fn least() -> Effort {
 
 /// The values of a key: a list, or `"1..12"` for whole numbers.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "the values of a key are a list, `[0.1, 0.2]`, or a range, `\"1..12\"`"
+)]
 enum Values {
     List(Vec<toml::Value>),
     Range(String),
@@ -42,6 +45,12 @@ impl Values {
                 let (first, last) = ends
                     .filter(|(first, last)| first <= last)
                     .with_context(|| format!("`{range}` is no range such as `1..12`"))?;
+                let count = first.abs_diff(last);
+                ensure!(
+                    count < Sweep::MOST_RUNS as u64,
+                    "`{range}` are more runs than the {} of a sweep",
+                    Sweep::MOST_RUNS
+                );
                 Ok((first..=last).map(|n| n.to_string()).collect())
             }
         }
