@@ -7,9 +7,9 @@ use super::scheme::{Kind, Scheme};
 use crate::report::{exponent, rounded};
 use crate::runs::Plan;
 use anyhow::{Context, Result};
+use cpu_time::ThreadTime;
 use isosheet_tests::max_difference;
 use serde::Serialize;
-use std::time::Instant;
 
 /// What one run of a method gave, up to the last checkpoint of a run that did not come to the end. The fields
 /// are columns of a table, by their names.
@@ -107,7 +107,7 @@ const LOST: &str =
     "blown up: its energy changes by more than a hundred times the largest kinetic energy";
 
 /// Measures a method on a problem whose step or tolerance was halved or divided by the root of ten `k` times.
-/// Runs that take longer than `patience` seconds are given up; those that took no more than `again` seconds
+/// Runs that take longer than `patience` CPU seconds are given up; those that took no more than `again` of them
 /// together are repeated, and the fastest counts.
 fn point(
     problem: Problem,
@@ -131,7 +131,7 @@ fn point(
     };
     let plan = Plan::new(step, reference.interval).within(patience);
     let checkpoints = reference.states.len();
-    let clock = Instant::now();
+    let clock = ThreadTime::now();
     let mut fastest: Option<Motion> = None;
     loop {
         let mut run = match scheme.start(problem.setup()?, fineness) {
@@ -190,7 +190,7 @@ const MOST: f64 = 5.0;
 /// Runs that fail in a row, before the first checkpoint, after which finer ones are not tried.
 const FAILURES: usize = 5;
 
-/// Measures a method over its steps or tolerances, coarse to fine, until a run takes longer than `limit`
+/// Measures a method over its steps or tolerances, coarse to fine, until a run takes longer than `limit` CPU
 /// seconds or refining makes no difference. On the smooth problems the first [`RUNS_FOR_ORDERS`] are
 /// made whatever they take.
 pub(super) fn sweep(
@@ -201,13 +201,13 @@ pub(super) fn sweep(
 ) -> Result<Vec<Point>> {
     let mut points: Vec<Point> = Vec::new();
     let mut failures = 0;
-    let total = Instant::now();
+    let total = ThreadTime::now();
     for k in 0..=HALVINGS {
         let is_adaptive = matches!(scheme.kind, Kind::Adaptive(_));
         let needed = problem.is_smooth() && !is_adaptive && k < RUNS_FOR_ORDERS;
         // A run costs about twice the one before.
         let patience = if needed { f64::INFINITY } else { 2.0 * limit };
-        let clock = Instant::now();
+        let clock = ThreadTime::now();
         let point = point(problem, scheme, reference, k, [patience, 0.2 * limit])?;
         let spent = clock.elapsed().as_secs_f64() / point.repetitions.max(1) as f64;
         failures = if point.got_going { 0 } else { failures + 1 };
