@@ -1,5 +1,5 @@
-//! `hard-cases`: the situations that break sheet solvers. Each case states what should happen, shows a
-//! naive method that fails, and shows measurements of what isosheet does.
+//! `hard-cases`: the situations that break sheet solvers. Each case states what should happen and shows
+//! measurements of what isosheet does; most show a naive method that fails.
 //!
 //! The cases of one kind are in one file. Cases run side by side on the threads that rayon has; none of
 //! their numbers depends on the number of threads.

@@ -34,7 +34,7 @@ fn page(records: &[Record]) -> Page {
     let body = html! {
         p {
             "Situations that break solvers for sheets of rigid rods. Each says what should "
-            "happen, shows a naive method at it, and measures isosheet against a bound. Every number is computed by the run that made this page. "
+            "happen and measures isosheet against a bound, and most show a naive method at it. Every number is computed by the run that made this page. "
             "Unless stated otherwise: a square of side 1 m and 0.1 kg, lumped masses, gravity 9.8 m/s² along −z, steps of 1/60 s."
         }
         (summary(records))
