@@ -202,7 +202,7 @@ fn realisation_follows_the_jacobian() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(isosheet_random::cases(64))]
 
     /// Any regular state of any mesh, in both charts: coordinates to positions and back.
     #[test]

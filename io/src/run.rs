@@ -267,8 +267,8 @@ fn start<'a>(
     hash: SceneHash,
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
-    let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
-    let (glued, gauges) = (setup.glued.clone(), setup.measures.clone());
+    let (origins, targets) = (setup.origins.clone(), setup.targets.clone());
+    let gauges = setup.measures.clone();
     let start = setup.start.x.clone();
     let simulation = setup.start()?;
     let count = file.scene().support.len();
@@ -276,8 +276,7 @@ fn start<'a>(
         file,
         folder,
         supports: SupportForces::new(origins.clone(), &simulation, count),
-        folding,
-        glued,
+        targets,
         simulation,
         start,
         origins,
@@ -324,8 +323,8 @@ fn resume<'a>(
     (progress, checkpoint): (Progress, isosheet_dynamics::Checkpoint),
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
-    let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
-    let (glued, gauges) = (setup.glued.clone(), setup.measures.clone());
+    let (origins, targets) = (setup.origins.clone(), setup.targets.clone());
+    let gauges = setup.measures.clone();
     let start = setup.start.x.clone();
     let frames = FrameFile::resume(
         &folder.path(RunFolder::FRAMES),
@@ -338,8 +337,7 @@ fn resume<'a>(
         file,
         folder,
         supports: SupportForces::new(origins.clone(), &simulation, count),
-        folding,
-        glued,
+        targets,
         simulation,
         start,
         origins,

@@ -204,6 +204,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(isosheet_random::cases(256))]
+
         #[test]
         fn count_is_boundary_plus_three_chi(soup in surfaces()) {
             let t = topology(&soup);
@@ -240,7 +242,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
+        #![proptest_config(isosheet_random::cases(24))]
         /// At a generic position of a disk the equations are independent, so the count is the number of
         /// motions.
         #[test]

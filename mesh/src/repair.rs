@@ -136,6 +136,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(isosheet_random::cases(256))]
+
         /// Any faces of an oriented surface may be turned over: repair finds an oriented surface again,
         /// turning at most half of each component, and calling it twice changes nothing.
         #[test]

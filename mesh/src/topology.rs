@@ -341,6 +341,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(isosheet_random::cases(256))]
+
         #[test]
         fn adjacency_of_any_surface_is_right((n, faces) in surfaces()) {
             Topology::from_faces(n, &faces).unwrap().check_invariants();

@@ -1,5 +1,6 @@
-//! Numbers in messages.
+//! Numbers and lists in messages.
 
+use crate::VertexId;
 use std::fmt;
 
 /// Shows a number with three significant digits, and with an exponent where it would be long without one:
@@ -34,6 +35,21 @@ impl fmt::Display for Given {
 /// A number of things: `1 step`, `2 steps`.
 pub fn counted(count: usize, one: &str, more: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { more })
+}
+
+/// The first of some vertices by name, and the number of the others.
+pub fn listed(vertices: &[VertexId]) -> String {
+    /// As many as a line of text takes.
+    const NAMED: usize = 5;
+    let named: Vec<String> = vertices.iter().take(NAMED).map(|v| v.to_string()).collect();
+    match vertices.len().saturating_sub(NAMED) {
+        0 => named.join(", "),
+        more => format!(
+            "{} and {}",
+            named.join(", "),
+            counted(more, "other", "others")
+        ),
+    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use isosheet_dynamics::constraint::{Circle, Line, Plane, Side, Sphere};
 use isosheet_dynamics::{
-    ImplicitOptions, Method, Profile, RigidDisplacement, SheetModel, Simulation, SimulationError,
-    State, StepControl, StepError, Support, Unsatisfiable, VertexConstraint,
+    Driver, ImplicitOptions, Method, Profile, RigidDisplacement, SheetModel, Simulation,
+    SimulationError, State, StepControl, StepError, Support, Unsatisfiable, VertexConstraint,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use isosheet_tests::{HangingStrip, Pendulum, max_difference, orders};
@@ -432,7 +432,7 @@ fn pulling_beyond_taut_names_the_pin_and_the_demand() {
     let StepError::Unsatisfiable { t, infeasibility } = error else {
         panic!("{error}");
     };
-    assert_eq!(infeasibility.support, Support::Pin(VertexId(1)));
+    assert_eq!(infeasibility.by, Driver::Support(Support::Pin(VertexId(1))));
     assert!(
         t < 0.01 && (infeasibility.distance / 0.005 - 1.0).abs() < 0.05,
         "{infeasibility:?}"

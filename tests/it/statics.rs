@@ -2,8 +2,8 @@
 
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
 use isosheet_dynamics::{
-    ImplicitOptions, Method, Reaction, SheetModel, Simulation, State, StepControl, StepError,
-    Support, Unsatisfiable,
+    Driver, ImplicitOptions, Method, Reaction, SheetModel, Simulation, State, StepControl,
+    StepError, Support, Unsatisfiable,
 };
 use isosheet_mesh::{MassKind, VertexId, generate};
 use isosheet_tests::{Catenary, max_difference};
@@ -266,7 +266,7 @@ fn a_straight_line_of_rods_does_not_give() {
             let StepError::Unsatisfiable { t, infeasibility } = error else {
                 panic!("M{level}: {error}");
             };
-            assert_eq!(infeasibility.support, Support::Pin(corner));
+            assert_eq!(infeasibility.by, Driver::Support(Support::Pin(corner)));
             assert!(
                 t < 0.1 * h && (infeasibility.distance / (pull * h) - 1.0).abs() < 0.05,
                 "{infeasibility:?}"

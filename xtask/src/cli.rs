@@ -10,6 +10,7 @@ use crate::interrupt;
 use crate::locking::{self, LockingArgs};
 use crate::measured::{self, MeasuredArgs};
 use crate::reproduce::{self, ReproduceArgs};
+use crate::soak::{self, SoakArgs};
 use crate::tuning::{self, TuningArgs};
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
@@ -81,6 +82,12 @@ pub(crate) enum Command {
     /// Writes DIR/gallery.png and DIR/film.png (an animated PNG) and keeps the runs in DIR/runs. The scenes
     /// are those of `isosheet new` and of `xtask/scenes`.
     Gallery(GalleryArgs),
+    /// Search with new seeds for cases in which a random test fails
+    ///
+    /// `cargo test` draws the same cases in every run. This command runs its random tests alone, with seeds
+    /// that it prints and more cases for each: `PROPTEST_RNG_SEED=SEED ISOSHEET_TIMES=N cargo test NAME`
+    /// repeats what failed.
+    Soak(SoakArgs),
     /// Build the program of the 3D page of a run, io/view/dist, from io/view/src with npm and esbuild
     ///
     /// Only needed after a change of io/view; needs Node.js 20 or newer and the npm registry.
@@ -100,6 +107,7 @@ impl Command {
             Self::All(args) => args.run(),
             Self::Measured(args) => measured::run(args),
             Self::Gallery(args) => gallery::run(args),
+            Self::Soak(args) => soak::run(args),
             Self::BundleView(args) => bundle_view::run(args),
         }
     }

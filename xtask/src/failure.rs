@@ -35,6 +35,8 @@ pub(crate) enum ReportError {
     Part { file: PathBuf, part: String },
     #[error("findings are out of bounds, or not out of them as declared: {names}")]
     Findings { names: String },
+    #[error("random tests fail with these seeds: {seeds}")]
+    Seeds { seeds: String },
     #[error("these reports failed: {names}")]
     Reports { names: String },
 }
@@ -47,6 +49,9 @@ impl Advice for ReportError {
                 "run the whole report, without --quick, and `cargo xtask measured` again"
             }
             Self::Findings { .. } => "see the page, or findings.csv",
+            Self::Seeds { .. } => {
+                "repeat a test with `PROPTEST_RNG_SEED=SEED ISOSHEET_TIMES=N cargo test NAME`"
+            }
             Self::Reports { .. } => "see what each of them said above",
         })
     }
@@ -95,6 +100,7 @@ fn code(error: &Error) -> u8 {
                 ReportError::NotQuick { .. } | ReportError::OtherReport { .. } => 4,
                 ReportError::Part { .. }
                 | ReportError::Findings { .. }
+                | ReportError::Seeds { .. }
                 | ReportError::Reports { .. } => 1,
             });
         }

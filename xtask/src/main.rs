@@ -9,6 +9,7 @@
 //! * `all`: the figures and all reports, one after another.
 //! * `measured`: what the reports measured, as numbers of the book and the README.
 //! * `gallery`: pictures of ten scenes, and a film.
+//! * `soak`: the random tests with new seeds.
 //! * `bundle-view`: the program of the 3D page of a run.
 
 mod bundle_view;
@@ -28,6 +29,7 @@ mod report;
 mod reproduce;
 mod runs;
 mod selection;
+mod soak;
 mod store;
 mod threads;
 mod tuning;

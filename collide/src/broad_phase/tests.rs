@@ -87,7 +87,7 @@ fn motions(n: usize) -> impl Strategy<Value = Vec<Vec<f64>>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(isosheet_random::cases(200))]
 
     #[test]
     fn self_pairs_are_complete(moves in motions(3 * 9), inflation in 0.0..0.2_f64, size in -6.0..3.0_f64) {

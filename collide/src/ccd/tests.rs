@@ -101,7 +101,7 @@ fn motions() -> impl Strategy<Value = (Stencil, Stencil)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1500))]
+    #![proptest_config(isosheet_random::cases(1500))]
 
     #[test]
     fn no_motion_is_unsafe((x, dx) in motions(), size in sizes(), pose in proptest::array::uniform6(-1.0..1.0_f64), thick in 0.0..0.9_f64) {

@@ -75,6 +75,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(isosheet_random::cases(256))]
+
         /// `d'' = -d |t|^2` where the closest point does not slide.
         #[test]
         fn faces_that_tilt_come_closer(

@@ -9,7 +9,7 @@ fn add(x: &[f64], dx: &[f64], t: f64) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(isosheet_random::cases(40))]
 
     /// A sheet whose vertices are thrown about at random, each step cut to what is proven safe: it
     /// never passes through itself, and the same motions uncut do.

@@ -101,7 +101,7 @@ fn check_distance(x: &Stencil, closest: &Closest<4>, triangle: bool) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(600))]
+    #![proptest_config(isosheet_random::cases(600))]
 
     #[test]
     fn distances_are_the_minimum_over_the_weights((x, size, pose) in stencils()) {
@@ -228,7 +228,7 @@ fn condition(x: &Stencil, feature: Feature) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(isosheet_random::cases(2000))]
 
     #[test]
     fn derivatives_match_dual_numbers(

@@ -73,7 +73,7 @@ fn pose() -> impl Strategy<Value = [f64; 6]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(isosheet_random::cases(1000))]
 
     #[test]
     fn derivatives_match_differences(shape in shapes(), size in sizes(), p in points::<1>(), a in pose(), t in 0.0..1.0_f64) {

@@ -39,7 +39,7 @@ fn winding(s: &TriangleSurface, p: &Vector3<f64>) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(isosheet_random::cases(1000))]
 
     #[test]
     fn distances_are_signed_and_smallest(radii in proptest::array::uniform8(0.2..1.0_f64), p in points::<1>()) {

@@ -203,6 +203,8 @@ fn bad_requests() {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     #[test]
     fn any_mesh_any_start(splits in 1..40usize, seed in 0..1000u64, start in 0..1000u32, pins in 0..4u32) {
         let sheet = random_sheet(splits, seed);

@@ -40,6 +40,8 @@ fn block_column(b: &PositionDerivative, j: usize) -> [f64; 3] {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     #[test]
     fn h_places_and_inverts(k in point(), axis in point(), r in 0.1..3.0f64, l in -3.0..3.0f64, p in -1.4..1.4f64) {
         prop_assume!(norm(&axis) > 0.1);

@@ -17,6 +17,8 @@ fn strain(sheet: &Sheet, x: &[f64]) -> f64 {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     #[test]
     fn positions_to_coordinates_and_back(level in 0..2u32, start in 0..9u32, seed in 0..1000u64, free in 0..2u8) {
         let sheet = isotropic_square(level, 1.0);

@@ -4,6 +4,7 @@ use super::{
     BarrierPotential, BodyMotions, BodyPlace, Contact, ContactKey, ContactKind, ContactSet,
     CouplingSink, ParallelEdges, StepSpan, add_at, add_block, add_weighted, couple,
 };
+use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -67,6 +68,14 @@ impl ActiveContact {
     /// The vertices of the sheet that take part.
     pub fn corners(&self) -> &[u32] {
         &self.vertices[..self.vertex_count()]
+    }
+
+    /// The vertex of the sheet with the largest weight.
+    pub(crate) fn heaviest_vertex(&self) -> VertexId {
+        let heavier =
+            |a: &usize, b: &usize| self.weights[*a].abs().total_cmp(&self.weights[*b].abs());
+        let place = (0..self.vertex_count()).max_by(heavier).unwrap_or(0);
+        VertexId(self.vertices[place])
     }
 
     /// Size of the barrier force along the normal, newtons.

@@ -194,6 +194,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(isosheet_random::cases(256))]
+
         #[test]
         fn derivatives_match_differences(z in 1e-2..1.1_f64, size in -6.0..3.0_f64, kappa in 0.1..10.0_f64) {
             // The third derivative jumps where the barrier starts.

@@ -66,6 +66,11 @@ impl StepMotion {
         &self.turn
     }
 
+    /// Displacement of what is at a place in space (metres), to first order, metres.
+    pub(crate) fn displacement(&self, place: &Vector3<f64>) -> Vector3<f64> {
+        self.shift + self.turn.cross(&(place - self.start.translation.vector))
+    }
+
     /// The pose at progress `s`, from 0 to 1.
     pub fn pose(&self, s: f64) -> Isometry3<f64> {
         if s >= 1.0 {

@@ -197,6 +197,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(isosheet_random::cases(256))]
+
         #[test]
         fn law_is_consistent(u in 0.0..5.0_f64, size in -6.0..3.0_f64, rest in 0.0..2.0_f64, part in 0.0..=1.0_f64) {
             let e = 10.0_f64.powf(size);

@@ -102,7 +102,7 @@ pub trait CouplingSink {
 }
 
 /// Adds `w_i w_j block` for all pairs of a stencil; the block is symmetric.
-fn add_weighted(
+pub(crate) fn add_weighted(
     vertices: &[u32; 4],
     weights: &[f64; 4],
     block: &Matrix3<f64>,
@@ -141,7 +141,7 @@ fn couple(key: ContactKey, vertices: &[u32; 4], out: &mut Vec<[u32; 2]>) {
 }
 
 /// Adds to the entries of a vertex.
-fn add_at(out: &mut [f64], v: u32, g: Vector3<f64>) {
+pub(crate) fn add_at(out: &mut [f64], v: u32, g: Vector3<f64>) {
     let i = 3 * v as usize;
     for k in 0..3 {
         out[i + k] += g[k];

@@ -65,6 +65,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(isosheet_random::cases(256))]
+
         #[test]
         fn gradient_matches_differences(
             turn in -0.03..0.03_f64, tilt in -0.03..0.03_f64,

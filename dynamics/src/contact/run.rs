@@ -67,10 +67,15 @@ impl RunContact {
         self.bodies.check()
     }
 
+    /// The motions of the bodies over a span of time.
+    pub(crate) fn motions(&mut self, span: StepSpan) -> &BodyMotions {
+        self.bodies.update(self.geometry.as_ref(), span);
+        &self.bodies
+    }
+
     /// Whether no body moves in a span of time.
     pub(crate) fn bodies_rest(&mut self, span: StepSpan) -> bool {
-        self.bodies.update(self.geometry.as_ref(), span);
-        !self.bodies.any_moves()
+        !self.motions(span).any_moves()
     }
 
     /// The barrier, whose stiffness was set at the start of the run.

@@ -253,6 +253,21 @@ impl Iterate {
         has_changed
     }
 
+    /// The largest change of a normal force since friction of the step from `x0` was lagged, relative to the
+    /// largest; zero without friction.
+    pub(crate) fn friction_change(&mut self, contact: Option<&StepContact<'_>>, x0: &[f64]) -> f64 {
+        let (Some(contact), Some(own)) = (contact, &mut self.contact) else {
+            return 0.0;
+        };
+        if !own.is_current {
+            own.update(contact, &self.x);
+        }
+        let laws = contact.geometry.laws();
+        let now = &mut own.friction_before;
+        now.lag(laws, &contact.barrier, &own.state.active, x0);
+        now.change_since(&own.state.friction)
+    }
+
     /// What contact did over the step if it ends at the iterate; zero without contact.
     pub(crate) fn contact_work(&mut self, contact: Option<&StepContact<'_>>) -> ContactWork {
         let start = self

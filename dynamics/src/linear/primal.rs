@@ -343,7 +343,10 @@ impl PrimalMatrix {
     }
 
     /// Receives blocks that are added as they are.
-    pub(crate) fn sink<'a>(&'a mut self, model: &'a SheetModel) -> impl HessianSink + 'a {
+    pub(crate) fn sink<'a>(
+        &'a mut self,
+        model: &'a SheetModel,
+    ) -> impl HessianSink + CouplingSink + 'a {
         Sink {
             matrix: self,
             model,

@@ -290,6 +290,18 @@ impl ElasticSheet {
         (!is_within).then_some((FaceId(worst.0 as u32), worst.1))
     }
 
+    /// What measures strains beyond the limit in place of elasticity: the energy
+    /// `sum_T A_T k max(0, |E_T| - m)^2 / 2` with a stiffness `k` (joules per square metre).
+    pub(crate) fn excess(&self, stiffness: f64) -> Self {
+        let mut excess = self.clone();
+        excess.limit = self.limit.excess();
+        excess.limit.set_stiffness(stiffness);
+        for face in &mut excess.faces {
+            face.set_stiffness(0.0, self.poisson);
+        }
+        excess
+    }
+
     /// Sets the largest acceleration by constant forces, m/s2, which the barrier follows.
     pub(crate) fn set_acceleration(&mut self, acceleration: f64) {
         self.acceleration = acceleration;

@@ -145,6 +145,13 @@ impl Glue {
         self.stiffness
     }
 
+    /// By how much the vertices of a pair are further from each other, or otherwise placed, than they are
+    /// meant to be at time `t` (seconds), at most, metres; `x` are the positions, `3V`, metres.
+    pub fn opening(&self, t: f64, x: &[f64]) -> f64 {
+        let pairs = 0..self.pairs.len();
+        pairs.fold(0.0, |most, p| most.max(self.gap(p, t, x).norm()))
+    }
+
     /// What is left between the vertices of a pair, less what they are meant to be apart at time `t`, metres.
     fn gap(&self, number: usize, t: f64, x: &[f64]) -> Vector3<f64> {
         let [a, b] = self.pairs[number];

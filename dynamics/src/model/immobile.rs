@@ -286,12 +286,23 @@ mod tests {
         assert!(immobile_vertices(&moving, sheet.positions()).is_empty());
     }
 
-    /// Largest displacement along an axis, metres. Sheets that are displaced by a fifth of it stay nearly
-    /// flat, where length errors leave twenty times as much.
-    const SHAKE: f64 = 0.1;
+    /// Largest displacement along an axis, metres. Most free vertices are left as far away.
+    const SHAKE: f64 = 0.3;
+    const TOLERANCE: f64 = 1e-12;
+
+    /// How far a tolerance of the lengths lets vertices go that a chain of three lines holds, each of which
+    /// ends at vertices of the one before, on a sheet of side 1; metres. A line of length `l` with the slack
+    /// `s` deviates by `sqrt(l s / 2)` in its middle. The slack of the first is `l` times the tolerance, that
+    /// of the next ones twice the deviation of the one before.
+    fn leeway() -> f64 {
+        let l = 2.0_f64.sqrt();
+        let deviation = |slack: f64| (0.5 * l * slack).sqrt();
+        let first = deviation(l * TOLERANCE);
+        deviation(2.0 * deviation(2.0 * first))
+    }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
+        #![proptest_config(isosheet_random::cases(24))]
 
         /// Vertices found return to their places when the sheet is displaced at random and brought back to
         /// the rest lengths, whatever the others do.
@@ -318,14 +329,11 @@ mod tests {
                 x[k..k + 3].copy_from_slice(&rest[k..k + 3]);
             }
             // Where this finds no positions there is nothing to compare with.
-            if project_positions(&model, &mut x, 1e-12).is_ok() {
+            if project_positions(&model, &mut x, TOLERANCE).is_ok() {
                 for v in found {
                     for k in 3 * v.index()..3 * v.index() + 3 {
-                        // A length error of 1e-12 leaves 1e-6 of an edge across a straight line of rods, and
-                        // up to its root across a line that ends there. (At most 1.7e-4 in 1479 cases; half
-                        // of the sheets have a free vertex that is 0.08 away.)
                         let moved = (x[k] - rest[k]).abs();
-                        prop_assert!(moved < SHAKE / 200.0, "{} by {moved:e}", v.0);
+                        prop_assert!(moved < leeway(), "{} by {moved:e}", v.0);
                     }
                 }
             }

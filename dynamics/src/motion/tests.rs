@@ -62,6 +62,8 @@ fn differences(at: impl Fn(f64) -> Vector3<f64>, t: f64) -> [Vector3<f64>; 2] {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     #[test]
     fn rigid_kinematics_match_differences(
         motion in displacements(smooth().boxed()), p in vector(), t in -1.0..1.0_f64

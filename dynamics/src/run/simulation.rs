@@ -542,7 +542,7 @@ impl Simulation {
             energy_drift: kinetic + potential - work + dissipated + friction + plastic - start,
             strain: model.rods().max_strain(x),
             constrained_strain: model.constrained_strain(x),
-            taut: totals.taut,
+            taut: totals.taut.clone(),
             violation: model.largest_violation(*t, x),
             gap: self.contacts().map(ActiveContacts::gap),
             outcome: totals.outcome,

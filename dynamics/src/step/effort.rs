@@ -34,7 +34,7 @@ pub(crate) struct SolverEffort<'w> {
     watch: Option<Watch<'w>>,
     sink: Option<&'w mut TraceSink>,
     is_interrupted: bool,
-    /// Factorisations up to the last accepted state.
+    /// Factorisations when it last began.
     begun: usize,
     /// Largest number of factorisations from there on.
     limit: Option<usize>,
@@ -76,7 +76,7 @@ impl<'w> SolverEffort<'w> {
         self.is_interrupted
     }
 
-    /// Begins at an accepted state, with a limit of factorisations until the next one.
+    /// Begins at a state, with a limit of factorisations until the next one.
     pub(crate) fn begin(&mut self, limit: Option<usize>) {
         self.begun = self.factorisations;
         self.limit = limit;

@@ -16,6 +16,7 @@ use crate::step::infeasibility::{Infeasibility, infeasibility};
 use crate::step::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene, SolverState,
 };
+use crate::step::pressing::{Pressing, pressing};
 use crate::step::reaction::Balance;
 use crate::step::report::{StepError, StepOutcome, StepTotals};
 use crate::step::rod_forces::rod_forces;
@@ -204,7 +205,7 @@ impl Engine {
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
         let lengths = Subdivision::new(self.state().t, h, self.tuning.patience as usize);
         let mut run = Substeps {
-            limit: self.work_limit(),
+            limit: self.work_limit(self.state().t + h),
             engine: self,
             lengths,
             memory: Memory::All,
@@ -227,19 +228,37 @@ impl Engine {
         Ok(())
     }
 
-    /// Largest number of factorisations from an accepted state to the next, for sheets that may lock: those
-    /// of rods with supports at two vertices or more, by methods that take dependent rods.
-    fn work_limit(&self) -> Option<usize> {
-        let may_lock = self.model.isometry() == Isometry::Rods
-            && self.integrator.traits().demand == RodDemand::Nothing
-            && self.model.supported_vertex_count() > 1;
-        may_lock.then_some(self.control.max_factorisations)
+    /// Largest number of factorisations from an accepted state to the next until time `end`, for sheets that
+    /// may lock, or be moved where they cannot go, by methods that take dependent rods.
+    fn work_limit(&mut self, end: f64) -> Option<usize> {
+        let is_limited = self.integrator.traits().demand == RodDemand::Nothing
+            && (self.may_lock() || !self.surroundings_rest(end));
+        is_limited.then_some(self.control.max_factorisations)
     }
 
-    /// By how much moving supports ask for more than the rods allow until time `t`, if they do.
-    fn infeasibility(&self, t: f64) -> Option<Infeasibility> {
-        let is_driven = self.model.has_drives() && self.model.isometry() == Isometry::Rods;
-        is_driven.then(|| infeasibility(&self.model, self.state(), t))?
+    /// Whether the sheet has rods, and supports at two vertices or more.
+    fn may_lock(&self) -> bool {
+        self.model.isometry() == Isometry::Rods && self.model.supported_vertex_count() > 1
+    }
+
+    /// By how much moving supports and bodies ask for more than the lengths or the limit of the strain allow
+    /// until time `t`, if they do.
+    fn infeasibility(&mut self, t: f64) -> Option<Infeasibility> {
+        if self.surroundings_rest(t) {
+            return None;
+        }
+        let SolverState {
+            state, contacts, ..
+        } = &self.solver;
+        let contact = self.contact.as_mut().zip(contacts.as_ref());
+        infeasibility(&self.model, contact, state, t)
+    }
+
+    /// The body that presses the sheet most while it moves on until time `end`, seconds, if one does.
+    fn pressing(&mut self, end: f64) -> Option<Pressing> {
+        let t0 = self.state().t;
+        let (contact, contacts) = self.contact.as_mut().zip(self.solver.contacts.as_ref())?;
+        pressing(contact, contacts, StepSpan { t0, h: end - t0 })
     }
 
     /// Whether supports and bodies rest until time `end`, seconds.
@@ -302,20 +321,28 @@ enum Stop {
 }
 
 impl Substeps<'_, '_> {
-    /// Why no sub-step was found: supports that ask for too much, rods that lock or depend on each other, or
+    /// Why no sub-step was found: supports or bodies that ask for too much, rods that lock or depend on each other, or
     /// as the integrator said.
     fn stop(&mut self, cause: StepError) -> Stop {
         let t = self.engine.state().t;
-        if let Some(infeasibility) = self.engine.infeasibility(self.lengths.end()) {
+        let ends = [self.lengths.end(), t + self.lengths.length()];
+        let mut infeasible = ends
+            .into_iter()
+            .filter_map(|end| self.engine.infeasibility(end));
+        if let Some(infeasibility) = infeasible.next() {
             return match self.engine.control.unsatisfiable {
                 Unsatisfiable::StopTaut => Stop::Taut(infeasibility),
-                Unsatisfiable::Refuse => Stop::Error(StepError::Unsatisfiable { t, infeasibility }),
+                Unsatisfiable::Refuse => Stop::Error(StepError::Unsatisfiable {
+                    t,
+                    infeasibility: Box::new(infeasibility),
+                }),
             };
         }
         let known = self.locked().or_else(|| self.engine.rank_deficient());
         Stop::Error(known.unwrap_or_else(|| StepError::StepTooSmall {
             t,
             min_step: self.lengths.part(self.engine.control.min_fraction),
+            pressing: self.engine.pressing(self.lengths.end()).map(Box::new),
             cause: Box::new(cause),
         }))
     }
@@ -323,7 +350,9 @@ impl Substeps<'_, '_> {
     /// The error of a sheet that may lock, if rods block its motion, or depend on each other while supports
     /// and bodies rest. (A sheet has to follow what moves: many steps are divided before it buckles.)
     fn locked(&mut self) -> Option<StepError> {
-        self.limit?;
+        if !self.engine.may_lock() {
+            return None;
+        }
         let rests = self.engine.surroundings_rest(self.lengths.end());
         let Engine { model, solver, .. } = &*self.engine;
         let state = &solver.state;
@@ -445,11 +474,19 @@ impl Stepping for Substeps<'_, '_> {
     type Error = Stop;
     type Report = ();
 
-    /// An attempt that the limit ends is made again without a limit, unless the sheet locks: what is accepted
-    /// does not depend on the effort.
+    /// An attempt that the limit ends is made again without a limit, unless the sheet locks, or has nowhere to
+    /// go: what is accepted does not depend on the effort.
     fn propose(&mut self, h: f64) -> Result<(), StepError> {
         let proposed = self.attempt(h);
         if !self.totals.effort.is_spent() {
+            return proposed;
+        }
+        if self
+            .engine
+            .infeasibility(self.engine.state().t + h)
+            .is_some()
+        {
+            self.totals.effort.begin(self.limit);
             return proposed;
         }
         if self.engine.infeasibility(self.lengths.end()).is_none()
@@ -503,8 +540,10 @@ impl Stepping for Substeps<'_, '_> {
         std::mem::swap(&mut engine.solver, &mut engine.proposal.solver);
         engine.account = self.pending.account;
         engine.has_moved = true;
-        // The end of the step is set by the caller, free of accumulated round-off.
-        engine.solver.state.t = self.lengths.advance();
+        // Free of accumulated round-off, for the pins in motion too.
+        let state = &mut engine.solver.state;
+        state.t = self.lengths.advance();
+        engine.model.place_pins(state.t, &mut state.x);
         let totals = &mut *self.totals;
         if engine.model.has_driven_potentials() {
             let (before, after) = (&engine.proposal.solver.state, &engine.solver.state);

@@ -1,195 +1,102 @@
-//! Supports that ask for more than the rods allow.
+//! Supports and bodies that ask for more than the lengths allow.
 
-use crate::constraint::rows::{HessianPart, VertexRows};
-use crate::linear::primal::PrimalMatrix;
-use crate::model::support::Support;
-use crate::vectors::{add, point};
+mod driver;
+mod fit;
+mod gaps;
+
+use crate::contact::{ContactState, RunContact};
 use crate::{SheetModel, State};
+pub use driver::Driver;
+use fit::{Fit, ROD_STIFFNESS};
+use gaps::Gaps;
 use isosheet_mesh::VertexId;
-use nalgebra::Vector3;
+use isosheet_mesh::wording::{brief, given, listed};
+use std::fmt;
 
 /// A demand that cannot be met.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Infeasibility {
-    /// The support, of those that move, that pulls most against the taut rods.
-    pub support: Support,
-    /// How far it would have to give way for the rods to have their lengths, to first order; metres.
+    /// Of what moves, that which does most of the work.
+    pub by: Driver,
+    /// How far it would have to stay back for the lengths and gaps to be kept, to first order; metres.
     pub distance: f64,
     /// When it asks for this, seconds.
     pub t: f64,
+    /// The limit of the strain, which an elastic sheet keeps in place of lengths.
+    pub strain_limit: Option<f64>,
+    /// The vertices that bodies press, those pressed most first.
+    #[serde(serialize_with = "as_numbers")]
+    pub pressed: Vec<VertexId>,
+    /// The other bodies that press the sheet.
+    pub against: Vec<usize>,
 }
 
-/// Stiffness of the rods relative to the masses over a squared second: what is left of inertia is round-off.
-const ROD_STIFFNESS: f64 = 1e9;
-/// Most Newton iterations; taut rods converge in about ten.
-const MAX_ITERATIONS: usize = 100;
-/// Forces on free vertices, relative to those at the supports, up to which the stretched sheet is in
-/// equilibrium.
-const BALANCED_PART: f64 = 1e-6;
-/// Strain below which lengths that were not met are a matter of convergence.
-const MET_STRAIN: f64 = 1e-7;
-/// Line searches that halve this often have stalled.
-const MAX_HALVINGS: usize = 30;
+fn as_numbers<S: serde::Serializer>(vertices: &[VertexId], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_seq(vertices.iter().map(|v| v.0))
+}
 
-/// Looks for positions with the rest lengths and the supports where they are at time `t`, and says by how
-/// much they fail to exist.
-///
-/// The least squares of the lengths, `E = sum_e p_e c_e^2 / 2`, are minimised by Newton's method from the
-/// state. Where the minimum is not zero the tensions `w_e = p_e c_e` are in equilibrium at all free vertices:
-/// by Farkas' lemma for the linearised lengths no small motion meets them, and the support that bears the
-/// force `F` has to give way by `sum_e w_e c_e / |F|`.
-pub(crate) fn infeasibility(model: &SheetModel, state: &State, t: f64) -> Option<Infeasibility> {
-    let mut fit = Fit::new(model, state, t)?;
-    let mut energy = fit.energy();
-    for _ in 0..MAX_ITERATIONS {
-        if fit.force() <= BALANCED_PART * fit.largest_support().1 {
-            break;
+impl fmt::Display for Infeasibility {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} asks", self.by)?;
+        if !self.pressed.is_empty() {
+            write!(f, " at {}", listed(&self.pressed))?;
         }
-        energy = fit.descend(energy)?;
-    }
-    if fit.force() > BALANCED_PART.sqrt() * fit.largest_support().1 || fit.strain() < MET_STRAIN {
-        return None;
-    }
-    let (support, force) = fit.largest_support();
-    (force > 0.0).then(|| Infeasibility {
-        support,
-        // Twice the energy is the sum of tension times elongation.
-        distance: 2.0 * energy / force,
-        t,
-    })
-}
-
-/// As stiff for rods between two pins as for a rod of the mean mass.
-fn penalties(model: &SheetModel) -> Vec<f64> {
-    let mut penalty = crate::linear::free::penalties(model, ROD_STIFFNESS);
-    for (p, l) in penalty.iter_mut().zip(model.rods().lengths()) {
-        if *p == 0.0 {
-            *p = ROD_STIFFNESS * model.mean_mass() / (l * l);
+        write!(f, " for {} m more than ", brief(self.distance))?;
+        match self.strain_limit {
+            Some(limit) => write!(f, "the strain limit of {}", given(limit))?,
+            None => f.write_str("the rods")?,
         }
-    }
-    penalty
-}
-
-struct Fit<'a> {
-    model: &'a SheetModel,
-    matrix: PrimalMatrix,
-    rows: VertexRows,
-    penalty: Vec<f64>,
-    c: Vec<f64>,
-    tension: Vec<f64>,
-    gradient: Vec<f64>,
-    dx: Vec<f64>,
-    x: Vec<f64>,
-    t: f64,
-}
-
-impl<'a> Fit<'a> {
-    fn new(model: &'a SheetModel, state: &State, t: f64) -> Option<Self> {
-        let n = model.coordinate_count();
-        let mut x = state.x.clone();
-        model.place_pins(t, &mut x);
-        let m = model.rods().len();
-        let mut fit = Self {
-            model,
-            matrix: PrimalMatrix::of_rods(model).ok()?,
-            rows: VertexRows::new(
-                model.constraints(),
-                model.constrained_vertices(),
-                ROD_STIFFNESS,
-            ),
-            penalty: penalties(model),
-            c: vec![0.0; m],
-            tension: vec![0.0; m],
-            gradient: vec![0.0; n],
-            dx: vec![0.0; n],
-            x,
-            t,
+        if let Some((last, first)) = self.against.split_last() {
+            let plural = if first.is_empty() { "body" } else { "bodies" };
+            let numbers = first
+                .iter()
+                .map(|body| format!("{body}, "))
+                .collect::<String>();
+            write!(f, " and {plural} {numbers}{last}")?;
+        }
+        let allows = match self.strain_limit {
+            Some(_) if self.against.is_empty() => "allows",
+            _ => "allow",
         };
-        fit.evaluate();
-        Some(fit)
+        write!(f, " {allows} at t = {} s", brief(self.t))
     }
+}
 
-    /// Tensions and their forces on all vertices, pinned ones included.
-    fn evaluate(&mut self) {
-        self.model.rods().residual_into(&self.x, &mut self.c);
-        for e in 0..self.c.len() {
-            self.tension[e] = self.penalty[e] * self.c[e];
-        }
-        self.gradient.fill(0.0);
-        self.model
-            .rods()
-            .apply_transpose_add(&self.x, &self.tension, &mut self.gradient);
-        self.rows
-            .evaluate(self.model.constraints(), self.t, &self.x);
-        self.rows.add_gradient(&mut self.gradient);
-    }
-
-    fn energy(&self) -> f64 {
-        let rods: f64 = self.tension.iter().zip(&self.c).map(|(w, c)| w * c).sum();
-        0.5 * rods + self.rows.value()
-    }
-
-    fn strain(&self) -> f64 {
-        let strain = self.model.rods().max_strain(&self.x);
-        strain.max(self.rows.largest_violation())
-    }
-
-    /// Largest force on a free vertex.
-    fn force(&self) -> f64 {
-        self.model
-            .topology()
-            .vertex_ids()
-            .filter(|&v| !self.model.is_pinned(v))
-            .fold(0.0, |m: f64, v| m.max(point(&self.gradient, v).norm()))
-    }
-
-    /// The support that bears the largest force, of those that move.
-    fn largest_support(&self) -> (Support, f64) {
-        let pins = self.model.moving_pins().map(|v| {
-            let v = VertexId(v as u32);
-            (Support::Pin(v), point(&self.gradient, v).norm())
-        });
-        let constraints = self.model.constraints().iter().enumerate();
-        let constraints = constraints.filter(|(_, c)| c.moves()).map(|(index, c)| {
-            let load = self.rows.multiplier_estimate(index);
-            let force: Vector3<f64> = self.rows.local(index).jacobian.tr_mul(&load);
-            let vertex = c.vertex();
-            (Support::Constraint { index, vertex }, force.norm())
-        });
-        pins.chain(constraints)
-            .fold((Support::Pin(VertexId(0)), 0.0), |best, next| {
-                if next.1 > best.1 { next } else { best }
-            })
-    }
-
-    /// One step of Newton's method with the transverse stiffness of the stretched rods; the new energy.
-    fn descend(&mut self, energy: f64) -> Option<f64> {
-        let transverse: Vec<f64> = self.tension.iter().map(|w| w.max(0.0)).collect();
-        self.matrix
-            .assemble(self.model, &self.x, &self.penalty, &transverse);
-        self.rows.add_hessian(
-            HessianPart::PositiveSemidefinite,
-            &mut self.matrix.sink(self.model),
-        );
-        self.matrix.factorize().ok()?;
-        self.matrix.solve(self.model, &self.gradient, &mut self.dx);
-        let start = self.x.clone();
-        let mut length = 1.0;
-        for _ in 0..MAX_HALVINGS {
-            self.x.copy_from_slice(&start);
-            for v in self.model.topology().vertex_ids() {
-                let d = point(&self.dx, v);
-                add(&mut self.x, v, &(-length * d));
-            }
-            self.evaluate();
-            let now = self.energy();
-            if now <= energy {
-                return Some(now);
-            }
-            length *= 0.5;
-        }
-        self.x.copy_from_slice(&start);
-        self.evaluate();
-        Some(energy)
-    }
+/// Looks for positions with the rest lengths or strains within the limit, with the supports and bodies where
+/// they are at time `t` and with gaps that are not negative, and says by how much they fail to exist.
+///
+/// The least squares
+///
+/// ```text
+/// E = sum_e p_e c_e^2 / 2                               rods, with the length errors c_e
+///   + sum_T A_T k max(0, |E_T| - m)^2 / 2               elastic sheets with the limit m of the strain
+///   + sum_c q min(0, g_c)^2 / 2                         contacts with bodies, with the gaps g_c
+/// ```
+///
+/// are minimised by Newton's method from the state; the gaps are those of the contacts at the state,
+/// linearised. Where the minimum is not zero its forces are in equilibrium at all free vertices: by Farkas'
+/// lemma for the linearised lengths and gaps no small motion meets them. Twice the energy is the sum of force
+/// times violation, so that the part `2 E / W` of the motions is too much, where `W` is the work of the forces
+/// of all that moves over its motion.
+pub(crate) fn infeasibility(
+    model: &SheetModel,
+    contact: Option<(&mut RunContact, &ContactState)>,
+    state: &State,
+    t: f64,
+) -> Option<Infeasibility> {
+    let gaps = contact.map_or_else(Gaps::default, |(run, contacts)| {
+        Gaps::of(run, contacts, state, t, ROD_STIFFNESS * model.mean_mass())
+    });
+    let fit = Fit::new(model, state, t, gaps)?.minimised()?;
+    let (by, distance) = fit.demand()?;
+    let (pressed, bodies) = fit.pressed(by);
+    Some(Infeasibility {
+        by,
+        distance,
+        t,
+        strain_limit: model.elastic_sheet().map(|sheet| sheet.limit()),
+        pressed,
+        against: bodies,
+    })
 }

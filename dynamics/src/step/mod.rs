@@ -11,6 +11,7 @@ pub(crate) mod history;
 pub(crate) mod infeasibility;
 pub(crate) mod integrator;
 pub(crate) mod method;
+pub(crate) mod pressing;
 pub(crate) mod reaction;
 pub(crate) mod reason;
 pub(crate) mod report;

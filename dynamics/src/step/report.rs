@@ -5,9 +5,10 @@ use crate::contact::BodyMotionError;
 use crate::model::support::Support;
 use crate::step::effort::SolverEffort;
 use crate::step::infeasibility::Infeasibility;
+use crate::step::pressing::Pressing;
 use crate::step::reason::Reason;
 use isosheet_coords::linalg::LinalgError;
-use isosheet_mesh::wording::{brief, counted, given};
+use isosheet_mesh::wording::{brief, counted, given, listed};
 use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
 
 /// The solver that the hardest sub-step needed.
@@ -74,7 +75,7 @@ pub struct StepReport {
     pub gap: Option<f64>,
     /// Largest distance of a vertex from its constraint at the end, metres; `None` without constraints.
     pub violation: Option<f64>,
-    /// The infeasible support where the step stopped at a taut state
+    /// What asks for too much where the step stopped at a taut state
     /// ([`Unsatisfiable`](crate::Unsatisfiable)).
     pub taut: Option<Infeasibility>,
     /// The solver that the hardest sub-step needed.
@@ -279,21 +280,18 @@ pub enum StepError {
         /// columns.
         smallest_singular_value: f64,
     },
-    /// Moving supports ask for more than the rods allow.
-    #[error(
-        "{} asks for {} m more than the rods allow at t = {} s (the taut state at t = {t} s is kept)",
-        infeasibility.support, brief(infeasibility.distance), brief(infeasibility.t),
-        t = brief(*t)
-    )]
+    /// Moving supports or bodies ask for more than the lengths or the limit of the strain allow.
+    #[error("{infeasibility} (the state at t = {t} s is kept)", t = brief(*t))]
     Unsatisfiable {
         /// Time of the last state, seconds.
         t: f64,
-        /// Which support, by how much and when.
-        infeasibility: Infeasibility,
+        /// What asks, for how much and when.
+        infeasibility: Box<Infeasibility>,
     },
     /// The smallest sub-step was rejected.
     #[error(
-        "no step of at least {min_step} s was accepted at t = {t} s; last reason: {cause}",
+        "no step of at least {min_step} s was accepted at t = {t} s{}; last reason: {cause}",
+        pressing.as_ref().map(|pressing| format!(", where {pressing}")).unwrap_or_default(),
         min_step = brief(*min_step), t = brief(*t)
     )]
     StepTooSmall {
@@ -301,6 +299,8 @@ pub enum StepError {
         t: f64,
         /// Smallest step allowed, seconds.
         min_step: f64,
+        /// The body that presses the sheet there, if one does.
+        pressing: Option<Box<Pressing>>,
         /// Why the last step was rejected.
         cause: Box<StepError>,
     },
@@ -443,19 +443,4 @@ pub(crate) fn not_converged(
 fn off_by(by: f64) -> String {
     let side = if by < 0.0 { "short" } else { "long" };
     format!("{} m too {side}", brief(by.abs()))
-}
-
-/// The first of some vertices by name, and the number of the others.
-fn listed(vertices: &[VertexId]) -> String {
-    /// As many as a line of text takes.
-    const NAMED: usize = 5;
-    let named: Vec<String> = vertices.iter().take(NAMED).map(|v| v.to_string()).collect();
-    match vertices.len().saturating_sub(NAMED) {
-        0 => named.join(", "),
-        more => format!(
-            "{} and {}",
-            named.join(", "),
-            counted(more, "other", "others")
-        ),
-    }
 }

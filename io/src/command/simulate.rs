@@ -164,15 +164,17 @@ fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
         Some(gap) => format!(", smallest gap {gap:.1e} m"),
         None => String::new(),
     };
-    let folding = match summary.ending.folding {
-        Some(f) => format!(
-            ", fold angles differ from their targets by {:.2} degrees at most and {:.2} rms",
-            f.largest, f.rms
-        ),
-        None => String::new(),
-    };
+    let ending = &summary.ending;
+    let taut = ending
+        .taut
+        .iter()
+        .map(|demand| format!(", ended since {demand}"));
+    let residuals = ending.residuals.in_words().into_iter();
+    let told: String = taut
+        .chain(residuals.map(|words| format!(", {words}")))
+        .collect();
     format!(
-        "{what}: {} to t = {:.4} s in {:.1} s, largest strain {:.1e}{gap}{folding}; see {}",
+        "{what}: {} to t = {:.4} s in {:.1} s, largest strain {:.1e}{gap}{told}; see {}",
         counted(summary.steps as usize, "step", "steps"),
         summary.ending.t,
         summary.wall_time,

@@ -176,6 +176,8 @@ fn add_summary(row: &mut Row, summary: &Summary) {
     cell("largest_displacement", number(*largest_displacement));
     let EnergySummary {
         largest_kinetic,
+        largest_exchange,
+        start_potential,
         least_potential,
         largest_error,
         largest_gain,
@@ -184,6 +186,8 @@ fn add_summary(row: &mut Row, summary: &Summary) {
     } = *energy;
     for (name, value) in [
         ("largest_kinetic", Some(largest_kinetic)),
+        ("largest_exchange", Some(largest_exchange)),
+        ("start_potential", Some(start_potential)),
         ("least_potential", Some(least_potential)),
         ("largest_error", Some(largest_error)),
         ("largest_gain", Some(largest_gain)),
@@ -223,8 +227,8 @@ fn add_ending(row: &mut Row, ending: &Ending) {
         largest_speed,
         supports,
         obstacles,
-        folding,
-        glue,
+        taut,
+        residuals,
     } = ending;
     let mut cell = |name: &str, value: String| row.push((format!("ending.{name}"), value));
     cell("reason", reason.name().to_owned());
@@ -236,14 +240,27 @@ fn add_ending(row: &mut Row, ending: &Ending) {
     }
     cell("energy_drift", number(*energy_drift));
     cell("largest_speed", number(*largest_speed));
-    if let Some(folding) = folding {
+    if let Some(taut) = taut {
+        cell("taut", taut.clone());
+    }
+    if let Some(folding) = &residuals.folding {
         cell("folding.creases", folding.creases.to_string());
         cell("folding.largest", number(folding.largest));
         cell("folding.rms", number(folding.rms));
         cell("folding.largest_flat", number(folding.largest_flat));
     }
-    if let Some(glue) = glue {
-        cell("glue", number(*glue));
+    for crease in &residuals.creases {
+        cell(
+            &format!("creases[{}].largest", crease.number),
+            number(crease.largest),
+        );
+        cell(
+            &format!("creases[{}].rms", crease.number),
+            number(crease.rms),
+        );
+    }
+    for (k, opening) in residuals.seams.iter().enumerate() {
+        cell(&format!("seams[{k}]"), number(*opening));
     }
     for (list, forces) in [("supports", supports), ("obstacles", obstacles)] {
         for (k, force) in forces.iter().enumerate() {

@@ -11,12 +11,17 @@ use serde::{Deserialize, Serialize};
 pub struct EnergySummary {
     /// Largest kinetic energy, joules.
     pub largest_kinetic: f64,
+    /// Potential energy at the start, joules.
+    pub start_potential: f64,
     /// Least potential energy, joules.
     pub least_potential: f64,
     /// Largest size of an error, joules.
     pub largest_error: f64,
     /// Largest error by which energy was gained, joules; 0 if none ever was.
     pub largest_gain: f64,
+    /// Largest energy that was exchanged: kinetic energy, change of the potential energy, work, or what
+    /// damping, friction and yielding took, joules.
+    pub largest_exchange: f64,
     /// `largest_error` over `largest_kinetic`; none if the sheet never moved.
     pub relative_error: Option<f64>,
     /// `largest_gain` over `largest_kinetic`; none if the sheet never moved.
@@ -29,6 +34,8 @@ impl EnergySummary {
         let mut start = Self {
             largest_kinetic: kinetic,
             least_potential: potential,
+            start_potential: potential,
+            largest_exchange: kinetic,
             ..Self::default()
         };
         start.compare();
@@ -41,6 +48,16 @@ impl EnergySummary {
         self.least_potential = self.least_potential.min(report.potential);
         self.largest_error = self.largest_error.max(report.energy_drift.abs());
         self.largest_gain = self.largest_gain.max(report.energy_drift);
+        let exchanged = [
+            report.kinetic,
+            report.potential - self.start_potential,
+            report.work,
+            report.dissipated,
+            report.friction,
+            report.plastic,
+        ];
+        let sizes = exchanged.into_iter().map(f64::abs);
+        self.largest_exchange = sizes.fold(self.largest_exchange, f64::max);
         self.compare();
     }
 

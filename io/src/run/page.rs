@@ -106,8 +106,9 @@ impl Rows {
             EndReason::Time => "the whole time has passed",
             EndReason::Rest => "the sheet is at rest",
             EndReason::SupportForce => "the force at a support is reached",
-            EndReason::Taut => "the supports ask for more than the lengths allow",
+            EndReason::Taut => "more is asked for than the lengths allow",
         };
+        let reason = ending.taut.as_deref().unwrap_or(reason);
         self.add("ended", format!("at {:.4} s: {reason}", ending.t));
         self.add(
             "steps",
@@ -139,9 +140,8 @@ impl Rows {
         if let Some(plastic) = ending.plastic {
             self.add("dissipated by yielding", format!("{plastic:.2e} J"));
         }
-        if let Some(glue) = ending.glue {
-            let name = "largest distance of glued vertices at the end";
-            self.add(name, format!("{glue:.2e} m"));
+        for words in ending.residuals.in_words() {
+            self.add("targets at the end", words);
         }
         self.add(
             "error of the energy balance",

@@ -9,10 +9,12 @@ use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::format::{MeasureRow, MeasureWriter};
-use crate::scene::{FoldTargets, Gauge, Origins, Scene, SceneError, SceneFile, SupportForces};
+use crate::scene::{Gauge, Origins, Scene, SceneError, SceneFile, SupportForces, Targets};
 use cpu_time::ThreadTime;
-use isosheet_dynamics::{Checkpoint, SheetModel, Simulation, StepError, StepProgress, StepReport};
-use isosheet_mesh::VertexId;
+use isosheet_dynamics::contact::ActiveContacts;
+use isosheet_dynamics::{
+    Checkpoint, SheetModel, Simulation, State, StepError, StepProgress, StepReport,
+};
 use nalgebra::Vector3;
 use std::time::Instant;
 
@@ -25,8 +27,7 @@ pub(crate) struct Stepping<'a> {
     pub(crate) start: Vec<f64>,
     pub(crate) origins: Origins,
     pub(crate) supports: SupportForces,
-    pub(crate) folding: Option<FoldTargets>,
-    pub(crate) glued: Vec<[VertexId; 2]>,
+    pub(crate) targets: Targets,
     pub(crate) history: HistoryWriter,
     /// The loads of supports and obstacles, if there are any.
     pub(crate) loads: Option<LoadWriter>,
@@ -72,6 +73,7 @@ impl HistoryRow {
             total,
             strain: simulation.model().rods().max_strain(&state.x),
             plastic: dissipated(simulation.model(), 0.0),
+            gap: simulation.contacts().and_then(finite_gap),
             ..Self::default()
         }
     }
@@ -100,6 +102,11 @@ impl HistoryRow {
     }
 }
 
+/// The smallest gap; none if nothing is within reach.
+fn finite_gap(contacts: &ActiveContacts) -> Option<f64> {
+    Some(contacts.gap()).filter(|gap| gap.is_finite())
+}
+
 /// What yielding has dissipated, joules, as it is written: none if nothing can yield.
 fn dissipated(model: &SheetModel, plastic: f64) -> Option<f64> {
     model.can_yield().then_some(plastic)
@@ -113,6 +120,8 @@ impl Stepping<'_> {
         self.progress.start_energy = self.simulation.energy();
         let row = HistoryRow::of_start(&self.simulation);
         self.progress.energy = EnergySummary::of_start(row.kinetic, row.potential);
+        self.progress.strain = row.strain;
+        self.progress.gap = row.gap;
         self.history.append(&row)?;
         self.record_measures()?;
         self.record_frame()?;
@@ -324,16 +333,6 @@ impl Stepping<'_> {
         self.supports.of(&self.simulation)
     }
 
-    /// Largest distance of two vertices that are glued to each other, metres.
-    fn glue_gap(&self) -> Option<f64> {
-        let x = self.simulation.state().x.as_chunks::<3>().0;
-        let gap = |&[a, b]: &[VertexId; 2]| {
-            let [a, b] = [a, b].map(|v| Vector3::from(x[v.index()]));
-            (a - b).norm()
-        };
-        self.glued.iter().map(gap).reduce(f64::max)
-    }
-
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {
         let loads = self.simulation.body_loads();
         Ending {
@@ -346,11 +345,12 @@ impl Stepping<'_> {
             largest_speed: self.largest_speed(),
             supports: self.support_forces(),
             obstacles: loads.iter().map(|load| load.force.into()).collect(),
-            folding: self.folding.as_ref().map(|targets| {
-                let topology = self.simulation.model().topology();
-                targets.residual(topology, &self.simulation.state().x)
-            }),
-            glue: self.glue_gap(),
+            taut: report.taut.as_ref().map(|demand| demand.to_string()),
+            residuals: {
+                let State { t, x, .. } = self.simulation.state();
+                self.targets
+                    .residuals(self.simulation.model().topology(), *t, x)
+            },
         }
     }
 

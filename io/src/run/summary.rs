@@ -2,7 +2,7 @@
 
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
-use crate::scene::FoldResidual;
+use crate::scene::Residuals;
 use isosheet_mesh::Part;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -91,12 +91,12 @@ pub struct Ending {
     pub supports: Vec<[f64; 3]>,
     /// Force of the sheet on each obstacle of the scene, newtons.
     pub obstacles: Vec<[f64; 3]>,
-    /// Differences of the fold angles from their targets, if the scene folds to the angles of a FOLD file.
+    /// What asked for more than the lengths allow, where the run ended for that reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub folding: Option<FoldResidual>,
-    /// Largest distance of two vertices that are glued to each other, metres, if there are any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub glue: Option<f64>,
+    pub taut: Option<String>,
+    /// How far the sheets are from what the scene asks for.
+    #[serde(flatten)]
+    pub residuals: Residuals,
 }
 
 /// One of several sheets in the arrays of a run.

@@ -16,6 +16,17 @@ pub enum RunWarning {
         brief(100.0 * _0.shortening())
     )]
     Coarse(Bend),
+    /// The balance of the energy gained more than [`Summary::ENERGY_GAIN`] of what was exchanged.
+    #[error(
+        "the balance of the energy gains {} J, {} % of what was exchanged",
+        brief(*gain), brief(100.0 * gain / exchanged)
+    )]
+    EnergyGain {
+        /// The gain, joules.
+        gain: f64,
+        /// The largest energy that was exchanged, joules.
+        exchanged: f64,
+    },
 }
 
 impl Advice for RunWarning {
@@ -24,6 +35,10 @@ impl Advice for RunWarning {
             Self::Coarse(_) => Some(
                 "refine the mesh there: with half the edge length the error is a quarter; the page colours faces by \
                  their strain and by the share of stretching in their energy",
+            ),
+            Self::EnergyGain { .. } => Some(
+                "take a smaller `method.step`: forces that change within a step do work that is known roughly; the \
+                 history says when energy is gained",
             ),
         }
     }
@@ -34,10 +49,21 @@ impl Summary {
     /// the mesh counts as too coarse: one percent, 0.49 radians over a face.
     pub const CHORD_ERROR: f64 = 0.01;
 
+    /// Part of the largest energy exchanged that errors of the balance may give to a run: second-order methods
+    /// err by about that at the longest steps that resolve a motion.
+    pub const ENERGY_GAIN: f64 = 0.02;
+
     /// What to know before the results are used.
     pub fn warnings(&self) -> Vec<RunWarning> {
+        let (gain, exchanged) = (self.energy.largest_gain, self.energy.largest_exchange);
+        let gains = gain > Self::ENERGY_GAIN * exchanged;
+        let gained = gains.then_some(RunWarning::EnergyGain { gain, exchanged });
         let sharpest = self.elastic.and_then(|elastic| elastic.sharpest);
         let coarse = sharpest.filter(|bend| bend.shortening() > Self::CHORD_ERROR);
-        coarse.map(RunWarning::Coarse).into_iter().collect()
+        coarse
+            .map(RunWarning::Coarse)
+            .into_iter()
+            .chain(gained)
+            .collect()
     }
 }

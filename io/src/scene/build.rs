@@ -2,7 +2,6 @@
 
 use super::creases::{EdgeFolds, FoldSprings};
 use super::error::SceneError;
-use super::folding::FoldTargets;
 use super::in_words::{elastic_in_words, materials_in_words};
 use super::key::Key;
 use super::mesh::Mesh;
@@ -11,6 +10,7 @@ use super::pose::Motion;
 use super::problem::Problem;
 use super::sheet::{Bending, Elasticity, Isometry};
 use super::supports::{Hold, frame_motion};
+use super::targets::{DrivenCrease, Targets};
 use super::{Air, Measure, Origins, Scene, Setup};
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
@@ -71,9 +71,7 @@ struct Builder<'a> {
     model: Option<SheetModel>,
     origins: Origins,
     modelled: Vec<String>,
-    folding: Option<FoldTargets>,
-    /// Pairs of vertices that are glued to each other.
-    glued: Vec<[VertexId; 2]>,
+    targets: Targets,
 }
 
 /// An error of the engine at a key.
@@ -105,8 +103,7 @@ impl<'a> Builder<'a> {
             model: Some(model),
             origins: Origins::default(),
             modelled,
-            folding: None,
-            glued: Vec::new(),
+            targets: Targets::default(),
         })
     }
 
@@ -271,7 +268,7 @@ impl<'a> Builder<'a> {
         self.modelled
             .extend(modelled.into_iter().map(str::to_owned));
         self.count(self.scene.crease.len(), "crease", "creases");
-        if self.folding.is_some() {
+        if self.targets.folding.is_some() {
             self.modelled.push("folding to given angles".into());
         }
         Ok(())
@@ -351,6 +348,8 @@ impl<'a> Builder<'a> {
             let key = Key::root().name("crease").entry(k);
             if is_own(crease.sheet.as_deref(), &key, "the edges")? {
                 let found = crease.springs(&key, &own.unplaced, own.roles.as_ref())?;
+                let driven = DrivenCrease::of(k, &found, |e| own.part.edge(e));
+                self.targets.creases.extend(driven);
                 springs.add(key, crease.folds(), found);
             }
         }
@@ -363,7 +362,7 @@ impl<'a> Builder<'a> {
                 springs.add(key.clone(), EdgeFolds::Yes, driven);
                 springs.add(key, EdgeFolds::No, flat);
                 targets.renumber(|e| own.part.edge(e));
-                self.folding = Some(targets);
+                self.targets.folding = Some(targets);
             }
         }
         springs.put_in_sheet(&own.placed, own.of.bending().rigidity());
@@ -464,8 +463,8 @@ impl<'a> Builder<'a> {
             let closing = seam.closing.as_given();
             let glue = Glue::new(model.topology(), &pairs, stiffness, closing, &self.x);
             let glue = glue.map_err(at(&key))?;
+            self.targets.seams.push(glue.clone());
             self.change(|m| Ok(m.with_potential(glue)), at::<SimulationError>(&key))?;
-            self.glued.extend(pairs);
         }
         self.count(self.scene.glue.len(), "seam", "seams");
         Ok(())
@@ -518,8 +517,7 @@ impl<'a> Builder<'a> {
             obstacles,
             integration: self.scene.method.build(),
             modelled: self.modelled,
-            folding: self.folding,
-            glued: self.glued,
+            targets: self.targets,
             measures: Vec::new(),
             origins: self.origins,
             text: None,
@@ -536,7 +534,7 @@ impl<'a> Builder<'a> {
             .options(self.model(), scene.sheet[0].thickness);
         let mut contacts = Contacts::new(self.model(), options)
             .map_err(at(&key.name("contact")))?
-            .with_glue(&self.glued);
+            .with_glue(&self.targets.glued());
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);

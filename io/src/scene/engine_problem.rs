@@ -4,7 +4,7 @@ use super::key::Key;
 use super::problem::Problem;
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
 use isosheet_dynamics::{
-    Infeasibility, SheetModel, Simulation, SimulationError, StepError, Support,
+    Driver, Reason, SheetModel, Simulation, SimulationError, StepError, Support,
 };
 use isosheet_mesh::VertexId;
 use isosheet_mesh::wording::brief;
@@ -121,12 +121,27 @@ impl Origins {
     pub fn of_step(&self, error: &StepError) -> Problem {
         let root = Key::root();
         let (key, remedy) = match error {
+            StepError::StepTooSmall {
+                pressing: Some(pressing),
+                cause,
+                ..
+            } => (
+                root.name("obstacle").entry(pressing.body).name("motion"),
+                remedy_of_press(cause),
+            ),
             StepError::StepTooSmall { cause, .. } => {
-                let inner = self.of_step(cause);
-                let remedy =
-                    "take a smaller `method.step`, more damping, or another `sheet.isometry`";
-                return Problem::new(inner.key, error.to_string(), remedy);
+                let message = error.to_string();
+                return Problem {
+                    message,
+                    ..self.of_step(cause)
+                };
             }
+            StepError::NotConverged { reason, .. } => remedy_of(*reason),
+            StepError::EnergyGain { .. } => (
+                root.name("method.step"),
+                "take a smaller step or more `sheet.damping`; rods in compression snap less where the sheet has its \
+                 own stiffness, `sheet.material`",
+            ),
             StepError::Locked { .. } => (
                 root.name("sheet.isometry"),
                 "name what the sheet is made of, `sheet.material`, which makes it elastic; or make a mesh with a line of \
@@ -140,13 +155,20 @@ impl Origins {
                 self.support_key(*support).name("hold"),
                 "check the profiles of the motion",
             ),
-            StepError::Unsatisfiable {
-                infeasibility: Infeasibility { support, .. },
-                ..
-            } => (
-                self.support_key(*support).name("hold"),
-                "shorten the motion, or end there with `method.taut = \"stop\"`",
-            ),
+            StepError::Unsatisfiable { infeasibility, .. } => {
+                let key = match infeasibility.by {
+                    Driver::Support(support) => self.support_key(support).name("hold"),
+                    Driver::Body(body) => root.name("obstacle").entry(body).name("motion"),
+                };
+                let remedy = match infeasibility.strain_limit {
+                    Some(_) => {
+                        "shorten the motion, raise the limit, `sheet.isometry.elastic.limit`, or end there with \
+                         `method.taut = \"stop\"`"
+                    }
+                    None => "shorten the motion, or end there with `method.taut = \"stop\"`",
+                };
+                (key, remedy)
+            }
             StepError::Body(error) => return of_body_motion(error),
             StepError::OffConstraints { .. } => (
                 root.name("sheet.start"),
@@ -194,6 +216,53 @@ impl Origins {
             SimulationError::Chart(_) => Problem::from_error(root.name("method.chart"), error),
             _ => Problem::from_error(root, error),
         }
+    }
+}
+
+/// Where a body presses the sheet and no step is found.
+fn remedy_of_press(cause: &StepError) -> &'static str {
+    match cause {
+        StepError::NotConverged {
+            reason: Reason::Friction,
+            ..
+        } => {
+            "end the motion before the sheet jams, lower the friction of obstacles and sheet, or choose a finer mesh, \
+             which gives way where it bends"
+        }
+        _ => {
+            "end the motion before that, give the sheet room to give way, or a finer mesh; with less friction it slides \
+             earlier"
+        }
+    }
+}
+
+/// The key that is to blame for a failed iteration, and what to do.
+fn remedy_of(reason: Reason) -> (Key, &'static str) {
+    let root = Key::root();
+    match reason {
+        Reason::DependentRods | Reason::NoDescent => (
+            root.name("sheet"),
+            "rods lock or depend on each other there: name what the sheet is made of, `sheet.material`, which makes it \
+             elastic; or start off the flat state, `sheet.start.perturbation`; a smaller step seldom helps",
+        ),
+        Reason::Friction => (
+            root.name("contact"),
+            "friction jams the sheet: lower `friction`, or give the sheet more damping or a finer mesh",
+        ),
+        Reason::Blocked => (
+            root.name("contact"),
+            "contact or the limit of the strain is in the way: give the sheet room, shorten what drives it, or raise \
+             `sheet.isometry.elastic.limit`",
+        ),
+        Reason::LinearAlgebra => (
+            root.name("sheet"),
+            "sizes differ too much for the arithmetic: check masses, stiffnesses and lengths for their units",
+        ),
+        Reason::Iterations | Reason::AboveStart | Reason::Ended => (
+            root.name("method"),
+            "take a smaller `method.step` or more `sheet.damping`; where the sheet starts exactly flat, \
+             `sheet.start.perturbation` says to which side it goes",
+        ),
     }
 }
 

@@ -109,10 +109,7 @@ impl FoldTargets {
     /// # Panics
     /// If `x` is not of length `3V`.
     pub fn residual(&self, t: &Topology, x: &[f64]) -> FoldResidual {
-        let difference = |e: EdgeId, target: f64| {
-            let angle = fold_angle(t, x, e).unwrap_or(0.0) - target;
-            (angle - TAU * (angle / TAU).round()).abs().to_degrees()
-        };
+        let difference = |e: EdgeId, target: f64| off_target(t, x, e, target);
         let mut residual = FoldResidual {
             creases: self.creases.len(),
             ..FoldResidual::default()
@@ -261,6 +258,13 @@ impl Folding {
             .as_given()
             .into()
     }
+}
+
+/// The difference of a fold angle (degrees, not negative) from a target (radians), taken the short way round
+/// as the springs do.
+pub(super) fn off_target(topology: &Topology, x: &[f64], edge: EdgeId, target: f64) -> f64 {
+    let angle = fold_angle(topology, x, edge).unwrap_or(0.0) - target;
+    (angle - TAU * (angle / TAU).round()).abs().to_degrees()
 }
 
 /// Whether the sheet is in a plane at positions `x`: every edge is flat or folded shut.

@@ -2,9 +2,9 @@
 
 use super::chart::Chart;
 use super::error::{SceneError, SceneText};
-use super::folding::FoldTargets;
 use super::key::Key;
 use super::problem::Problem;
+use super::targets::Targets;
 use super::{Gauge, Origins};
 use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
@@ -12,7 +12,7 @@ use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{
     Checkpoint, Isometry, Method, SheetModel, Simulation, SimulationError, State, StepControl,
 };
-use isosheet_mesh::{Part, Sheet, VertexId};
+use isosheet_mesh::{Part, Sheet};
 
 /// How the motion is computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,8 +35,6 @@ pub struct Setup {
     pub sheet: Sheet,
     /// Of several sheets the name of each, and where it is in the union.
     pub parts: Vec<(String, Part)>,
-    /// Pairs of vertices that are glued to each other.
-    pub glued: Vec<[VertexId; 2]>,
     /// The state at the start.
     pub start: State,
     /// What moves.
@@ -51,8 +49,8 @@ pub struct Setup {
     pub modelled: Vec<String>,
     /// What the sheet is made of, in words, if the scene names it.
     pub material: Option<String>,
-    /// Where the creases are driven, if the scene folds to the angles of a FOLD file.
-    pub folding: Option<FoldTargets>,
+    /// What the sheet is asked to reach.
+    pub targets: Targets,
     /// What is read off the sheet at each step.
     pub measures: Vec<Gauge>,
     /// Which entry of the scene made what.

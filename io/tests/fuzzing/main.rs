@@ -1,10 +1,10 @@
 //! The readers on damaged files: seeds of `io/fuzz/seeds` with random changes, the same for every run.
 //!
 //! A reader may return a value or a typed error. Failures are panics, numbers that are not finite and indices
-//! of nothing in what was read, cases of more than [`SLOW`], and allocations beyond [`MOST_MEMORY`].
-//! `cargo test` tries [`CASES`] cases of each target. With `ISOSHEET_FUZZ_SECONDS=N` in the environment each
-//! target runs for N seconds, and `ISOSHEET_FUZZ_SEED=S` begins another sequence,
-//! `ISOSHEET_FUZZ_TARGET=T` runs one target alone, and `--nocapture` shows the numbers of cases.
+//! of nothing in what was read, and allocations beyond [`MOST_MEMORY`]. A case that does not end keeps the
+//! test from ending: `--nocapture` shows which target that is, and `target/tmp/fuzz/TARGET/current` is the
+//! case. `cargo test` tries [`CASES`] cases of each target, `cargo xtask soak` more of them with other seeds,
+//! and `ISOSHEET_FUZZ_TARGET=T` runs one target alone.
 //! The seeds of all targets are written to `target/tmp/fuzz/` for cargo-fuzz, which `io/fuzz` is for.
 
 mod mutation;
@@ -17,9 +17,7 @@ use std::alloc::System;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::{Mutex, PoisonError};
 use targets::{TARGETS, checkpoints, checkpoints_json, histories, target, trajectories, with_file};
 
 #[global_allocator]
@@ -30,9 +28,6 @@ static ALONE: Mutex<()> = Mutex::new(());
 
 /// Cases of each target in `cargo test`.
 const CASES: u64 = 1500;
-
-/// A case of a few kilobytes takes about a millisecond; scenes that are built and started take tens.
-const SLOW: Duration = Duration::from_secs(10);
 
 /// Bytes that all allocations of a case may add up to. A scene of 300 cells that is started takes about 30
 /// MB.
@@ -66,20 +61,13 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-fn number(variable: &str) -> Option<u64> {
-    let text = std::env::var(variable).ok()?;
-    Some(text.parse().expect("a whole number"))
-}
-
 /// What a case did that no case may do.
 fn fault(name: &str, data: &[u8]) -> Option<String> {
-    let (clock, before) = (Instant::now(), ALLOCATOR.stats().bytes_allocated);
+    let before = ALLOCATOR.stats().bytes_allocated;
     let panicked = catch_unwind(AssertUnwindSafe(|| target(name)(data))).is_err();
     let memory = ALLOCATOR.stats().bytes_allocated - before;
     if panicked {
         Some("a panic, shown above".to_owned())
-    } else if clock.elapsed() > SLOW {
-        Some(format!("{:.1} s", clock.elapsed().as_secs_f64()))
     } else if memory > MOST_MEMORY {
         Some(format!("{memory} bytes of memory"))
     } else {
@@ -87,56 +75,28 @@ fn fault(name: &str, data: &[u8]) -> Option<String> {
     }
 }
 
-/// Runs the cases of one target and says how many; each case is known to the caller before it begins.
-fn cases(name: &str, current: &Mutex<Vec<u8>>, alive: &Sender<()>) -> Result<u64, String> {
+/// Runs cases of one target, each of which is in a file of its folder before it begins.
+fn run(name: &'static str, cases: u64, seed: u64) {
     let seeds = seeds(name);
-    let limit = number("ISOSHEET_FUZZ_SECONDS").map(Duration::from_secs);
-    let mut rng = ChaCha8Rng::seed_from_u64(number("ISOSHEET_FUZZ_SEED").unwrap_or(1));
-    let (clock, mut done) = (Instant::now(), 0);
-    while limit.map_or(done < CASES, |limit| clock.elapsed() < limit) {
+    for (k, seed) in seeds.iter().enumerate() {
+        let path = folder(name).join(format!("seed-{k}"));
+        fs::write(path, seed).expect("the build folder can be written");
+    }
+    println!("{name}: {cases} cases");
+    let current = folder(name).join("current");
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    for done in 0..cases {
         // The seeds as they are come first.
         let data = match seeds.get(done as usize) {
             Some(seed) => seed.clone(),
             None => mutation::mutate(&seeds, &mut rng),
         };
-        current.lock().expect("never poisoned").clone_from(&data);
-        alive.send(()).expect("the caller listens");
+        fs::write(&current, &data).expect("the build folder can be written");
         if let Some(fault) = fault(name, &data) {
-            return Err(format!("case {done}: {fault}"));
-        }
-        done += 1;
-    }
-    Ok(done)
-}
-
-/// Runs one target on a thread of its own, so that a case that does not end is noticed.
-fn run(name: &'static str) {
-    for (k, seed) in seeds(name).iter().enumerate() {
-        let path = folder(name).join(format!("seed-{k}"));
-        fs::write(path, seed).expect("the build folder can be written");
-    }
-    let current = Arc::new(Mutex::new(Vec::new()));
-    let (alive, heard) = channel();
-    let shared = current.clone();
-    let thread = std::thread::spawn(move || cases(name, &shared, &alive));
-    let ended = loop {
-        match heard.recv_timeout(6 * SLOW) {
-            Ok(()) => {}
-            Err(RecvTimeoutError::Disconnected) => break true,
-            Err(RecvTimeoutError::Timeout) => break false,
-        }
-    };
-    let result = match ended {
-        true => thread.join().expect("faults are caught"),
-        false => Err(format!("a case does not end within {:?}", 6 * SLOW)),
-    };
-    match result {
-        Ok(done) => println!("{name}: {done} cases"),
-        Err(fault) => {
-            let path = folder(name).join("fault");
-            let data = current.lock().expect("never poisoned");
-            fs::write(&path, &*data).expect("the build folder can be written");
-            panic!("{name}: {fault}; the file is {}", path.display());
+            panic!(
+                "{name}, case {done}: {fault}; the file is {}",
+                current.display()
+            );
         }
     }
 }
@@ -147,7 +107,11 @@ fn damaged_files_give_a_value_or_a_typed_error() {
     let only = std::env::var("ISOSHEET_FUZZ_TARGET").ok();
     let names = TARGETS.map(|(name, _)| name).into_iter();
     for name in names.filter(|name| only.as_deref().is_none_or(|only| only == *name)) {
-        run(name);
+        run(
+            name,
+            CASES * u64::from(isosheet_random::times()),
+            isosheet_random::seed(),
+        );
     }
 }
 

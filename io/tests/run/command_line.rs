@@ -174,9 +174,7 @@ fn open_opens_the_page() {
             .output()
             .unwrap();
         assert_eq!(code(&output), Some(0), "{}", stderr(&output));
-        let begun = std::time::Instant::now();
         while !note.is_file() {
-            assert!(begun.elapsed().as_secs() < 60, "nothing was opened");
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
         fs::read_to_string(note).unwrap()

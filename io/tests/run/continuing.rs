@@ -167,13 +167,12 @@ fn a_run_that_is_stopped_within_steps_continues_to_the_same_bits() {
     assert_same(&dir.join("whole"), &dir.join("stopped"));
 }
 
-/// A single step of minutes says how far it has come, and Ctrl-C ends it at once.
+/// A single step of minutes says how far it has come, and Ctrl-C ends it before it is complete.
 #[cfg(unix)]
 #[test]
 fn ctrl_c_is_heard_within_a_step() {
     use std::io::{BufRead, BufReader};
     use std::process::Stdio;
-    use std::time::{Duration, Instant};
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let scene = "version = 1
@@ -209,13 +208,9 @@ fn ctrl_c_is_heard_within_a_step() {
             .args(["-INT", &child.id().to_string()])
             .status();
         assert!(interrupt.unwrap().success());
-        let begun = Instant::now();
         assert_eq!(child.wait().unwrap().code(), Some(130));
-        // A factorisation takes some milliseconds; the rest is patience with a busy machine.
-        assert!(
-            begun.elapsed() < Duration::from_secs(10),
-            "{:?}",
-            begun.elapsed()
-        );
+        // The head of the table, and the state at the start.
+        let history = std::fs::read_to_string(dir.join("long-run/history.csv")).unwrap();
+        assert_eq!(history.lines().count(), 2, "{history}");
     }
 }

@@ -36,7 +36,11 @@ fn a_sheet_of_others_is_folded_by_one_command() {
         "{said}"
     );
     let folder = dir.join("scene-run");
-    let residual = summary(&folder).ending.folding.expect("the scene folds");
+    let residual = summary(&folder)
+        .ending
+        .residuals
+        .folding
+        .expect("the scene folds");
     assert_eq!(residual.creases, 120);
     // With 180 degrees, which do close, nothing is left.
     let whole = [
@@ -48,7 +52,11 @@ fn a_sheet_of_others_is_folded_by_one_command() {
         "folding.part=1.0",
     ];
     assert_eq!(code(&run(dir, &whole)), Some(0));
-    let whole = summary(&dir.join("whole")).ending.folding.unwrap();
+    let whole = summary(&dir.join("whole"))
+        .ending
+        .residuals
+        .folding
+        .unwrap();
     assert!(
         whole.largest < 0.01 && residual.largest > 5.0,
         "{whole:?}, {residual:?}"
@@ -91,7 +99,11 @@ fn a_pattern_without_rigid_folding_bends_its_panels() {
     fs::write(dir.join("hypar.toml"), scene).unwrap();
     let output = run(dir, &["simulate", "hypar.toml"]);
     assert_eq!(code(&output), Some(0), "{}", stderr(&output));
-    let residual = summary(&dir.join("hypar-run")).ending.folding.unwrap();
+    let residual = summary(&dir.join("hypar-run"))
+        .ending
+        .residuals
+        .folding
+        .unwrap();
     // Flat, all creases differ by 90 degrees.
     assert!(residual.rms < 65.0, "{residual:?}");
     let trajectory = Recording::read(&dir.join("hypar-run")).unwrap().trajectory;

@@ -14,8 +14,8 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// How long a state may take to come: some milliseconds suffice on an idle machine.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// A state that has not come by then never comes: some milliseconds suffice on an idle machine.
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// The command, which serves a page.
 pub(crate) struct Served {

@@ -1,5 +1,6 @@
 //! The command: runs that are killed and continued, folders in use, exit codes.
 
+mod asked_too_much;
 mod command_line;
 mod contact_data;
 mod continuing;
@@ -32,7 +33,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 fn isosheet(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_isosheet"));
@@ -72,13 +73,11 @@ fn started(folder: &Path, arguments: &[&str], out: &str, rows: usize) -> Child {
         .spawn()
         .unwrap();
     let history = folder.join(out).join("history.csv");
-    let begun = Instant::now();
     loop {
         let text = fs::read_to_string(&history).unwrap_or_default();
         if text.lines().count() > rows || child.try_wait().unwrap().is_some() {
             return child;
         }
-        assert!(begun.elapsed() < Duration::from_secs(60), "no progress");
         sleep(Duration::from_millis(1));
     }
 }

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Twelve runs of 500 to 625 steps.
 const TWELVE: [&str; 12] = [
@@ -35,9 +35,7 @@ fn complete(folder: &Path) -> usize {
 }
 
 fn wait_for(mut what: impl FnMut() -> bool) {
-    let begun = Instant::now();
     while !what() {
-        assert!(begun.elapsed() < Duration::from_secs(120), "no progress");
         sleep(Duration::from_millis(2));
     }
 }

@@ -72,7 +72,7 @@ fn folded_of(folder: &Path, fold: &Value, of_sheet: &str, keys: &str) -> FoldRes
     );
     let scene = SceneFile::parse(text, &folder.join("scene.toml"), &[]).unwrap();
     let setup = scene.build().unwrap_or_else(|e| panic!("{e}"));
-    let targets = setup.folding.clone().unwrap();
+    let targets = setup.targets.folding.clone().unwrap();
     let mut simulation = setup.start().unwrap();
     for _ in 0..180 {
         simulation.step(1.0 / 60.0).unwrap();
@@ -254,7 +254,10 @@ fn springs_begin_at_the_angles_of_the_start() {
         );
         let scene = SceneFile::parse(text, &dir.path().join("scene.toml"), &[]).unwrap();
         let setup = scene.build().unwrap_or_else(|e| panic!("{e}"));
-        (setup.folding.clone().unwrap(), setup.start().unwrap())
+        (
+            setup.targets.folding.clone().unwrap(),
+            setup.start().unwrap(),
+        )
     };
     let fastest = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let (_, mut at_rest) = started("frame = 1");
@@ -399,7 +402,7 @@ fn folding_takes_the_frame_of_the_mesh() {
             &format!("{folding}{frame}"),
         );
         let setup = scene.unwrap().build().unwrap_or_else(|e| panic!("{e}"));
-        let targets = setup.folding.unwrap().creases;
+        let targets = setup.targets.folding.unwrap().creases;
         assert_eq!(targets.len(), 1);
         targets[0].1.to_degrees()
     };

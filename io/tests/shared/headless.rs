@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 /// How long a browser may take: some seconds suffice on an idle machine.
-const PATIENCE: Duration = Duration::from_secs(180);
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// A browser that starts. Without one the test is skipped.
 pub(crate) fn browser() -> Option<&'static str> {

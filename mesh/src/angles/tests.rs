@@ -154,6 +154,8 @@ fn wing() -> impl Strategy<Value = [f64; 2]> {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     /// In any folded state the triples are compatible, measured gamma is theirs, and the fold angle comes
     /// back.
     #[test]

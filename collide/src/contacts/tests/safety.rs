@@ -34,7 +34,7 @@ fn passes(step: &Step, x: &[f64], s: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(isosheet_random::cases(24))]
 
     /// Bodies of all kinds shot at and turned against a sheet that is thrown about: whatever part of
     /// the joint motion is accepted, nothing is passed at any time of it.
@@ -206,6 +206,8 @@ fn spinning_in_place_is_safe() {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     /// The path of a point of the sheet as seen from a body bends no more than is said.
     #[test]
     fn bends_are_bounded(

@@ -49,6 +49,8 @@ fn positions() -> impl Strategy<Value = [f64; 12]> {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     #[test]
     fn energy_gradient_and_hessian_match_differences(
         x in positions(), normal in proptest::array::uniform3(0.2..1.0_f64), size in -6.0..3.0_f64,

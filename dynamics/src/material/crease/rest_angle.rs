@@ -49,7 +49,7 @@ impl RestAngle {
     }
 
     /// Whether it may change.
-    pub(super) fn is_driven(&self) -> bool {
+    pub fn is_driven(&self) -> bool {
         match self {
             Self::Profile(profile) => !profile.is_constant(),
             Self::Custom(_) => true,

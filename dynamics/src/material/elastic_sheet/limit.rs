@@ -1,19 +1,37 @@
-//! The barrier at the limit of the strain.
+//! The limit of the strain: the barrier at it, and what is beyond it.
 
-/// The barrier `kappa b(p)` of the square of a strain, `p = (4 |E|^2 / m^2 - 1) / 3`, `b = -p^2 ln(1 - p)`
-/// for `0 < p < 1` and zero below: from half the limit `m` on, infinite at the limit.
+/// A function of the square of a strain that keeps it below a limit `m`, or measures what is beyond it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StrainLimit {
+    law: Law,
     limit: f64,
     /// `kappa`, joules per square metre.
     stiffness: f64,
 }
 
+#[derive(Debug, Clone, Copy)]
+enum Law {
+    /// `kappa b(p)` with `p = (4 |E|^2 / m^2 - 1) / 3` and `b = -p^2 ln(1 - p)` for `0 < p < 1`, zero below:
+    /// from half the limit on, infinite at the limit.
+    Barrier,
+    /// `kappa max(0, |E| - m)^2 / 2`.
+    Excess,
+}
+
 impl StrainLimit {
     pub(super) fn new(limit: f64) -> Self {
         Self {
+            law: Law::Barrier,
             limit,
             stiffness: 0.0,
+        }
+    }
+
+    /// What is beyond the limit.
+    pub(super) fn excess(self) -> Self {
+        Self {
+            law: Law::Excess,
+            ..self
         }
     }
 
@@ -35,8 +53,13 @@ impl StrainLimit {
         [slope * squared - 1.0 / 3.0, slope]
     }
 
-    /// The barrier at the square of a strain, joules per square metre; infinite at the limit and beyond.
+    /// The energy at the square of a strain, joules per square metre; that of the barrier is infinite at the
+    /// limit and beyond.
     pub(super) fn value(&self, squared: f64) -> f64 {
+        if let Law::Excess = self.law {
+            let excess = (squared.sqrt() - self.limit).max(0.0);
+            return 0.5 * self.stiffness * excess * excess;
+        }
         let [p, _] = self.part(squared);
         if p <= 0.0 {
             0.0
@@ -47,9 +70,20 @@ impl StrainLimit {
         }
     }
 
-    /// First and second derivative by the square of the strain, joules per square metre; not numbers at the
-    /// limit and beyond.
+    /// First and second derivative by the square of the strain, joules per square metre; those of the
+    /// barrier are not numbers at the limit and beyond.
     pub(super) fn derivatives(&self, squared: f64) -> [f64; 2] {
+        if let Law::Excess = self.law {
+            let strain = squared.sqrt();
+            let ratio = self.limit / strain;
+            return match strain > self.limit {
+                true => {
+                    let first = 0.5 * self.stiffness * (1.0 - ratio);
+                    [first, 0.25 * self.stiffness * ratio / squared]
+                }
+                false => [0.0; 2],
+            };
+        }
         let [p, slope] = self.part(squared);
         if p <= 0.0 {
             return [0.0; 2];

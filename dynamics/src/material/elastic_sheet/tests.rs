@@ -182,6 +182,8 @@ fn the_barrier_begins_at_half_the_limit_and_ends_at_it() {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     /// Along the part of a displacement that is called safe no strain comes near the limit, and the part is
     /// as large as it can be to a few per cent.
     #[test]

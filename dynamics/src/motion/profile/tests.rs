@@ -72,7 +72,7 @@ fn difference(at: impl Fn(f64) -> f64, t: f64, h: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(isosheet_random::cases(2000))]
 
     #[test]
     fn derivatives_match_differences(profile in profiles(), t in -2.0..3.0_f64) {

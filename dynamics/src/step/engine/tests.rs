@@ -398,10 +398,10 @@ fn sheets_that_may_lock_have_a_limit() {
             let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
             let model = model.with_pins(pins).unwrap();
             let state = State::at_rest(sheet.positions().to_vec());
-            let engine = Engine::new(model, method.clone(), state).unwrap();
+            let mut engine = Engine::new(model, method.clone(), state).unwrap();
             let may_lock = k < 3 && pins.len() > 1;
             assert_eq!(
-                engine.work_limit().is_some(),
+                engine.work_limit(H).is_some(),
                 may_lock,
                 "{pins:?}, {method:?}"
             );

@@ -142,6 +142,8 @@ fn at<'a>(root: &'a mut toml::Value, key: &Key) -> &'a mut toml::Value {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     /// The text of an edited document, read anew, differs from what it was in the edited place alone. Only an
     /// entry of a list of tables with headers that would become something else is refused.
     #[test]

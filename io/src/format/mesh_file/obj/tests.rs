@@ -281,6 +281,8 @@ fn agrees_with_another_reader() {
 }
 
 proptest! {
+    #![proptest_config(isosheet_random::cases(256))]
+
     /// Any f64 survives the text.
     #[test]
     fn coordinates_survive(c in prop::collection::vec(-1e30..1e30f64, 3), e in -60..30i32) {

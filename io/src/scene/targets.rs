@@ -1,0 +1,134 @@
+//! What a scene asks its sheets to reach, and how far they are from it.
+
+use super::folding::{FoldResidual, FoldTargets, off_target};
+use isosheet_dynamics::{CreaseSpring, Glue, RestAngle};
+use isosheet_mesh::{EdgeId, Topology, VertexId};
+use serde::{Deserialize, Serialize};
+
+/// What a scene asks its sheets to reach.
+#[derive(Clone, Debug, Default)]
+pub struct Targets {
+    /// Where the creases are driven, if the scene folds to the angles of a FOLD file.
+    pub folding: Option<FoldTargets>,
+    /// The creases of the scene that are driven.
+    pub creases: Vec<DrivenCrease>,
+    /// The seams, in the order of the scene.
+    pub seams: Vec<Glue>,
+}
+
+/// A `[[crease]]` whose angle changes.
+#[derive(Clone, Debug)]
+pub struct DrivenCrease {
+    /// Its number in the scene.
+    pub number: usize,
+    /// Its edges with their rest angles.
+    pub edges: Vec<(EdgeId, RestAngle)>,
+}
+
+/// How far a driven crease is from its angle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CreaseResidual {
+    /// Its number in the scene.
+    pub number: usize,
+    /// Largest difference at an edge, degrees.
+    pub largest: f64,
+    /// Root of the mean square of the differences, degrees.
+    pub rms: f64,
+}
+
+/// How far the sheets are from what the scene asks for.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Residuals {
+    /// Differences of the fold angles from those of a FOLD file, if the scene folds to them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub folding: Option<FoldResidual>,
+    /// Differences of the fold angles of the driven creases from their own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub creases: Vec<CreaseResidual>,
+    /// By how much the vertices of each seam are further from each other than they are meant to be, at most,
+    /// metres.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub seams: Vec<f64>,
+}
+
+impl DrivenCrease {
+    /// Of the springs of a crease; nothing if none is driven. `edge` gives their edges in the union of all
+    /// sheets.
+    pub(super) fn of(
+        number: usize,
+        springs: &[CreaseSpring],
+        edge: impl Fn(EdgeId) -> EdgeId,
+    ) -> Option<Self> {
+        let driven = springs.iter().filter(|spring| spring.rest.is_driven());
+        let edges: Vec<_> = driven.map(|s| (edge(s.edge), s.rest.clone())).collect();
+        (!edges.is_empty()).then_some(Self { number, edges })
+    }
+
+    fn residual(&self, topology: &Topology, t: f64, x: &[f64]) -> CreaseResidual {
+        let (mut largest, mut squares) = (0.0_f64, 0.0);
+        for (edge, rest) in &self.edges {
+            let off = off_target(topology, x, *edge, rest.at(t));
+            largest = largest.max(off);
+            squares += off * off;
+        }
+        CreaseResidual {
+            number: self.number,
+            largest,
+            rms: (squares / self.edges.len() as f64).sqrt(),
+        }
+    }
+}
+
+impl Targets {
+    /// The pairs of vertices that are glued to each other.
+    pub fn glued(&self) -> Vec<[VertexId; 2]> {
+        let pairs = self.seams.iter().flat_map(|seam| seam.pairs());
+        pairs.copied().collect()
+    }
+
+    /// How far the sheets are from what is asked for at time `t` (seconds), at positions `x` (`3V`, metres).
+    ///
+    /// # Panics
+    /// If `x` is not of length `3V`.
+    pub fn residuals(&self, topology: &Topology, t: f64, x: &[f64]) -> Residuals {
+        let folding = self.folding.as_ref();
+        let creases = self.creases.iter();
+        Residuals {
+            folding: folding.map(|targets| targets.residual(topology, x)),
+            creases: creases
+                .map(|crease| crease.residual(topology, t, x))
+                .collect(),
+            seams: self.seams.iter().map(|seam| seam.opening(t, x)).collect(),
+        }
+    }
+}
+
+impl Residuals {
+    /// What is left, in words, an entry for each kind of target.
+    pub fn in_words(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        if let Some(f) = self.folding {
+            words.push(format!(
+                "fold angles differ from their targets by {:.2} degrees at most and {:.2} rms",
+                f.largest, f.rms
+            ));
+        }
+        let worst = self
+            .creases
+            .iter()
+            .max_by(|a, b| a.largest.total_cmp(&b.largest));
+        if let Some(crease) = worst {
+            words.push(format!(
+                "driven creases differ from their angles by {:.2} degrees at most, at `crease[{}]`",
+                crease.largest, crease.number
+            ));
+        }
+        let seams = self.seams.iter().enumerate();
+        if let Some((number, opening)) = seams.max_by(|a, b| a.1.total_cmp(b.1)) {
+            words.push(format!(
+                "seams are open by {opening:.1e} m at most, at `glue[{number}]`"
+            ));
+        }
+        words
+    }
+}
