@@ -20,6 +20,8 @@ pub struct ContactWork {
     pub bodies: f64,
     /// Energy lost to friction, joules; not negative.
     pub friction: f64,
+    /// The same by the normal forces at the end of the step, joules.
+    pub settled_friction: f64,
     /// Change of the barrier potential `B`, joules.
     pub stored: f64,
     /// Energy that the tolerance of the lengths leaves open, joules.
@@ -132,6 +134,7 @@ impl ContactTerms<'_> {
         let mut work = ContactWork {
             bodies: 0.0,
             friction: self.friction.loss(self.x, bodies),
+            settled_friction: 0.0,
             stored: self.barrier_energy() - start_energy,
             length_slack: 0.0,
         };

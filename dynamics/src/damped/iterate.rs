@@ -253,30 +253,29 @@ impl Iterate {
         has_changed
     }
 
-    /// The largest change of a normal force since friction of the step from `x0` was lagged, relative to the
-    /// largest; zero without friction.
-    pub(crate) fn friction_change(&mut self, contact: Option<&StepContact<'_>>, x0: &[f64]) -> f64 {
-        let (Some(contact), Some(own)) = (contact, &mut self.contact) else {
-            return 0.0;
-        };
-        if !own.is_current {
-            own.update(contact, &self.x);
-        }
-        let laws = contact.geometry.laws();
-        let now = &mut own.friction_before;
-        now.lag(laws, &contact.barrier, &own.state.active, x0);
-        now.change_since(&own.state.friction)
-    }
-
-    /// What contact did over the step if it ends at the iterate; zero without contact.
-    pub(crate) fn contact_work(&mut self, contact: Option<&StepContact<'_>>) -> ContactWork {
+    /// What contact did over the step from `x0` if it ends at the iterate; zero without contact.
+    pub(crate) fn contact_work(
+        &mut self,
+        contact: Option<&StepContact<'_>>,
+        x0: &[f64],
+    ) -> ContactWork {
         let start = self
             .contact
             .as_ref()
             .map(|c| (c.start_work, c.start_energy));
-        match (self.terms(contact), start) {
-            (Some(terms), Some((work, energy))) => terms.work(work, energy),
-            _ => ContactWork::default(),
+        let (Some(terms), Some((work, energy))) = (self.terms(contact), start) else {
+            return ContactWork::default();
+        };
+        let work = terms.work(work, energy);
+        let (Some(contact), Some(own)) = (contact, &mut self.contact) else {
+            return work;
+        };
+        let (laws, active) = (contact.geometry.laws(), &own.state.active);
+        let settled = &mut own.friction_before;
+        settled.lag(laws, &contact.barrier, active, x0);
+        ContactWork {
+            settled_friction: settled.loss(&self.x, active.bodies()),
+            ..work
         }
     }
 

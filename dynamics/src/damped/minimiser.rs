@@ -177,7 +177,7 @@ impl Minimiser {
             report::not_converged(t, h, effort, reason, residual, strain)
         })?;
         let iterate = &mut self.work.lagrangian.iterate;
-        let mut work = iterate.contact_work(problem.contact());
+        let mut work = iterate.contact_work(problem.contact(), &problem.state.x);
         if let Some(terms) = iterate.terms(problem.contact()) {
             let gap = terms.active.gap();
             if gap <= 0.0 || gap.is_nan() {

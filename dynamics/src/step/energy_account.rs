@@ -28,6 +28,10 @@ pub(crate) struct Exchange {
     pub(crate) supports: f64,
     /// Work of moving bodies, joules.
     pub(crate) bodies: f64,
+    /// Energy lost to friction, joules.
+    pub(crate) friction: f64,
+    /// The same by the normal forces at the end of the step, joules.
+    pub(crate) settled_friction: f64,
     /// Change of the barrier potential, joules.
     pub(crate) barrier: f64,
     /// Uncertainty in contact from the tolerance of the lengths, joules.
@@ -38,7 +42,7 @@ impl EnergyAccount {
     /// The account after a step.
     ///
     /// # Errors
-    /// [`StepError::EnergyGain`], [`StepError::NonFiniteEnergy`].
+    /// [`StepError::EnergyGain`], [`StepError::Friction`], [`StepError::NonFiniteEnergy`].
     pub(crate) fn after(
         &self,
         model: &SheetModel,
@@ -71,6 +75,18 @@ impl EnergyAccount {
         let mut round_off = tuning.energy_round_off * (energies + exchange.forces.abs() + drives)
             + model.mass().total() * noise * noise
             + exchange.length_slack;
+        let unsettled = (exchange.friction - exchange.settled_friction).abs();
+        let settled = tuning.friction_settled * exchange.friction.max(exchange.settled_friction);
+        if unsettled
+            > settled.max(tuning.gain * self.kinetic.max(kinetic[0]).max(kinetic[1])) + round_off
+        {
+            return Err(StepError::Friction {
+                t: before.t,
+                h: after.t - before.t,
+                lost: exchange.friction,
+                settled: exchange.settled_friction,
+            });
+        }
         let share = kinetic[0].max(kinetic[1]) + tuning.drive_uncertainty * drives;
         let net = self.net + gain;
         let largest = self.kinetic.max(kinetic[0]);

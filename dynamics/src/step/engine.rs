@@ -419,6 +419,8 @@ impl Substeps<'_, '_> {
             forces: step.work,
             air: step.air,
             bodies: step.contact.bodies,
+            friction: step.contact.friction,
+            settled_friction: step.contact.settled_friction,
             barrier: step.contact.stored,
             length_slack: step.contact.length_slack,
             ..Exchange::default()

@@ -17,8 +17,6 @@ pub enum Reason {
     Iterations,
     /// The incremental potential at the minimum exceeds that at the start.
     AboveStart,
-    /// Friction and the normal forces that it depends on do not settle.
-    Friction,
     /// The linear algebra failed.
     LinearAlgebra,
     /// The watch of the step or the limit of factorisations ended the iteration.
@@ -33,9 +31,6 @@ impl fmt::Display for Reason {
             Self::Blocked => "contact or the limit of the strain leaves no part of a displacement",
             Self::Iterations => "all iterations were used",
             Self::AboveStart => "the minimum found is above the start of the step",
-            Self::Friction => {
-                "friction and the normal forces that it depends on do not settle: the sheet jams"
-            }
             Self::LinearAlgebra => "the linear algebra failed",
             Self::Ended => "the step was ended",
         })

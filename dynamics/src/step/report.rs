@@ -251,6 +251,22 @@ pub enum StepError {
         /// Kinetic energy at the end of the step, joules.
         kinetic: f64,
     },
+    /// Friction in a step belongs to other normal forces than those at its end.
+    #[error(
+        "friction takes {lost} J in a step of {h} s at t = {t} s, and {settled} J by the normal forces at its \
+         end: the two do not settle, as in a jam",
+        h = brief(*h), t = brief(*t), lost = brief(*lost), settled = brief(*settled)
+    )]
+    Friction {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// Energy lost to friction, joules.
+        lost: f64,
+        /// The same by the normal forces at the end, joules.
+        settled: f64,
+    },
     /// A step ends in contact.
     #[error(
         "a step of {h} s at t = {t} s would close the smallest gap to {gap} m",
@@ -363,9 +379,10 @@ impl Advice for StepError {
             Self::BeyondStrainLimit { .. } => {
                 Some("start from a shape that is stretched less, or raise the limit of the strain")
             }
-            Self::NotConverged { .. } | Self::EnergyGain { .. } | Self::Contact { .. } => {
-                Some("take a smaller step")
-            }
+            Self::NotConverged { .. }
+            | Self::EnergyGain { .. }
+            | Self::Friction { .. }
+            | Self::Contact { .. } => Some("take a smaller step"),
             Self::RankDeficient { .. } => Some(
                 "start from a folded state, displace the sheet with `leave_flat`, allow a `Fallback`, or use \
                  BDF2",

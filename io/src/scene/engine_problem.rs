@@ -137,6 +137,10 @@ impl Origins {
                 };
             }
             StepError::NotConverged { reason, .. } => remedy_of(*reason),
+            StepError::Friction { .. } => (
+                root.name("contact"),
+                "friction jams the sheet: lower `friction`, or give the sheet more damping or a finer mesh",
+            ),
             StepError::EnergyGain { .. } => (
                 root.name("method.step"),
                 "take a smaller step or more `sheet.damping`; rods in compression snap less where the sheet has its \
@@ -222,10 +226,7 @@ impl Origins {
 /// Where a body presses the sheet and no step is found.
 fn remedy_of_press(cause: &StepError) -> &'static str {
     match cause {
-        StepError::NotConverged {
-            reason: Reason::Friction,
-            ..
-        } => {
+        StepError::Friction { .. } => {
             "end the motion before the sheet jams, lower the friction of obstacles and sheet, or choose a finer mesh, \
              which gives way where it bends"
         }
@@ -244,10 +245,6 @@ fn remedy_of(reason: Reason) -> (Key, &'static str) {
             root.name("sheet"),
             "rods lock or depend on each other there: name what the sheet is made of, `sheet.material`, which makes it \
              elastic; or start off the flat state, `sheet.start.perturbation`; a smaller step seldom helps",
-        ),
-        Reason::Friction => (
-            root.name("contact"),
-            "friction jams the sheet: lower `friction`, or give the sheet more damping or a finer mesh",
         ),
         Reason::Blocked => (
             root.name("contact"),

@@ -123,7 +123,7 @@ fn pins_and_plates_that_are_driven_into_bodies_are_named() {
         [[obstacle]]
         shape = { box = { size = [0.3, 0.3, 0.01] } }
         pose = { position = [0.05, 0.05, 0.007] }
-        motion = { z = { ramp = { to = -0.01, end = 1 } } }
+        motion = { z = { ramp = { to = -0.0103, end = 1 } } }
         [stop]
         time = 1";
     let plates = problem(folder_with(plates).path());

@@ -643,12 +643,6 @@ impl Lagrangian {
         problem.model.place_pins(problem.t(), self.iterate.x_mut());
     }
 
-    /// The largest change of a normal force since friction was lagged, relative to the largest.
-    pub(super) fn friction_change(&mut self, problem: &StepProblem<'_>) -> f64 {
-        let x0 = &problem.state.x;
-        self.iterate.friction_change(problem.contact(), x0)
-    }
-
     /// Lags friction anew at the iterate where its normal forces have changed by more than `settled`,
     /// relative to the largest; whether they have.
     pub(super) fn renew_friction(&mut self, problem: &StepProblem<'_>, settled: f64) -> bool {

@@ -148,10 +148,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 && !self.goes_on(&direction, is_renewed)
                 && self.finish()?
             {
-                return match self.has_friction_settled() {
-                    true => Ok(self.minimum()),
-                    false => Err(self.effort.failed(Reason::Friction)),
-                };
+                return Ok(self.minimum());
             }
         }
         Err(Reason::Iterations)
@@ -490,18 +487,6 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             lagrangian.merit(self.problem);
         }
         is_renewed
-    }
-
-    /// Whether friction at the iterate belongs to the normal forces there. Where it was renewed as often as
-    /// allowed and it does not, the step is no step of the motion: friction of another normal force, which in
-    /// a jam may be larger by orders of magnitude, would do any work.
-    fn has_friction_settled(&mut self) -> bool {
-        let lagrangian = &mut self.work.lagrangian;
-        let settled = self
-            .phase
-            .friction_tolerance
-            .max(self.work.tuning.friction_settled);
-        lagrangian.friction_change(self.problem) <= settled
     }
 
     /// Begins anew from a point that has converged but is no minimum: a saddle, where the sheet could fold
