@@ -2,12 +2,14 @@
 //! the material.
 
 mod fold;
+mod from_flat;
 #[cfg(test)]
 mod plastic_tests;
 mod rest_angle;
 #[cfg(test)]
 mod tests;
 
+pub use from_flat::folding_from_flat;
 pub use rest_angle::RestAngle;
 
 use super::plasticity::Yield;

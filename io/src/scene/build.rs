@@ -2,6 +2,7 @@
 
 use super::creases::{EdgeFolds, FoldSprings};
 use super::error::SceneError;
+use super::folding::FLAT_STIFFNESS;
 use super::in_words::{elastic_in_words, materials_in_words};
 use super::key::Key;
 use super::mesh::Mesh;
@@ -16,7 +17,8 @@ use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
     AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, PAPER_GRAVITY,
     PlateBending, PointMotion, PointProfile, Potential, PotentialOfPart, RigidProfile, SheetModel,
-    SimulationError, State, VertexConstraint, VertexLoad, leave_flat_in, project_positions,
+    SimulationError, State, VertexConstraint, VertexLoad, folding_from_flat, leave_flat_in,
+    project_positions,
 };
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
@@ -39,6 +41,7 @@ impl Scene {
         builder.add_folds(folder)?;
         builder.add_isometry()?;
         builder.perturb()?;
+        builder.fold_from_flat();
         builder.add_glue()?;
         let (contacts, obstacles) = builder.contacts(folder)?;
         let gauge = |(k, measure): (usize, &Measure)| {
@@ -53,6 +56,10 @@ impl Scene {
         })
     }
 }
+
+/// Part of the way to its angles at which a sheet starts that would be flat. To first order its angles are
+/// proportional to each other there; terms of second order are smaller by this factor.
+const FIRST_PART: f64 = 1e-2;
 
 /// Relative error of edge lengths to which positions are projected: that of accepted steps.
 const EXACT: f64 = 1e-12;
@@ -446,6 +453,30 @@ impl<'a> Builder<'a> {
                 .push("random displacement at the start".into());
         }
         Ok(())
+    }
+
+    /// Starts a flat sheet that folds to given angles in the direction in which all creases turn to their
+    /// sides: a sheet of rods may fold from flat along several branches, and what its first step makes of it
+    /// would be chance.
+    fn fold_from_flat(&mut self) {
+        let Some(targets) = &self.targets.folding else {
+            return;
+        };
+        let model = self.model();
+        let t = model.topology();
+        let driven = targets.creases.iter().map(|(e, angle)| (*e, *angle, 1.0));
+        let flat = targets.flat.iter().map(|e| (*e, 0.0, FLAT_STIFFNESS));
+        let edges: Vec<_> = driven.chain(flat).collect();
+        let Some(d) = folding_from_flat(t, &self.x, &edges, &model.pins()) else {
+            return;
+        };
+        let moved = self.x.iter().zip(&d).map(|(x, d)| x + FIRST_PART * d);
+        let mut x: Vec<f64> = moved.collect();
+        if project_positions(model, &mut x, EXACT).is_ok() {
+            self.x = x;
+            self.modelled
+                .push("a start off the flat state, towards the angles".into());
+        }
     }
 
     fn add_glue(&mut self) -> Result<(), SceneError> {

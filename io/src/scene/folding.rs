@@ -69,7 +69,7 @@ fn whole() -> f64 {
 
 /// Stiffness of the edges that stay flat beside that of the creases, if the scene does not say it: the
 /// creases of a panel together turn one of its flat edges by a few degrees at most.
-const FLAT_STIFFNESS: f64 = 50.0;
+pub(super) const FLAT_STIFFNESS: f64 = 50.0;
 
 /// Sine of the fold angles up to which a frame is in a plane: above the round-off of coordinates of seven
 /// digits in faces that are a hundredth of the sheet, below any fold that is seen.

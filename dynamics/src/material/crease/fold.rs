@@ -28,6 +28,16 @@ impl Fold {
         }
     }
 
+    /// The length of the edge.
+    pub(super) fn length(&self) -> f64 {
+        self.along.norm()
+    }
+
+    /// The unit normal of the left face.
+    pub(super) fn normal(&self) -> Vector3<f64> {
+        self.left.normalize()
+    }
+
     /// The fold angle.
     pub(super) fn angle(&self) -> f64 {
         let sine = self.right.cross(&self.left).dot(&self.along) / self.along.norm();
