@@ -70,7 +70,7 @@ pub(crate) fn run(args: &ConditionArgs) -> Result<()> {
     excerpt::write(
         &store,
         "condition-table",
-        &[Part::table("table", &table(&rows))],
+        vec![Part::table("table", &table(&rows))],
     )?;
     print!("{}", table(&rows).text());
     for file in ["condition.csv", "condition.svg"] {

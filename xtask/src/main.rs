@@ -7,7 +7,7 @@
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
 //! * `all`: the figures and all reports, one after another.
-//! * `measured`: what the reports measured, as numbers of the book and the README.
+//! * `measured`: what the reports measured, as numbers of the book and the README, and what of it is out of date.
 //! * `gallery`: pictures of ten scenes, and a film.
 //! * `bundle-view`: the program of the 3D page of a run.
 
@@ -28,6 +28,7 @@ mod report;
 mod reproduce;
 mod runs;
 mod selection;
+mod sources;
 mod store;
 mod threads;
 mod tuning;

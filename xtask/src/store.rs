@@ -11,6 +11,7 @@ use crate::failure::ReportError;
 use crate::interrupt;
 use crate::progress;
 use crate::report::Effort;
+use crate::sources::Origin;
 use anyhow::{Context, Result};
 use isosheet_io::run::{RunError, holds_other_files, remove_unfinished};
 use isosheet_io::{WriteError, read_json, write_atomically, write_json};
@@ -89,6 +90,8 @@ pub(crate) struct Store {
     root: PathBuf,
     pub(crate) effort: Effort,
     program: u64,
+    /// The working copy when the folder was opened, unless results are quick.
+    origin: Option<Origin>,
     remake: Remake,
     /// Units that this process has made.
     made: Mutex<HashSet<String>>,
@@ -130,6 +133,10 @@ impl Store {
             root: root.to_owned(),
             effort,
             program: fingerprint()?,
+            origin: match effort {
+                Effort::Quick => None,
+                _ => Some(Origin::here(report)?),
+            },
             remake,
             made: Mutex::default(),
             _lock: lock,
@@ -156,6 +163,11 @@ impl Store {
         let report = report.to_owned();
         write_json(&path, &Claim { report, effort })?;
         Ok(store)
+    }
+
+    /// The working copy that results are of, for results that are to be shown.
+    pub(crate) fn origin(&self) -> Option<&Origin> {
+        self.origin.as_ref()
     }
 
     /// A file of [`RECORDS`].
