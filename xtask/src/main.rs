@@ -8,7 +8,7 @@
 //! * `hard-cases`: what the solvers do where others break.
 //! * `all`: the figures and all reports, one after another.
 //! * `measured`: what the reports measured, as numbers of the book and the README, and what of it is out of date.
-//! * `gallery`: pictures of ten scenes, and a film.
+//! * `gallery`: pictures of sixteen scenes, and a film.
 //! * `bundle-view`: the program of the 3D page of a run.
 
 mod bundle_view;
