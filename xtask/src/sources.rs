@@ -181,15 +181,17 @@ impl Tokens {
         while let Some(token) = tokens.next() {
             match token {
                 TokenTree::Punct(mark) if mark.as_char() == '#' => {
-                    self.text
-                        .extend(tokens.next_if(|t| t.to_string() == "!").map(|_| '!'));
-                    match tokens.next_if(|t| matches!(t, TokenTree::Group(_))) {
-                        Some(attribute) => match attribute.to_string().replace(' ', "").as_str() {
-                            "[cfg(test)]" => self.tests.extend(skip_item(&mut tokens)),
-                            doc if doc.starts_with("[doc") => {}
-                            other => self.text += other,
-                        },
-                        None => self.text.push('#'),
+                    let inner = tokens.next_if(|t| t.to_string() == "!");
+                    let attribute = tokens.next_if(|t| matches!(t, TokenTree::Group(_)));
+                    let attribute = attribute.map(|a| a.to_string().replace(' ', ""));
+                    match attribute.as_deref() {
+                        Some("[cfg(test)]") => self.tests.extend(skip_item(&mut tokens)),
+                        Some(text) if text.starts_with("[doc") => {}
+                        other => {
+                            self.text.push('#');
+                            self.text.extend(inner.map(|_| '!'));
+                            self.text.extend(other);
+                        }
                     }
                 }
                 TokenTree::Group(group) => {
