@@ -7,7 +7,7 @@
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
 //! * `all`: the figures and all reports, one after another.
-//! * `measured`: what the reports measured, as numbers of the book and the README, and what of it is out of date.
+//! * `measured`: what the reports measured, as numbers of the book and the README, and what is out of date.
 //! * `gallery`: pictures of sixteen scenes, and a film.
 //! * `bundle-view`: the program of the 3D page of a run.
 

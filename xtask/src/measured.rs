@@ -1,8 +1,8 @@
 //! `measured`: what the reports have measured becomes the numbers of the book and of the README.
 //!
 //! The README and the pages of the book have blocks between `<!-- measured: REPORT PART -->` and
-//! `<!-- /measured -->`: copies of the parts of the files in `docs/measured`, or, with `REPORT origin of PART`, of
-//! what is said there about how they were measured.
+//! `<!-- /measured -->`: copies of the parts of the files in `docs/measured`, or, with
+//! `REPORT origin of PART`, of what is said there about how they were measured.
 
 use crate::failure::ReportError;
 use crate::progress;

@@ -1,8 +1,9 @@
-//! The fingerprint of the sources that the numbers of a report depend on: those of the solver and of the report.
+//! The fingerprint of the sources that the numbers of a report depend on: those of the solver and of the
+//! report.
 //!
-//! It is a checksum of what is compiled: the tokens of Rust files without comments, documentation and tests, and
-//! the values of TOML files. Other text than that may change without making a number out of date. Versions of
-//! dependencies and of the compiler are not part of it.
+//! It is a checksum of what is compiled: the tokens of Rust files without comments, documentation and tests,
+//! and the values of TOML files. Other text than that may change without making a number out of date.
+//! Versions of dependencies and of the compiler are not part of it.
 
 use anyhow::{Context, Result, anyhow};
 use crc::{CRC_64_XZ, Crc};
@@ -214,7 +215,8 @@ impl Tokens {
     }
 }
 
-/// Passes over an item, which ends with a semicolon or a block. Returns the name of a module in a file of its own.
+/// Passes over an item, which ends with a semicolon or a block. Returns the name of a module in a file of its
+/// own.
 fn skip_item(tokens: &mut impl Iterator<Item = TokenTree>) -> Option<String> {
     let mut words = Vec::new();
     for token in tokens {

@@ -1,7 +1,7 @@
 //! Queries that are decided exactly, with rational numbers, and not a single collision that is missed.
 //!
-//! Two primitives meet at a time if some polynomials of it are zero and others are not negative there. These can
-//! only begin to hold at 0 or at a root of one of them, so that it is enough to look there.
+//! Two primitives meet at a time if some polynomials of it are zero and others are not negative there. These
+//! can only begin to hold at 0 or at a root of one of them, so that it is enough to look there.
 
 mod polynomial;
 
