@@ -23,6 +23,8 @@ use nalgebra::Vector3;
 use thiserror::Error;
 
 #[cfg(test)]
+mod exact;
+#[cfg(test)]
 mod tests;
 
 /// Options of the collision detection.

@@ -43,7 +43,7 @@ Examples:
                                                run the scene with both values
   isosheet check cloth.toml                    say what is wrong with a scene or a mesh file";
 
-/// Simulates sheets that bend and crease but never stretch.
+/// Simulates sheets that bend and crease and do not stretch.
 #[derive(Debug, Parser)]
 #[command(name = "isosheet", version, before_help = EXAMPLES, after_help = EXIT_CODES)]
 struct Cli {

@@ -72,10 +72,10 @@ pub(crate) enum Command {
     /// Each is written to its own folder, DIR/REPORT. One that fails is reported, and the next one begins; the
     /// exit code is 0 if none fails. What is finished is kept, as in `reproduce-figures`.
     All(AllArgs),
-    /// Copy what the reports have measured into the book and the README
+    /// Copy what the reports have measured into the book and the README, or list what is out of date
     ///
-    /// Each report writes DIR/measured.md, unless it is quick. This command copies these files to
-    /// docs/measured, whose parts the book includes, and fills the marked blocks of README.md.
+    /// Each report writes DIR/measured.md, unless it is quick. This command puts the parts of these files into
+    /// those of docs/measured and fills the marked blocks of README.md and of the pages of the book.
     Measured(MeasuredArgs),
     /// Make the pictures of the README: sixteen scenes that anybody can run, and a film of one of them
     ///

@@ -55,7 +55,7 @@ pub(crate) struct ConditionArgs {
 
 /// Runs the command.
 pub(crate) fn run(args: &ConditionArgs) -> Result<()> {
-    let store = Store::open(&args.out, "condition-table", Effort::Standard, Remake::Once)?;
+    let store = Store::of_report(&args.out, "condition-table", Effort::Standard, Remake::Once)?;
     let bar = Progress::start("condition numbers", args.level as usize + 1);
     let mut rows = Vec::new();
     for level in 0..=args.level {
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &ConditionArgs) -> Result<()> {
     excerpt::write(
         &store,
         "condition-table",
-        &[Part::table("table", &table(&rows))],
+        vec![Part::table("table", &table(&rows))],
     )?;
     print!("{}", table(&rows).text());
     for file in ["condition.csv", "condition.svg"] {

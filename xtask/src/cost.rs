@@ -102,7 +102,7 @@ fn report(store: &Store) -> Result<()> {
     let works = works::records(store, &mut left_out)?;
     let records = || works.iter().chain(&problems);
     parts.extend(records().flat_map(|r| r.excerpt.clone()));
-    excerpt::write(store, "cost", &parts)?;
+    excerpt::write(store, "cost", parts)?;
     let found = || records().flat_map(|r| r.findings.iter().map(|f| (r.name.as_str(), f)));
     write_findings(store, found().collect::<Vec<_>>())?;
     let caption = "Orders, lengths and gaps against what the documentation says";

@@ -33,6 +33,8 @@ pub(crate) enum ReportError {
     OtherReport { folder: PathBuf, of: String },
     #[error("{} has no part called {part}", file.display())]
     Part { file: PathBuf, part: String },
+    #[error("the sources of these reports have changed since they were measured: {names}")]
+    OutOfDate { names: String },
     #[error("findings are out of bounds, or not out of them as declared: {names}")]
     Findings { names: String },
     #[error("random tests fail with these seeds: {seeds}")]
@@ -47,6 +49,9 @@ impl Advice for ReportError {
             Self::NotQuick { .. } | Self::OtherReport { .. } => "choose another folder with --out",
             Self::Part { .. } => {
                 "run the whole report, without --quick, and `cargo xtask measured` again"
+            }
+            Self::OutOfDate { .. } => {
+                "run these reports, without --quick, and `cargo xtask measured`"
             }
             Self::Findings { .. } => "see the page, or findings.csv",
             Self::Seeds { .. } => {
@@ -99,6 +104,7 @@ fn code(error: &Error) -> u8 {
             return Some(match report {
                 ReportError::NotQuick { .. } | ReportError::OtherReport { .. } => 4,
                 ReportError::Part { .. }
+                | ReportError::OutOfDate { .. }
                 | ReportError::Findings { .. }
                 | ReportError::Seeds { .. }
                 | ReportError::Reports { .. } => 1,

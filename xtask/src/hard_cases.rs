@@ -107,7 +107,7 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
         let records = &kept.records;
         print!("{}", page::text(records));
         page::write(&store, &kept)?;
-        excerpt::write(&store, "hard-cases", &page::excerpt(records))?;
+        excerpt::write(&store, "hard-cases", page::excerpt(records))?;
         demand(page::findings(records))
     })
 }

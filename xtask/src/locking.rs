@@ -180,7 +180,7 @@ fn write(store: &Store) -> Result<()> {
     write_findings(store, named.clone())?;
     let mut parts = vec![Part::table("targets", &analysis::by_model(&all))];
     parts.extend(records.iter().flat_map(|r| r.excerpt.clone()));
-    excerpt::write(store, "locking", &parts)?;
+    excerpt::write(store, "locking", parts)?;
     let body = html! {
         p { (INTRODUCTION) }
         p {

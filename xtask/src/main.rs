@@ -2,13 +2,13 @@
 //!
 //! * `reproduce-figures`: the figures and the table of Liu, Tang and Joneja 2007, made with this workspace.
 //! * `condition-table`: the condition numbers of the system coordinates.
-//! * `cost`: time against errors of all methods and solvers, time and memory of steps against the size of the mesh,
-//!   whole runs at the sizes that people use.
+//! * `cost`: time against errors of all methods and solvers, time and memory of steps against the size of the
+//!   mesh, whole runs at the sizes that people use.
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
 //! * `all`: the figures and all reports, one after another.
-//! * `measured`: what the reports measured, as numbers of the book and the README.
-//! * `gallery`: pictures of ten scenes, and a film.
+//! * `measured`: what the reports measured, as numbers of the book and the README, and what is out of date.
+//! * `gallery`: pictures of sixteen scenes, and a film.
 //! * `soak`: the random tests with new seeds.
 //! * `bundle-view`: the program of the 3D page of a run.
 
@@ -30,6 +30,7 @@ mod reproduce;
 mod runs;
 mod selection;
 mod soak;
+mod sources;
 mod store;
 mod threads;
 mod tuning;

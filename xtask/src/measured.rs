@@ -1,11 +1,13 @@
 //! `measured`: what the reports have measured becomes the numbers of the book and of the README.
 //!
-//! The book includes the files in `docs/measured` part by part. The README cannot include: it has blocks
-//! between `<!-- measured: REPORT PART -->` and `<!-- /measured -->`, which are copies of such parts.
+//! The README and the pages of the book have blocks between `<!-- measured: REPORT PART -->` and
+//! `<!-- /measured -->`: copies of the parts of the files in `docs/measured`, or, with
+//! `REPORT origin of PART`, of what is said there about how they were measured.
 
 use crate::failure::ReportError;
 use crate::progress;
-use crate::report::excerpt;
+use crate::report::excerpt::{self, Measurement, comment};
+use crate::sources::{REPORTS, fingerprint, root};
 use anyhow::{Context, Result};
 use clap::Args;
 use isosheet_io::write_atomically;
@@ -13,40 +15,85 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The reports that write what they measured.
-const REPORTS: [&str; 6] = [
-    "condition-table",
-    "cost",
-    "hard-cases",
-    "locking",
-    "reproduce-figures",
-    "tuning",
-];
-
 /// Arguments of `measured`.
 #[derive(Debug, Args)]
 pub(crate) struct MeasuredArgs {
     /// Folder with the output folders of the reports
     #[arg(long, value_name = "DIR", default_value = "out")]
     from: PathBuf,
+
+    /// Copy nothing, and list the parts whose sources have changed since they were measured
+    ///
+    /// The exit code is 0 if there are none. Sources are the code of the solver and of the report without
+    /// comments and tests, and the scenes of the report.
+    #[arg(long, conflicts_with = "from")]
+    check: bool,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &MeasuredArgs) -> Result<()> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = root();
     let book = root.join("docs/measured");
-    for report in REPORTS {
+    if args.check {
+        return check(&book);
+    }
+    for report in REPORTS.map(|report| report.name) {
         let from = args.from.join(report).join(excerpt::FILE);
         if from.is_file() {
-            replace(&of_report(&book, report), &read(&from)?)?;
+            let file = of_report(&book, report);
+            let old = if file.is_file() {
+                measurements(&file)?
+            } else {
+                Vec::new()
+            };
+            let all = excerpt::merged(old, measurements(&from)?);
+            replace(&file, &excerpt::to_markdown(report, &all))?;
             progress::note(report, "copied");
         }
     }
-    let readme = root.join("README.md");
-    let text = filled(&read(&readme)?, &|report, part| {
-        measured(&book, report, part)
-    })?;
-    replace(&readme, &text)
+    let mut texts = Vec::new();
+    for page in pages(&root)? {
+        let text = filled(&read(&page)?, &|words| measured(&book, words))?;
+        texts.push((page, text));
+    }
+    // Nothing is written if a part is missing.
+    texts
+        .iter()
+        .try_for_each(|(page, text)| replace(page, text))
+}
+
+/// Lists what is out of date.
+fn check(book: &Path) -> Result<()> {
+    let mut names = Vec::new();
+    for report in REPORTS.map(|report| report.name) {
+        let now = fingerprint(&root(), report)?;
+        let all = measurements(&of_report(book, report))?;
+        for old in all.iter().filter(|measurement| measurement.sources != now) {
+            let parts: Vec<&str> = old.parts.iter().map(|part| part.name.as_str()).collect();
+            println!(
+                "{report}: {}\n  {}",
+                parts.join(", "),
+                old.origin.replace('\n', " ")
+            );
+            names.push(report);
+        }
+    }
+    names.dedup();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let names = names.join(", ");
+    Err(ReportError::OutOfDate { names }.into())
+}
+
+/// The README and the pages of the book that are written by hand.
+fn pages(root: &Path) -> Result<Vec<PathBuf>> {
+    let mut pages = vec![root.join("README.md")];
+    for entry in fs::read_dir(root.join("docs"))? {
+        pages.push(entry?.path());
+    }
+    pages.retain(|path| path.extension().is_some_and(|e| e == "md"));
+    Ok(pages)
 }
 
 /// The file of a report in the book.
@@ -54,12 +101,29 @@ fn of_report(book: &Path, report: &str) -> PathBuf {
     book.join(format!("{report}.md"))
 }
 
-/// A part of the file of a report in the book.
-fn measured(book: &Path, report: &str, part: &str) -> Result<String> {
+fn measurements(file: &Path) -> Result<Vec<Measurement>> {
+    Ok(excerpt::from_markdown(&read(file)?))
+}
+
+/// What belongs into a block with these words: `REPORT PART` or `REPORT origin of PART`.
+fn measured(book: &Path, words: &str) -> Result<String> {
+    let (report, part) = words.split_once(' ').unwrap_or((words, ""));
+    let (name, is_origin) = match part.strip_prefix("origin of ") {
+        Some(name) => (name, true),
+        None => (part, false),
+    };
     let file = of_report(book, report);
-    let text = read(&file)?;
-    let found = excerpt::part(&text, part).map(str::to_owned);
-    let part = part.to_owned();
+    let mut found = None;
+    for measurement in measurements(&file)? {
+        if let Some(part) = measurement.parts.into_iter().find(|part| part.name == name) {
+            found = Some(if is_origin {
+                measurement.origin
+            } else {
+                part.text
+            });
+        }
+    }
+    let part = name.to_owned();
     Ok(found.ok_or(ReportError::Part { file, part })?)
 }
 
@@ -75,18 +139,15 @@ fn replace(path: &Path, text: &str) -> Result<()> {
 const BEGIN: &str = "<!-- measured: ";
 const END: &str = "<!-- /measured -->";
 
-/// A text with its blocks filled, each with the part that its first line names.
-fn filled(text: &str, part: &dyn Fn(&str, &str) -> Result<String>) -> Result<String> {
+/// A text with its blocks filled, each with what its first line names.
+fn filled(text: &str, part: &dyn Fn(&str) -> Result<String>) -> Result<String> {
     let mut out = String::new();
     let mut lines = text.lines();
     while let Some(line) = lines.next() {
         out += line;
         out.push('\n');
-        let named = line
-            .strip_prefix(BEGIN)
-            .and_then(|l| l.strip_suffix(" -->"));
-        if let Some((report, name)) = named.and_then(|n| n.split_once(' ')) {
-            out += &format!("{}\n{END}\n", part(report, name)?);
+        if let Some(words) = comment(line, BEGIN) {
+            out += &format!("{}\n{END}\n", part(words)?);
             lines.by_ref().find(|l| *l == END);
         }
     }
@@ -97,66 +158,83 @@ fn filled(text: &str, part: &dyn Fn(&str, &str) -> Result<String>) -> Result<Str
 mod tests {
     use super::*;
 
-    fn docs() -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs")
+    fn book() -> PathBuf {
+        root().join("docs/measured")
     }
 
     #[test]
     fn blocks_are_filled_and_the_rest_is_kept() {
         let text = "a\n<!-- measured: cost steps -->\nold\nolder\n<!-- /measured -->\nb\n";
-        let part = |report: &str, name: &str| Ok(format!("{report}, {name}\nnew"));
+        let part = |words: &str| Ok(format!("{words}\nnew"));
         let new = filled(text, &part).unwrap();
-        let expected =
-            "a\n<!-- measured: cost steps -->\ncost, steps\nnew\n<!-- /measured -->\nb\n";
+        let expected = "a\n<!-- measured: cost steps -->\ncost steps\nnew\n<!-- /measured -->\nb\n";
         assert_eq!(new, expected);
         assert_eq!(filled(&new, &part).unwrap(), new);
     }
 
-    /// The numbers of the README are those that the reports wrote.
     #[test]
-    fn the_readme_has_what_was_measured() {
-        let readme = read(&docs().join("../README.md")).unwrap();
-        assert!(readme.contains(BEGIN), "a block");
-        let part = |report: &str, name: &str| measured(&docs().join("measured"), report, name);
-        let new = filled(&readme, &part).unwrap();
-        assert!(new == readme, "`cargo xtask measured` changes README.md");
+    fn blocks_name_parts_and_origins_of_parts() {
+        let book = tempfile::tempdir().unwrap();
+        let of = |name: &str| Measurement {
+            sources: "1f".to_owned(),
+            origin: format!("Measured with {name}."),
+            parts: vec![excerpt::Part::text(name, format!("the {name}"))],
+        };
+        let text = excerpt::to_markdown("cost", &[of("first"), of("second")]);
+        replace(&of_report(book.path(), "cost"), &text).unwrap();
+        let named = |words: &str| measured(book.path(), words);
+        assert_eq!(named("cost second").unwrap(), "the second");
+        assert_eq!(
+            named("cost origin of second").unwrap(),
+            "Measured with second."
+        );
+        let error = named("cost third").unwrap_err();
+        assert!(matches!(
+            error.downcast_ref(),
+            Some(ReportError::Part { .. })
+        ));
     }
 
-    /// What the book includes exists, parts of files and whole ones.
+    /// The numbers of the README and of the book are those that the reports wrote, and stand in the text.
     #[test]
-    fn the_book_includes_parts_that_exist() {
-        let mut found = 0;
-        for entry in fs::read_dir(docs()).unwrap() {
-            let path = entry.unwrap().path();
-            if path.extension().is_none_or(|e| e != "md") {
-                continue;
-            }
-            for include in read(&path).unwrap().split("{{#include ").skip(1) {
-                let include = include.split("}}").next().unwrap();
-                let (file, name) = match include.split_once(':') {
-                    Some((file, name)) => (file, Some(name)),
-                    None => (include, None),
-                };
-                let text = read(&docs().join(file)).unwrap();
-                let is_there = name.is_none_or(|name| excerpt::part(&text, name).is_some());
-                assert!(is_there, "{}: {include}", path.display());
-                found += 1;
-            }
+    fn pages_have_what_was_measured() {
+        let mut blocks = 0;
+        for page in pages(&root()).unwrap() {
+            let text = read(&page).unwrap();
+            let new = filled(&text, &|words| measured(&book(), words)).unwrap();
+            assert!(
+                new == text,
+                "`cargo xtask measured` changes {}",
+                page.display()
+            );
+            blocks += text.matches(BEGIN).count();
         }
-        assert!(found > 5, "{found} parts are included");
+        assert!(blocks > 10, "{blocks}");
+    }
+
+    /// Pages are read in the repository as well, where nothing fills in what a line only names.
+    #[test]
+    fn pages_include_nothing() {
+        let measured = REPORTS.map(|report| of_report(&book(), report.name));
+        for page in pages(&root()).unwrap().into_iter().chain(measured) {
+            assert!(!read(&page).unwrap().contains("{{#"), "{}", page.display());
+        }
     }
 
     /// Every file in the folder says where its numbers are from, and is a page of the book.
     #[test]
     fn measured_files_name_their_origin() {
-        let contents = read(&docs().join("SUMMARY.md")).unwrap();
-        let book = docs().join("measured");
-        for report in REPORTS.iter().filter(|r| of_report(&book, r).exists()) {
-            let origin = measured(&book, report, "origin").unwrap();
-            assert!(
-                origin.contains(" commit ") && origin.contains(report),
-                "{origin}"
-            );
+        let contents = read(&root().join("docs/SUMMARY.md")).unwrap();
+        for report in REPORTS.map(|report| report.name) {
+            let all = measurements(&of_report(&book(), report)).unwrap();
+            assert!(!all.is_empty(), "{report}");
+            for Measurement {
+                origin, sources, ..
+            } in all
+            {
+                let is_named = origin.contains(" commit ") && origin.contains(report);
+                assert!(is_named && !sources.is_empty(), "{origin}");
+            }
             assert!(
                 contents.contains(&format!("(measured/{report}.md)")),
                 "{report}"

@@ -83,7 +83,7 @@ fn write(store: &Store, scenes: u64) -> Result<()> {
         &json!({ "version": version, "effort": store.effort, "figures": figures, "left_out": left_out }),
     )?;
     let parts: Vec<Part> = records.iter().flat_map(|r| r.excerpt.clone()).collect();
-    excerpt::write(store, "reproduce-figures", &parts)?;
+    excerpt::write(store, "reproduce-figures", parts)?;
     let body = html! {
         p {
             "Every picture is computed by isosheet. Beside each: what is shown in Y.-J. Liu, K. Tang and A. Joneja, "

@@ -11,6 +11,7 @@ use crate::failure::ReportError;
 use crate::interrupt;
 use crate::progress;
 use crate::report::Effort;
+use crate::sources::Origin;
 use anyhow::{Context, Result};
 use isosheet_io::run::{RunError, holds_other_files, remove_unfinished};
 use isosheet_io::{WriteError, read_json, write_atomically, write_json};
@@ -89,6 +90,8 @@ pub(crate) struct Store {
     root: PathBuf,
     pub(crate) effort: Effort,
     program: u64,
+    /// The working copy when the folder was opened, for results that the book shows.
+    origin: Option<Origin>,
     remake: Remake,
     /// Units that this process has made.
     made: Mutex<HashSet<String>>,
@@ -121,6 +124,20 @@ impl Files<'_> {
 }
 
 impl Store {
+    /// As [`Store::open`], for results that the book shows unless they are quick: it knows the working copy.
+    pub(crate) fn of_report(
+        root: &Path,
+        report: &str,
+        effort: Effort,
+        remake: Remake,
+    ) -> Result<Self> {
+        let mut store = Self::open(root, report, effort, remake)?;
+        if effort != Effort::Quick {
+            store.origin = Some(Origin::here(report)?);
+        }
+        Ok(store)
+    }
+
     /// Creates the folder when missing, checks that it is empty or that of the same report, has no results of
     /// another kind and can be written to, and locks it. Full results take the place of quick ones.
     pub(crate) fn open(root: &Path, report: &str, effort: Effort, remake: Remake) -> Result<Self> {
@@ -130,6 +147,7 @@ impl Store {
             root: root.to_owned(),
             effort,
             program: fingerprint()?,
+            origin: None,
             remake,
             made: Mutex::default(),
             _lock: lock,
@@ -156,6 +174,11 @@ impl Store {
         let report = report.to_owned();
         write_json(&path, &Claim { report, effort })?;
         Ok(store)
+    }
+
+    /// The working copy that results are of, for those that the book shows.
+    pub(crate) fn origin(&self) -> Option<&Origin> {
+        self.origin.as_ref()
     }
 
     /// A file of [`RECORDS`].

@@ -159,12 +159,12 @@ pub(crate) fn run(args: &TuningArgs) -> Result<()> {
         ..Page::new("isosheet: tuning", body)
     };
     page.write(&store, "index.html")?;
-    let parts = [
+    let parts = vec![
         Part::text("about", &about),
         Part::table("kinds", &tables[0]),
         Part::table("constants", &tables[1]),
     ];
-    excerpt::write(&store, "tuning", &parts)
+    excerpt::write(&store, "tuning", parts)
 }
 
 /// Measures all kinds of scene with some constants.

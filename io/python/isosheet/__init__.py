@@ -1,4 +1,4 @@
-"""isosheet simulates sheets that bend and crease but never stretch: paper, sheet metal, plastic film, cloth.
+"""isosheet simulates sheets that bend and crease and do not stretch: paper, sheet metal, plastic film, cloth.
 
 A scene (`Scene`) has the keys of scene files. A `Simulation` moves it step by step, a `Run` reads what the
 command ``isosheet simulate`` or `Scene.simulate` wrote. Arrays are those of numpy; units are metres, seconds,

@@ -43,7 +43,8 @@ fn remove_examples(part: &mut Value) {
 /// a scene file, and an example for each table.
 pub fn reference_page() -> String {
     let schema = documented_schema();
-    let mut page = String::from(INTRODUCTION);
+    let kinds = StartingPoint::ALL.map(StartingPoint::name).join("|");
+    let mut page = INTRODUCTION.replace("KINDS", &kinds);
     page.push_str("\n## The scene\n\n");
     page.push_str(&format!("{EXAMPLE}{}```\n\n", StartingPoint::Drape.text()));
     object_table(&mut page, &schema);
@@ -149,7 +150,7 @@ A scene file says in TOML what is simulated; `isosheet simulate SCENE` runs it. 
 seconds, masses in kilograms, forces in newtons and **angles in degrees**. Only what the scene names is modelled:
 without `forces.gravity` there is no gravity, without `air` no air, without obstacles and self-contact no contact.
 
-`isosheet new NAME --kind hanging|clamp|drape|stamp|feed|fold|flag|leaf|stack|moebius` writes a commented scene to start from,
+`isosheet new NAME --kind KINDS` writes a commented scene to start from,
 `isosheet check SCENE` says what is wrong with one, and `--set key=value` changes a key for one run, for example
 `--set stop.time=0.5 --set 'obstacle[1].friction=0.3'`; the number of the only entry of a list may be left out. An
 unknown key is an error, which names the nearest known one.

@@ -1,6 +1,7 @@
 //! The scenes in the hand-written pages: whole ones can start, parts of one have keys and values that exist.
 
-use isosheet_io::scene::SceneFile;
+use isosheet_io::scene::{SceneFile, StartingPoint};
+use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -98,5 +99,79 @@ fn links_between_pages_lead_somewhere() {
                 || contents.contains(&format!("({name})")),
             "{name} is not in SUMMARY.md"
         );
+    }
+}
+
+/// The JSON schema of scene files, which `docs` has a copy of.
+fn schema() -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/scene.schema.json");
+    let text = fs::read_to_string(path).expect("the schema");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// Whether values of a part of the schema have a key, given by its words.
+fn has_key(schema: &Value, of: &Value, words: &[&str]) -> bool {
+    let Some((word, rest)) = words.split_first() else {
+        return true;
+    };
+    let named = of["$ref"].as_str().and_then(|name| name.strip_prefix('#'));
+    let others = named.and_then(|name| schema.pointer(name)).into_iter();
+    let choices = ["anyOf", "oneOf", "allOf"].map(|name| of[name].as_array());
+    let mut others = others
+        .chain(choices.into_iter().flatten().flatten())
+        .chain(of.get("items"));
+    of["properties"]
+        .get(word)
+        .is_some_and(|inner| has_key(schema, inner, rest))
+        || others.any(|other| has_key(schema, other, words))
+}
+
+/// The words of a key of a scene in a piece of code, such as `obstacle[0].motion`; none of other code.
+fn key_words(code: &str) -> Option<Vec<&str>> {
+    let key = code.split([' ', '=']).next()?;
+    let words = key
+        .split('.')
+        .map(|word| word.split('[').next().unwrap_or(word));
+    let words: Vec<&str> = words.collect();
+    let is_word = |w: &&str| !w.is_empty() && w.chars().all(|c| c.is_ascii_lowercase() || c == '_');
+    (words.len() > 1 && words.iter().all(is_word)).then_some(words)
+}
+
+/// Keys that pages mention in their text exist.
+#[test]
+fn keys_in_the_text_of_the_book_exist() {
+    let schema = schema();
+    let mut keys = 0;
+    for path in pages() {
+        let page = fs::read_to_string(&path).expect("a page");
+        // What is in blocks is read as a scene by another test.
+        let text: String = page.split("```").step_by(2).collect();
+        for code in text.split('`').skip(1).step_by(2) {
+            let Some(words) = key_words(code) else {
+                continue;
+            };
+            if has_key(&schema, &schema, &words[..1]) {
+                assert!(
+                    has_key(&schema, &schema, &words),
+                    "{}: {code}",
+                    path.display()
+                );
+                keys += 1;
+            }
+        }
+    }
+    assert!(keys > 30, "{keys} keys were found");
+}
+
+#[test]
+fn the_book_names_all_scenes_to_start_from() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let page = fs::read_to_string(docs.join("start.md")).expect("a page");
+    for kind in StartingPoint::ALL {
+        let name = kind.name();
+        let is_named = [format!("`{name}`"), format!("--kind {name}`")]
+            .iter()
+            .any(|n| page.contains(n));
+        assert!(is_named, "{name}");
     }
 }

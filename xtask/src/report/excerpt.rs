@@ -1,21 +1,24 @@
-//! What the book shows of a report: `measured.md` beside the page of the report, in parts that the book
-//! includes by their names.
+//! What the book shows of a report: `measured.md` beside the page of the report, in parts that pages of the
+//! book copy by their names.
+//!
+//! A file has one or several measurements, each with its origin, the fingerprint of the sources that were
+//! measured, and its parts. That of a report has one; in `docs/measured` parts stay until they are measured
+//! anew.
 
-use super::{Effort, Table, machine};
+use super::{Effort, Table};
 use crate::store::Store;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
-use std::process::Command;
 
 /// Name of the file in the output folder of a report.
 pub(crate) const FILE: &str = "measured.md";
 
-/// A part of the file, which `mdbook` includes by its name.
+/// A part of the file, which pages of the book copy by its name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Part {
-    name: String,
-    text: String,
+    pub(crate) name: String,
+    pub(crate) text: String,
 }
 
 impl Part {
@@ -45,94 +48,145 @@ fn escaped(text: &str) -> String {
         .replace('<', "&lt;")
 }
 
-/// Writes the file of a report. Quick results are no results: of them there is no such file.
-pub(crate) fn write(store: &Store, report: &str, parts: &[Part]) -> Result<()> {
-    if store.effort == Effort::Quick {
-        return Ok(());
-    }
-    Ok(store.write(
-        FILE,
-        to_markdown(report, &origin(report, store.effort), parts).as_bytes(),
-    )?)
+/// Parts that were measured together.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Measurement {
+    /// Fingerprint of the sources that were measured, see [`crate::sources`].
+    pub(crate) sources: String,
+    /// How, at which commit and on which machine, in a sentence or two.
+    pub(crate) origin: String,
+    pub(crate) parts: Vec<Part>,
 }
 
-/// How, at which commit and on which machine a report was made.
-fn origin(report: &str, effort: Effort) -> String {
-    let full = if effort == Effort::Full {
-        " --full"
-    } else {
-        ""
-    };
-    format!(
-        "Measured by `cargo xtask {report}{full}` at commit {} on {}.",
-        commit(),
-        machine()
-    )
+const MEASUREMENT: &str = "<!-- measurement of the sources ";
+const PART: &str = "<!-- part: ";
+const PART_END: &str = "<!-- /part -->";
+
+/// What a line of Markdown that is a comment says after `begin`.
+pub(crate) fn comment<'a>(line: &'a str, begin: &str) -> Option<&'a str> {
+    line.strip_prefix(begin)?.strip_suffix(" -->")
 }
 
-/// The commit of the working copy, marked where files differ from it.
-fn commit() -> String {
-    let mut git = Command::new("git");
-    git.args([
-        "-C",
-        env!("CARGO_MANIFEST_DIR"),
-        "describe",
-        "--always",
-        "--abbrev=9",
-        "--dirty",
-    ]);
-    let said = git.output().ok().filter(|o| o.status.success());
-    let name = said.map(|o| String::from_utf8_lossy(&o.stdout).trim().to_owned());
-    name.unwrap_or_else(|| "unknown".to_owned())
-}
-
-fn to_markdown(report: &str, origin: &str, parts: &[Part]) -> String {
+/// The file of a report.
+pub(crate) fn to_markdown(report: &str, measurements: &[Measurement]) -> String {
     let mut file = format!(
         "# Measured: {report}\n\nThis page was written by the report that it names, and is not edited by hand.\n"
     );
-    let origin = Part::text("origin", origin);
-    for Part { name, text } in [&origin].into_iter().chain(parts) {
-        let _ = write!(
-            file,
-            "\n<!-- ANCHOR: {name} -->\n{text}\n<!-- ANCHOR_END: {name} -->\n"
-        );
+    for measurement in measurements {
+        let (sources, origin) = (&measurement.sources, &measurement.origin);
+        let _ = write!(file, "\n{MEASUREMENT}{sources} -->\n{origin}\n");
+        for Part { name, text } in &measurement.parts {
+            let _ = write!(file, "\n{PART}{name} -->\n{text}\n{PART_END}\n");
+        }
     }
     file
 }
 
-/// A part of a file by its name.
-pub(crate) fn part<'a>(file: &'a str, name: &str) -> Option<&'a str> {
-    let (_, rest) = file.split_once(&format!("<!-- ANCHOR: {name} -->\n"))?;
-    let (text, _) = rest.split_once(&format!("\n<!-- ANCHOR_END: {name} -->"))?;
-    Some(text)
+/// The measurements of a file.
+pub(crate) fn from_markdown(file: &str) -> Vec<Measurement> {
+    let mut measurements: Vec<Measurement> = Vec::new();
+    let mut lines = file.lines();
+    while let Some(line) = lines.next() {
+        let mut until = |end: &dyn Fn(&str) -> bool| {
+            let text: Vec<&str> = lines.by_ref().take_while(|line| !end(line)).collect();
+            text.join("\n")
+        };
+        if let Some(sources) = comment(line, MEASUREMENT) {
+            measurements.push(Measurement {
+                sources: sources.to_owned(),
+                origin: until(&str::is_empty),
+                parts: Vec::new(),
+            });
+        } else if let (Some(name), Some(last)) = (comment(line, PART), measurements.last_mut()) {
+            let text = until(&|line| line == PART_END);
+            last.parts.push(Part::text(name, text));
+        }
+    }
+    measurements
+}
+
+/// New measurements, and before them what they do not replace of old ones.
+pub(crate) fn merged(old: Vec<Measurement>, new: Vec<Measurement>) -> Vec<Measurement> {
+    let is_new = |part: &Part| {
+        new.iter()
+            .flat_map(|m| &m.parts)
+            .any(|p| p.name == part.name)
+    };
+    let mut kept = old;
+    for measurement in &mut kept {
+        measurement.parts.retain(|part| !is_new(part));
+    }
+    kept.retain(|measurement| !measurement.parts.is_empty());
+    [kept, new].concat()
+}
+
+/// Writes the file of a report. Quick results are no results: of them there is no such file.
+pub(crate) fn write(store: &Store, report: &str, parts: Vec<Part>) -> Result<()> {
+    let Some(origin) = store.origin() else {
+        return Ok(());
+    };
+    let measurement = Measurement {
+        sources: origin.sources.clone(),
+        origin: sentence(report, store.effort, &origin.commit, &super::machine()),
+        parts,
+    };
+    Ok(store.write(FILE, to_markdown(report, &[measurement]).as_bytes())?)
+}
+
+/// How, at which commit and on which machine a report was made.
+fn sentence(report: &str, effort: Effort, commit: &str, machine: &str) -> String {
+    let full = match effort {
+        Effort::Full => " --full",
+        _ => "",
+    };
+    format!("Measured by `cargo xtask {report}{full}` at commit {commit} on {machine}.")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn measurement(sources: &str, parts: &[(&str, &str)]) -> Measurement {
+        Measurement {
+            sources: sources.to_owned(),
+            origin: format!("Measured with {sources}.\nOn two lines."),
+            parts: parts
+                .iter()
+                .map(|(name, text)| Part::text(*name, *text))
+                .collect(),
+        }
+    }
+
     #[test]
-    fn parts_are_found_by_their_names() {
+    fn files_are_read_as_they_were_written() {
         let table = Table::of("a | b", [1.5, 2.0e-9], &[("x_m", &|v| (*v).into())]);
-        let parts = [
-            Part::table("sizes", &table),
-            Part::text("said", "- one\n- two"),
+        let table = Part::table("sizes", &table);
+        assert_eq!(table.text, "a \\| b\n\n| x m |\n|---|\n| 1.5 |\n| 2.0e-9 |");
+        let mut first = measurement("1f", &[("said", "- one\n- two")]);
+        first.parts.push(table);
+        let all = [first, measurement("2f", &[("more", "text\n\nmore text")])];
+        assert_eq!(from_markdown(&to_markdown("cost", &all)), all);
+    }
+
+    #[test]
+    fn parts_that_are_measured_anew_take_the_place_of_old_ones() {
+        let old = vec![
+            measurement("1f", &[("a", "old"), ("b", "old")]),
+            measurement("2f", &[("c", "old")]),
         ];
-        let file = to_markdown("cost", "Measured.", &parts);
-        assert_eq!(part(&file, "origin"), Some("Measured."));
-        let sizes = "a \\| b\n\n| x m |\n|---|\n| 1.5 |\n| 2.0e-9 |";
-        assert_eq!(part(&file, "sizes"), Some(sizes));
-        assert_eq!(part(&file, "said"), Some("- one\n- two"));
-        assert_eq!(part(&file, "other"), None);
+        let new = vec![measurement("3f", &[("c", "new"), ("b", "new")])];
+        let expected = [
+            measurement("1f", &[("a", "old")]),
+            measurement("3f", &[("c", "new"), ("b", "new")]),
+        ];
+        assert_eq!(merged(old, new), expected);
     }
 
     #[test]
     fn the_origin_names_command_commit_and_machine() {
-        let text = origin("cost", Effort::Full);
-        assert!(
-            text.starts_with("Measured by `cargo xtask cost --full` at commit "),
-            "{text}"
+        assert_eq!(
+            sentence("cost", Effort::Full, "1234", "a machine"),
+            "Measured by `cargo xtask cost --full` at commit 1234 on a machine."
         );
-        assert!(!commit().is_empty() && text.contains(&machine()));
     }
 }

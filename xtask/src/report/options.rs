@@ -55,7 +55,7 @@ impl Options {
         };
         let default = || Path::new("out").join(report);
         let out = self.out.clone().unwrap_or_else(default);
-        Store::open(&out, report, effort, remake)
+        Store::of_report(&out, report, effort, remake)
     }
 }
 
