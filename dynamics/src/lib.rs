@@ -103,6 +103,7 @@ pub use motion::{
 };
 pub use options::OptionsError;
 pub use run::checkpoint::Checkpoint;
+pub use run::fold_start::start_of_folding;
 pub use run::observe::{Frames, History, Observer, RunEnd};
 pub use run::simulation::Simulation;
 pub use step::checkpoint_error::CheckpointError;

@@ -2,5 +2,6 @@
 
 mod change;
 pub(crate) mod checkpoint;
+pub(crate) mod fold_start;
 pub(crate) mod observe;
 pub(crate) mod simulation;

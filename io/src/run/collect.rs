@@ -248,6 +248,7 @@ fn add_ending(row: &mut Row, ending: &Ending) {
         cell("folding.largest", number(folding.largest));
         cell("folding.rms", number(folding.rms));
         cell("folding.largest_flat", number(folding.largest_flat));
+        cell("folding.wrong_side", folding.wrong_side.to_string());
     }
     for crease in &residuals.creases {
         cell(

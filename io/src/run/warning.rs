@@ -16,6 +16,16 @@ pub enum RunWarning {
         brief(100.0 * _0.shortening())
     )]
     Coarse(Bend),
+    /// Creases that are driven to the angles of a file are folded to the other side.
+    #[error(
+        "{wrong} of {creases} creases are folded to their wrong side: the sheet folds along another branch"
+    )]
+    WrongSide {
+        /// Their number.
+        wrong: usize,
+        /// The number of all driven creases.
+        creases: usize,
+    },
     /// The balance of the energy gained more than [`Summary::ENERGY_GAIN`] of what was exchanged.
     #[error(
         "the balance of the energy gains {} J, {} % of what was exchanged",
@@ -35,6 +45,10 @@ impl Advice for RunWarning {
             Self::Coarse(_) => Some(
                 "refine the mesh there: with half the edge length the error is a quarter; the page colours faces by \
                  their strain and by the share of stretching in their energy",
+            ),
+            Self::WrongSide { .. } => Some(
+                "where rigid panels do not close at the angles, name what the sheet is made of, `sheet.material`, and \
+                 divide its panels by `sheet.refine`; or start nearer to the fold, `sheet.start.file`",
             ),
             Self::EnergyGain { .. } => Some(
                 "take a smaller `method.step`: forces that change within a step do work that is known roughly; the \
@@ -56,6 +70,11 @@ impl Summary {
     /// What to know before the results are used.
     pub fn warnings(&self) -> Vec<RunWarning> {
         let (gain, exchanged) = (self.energy.largest_gain, self.energy.largest_exchange);
+        let wrong = self.ending.residuals.folding.filter(|f| f.wrong_side > 0);
+        let wrong = wrong.map(|f| RunWarning::WrongSide {
+            wrong: f.wrong_side,
+            creases: f.creases,
+        });
         let gains = gain > Self::ENERGY_GAIN * exchanged;
         let gained = gains.then_some(RunWarning::EnergyGain { gain, exchanged });
         let sharpest = self.elastic.and_then(|elastic| elastic.sharpest);
@@ -64,6 +83,7 @@ impl Summary {
             .map(RunWarning::Coarse)
             .into_iter()
             .chain(gained)
+            .chain(wrong)
             .collect()
     }
 }

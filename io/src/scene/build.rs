@@ -2,7 +2,7 @@
 
 use super::creases::{EdgeFolds, FoldSprings};
 use super::error::SceneError;
-use super::folding::FLAT_STIFFNESS;
+use super::folding::{FLAT_STIFFNESS, FoldTargets};
 use super::in_words::{elastic_in_words, materials_in_words};
 use super::key::Key;
 use super::mesh::Mesh;
@@ -17,11 +17,11 @@ use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
     AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, PAPER_GRAVITY,
     PlateBending, PointMotion, PointProfile, Potential, PotentialOfPart, RigidProfile, SheetModel,
-    SimulationError, State, VertexConstraint, VertexLoad, folding_from_flat, leave_flat_in,
-    project_positions,
+    SimulationError, State, VertexConstraint, VertexLoad, leave_flat_in, project_positions,
+    start_of_folding,
 };
 use isosheet_mesh::wording::counted;
-use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
+use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -41,7 +41,6 @@ impl Scene {
         builder.add_folds(folder)?;
         builder.add_isometry()?;
         builder.perturb()?;
-        builder.fold_from_flat();
         builder.add_glue()?;
         let (contacts, obstacles) = builder.contacts(folder)?;
         let gauge = |(k, measure): (usize, &Measure)| {
@@ -57,9 +56,24 @@ impl Scene {
     }
 }
 
-/// Part of the way to its angles at which a sheet starts that would be flat. To first order its angles are
-/// proportional to each other there; terms of second order are smaller by this factor.
-const FIRST_PART: f64 = 1e-2;
+/// Where a flat sheet of rods starts that folds to angles, by its own numbers, from positions `x`.
+fn off_flat(
+    own: &PlacedSheet<'_>,
+    model: &SheetModel,
+    targets: &FoldTargets,
+    x: &[f64],
+) -> Option<Vec<f64>> {
+    let masses = &model.mass().vertex[own.part.vertices.clone()];
+    let mass = MassMatrix::from_vertex_masses(masses.to_vec()).ok()?;
+    let first = own.part.vertices.start as u32;
+    let pins = model.pins().into_iter();
+    let pins = pins.filter(|v| own.part.vertices.contains(&v.index()));
+    let pins: Vec<VertexId> = pins.map(|v| VertexId(v.0 - first)).collect();
+    let driven = targets.creases.iter().map(|(e, angle)| (*e, *angle, 1.0));
+    let flat = targets.flat.iter().map(|e| (*e, 0.0, FLAT_STIFFNESS));
+    let edges: Vec<_> = driven.chain(flat).collect();
+    start_of_folding(&own.placed, &mass, &pins, x, &edges)
+}
 
 /// Relative error of edge lengths to which positions are projected: that of accepted steps.
 const EXACT: f64 = 1e-12;
@@ -364,7 +378,15 @@ impl<'a> Builder<'a> {
             let key = Key::root().name("folding");
             if is_own(folding.sheet.as_deref(), &key, "the creases")? {
                 let mut targets = folding.targets(&key, file, &own.unplaced, folder)?;
-                let x = &self.x[own.part.coordinates()];
+                let model = self.model.as_ref().expect("it is there between changes");
+                let x = &mut self.x[own.part.coordinates()];
+                if own.of.isometry() == Isometry::Rods
+                    && let Some(start) = off_flat(own, model, &targets, x)
+                {
+                    x.copy_from_slice(&start);
+                    self.modelled
+                        .push("a start off the flat state, towards the angles".into());
+                }
                 let [driven, flat] = folding.springs(&targets, own.of, &own.placed, x);
                 springs.add(key.clone(), EdgeFolds::Yes, driven);
                 springs.add(key, EdgeFolds::No, flat);
@@ -453,30 +475,6 @@ impl<'a> Builder<'a> {
                 .push("random displacement at the start".into());
         }
         Ok(())
-    }
-
-    /// Starts a flat sheet that folds to given angles in the direction in which all creases turn to their
-    /// sides: a sheet of rods may fold from flat along several branches, and what its first step makes of it
-    /// would be chance.
-    fn fold_from_flat(&mut self) {
-        let Some(targets) = &self.targets.folding else {
-            return;
-        };
-        let model = self.model();
-        let t = model.topology();
-        let driven = targets.creases.iter().map(|(e, angle)| (*e, *angle, 1.0));
-        let flat = targets.flat.iter().map(|e| (*e, 0.0, FLAT_STIFFNESS));
-        let edges: Vec<_> = driven.chain(flat).collect();
-        let Some(d) = folding_from_flat(t, &self.x, &edges, &model.pins()) else {
-            return;
-        };
-        let moved = self.x.iter().zip(&d).map(|(x, d)| x + FIRST_PART * d);
-        let mut x: Vec<f64> = moved.collect();
-        if project_positions(model, &mut x, EXACT).is_ok() {
-            self.x = x;
-            self.modelled
-                .push("a start off the flat state, towards the angles".into());
-        }
     }
 
     fn add_glue(&mut self) -> Result<(), SceneError> {

@@ -95,6 +95,8 @@ pub struct FoldResidual {
     pub rms: f64,
     /// Largest fold angle of an edge that should stay flat.
     pub largest_flat: f64,
+    /// Number of driven creases that are folded to the other side.
+    pub wrong_side: usize,
 }
 
 impl FoldTargets {
@@ -119,6 +121,8 @@ impl FoldTargets {
             let d = difference(e, target);
             residual.largest = residual.largest.max(d);
             squares += d * d;
+            let angle = fold_angle(t, x, e).unwrap_or(0.0);
+            residual.wrong_side += usize::from(angle.sin() * target < -IN_PLANE * target.abs());
         }
         residual.rms = (squares / self.creases.len().max(1) as f64).sqrt();
         for &e in &self.flat {

@@ -112,6 +112,12 @@ impl Residuals {
                 "fold angles differ from their targets by {:.2} degrees at most and {:.2} rms",
                 f.largest, f.rms
             ));
+            if f.wrong_side > 0 {
+                let (wrong, all) = (f.wrong_side, f.creases);
+                words.push(format!(
+                    "{wrong} of {all} creases are folded to their wrong side"
+                ));
+            }
         }
         let worst = self
             .creases

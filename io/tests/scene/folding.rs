@@ -57,6 +57,17 @@ fn folded(folder: &Path, fold: &Value, keys: &str) -> FoldResidual {
 
 /// As [`folded`], with more keys of the sheet.
 fn folded_of(folder: &Path, fold: &Value, of_sheet: &str, keys: &str) -> FoldResidual {
+    folded_in_steps(folder, fold, of_sheet, keys, 1.0 / 60.0)
+}
+
+/// As [`folded_of`], in steps of other lengths, seconds.
+fn folded_in_steps(
+    folder: &Path,
+    fold: &Value,
+    of_sheet: &str,
+    keys: &str,
+    step: f64,
+) -> FoldResidual {
     fs::write(folder.join("sheet.fold"), fold.to_string()).unwrap();
     let text = format!(
         "version = 1
@@ -74,8 +85,8 @@ fn folded_of(folder: &Path, fold: &Value, of_sheet: &str, keys: &str) -> FoldRes
     let setup = scene.build().unwrap_or_else(|e| panic!("{e}"));
     let targets = setup.targets.folding.clone().unwrap();
     let mut simulation = setup.start().unwrap();
-    for _ in 0..180 {
-        simulation.step(1.0 / 60.0).unwrap();
+    for _ in 0..(3.0 / step).round() as usize {
+        simulation.step(step).unwrap();
     }
     targets.residual(simulation.model().topology(), &simulation.state().x)
 }
@@ -112,6 +123,21 @@ fn angles_that_close_are_reached() {
         "{residual:?}"
     );
     assert!(residual.largest_flat < 1e-3, "{residual:?}");
+}
+
+/// From flat the branch is that of the angles, whatever the step.
+#[test]
+fn folding_does_not_depend_on_the_step() {
+    let dir = tempfile::tempdir().unwrap();
+    let pattern = pattern();
+    let fold = fold_file(&pattern, |e| exact_angle(&pattern, 0.8, e));
+    for step in [0.05, 1.0 / 60.0, 0.002, 5e-4] {
+        let residual = folded_in_steps(dir.path(), &fold, "", "", step);
+        assert!(
+            residual.largest < 1e-3 && residual.wrong_side == 0,
+            "{step}: {residual:?}"
+        );
+    }
 }
 
 /// A mesh that is refined folds as it does without, and its creases have as many parts as it says.
