@@ -4,9 +4,11 @@ pub(crate) mod atomic;
 mod export;
 mod finite;
 mod history;
+pub(crate) mod input;
 mod json;
 mod loads;
 mod measures;
+pub(crate) mod memory;
 mod mesh_file;
 mod obj_write;
 mod trajectory;
@@ -28,6 +30,8 @@ pub use mesh_file::{
     MeshFileProblem, MeshFormat, MeshOptions, Place, Polygons, ReadingChanges, Repair,
     SeparateBuffers, parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
+#[cfg(feature = "run")]
+pub(crate) use obj_write::frame_number;
 pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
 pub use trajectory::{FrameData, Trajectory, TrajectoryError};
 #[cfg(feature = "run")]

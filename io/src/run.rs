@@ -67,15 +67,17 @@ pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
 use crate::format::{
-    HistoryWriter, LoadWriter, MeasureWriter, frame_path, read_json, write_json, write_obj,
+    HistoryRow, HistoryWriter, LoadWriter, MeasureWriter, Row, frame_path, read_json, write_json, write_obj,
 };
-use crate::scene::{SceneFile, Setup, SupportForces};
+use crate::scene::{FoldTargets, Gauge, Origins, SceneFile, Setup, SupportForces};
 use crate::view::PageOptions;
 use checkpoint::Progress;
-use folder::{Contents, Existing, Material, RunFolder};
+use folder::{Contents, Existing, Material, RunFolder, stored_scene};
 use frames::{FrameFile, FrameShape, read_frames};
+use isosheet_dynamics::Simulation;
+use isosheet_mesh::VertexId;
 use page::write_page_of;
-use recording::{open_scene, read_trajectory};
+use recording::read_trajectory;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -147,12 +149,18 @@ fn simulate_in(
         return already_complete(folder, material.hash);
     }
     let setup = file.build()?;
-    let (modelled, warnings) = (setup.modelled.clone(), setup.warnings());
+    let warnings = setup.warnings();
+    let facts = Facts::of(&setup, material.hash);
+    let continued = existing == Existing::Continue && RunFolder::has_checkpoint(folder);
+    let ready = match continued {
+        true => Ready::Built(setup),
+        false => Ready::Started(started(setup)?),
+    };
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
         Contents::Complete(open) => {
             let lost = !open.path(RunFolder::TRAJECTORY).is_file();
             if file.scene().output.trajectory && lost {
-                write_trajectory(&open, &setup.sheet, FrameShape::of(&setup))?;
+                write_trajectory(&open, &facts.sheet, facts.frame)?;
             }
             return already_complete(folder, material.hash);
         }
@@ -162,18 +170,11 @@ fn simulate_in(
             (open, Some(saved))
         }
     };
-    let facts = Facts {
-        hash: material.hash,
-        modelled,
-        sheets: setup.parts.iter().map(SheetPlace::new).collect(),
-        sheet: setup.sheet.clone(),
-        frame: FrameShape::of(&setup),
-    };
     let mut stepping = match saved {
-        None => start(file, &open, setup, facts.hash, clock)?,
+        None => start(file, &open, &facts, ready.simulation()?, clock)?,
         Some(saved) => {
             check_origin(&open, &saved.0, facts.hash)?;
-            resume(file, &open, setup, saved, clock)?
+            resume(file, &open, &facts, ready.setup(file)?, saved, clock)?
         }
     };
     watch.begin(&Beginning {
@@ -233,7 +234,7 @@ fn write_trajectory(
 /// # Errors
 /// As [`simulate`]; [`RunError::NoRun`] if the folder is not that of a run.
 pub fn resume_folder(folder: &Path, watch: &mut dyn Watch) -> Result<Outcome, RunError> {
-    simulate(&open_scene(folder)?, folder, watch)
+    simulate(&stored_scene(folder)?, folder, watch)
 }
 
 fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError> {
@@ -253,6 +254,62 @@ struct Facts {
     sheets: Vec<SheetPlace>,
     sheet: isosheet_mesh::Sheet,
     frame: FrameShape,
+    /// The positions at the start.
+    start: Vec<f64>,
+    origins: Origins,
+    folding: Option<FoldTargets>,
+    glued: Vec<[VertexId; 2]>,
+    gauges: Vec<Gauge>,
+}
+
+impl Facts {
+    fn of(setup: &Setup, hash: SceneHash) -> Self {
+        Self {
+            hash,
+            modelled: setup.modelled.clone(),
+            sheets: setup.parts.iter().map(SheetPlace::new).collect(),
+            sheet: setup.sheet.clone(),
+            frame: FrameShape::of(setup),
+            start: setup.start.x.clone(),
+            origins: setup.origins.clone(),
+            folding: setup.folding.clone(),
+            glued: setup.glued.clone(),
+            gauges: setup.measures.clone(),
+        }
+    }
+}
+
+/// What is ready before the folder is made or changed: a scene that cannot start leaves it as it was.
+enum Ready {
+    /// All of which the simulation is continued, where there is a checkpoint.
+    Built(Setup),
+    /// The simulation at the start.
+    Started(Simulation),
+}
+
+impl Ready {
+    /// The simulation at the start.
+    fn simulation(self) -> Result<Simulation, RunError> {
+        match self {
+            Self::Built(setup) => started(setup),
+            Self::Started(simulation) => Ok(simulation),
+        }
+    }
+
+    /// All of which the simulation of a scene is continued.
+    fn setup(self, file: &SceneFile) -> Result<Setup, RunError> {
+        match self {
+            Self::Built(setup) => Ok(setup),
+            Self::Started(_) => Ok(file.build()?),
+        }
+    }
+}
+
+/// The simulation at the start, whose energies can be written.
+fn started(setup: Setup) -> Result<Simulation, RunError> {
+    let simulation = setup.start()?;
+    HistoryRow::of_start(&simulation).check_finite()?;
+    Ok(simulation)
 }
 
 /// Whether there is a support or an obstacle in a scene.
@@ -263,35 +320,31 @@ fn bears_loads(file: &SceneFile) -> bool {
 fn start<'a>(
     file: &'a SceneFile,
     folder: &'a RunFolder,
-    setup: Setup,
-    hash: SceneHash,
+    facts: &Facts,
+    simulation: Simulation,
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
-    let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
-    let (glued, gauges) = (setup.glued.clone(), setup.measures.clone());
-    let start = setup.start.x.clone();
-    let simulation = setup.start()?;
     let count = file.scene().support.len();
     let mut stepping = Stepping {
         file,
         folder,
-        supports: SupportForces::new(origins.clone(), &simulation, count),
-        folding,
-        glued,
+        supports: SupportForces::new(facts.origins.clone(), &simulation, count),
+        folding: facts.folding.clone(),
+        glued: facts.glued.clone(),
         simulation,
-        start,
-        origins,
+        start: facts.start.clone(),
+        origins: facts.origins.clone(),
         history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
         loads: bears_loads(file)
             .then(|| LoadWriter::create(&folder.path(RunFolder::LOADS)))
             .transpose()?,
-        measures: (!gauges.is_empty())
+        measures: (!facts.gauges.is_empty())
             .then(|| MeasureWriter::create(&folder.path(RunFolder::MEASURES)))
             .transpose()?,
-        gauges,
+        gauges: facts.gauges.clone(),
         frames: FrameFile::create(&folder.path(RunFolder::FRAMES))?,
         progress: Progress {
-            scene: hash.to_string(),
+            scene: facts.hash.to_string(),
             version: env!("CARGO_PKG_VERSION").into(),
             ..Progress::default()
         },
@@ -320,35 +373,30 @@ fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Res
 fn resume<'a>(
     file: &'a SceneFile,
     folder: &'a RunFolder,
+    facts: &Facts,
     setup: Setup,
     (progress, checkpoint): (Progress, isosheet_dynamics::Checkpoint),
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
-    let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
-    let (glued, gauges) = (setup.glued.clone(), setup.measures.clone());
-    let start = setup.start.x.clone();
-    let frames = FrameFile::resume(
-        &folder.path(RunFolder::FRAMES),
-        progress.frames,
-        FrameShape::of(&setup),
-    )?;
+    let frames = folder.path(RunFolder::FRAMES);
+    let frames = FrameFile::resume(&frames, progress.frames, facts.frame)?;
     let simulation = setup.resume(checkpoint)?;
     let count = file.scene().support.len();
     Ok(Stepping {
         file,
         folder,
-        supports: SupportForces::new(origins.clone(), &simulation, count),
-        folding,
-        glued,
+        supports: SupportForces::new(facts.origins.clone(), &simulation, count),
+        folding: facts.folding.clone(),
+        glued: facts.glued.clone(),
         simulation,
-        start,
-        origins,
+        start: facts.start.clone(),
+        origins: facts.origins.clone(),
         history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,
         loads: progress
             .loads
             .map(|length| LoadWriter::resume(&folder.path(RunFolder::LOADS), length))
             .transpose()?,
-        gauges,
+        gauges: facts.gauges.clone(),
         measures: progress
             .measures
             .map(|length| MeasureWriter::resume(&folder.path(RunFolder::MEASURES), length))

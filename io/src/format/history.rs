@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::format::atomic::{WriteError, prepare_folder};
+use crate::format::input;
 
 /// One step of a run. The field order is the column order of the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -176,6 +177,21 @@ pub trait Row: Serialize {
 
     /// The values that have to be finite, with their columns.
     fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)>;
+
+    /// Checks that they are.
+    ///
+    /// # Errors
+    /// [`HistoryError::NotFinite`] naming the column.
+    fn check_finite(&self) -> Result<(), HistoryError> {
+        match self.numbers().find(|(_, v)| !v.is_finite()) {
+            None => Ok(()),
+            Some((column, value)) => Err(HistoryError::NotFinite {
+                column,
+                t: self.time(),
+                value,
+            }),
+        }
+    }
 }
 
 impl Row for HistoryRow {
@@ -221,7 +237,7 @@ impl<R: Row> RowWriter<R> {
     pub fn create(path: &Path) -> Result<Self, HistoryError> {
         let folder = prepare_folder(path)?;
         let file =
-            File::create(path).map_err(|source| WriteError::CreateFile { folder, source })?;
+            input::replace(path).map_err(|source| WriteError::CreateFile { folder, source })?;
         let mut history = Self {
             path: path.to_owned(),
             file,
@@ -243,7 +259,7 @@ impl<R: Row> RowWriter<R> {
             path: path.to_owned(),
             source,
         };
-        let mut file = File::options().write(true).open(path).map_err(read)?;
+        let mut file = input::reopen(path, File::options().write(true)).map_err(read)?;
         let found = file.metadata().map_err(read)?.len();
         if found < length {
             return Err(HistoryError::Shorter {
@@ -285,13 +301,7 @@ impl<R: Row> RowWriter<R> {
     /// [`HistoryError::NotFinite`] naming the column, in which case nothing is written;
     /// [`HistoryError::File`].
     pub fn append(&mut self, row: &R) -> Result<(), HistoryError> {
-        if let Some((column, value)) = row.numbers().find(|(_, v)| !v.is_finite()) {
-            return Err(HistoryError::NotFinite {
-                column,
-                t: row.time(),
-                value,
-            });
-        }
+        row.check_finite()?;
         self.write_record(|w| w.serialize(row))
     }
 
@@ -334,7 +344,7 @@ pub fn read_history(path: &Path) -> Result<Vec<HistoryRow>, HistoryError> {
 
 /// Reads what a [`RowWriter`] has written.
 pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>, HistoryError> {
-    let text = std::fs::read(path).map_err(|source| HistoryError::Read {
+    let text = input::read(path).map_err(|source| HistoryError::Read {
         path: path.to_owned(),
         source,
     })?;

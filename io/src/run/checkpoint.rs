@@ -4,7 +4,7 @@ use super::RunError;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::summary::{Ending, Measured};
-use crate::format::write_atomically;
+use crate::format::{input, write_atomically};
 use crc::{CRC_64_XZ, Crc};
 use isosheet_dynamics::Checkpoint;
 use serde::{Deserialize, Serialize};
@@ -96,7 +96,7 @@ pub(crate) fn read(path: &Path) -> Result<(Progress, Checkpoint), RunError> {
         path: path.to_owned(),
         problem: problem.to_owned(),
     };
-    let bytes = std::fs::read(path).map_err(|e| damaged(&e.to_string()))?;
+    let bytes = input::read(path).map_err(|e| damaged(&e.to_string()))?;
     let whole = || -> Option<(&[u8], &[u8])> {
         let (content, sum) = bytes.split_last_chunk::<8>()?;
         if SUM.checksum(content).to_le_bytes() != *sum {

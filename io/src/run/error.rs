@@ -39,6 +39,14 @@ pub enum RunError {
         /// The folder.
         folder: PathBuf,
     },
+    /// A link, a pipe or a folder has the name of a file of the run, or a link that of a folder.
+    #[error(
+        "{} is a link, or no file or folder such as a run has", path.display()
+    )]
+    NotOwn {
+        /// The file or folder.
+        path: PathBuf,
+    },
     /// Another process works in the folder.
     #[error(
         "another process is writing to {}", folder.display()
@@ -136,6 +144,9 @@ impl Advice for RunError {
                 Some("replace it with --force, or choose another folder with --out")
             }
             Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
+            Self::NotOwn { .. } => Some(
+                "a run writes to no other files than its own: remove it, or choose another folder with --out",
+            ),
             Self::Busy { .. } => Some("wait for it or choose another folder with --out"),
             Self::Unwritable { .. } => Some(
                 "check the permissions and the free space, or choose another folder with --out",

@@ -1,6 +1,7 @@
 //! The frames of a run: one file that grows while it goes on.
 
 use super::RunError;
+use crate::format::input;
 use crate::format::{FrameData, MeshCounts, Quantity, WriteError};
 use crate::scene::Setup;
 use crc::{CRC_64_XZ, Crc};
@@ -85,7 +86,7 @@ impl FrameShape {
 impl FrameFile {
     /// Starts a new file.
     pub(crate) fn create(path: &Path) -> Result<Self, WriteError> {
-        let begun = File::create(path).and_then(|mut file| {
+        let begun = input::replace(path).and_then(|mut file| {
             file.write_all(MAGIC)?;
             Ok(file)
         });
@@ -116,7 +117,7 @@ impl FrameFile {
             }
         }
         let length = MAGIC.len() as u64 + count * shape.bytes() as u64;
-        let opened = File::options().write(true).open(path);
+        let opened = input::reopen(path, File::options().write(true));
         let continued = opened.and_then(|mut file| {
             file.set_len(length)?;
             file.seek(SeekFrom::End(0))?;
@@ -195,7 +196,7 @@ impl<'a> Frames<'a> {
                 source,
             },
         };
-        let mut file = BufReader::new(File::open(path).map_err(read)?);
+        let mut file = BufReader::new(input::open(path).map_err(read)?);
         let mut magic = [0; MAGIC.len()];
         let found = read_whole(&mut file, &mut magic).map_err(read)?;
         if !found || magic != *MAGIC {

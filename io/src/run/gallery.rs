@@ -9,7 +9,7 @@ pub use error::GalleryError;
 
 use super::folder::{RunFolder, holds_other_files, remove_unfinished};
 use super::{Film, FilmOptions, Recording};
-use crate::format::{read_json, write_atomically, write_json};
+use crate::format::{input, read_json, write_atomically, write_json};
 use crate::picture::PictureError;
 use entry::RUNS;
 use std::collections::HashSet;
@@ -65,6 +65,10 @@ impl Gallery {
             return Err(GalleryError::NoRuns { folders });
         }
         let before = Self::before(out)?;
+        let runs = out.join(RUNS);
+        if fs::symlink_metadata(&runs).is_ok() && !input::is_own_folder(&runs) {
+            return Err(GalleryError::Linked { path: runs });
+        }
         for folder in [out.to_owned(), out.join(RUNS)] {
             // Files that cannot be removed are in nobody's way.
             let _ = remove_unfinished(&folder);
@@ -102,7 +106,14 @@ impl Gallery {
     fn before(out: &Path) -> Result<Vec<GalleryEntry>, GalleryError> {
         let data = out.join(Self::DATA);
         if data.is_file() {
-            return Ok(read_json(&data)?);
+            let entries: Vec<GalleryEntry> = read_json(&data)?;
+            return match entries.iter().find(|entry| !is_plain(&entry.name)) {
+                None => Ok(entries),
+                Some(GalleryEntry { name, .. }) => Err(GalleryError::Name {
+                    path: data,
+                    name: name.clone(),
+                }),
+            };
         }
         let path = || out.to_owned();
         match holds_other_files(out, &[RUNS, Self::INDEX]) {
@@ -204,15 +215,22 @@ fn picture(recording: &Recording, frame: usize) -> Result<Vec<u8>, PictureError>
 fn file_name(folder: &Path) -> String {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let name = whole.file_name().unwrap_or_default().to_string_lossy();
-    let plain = |c: char| match c {
-        'a'..='z' | 'A'..='Z' | '0'..='9' | '-' | '_' | '.' => c,
-        _ => '-',
-    };
+    let plain = |c: char| if is_plain_character(c) { c } else { '-' };
     name.strip_suffix("-run")
         .unwrap_or(&name)
         .chars()
         .map(plain)
         .collect()
+}
+
+/// What names of files in a gallery are made of.
+fn is_plain_character(c: char) -> bool {
+    c.is_ascii_alphanumeric() || ['-', '_', '.'].contains(&c)
+}
+
+/// Whether a gallery may have given a name to a run.
+fn is_plain(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(is_plain_character)
 }
 
 /// A name that no other run of the gallery has.

@@ -1,6 +1,6 @@
 //! What a run recorded, complete or not.
 
-use super::folder::RunFolder;
+use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, read_frames};
 use super::{RunError, Summary};
 use crate::format::{
@@ -54,7 +54,7 @@ impl Recording {
     /// # Errors
     /// [`RunError::NoRun`] if the folder is not that of a run, [`RunError`] if a file cannot be read.
     pub fn read(folder: &Path) -> Result<Self, RunError> {
-        let scene = open_scene(folder)?;
+        let scene = stored_scene(folder)?;
         let setup = scene.build()?;
         let summary = folder.join(RunFolder::SUMMARY);
         let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
@@ -128,17 +128,6 @@ fn name_of(folder: &Path) -> String {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let name = whole.file_name().unwrap_or_default().to_string_lossy();
     name.strip_suffix("-run").unwrap_or(&name).to_owned()
-}
-
-/// The scene of a folder.
-pub(crate) fn open_scene(folder: &Path) -> Result<SceneFile, RunError> {
-    let path = folder.join(RunFolder::SCENE);
-    if !path.is_file() {
-        return Err(RunError::NoRun {
-            folder: folder.to_owned(),
-        });
-    }
-    Ok(SceneFile::read(&path, &[])?)
 }
 
 /// The trajectory of the frames in a file.

@@ -69,6 +69,9 @@ impl SceneText {
     }
 }
 
+/// Most problems that are shown at once.
+const MOST_PROBLEMS: usize = 50;
+
 /// A problem with its place, as a value for programs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct PlacedProblem {
@@ -105,9 +108,18 @@ pub struct SceneError {
 
 impl SceneError {
     /// The error of some problems, if there are any.
-    pub(crate) fn of(problems: Vec<Problem>) -> Result<(), Self> {
+    pub(crate) fn of(mut problems: Vec<Problem>) -> Result<(), Self> {
         if problems.is_empty() {
             return Ok(());
+        }
+        if let Some(more) = problems.len().checked_sub(MOST_PROBLEMS).filter(|&n| n > 0) {
+            problems.truncate(MOST_PROBLEMS);
+            let message = format!("{more} further problems are not shown");
+            problems.push(Problem::new(
+                Key::root(),
+                message,
+                "correct those above first",
+            ));
         }
         let text = None;
         Err(Self { problems, text })

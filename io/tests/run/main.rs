@@ -19,6 +19,8 @@ mod pages;
 mod rod_forces;
 #[path = "../shared/skip.rs"]
 mod skip;
+#[cfg(unix)]
+mod strangers;
 mod sweeps;
 mod tools;
 mod traces;

@@ -1,10 +1,11 @@
 //! Arrays in an archive of numpy: a zip file with one `.npy` file for each.
 
 use super::TrajectoryError;
+use crate::format::{input, memory};
 use npyz::npz::file_name_from_array_name;
 use npyz::{AutoSerialize, Deserialize, NpyFile, Order, WriteOptions, WriterBuilder};
 use std::fs::File;
-use std::io::{self, BufReader, Seek, Write};
+use std::io::{self, BufReader, Cursor, Read, Seek, Write};
 use std::path::Path;
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
@@ -49,6 +50,8 @@ impl<W: Write + Seek> ArchiveWriter<W> {
 /// Reads arrays.
 pub(super) struct ArchiveReader<'a> {
     zip: ZipArchive<BufReader<File>>,
+    /// The bytes that further arrays may take.
+    left: u64,
     /// For messages.
     path: &'a Path,
 }
@@ -58,8 +61,10 @@ pub(super) type Shaped<T> = (Vec<u64>, Vec<T>);
 
 impl<'a> ArchiveReader<'a> {
     pub(super) fn open(path: &'a Path) -> io::Result<Self> {
-        let zip = ZipArchive::new(BufReader::new(File::open(path)?))?;
-        Ok(Self { zip, path })
+        let zip = ZipArchive::new(BufReader::new(input::open(path)?))?;
+        // What is read is used, too.
+        let left = memory::free() / 2;
+        Ok(Self { zip, left, path })
     }
 
     /// An array of so many dimensions.
@@ -91,7 +96,9 @@ impl<'a> ArchiveReader<'a> {
             Err(ZipError::FileNotFound) => return Ok(None),
             other => other.map_err(|e| error(e.to_string()))?,
         };
-        let npy = NpyFile::new(entry).map_err(|e| error(e.to_string()))?;
+        let announced = entry.size();
+        let npy = whole_header(entry).and_then(NpyFile::new);
+        let npy = npy.map_err(|e| error(e.to_string()))?;
         let shape = npy.shape().to_vec();
         if shape.len() != dimensions {
             return Err(error(format!(
@@ -110,15 +117,44 @@ impl<'a> ArchiveReader<'a> {
         let values = npy
             .try_data::<T>()
             .map_err(|npy| error(format!("its type is {:?}", npy.dtype().descr())))?;
-        let values: Vec<T> = values
-            .collect::<Result<_, _>>()
-            .map_err(|e| error(e.to_string()))?;
-        if values.len() as u64 != expected {
+        let bytes = expected.saturating_mul(size_of::<T>() as u64);
+        if bytes > announced {
             return Err(error(format!(
-                "it holds {} values, {expected} expected",
-                values.len()
+                "its shape {shape:?} needs {bytes} bytes, and it has {announced}"
             )));
         }
-        Ok(Some((shape, values)))
+        if bytes > self.left {
+            return Err(error(format!(
+                "it needs {bytes} bytes, and there is memory for {}",
+                self.left
+            )));
+        }
+        let mut read = Vec::new();
+        let reserved = read.try_reserve_exact(expected as usize);
+        reserved.map_err(|e| error(e.to_string()))?;
+        for value in values {
+            read.push(value.map_err(|e| error(e.to_string()))?);
+        }
+        self.left -= bytes;
+        Ok(Some((shape, read)))
     }
+}
+
+/// The longest header of an array, bytes: that of version 1 of the format.
+const LONGEST_HEADER: u32 = 65_535;
+
+/// The content of an array, whose header has at most [`LONGEST_HEADER`] bytes.
+fn whole_header(mut array: impl Read) -> io::Result<impl Read> {
+    // Six bytes of magic, two of the version, and the length of the header in two or four bytes.
+    let mut start = [0; 12];
+    array.read_exact(&mut start)?;
+    let length = match start[6] {
+        1 => u32::from(u16::from_le_bytes([start[8], start[9]])),
+        _ => u32::from_le_bytes([start[8], start[9], start[10], start[11]]),
+    };
+    if length > LONGEST_HEADER {
+        let problem = format!("its header announces {length} bytes");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, problem));
+    }
+    Ok(Cursor::new(start).chain(array))
 }
