@@ -35,4 +35,4 @@ pub(crate) use obj_write::frame_number;
 pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
 pub use trajectory::{FrameData, Trajectory, TrajectoryError};
 #[cfg(feature = "run")]
-pub(crate) use trajectory::{MeshCounts, Quantity};
+pub(crate) use trajectory::{MeshCounts, Motion, MotionError, MotionFrame, Quantity};

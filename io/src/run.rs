@@ -35,12 +35,14 @@ mod error;
 #[cfg(feature = "picture")]
 mod film;
 mod folder;
+mod frame_field;
 mod frames;
 #[cfg(feature = "picture")]
 mod gallery;
 mod page;
 mod recording;
 mod replay;
+mod spool;
 mod stepping;
 mod summary;
 mod sweep;
@@ -67,18 +69,19 @@ pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
 use crate::format::{
-    HistoryRow, HistoryWriter, LoadWriter, MeasureWriter, Row, frame_path, read_json, write_json, write_obj,
+    HistoryRow, HistoryWriter, LoadWriter, MeasureWriter, Motion, MotionError, Row, Trajectory,
+    frame_path, read_json, write_json, write_obj,
 };
 use crate::scene::{FoldTargets, Gauge, Origins, SceneFile, Setup, SupportForces};
 use crate::view::PageOptions;
 use checkpoint::Progress;
 use folder::{Contents, Existing, Material, RunFolder, stored_scene};
-use frames::{FrameFile, FrameShape, read_frames};
+use frames::{FrameFile, FrameShape, StoredFrames};
 use isosheet_dynamics::Simulation;
 use isosheet_mesh::VertexId;
 use page::write_page_of;
-use recording::read_trajectory;
 use std::io::ErrorKind;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use stepping::{Stepping, step_count};
@@ -225,8 +228,13 @@ fn write_trajectory(
     sheet: &isosheet_mesh::Sheet,
     shape: FrameShape,
 ) -> Result<(), RunError> {
-    let trajectory = read_trajectory(&folder.path(RunFolder::FRAMES), sheet, shape)?;
-    Ok(trajectory.write(&folder.path(RunFolder::TRAJECTORY))?)
+    let path = folder.path(RunFolder::FRAMES);
+    let frames = StoredFrames { path, shape };
+    let written = Trajectory::new(sheet).write_motion(&folder.path(RunFolder::TRAJECTORY), &frames);
+    written.map_err(|error| match error {
+        MotionError::Frame(error) => error,
+        MotionError::Trajectory(error) => error.into(),
+    })
 }
 
 /// Continues the run in a folder, with the scene that is stored there.
@@ -421,10 +429,7 @@ fn finish(
     let topology = facts.sheet.topology();
     let output = &file.scene().output;
     if output.obj {
-        let (path, obj) = (folder.path(RunFolder::FRAMES), folder.path(RunFolder::OBJ));
-        for (k, frame) in read_frames(&path, facts.frame)?.iter().enumerate() {
-            write_obj(&frame_path(&obj, k), topology, &frame.x)?;
-        }
+        write_obj_files(folder, facts)?;
     }
     let summary = Summary {
         program: "isosheet".into(),
@@ -456,13 +461,31 @@ fn finish(
     Ok(Outcome::Complete(Box::new(summary)))
 }
 
+/// Writes the frames as OBJ files.
+fn write_obj_files(folder: &RunFolder, facts: &Facts) -> Result<(), RunError> {
+    let (path, obj) = (folder.path(RunFolder::FRAMES), folder.path(RunFolder::OBJ));
+    let (topology, mut done) = (facts.sheet.topology(), Ok(()));
+    let frames = StoredFrames {
+        path,
+        shape: facts.frame,
+    };
+    frames.each(&mut |frame| {
+        done = write_obj(&frame_path(&obj, frame.number), topology, frame.x);
+        match done {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    })?;
+    Ok(done?)
+}
+
 /// Writes the page of a run whose summary is not in the folder yet. A run that no page can show is complete
 /// all the same: [`write_page`] says why there is none.
 fn write_page_before(folder: &RunFolder, summary: &Summary) -> Result<(), RunError> {
-    let mut recording = Recording::read(folder.root())?;
+    let (mut recording, frames) = Recording::open(folder.root())?;
     recording.summary = Some(summary.clone());
     let path = folder.path(RunFolder::PAGE);
-    match write_page_of(&recording, &path, &PageOptions::default()) {
+    match write_page_of(&recording, &frames, &path, &PageOptions::default()) {
         Err(RunError::Page(_)) => match std::fs::remove_file(&path) {
             Err(source) if source.kind() != ErrorKind::NotFound => Err(RunError::Unwritable {
                 folder: folder.root().to_owned(),

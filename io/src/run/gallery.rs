@@ -8,9 +8,11 @@ pub use entry::GalleryEntry;
 pub use error::GalleryError;
 
 use super::folder::{RunFolder, holds_other_files, remove_unfinished};
-use super::{Film, FilmOptions, Recording};
-use crate::format::{input, read_json, write_atomically, write_json};
+use super::page::page_of;
+use super::{Film, FilmOptions, Recording, RunError};
+use crate::format::{WriteError, input, read_json, write_atomically, write_json};
 use crate::picture::PictureError;
+use crate::view::PageOptions;
 use entry::RUNS;
 use std::collections::HashSet;
 use std::fs;
@@ -73,13 +75,18 @@ impl Gallery {
             // Files that cannot be removed are in nobody's way.
             let _ = remove_unfinished(&folder);
         }
+        let made = fs::create_dir_all(&runs);
+        made.map_err(|source| WriteError::CreateFolder {
+            folder: runs.clone(),
+            source,
+        })?;
         let mut gallery = Self {
             entries: Vec::new(),
             left_out,
         };
         let mut names = HashSet::new();
         for folder in found {
-            match Shown::read(&folder) {
+            match Shown::read(&folder, &runs) {
                 Ok(shown) => {
                     let name = unused(&file_name(&folder), &mut names);
                     let [page, picture] = files(&name).map(|file| out.join(file));
@@ -184,14 +191,16 @@ struct Shown {
 }
 
 impl Shown {
-    /// Reads a run and makes both, or says why that cannot be done.
-    fn read(folder: &Path) -> Result<Self, String> {
-        let recording = Recording::read(folder).map_err(|e| e.to_string())?;
+    /// Reads a run and makes both in a folder that is there, or says why that cannot be done.
+    fn read(folder: &Path, out: &Path) -> Result<Self, String> {
+        let words = |error: RunError| error.to_string();
+        let (mut recording, frames) = Recording::open(folder).map_err(words)?;
+        let page = page_of(&recording, &frames, out, &PageOptions::default());
+        recording.load(frames, folder).map_err(words)?;
         let Some(last) = recording.trajectory.len().checked_sub(1) else {
             return Err("it has no frame yet".into());
         };
-        let replay = recording.replay().map_err(|e| e.to_string())?;
-        let page = replay.to_html().map_err(|e| e.to_string())?;
+        let page = page.map_err(words)?;
         let picture = picture(&recording, last).map_err(|e| e.to_string())?;
         Ok(Self {
             recording,

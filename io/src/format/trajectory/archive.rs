@@ -26,6 +26,29 @@ impl<W: Write + Seek> ArchiveWriter<W> {
         shape: &[u64],
         values: impl Iterator<Item = T>,
     ) -> io::Result<()> {
+        self.begin::<T>(name, shape)?;
+        let options = WriteOptions::new().default_dtype().shape(shape);
+        let mut writer = options.writer(&mut self.0).begin_nd()?;
+        writer.extend(values)?;
+        writer.finish()
+    }
+
+    /// Adds an array whose rows `rows` puts, one after the other.
+    pub(super) fn put_rows(
+        &mut self,
+        name: &str,
+        shape: &[u64],
+        rows: impl FnOnce(&mut dyn FnMut(&[f64]) -> io::Result<()>) -> io::Result<()>,
+    ) -> io::Result<()> {
+        self.begin::<f64>(name, shape)?;
+        let options = WriteOptions::new().default_dtype().shape(shape);
+        let mut writer = options.writer(&mut self.0).begin_nd()?;
+        rows(&mut |row| row.iter().try_for_each(|value| writer.push(value)))?;
+        writer.finish()
+    }
+
+    /// Begins the file of an array.
+    fn begin<T>(&mut self, name: &str, shape: &[u64]) -> io::Result<()> {
         let bytes = shape.iter().product::<u64>() * size_of::<T>() as u64;
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Deflated)
@@ -35,10 +58,7 @@ impl<W: Write + Seek> ArchiveWriter<W> {
             .large_file(bytes > u64::from(u32::MAX) / 2);
         self.0
             .start_file(file_name_from_array_name(name), options)?;
-        let options = WriteOptions::new().default_dtype().shape(shape);
-        let mut writer = options.writer(&mut self.0).begin_nd()?;
-        writer.extend(values)?;
-        writer.finish()
+        Ok(())
     }
 
     pub(super) fn finish(self) -> io::Result<()> {
