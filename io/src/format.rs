@@ -1,6 +1,7 @@
 //! Files that a run reads and writes, one format a file. Needs the mesh alone.
 
 pub(crate) mod atomic;
+mod cell;
 mod export;
 mod finite;
 mod history;
@@ -15,13 +16,15 @@ mod trajectory;
 
 pub use atomic::{FileWriter, WriteError, write_atomically};
 #[cfg(feature = "run")]
+pub(crate) use cell::cell;
+#[cfg(feature = "run")]
 pub(crate) use finite::{Finding, check_finite};
 
 pub use export::{
     BodyPose, ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series,
     SeriesBody, SeriesField, SeriesFormat, SeriesOptions, write_frame, write_mesh, write_series,
 };
-pub use history::{HistoryError, HistoryRow, HistoryWriter, Row, RowWriter, read_history};
+pub use history::{HistoryError, HistoryRow, HistoryWriter, Row, RowWriter, Written, read_history};
 pub use json::{JsonError, read_json, write_json};
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};
 pub use measures::{MeasureRow, MeasureWriter, read_measures};

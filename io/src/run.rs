@@ -32,6 +32,7 @@ mod constraints;
 mod elastic;
 mod energy;
 mod error;
+mod estimate;
 #[cfg(feature = "picture")]
 mod film;
 mod folder;
@@ -56,6 +57,7 @@ pub(crate) use constraints::HoldingBody;
 pub use elastic::{Bend, ElasticSummary};
 pub use energy::EnergySummary;
 pub use error::RunError;
+pub use estimate::Estimate;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
@@ -147,17 +149,24 @@ fn simulate_in(
     watch: &mut dyn Watch,
 ) -> Result<Outcome, RunError> {
     let clock = Instant::now();
+    if folder.as_os_str().is_empty() {
+        return Err(RunError::NoFolder);
+    }
     let material = Material::read(file)?;
     if existing == Existing::Continue && RunFolder::is_complete(folder, &material)? {
         return already_complete(folder, material.hash);
     }
     let setup = file.build()?;
-    let warnings = setup.warnings();
+    let estimate = Estimate::of(file.scene(), &setup);
+    let warnings = [setup.warnings(), estimate.warnings(folder)].concat();
     let facts = Facts::of(&setup, material.hash);
     let continued = existing == Existing::Continue && RunFolder::has_checkpoint(folder);
     let ready = match continued {
         true => Ready::Built(setup),
-        false => Ready::Started(started(setup)?),
+        false => {
+            estimate.check(file, folder)?;
+            Ready::Started(started(setup)?)
+        }
     };
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
         Contents::Complete(open) => {
@@ -402,12 +411,12 @@ fn resume<'a>(
         history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,
         loads: progress
             .loads
-            .map(|length| LoadWriter::resume(&folder.path(RunFolder::LOADS), length))
+            .map(|written| LoadWriter::resume(&folder.path(RunFolder::LOADS), written))
             .transpose()?,
         gauges: facts.gauges.clone(),
         measures: progress
             .measures
-            .map(|length| MeasureWriter::resume(&folder.path(RunFolder::MEASURES), length))
+            .map(|written| MeasureWriter::resume(&folder.path(RunFolder::MEASURES), written))
             .transpose()?,
         frames,
         progress,

@@ -113,6 +113,7 @@ impl From<RunError> for Failure {
             | RunError::Foreign { .. }
             | RunError::NotOwn { .. } => Code::OtherScene,
             RunError::Busy { .. } => Code::Busy,
+            RunError::NoFolder => Code::CommandLine,
             RunError::SceneFile(SceneFileError::Edit(_)) => Code::CommandLine,
             RunError::Scene(_)
             | RunError::SceneFile(_)
@@ -125,6 +126,7 @@ impl From<RunError> for Failure {
             | RunError::History(
                 HistoryError::Read { .. }
                 | HistoryError::Shorter { .. }
+                | HistoryError::Changed { .. }
                 | HistoryError::Header { .. }
                 | HistoryError::Row { .. },
             ) => Code::Input,

@@ -1,6 +1,7 @@
 //! Files and text that subcommands write.
 
 use super::failure::{Code, Done, Failure};
+use super::printable::printable;
 use crate::scene::{materials_page, reference_page, schema};
 use crate::{write_atomically, write_json};
 use std::io::Write;
@@ -8,7 +9,7 @@ use std::path::Path;
 
 /// Writes text to stdout.
 pub(crate) fn to_stdout(text: &str) -> Done {
-    bytes_to_stdout(text.as_bytes())
+    bytes_to_stdout(printable(text, &[]).as_bytes())
 }
 
 /// Writes bytes to stdout.

@@ -1,9 +1,11 @@
 //! The history of a run: one row per step.
 
+use crc::{CRC_64_XZ, Crc, Digest};
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::brief;
+use std::fmt;
 use std::fs::File;
-use std::io::{self, Seek, Write};
+use std::io::{self, Read, Seek, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
@@ -116,6 +118,12 @@ pub enum HistoryError {
         /// The length that it had.
         length: u64,
     },
+    /// A history that is to be continued was changed.
+    #[error("{} was changed since it was written, its checksum is wrong", path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
     /// The first line is not the expected one.
     #[error("{} does not start with the columns {columns}, but with {found:?}", path.display())]
     Header {
@@ -146,7 +154,9 @@ impl Advice for HistoryError {
                 Some("go back to the last good step, with which the history ends")
             }
             Self::Read { .. } => Some("check the path"),
-            Self::Shorter { .. } => Some("start the run anew in another folder"),
+            Self::Shorter { .. } | Self::Changed { .. } => {
+                Some("start the run anew in another folder")
+            }
             Self::Header { .. } => Some("name the file of a run, such as its history.csv"),
             Self::Row { .. } => Some("correct or remove the row"),
         }
@@ -220,13 +230,36 @@ impl Row for HistoryRow {
     }
 }
 
+/// How much of a table was written, as a run notes it to continue the table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Written {
+    /// Bytes.
+    pub length: u64,
+    /// CRC-64 of these bytes.
+    pub sum: u64,
+}
+
+/// Sums over tables.
+static SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
+
 /// Writes a table of comma-separated values row by row, as [`HistoryWriter`] does.
-#[derive(Debug)]
 pub struct RowWriter<R> {
     path: PathBuf,
     file: File,
     length: u64,
+    /// Over the bytes that are written.
+    sum: Digest<'static, u64>,
     rows: PhantomData<fn(&R)>,
+}
+
+impl<R> fmt::Debug for RowWriter<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = f.debug_struct("RowWriter");
+        shown
+            .field("path", &self.path)
+            .field("length", &self.length);
+        shown.finish_non_exhaustive()
+    }
 }
 
 impl<R: Row> RowWriter<R> {
@@ -242,24 +275,27 @@ impl<R: Row> RowWriter<R> {
             path: path.to_owned(),
             file,
             length: 0,
+            sum: SUM.digest(),
             rows: PhantomData,
         };
         history.write_record(|w| w.write_record(R::COLUMNS))?;
         Ok(history)
     }
 
-    /// Continues a history after its first `length` bytes, an earlier value of [`RowWriter::length`];
-    /// what follows them is cut off.
+    /// Continues a history after what was written of it, an earlier value of [`RowWriter::written`]; what follows
+    /// is cut off.
     ///
     /// # Errors
     /// [`HistoryError::Read`] if the file cannot be opened, [`HistoryError::Shorter`] if it does not have as
-    /// many bytes.
-    pub fn resume(path: &Path, length: u64) -> Result<Self, HistoryError> {
+    /// many bytes, [`HistoryError::Changed`] if these are others.
+    pub fn resume(path: &Path, written: Written) -> Result<Self, HistoryError> {
+        let length = written.length;
         let read = |source| HistoryError::Read {
             path: path.to_owned(),
             source,
         };
-        let mut file = input::reopen(path, File::options().write(true)).map_err(read)?;
+        let file = input::reopen(path, File::options().read(true).write(true));
+        let mut file = file.map_err(read)?;
         let found = file.metadata().map_err(read)?.len();
         if found < length {
             return Err(HistoryError::Shorter {
@@ -268,19 +304,29 @@ impl<R: Row> RowWriter<R> {
                 length,
             });
         }
+        let sum = sum_of(&mut (&file).take(length)).map_err(read)?;
+        if sum.clone().finalize() != written.sum {
+            return Err(HistoryError::Changed {
+                path: path.to_owned(),
+            });
+        }
         file.set_len(length).map_err(read)?;
         file.seek(io::SeekFrom::End(0)).map_err(read)?;
         Ok(Self {
             path: path.to_owned(),
             file,
             length,
+            sum,
             rows: PhantomData,
         })
     }
 
-    /// Number of bytes written so far.
-    pub fn length(&self) -> u64 {
-        self.length
+    /// What is written so far.
+    pub fn written(&self) -> Written {
+        Written {
+            length: self.length,
+            sum: self.sum.clone().finalize(),
+        }
     }
 
     /// Waits until all rows are on the disk, so that they survive the end of the system too.
@@ -329,8 +375,20 @@ impl<R: Row> RowWriter<R> {
             writer.flush().map_err(failed)?;
         }
         self.file.write_all(&line).map_err(failed)?;
+        self.sum.update(&line);
         self.length += line.len() as u64;
         Ok(())
+    }
+}
+
+/// The sum over all bytes.
+fn sum_of(bytes: &mut impl Read) -> io::Result<Digest<'static, u64>> {
+    let (mut sum, mut part) = (SUM.digest(), vec![0; 1 << 16]);
+    loop {
+        match bytes.read(&mut part)? {
+            0 => return Ok(sum),
+            count => sum.update(&part[..count]),
+        }
     }
 }
 
@@ -452,14 +510,14 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("history.csv");
         let mut whole = HistoryWriter::create(&path).unwrap();
-        let mut lengths = vec![whole.length()];
+        let mut lengths = vec![whole.written()];
         for k in 0..4 {
             whole.append(&row(k)).unwrap();
-            lengths.push(whole.length());
+            lengths.push(whole.written());
         }
         whole.sync().unwrap();
         let bytes = std::fs::read(&path).unwrap();
-        assert_eq!(bytes.len() as u64, lengths[4]);
+        assert_eq!(bytes.len() as u64, lengths[4].length);
         for (k, length) in lengths.iter().enumerate() {
             let mut resumed = HistoryWriter::resume(&path, *length).unwrap();
             for j in k..4 {
@@ -467,9 +525,15 @@ mod tests {
             }
             assert_eq!(std::fs::read(&path).unwrap(), bytes);
         }
-        let longer = HistoryWriter::resume(&path, lengths[4] + 1);
+        let longer = HistoryWriter::resume(
+            &path,
+            Written {
+                length: lengths[4].length + 1,
+                ..lengths[4]
+            },
+        );
         assert!(matches!(longer, Err(HistoryError::Shorter { .. })));
-        let missing = HistoryWriter::resume(&dir.path().join("none.csv"), 0);
+        let missing = HistoryWriter::resume(&dir.path().join("none.csv"), lengths[0]);
         assert!(matches!(missing, Err(HistoryError::Read { .. })));
     }
 

@@ -30,6 +30,9 @@ pub enum RunError {
         /// The folder.
         folder: PathBuf,
     },
+    /// The path of the folder is empty.
+    #[error("the path of the folder is empty")]
+    NoFolder,
     /// The folder holds other files.
     #[error(
         "{} holds files and is not the folder of a run",
@@ -143,6 +146,7 @@ impl Advice for RunError {
             Self::OtherScene { .. } => {
                 Some("replace it with --force, or choose another folder with --out")
             }
+            Self::NoFolder => Some("name a folder; `.` is the current one"),
             Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
             Self::NotOwn { .. } => Some(
                 "a run writes to no other files than its own: remove it, or choose another folder with --out",

@@ -347,6 +347,9 @@ pub fn remove_unfinished(folder: &Path) -> io::Result<()> {
 /// # Errors
 /// [`RunError::NoRun`] without one, [`RunError::Damaged`] if it names files that are not in the folder.
 pub(crate) fn stored_scene(root: &Path) -> Result<SceneFile, RunError> {
+    if root.as_os_str().is_empty() {
+        return Err(RunError::NoFolder);
+    }
     let path = root.join(RunFolder::SCENE);
     if !path.is_file() {
         return Err(RunError::NoRun {

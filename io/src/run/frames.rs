@@ -95,7 +95,7 @@ impl FrameShape {
     }
 
     /// Length of a frame with its sum.
-    fn bytes(self) -> usize {
+    pub(crate) fn bytes(self) -> usize {
         8 * (2 + self.coordinates + self.data.iter().sum::<usize>())
     }
 }

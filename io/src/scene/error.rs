@@ -184,15 +184,21 @@ fn without_place(problem: &Problem) -> String {
 fn group<'a>(problem: &'a Problem, path: &'a Path, text: &'a str, span: Range<usize>) -> Group<'a> {
     let marker = AnnotationKind::Primary.span(span);
     let snippet = Snippet::source(text)
-        .path(path.to_string_lossy())
+        .path(without_colours(&path.to_string_lossy()))
         .annotation(marker);
     let group = Level::ERROR
-        .primary_title(&problem.message)
+        .primary_title(without_colours(&problem.message))
         .element(snippet);
     match &problem.remedy {
-        Some(remedy) => group.element(Level::HELP.message(remedy)),
+        Some(remedy) => group.element(Level::HELP.message(without_colours(remedy))),
         None => group,
     }
+}
+
+/// A text whose escape characters are shown, so that those of a rendered message are all its own. The source is
+/// rendered without them.
+fn without_colours(text: &str) -> String {
+    text.replace('\u{1b}', "\\u001b")
 }
 
 impl From<Problem> for SceneError {

@@ -4,6 +4,17 @@ use super::placed::PlacedSheet;
 use isosheet_dynamics::ElasticSheet;
 use isosheet_mesh::wording::brief;
 
+/// A number of bytes with three digits, as in `1.25 GB`.
+pub(crate) fn bytes_in_words(bytes: f64) -> String {
+    let units = ["kB", "MB", "GB", "TB", "PB"];
+    let place = units.iter().zip([1e3, 1e6, 1e9, 1e12, 1e15]);
+    let fitting = place
+        .filter(|(_, size)| bytes >= *size || *size == 1e3)
+        .last();
+    let (unit, size) = fitting.expect("kilobytes fit always");
+    format!("{} {unit}", brief(bytes / size))
+}
+
 /// What the sheets are made of, if the scene names it.
 pub(super) fn materials_in_words(sheets: &[PlacedSheet<'_>]) -> Option<String> {
     let words = |sheet: &PlacedSheet<'_>| {

@@ -17,6 +17,7 @@ mod live_page;
 mod measures;
 mod pages;
 mod rod_forces;
+mod sizes;
 #[path = "../shared/skip.rs"]
 mod skip;
 #[cfg(unix)]

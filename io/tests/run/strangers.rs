@@ -1,7 +1,7 @@
 //! Files and folders that strangers made: nothing outside of them is read, changed or deleted, and nothing is
 //! waited for.
 
-use crate::{code, run, stderr, with_scene};
+use crate::{code, run, stderr, stdout, with_scene};
 use isosheet_io::scene::StartingPoint;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 use std::fs;
@@ -381,4 +381,43 @@ fn thousands_of_corners_and_of_unknown_keys_are_answered_shortly() {
     let said = stderr(&refused);
     assert!(said.contains("`unknown0`"), "{said}");
     assert!(said.contains("199950 further problems"), "{said}");
+}
+
+#[test]
+fn names_control_no_terminal() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = "version = 1\n[[sheet]]\nname = \"\\u001b]0;x\\u0007\\u009b2J\"\n\
+                 mesh = { square = { side = 0.1, level = 0 } }\n[[sheet]]\nname = \"z\"\n\
+                 mesh = { square = { side = 0.1, level = 0 } }\nplacement = { position = [0, 0, 1] }\n";
+    fs::write(dir.join("s.toml"), scene).unwrap();
+    let is_plain = |text: &str| text.chars().all(|c| !c.is_control() || "\n\t".contains(c));
+    let set = [
+        "--set",
+        "measure=[{name=\"m\",sheet=\"\\u001b[1m\",at=\"all\",quantity=\"x\"}]",
+    ];
+    for arguments in [
+        &["check", "s.toml"][..],
+        &["simulate", "s.toml"],
+        &["simulate", "s.toml", "--json", "-o", "json"],
+        &["info", "s-run"],
+        &[&["check", "s.toml"], &set[..]].concat(),
+        &["check", "\u{1b}[1m.obj"],
+    ] {
+        let output = run(dir, arguments);
+        let said = format!("{}{}", stdout(&output), stderr(&output));
+        assert!(is_plain(&said), "{said:?}");
+        let shows_name = said.contains("\\u001b") && !said.is_empty();
+        assert!(shows_name || arguments[0] == "simulate", "{said}");
+    }
+}
+
+#[test]
+fn a_table_of_runs_has_no_formulas() {
+    let dir = with_scene(StartingPoint::Fold);
+    let dir = dir.path();
+    let done = run(dir, &["simulate", "scene.toml", "--out", "=cmd|x"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let table = run(dir, &["collect", "=cmd|x"]);
+    assert!(stdout(&table).contains("\n'=cmd|x,"), "{}", stdout(&table));
 }
