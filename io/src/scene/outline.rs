@@ -35,7 +35,7 @@ const MOST_SIDES: f64 = 1e4;
 pub enum OutlineShape {
     /// A regular polygon about the origin. The x axis leads through the middle of a side.
     Regular {
-        /// Number of sides.
+        /// Number of sides, at most 10 000.
         sides: usize,
         /// Radius of the circle through the corners, metres.
         radius: f64,
