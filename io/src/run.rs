@@ -162,7 +162,7 @@ fn simulate_in(
     let facts = Facts::of(&setup, material.hash);
     let continued = existing == Existing::Continue && RunFolder::has_checkpoint(folder);
     let ready = match continued {
-        true => Ready::Built(setup),
+        true => Ready::Built(Box::new(setup)),
         false => {
             estimate.check(file, folder)?;
             Ready::Started(started(setup)?)
@@ -299,7 +299,7 @@ impl Facts {
 /// What is ready before the folder is made or changed: a scene that cannot start leaves it as it was.
 enum Ready {
     /// All of which the simulation is continued, where there is a checkpoint.
-    Built(Setup),
+    Built(Box<Setup>),
     /// The simulation at the start.
     Started(Simulation),
 }
@@ -308,7 +308,7 @@ impl Ready {
     /// The simulation at the start.
     fn simulation(self) -> Result<Simulation, RunError> {
         match self {
-            Self::Built(setup) => started(setup),
+            Self::Built(setup) => started(*setup),
             Self::Started(simulation) => Ok(simulation),
         }
     }
@@ -316,7 +316,7 @@ impl Ready {
     /// All of which the simulation of a scene is continued.
     fn setup(self, file: &SceneFile) -> Result<Setup, RunError> {
         match self {
-            Self::Built(setup) => Ok(setup),
+            Self::Built(setup) => Ok(*setup),
             Self::Started(_) => Ok(file.build()?),
         }
     }

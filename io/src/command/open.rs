@@ -44,6 +44,14 @@ fn door(address: &str) -> io::Result<NamedTempFile> {
     Ok(file)
 }
 
+fn warn(opened: io::Result<()>, what: impl Display) {
+    if let Err(error) = opened {
+        print_message(format_args!(
+            "warning: cannot open {what}: {error}\n  = help: open {what} in a browser"
+        ));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,13 +68,5 @@ mod tests {
             let mode = file.as_file().metadata().unwrap().permissions().mode();
             assert_eq!(mode & 0o077, 0);
         }
-    }
-}
-
-fn warn(opened: io::Result<()>, what: impl Display) {
-    if let Err(error) = opened {
-        print_message(format_args!(
-            "warning: cannot open {what}: {error}\n  = help: open {what} in a browser"
-        ));
     }
 }

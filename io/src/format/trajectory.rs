@@ -46,6 +46,14 @@ pub struct Trajectory {
     data: [Vec<f64>; Quantity::COUNT],
 }
 
+/// What a motion has.
+struct Contents {
+    /// Times of the frames, seconds.
+    times: Vec<f64>,
+    /// What the frames have besides positions.
+    quantities: Vec<Quantity>,
+}
+
 impl Trajectory {
     /// An empty trajectory of a sheet.
     pub fn new(sheet: &Sheet) -> Self {
@@ -278,7 +286,7 @@ impl Trajectory {
         path: &Path,
         motion: &M,
     ) -> Result<(), MotionError<M::Error>> {
-        let (times, quantities) = self.contents(motion)?;
+        let Contents { times, quantities } = self.contents(motion)?;
         let (frames, vertices) = (times.len() as u64, self.vertex_count as u64);
         let mut failed = None;
         let mut rows = |of: &dyn for<'f> Fn(&MotionFrame<'f>) -> &'f [f64],
@@ -325,11 +333,8 @@ impl Trajectory {
         }
     }
 
-    /// The times of a motion, and what its frames have besides positions, if they are those of a trajectory.
-    fn contents<M: Motion>(
-        &self,
-        motion: &M,
-    ) -> Result<(Vec<f64>, Vec<Quantity>), MotionError<M::Error>> {
+    /// What a motion has, if its frames are those of a trajectory.
+    fn contents<M: Motion>(&self, motion: &M) -> Result<Contents, MotionError<M::Error>> {
         let (mut times, mut quantities) = (Vec::new(), Vec::new());
         let mut checked = Ok(());
         let shown = motion.each(&mut |frame| {
@@ -348,7 +353,7 @@ impl Trajectory {
         });
         shown.map_err(MotionError::Frame)?;
         checked?;
-        Ok((times, quantities))
+        Ok(Contents { times, quantities })
     }
 
     /// Reads an `.npz` file that [`Self::write`] wrote, or one of the same arrays.

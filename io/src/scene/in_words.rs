@@ -6,12 +6,9 @@ use isosheet_mesh::wording::brief;
 
 /// A number of bytes with three digits, as in `1.25 GB`.
 pub(crate) fn bytes_in_words(bytes: f64) -> String {
-    let units = ["kB", "MB", "GB", "TB", "PB"];
-    let place = units.iter().zip([1e3, 1e6, 1e9, 1e12, 1e15]);
-    let fitting = place
-        .filter(|(_, size)| bytes >= *size || *size == 1e3)
-        .last();
-    let (unit, size) = fitting.expect("kilobytes fit always");
+    let units = [("PB", 1e15), ("TB", 1e12), ("GB", 1e9), ("MB", 1e6)];
+    let fitting = units.into_iter().find(|(_, size)| bytes >= *size);
+    let (unit, size) = fitting.unwrap_or(("kB", 1e3));
     format!("{} {unit}", brief(bytes / size))
 }
 
