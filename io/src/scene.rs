@@ -120,12 +120,12 @@ pub use weight::Weight;
 pub use yields::{CreaseYield, SheetYield};
 
 #[cfg(feature = "run")]
-#[cfg(feature = "run")]
 pub(crate) use in_words::bytes_in_words;
 #[cfg(feature = "run")]
 pub(crate) use resolution::check_positions;
 #[cfg(feature = "run")]
 pub(crate) use size::MEMORY_OF_FACE;
+#[cfg(feature = "run")]
 pub(crate) use supports::frame_motion;
 
 use problem::Checks;

@@ -32,6 +32,7 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// Reads a regular file of text as a whole.
+#[cfg(feature = "scene")]
 pub(crate) fn read_text(path: &Path) -> io::Result<String> {
     String::from_utf8(read(path)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
@@ -74,10 +75,6 @@ pub(crate) fn replace(path: &Path) -> io::Result<File> {
 }
 
 /// Opens a regular file to write on it as `options` say, where no link has its name.
-#[cfg_attr(
-    not(feature = "run"),
-    expect(dead_code, reason = "runs alone continue files")
-)]
 pub(crate) fn reopen(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     match fs::symlink_metadata(path) {
         Ok(found) => refuse_irregular(&found)?,
@@ -85,11 +82,6 @@ pub(crate) fn reopen(path: &Path, options: &mut OpenOptions) -> io::Result<File>
         Err(error) => return Err(error),
     }
     regular(options, &[Flag::Immediately, Flag::NoLink], path)
-}
-
-/// Whether a folder has this name itself, and no link to one.
-pub(crate) fn is_own_folder(path: &Path) -> bool {
-    fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
 }
 
 /// How a file is opened, where the system can be told.

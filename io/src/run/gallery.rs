@@ -10,7 +10,7 @@ pub use error::GalleryError;
 use super::folder::{RunFolder, holds_other_files, remove_unfinished};
 use super::page::page_of;
 use super::{Film, FilmOptions, Recording, RunError};
-use crate::format::{WriteError, input, read_json, write_atomically, write_json};
+use crate::format::{WriteError, read_json, write_atomically, write_json};
 use crate::picture::PictureError;
 use crate::view::PageOptions;
 use entry::RUNS;
@@ -68,7 +68,7 @@ impl Gallery {
         }
         let before = Self::before(out)?;
         let runs = out.join(RUNS);
-        if fs::symlink_metadata(&runs).is_ok() && !input::is_own_folder(&runs) {
+        if fs::symlink_metadata(&runs).is_ok_and(|found| !found.is_dir()) {
             return Err(GalleryError::Linked { path: runs });
         }
         for folder in [out.to_owned(), out.join(RUNS)] {
