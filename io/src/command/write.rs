@@ -17,7 +17,11 @@ pub(crate) fn bytes_to_stdout(bytes: &[u8]) -> Done {
     match std::io::stdout().write_all(bytes) {
         // A reader such as `head` has enough.
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        Err(e) => Err(Failure::new(Code::Output, format!("cannot write: {e}"))),
+        Err(e) => {
+            let message = format!("cannot write to standard output: {e}");
+            let failure = Failure::new(Code::Output, message);
+            Err(failure.remedy("check where it goes, and the free space there"))
+        }
         Ok(()) => Ok(()),
     }
 }

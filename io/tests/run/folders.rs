@@ -178,11 +178,13 @@ fn a_full_disk_is_told_and_nothing_is_half_written() {
     let dir = with_scene(StartingPoint::Fold);
     let dir = dir.path();
     // No file takes more than so many blocks, as on a disk that is full.
-    let limited = "trap '' XFSZ; ulimit -f 8; exec \"$@\"";
-    let mut shell = Command::new("sh");
-    shell.args(["-c", limited, "sh", env!("CARGO_BIN_EXE_isosheet")]);
-    shell.args(["simulate", "scene.toml", "--out", "run"]);
-    let full = shell.current_dir(dir).output().unwrap();
+    let limited = |arguments: &[&str]| {
+        let script = "trap '' XFSZ; ulimit -f 8; exec \"$@\"";
+        let mut shell = Command::new("sh");
+        shell.args(["-c", script, "sh", env!("CARGO_BIN_EXE_isosheet")]);
+        shell.args(arguments).current_dir(dir).output().unwrap()
+    };
+    let full = limited(&["simulate", "scene.toml", "--out", "run"]);
     assert_eq!(code(&full), Some(6), "{}", stderr(&full));
     assert!(stderr(&full).contains("free space"), "{}", stderr(&full));
     assert!(!dir.join("run/summary.json").exists());
@@ -191,6 +193,15 @@ fn a_full_disk_is_told_and_nothing_is_half_written() {
     let whole = run(dir, &["simulate", "scene.toml", "--out", "whole"]);
     assert_eq!(code(&whole), Some(0), "{}", stderr(&whole));
     assert_same(&dir.join("whole"), &dir.join("run"));
+    // Nothing but the command itself says what is wrong.
+    let full = limited(&["convert", "whole", "a.npz"]);
+    let said = stderr(&full);
+    assert!(said.starts_with("error: cannot write a.npz: "), "{said}");
+    assert!(
+        said.ends_with("\n  = help: check the free space\n"),
+        "{said}"
+    );
+    assert_eq!((said.lines().count(), code(&full)), (2, Some(6)), "{said}");
 }
 
 #[test]

@@ -5,18 +5,94 @@ use crate::format::{input, memory};
 use npyz::npz::file_name_from_array_name;
 use npyz::{AutoSerialize, Deserialize, NpyFile, Order, WriteOptions, WriterBuilder};
 use std::fs::File;
-use std::io::{self, BufReader, Cursor, Read, Seek, Write};
+use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 /// Writes arrays.
-pub(super) struct ArchiveWriter<W: Write + Seek>(ZipWriter<W>);
+pub(super) struct ArchiveWriter<W: Write + Seek>(ZipWriter<UntilFailure<W>>);
+
+/// A file to which nothing more is written once that has failed, without a further word: the library ends an
+/// archive that is given up, and prints what goes wrong with that.
+struct UntilFailure<W> {
+    file: W,
+    /// After a failure the place and the length that the file would have.
+    lost: Option<[u64; 2]>,
+    /// The place in the file.
+    place: u64,
+}
+
+impl<W> UntilFailure<W> {
+    fn new(file: W) -> Self {
+        Self {
+            file,
+            lost: None,
+            place: 0,
+        }
+    }
+
+    /// Takes note of a failure.
+    fn note<T>(&mut self, done: io::Result<T>) -> io::Result<T> {
+        if done
+            .as_ref()
+            .is_err_and(|e| e.kind() != io::ErrorKind::Interrupted)
+        {
+            self.lost = Some([self.place; 2]);
+        }
+        done
+    }
+}
+
+impl<W: Write> Write for UntilFailure<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if let Some([place, length]) = &mut self.lost {
+            *place += bytes.len() as u64;
+            *length = (*length).max(*place);
+            return Ok(bytes.len());
+        }
+        let written = self.file.write(bytes);
+        self.place += *written.as_ref().unwrap_or(&0) as u64;
+        self.note(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.lost.is_some() {
+            return Ok(());
+        }
+        let flushed = self.file.flush();
+        self.note(flushed)
+    }
+}
+
+impl<W: Seek> Seek for UntilFailure<W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        if let Some([place, length]) = &mut self.lost {
+            *place = match to {
+                SeekFrom::Start(place) => place,
+                SeekFrom::Current(by) => place.saturating_add_signed(by),
+                SeekFrom::End(by) => length.saturating_add_signed(by),
+            };
+            return Ok(*place);
+        }
+        let sought = self.file.seek(to);
+        self.place = *sought.as_ref().unwrap_or(&self.place);
+        self.note(sought)
+    }
+}
+
+/// The error of the system, where it is one.
+fn of_archive(error: ZipError) -> io::Error {
+    match error {
+        ZipError::Io(error) => error,
+        error => io::Error::other(error),
+    }
+}
 
 impl<W: Write + Seek> ArchiveWriter<W> {
     pub(super) fn new(file: W) -> Self {
-        Self(ZipWriter::new(file))
+        Self(ZipWriter::new(UntilFailure::new(file)))
     }
 
     /// Adds an array with the values of its entries by rows.
@@ -57,13 +133,12 @@ impl<W: Write + Seek> ArchiveWriter<W> {
             // An entry of more than 4 GiB, with its header, has another form.
             .large_file(bytes > u64::from(u32::MAX) / 2);
         self.0
-            .start_file(file_name_from_array_name(name), options)?;
-        Ok(())
+            .start_file(file_name_from_array_name(name), options)
+            .map_err(of_archive)
     }
 
     pub(super) fn finish(self) -> io::Result<()> {
-        self.0.finish()?;
-        Ok(())
+        self.0.finish().map(drop).map_err(of_archive)
     }
 }
 
