@@ -19,6 +19,7 @@ mod message;
 mod open;
 mod page;
 mod pictures;
+mod printable;
 mod progress;
 mod simulate;
 mod start;

@@ -1,17 +1,22 @@
 //! Files that a run reads and writes, one format a file. Needs the mesh alone.
 
 pub(crate) mod atomic;
+mod cell;
 mod export;
 mod finite;
 mod history;
+pub(crate) mod input;
 mod json;
 mod loads;
 mod measures;
+pub(crate) mod memory;
 mod mesh_file;
 mod obj_write;
 mod trajectory;
 
 pub use atomic::{FileWriter, WriteError, write_atomically};
+#[cfg(feature = "run")]
+pub(crate) use cell::cell;
 #[cfg(feature = "run")]
 pub(crate) use finite::{Finding, check_finite};
 
@@ -19,7 +24,7 @@ pub use export::{
     BodyPose, ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series,
     SeriesBody, SeriesField, SeriesFormat, SeriesOptions, write_frame, write_mesh, write_series,
 };
-pub use history::{HistoryError, HistoryRow, HistoryWriter, Row, RowWriter, read_history};
+pub use history::{HistoryError, HistoryRow, HistoryWriter, Row, RowWriter, Written, read_history};
 pub use json::{JsonError, read_json, write_json};
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};
 pub use measures::{MeasureRow, MeasureWriter, read_measures};
@@ -28,7 +33,9 @@ pub use mesh_file::{
     MeshFileProblem, MeshFormat, MeshOptions, Place, Polygons, ReadingChanges, Repair,
     SeparateBuffers, parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
+#[cfg(feature = "run")]
+pub(crate) use obj_write::frame_number;
 pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
 pub use trajectory::{FrameData, Trajectory, TrajectoryError};
 #[cfg(feature = "run")]
-pub(crate) use trajectory::{MeshCounts, Quantity};
+pub(crate) use trajectory::{MeshCounts, Motion, MotionError, MotionFrame, Quantity};

@@ -32,15 +32,18 @@ mod constraints;
 mod elastic;
 mod energy;
 mod error;
+mod estimate;
 #[cfg(feature = "picture")]
 mod film;
 mod folder;
+mod frame_field;
 mod frames;
 #[cfg(feature = "picture")]
 mod gallery;
 mod page;
 mod recording;
 mod replay;
+mod spool;
 mod stepping;
 mod summary;
 mod sweep;
@@ -54,6 +57,7 @@ pub(crate) use constraints::HoldingBody;
 pub use elastic::{Bend, ElasticSummary};
 pub use energy::EnergySummary;
 pub use error::RunError;
+pub use estimate::Estimate;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
@@ -67,16 +71,18 @@ pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
 use crate::format::{
-    HistoryWriter, LoadWriter, MeasureWriter, frame_path, read_json, write_json, write_obj,
+    HistoryRow, HistoryWriter, LoadWriter, MeasureWriter, Motion, MotionError, Row, Trajectory,
+    frame_path, read_json, write_json, write_obj,
 };
-use crate::scene::{SceneFile, Setup, SupportForces};
+use crate::scene::{Gauge, Origins, SceneFile, Setup, SupportForces, Targets};
 use crate::view::PageOptions;
 use checkpoint::Progress;
-use folder::{Contents, Existing, Material, RunFolder};
-use frames::{FrameFile, FrameShape, read_frames};
+use folder::{Contents, Existing, Material, RunFolder, stored_scene};
+use frames::{FrameFile, FrameShape, StoredFrames};
+use isosheet_dynamics::Simulation;
 use page::write_page_of;
-use recording::{open_scene, read_trajectory};
 use std::io::ErrorKind;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use stepping::{Stepping, step_count};
@@ -142,17 +148,30 @@ fn simulate_in(
     watch: &mut dyn Watch,
 ) -> Result<Outcome, RunError> {
     let clock = Instant::now();
+    if folder.as_os_str().is_empty() {
+        return Err(RunError::NoFolder);
+    }
     let material = Material::read(file)?;
     if existing == Existing::Continue && RunFolder::is_complete(folder, &material)? {
         return already_complete(folder, material.hash);
     }
     let setup = file.build()?;
-    let (modelled, warnings) = (setup.modelled.clone(), setup.warnings());
+    let estimate = Estimate::of(file.scene(), &setup);
+    let warnings = [setup.warnings(), estimate.warnings(folder)].concat();
+    let facts = Facts::of(&setup, material.hash);
+    let continued = existing == Existing::Continue && RunFolder::has_checkpoint(folder);
+    let ready = match continued {
+        true => Ready::Built(Box::new(setup)),
+        false => {
+            estimate.check(file, folder)?;
+            Ready::Started(started(setup)?)
+        }
+    };
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
         Contents::Complete(open) => {
             let lost = !open.path(RunFolder::TRAJECTORY).is_file();
             if file.scene().output.trajectory && lost {
-                write_trajectory(&open, &setup.sheet, FrameShape::of(&setup))?;
+                write_trajectory(&open, &facts.sheet, facts.frame)?;
             }
             return already_complete(folder, material.hash);
         }
@@ -162,18 +181,11 @@ fn simulate_in(
             (open, Some(saved))
         }
     };
-    let facts = Facts {
-        hash: material.hash,
-        modelled,
-        sheets: setup.parts.iter().map(SheetPlace::new).collect(),
-        sheet: setup.sheet.clone(),
-        frame: FrameShape::of(&setup),
-    };
     let mut stepping = match saved {
-        None => start(file, &open, setup, facts.hash, clock)?,
+        None => start(file, &open, &facts, ready.simulation()?, clock)?,
         Some(saved) => {
             check_origin(&open, &saved.0, facts.hash)?;
-            resume(file, &open, setup, saved, clock)?
+            resume(file, &open, &facts, ready.setup(file)?, saved, clock)?
         }
     };
     watch.begin(&Beginning {
@@ -224,8 +236,13 @@ fn write_trajectory(
     sheet: &isosheet_mesh::Sheet,
     shape: FrameShape,
 ) -> Result<(), RunError> {
-    let trajectory = read_trajectory(&folder.path(RunFolder::FRAMES), sheet, shape)?;
-    Ok(trajectory.write(&folder.path(RunFolder::TRAJECTORY))?)
+    let path = folder.path(RunFolder::FRAMES);
+    let frames = StoredFrames { path, shape };
+    let written = Trajectory::new(sheet).write_motion(&folder.path(RunFolder::TRAJECTORY), &frames);
+    written.map_err(|error| match error {
+        MotionError::Frame(error) => error,
+        MotionError::Trajectory(error) => error.into(),
+    })
 }
 
 /// Continues the run in a folder, with the scene that is stored there.
@@ -233,7 +250,7 @@ fn write_trajectory(
 /// # Errors
 /// As [`simulate`]; [`RunError::NoRun`] if the folder is not that of a run.
 pub fn resume_folder(folder: &Path, watch: &mut dyn Watch) -> Result<Outcome, RunError> {
-    simulate(&open_scene(folder)?, folder, watch)
+    simulate(&stored_scene(folder)?, folder, watch)
 }
 
 fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError> {
@@ -253,6 +270,60 @@ struct Facts {
     sheets: Vec<SheetPlace>,
     sheet: isosheet_mesh::Sheet,
     frame: FrameShape,
+    /// The positions at the start.
+    start: Vec<f64>,
+    origins: Origins,
+    targets: Targets,
+    gauges: Vec<Gauge>,
+}
+
+impl Facts {
+    fn of(setup: &Setup, hash: SceneHash) -> Self {
+        Self {
+            hash,
+            modelled: setup.modelled.clone(),
+            sheets: setup.parts.iter().map(SheetPlace::new).collect(),
+            sheet: setup.sheet.clone(),
+            frame: FrameShape::of(setup),
+            start: setup.start.x.clone(),
+            origins: setup.origins.clone(),
+            targets: setup.targets.clone(),
+            gauges: setup.measures.clone(),
+        }
+    }
+}
+
+/// What is ready before the folder is made or changed: a scene that cannot start leaves it as it was.
+enum Ready {
+    /// All of which the simulation is continued, where there is a checkpoint.
+    Built(Box<Setup>),
+    /// The simulation at the start.
+    Started(Simulation),
+}
+
+impl Ready {
+    /// The simulation at the start.
+    fn simulation(self) -> Result<Simulation, RunError> {
+        match self {
+            Self::Built(setup) => started(*setup),
+            Self::Started(simulation) => Ok(simulation),
+        }
+    }
+
+    /// All of which the simulation of a scene is continued.
+    fn setup(self, file: &SceneFile) -> Result<Setup, RunError> {
+        match self {
+            Self::Built(setup) => Ok(*setup),
+            Self::Started(_) => Ok(file.build()?),
+        }
+    }
+}
+
+/// The simulation at the start, whose energies can be written.
+fn started(setup: Setup) -> Result<Simulation, RunError> {
+    let simulation = setup.start()?;
+    HistoryRow::of_start(&simulation).check_finite()?;
+    Ok(simulation)
 }
 
 /// Whether there is a support or an obstacle in a scene.
@@ -263,34 +334,30 @@ fn bears_loads(file: &SceneFile) -> bool {
 fn start<'a>(
     file: &'a SceneFile,
     folder: &'a RunFolder,
-    setup: Setup,
-    hash: SceneHash,
+    facts: &Facts,
+    simulation: Simulation,
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
-    let (origins, targets) = (setup.origins.clone(), setup.targets.clone());
-    let gauges = setup.measures.clone();
-    let start = setup.start.x.clone();
-    let simulation = setup.start()?;
     let count = file.scene().support.len();
     let mut stepping = Stepping {
         file,
         folder,
-        supports: SupportForces::new(origins.clone(), &simulation, count),
-        targets,
+        supports: SupportForces::new(facts.origins.clone(), &simulation, count),
+        targets: facts.targets.clone(),
         simulation,
-        start,
-        origins,
+        start: facts.start.clone(),
+        origins: facts.origins.clone(),
         history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
         loads: bears_loads(file)
             .then(|| LoadWriter::create(&folder.path(RunFolder::LOADS)))
             .transpose()?,
-        measures: (!gauges.is_empty())
+        measures: (!facts.gauges.is_empty())
             .then(|| MeasureWriter::create(&folder.path(RunFolder::MEASURES)))
             .transpose()?,
-        gauges,
+        gauges: facts.gauges.clone(),
         frames: FrameFile::create(&folder.path(RunFolder::FRAMES))?,
         progress: Progress {
-            scene: hash.to_string(),
+            scene: facts.hash.to_string(),
             version: env!("CARGO_PKG_VERSION").into(),
             ..Progress::default()
         },
@@ -319,37 +386,32 @@ fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Res
 fn resume<'a>(
     file: &'a SceneFile,
     folder: &'a RunFolder,
+    facts: &Facts,
     setup: Setup,
     (progress, checkpoint): (Progress, isosheet_dynamics::Checkpoint),
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
-    let (origins, targets) = (setup.origins.clone(), setup.targets.clone());
-    let gauges = setup.measures.clone();
-    let start = setup.start.x.clone();
-    let frames = FrameFile::resume(
-        &folder.path(RunFolder::FRAMES),
-        progress.frames,
-        FrameShape::of(&setup),
-    )?;
+    let frames = folder.path(RunFolder::FRAMES);
+    let frames = FrameFile::resume(&frames, progress.frames, facts.frame)?;
     let simulation = setup.resume(checkpoint)?;
     let count = file.scene().support.len();
     Ok(Stepping {
         file,
         folder,
-        supports: SupportForces::new(origins.clone(), &simulation, count),
-        targets,
+        supports: SupportForces::new(facts.origins.clone(), &simulation, count),
+        targets: facts.targets.clone(),
         simulation,
-        start,
-        origins,
+        start: facts.start.clone(),
+        origins: facts.origins.clone(),
         history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,
         loads: progress
             .loads
-            .map(|length| LoadWriter::resume(&folder.path(RunFolder::LOADS), length))
+            .map(|written| LoadWriter::resume(&folder.path(RunFolder::LOADS), written))
             .transpose()?,
-        gauges,
+        gauges: facts.gauges.clone(),
         measures: progress
             .measures
-            .map(|length| MeasureWriter::resume(&folder.path(RunFolder::MEASURES), length))
+            .map(|written| MeasureWriter::resume(&folder.path(RunFolder::MEASURES), written))
             .transpose()?,
         frames,
         progress,
@@ -371,10 +433,7 @@ fn finish(
     let topology = facts.sheet.topology();
     let output = &file.scene().output;
     if output.obj {
-        let (path, obj) = (folder.path(RunFolder::FRAMES), folder.path(RunFolder::OBJ));
-        for (k, frame) in read_frames(&path, facts.frame)?.iter().enumerate() {
-            write_obj(&frame_path(&obj, k), topology, &frame.x)?;
-        }
+        write_obj_files(folder, facts)?;
     }
     let summary = Summary {
         program: "isosheet".into(),
@@ -406,13 +465,31 @@ fn finish(
     Ok(Outcome::Complete(Box::new(summary)))
 }
 
+/// Writes the frames as OBJ files.
+fn write_obj_files(folder: &RunFolder, facts: &Facts) -> Result<(), RunError> {
+    let (path, obj) = (folder.path(RunFolder::FRAMES), folder.path(RunFolder::OBJ));
+    let (topology, mut done) = (facts.sheet.topology(), Ok(()));
+    let frames = StoredFrames {
+        path,
+        shape: facts.frame,
+    };
+    frames.each(&mut |frame| {
+        done = write_obj(&frame_path(&obj, frame.number), topology, frame.x);
+        match done {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    })?;
+    Ok(done?)
+}
+
 /// Writes the page of a run whose summary is not in the folder yet. A run that no page can show is complete
 /// all the same: [`write_page`] says why there is none.
 fn write_page_before(folder: &RunFolder, summary: &Summary) -> Result<(), RunError> {
-    let mut recording = Recording::read(folder.root())?;
+    let (mut recording, frames) = Recording::open(folder.root())?;
     recording.summary = Some(summary.clone());
     let path = folder.path(RunFolder::PAGE);
-    match write_page_of(&recording, &path, &PageOptions::default()) {
+    match write_page_of(&recording, &frames, &path, &PageOptions::default()) {
         Err(RunError::Page(_)) => match std::fs::remove_file(&path) {
             Err(source) if source.kind() != ErrorKind::NotFound => Err(RunError::Unwritable {
                 folder: folder.root().to_owned(),

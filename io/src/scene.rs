@@ -58,10 +58,12 @@ mod profile;
 mod reference;
 mod refined;
 mod replaced;
+mod resolution;
 mod selection;
 mod setup;
 mod sheet;
 mod sheets;
+mod size;
 mod source;
 mod start;
 mod starting_point;
@@ -119,6 +121,12 @@ pub use warning::SceneWarning;
 pub use weight::Weight;
 pub use yields::{CreaseYield, SheetYield};
 
+#[cfg(feature = "run")]
+pub(crate) use in_words::bytes_in_words;
+#[cfg(feature = "run")]
+pub(crate) use resolution::check_positions;
+#[cfg(feature = "run")]
+pub(crate) use size::MEMORY_OF_FACE;
 #[cfg(feature = "run")]
 pub(crate) use supports::frame_motion;
 

@@ -9,8 +9,7 @@
 //! # What the page shows
 //! The sheet has two colours, one for each side. It can be coloured by the fold angles of the edges, by
 //! height and by every [`Field`]. The range of colours is that of the whole run; of the fold angles above a
-//! degree it has 98 %, and the legend says so. [`Field::edge_strain`] makes the field of the strains and
-//! [`Field::rod_forces`] that of the forces of the rods, [`Field::contact`] those of contact. Fields of
+//! degree it has 98 %, and the legend says so. [`Field::edge_strain`] makes the field of the strains. Fields of
 //! either sign ([`Scale::Signed`]) have zero in the middle of the colours, magnitudes ([`Scale::Magnitude`])
 //! at their lower end; the range of either has 98 % of the values that are not zero. The camera frames the
 //! rest shape, the first frame, the bodies, and where the sheet usually is (90 % of each coordinate over all
@@ -93,6 +92,7 @@ mod check;
 mod document;
 mod error;
 mod field;
+mod frames;
 mod live;
 mod pack;
 mod page;
@@ -101,7 +101,11 @@ mod replay;
 
 pub use body::{Body, BodyShape, Pose};
 pub use error::ViewError;
+#[cfg(feature = "run")]
+pub(crate) use field::strains;
 pub use field::{Field, Place, Scale, Series};
+#[cfg(feature = "run")]
+pub(crate) use frames::{Kept, ShownFrame, ShownFrames};
 pub use live::{LivePage, LiveSlider};
 pub use page::PageOptions;
 pub use replay::{Axis, Replay};

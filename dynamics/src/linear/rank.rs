@@ -17,7 +17,7 @@ pub struct RodRank {
     /// Number of rods that are dependent but for singular values below 1e-5, those included.
     pub nearly_dependent: usize,
     /// Smallest singular value of the rigidity matrix with rows scaled to unit rods; zero if
-    /// there are more rods than unknowns. Above a thousand rods to a factor of two.
+    /// there are more rods than unknowns, or none. Above a thousand rods to a factor of two.
     pub smallest: f64,
 }
 
@@ -54,6 +54,15 @@ pub fn rod_rank(model: &SheetModel, x: &[f64]) -> Option<RodRank> {
     }
     if edges.len() > MAX_DENSE {
         return rank_by_inertia(model, x, &edges);
+    }
+    if edges.is_empty() {
+        return Some(RodRank {
+            rods: 0,
+            rank: 0,
+            deficiency: 0,
+            nearly_dependent: 0,
+            smallest: 0.0,
+        });
     }
     let mut matrix = DMatrix::zeros(edges.len(), columns);
     for (row, &[a, b]) in edges.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::arrays::{array, rows, vectors};
 use crate::error::{of_scene, plain};
-use crate::value::table;
+use crate::value::{refuse_array, table};
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene;
 use isosheet_io::write_obj;
@@ -65,6 +65,8 @@ impl Mesh {
         faces: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         let numpy = py.import("numpy")?;
+        refuse_array(vertices)?;
+        refuse_array(faces)?;
         let vertices = numpy.call_method1("asarray", (vertices, "float64"))?;
         let given = numpy.call_method1("asarray", (faces,))?;
         // Whole numbers that are too large or negative are refused here, and parts of numbers are not cut

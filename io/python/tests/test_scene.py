@@ -116,3 +116,32 @@ def test_materials_are_those_of_scenes():
     sheet = {**TRIANGLE["sheet"], "density": None, "material": "office paper"}
     simulation = isosheet.Simulation(isosheet.Scene.from_dict({"sheet": sheet}))
     assert simulation.masses.sum() == pytest.approx(paper["density"] * 0.2**2, rel=1e-12)
+
+
+def test_values_that_contain_themselves_or_are_too_deep_are_refused():
+    circle = {}
+    circle["sheet"] = circle
+    deep = value = []
+    for _ in range(30_000):
+        value.append([])
+        value = value[0]
+    for wrong in [circle, {"sheet": deep}]:
+        with pytest.raises(ValueError, match="contains itself, or is nested deeper than 64 levels"):
+            isosheet.Scene.from_dict(wrong)
+
+
+def test_masked_and_huge_arrays_are_refused():
+    masked = np.ma.masked_array([0.0, 0.0, -9.81], mask=[True, False, False])
+    huge = np.broadcast_to(0.0, (10**9, 3))
+    for wrong, words in [(masked, "has a mask"), (huge, "3000000000 numbers")]:
+        with pytest.raises(ValueError, match=words):
+            isosheet.Scene.from_dict({**TRIANGLE, "forces": {"gravity": wrong}})
+        with pytest.raises(ValueError, match=words):
+            isosheet.Mesh(wrong, [[0, 1, 2]])
+
+
+def test_a_run_needs_a_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(isosheet.RunFailed, match="the path of the folder is empty"):
+        isosheet.Scene.from_dict(TRIANGLE).simulate("")
+    assert not list(tmp_path.iterdir())

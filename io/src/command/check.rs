@@ -6,6 +6,7 @@ use super::info::{describe_scene, is_scene, refuse_edits, refuse_folder};
 use super::message::{counted, print_warnings};
 use super::write::{is_same_file, to_stdout};
 use crate::mesh::Sheet;
+use crate::run::Estimate;
 use crate::scene::{Isometry, Mesh, SceneFile};
 use crate::{
     Advice, MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
@@ -63,10 +64,12 @@ impl Check {
             true => hints::wide(&setup.sheet),
             false => String::new(),
         };
-        let warnings = setup.warnings();
+        let (estimate, folder) = (Estimate::of(scene.scene(), &setup), Path::new("."));
+        let warnings = [setup.warnings(), estimate.warnings(folder)].concat();
+        estimate.check(&scene, folder)?;
         setup.start()?;
         to_stdout(&format!(
-            "{}: a scene that can start\n{text}{closed}{wide}",
+            "{}: a scene that can start\n{text}a run            {estimate}\n{closed}{wide}",
             self.file.display()
         ))?;
         print_warnings(&warnings);

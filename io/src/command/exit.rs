@@ -1,10 +1,11 @@
 //! How the command ends.
 
 use super::failure::{Failure, Format, Message};
-use super::message::print_message;
+use super::message::{print_coloured, print_message};
+use super::progress::event;
 use crate::scene::Colours;
 use serde_json::json;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 
 /// The exit codes, as `--help` shows them.
 pub(crate) const EXIT_CODES: &str = "\
@@ -23,14 +24,15 @@ pub(crate) fn report(failure: &Failure) -> u8 {
     let code = failure.code as u8;
     match failure.format {
         Format::Text => {
-            let text = match &failure.message {
-                Message::Text(text) => format!("error: {text}"),
+            match &failure.message {
+                Message::Text(text) => print_message(format_args!("error: {text}")),
                 Message::Scene(error) if std::io::stderr().is_terminal() => {
-                    error.render(Colours::Terminal)
+                    print_coloured(&error.render(Colours::Terminal));
                 }
-                Message::Scene(error) => error.render(Colours::Plain),
-            };
-            print_message(format_args!("{text}"));
+                Message::Scene(error) => {
+                    print_message(format_args!("{}", error.render(Colours::Plain)));
+                }
+            }
             if let Some(remedy) = &failure.remedy {
                 print_message(format_args!("  = help: {remedy}"));
             }
@@ -40,9 +42,7 @@ pub(crate) fn report(failure: &Failure) -> u8 {
                 Message::Text(text) => json!([{ "message": text, "remedy": failure.remedy }]),
                 Message::Scene(error) => json!(error.placed()),
             };
-            let line = json!({ "event": "error", "code": code, "problems": problems });
-            // Nobody is left to be told that stdout is closed.
-            let _ = writeln!(std::io::stdout(), "{line}");
+            event(&json!({ "event": "error", "code": code, "problems": problems }));
         }
     }
     code

@@ -1,8 +1,8 @@
 //! Why a subcommand fails, and the code that the command ends with.
 
-use crate::Advice;
 use crate::run::{RunError, SweepError};
 use crate::scene::{SceneError, SceneFileError};
+use crate::{Advice, HistoryError};
 
 /// A class of failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,8 +110,10 @@ impl From<RunError> for Failure {
             RunError::Step(_) => Code::Step,
             RunError::OtherScene { .. }
             | RunError::OtherVersion { .. }
-            | RunError::Foreign { .. } => Code::OtherScene,
+            | RunError::Foreign { .. }
+            | RunError::NotOwn { .. } => Code::OtherScene,
             RunError::Busy { .. } => Code::Busy,
+            RunError::NoFolder => Code::CommandLine,
             RunError::SceneFile(SceneFileError::Edit(_)) => Code::CommandLine,
             RunError::Scene(_)
             | RunError::SceneFile(_)
@@ -120,7 +122,14 @@ impl From<RunError> for Failure {
             | RunError::DamagedFrame { .. }
             | RunError::NoFrames { .. }
             | RunError::Page(_)
-            | RunError::Read { .. } => Code::Input,
+            | RunError::Read { .. }
+            | RunError::History(
+                HistoryError::Read { .. }
+                | HistoryError::Shorter { .. }
+                | HistoryError::Changed { .. }
+                | HistoryError::Header { .. }
+                | HistoryError::Row { .. },
+            ) => Code::Input,
             _ => Code::Output,
         };
         match error {

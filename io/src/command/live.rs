@@ -26,9 +26,9 @@ use server::{Server, Shared, listen};
 use session::Session;
 use std::io;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
+use std::sync::{Arc, Mutex};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -100,12 +100,15 @@ impl Live {
             commands: sender,
             end_is_asked: end_is_asked.clone(),
             answering: AtomicUsize::new(0),
+            waiting: Mutex::default(),
         };
         let server = Server::start(listener, shared).map_err(failed)?;
         print_result(format_args!("page: {address}\nCtrl-C ends the run"))?;
-        if !self.no_open {
-            open_address(&address);
-        }
+        // Deleted at the end.
+        let _door = match self.no_open {
+            true => None,
+            false => open_address(&address),
+        };
         let player = Player {
             session,
             board: &board,

@@ -1,6 +1,7 @@
 //! Text for people: results on standard output, everything else on standard error.
 
 use super::failure::Done;
+use super::printable::printable;
 use super::write::to_stdout;
 use crate::Advice;
 pub(crate) use crate::mesh::wording::counted;
@@ -39,10 +40,19 @@ pub(crate) fn is_verbose() -> bool {
     VERBOSITY.get().is_some_and(|v| v.verbose)
 }
 
+/// What colours begin with.
+const ESCAPE: char = '\u{1b}';
+
 /// Writes a warning or an error as a line to standard error. Nothing happens where nobody reads it any more,
 /// as behind `2>&1 | head`: the work goes on.
 pub(crate) fn print_message(text: Arguments<'_>) {
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let text = text.to_string();
+    let _ = writeln!(std::io::stderr(), "{}", printable(&text, &[]));
+}
+
+/// The same for a text with colours.
+pub(crate) fn print_coloured(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{}", printable(text, &[ESCAPE]));
 }
 
 /// Writes warnings with what to do about them.

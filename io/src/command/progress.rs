@@ -3,6 +3,7 @@
 use super::failure::Format;
 use super::interrupt;
 use super::message::{counted, is_quiet, is_verbose, print_progress, print_warnings, with_advice};
+use super::printable::printable;
 use super::trace::TraceFile;
 use crate::run::{Beginning, StepPart, Tick, TraceSink, Watch};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -61,7 +62,8 @@ impl Progress {
 
 /// Writes an event as a line of JSON. A closed stdout ends nothing: the run is worth more than its log.
 pub(crate) fn event(event: &Value) {
-    let _ = writeln!(std::io::stdout(), "{event}");
+    let line = event.to_string();
+    let _ = writeln!(std::io::stdout(), "{}", printable(&line, &[]));
 }
 
 impl Watch for Progress {

@@ -4,6 +4,7 @@
 use super::failure::{Code, Done, Failure};
 use super::interrupt;
 use super::message::{counted, is_verbose, print_message, print_progress, print_result};
+use crate::format::input;
 use crate::run::{Sweep, SweepRun};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -88,7 +89,7 @@ fn simulate(sweep: &Sweep, run: &SweepRun, program: &Path) -> Result<(), (Code, 
         let message = format!("cannot write {}: {e}; check the free space", path.display());
         (Code::Output, message)
     };
-    let log = File::options().create(true).append(true).open(&path);
+    let log = input::reopen(&path, File::options().create(true).append(true));
     let log = log.map_err(unwritable)?;
     let before = log.metadata().map_err(unwritable)?.len();
     let results = log.try_clone().map_err(unwritable)?;

@@ -1,6 +1,7 @@
 //! Files and text that subcommands write.
 
 use super::failure::{Code, Done, Failure};
+use super::printable::printable;
 use crate::scene::{materials_page, reference_page, schema};
 use crate::{write_atomically, write_json};
 use std::io::Write;
@@ -8,7 +9,7 @@ use std::path::Path;
 
 /// Writes text to stdout.
 pub(crate) fn to_stdout(text: &str) -> Done {
-    bytes_to_stdout(text.as_bytes())
+    bytes_to_stdout(printable(text, &[]).as_bytes())
 }
 
 /// Writes bytes to stdout.
@@ -16,7 +17,11 @@ pub(crate) fn bytes_to_stdout(bytes: &[u8]) -> Done {
     match std::io::stdout().write_all(bytes) {
         // A reader such as `head` has enough.
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        Err(e) => Err(Failure::new(Code::Output, format!("cannot write: {e}"))),
+        Err(e) => {
+            let message = format!("cannot write to standard output: {e}");
+            let failure = Failure::new(Code::Output, message);
+            Err(failure.remedy("check where it goes, and the free space there"))
+        }
         Ok(()) => Ok(()),
     }
 }

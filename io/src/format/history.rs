@@ -1,9 +1,11 @@
 //! The history of a run: one row per step.
 
+use crc::{CRC_64_XZ, Crc, Digest};
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::brief;
+use std::fmt;
 use std::fs::File;
-use std::io::{self, Seek, Write};
+use std::io::{self, Read, Seek, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
@@ -12,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::format::atomic::{WriteError, prepare_folder};
+use crate::format::input;
 
 /// One step of a run. The field order is the column order of the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -115,6 +118,12 @@ pub enum HistoryError {
         /// The length that it had.
         length: u64,
     },
+    /// A history that is to be continued was changed.
+    #[error("{} was changed since it was written, its checksum is wrong", path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
     /// The first line is not the expected one.
     #[error("{} does not start with the columns {columns}, but with {found:?}", path.display())]
     Header {
@@ -145,7 +154,9 @@ impl Advice for HistoryError {
                 Some("go back to the last good step, with which the history ends")
             }
             Self::Read { .. } => Some("check the path"),
-            Self::Shorter { .. } => Some("start the run anew in another folder"),
+            Self::Shorter { .. } | Self::Changed { .. } => {
+                Some("start the run anew in another folder")
+            }
             Self::Header { .. } => Some("name the file of a run, such as its history.csv"),
             Self::Row { .. } => Some("correct or remove the row"),
         }
@@ -176,6 +187,21 @@ pub trait Row: Serialize {
 
     /// The values that have to be finite, with their columns.
     fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)>;
+
+    /// Checks that they are.
+    ///
+    /// # Errors
+    /// [`HistoryError::NotFinite`] naming the column.
+    fn check_finite(&self) -> Result<(), HistoryError> {
+        match self.numbers().find(|(_, v)| !v.is_finite()) {
+            None => Ok(()),
+            Some((column, value)) => Err(HistoryError::NotFinite {
+                column,
+                t: self.time(),
+                value,
+            }),
+        }
+    }
 }
 
 impl Row for HistoryRow {
@@ -204,13 +230,36 @@ impl Row for HistoryRow {
     }
 }
 
+/// How much of a table was written, as a run notes it to continue the table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Written {
+    /// Bytes.
+    pub length: u64,
+    /// CRC-64 of these bytes.
+    pub sum: u64,
+}
+
+/// Sums over tables.
+static SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
+
 /// Writes a table of comma-separated values row by row, as [`HistoryWriter`] does.
-#[derive(Debug)]
 pub struct RowWriter<R> {
     path: PathBuf,
     file: File,
     length: u64,
+    /// Over the bytes that are written.
+    sum: Digest<'static, u64>,
     rows: PhantomData<fn(&R)>,
+}
+
+impl<R> fmt::Debug for RowWriter<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = f.debug_struct("RowWriter");
+        shown
+            .field("path", &self.path)
+            .field("length", &self.length);
+        shown.finish_non_exhaustive()
+    }
 }
 
 impl<R: Row> RowWriter<R> {
@@ -221,29 +270,32 @@ impl<R: Row> RowWriter<R> {
     pub fn create(path: &Path) -> Result<Self, HistoryError> {
         let folder = prepare_folder(path)?;
         let file =
-            File::create(path).map_err(|source| WriteError::CreateFile { folder, source })?;
+            input::replace(path).map_err(|source| WriteError::CreateFile { folder, source })?;
         let mut history = Self {
             path: path.to_owned(),
             file,
             length: 0,
+            sum: SUM.digest(),
             rows: PhantomData,
         };
         history.write_record(|w| w.write_record(R::COLUMNS))?;
         Ok(history)
     }
 
-    /// Continues a history after its first `length` bytes, an earlier value of [`RowWriter::length`];
-    /// what follows them is cut off.
+    /// Continues a history after what was written of it, an earlier value of [`RowWriter::written`]; what follows
+    /// is cut off.
     ///
     /// # Errors
     /// [`HistoryError::Read`] if the file cannot be opened, [`HistoryError::Shorter`] if it does not have as
-    /// many bytes.
-    pub fn resume(path: &Path, length: u64) -> Result<Self, HistoryError> {
+    /// many bytes, [`HistoryError::Changed`] if these are others.
+    pub fn resume(path: &Path, written: Written) -> Result<Self, HistoryError> {
+        let length = written.length;
         let read = |source| HistoryError::Read {
             path: path.to_owned(),
             source,
         };
-        let mut file = File::options().write(true).open(path).map_err(read)?;
+        let file = input::reopen(path, File::options().read(true).write(true));
+        let mut file = file.map_err(read)?;
         let found = file.metadata().map_err(read)?.len();
         if found < length {
             return Err(HistoryError::Shorter {
@@ -252,19 +304,29 @@ impl<R: Row> RowWriter<R> {
                 length,
             });
         }
+        let sum = sum_of(&mut (&file).take(length)).map_err(read)?;
+        if sum.clone().finalize() != written.sum {
+            return Err(HistoryError::Changed {
+                path: path.to_owned(),
+            });
+        }
         file.set_len(length).map_err(read)?;
         file.seek(io::SeekFrom::End(0)).map_err(read)?;
         Ok(Self {
             path: path.to_owned(),
             file,
             length,
+            sum,
             rows: PhantomData,
         })
     }
 
-    /// Number of bytes written so far.
-    pub fn length(&self) -> u64 {
-        self.length
+    /// What is written so far.
+    pub fn written(&self) -> Written {
+        Written {
+            length: self.length,
+            sum: self.sum.clone().finalize(),
+        }
     }
 
     /// Waits until all rows are on the disk, so that they survive the end of the system too.
@@ -285,13 +347,7 @@ impl<R: Row> RowWriter<R> {
     /// [`HistoryError::NotFinite`] naming the column, in which case nothing is written;
     /// [`HistoryError::File`].
     pub fn append(&mut self, row: &R) -> Result<(), HistoryError> {
-        if let Some((column, value)) = row.numbers().find(|(_, v)| !v.is_finite()) {
-            return Err(HistoryError::NotFinite {
-                column,
-                t: row.time(),
-                value,
-            });
-        }
+        row.check_finite()?;
         self.write_record(|w| w.serialize(row))
     }
 
@@ -319,8 +375,20 @@ impl<R: Row> RowWriter<R> {
             writer.flush().map_err(failed)?;
         }
         self.file.write_all(&line).map_err(failed)?;
+        self.sum.update(&line);
         self.length += line.len() as u64;
         Ok(())
+    }
+}
+
+/// The sum over all bytes.
+fn sum_of(bytes: &mut impl Read) -> io::Result<Digest<'static, u64>> {
+    let (mut sum, mut part) = (SUM.digest(), vec![0; 1 << 16]);
+    loop {
+        match bytes.read(&mut part)? {
+            0 => return Ok(sum),
+            count => sum.update(&part[..count]),
+        }
     }
 }
 
@@ -334,7 +402,7 @@ pub fn read_history(path: &Path) -> Result<Vec<HistoryRow>, HistoryError> {
 
 /// Reads what a [`RowWriter`] has written.
 pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>, HistoryError> {
-    let text = std::fs::read(path).map_err(|source| HistoryError::Read {
+    let text = input::read(path).map_err(|source| HistoryError::Read {
         path: path.to_owned(),
         source,
     })?;
@@ -442,14 +510,14 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("history.csv");
         let mut whole = HistoryWriter::create(&path).unwrap();
-        let mut lengths = vec![whole.length()];
+        let mut lengths = vec![whole.written()];
         for k in 0..4 {
             whole.append(&row(k)).unwrap();
-            lengths.push(whole.length());
+            lengths.push(whole.written());
         }
         whole.sync().unwrap();
         let bytes = std::fs::read(&path).unwrap();
-        assert_eq!(bytes.len() as u64, lengths[4]);
+        assert_eq!(bytes.len() as u64, lengths[4].length);
         for (k, length) in lengths.iter().enumerate() {
             let mut resumed = HistoryWriter::resume(&path, *length).unwrap();
             for j in k..4 {
@@ -457,9 +525,15 @@ mod tests {
             }
             assert_eq!(std::fs::read(&path).unwrap(), bytes);
         }
-        let longer = HistoryWriter::resume(&path, lengths[4] + 1);
+        let longer = HistoryWriter::resume(
+            &path,
+            Written {
+                length: lengths[4].length + 1,
+                ..lengths[4]
+            },
+        );
         assert!(matches!(longer, Err(HistoryError::Shorter { .. })));
-        let missing = HistoryWriter::resume(&dir.path().join("none.csv"), 0);
+        let missing = HistoryWriter::resume(&dir.path().join("none.csv"), lengths[0]);
         assert!(matches!(missing, Err(HistoryError::Read { .. })));
     }
 

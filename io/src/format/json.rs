@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use crate::format::atomic::{WriteError, write_atomically};
 use crate::format::finite::{Finding, check_finite};
+use crate::format::input;
 
 /// A JSON file that cannot be written or read.
 #[derive(Debug, Error)]
@@ -100,7 +101,7 @@ pub fn write_json<T: Serialize + ?Sized>(path: &Path, value: &T) -> Result<(), J
 /// # Errors
 /// [`JsonError::Read`] or [`JsonError::Parse`].
 pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, JsonError> {
-    let text = std::fs::read(path).map_err(|source| JsonError::Read {
+    let text = input::read(path).map_err(|source| JsonError::Read {
         path: path.to_owned(),
         source,
     })?;

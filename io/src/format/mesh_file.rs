@@ -25,6 +25,7 @@ pub use mesh::{EdgeAssignment, FileCrease, MeshFile, ReadingChanges};
 pub use options::{MeshOptions, Polygons, SeparateBuffers};
 pub use repair::Repair;
 
+use crate::format::input;
 use error::Located;
 use isosheet_mesh::Sheet;
 use std::path::Path;
@@ -65,7 +66,7 @@ pub fn read_mesh_with(path: &Path, options: &MeshOptions) -> Result<MeshFile, Me
             extension: extension.to_string_lossy().into_owned(),
         })
     })?;
-    let bytes = std::fs::read(path).map_err(|e| error(MeshFileProblem::Read(e)))?;
+    let bytes = input::read(path).map_err(|e| error(MeshFileProblem::Read(e)))?;
     parse_mesh(&bytes, format, path, options)
 }
 
@@ -82,7 +83,7 @@ pub fn read_sheet(path: &Path) -> Result<Sheet, MeshFileError> {
 }
 
 /// [`read_mesh_with`] for a file in memory. The folder of `path` is where glTF files with separate buffers
-/// have these; otherwise `path` is used in errors only.
+/// have these, there or beneath it; otherwise `path` is used in errors only.
 ///
 /// # Errors
 /// As [`read_mesh_with`].

@@ -86,6 +86,14 @@ pub fn frame_path(folder: &Path, frame: usize) -> PathBuf {
     folder.join(format!("frame_{frame:05}.obj"))
 }
 
+/// The frame whose file has a name, of names that [`frame_path`] gives.
+#[cfg(feature = "run")]
+pub(crate) fn frame_number(name: &Path) -> Option<usize> {
+    let digits = name.to_str()?.strip_prefix("frame_")?;
+    let frame = digits.strip_suffix(".obj")?.parse().ok()?;
+    (frame_path(Path::new(""), frame) == name).then_some(frame)
+}
+
 fn check(topology: &Topology, x: &[f64]) -> Result<(), ObjWriteError> {
     if x.len() != 3 * topology.vertex_count() {
         return Err(ObjWriteError::WrongLength {

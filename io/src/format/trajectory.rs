@@ -3,15 +3,19 @@
 mod archive;
 mod data;
 mod error;
+mod motion;
 mod rate;
 
 pub use data::FrameData;
 pub(crate) use data::{MeshCounts, Quantity};
 pub use error::TrajectoryError;
+pub(crate) use motion::{Motion, MotionError, MotionFrame};
 
 use crate::format::atomic::write_atomically;
 use archive::{ArchiveReader, ArchiveWriter};
 use isosheet_mesh::{Sheet, VertexId};
+use std::io;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// The frames of a run with its mesh, as kept in an `.npz` file.
@@ -40,6 +44,14 @@ pub struct Trajectory {
     rest_lengths: Vec<f64>,
     /// Of each quantity the values of all frames, or none at all.
     data: [Vec<f64>; Quantity::COUNT],
+}
+
+/// What a motion has.
+struct Contents {
+    /// Times of the frames, seconds.
+    times: Vec<f64>,
+    /// What the frames have besides positions.
+    quantities: Vec<Quantity>,
 }
 
 impl Trajectory {
@@ -77,10 +89,35 @@ impl Trajectory {
         x: &[f64],
         data: &FrameData<'_>,
     ) -> Result<(), TrajectoryError> {
-        let frame = self.t.len();
+        let frame = MotionFrame {
+            number: self.t.len(),
+            t,
+            x,
+            data: *data,
+        };
+        let before = self.t.last().copied().unwrap_or(f64::NEG_INFINITY);
+        let has = |quantity: Quantity| !self.data[quantity as usize].is_empty();
+        self.check(&frame, before, &has)?;
+        for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut self.data) {
+            kept.extend_from_slice(quantity.of(data));
+        }
+        self.t.push(t);
+        self.x.extend_from_slice(x);
+        Ok(())
+    }
+
+    /// Checks a frame after one at the time `before`; those after the first one have the quantities that `has`
+    /// names.
+    fn check(
+        &self,
+        frame: &MotionFrame<'_>,
+        before: f64,
+        has: &dyn Fn(Quantity) -> bool,
+    ) -> Result<(), TrajectoryError> {
+        let &MotionFrame { number, t, x, data } = frame;
         if x.len() != 3 * self.vertex_count {
             return Err(TrajectoryError::WrongLength {
-                frame,
+                frame: number,
                 got: x.len(),
                 vertices: self.vertex_count,
             });
@@ -88,30 +125,29 @@ impl Trajectory {
         if let Some(k) = x.iter().position(|c| !c.is_finite()) {
             let vertex = VertexId::from_index(k / 3);
             return Err(TrajectoryError::NotFinite {
-                frame,
+                frame: number,
                 vertex,
                 axis: k % 3,
                 value: x[k],
             });
         }
-        let before = self.t.last().copied().unwrap_or(f64::NEG_INFINITY);
         if !t.is_finite() || t < before {
-            return Err(TrajectoryError::Time { frame, t, before });
+            return Err(TrajectoryError::Time {
+                frame: number,
+                t,
+                before,
+            });
         }
-        for (quantity, kept) in Quantity::ALL.into_iter().zip(&self.data) {
-            let values = quantity.of(data);
-            let expected = match (frame, values) {
-                (0, []) => 0,
-                (0, _) => self.size(quantity),
-                _ => kept.len() / frame,
+        for quantity in Quantity::ALL {
+            let values = quantity.of(&data);
+            let expected = match number {
+                0 if values.is_empty() => 0,
+                0 => self.size(quantity),
+                _ if has(quantity) => self.size(quantity),
+                _ => 0,
             };
-            quantity.check(values, frame, expected)?;
+            quantity.check(values, number, expected)?;
         }
-        for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut self.data) {
-            kept.extend_from_slice(quantity.of(data));
-        }
-        self.t.push(t);
-        self.x.extend_from_slice(x);
         Ok(())
     }
 
@@ -145,6 +181,13 @@ impl Trajectory {
             edges: self.edges.len(),
             faces: self.faces.len(),
         }
+    }
+
+    /// What the first frame has besides positions.
+    #[cfg(feature = "run")]
+    pub(crate) fn first_data(&self) -> Option<FrameData<'_>> {
+        let of = |quantity| self.values(quantity, 0).unwrap_or_default();
+        (!self.is_empty()).then(|| FrameData::each(of))
     }
 
     /// A quantity in a frame.
@@ -234,26 +277,83 @@ impl Trajectory {
     /// # Errors
     /// [`TrajectoryError::File`].
     pub fn write(&self, path: &Path) -> Result<(), TrajectoryError> {
-        let (frames, vertices) = (self.t.len() as u64, self.vertex_count as u64);
-        Ok(write_atomically(path, |w| {
+        Ok(self.write_motion(path, self)?)
+    }
+
+    /// Writes the mesh of this trajectory with the frames of a motion, of which one is in memory at a time.
+    pub(crate) fn write_motion<M: Motion>(
+        &self,
+        path: &Path,
+        motion: &M,
+    ) -> Result<(), MotionError<M::Error>> {
+        let Contents { times, quantities } = self.contents(motion)?;
+        let (frames, vertices) = (times.len() as u64, self.vertex_count as u64);
+        let mut failed = None;
+        let mut rows = |of: &dyn for<'f> Fn(&MotionFrame<'f>) -> &'f [f64],
+                        put: &mut dyn FnMut(&[f64]) -> io::Result<()>| {
+            let mut done = Ok(());
+            let shown = motion.each(&mut |frame| {
+                done = put(of(frame));
+                if done.is_ok() {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
+            });
+            shown.map_err(|error| {
+                failed = Some(error);
+                io::Error::other("a frame cannot be read")
+            })?;
+            done
+        };
+        let written = write_atomically(path, |w| {
             let mut npz = ArchiveWriter::new(w);
-            npz.put("t", &[frames], self.t.iter().copied())?;
-            npz.put("x", &[frames, vertices, 3], self.x.iter().copied())?;
+            npz.put("t", &[frames], times.iter().copied())?;
+            npz.put_rows("x", &[frames, vertices, 3], |put| {
+                rows(&|frame| frame.x, put)
+            })?;
             let faces = self.faces.iter().flatten().copied();
             npz.put("faces", &[self.faces.len() as u64, 3], faces)?;
             let edges = self.edges.iter().flatten().copied();
             npz.put("edges", &[self.edges.len() as u64, 2], edges)?;
             let lengths = self.rest_lengths.iter().copied();
             npz.put("rest_lengths", &[self.rest_lengths.len() as u64], lengths)?;
-            for (quantity, kept) in Quantity::ALL.into_iter().zip(&self.data) {
-                if !kept.is_empty() {
-                    let frame = quantity.shape(self.counts());
-                    let shape = [&[frames], &frame[..]].concat();
-                    npz.put(quantity.name(), &shape, kept.iter().copied())?;
-                }
+            for quantity in quantities {
+                let frame = quantity.shape(self.counts());
+                let shape = [&[frames], &frame[..]].concat();
+                npz.put_rows(quantity.name(), &shape, |put| {
+                    rows(&|frame| quantity.of(&frame.data), put)
+                })?;
             }
             npz.finish()
-        })?)
+        });
+        match failed {
+            Some(error) => Err(MotionError::Frame(error)),
+            None => Ok(written.map_err(TrajectoryError::File)?),
+        }
+    }
+
+    /// What a motion has, if its frames are those of a trajectory.
+    fn contents<M: Motion>(&self, motion: &M) -> Result<Contents, MotionError<M::Error>> {
+        let (mut times, mut quantities) = (Vec::new(), Vec::new());
+        let mut checked = Ok(());
+        let shown = motion.each(&mut |frame| {
+            let before = times.last().copied().unwrap_or(f64::NEG_INFINITY);
+            checked = self.check(frame, before, &|quantity| quantities.contains(&quantity));
+            if times.is_empty() {
+                let has = |quantity: &Quantity| !quantity.of(&frame.data).is_empty();
+                quantities.extend(Quantity::ALL.into_iter().filter(has));
+            }
+            times.push(frame.t);
+            if checked.is_ok() {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        });
+        shown.map_err(MotionError::Frame)?;
+        checked?;
+        Ok(Contents { times, quantities })
     }
 
     /// Reads an `.npz` file that [`Self::write`] wrote, or one of the same arrays.

@@ -4,7 +4,7 @@ use super::RunError;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::summary::{Ending, Measured};
-use crate::format::write_atomically;
+use crate::format::{Written, input, write_atomically};
 use crc::{CRC_64_XZ, Crc};
 use isosheet_dynamics::Checkpoint;
 use serde::{Deserialize, Serialize};
@@ -21,14 +21,14 @@ pub(crate) struct Progress {
     pub(crate) version: String,
     /// Steps taken.
     pub(crate) steps: u64,
-    /// Length of the history, bytes.
-    pub(crate) history: u64,
-    /// Length of the table of loads, bytes; none if nothing can bear a load.
+    /// What is written of the history.
+    pub(crate) history: Written,
+    /// What is written of the table of loads; none if nothing can bear a load.
     #[serde(default)]
-    pub(crate) loads: Option<u64>,
-    /// Length of the table of measures, bytes; none if the scene names none.
+    pub(crate) loads: Option<Written>,
+    /// What is written of the table of measures; none if the scene names none.
     #[serde(default)]
-    pub(crate) measures: Option<u64>,
+    pub(crate) measures: Option<Written>,
     /// What the measures showed so far.
     #[serde(default)]
     pub(crate) measured: BTreeMap<String, Measured>,
@@ -96,7 +96,7 @@ pub(crate) fn read(path: &Path) -> Result<(Progress, Checkpoint), RunError> {
         path: path.to_owned(),
         problem: problem.to_owned(),
     };
-    let bytes = std::fs::read(path).map_err(|e| damaged(&e.to_string()))?;
+    let bytes = input::read(path).map_err(|e| damaged(&e.to_string()))?;
     let whole = || -> Option<(&[u8], &[u8])> {
         let (content, sum) = bytes.split_last_chunk::<8>()?;
         if SUM.checksum(content).to_le_bytes() != *sum {

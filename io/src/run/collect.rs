@@ -3,7 +3,7 @@
 use super::folder::RunFolder;
 use super::sweep::{Sweep, SweepError};
 use super::{Ending, EnergySummary, Measured, Summary};
-use crate::format::{Finding, JsonError, check_finite, read_json, write_atomically};
+use crate::format::{Finding, JsonError, cell, check_finite, read_json, write_atomically};
 use std::path::{Path, PathBuf};
 
 /// The summaries of many runs as one table: a row for each complete run.
@@ -67,20 +67,21 @@ impl Collection {
         self.rows.len()
     }
 
-    /// The table as CSV.
+    /// The table as CSV. Texts that spreadsheets would take for formulas have an apostrophe before them.
     pub fn to_csv(&self) -> Vec<u8> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let mut record = |cells: Vec<&str>| {
-            let written = writer.write_record(cells);
+            let written =
+                writer.write_record(cells.into_iter().map(|text| cell(text).into_owned()));
             written.expect("memory takes rows of equal length");
         };
         record(self.columns.iter().map(String::as_str).collect());
         for row in &self.rows {
-            let cell = |column: &String| {
+            let of_column = |column: &String| {
                 let found = row.iter().find(|(name, _)| name == column);
                 found.map_or("", |(_, value)| value.as_str())
             };
-            record(self.columns.iter().map(cell).collect());
+            record(self.columns.iter().map(of_column).collect());
         }
         writer.into_inner().expect("memory can be flushed")
     }

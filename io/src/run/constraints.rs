@@ -1,6 +1,5 @@
 //! Curves and surfaces that hold vertices, as bodies of the page.
 
-use crate::format::Trajectory;
 use crate::scene::{Curve, Hold, Scene, Support, Surface, frame_motion};
 use crate::view::{Body, BodyShape};
 use isosheet_dynamics::constraint::{self, Polyline, Spline};
@@ -19,14 +18,14 @@ const CYLINDER_SIDES: usize = 64;
 const CIRCLE_POINTS: usize = 96;
 const PART_POINTS: usize = 24;
 
-/// The curves and surfaces of a scene where they are in each frame.
-pub(super) fn bodies(scene: &Scene, trajectory: &Trajectory) -> Vec<Body> {
-    let frames = (0..trajectory.len()).filter_map(|k| trajectory.frame(k));
-    let held = HoldingBody::all(scene, frames);
+/// The curves and surfaces of a scene at the times of the frames, whose positions lie in the box between two
+/// corners.
+pub(super) fn bodies(scene: &Scene, times: &[f64], corners: [[f64; 3]; 2]) -> Vec<Body> {
+    let held = HoldingBody::all(scene, std::iter::once(corners.as_flattened()));
     let body = |held: HoldingBody| {
         let HoldingBody { name, shape, .. } = &held;
         let (name, shape) = (name.as_str(), shape.clone());
-        Body::moving(name, shape, trajectory.times(), |t| held.pose(scene, t))
+        Body::moving(name, shape, times, |t| held.pose(scene, t))
     };
     held.into_iter().map(body).collect()
 }

@@ -1,7 +1,6 @@
 //! What a run says of an elastic sheet.
 
-use crate::view::{Field, Place, Scale};
-use isosheet_dynamics::{ElasticDeformation, ElasticSheet, SheetModel};
+use isosheet_dynamics::{ElasticSheet, SheetModel};
 use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -115,39 +114,4 @@ fn used(elastic: &ElasticSheet) -> [f64; 2] {
     stiffnesses.fold([f64::INFINITY, 0.0], |[least, most], k| {
         [least.min(k), most.max(k)]
     })
-}
-
-impl Field {
-    /// The strain of each face of an elastic sheet, and the part of stretching in its elastic energy, in each
-    /// frame; none for sheets of rods. `positions` has a list of length 3V for each frame.
-    pub(crate) fn elastic(model: &SheetModel, positions: &[Vec<f64>]) -> Vec<Self> {
-        let frames = positions.iter().map(|x| model.elastic_deformation(x));
-        let Some(frames) = frames.collect::<Option<Vec<ElasticDeformation>>>() else {
-            return Vec::new();
-        };
-        let share = |d: &ElasticDeformation| (0..d.strain.len()).map(|f| d.share(f)).collect();
-        let field = |name: &str, scale, note: &str, values| Self {
-            name: name.into(),
-            unit: String::new(),
-            place: Place::Face,
-            scale,
-            note: note.into(),
-            values,
-        };
-        vec![
-            field(
-                "strain of faces",
-                Scale::Logarithmic,
-                "The norm of Green's strain of each face, which the limit of the sheet bounds.",
-                frames.iter().map(|d| d.strain.clone()).collect(),
-            ),
-            field(
-                "share of stretching",
-                Scale::Linear,
-                "The part of stretching in the elastic energy of each face; the rest is bending. Where a mesh is fine \
-                 enough, a sheet that carries no load in its plane has little of it.",
-                frames.iter().map(share).collect(),
-            ),
-        ]
-    }
 }

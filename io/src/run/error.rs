@@ -30,6 +30,9 @@ pub enum RunError {
         /// The folder.
         folder: PathBuf,
     },
+    /// The path of the folder is empty.
+    #[error("the path of the folder is empty")]
+    NoFolder,
     /// The folder holds other files.
     #[error(
         "{} holds files and is not the folder of a run",
@@ -38,6 +41,14 @@ pub enum RunError {
     Foreign {
         /// The folder.
         folder: PathBuf,
+    },
+    /// A link, a pipe or a folder has the name of a file of the run, or a link that of a folder.
+    #[error(
+        "{} is a link, or no file or folder such as a run has", path.display()
+    )]
+    NotOwn {
+        /// The file or folder.
+        path: PathBuf,
     },
     /// Another process works in the folder.
     #[error(
@@ -135,7 +146,11 @@ impl Advice for RunError {
             Self::OtherScene { .. } => {
                 Some("replace it with --force, or choose another folder with --out")
             }
+            Self::NoFolder => Some("name a folder; `.` is the current one"),
             Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
+            Self::NotOwn { .. } => Some(
+                "a run writes to no other files than its own: remove it, or choose another folder with --out",
+            ),
             Self::Busy { .. } => Some("wait for it or choose another folder with --out"),
             Self::Unwritable { .. } => Some(
                 "check the permissions and the free space, or choose another folder with --out",

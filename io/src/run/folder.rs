@@ -1,12 +1,13 @@
 //! The folder of a run.
 
-use super::RunError;
+use super::{RunError, Summary};
 use crate::format::atomic::is_unfinished;
-use crate::format::write_atomically;
+use crate::format::{frame_number, input, read_json, write_atomically};
 use crate::scene::{Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
+use std::ffi::OsString;
 use std::fmt;
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File, Metadata, TryLockError};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -40,7 +41,7 @@ impl<'a> Material<'a> {
         let mut meshes = Vec::new();
         for (key, path) in file.scene().files() {
             let path = file.folder().join(path);
-            let bytes = fs::read(&path).map_err(|e| {
+            let bytes = input::read(&path).map_err(|e| {
                 let message = format!("cannot read {}: {e}", path.display());
                 let remedy = "check the path, which is relative to the scene";
                 let problem = Problem::new(key.name("path"), message, remedy);
@@ -125,21 +126,46 @@ impl RunFolder {
     pub(crate) const PAGE: &'static str = "index.html";
     pub(crate) const OBJ: &'static str = "obj";
 
+    /// The files of a run in its folder. The summary is the first to be deleted, so that what is left after a
+    /// kill is not taken for a complete run.
+    const FILES: [&'static str; 9] = [
+        Self::SUMMARY,
+        Self::CHECKPOINT,
+        Self::PAGE,
+        Self::TRAJECTORY,
+        Self::FRAMES,
+        Self::HISTORY,
+        Self::LOADS,
+        Self::MEASURES,
+        Self::SCENE,
+    ];
+
     /// Whether a folder is that of a run, complete or not.
     #[cfg(feature = "picture")]
     pub(crate) fn is_run(root: &Path) -> bool {
-        root.join(Self::SCENE).is_file() && root.join(LOCK).is_file()
+        root.join(Self::SCENE).is_file() && Self::is_marked(root)
+    }
+
+    /// Whether a folder is marked as that of a run: by the lock, or by a summary, as the empty file of the lock
+    /// may have been lost with a copy.
+    fn is_marked(root: &Path) -> bool {
+        root.join(LOCK).is_file() || read_json::<Summary>(&root.join(Self::SUMMARY)).is_ok()
     }
 
     /// Whether the folder holds a complete run of the scene with all its files. Such a run is not touched:
     /// its folder may be read-only.
     pub(crate) fn is_complete(root: &Path, material: &Material<'_>) -> Result<bool, RunError> {
-        let complete = root.join(Self::SUMMARY).is_file() && root.join(LOCK).is_file();
+        let complete = root.join(Self::SUMMARY).is_file() && Self::is_marked(root);
         if complete {
             check_scene(root, material)?;
         }
         let trajectory = &material.file.scene().output.trajectory;
         Ok(complete && (!trajectory || root.join(Self::TRAJECTORY).is_file()))
+    }
+
+    /// Whether the folder seems to hold a run that can be continued.
+    pub(crate) fn has_checkpoint(root: &Path) -> bool {
+        root.join(Self::CHECKPOINT).is_file()
     }
 
     /// Creates the folder when missing, locks it and says what is in it.
@@ -153,12 +179,14 @@ impl RunFolder {
             source,
         };
         fs::create_dir_all(root).map_err(unwritable)?;
-        if holds_other_files(root, &[LOCK]).map_err(unwritable)? && !root.join(LOCK).is_file() {
+        if holds_other_files(root, &[LOCK]).map_err(unwritable)? && !Self::is_marked(root) {
             return Err(RunError::Foreign {
                 folder: root.to_owned(),
             });
         }
-        let lock = File::create(root.join(LOCK)).map_err(unwritable)?;
+        refuse_links(root)?;
+        let lock = input::reopen(&root.join(LOCK), File::options().create(true).append(true));
+        let lock = lock.map_err(unwritable)?;
         match lock.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
@@ -185,7 +213,7 @@ impl RunFolder {
         if root.join(Self::SUMMARY).is_file() {
             return Ok(Contents::Complete(folder));
         }
-        if root.join(Self::CHECKPOINT).is_file() {
+        if Self::has_checkpoint(root) {
             return Ok(Contents::Partial(folder));
         }
         if !stored {
@@ -202,27 +230,32 @@ impl RunFolder {
             .try_for_each(|folder| remove_unfinished(folder))
     }
 
-    /// Deletes the files of a run, and no others. The summary is the first, so that what is left after a kill
-    /// is not taken for a complete run.
+    /// Deletes the files of a run, and no others: of its folders the frames, and the meshes that the stored
+    /// scene names. Folders that hold anything else stay.
     fn delete_run(&self) -> io::Result<()> {
-        let files = [
-            Self::SUMMARY,
-            Self::CHECKPOINT,
-            Self::PAGE,
-            Self::TRAJECTORY,
-            Self::FRAMES,
-            Self::HISTORY,
-            Self::LOADS,
-            Self::MEASURES,
-            Self::SCENE,
-        ];
-        let folders = [Self::OBJ, MESHES];
-        let deleted = files.map(|name| fs::remove_file(self.path(name)));
-        let deleted = deleted.into_iter();
-        let deleted = deleted.chain(folders.map(|name| fs::remove_dir_all(self.path(name))));
-        for result in deleted {
-            match result {
+        let meshes = match SceneFile::read(&self.path(Self::SCENE), &[]) {
+            Ok(stored) => stored_meshes(stored.scene()),
+            // Nothing is known of them then.
+            Err(_) => Vec::new(),
+        };
+        let frames = names_in(&self.path(Self::OBJ))?.into_iter();
+        let frames = frames.filter(|name| frame_number(Path::new(name)).is_some());
+        let own = Self::FILES.map(PathBuf::from).into_iter();
+        let own = own.chain(frames.map(|name| Path::new(Self::OBJ).join(name)));
+        for name in own.chain(meshes) {
+            match fs::remove_file(self.root.join(name)) {
                 Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        for folder in [Self::OBJ, MESHES] {
+            match fs::remove_dir(self.path(folder)) {
+                Err(error)
+                    if ![ErrorKind::NotFound, ErrorKind::DirectoryNotEmpty]
+                        .contains(&error.kind()) =>
+                {
+                    return Err(error);
+                }
                 _ => {}
             }
         }
@@ -235,6 +268,38 @@ impl RunFolder {
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.root.join(name)
+    }
+}
+
+/// Refuses a folder with links, or with anything else that a run does not make, under the names of its files and
+/// folders: nothing is written or deleted through them.
+fn refuse_links(root: &Path) -> Result<(), RunError> {
+    let files = RunFolder::FILES.into_iter().chain([LOCK]);
+    let files = files.map(|name| (root.join(name), Metadata::is_file as fn(&Metadata) -> bool));
+    let folders = [MESHES, RunFolder::OBJ].into_iter();
+    let folders = folders.map(|name| (root.join(name), Metadata::is_dir as fn(&Metadata) -> bool));
+    for (path, is_own) in files.chain(folders) {
+        match fs::symlink_metadata(&path) {
+            Ok(found) if !is_own(&found) => return Err(RunError::NotOwn { path }),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// The copied mesh files that a stored scene names, relative to the folder of its run.
+fn stored_meshes(scene: &Scene) -> Vec<PathBuf> {
+    let files = scene.files().into_iter().map(|(_, path)| path);
+    let is_copy = |path: &PathBuf| path.parent() == Some(Path::new(MESHES));
+    files.filter(is_copy).collect()
+}
+
+/// The names of what is in a folder, nothing if there is none.
+fn names_in(folder: &Path) -> io::Result<Vec<OsString>> {
+    match fs::read_dir(folder) {
+        Ok(entries) => entries.map(|entry| Ok(entry?.file_name())).collect(),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Vec::new()),
+        Err(error) => Err(error),
     }
 }
 
@@ -277,9 +342,33 @@ pub fn remove_unfinished(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
+/// The scene that is stored in the folder of a run. Its mesh files are those of the folder.
+///
+/// # Errors
+/// [`RunError::NoRun`] without one, [`RunError::Damaged`] if it names files that are not in the folder.
+pub(crate) fn stored_scene(root: &Path) -> Result<SceneFile, RunError> {
+    if root.as_os_str().is_empty() {
+        return Err(RunError::NoFolder);
+    }
+    let path = root.join(RunFolder::SCENE);
+    if !path.is_file() {
+        return Err(RunError::NoRun {
+            folder: root.to_owned(),
+        });
+    }
+    let stored = SceneFile::read(&path, &[])?;
+    for (_, name) in stored.scene().files() {
+        if let Err(error) = input::within(root, &name) {
+            let problem = format!("it names the mesh file {}: {error}", name.display());
+            return Err(RunError::Damaged { path, problem });
+        }
+    }
+    Ok(stored)
+}
+
 /// Refuses a folder with a run of another scene.
 fn check_scene(root: &Path, material: &Material<'_>) -> Result<(), RunError> {
-    let stored = SceneFile::read(&root.join(RunFolder::SCENE), &[])?;
+    let stored = stored_scene(root)?;
     let stored = Material::read(&stored)?.hash;
     if stored == material.hash {
         return Ok(());

@@ -1,11 +1,13 @@
 //! The frames of a run: one file that grows while it goes on.
 
 use super::RunError;
-use crate::format::{FrameData, MeshCounts, Quantity, WriteError};
+use crate::format::input;
+use crate::format::{FrameData, MeshCounts, Motion, MotionFrame, Quantity, WriteError};
 use crate::scene::Setup;
 use crc::{CRC_64_XZ, Crc};
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// First bytes of the file; the last two are the version of the format.
@@ -38,6 +40,17 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// The frame of a record without its sum.
+    fn of(record: &[u8], shape: FrameShape) -> Self {
+        let numbers = record.as_chunks::<8>().0.iter();
+        let mut numbers = numbers.map(|bytes| f64::from_le_bytes(*bytes));
+        Self {
+            t: numbers.next().unwrap_or_default(),
+            x: numbers.by_ref().take(shape.coordinates).collect(),
+            data: shape.data.map(|n| numbers.by_ref().take(n).collect()),
+        }
+    }
+
     /// What the frame has besides positions.
     pub(crate) fn data(&self) -> FrameData<'_> {
         FrameData::each(|quantity| &self.data[quantity as usize])
@@ -76,8 +89,13 @@ impl FrameShape {
         }
     }
 
+    /// Whether frames have a quantity.
+    pub(crate) fn has(self, quantity: Quantity) -> bool {
+        self.data[quantity as usize] > 0
+    }
+
     /// Length of a frame with its sum.
-    fn bytes(self) -> usize {
+    pub(crate) fn bytes(self) -> usize {
         8 * (2 + self.coordinates + self.data.iter().sum::<usize>())
     }
 }
@@ -85,7 +103,7 @@ impl FrameShape {
 impl FrameFile {
     /// Starts a new file.
     pub(crate) fn create(path: &Path) -> Result<Self, WriteError> {
-        let begun = File::create(path).and_then(|mut file| {
+        let begun = input::replace(path).and_then(|mut file| {
             file.write_all(MAGIC)?;
             Ok(file)
         });
@@ -116,7 +134,7 @@ impl FrameFile {
             }
         }
         let length = MAGIC.len() as u64 + count * shape.bytes() as u64;
-        let opened = File::options().write(true).open(path);
+        let opened = input::reopen(path, File::options().write(true));
         let continued = opened.and_then(|mut file| {
             file.set_len(length)?;
             file.seek(SeekFrom::End(0))?;
@@ -177,7 +195,6 @@ impl FrameFile {
 /// The frames of a file, one after the other.
 struct Frames<'a> {
     path: &'a Path,
-    shape: FrameShape,
     file: BufReader<File>,
     /// How many were read.
     count: u64,
@@ -195,7 +212,7 @@ impl<'a> Frames<'a> {
                 source,
             },
         };
-        let mut file = BufReader::new(File::open(path).map_err(read)?);
+        let mut file = BufReader::new(input::open(path).map_err(read)?);
         let mut magic = [0; MAGIC.len()];
         let found = read_whole(&mut file, &mut magic).map_err(read)?;
         if !found || magic != *MAGIC {
@@ -206,7 +223,6 @@ impl<'a> Frames<'a> {
         }
         Ok(Self {
             path,
-            shape,
             file,
             count: 0,
             record: vec![0; shape.bytes()],
@@ -236,20 +252,6 @@ impl<'a> Frames<'a> {
             }),
         }
     }
-
-    fn next_frame(&mut self) -> Result<Option<Frame>, RunError> {
-        let shape = self.shape;
-        let Some(record) = self.next_record()? else {
-            return Ok(None);
-        };
-        let numbers = record.as_chunks::<8>().0.iter();
-        let mut numbers = numbers.map(|bytes| f64::from_le_bytes(*bytes));
-        Ok(Some(Frame {
-            t: numbers.next().unwrap_or_default(),
-            x: numbers.by_ref().take(shape.coordinates).collect(),
-            data: shape.data.map(|n| numbers.by_ref().take(n).collect()),
-        }))
-    }
 }
 
 /// Fills a buffer; false where the file ends before.
@@ -261,23 +263,57 @@ fn read_whole(file: &mut impl Read, buffer: &mut [u8]) -> io::Result<bool> {
     }
 }
 
-/// Reads all whole frames.
-///
-/// # Errors
-/// [`RunError`] if the file cannot be read or a frame is damaged.
-pub(crate) fn read_frames(path: &Path, shape: FrameShape) -> Result<Vec<Frame>, RunError> {
-    let mut frames = Frames::open(path, shape)?;
-    let mut all = Vec::new();
-    while let Some(frame) = frames.next_frame()? {
-        all.push(frame);
+/// The whole frames of a file, of which one is in memory at a time.
+#[derive(Clone, Debug)]
+pub(crate) struct StoredFrames {
+    pub(crate) path: PathBuf,
+    pub(crate) shape: FrameShape,
+}
+
+impl Motion for StoredFrames {
+    type Error = RunError;
+
+    fn each(
+        &self,
+        show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
+    ) -> Result<(), RunError> {
+        let mut frames = Frames::open(&self.path, self.shape)?;
+        let mut number = 0;
+        while let Some(record) = frames.next_record()? {
+            let frame = Frame::of(record, self.shape);
+            let shown = show(&MotionFrame {
+                number,
+                t: frame.t,
+                x: &frame.x,
+                data: frame.data(),
+            });
+            if shown.is_break() {
+                break;
+            }
+            number += 1;
+        }
+        Ok(())
     }
-    Ok(all)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use isosheet_mesh::Advice;
+
+    fn read_frames(path: &Path, shape: FrameShape) -> Result<Vec<Frame>, RunError> {
+        let path = path.to_owned();
+        let mut all = Vec::new();
+        StoredFrames { path, shape }.each(&mut |frame| {
+            all.push(Frame {
+                t: frame.t,
+                x: frame.x.to_vec(),
+                data: Quantity::ALL.map(|quantity| quantity.of(&frame.data).to_vec()),
+            });
+            ControlFlow::Continue(())
+        })?;
+        Ok(all)
+    }
 
     #[test]
     fn frames_come_back_and_continue_where_they_are_told() {

@@ -8,9 +8,11 @@ pub use entry::GalleryEntry;
 pub use error::GalleryError;
 
 use super::folder::{RunFolder, holds_other_files, remove_unfinished};
-use super::{Film, FilmOptions, Recording};
-use crate::format::{read_json, write_atomically, write_json};
+use super::page::page_of;
+use super::{Film, FilmOptions, Recording, RunError};
+use crate::format::{WriteError, read_json, write_atomically, write_json};
 use crate::picture::PictureError;
+use crate::view::PageOptions;
 use entry::RUNS;
 use std::collections::HashSet;
 use std::fs;
@@ -65,17 +67,26 @@ impl Gallery {
             return Err(GalleryError::NoRuns { folders });
         }
         let before = Self::before(out)?;
+        let runs = out.join(RUNS);
+        if fs::symlink_metadata(&runs).is_ok_and(|found| !found.is_dir()) {
+            return Err(GalleryError::Linked { path: runs });
+        }
         for folder in [out.to_owned(), out.join(RUNS)] {
             // Files that cannot be removed are in nobody's way.
             let _ = remove_unfinished(&folder);
         }
+        let made = fs::create_dir_all(&runs);
+        made.map_err(|source| WriteError::CreateFolder {
+            folder: runs.clone(),
+            source,
+        })?;
         let mut gallery = Self {
             entries: Vec::new(),
             left_out,
         };
         let mut names = HashSet::new();
         for folder in found {
-            match Shown::read(&folder) {
+            match Shown::read(&folder, &runs) {
                 Ok(shown) => {
                     let name = unused(&file_name(&folder), &mut names);
                     let [page, picture] = files(&name).map(|file| out.join(file));
@@ -102,7 +113,14 @@ impl Gallery {
     fn before(out: &Path) -> Result<Vec<GalleryEntry>, GalleryError> {
         let data = out.join(Self::DATA);
         if data.is_file() {
-            return Ok(read_json(&data)?);
+            let entries: Vec<GalleryEntry> = read_json(&data)?;
+            return match entries.iter().find(|entry| !is_plain(&entry.name)) {
+                None => Ok(entries),
+                Some(GalleryEntry { name, .. }) => Err(GalleryError::Name {
+                    path: data,
+                    name: name.clone(),
+                }),
+            };
         }
         let path = || out.to_owned();
         match holds_other_files(out, &[RUNS, Self::INDEX]) {
@@ -173,14 +191,16 @@ struct Shown {
 }
 
 impl Shown {
-    /// Reads a run and makes both, or says why that cannot be done.
-    fn read(folder: &Path) -> Result<Self, String> {
-        let recording = Recording::read(folder).map_err(|e| e.to_string())?;
+    /// Reads a run and makes both in a folder that is there, or says why that cannot be done.
+    fn read(folder: &Path, out: &Path) -> Result<Self, String> {
+        let words = |error: RunError| error.to_string();
+        let (mut recording, frames) = Recording::open(folder).map_err(words)?;
+        let page = page_of(&recording, &frames, out, &PageOptions::default());
+        recording.load(frames, folder).map_err(words)?;
         let Some(last) = recording.trajectory.len().checked_sub(1) else {
             return Err("it has no frame yet".into());
         };
-        let replay = recording.replay().map_err(|e| e.to_string())?;
-        let page = replay.to_html().map_err(|e| e.to_string())?;
+        let page = page.map_err(words)?;
         let picture = picture(&recording, last).map_err(|e| e.to_string())?;
         Ok(Self {
             recording,
@@ -204,15 +224,22 @@ fn picture(recording: &Recording, frame: usize) -> Result<Vec<u8>, PictureError>
 fn file_name(folder: &Path) -> String {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let name = whole.file_name().unwrap_or_default().to_string_lossy();
-    let plain = |c: char| match c {
-        'a'..='z' | 'A'..='Z' | '0'..='9' | '-' | '_' | '.' => c,
-        _ => '-',
-    };
+    let plain = |c: char| if is_plain_character(c) { c } else { '-' };
     name.strip_suffix("-run")
         .unwrap_or(&name)
         .chars()
         .map(plain)
         .collect()
+}
+
+/// What names of files in a gallery are made of.
+fn is_plain_character(c: char) -> bool {
+    c.is_ascii_alphanumeric() || ['-', '_', '.'].contains(&c)
+}
+
+/// Whether a gallery may have given a name to a run.
+fn is_plain(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(is_plain_character)
 }
 
 /// A name that no other run of the gallery has.

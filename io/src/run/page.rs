@@ -1,10 +1,13 @@
 //! The page of a run.
 
 use super::elastic::ElasticSummary;
-use super::recording::Recording;
+use super::frame_field::FrameField;
+use super::recording::{Recording, RunFrames};
+use super::spool::Spool;
 use super::{EndReason, RunError, SheetPlace, Summary, constraints};
-use crate::format::write_atomically;
-use crate::view::{Field, PageOptions, Replay, Series, ViewError};
+use crate::format::atomic::prepare_folder;
+use crate::format::{Quantity, write_atomically};
+use crate::view::{PageOptions, Replay, Series, ViewError};
 use std::io::Write;
 use std::path::Path;
 
@@ -16,19 +19,37 @@ impl Recording {
     /// # Errors
     /// [`ViewError::NoFrames`] of a run without a frame yet.
     pub fn replay(&self) -> Result<Replay, ViewError> {
-        let mut replay = Replay::of_motion(
-            &self.sheet,
-            &self.obstacles,
-            &self.trajectory,
-            &self.history,
-        )?;
-        let held = constraints::bodies(self.scene.scene(), &self.trajectory);
+        if self.trajectory.is_empty() {
+            return Err(ViewError::NoFrames);
+        }
+        let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        let frames = (0..self.trajectory.len()).filter_map(|k| self.trajectory.frame(k));
+        for p in frames.flat_map(|x| x.as_chunks::<3>().0) {
+            let [low, high] = &mut corners;
+            for k in 0..3 {
+                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
+            }
+        }
+        let still = self.still(self.trajectory.times().to_vec(), corners);
+        still.with_frames(&self.trajectory, &self.sheet, &self.fields())
+    }
+
+    /// The fields of the page.
+    fn fields(&self) -> Vec<FrameField<'_>> {
+        let has = |quantity: Quantity| self.shape.has(quantity);
+        let mut fields = FrameField::all(&self.sheet, &self.obstacles, has);
+        fields.extend(FrameField::elastic(&self.model));
+        fields
+    }
+
+    /// The page without its frames, which are at these times, and whose positions lie in the box between two
+    /// corners.
+    fn still(&self, times: Vec<f64>, corners: [[f64; 3]; 2]) -> Replay {
+        let mut replay = Replay::still(&self.sheet, &self.obstacles, times, &self.history);
+        let held = constraints::bodies(self.scene.scene(), &replay.times, corners);
         replay.bodies.extend(held);
         replay.series.extend(Series::of_measures(&self.measures));
-        replay
-            .fields
-            .extend(Field::elastic(&self.model, &replay.positions));
-        Ok(Replay {
+        Replay {
             title: self.name.clone(),
             pins: self.pins.iter().map(|v| v.0).collect(),
             immobile: self.immobile.iter().map(|v| v.0).collect(),
@@ -36,7 +57,7 @@ impl Recording {
             scene: self.scene.text().text.clone(),
             reproduce: self.reproduce(),
             ..replay
-        })
+        }
     }
 
     /// What came of the run so far as names and values: the table of the page.
@@ -50,7 +71,7 @@ impl Recording {
                 rows.add("state", format!("not complete: up to {t:.4} s"));
             }
         }
-        if self.trajectory.gaps(0).is_none() {
+        if !self.shape.has(Quantity::Gaps) {
             rows.add(
                 "not recorded",
                 "gaps of the sheet to itself by vertex".into(),
@@ -173,16 +194,39 @@ fn vector([x, y, z]: &[f64; 3]) -> String {
 /// [`RunError::NoRun`] if the folder is not that of a run, [`RunError::Page`] if the run cannot be shown,
 /// [`RunError`] if a file cannot be read or written.
 pub fn write_page(folder: &Path, file: &Path, options: &PageOptions) -> Result<usize, RunError> {
-    write_page_of(&Recording::read(folder)?, file, options)
+    let (recording, frames) = Recording::open(folder)?;
+    write_page_of(&recording, &frames, file, options)
 }
 
 /// The same for what was read already.
 pub(crate) fn write_page_of(
     recording: &Recording,
+    frames: &RunFrames,
     file: &Path,
     options: &PageOptions,
 ) -> Result<usize, RunError> {
-    let page = recording.replay()?.to_html_with(options)?;
+    let page = page_of(recording, frames, &prepare_folder(file)?, options)?;
     write_atomically(file, |w| w.write_all(page.as_bytes()))?;
     Ok(page.len())
+}
+
+/// The page of a run. One frame is in memory at a time: while the page is made, what it shows of them is in a file
+/// without a name in a folder.
+pub(super) fn page_of(
+    recording: &Recording,
+    frames: &RunFrames,
+    folder: &Path,
+    options: &PageOptions,
+) -> Result<String, RunError> {
+    let fields = recording.fields();
+    let spool = Spool::of(frames, &recording.sheet, &fields, folder)?;
+    if spool.times.is_empty() {
+        return Err(ViewError::NoFrames.into());
+    }
+    let still = recording.still(spool.times.clone(), spool.corners);
+    let still = Replay {
+        fields: fields.into_iter().map(|field| field.head).collect(),
+        ..still
+    };
+    still.page_of(&spool, options)
 }

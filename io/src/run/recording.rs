@@ -1,17 +1,18 @@
 //! What a run recorded, complete or not.
 
-use super::folder::RunFolder;
-use super::frames::{FrameShape, read_frames};
+use super::folder::{RunFolder, stored_scene};
+use super::frames::{FrameShape, StoredFrames};
 use super::{RunError, Summary};
 use crate::format::{
-    HistoryError, HistoryRow, LoadRow, MeasureRow, SeriesBody, Trajectory, read_history, read_json,
-    read_loads, read_measures,
+    HistoryError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, SeriesBody, Trajectory,
+    read_history, read_json, read_loads, read_measures,
 };
 use crate::scene::SceneFile;
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
 use isosheet_mesh::{Part, Sheet, VertexId};
 use nalgebra::{Isometry3, Vector3};
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// What a run recorded: everything that a page or a film of it needs.
@@ -35,6 +36,8 @@ pub struct Recording {
     pub(crate) model: SheetModel,
     /// The bodies, in the order of the scene.
     pub obstacles: Vec<Obstacle>,
+    /// How many numbers a frame has.
+    pub(crate) shape: FrameShape,
     /// The frames with the mesh.
     pub trajectory: Trajectory,
     /// One row for each step, that of the start first.
@@ -54,37 +57,54 @@ impl Recording {
     /// # Errors
     /// [`RunError::NoRun`] if the folder is not that of a run, [`RunError`] if a file cannot be read.
     pub fn read(folder: &Path) -> Result<Self, RunError> {
-        let scene = open_scene(folder)?;
+        let (mut recording, frames) = Self::open(folder)?;
+        recording.load(frames, folder)?;
+        Ok(recording)
+    }
+
+    /// Reads the frames of the run in a folder, all of them into memory.
+    pub(crate) fn load(&mut self, frames: RunFrames, folder: &Path) -> Result<(), RunError> {
+        self.trajectory = match frames {
+            RunFrames::Whole(trajectory) => trajectory,
+            // The trajectory of a run that goes on is that of its last stop.
+            RunFrames::Stored(_) if self.summary.is_some() && is_whole(folder) => {
+                Trajectory::read(&folder.join(RunFolder::TRAJECTORY))?
+            }
+            RunFrames::Stored(frames) => frames.trajectory(&self.sheet)?,
+        };
+        Ok(())
+    }
+
+    /// All but the frames, of which the trajectory has none, and what shows these one at a time.
+    pub(crate) fn open(folder: &Path) -> Result<(Self, RunFrames), RunError> {
+        let scene = stored_scene(folder)?;
         let setup = scene.build()?;
         let summary = folder.join(RunFolder::SUMMARY);
         let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
-        let whole = folder.join(RunFolder::TRAJECTORY);
-        // The trajectory of a run that goes on is that of its last stop.
-        let trajectory = if summary.is_some() && whole.is_file() {
-            Trajectory::read(&whole)?
-        } else {
-            read_trajectory(
-                &folder.join(RunFolder::FRAMES),
-                &setup.sheet,
-                FrameShape::of(&setup),
-            )?
+        let shape = FrameShape::of(&setup);
+        let path = folder.join(RunFolder::FRAMES);
+        let frames = match summary.is_some() && is_whole(folder) && !path.is_file() {
+            true => RunFrames::Whole(Trajectory::read(&folder.join(RunFolder::TRAJECTORY))?),
+            false => RunFrames::Stored(StoredFrames { path, shape }),
         };
-        Ok(Self {
+        let recording = Self {
             name: name_of(folder),
             immobile: immobile_vertices(&setup.model, &setup.start.x),
             pins: setup.model.pins(),
             model: setup.model,
             parts: setup.parts,
             modelled: setup.modelled,
+            trajectory: Trajectory::new(&setup.sheet),
+            shape,
             sheet: setup.sheet,
             obstacles: setup.obstacles,
-            trajectory,
             history: read_history(&folder.join(RunFolder::HISTORY))?,
             loads: rows(&folder.join(RunFolder::LOADS), read_loads)?,
             measures: rows(&folder.join(RunFolder::MEASURES), read_measures)?,
             scene,
             summary,
-        })
+        };
+        Ok((recording, frames))
     }
 
     /// The bodies for files of other programs, `obstacle_0` and so on in the order of the scene, with their
@@ -130,26 +150,49 @@ fn name_of(folder: &Path) -> String {
     name.strip_suffix("-run").unwrap_or(&name).to_owned()
 }
 
-/// The scene of a folder.
-pub(crate) fn open_scene(folder: &Path) -> Result<SceneFile, RunError> {
-    let path = folder.join(RunFolder::SCENE);
-    if !path.is_file() {
-        return Err(RunError::NoRun {
-            folder: folder.to_owned(),
-        });
-    }
-    Ok(SceneFile::read(&path, &[])?)
+/// Whether a folder has the trajectory of a run.
+fn is_whole(folder: &Path) -> bool {
+    folder.join(RunFolder::TRAJECTORY).is_file()
 }
 
-/// The trajectory of the frames in a file.
-pub(crate) fn read_trajectory(
-    path: &Path,
-    sheet: &Sheet,
-    shape: FrameShape,
-) -> Result<Trajectory, RunError> {
-    let mut trajectory = Trajectory::new(sheet);
-    for frame in read_frames(path, shape)? {
-        trajectory.push_with(frame.t, &frame.x, &frame.data())?;
+/// The frames of a run.
+#[derive(Debug)]
+pub(crate) enum RunFrames {
+    /// On the disk.
+    Stored(StoredFrames),
+    /// In memory, of a complete run of which only the trajectory is left.
+    Whole(Trajectory),
+}
+
+impl Motion for RunFrames {
+    type Error = RunError;
+
+    fn each(
+        &self,
+        show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
+    ) -> Result<(), RunError> {
+        match self {
+            Self::Stored(frames) => frames.each(show),
+            Self::Whole(trajectory) => {
+                let Ok(()) = trajectory.each(show);
+                Ok(())
+            }
+        }
     }
-    Ok(trajectory)
+}
+
+impl StoredFrames {
+    /// All frames in memory.
+    fn trajectory(&self, sheet: &Sheet) -> Result<Trajectory, RunError> {
+        let (mut trajectory, mut done) = (Trajectory::new(sheet), Ok(()));
+        self.each(&mut |frame| {
+            done = trajectory.push_with(frame.t, frame.x, &frame.data);
+            match done {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(_) => ControlFlow::Break(()),
+            }
+        })?;
+        done?;
+        Ok(trajectory)
+    }
 }

@@ -1,18 +1,19 @@
 //! What the page shows of a recorded motion.
 
-use crate::format::{HistoryRow, MeasureRow, Trajectory};
-use crate::view::{Body, BodyShape, Field, Place, Pose, Replay, Scale, Series, ViewError};
+use super::frame_field::{FrameField, check_frame};
+use crate::format::{HistoryRow, MeasureRow, Motion, Quantity, Trajectory};
+use crate::view::{Body, BodyShape, Pose, Replay, Scale, Series, ViewError};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_mesh::Sheet;
-use nalgebra::{Isometry3, Point3};
+use nalgebra::Isometry3;
+use std::ops::ControlFlow;
 
 impl Replay {
     /// The page of a recorded motion: the sheet, the bodies in their poses, and
     ///
-    /// - the field "strain" ([`Field::edge_strain`]), where there are bodies "distance to obstacles" (see
-    ///   [`Field::obstacle_distance`]), and where the trajectory has them the forces of the rods
-    ///   ([`Field::rod_forces`]), the forces of contact and the gaps of the vertices ([`Field::contact`]), and what has
-    ///   yielded ([`Field::plastic`]),
+    /// - the field "strain" ([`Field::edge_strain`](crate::view::Field::edge_strain)), where there are bodies
+    ///   "distance to obstacles" (of each vertex, without the thickness of the sheet), and where the trajectory has
+    ///   them the forces of the rods, the forces of contact and the gaps of the vertices, and what has yielded,
     /// - the series of the history (see [`Series::of_history`]).
     ///
     /// Titles, pins and texts are left to the caller.
@@ -25,30 +26,56 @@ impl Replay {
         trajectory: &Trajectory,
         history: &[HistoryRow],
     ) -> Result<Self, ViewError> {
-        let times = trajectory.times().to_vec();
-        let frames = (0..times.len()).filter_map(|k| trajectory.frame(k));
-        let positions: Vec<Vec<f64>> = frames.map(<[f64]>::to_vec).collect();
-        let (faces, rest) = (sheet.face_indices(), sheet.positions().to_vec());
-        let mut fields = vec![Field::edge_strain(&faces, &rest, &positions)?];
-        if !obstacles.is_empty() {
-            fields.push(Field::obstacle_distance(obstacles, &times, &positions));
-        }
-        fields.extend(Field::rod_forces(trajectory));
-        fields.extend(Field::contact(trajectory));
-        fields.extend(Field::plastic(trajectory));
+        let has = |quantity: Quantity| {
+            let first = trajectory.first_data();
+            first.is_some_and(|data| !quantity.of(&data).is_empty())
+        };
+        let fields = FrameField::all(sheet, obstacles, has);
+        let still = Self::still(sheet, obstacles, trajectory.times().to_vec(), history);
+        still.with_frames(trajectory, sheet, &fields)
+    }
+
+    /// The page of a motion without its frames.
+    pub(super) fn still(
+        sheet: &Sheet,
+        obstacles: &[Obstacle],
+        times: Vec<f64>,
+        history: &[HistoryRow],
+    ) -> Self {
         let bodies = obstacles.iter().enumerate();
         let bodies =
             bodies.map(|(k, body)| Body::of_obstacle(&format!("obstacle[{k}]"), body, &times));
-        Ok(Self {
+        Self {
             bodies: bodies.collect(),
             series: Series::of_history(history),
-            faces,
-            rest,
+            faces: sheet.face_indices(),
+            rest: sheet.positions().to_vec(),
             times,
-            positions,
-            fields,
             ..Self::default()
-        })
+        }
+    }
+
+    /// The same with the frames of a trajectory, and with the values of fields.
+    pub(super) fn with_frames(
+        mut self,
+        trajectory: &Trajectory,
+        sheet: &Sheet,
+        fields: &[FrameField<'_>],
+    ) -> Result<Self, ViewError> {
+        self.fields = fields.iter().map(|field| field.head.clone()).collect();
+        let mut done = Ok(());
+        let Ok(()) = trajectory.each(&mut |frame| {
+            done = check_frame(frame, sheet);
+            if done.is_err() {
+                return ControlFlow::Break(());
+            }
+            self.positions.push(frame.x.to_vec());
+            for (field, of) in self.fields.iter_mut().zip(fields) {
+                field.values.push(of.values(frame));
+            }
+            ControlFlow::Continue(())
+        });
+        done.map(|()| self)
     }
 }
 
@@ -119,40 +146,6 @@ impl Body {
         Self::moving(name, obstacle.shape().into(), times, |t| {
             obstacle.motion().pose(t)
         })
-    }
-}
-
-impl Field {
-    /// The distance of each vertex from the nearest obstacle, metres, on a logarithmic scale: times (seconds)
-    /// and positions (length 3V) of the frames. The thickness of the sheet is not subtracted, and a face or
-    /// an edge may be nearer to an obstacle than its vertices are; the series "smallest gap" has both.
-    pub fn obstacle_distance(
-        obstacles: &[Obstacle],
-        times: &[f64],
-        positions: &[Vec<f64>],
-    ) -> Self {
-        let of_frame = |(t, x): (&f64, &Vec<f64>)| {
-            let into_body: Vec<_> = obstacles
-                .iter()
-                .map(|body| (body.shape(), body.motion().pose(*t).inverse()))
-                .collect();
-            let distance = |p: &[f64; 3]| {
-                let distances = into_body.iter().map(|(shape, pose)| {
-                    let local = pose * Point3::from(*p);
-                    shape.signed_distance(&local.coords).value.abs()
-                });
-                distances.fold(f64::INFINITY, f64::min)
-            };
-            x.as_chunks::<3>().0.iter().map(distance).collect()
-        };
-        Self {
-            name: "distance to obstacles".into(),
-            unit: "m".into(),
-            place: Place::Vertex,
-            scale: Scale::Logarithmic,
-            note: String::new(),
-            values: times.iter().zip(positions).map(of_frame).collect(),
-        }
     }
 }
 

@@ -9,7 +9,9 @@ use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::format::{MeasureRow, MeasureWriter};
-use crate::scene::{Gauge, Origins, Scene, SceneError, SceneFile, SupportForces, Targets};
+use crate::scene::{
+    Gauge, Origins, Scene, SceneError, SceneFile, SupportForces, Targets, check_positions,
+};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::contact::ActiveContacts;
 use isosheet_dynamics::{
@@ -240,6 +242,11 @@ impl Stepping<'_> {
                 return Err(RunError::Step(problem.in_text(self.file.text())));
             }
         };
+        let (model, x) = (self.simulation.model(), &self.simulation.state().x);
+        if let Err(problem) = check_positions(model, x) {
+            let problem = SceneError::from(problem).in_text(self.file.text());
+            return Err(RunError::Step(problem));
+        }
         self.progress.steps = number;
         self.count(&report);
         self.observe_elastic();
@@ -363,14 +370,14 @@ impl Stepping<'_> {
     fn write_checkpoint(&mut self, simulation: &Checkpoint) -> Result<(), RunError> {
         self.history.sync()?;
         self.frames.sync()?;
-        self.progress.history = self.history.length();
+        self.progress.history = self.history.written();
         if let Some(loads) = &self.loads {
             loads.sync()?;
-            self.progress.loads = Some(loads.length());
+            self.progress.loads = Some(loads.written());
         }
         if let Some(measures) = &self.measures {
             measures.sync()?;
-            self.progress.measures = Some(measures.length());
+            self.progress.measures = Some(measures.written());
         }
         self.progress.frames = self.frames.count();
         self.progress.wall += self.clock.elapsed().as_secs_f64();

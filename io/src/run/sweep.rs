@@ -27,10 +27,9 @@ pub use variation::{Variation, VariationError};
 pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
-use crate::format::write_atomically;
+use crate::format::{input, write_atomically};
 use crate::scene::{KeyPart, SceneFile, SceneFileError};
 use shell::shell_word;
-use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -155,7 +154,7 @@ impl Sweep {
     /// [`SweepError::Refused`] with all that is wrong in any run.
     pub fn check(&self) -> Result<(), SweepError> {
         let path = Path::new(&self.scene);
-        let text = fs::read_to_string(path).map_err(|source| SceneFileError::Read {
+        let text = input::read_text(path).map_err(|source| SceneFileError::Read {
             path: path.to_owned(),
             source,
         })?;

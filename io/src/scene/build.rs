@@ -9,6 +9,7 @@ use super::mesh::Mesh;
 use super::placed::{PlacedSheet, PlacedSheets};
 use super::pose::Motion;
 use super::problem::Problem;
+use super::resolution::check_step;
 use super::sheet::{Bending, Elasticity, Isometry};
 use super::supports::{Hold, frame_motion};
 use super::targets::{DrivenCrease, Targets};
@@ -49,10 +50,9 @@ impl Scene {
         };
         let measures = self.measure.iter().enumerate().map(gauge);
         let measures = measures.collect::<Result<_, _>>()?;
-        Ok(Setup {
-            measures,
-            ..builder.finish(contacts, obstacles)
-        })
+        let setup = builder.finish(contacts, obstacles);
+        check_step(self, &setup.model, &setup.start.v)?;
+        Ok(Setup { measures, ..setup })
     }
 }
 

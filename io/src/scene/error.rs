@@ -69,6 +69,9 @@ impl SceneText {
     }
 }
 
+/// Most problems that are shown at once.
+const MOST_PROBLEMS: usize = 50;
+
 /// A problem with its place, as a value for programs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct PlacedProblem {
@@ -105,9 +108,18 @@ pub struct SceneError {
 
 impl SceneError {
     /// The error of some problems, if there are any.
-    pub(crate) fn of(problems: Vec<Problem>) -> Result<(), Self> {
+    pub(crate) fn of(mut problems: Vec<Problem>) -> Result<(), Self> {
         if problems.is_empty() {
             return Ok(());
+        }
+        if let Some(more) = problems.len().checked_sub(MOST_PROBLEMS).filter(|&n| n > 0) {
+            problems.truncate(MOST_PROBLEMS);
+            let message = format!("{more} further problems are not shown");
+            problems.push(Problem::new(
+                Key::root(),
+                message,
+                "correct those above first",
+            ));
         }
         let text = None;
         Err(Self { problems, text })
@@ -172,15 +184,21 @@ fn without_place(problem: &Problem) -> String {
 fn group<'a>(problem: &'a Problem, path: &'a Path, text: &'a str, span: Range<usize>) -> Group<'a> {
     let marker = AnnotationKind::Primary.span(span);
     let snippet = Snippet::source(text)
-        .path(path.to_string_lossy())
+        .path(without_colours(&path.to_string_lossy()))
         .annotation(marker);
     let group = Level::ERROR
-        .primary_title(&problem.message)
+        .primary_title(without_colours(&problem.message))
         .element(snippet);
     match &problem.remedy {
-        Some(remedy) => group.element(Level::HELP.message(remedy)),
+        Some(remedy) => group.element(Level::HELP.message(without_colours(remedy))),
         None => group,
     }
+}
+
+/// A text whose escape characters are shown, so that those of a rendered message are all its own. The source is
+/// rendered without them.
+fn without_colours(text: &str) -> String {
+    text.replace('\u{1b}', "\\u001b")
 }
 
 impl From<Problem> for SceneError {

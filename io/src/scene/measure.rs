@@ -9,6 +9,7 @@ use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 
 /// A length that is read off the sheet at the start and after each step: how deep a tip hangs, how far a
 /// corner is from its place, how wide a fold is. A run writes it to `measures.csv`, and its last, least and
@@ -67,11 +68,13 @@ pub enum Quantity {
 impl Measure {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let is_usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        if self.name.is_empty() || !self.name.chars().all(is_usual) {
+        // Spreadsheets take a name that begins with a minus for a formula.
+        let is_text = self.name.starts_with(|c| is_usual(c) && c != '-');
+        if !is_text || !self.name.chars().all(is_usual) {
             checks.report(
                 key.name("name"),
                 format!("`{}` cannot be the name of a measure", self.name),
-                "use letters, digits, `_` and `-`",
+                "use letters, digits, `_` and `-`, which is not the first",
             );
         }
         self.at.check(&key.name("at"), checks);
@@ -107,8 +110,9 @@ impl Measure {
 
 /// Refuses names that stand twice.
 pub(super) fn check_names(measures: &[Measure], root: &Key, checks: &mut Checks) {
+    let mut names = HashSet::new();
     for (k, measure) in measures.iter().enumerate() {
-        if measures[..k].iter().any(|other| other.name == measure.name) {
+        if !names.insert(&measure.name) {
             checks.report(
                 root.name("measure").entry(k).name("name"),
                 format!("another measure has the name `{}`", measure.name),

@@ -20,6 +20,9 @@ pub enum Outline {
     Shape(OutlineShape),
 }
 
+/// Most sides of a regular polygon: what has more is a circle.
+const MOST_SIDES: f64 = 1e4;
+
 /// A polygon by formula.
 ///
 /// ```toml
@@ -32,7 +35,7 @@ pub enum Outline {
 pub enum OutlineShape {
     /// A regular polygon about the origin. The x axis leads through the middle of a side.
     Regular {
-        /// Number of sides.
+        /// Number of sides, at most 10 000.
         sides: usize,
         /// Radius of the circle through the corners, metres.
         radius: f64,
@@ -65,7 +68,8 @@ impl Outline {
                 checks.count(key.clone(), corners.len(), 3);
             }
             Self::Shape(OutlineShape::Regular { sides, radius }) => {
-                checks.count(key.name("regular.sides"), *sides, 3);
+                let key_of_sides = key.name("regular.sides");
+                checks.within(key_of_sides, *sides as f64, [3.0, MOST_SIDES]);
                 checks.positive(key.name("regular.radius"), *radius, Unit::Metre);
             }
         }

@@ -5,6 +5,7 @@ use super::mesh::RestMesh;
 use super::pattern::EdgeRoles;
 use super::problem::Problem;
 use super::refined::Refined;
+use super::resolution::check_shape;
 use super::sheets::sheet_key;
 use super::{Key, Selection, Sheet as SheetOfScene, Weight, sheets};
 use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
@@ -112,7 +113,8 @@ impl<'a> PlacedSheet<'a> {
         let placed = unplaced
             .sheet()
             .map_positions(|p| pose.place(p))
-            .map_err(|e| Problem::from_error(mesh_key, &e))?;
+            .map_err(|e| Problem::from_error(mesh_key.clone(), &e))?;
+        check_shape(&placed, &mesh_key.name(of.mesh.name()))?;
         let x = match &of.start.file {
             None => placed.positions().to_vec(),
             Some(file) => {

@@ -3,6 +3,7 @@
 use super::key::Key;
 use super::pattern::EdgeRoles;
 use super::problem::Problem;
+use super::size;
 use isosheet_mesh::generate::{FoldAssignment, refine_isotropic};
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 
@@ -15,6 +16,8 @@ pub(super) struct Refined {
 
 impl Refined {
     pub(super) fn new(mesh: Sheet, times: usize, key: &Key) -> Result<Self, Problem> {
+        let faces = mesh.topology().face_count() as f64 * size::refined(times);
+        size::check_memory(faces, key.clone())?;
         let mut levels = vec![mesh];
         for _ in 0..times {
             let finer = refine_isotropic(&levels[levels.len() - 1]);

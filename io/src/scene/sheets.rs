@@ -3,6 +3,7 @@
 use super::key::Key;
 use super::problem::{Checks, Problem};
 use super::sheet::{Isometry, Sheet};
+use super::size;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
@@ -64,6 +65,7 @@ pub(super) fn check(sheets: &[Sheet], checks: &mut Checks) {
         checks.report(root, "the scene has no sheet", "write a table `[sheet]`");
         return;
     }
+    let before = checks.problems.len();
     for (k, sheet) in sheets.iter().enumerate() {
         let key = sheet_key(sheets.len(), k);
         sheet.check(&key, checks);
@@ -71,6 +73,11 @@ pub(super) fn check(sheets: &[Sheet], checks: &mut Checks) {
             check_name(sheets, k, &key, checks);
             check_common(&sheets[0], sheet, &key, checks);
         }
+    }
+    if checks.problems.len() == before
+        && let Err(problem) = size::check_sheets(sheets)
+    {
+        checks.problems.push(problem);
     }
 }
 

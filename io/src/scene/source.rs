@@ -8,7 +8,7 @@ use super::problem::Problem;
 use super::sheets::sheet_key;
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
-use crate::format::MeshFormat;
+use crate::format::{MeshFormat, input};
 use isosheet_mesh::{Advice, generate::FoldAssignment};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -79,7 +79,7 @@ impl SceneFile {
     /// [`SceneFileError`], with all problems that were found.
     pub fn read(path: &Path, edits: &[String]) -> Result<Self, SceneFileError> {
         refuse_mesh(path)?;
-        let text = std::fs::read_to_string(path).map_err(|source| SceneFileError::Read {
+        let text = input::read_text(path).map_err(|source| SceneFileError::Read {
             path: path.to_owned(),
             source,
         })?;

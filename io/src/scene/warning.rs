@@ -1,5 +1,6 @@
 //! What to know of a scene before it is run.
 
+use super::in_words::bytes_in_words;
 use super::setup::Setup;
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, VertexId};
@@ -22,6 +23,24 @@ pub enum SceneWarning {
         /// The clamped vertices beside the free part of the sheet.
         edge: Vec<VertexId>,
     },
+    /// A run writes much.
+    #[error("the files of the run need about {}", bytes_in_words(*bytes as f64))]
+    Disk {
+        /// Length of all files, bytes.
+        bytes: u64,
+    },
+    /// A run needs most of the free memory.
+    #[error("the run needs about {} of memory, more than half of what is free", bytes_in_words(*bytes as f64))]
+    Memory {
+        /// Bytes.
+        bytes: u64,
+    },
+    /// A run takes long.
+    #[error("the run takes {} or more", counted(*days as usize, "day", "days"))]
+    Time {
+        /// Wall time on one core of a sheet of rods without contact, days.
+        days: u64,
+    },
 }
 
 impl Advice for SceneWarning {
@@ -31,6 +50,11 @@ impl Advice for SceneWarning {
                 "name what the sheet is made of, `sheet.material`, which makes it elastic; or make a mesh with a line of \
                  edges along the clamp",
             ),
+            Self::Disk { .. } => Some("take fewer frames a second, `output.frames_per_second`"),
+            Self::Memory { .. } => Some("make the mesh coarser"),
+            Self::Time { .. } => {
+                Some("make the mesh coarser, the steps longer or the time shorter")
+            }
         }
     }
 }

@@ -1,12 +1,14 @@
 //! The data in a page, as JSON.
 
 use serde::Serialize;
+use std::ops::ControlFlow;
 
 use super::body::{Body, BodyShape};
 use super::field::{Field, Place, Scale, Series};
+use super::frames::{Kept, ShownFrames};
 use super::live::LivePage;
-use super::pack::{Packed, pack_doubles, pack_indices, pack_rows};
-use super::quantise::{quantise_field, quantise_positions};
+use super::pack::{Packed, RowPacker, pack_doubles, pack_indices};
+use super::quantise::{FieldScale, PositionScale};
 use super::replay::{Axis, Replay};
 
 /// A replay with every `stride`-th frame and the last one. The field names are those in the JSON text.
@@ -68,46 +70,59 @@ struct SeriesData<'a> {
     values: String,
 }
 
-/// The frames that are left of `frames` when every `stride`-th one and the last one are kept.
-pub(super) fn frames_kept(frames: usize, stride: usize) -> Vec<usize> {
-    let mut kept: Vec<usize> = (0..frames).step_by(stride).collect();
-    if !(frames - 1).is_multiple_of(stride) {
-        kept.push(frames - 1);
-    }
-    kept
-}
-
 impl<'a> Document<'a> {
-    /// The document of a replay that was validated.
-    pub(super) fn new(replay: &'a Replay, stride: usize) -> Self {
-        let kept = frames_kept(replay.times.len(), stride);
-        let frames: Vec<&Vec<f64>> = kept.iter().map(|&k| &replay.positions[k]).collect();
-        let (low, step, integers) = quantise_positions(&frames);
-        Self {
+    /// The document of the frames of a replay, which were validated; none where it is longer than `most` bytes
+    /// for sure. Positions and values of fields come from `frames`, everything else from the replay.
+    pub(super) fn new<F: ShownFrames>(
+        replay: &'a Replay,
+        frames: &F,
+        kept: Kept,
+        most: usize,
+    ) -> Result<Option<Self>, F::Error> {
+        let (scales, positions) = scales(replay, frames, kept)?;
+        let Some((packed, fields)) = pack(&scales, positions, frames, kept, most)? else {
+            return Ok(None);
+        };
+        let (low, step) = positions.low_and_step();
+        let heads = replay.fields.iter().zip(&scales);
+        let fields = heads.zip(fields).map(|((head, scale), values)| {
+            let [low, step] = scale.low_and_step();
+            FieldData {
+                name: &head.name,
+                unit: &head.unit,
+                place: head.place,
+                scale: head.scale,
+                note: &head.note,
+                low,
+                step,
+                values,
+            }
+        });
+        Ok(Some(Self {
             program: "isosheet",
             version: env!("CARGO_PKG_VERSION"),
             title: &replay.title,
             up: replay.up,
             vertices: replay.rest.len() / 3,
-            frames: kept.len(),
-            frames_of_run: replay.times.len(),
-            stride,
-            times: pack_doubles(kept.iter().map(|&k| replay.times[k])),
+            frames: kept.numbers().count(),
+            frames_of_run: kept.frames,
+            stride: kept.stride,
+            times: pack_doubles(kept.numbers().map(|k| replay.times[k])),
             faces: pack_indices(replay.faces.as_flattened()),
             rest: pack_doubles(replay.rest.iter().copied()),
             low,
             step,
-            positions: pack_rows(&integers, 2),
+            positions: packed,
             pins: &replay.pins,
             immobile: &replay.immobile,
-            bodies: replay.bodies.iter().map(|b| body_data(b, &kept)).collect(),
-            fields: replay.fields.iter().map(|f| field_data(f, &kept)).collect(),
+            bodies: replay.bodies.iter().map(|b| body_data(b, kept)).collect(),
+            fields: fields.collect(),
             series: replay.series.iter().map(series_data).collect(),
             summary: &replay.summary,
             scene: &replay.scene,
             reproduce: &replay.reproduce,
             live: None,
-        }
+        }))
     }
 
     /// The same of a run that goes on.
@@ -118,11 +133,6 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The number of frames that the document has.
-    pub(super) fn frame_count(&self) -> usize {
-        self.frames
-    }
-
     /// The JSON text. It has no `<`, so that no text in it ends the element of the page that holds it.
     pub(super) fn to_json(&self) -> String {
         let json =
@@ -131,10 +141,72 @@ impl<'a> Document<'a> {
     }
 }
 
-fn body_data<'a>(body: &'a Body, kept: &[usize]) -> BodyData<'a> {
+/// How positions and the values of each field become integers.
+fn scales<F: ShownFrames>(
+    replay: &Replay,
+    frames: &F,
+    kept: Kept,
+) -> Result<(Vec<FieldScale>, PositionScale), F::Error> {
+    let mut positions = PositionScale::new();
+    let new = |field: &Field| FieldScale::new(field.scale);
+    let mut scales: Vec<FieldScale> = replay.fields.iter().map(new).collect();
+    frames.try_each(kept, |frame| {
+        positions.observe(frame.x);
+        let of_fields = scales.iter_mut().zip(frame.values);
+        of_fields.for_each(|(scale, values)| scale.observe_sizes(values));
+        Ok(())
+    })?;
+    frames.try_each(kept, |frame| {
+        let of_fields = scales.iter_mut().zip(frame.values);
+        of_fields.for_each(|(scale, values)| scale.observe(values));
+        Ok(())
+    })?;
+    Ok((scales, positions))
+}
+
+/// Positions and the values of each field, packed; none where they are longer than `most` bytes for sure.
+fn pack<F: ShownFrames>(
+    scales: &[FieldScale],
+    positions: PositionScale,
+    frames: &F,
+    kept: Kept,
+    most: usize,
+) -> Result<Option<(Packed, Vec<Packed>)>, F::Error> {
+    let mut packed = RowPacker::new(2);
+    let new = |scale: &FieldScale| RowPacker::new(scale.bytes());
+    let mut fields: Vec<RowPacker> = scales.iter().map(new).collect();
+    let (mut integers, mut is_too_long) = (Vec::new(), false);
+    for plane in 0..2 {
+        packed.begin_plane(plane);
+        let has_plane: Vec<bool> = fields.iter_mut().map(|f| f.begin_plane(plane)).collect();
+        frames.each(kept, &mut |frame| {
+            positions.integers(frame.x, &mut integers);
+            packed.push(&integers);
+            let of_fields = fields.iter_mut().zip(scales).zip(frame.values);
+            let of_plane = of_fields.zip(&has_plane).filter(|(_, has)| **has);
+            for (((field, scale), values), _) in of_plane {
+                scale.integers(values, &mut integers);
+                field.push(&integers);
+            }
+            let length = fields.iter().map(RowPacker::least_length).sum::<usize>();
+            is_too_long = packed.least_length() + length > most;
+            match is_too_long {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        })?;
+        if is_too_long {
+            return Ok(None);
+        }
+    }
+    let fields = fields.into_iter().map(RowPacker::finish).collect();
+    Ok(Some((packed.finish(), fields)))
+}
+
+fn body_data(body: &Body, kept: Kept) -> BodyData<'_> {
     let poses: Vec<_> = match body.poses.as_slice() {
         [pose] => vec![pose],
-        poses => kept.iter().map(|&k| &poses[k]).collect(),
+        poses => kept.numbers().map(|k| &poses[k]).collect(),
     };
     let numbers = poses
         .iter()
@@ -143,21 +215,6 @@ fn body_data<'a>(body: &'a Body, kept: &[usize]) -> BodyData<'a> {
         name: &body.name,
         shape: &body.shape,
         poses: pack_doubles(numbers),
-    }
-}
-
-fn field_data<'a>(field: &'a Field, kept: &[usize]) -> FieldData<'a> {
-    let rows: Vec<&Vec<f64>> = kept.iter().map(|&k| &field.values[k]).collect();
-    let quantised = quantise_field(&rows, field.scale);
-    FieldData {
-        name: &field.name,
-        unit: &field.unit,
-        place: field.place,
-        scale: field.scale,
-        note: &field.note,
-        low: quantised.low,
-        step: quantised.step,
-        values: pack_rows(&quantised.rows, quantised.bytes),
     }
 }
 

@@ -1,6 +1,5 @@
 //! Values on the sheet, and quantities over time.
 
-use crate::format::Trajectory;
 use isosheet_mesh::Topology;
 
 use super::check;
@@ -87,128 +86,71 @@ impl Field {
         let topology = Topology::from_faces(rest.len() / 3, faces)?;
         let size = 3 * topology.vertex_count();
         check::length("the rest positions", rest.len(), size)?;
-        let length = |x: &[f64]| -> Vec<f64> {
-            let ends = topology.edges().iter().map(|e| e.map(|v| 3 * v.index()));
-            ends.map(|[a, b]| {
-                let d = [0, 1, 2].map(|k| x[a + k] - x[b + k]);
-                (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
-            })
-            .collect()
-        };
-        let at_rest = length(rest);
+        let strain = strains(&topology, rest);
         let mut values = Vec::with_capacity(positions.len());
         for (frame, x) in positions.iter().enumerate() {
             check::length_of(x.len(), size, || format!("the positions of frame {frame}"))?;
-            let strain = length(x).into_iter().zip(&at_rest);
-            values.push(strain.map(|(l, rest)| (l / rest - 1.0).abs()).collect());
+            values.push(strain(x));
         }
         Ok(Self {
+            values,
+            ..Self::strain()
+        })
+    }
+
+    /// The field of the strains, without values.
+    pub(crate) fn strain() -> Self {
+        Self {
             name: "strain".into(),
             unit: String::new(),
             place: Place::Edge,
             scale: Scale::Logarithmic,
             note: String::new(),
-            values,
-        })
+            values: Vec::new(),
+        }
     }
 
-    /// The force of the rod along each edge in each frame (newtons, tension positive), if the trajectory has
-    /// forces.
-    pub fn rod_forces(trajectory: &Trajectory) -> Option<Self> {
-        let frames = 0..trajectory.len();
-        let values: Option<Vec<_>> = frames
-            .map(|k| trajectory.rod_forces(k).map(<[f64]>::to_vec))
-            .collect();
-        Some(Self {
-            name: "rod force (tension +)".into(),
-            unit: "N".into(),
-            place: Place::Edge,
-            scale: Scale::Signed,
-            note: "Where rods depend on each other, as in a flat part of the sheet, their forces are not unique."
-                .into(),
-            values: values?,
-        })
+    /// The name of the field in messages.
+    pub(super) fn place_in_page(&self, index: usize) -> String {
+        format!("field {index} (`{}`)", self.name)
     }
 
-    /// What the trajectory has of contact: the size of the force of contact on each vertex (newtons; of
-    /// bodies and of the sheet on itself), and the gap of each vertex (metres, see [`Trajectory::gaps`]).
-    pub fn contact(trajectory: &Trajectory) -> Vec<Self> {
-        let frames = || 0..trajectory.len();
-        let size = |f: &[f64; 3]| f[0].hypot(f[1]).hypot(f[2]);
-        let sizes = |forces: &[f64]| forces.as_chunks::<3>().0.iter().map(size).collect();
-        let forces = frames().map(|k| trajectory.contact_forces(k).map(sizes));
-        let gaps = frames().map(|k| trajectory.gaps(k).map(<[f64]>::to_vec));
-        let field = |name: &str, unit: &str, scale, values: Option<Vec<Vec<f64>>>| {
-            Some(Self {
-                name: name.into(),
-                unit: unit.into(),
-                place: Place::Vertex,
-                scale,
-                note: String::new(),
-                values: values?,
-            })
-        };
-        let forces = field("contact force", "N", Scale::Magnitude, forces.collect());
-        let gaps = field("gap", "m", Scale::Linear, gaps.collect());
-        forces.into_iter().chain(gaps).collect()
-    }
-
-    /// What the trajectory has of yielding: of plates the principal value of the plastic curvature of each
-    /// face (1/m) that is larger in size, of edges that yield the plastic angle (degrees), positive for
-    /// valleys.
-    pub fn plastic(trajectory: &Trajectory) -> Vec<Self> {
-        let frames = || 0..trajectory.len();
-        let first = |values: &[f64]| values.as_chunks::<2>().0.iter().map(|p| p[0]).collect();
-        let degrees = |values: &[f64]| values.iter().map(|a| a.to_degrees()).collect();
-        let curvatures = frames().map(|k| trajectory.plastic_curvatures(k).map(first));
-        let angles = frames().map(|k| trajectory.plastic_angles(k).map(degrees));
-        let field = |name: &str, unit: &str, place, values: Option<Vec<Vec<f64>>>| {
-            Some(Self {
-                name: name.into(),
-                unit: unit.into(),
-                place,
-                scale: Scale::Signed,
-                note: "What has yielded, and stays where no moment acts.".into(),
-                values: values?,
-            })
-        };
-        let curvatures = field(
-            "curvature that stays (valley +)",
-            "1/m",
-            Place::Face,
-            curvatures.collect(),
-        );
-        let angles = field(
-            "angle that stays (valley +)",
-            "°",
-            Place::Edge,
-            angles.collect(),
-        );
-        curvatures.into_iter().chain(angles).collect()
-    }
-
-    pub(super) fn validate(
+    /// Checks the values in a frame.
+    pub(super) fn check_values(
         &self,
+        values: &[f64],
         index: usize,
+        frame: usize,
         topology: &Topology,
-        frames: usize,
     ) -> Result<(), ViewError> {
-        let what = format!("field {index} (`{}`)", self.name);
-        check::length(&what, self.values.len(), frames)?;
+        let what = || format!("{}, frame {frame}", self.place_in_page(index));
         let expected = match self.place {
             Place::Vertex => topology.vertex_count(),
             Place::Edge => topology.edge_count(),
             Place::Face => topology.face_count(),
         };
-        for (frame, values) in self.values.iter().enumerate() {
-            let what = || format!("{what}, frame {frame}");
-            check::length_of(values.len(), expected, what)?;
-            check::finite_of(values, what)?;
-            if matches!(self.scale, Scale::Logarithmic | Scale::Magnitude) {
-                check::not_negative(values, what)?;
-            }
+        check::length_of(values.len(), expected, what)?;
+        check::finite_of(values, what)?;
+        if matches!(self.scale, Scale::Logarithmic | Scale::Magnitude) {
+            check::not_negative(values, what)?;
         }
         Ok(())
+    }
+}
+
+/// What computes the strain of each edge from positions (length 3V).
+pub(crate) fn strains(topology: &Topology, rest: &[f64]) -> impl Fn(&[f64]) -> Vec<f64> + use<> {
+    let ends = topology.edges().iter().map(|e| e.map(|v| 3 * v.index()));
+    let ends: Vec<[usize; 2]> = ends.collect();
+    let length = |x: &[f64], [a, b]: [usize; 2]| {
+        let d = [0, 1, 2].map(|k| x[a + k] - x[b + k]);
+        (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
+    };
+    let at_rest: Vec<f64> = ends.iter().map(|&ends| length(rest, ends)).collect();
+    move |x| {
+        let edges = ends.iter().zip(&at_rest);
+        let strain = edges.map(|(&ends, rest)| (length(x, ends) / rest - 1.0).abs());
+        strain.collect()
     }
 }
 

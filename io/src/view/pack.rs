@@ -19,49 +19,80 @@ pub(super) struct Packed {
     data: String,
 }
 
-/// Packs rows of integers below `2^(8 bytes)` with the order of differences that makes the shortest text.
+/// Packs rows of integers below `2^(8 bytes)`, which come one after the other and once for each byte plane, with
+/// the order of differences that makes the shortest text.
 ///
 /// Differences are taken modulo `2^(8 bytes)` from the rows before, where rows before the first are zero, and
 /// mapped to unsigned integers by `0, -1, 1, -2, ... -> 0, 1, 2, 3, ...` (zigzag).
-pub(super) fn pack_rows(rows: &[Vec<u16>], bytes: usize) -> Packed {
-    let orders = (0..=2).map(|order| Packed {
-        bytes,
-        order,
-        data: compress(&planes(differences(rows, order, bytes), bytes)),
-    });
-    orders
-        .min_by_key(|packed| packed.data.len())
-        .expect("there are three orders")
+pub(super) struct RowPacker {
+    bytes: usize,
+    /// The byte plane that is written, from 0, the low bytes.
+    plane: usize,
+    /// The two rows before, the last one first; empty where there is none.
+    before: [Vec<u16>; 2],
+    /// One for each order.
+    encoders: [GzEncoder<Vec<u8>>; 3],
 }
 
-/// The differences of some order in time as zigzag integers, row after row, in little-endian bytes.
-fn differences(rows: &[Vec<u16>], order: usize, bytes: usize) -> Vec<[u8; 2]> {
-    let bits = 8 * bytes as u32;
-    let zigzag = |difference: i32| {
-        // Shifts cut the difference to `bits` bits and repeat its sign.
-        let signed = difference << (32 - bits) >> (32 - bits);
-        ((signed << 1) ^ (signed >> 31)) as u16
-    };
-    let mut out = Vec::with_capacity(rows.iter().map(Vec::len).sum());
-    for (k, row) in rows.iter().enumerate() {
-        for (i, &value) in row.iter().enumerate() {
-            let before = |lag: usize| {
-                if k < lag {
-                    0
-                } else {
-                    i32::from(rows[k - lag][i])
-                }
-            };
-            let value = i32::from(value);
-            let integer = match order {
-                0 => value as u16,
-                1 => zigzag(value - before(1)),
-                _ => zigzag(value - 2 * before(1) + before(2)),
-            };
-            out.push(integer.to_le_bytes());
+impl RowPacker {
+    pub(super) fn new(bytes: usize) -> Self {
+        Self {
+            bytes,
+            plane: 0,
+            before: Default::default(),
+            encoders: std::array::from_fn(|_| encoder()),
         }
     }
-    out
+
+    /// Begins a byte plane, in which all rows come again. Returns whether the integers have it.
+    pub(super) fn begin_plane(&mut self, plane: usize) -> bool {
+        self.plane = plane;
+        self.before.iter_mut().for_each(Vec::clear);
+        plane < self.bytes
+    }
+
+    /// Adds a row.
+    pub(super) fn push(&mut self, row: &[u16]) {
+        let bits = 8 * self.bytes as u32;
+        let zigzag = |difference: i32| {
+            // Shifts cut the difference to `bits` bits and repeat its sign.
+            let signed = difference << (32 - bits) >> (32 - bits);
+            ((signed << 1) ^ (signed >> 31)) as u16
+        };
+        let [last, second] = &self.before;
+        let before = |row: &[u16], i: usize| row.get(i).map_or(0, |&v| i32::from(v));
+        for (order, encoder) in self.encoders.iter_mut().enumerate() {
+            let integer = |(i, &value): (usize, &u16)| match order {
+                0 => value,
+                1 => zigzag(i32::from(value) - before(last, i)),
+                _ => zigzag(i32::from(value) - 2 * before(last, i) + before(second, i)),
+            };
+            let integers = row.iter().enumerate().map(integer);
+            let plane: Vec<u8> = integers.map(|n| n.to_le_bytes()[self.plane]).collect();
+            encoder.write_all(&plane).expect("memory takes every byte");
+        }
+        self.before.swap(0, 1);
+        self.before[0].clear();
+        self.before[0].extend_from_slice(row);
+    }
+
+    /// The length that the text has at least.
+    pub(super) fn least_length(&self) -> usize {
+        let lengths = self.encoders.iter().map(|e| e.get_ref().len());
+        lengths.min().unwrap_or_default() / 3 * 4
+    }
+
+    pub(super) fn finish(self) -> Packed {
+        let orders = self.encoders.into_iter().enumerate();
+        let orders = orders.map(|(order, encoder)| Packed {
+            bytes: self.bytes,
+            order,
+            data: text_of(encoder),
+        });
+        orders
+            .min_by_key(|packed| packed.data.len())
+            .expect("there are three orders")
+    }
 }
 
 /// The first bytes of all items, then their second bytes, and so on for `count` bytes of each.
@@ -106,7 +137,15 @@ pub(super) fn pack_text(text: &str) -> String {
 }
 
 fn compress(bytes: &[u8]) -> String {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::new(6));
-    let written = encoder.write_all(bytes).and_then(|()| encoder.finish());
-    STANDARD.encode(written.expect("memory takes every byte"))
+    let mut encoder = encoder();
+    encoder.write_all(bytes).expect("memory takes every byte");
+    text_of(encoder)
+}
+
+fn encoder() -> GzEncoder<Vec<u8>> {
+    GzEncoder::new(Vec::new(), Compression::new(6))
+}
+
+fn text_of(encoder: GzEncoder<Vec<u8>>) -> String {
+    STANDARD.encode(encoder.finish().expect("memory takes every byte"))
 }

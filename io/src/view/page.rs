@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use super::document::Document;
 use super::error::ViewError;
+use super::frames::{Kept, ShownFrames};
 use super::live::LivePage;
 use super::pack::pack_text;
 use super::replay::Replay;
@@ -69,23 +70,45 @@ impl Replay {
     /// [`ViewError`] for a replay or options that are not valid, and [`ViewError::TooLarge`] when a page with
     /// the first and the last frame alone exceeds the budget.
     pub fn to_html_with(&self, options: &PageOptions) -> Result<String, ViewError> {
+        self.check_lengths()?;
+        self.page_of(self, options)
+    }
+
+    /// The page of some frames, which have as many positions as the rest shape and values of all fields; what
+    /// this replay has of them is not used. One frame is in memory at a time.
+    pub(crate) fn page_of<F: ShownFrames>(
+        &self,
+        frames: &F,
+        options: &PageOptions,
+    ) -> Result<String, F::Error> {
         options.validate()?;
-        self.validate()?;
+        self.check_frames(frames)?;
         let mut stride = 1;
         loop {
-            let document = Document::new(self, stride);
-            let page = fill(&self.title, "", &document.to_json());
-            if page.len() <= options.budget {
-                return Ok(page);
+            let kept = Kept {
+                frames: self.times.len(),
+                stride,
+            };
+            let count = kept.numbers().count();
+            // Of the page with the fewest frames an error says how long it is.
+            let most = if count <= 2 {
+                usize::MAX
+            } else {
+                options.budget
+            };
+            let document = Document::new(self, frames, kept, most)?;
+            let page = document.map(|d| fill(&self.title, "", &d.to_json()));
+            match page {
+                Some(page) if page.len() <= options.budget => return Ok(page),
+                Some(page) if count <= 2 => {
+                    return Err(F::Error::from(ViewError::TooLarge {
+                        bytes: page.len(),
+                        frames: count,
+                        budget: options.budget,
+                    }));
+                }
+                _ => stride *= 2,
             }
-            if document.frame_count() <= 2 {
-                return Err(ViewError::TooLarge {
-                    bytes: page.len(),
-                    frames: document.frame_count(),
-                    budget: options.budget,
-                });
-            }
-            stride *= 2;
         }
     }
 
@@ -100,7 +123,12 @@ impl Replay {
             "" => String::new(),
             nonce => format!(" nonce=\"{}\"", escape(nonce)),
         };
-        let document = Document::new(self, 1).live(live);
+        let kept = Kept {
+            frames: self.times.len(),
+            stride: 1,
+        };
+        let document = Document::new(self, self, kept, usize::MAX)?;
+        let document = document.expect("no length is too long").live(live);
         Ok(fill(&self.title, &nonce, &document.to_json()))
     }
 }

@@ -6,6 +6,7 @@ use super::body::Body;
 use super::check;
 use super::error::ViewError;
 use super::field::{Field, Series};
+use super::frames::{Kept, ShownFrames};
 use serde::Serialize;
 
 /// An axis of space.
@@ -63,12 +64,45 @@ impl Replay {
     /// # Errors
     /// [`ViewError`] naming the first list that cannot be shown, the index and the value.
     pub fn validate(&self) -> Result<(), ViewError> {
-        self.topology().map(drop)
+        self.check_lengths()?;
+        self.check_frames(self)
     }
 
-    /// Checks everything, and the connectivity of the sheet.
-    pub(super) fn topology(&self) -> Result<Topology, ViewError> {
+    /// Checks that there are positions and values for each of the times.
+    pub(super) fn check_lengths(&self) -> Result<(), ViewError> {
         if self.positions.is_empty() {
+            return Err(ViewError::NoFrames);
+        }
+        let frames = self.positions.len();
+        check::length("the times of the frames", self.times.len(), frames)?;
+        for (index, field) in self.fields.iter().enumerate() {
+            check::length(&field.place_in_page(index), field.values.len(), frames)?;
+        }
+        Ok(())
+    }
+
+    /// Checks everything, with the positions and the values of fields of some frames.
+    pub(super) fn check_frames<F: ShownFrames>(&self, frames: &F) -> Result<(), F::Error> {
+        let topology = self.check_still()?;
+        let kept = Kept {
+            frames: self.times.len(),
+            stride: 1,
+        };
+        frames.try_each(kept, |frame| {
+            let positions = || positions_of(frame.number, self.times[frame.number]);
+            check::length_of(frame.x.len(), self.rest.len(), positions)?;
+            check::finite_of(frame.x, positions)?;
+            let fields = self.fields.iter().zip(frame.values).enumerate();
+            for (index, (field, values)) in fields {
+                field.check_values(values, index, frame.number, &topology)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Checks everything but the frames, and returns the connectivity of the sheet.
+    fn check_still(&self) -> Result<Topology, ViewError> {
+        if self.times.is_empty() {
             return Err(ViewError::NoFrames);
         }
         if self.faces.is_empty() {
@@ -78,20 +112,11 @@ impl Replay {
         check::length("the rest positions", self.rest.len(), 3 * vertices)?;
         let topology = Topology::from_faces(vertices, &self.faces)?;
         check::finite("the rest positions", &self.rest)?;
-        let frames = self.positions.len();
-        check::length("the times of the frames", self.times.len(), frames)?;
         check::times("the times of the frames", &self.times)?;
-        for (frame, (x, t)) in self.positions.iter().zip(&self.times).enumerate() {
-            check::length_of(x.len(), 3 * vertices, || positions_of(frame, *t))?;
-            check::finite_of(x, || positions_of(frame, *t))?;
-        }
         check::vertices("the pins", &self.pins, vertices)?;
         check::vertices("the immobile vertices", &self.immobile, vertices)?;
         for (index, body) in self.bodies.iter().enumerate() {
-            body.validate(index, frames)?;
-        }
-        for (index, field) in self.fields.iter().enumerate() {
-            field.validate(index, &topology, frames)?;
+            body.validate(index, self.times.len())?;
         }
         for (index, series) in self.series.iter().enumerate() {
             series.validate(index)?;

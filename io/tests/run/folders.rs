@@ -6,6 +6,7 @@ use isosheet_io::scene::StartingPoint;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 #[test]
 fn a_folder_in_use_a_foreign_one_and_one_of_another_scene_are_refused() {
@@ -176,20 +177,31 @@ fn folders_that_cannot_be_written_are_told() {
 fn a_full_disk_is_told_and_nothing_is_half_written() {
     let dir = with_scene(StartingPoint::Fold);
     let dir = dir.path();
-    fs::create_dir_all(dir.join("run")).unwrap();
-    fs::write(dir.join("run/run.lock"), "").unwrap();
-    // The device takes no byte.
-    std::os::unix::fs::symlink("/dev/full", dir.join("run/frames.bin")).unwrap();
-    let full = run(dir, &["simulate", "scene.toml", "--out", "run"]);
+    // No file takes more than so many blocks, as on a disk that is full.
+    let limited = |arguments: &[&str]| {
+        let script = "trap '' XFSZ; ulimit -f 8; exec \"$@\"";
+        let mut shell = Command::new("sh");
+        shell.args(["-c", script, "sh", env!("CARGO_BIN_EXE_isosheet")]);
+        shell.args(arguments).current_dir(dir).output().unwrap()
+    };
+    let full = limited(&["simulate", "scene.toml", "--out", "run"]);
     assert_eq!(code(&full), Some(6), "{}", stderr(&full));
     assert!(stderr(&full).contains("free space"), "{}", stderr(&full));
     assert!(!dir.join("run/summary.json").exists());
-    fs::remove_file(dir.join("run/frames.bin")).unwrap();
     let done = run(dir, &["simulate", "scene.toml", "--out", "run"]);
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
     let whole = run(dir, &["simulate", "scene.toml", "--out", "whole"]);
     assert_eq!(code(&whole), Some(0), "{}", stderr(&whole));
     assert_same(&dir.join("whole"), &dir.join("run"));
+    // Nothing but the command itself says what is wrong.
+    let full = limited(&["convert", "whole", "a.npz"]);
+    let said = stderr(&full);
+    assert!(said.starts_with("error: cannot write a.npz: "), "{said}");
+    assert!(
+        said.ends_with("\n  = help: check the free space\n"),
+        "{said}"
+    );
+    assert_eq!((said.lines().count(), code(&full)), (2, Some(6)), "{said}");
 }
 
 #[test]

@@ -501,3 +501,26 @@ fn a_scene_that_is_wrong_and_a_port_that_is_taken_are_refused() {
         "no folder is written"
     );
 }
+
+/// Connections that say nothing, or a byte now and then, keep no page away.
+#[test]
+fn strangers_who_are_slow_take_no_place_of_a_page() {
+    let dir = with_scene(StartingPoint::Drape);
+    let served = Served::start(dir.path(), &[]);
+    let mut slow: Vec<TcpStream> = (0..200)
+        .map(|_| {
+            let mut connection = served.connect();
+            let _ = connection.write_all(b"GET /");
+            connection
+        })
+        .collect();
+    assert_eq!(served.status("GET", &served.path(""), "", ""), 200);
+    let viewer = served.watch();
+    assert_eq!(served.order(viewer.number, json!("end")), 204);
+    for connection in &mut slow {
+        // Each of them is closed, the ones that were left in time.
+        let mut answer = Vec::new();
+        let _ = connection.read_to_end(&mut answer);
+    }
+    assert_eq!(served.wait(), Some(0));
+}

@@ -18,8 +18,11 @@ mod live_page;
 mod measures;
 mod pages;
 mod rod_forces;
+mod sizes;
 #[path = "../shared/skip.rs"]
 mod skip;
+#[cfg(unix)]
+mod strangers;
 mod sweeps;
 mod tools;
 mod traces;

@@ -5,11 +5,12 @@ use super::answer::{self, Status};
 use super::board::{Board, Told};
 use super::message::{Command, Order};
 use super::request::Request;
-use std::io;
-use std::net::{Ipv4Addr, TcpListener, TcpStream};
-use std::sync::Arc;
+use std::collections::VecDeque;
+use std::io::{self, Read};
+use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -17,8 +18,13 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(10);
 /// How often a page without news is asked for a sign of life.
 const SIGN: Duration = Duration::from_millis(500);
-/// Most connections at a time: a page has an open one, and some more for moments.
+/// How long the head of a request may take to come: browsers send it at once.
+const HEAD: Duration = Duration::from_secs(2);
+/// Most connections at a time whose request knows the token: a page has an open one, and some more for moments.
 const MOST_CONNECTIONS: usize = 64;
+/// Most connections at a time whose request has not come yet. Where there are more, the oldest one is closed, so
+/// that whoever opens many and says nothing keeps no page away.
+const MOST_WAITING: usize = 64;
 /// How long the end of a run waits at most until pages have been told and commands answered. A browser on a
 /// busy machine may leave unread for a second what has come.
 const FAREWELL: Duration = Duration::from_secs(2);
@@ -34,6 +40,8 @@ pub(super) struct Shared {
     pub(super) end_is_asked: Arc<AtomicBool>,
     /// The number of requests that are being answered.
     pub(super) answering: AtomicUsize,
+    /// The connections whose request has not come yet, by number, the oldest one first.
+    pub(super) waiting: Mutex<VecDeque<(u64, TcpStream)>>,
 }
 
 /// Listens on the loopback address alone; on a free port for 0.
@@ -62,7 +70,6 @@ impl Server {
         let serving = shared.clone();
         let name = |name: &str| thread::Builder::new().name(name.into());
         let accept = move || {
-            let open = Arc::new(AtomicUsize::new(0));
             for connection in listener.incoming() {
                 if serving.board.is_closed() {
                     return;
@@ -70,20 +77,16 @@ impl Server {
                 let Ok(mut connection) = connection else {
                     continue;
                 };
-                if open.load(Ordering::SeqCst) >= MOST_CONNECTIONS {
-                    // Whoever does not take it is not waited for.
-                    let _ = answer::status(&mut connection, Status::Busy);
+                let Ok(number) = serving.wait_for(&connection) else {
                     continue;
-                }
-                open.fetch_add(1, Ordering::SeqCst);
-                let (shared, count) = (serving.clone(), open.clone());
+                };
+                let shared = serving.clone();
                 let serve = move || {
                     // A connection that breaks off needs no answer.
-                    let _ = shared.serve(&mut connection);
-                    count.fetch_sub(1, Ordering::SeqCst);
+                    let _ = shared.serve(&mut connection, number);
                 };
                 if name("live connection").spawn(serve).is_err() {
-                    open.fetch_sub(1, Ordering::SeqCst);
+                    serving.has_come(number);
                 }
             }
         };
@@ -108,28 +111,75 @@ impl Server {
     }
 }
 
+/// A connection from which is read until a time, however little comes at once.
+struct Until<'a> {
+    connection: &'a mut TcpStream,
+    end: Instant,
+}
+
+impl Read for Until<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let left = self.end.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+        self.connection.set_read_timeout(Some(left))?;
+        self.connection.read(into)
+    }
+}
+
 impl Shared {
-    /// Answers the request of a connection.
-    fn serve(&self, connection: &mut TcpStream) -> io::Result<()> {
-        connection.set_read_timeout(Some(PATIENCE))?;
-        connection.set_write_timeout(Some(PATIENCE))?;
-        connection.set_nodelay(true)?;
-        let request = match Request::read(connection) {
-            Ok(request) => request,
-            Err(status) => return answer::status(connection, status),
-        };
-        self.answering.fetch_add(1, Ordering::SeqCst);
-        let answered = self.answer(connection, request);
-        self.answering.fetch_sub(1, Ordering::SeqCst);
-        answered
+    /// Adds a connection to those whose request has not come yet, and closes the oldest one where there are too
+    /// many. Returns its number.
+    fn wait_for(&self, connection: &TcpStream) -> io::Result<u64> {
+        let connection = connection.try_clone()?;
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        let number = waiting.back().map_or(0, |(last, _)| last + 1);
+        waiting.push_back((number, connection));
+        if waiting.len() > MOST_WAITING
+            && let Some((_, oldest)) = waiting.pop_front()
+        {
+            // The thread that reads from it ends by that.
+            let _ = oldest.shutdown(Shutdown::Both);
+        }
+        Ok(number)
     }
 
-    fn answer(&self, connection: &mut TcpStream, request: Request) -> io::Result<()> {
+    /// Takes a connection out of those whose request has not come yet.
+    fn has_come(&self, number: u64) {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.retain(|(other, _)| *other != number);
+    }
+
+    /// Answers the request of a connection.
+    fn serve(&self, connection: &mut TcpStream, number: u64) -> io::Result<()> {
+        connection.set_write_timeout(Some(PATIENCE))?;
+        connection.set_nodelay(true)?;
+        let end = Instant::now() + HEAD;
+        let request = Request::read(&mut Until { connection, end });
+        self.has_come(number);
+        let request = match request {
+            Ok(request) => request,
+            // Browsers open connections before they need them: one that is closed is opened anew.
+            Err(_) if Instant::now() >= end => return Ok(()),
+            Err(status) => return answer::status(connection, status),
+        };
         let target = request.target.clone();
         let (host, origin) = (request.host.as_deref(), request.origin.as_deref());
         let Some(asked) = self.access.asked(&target, host, origin) else {
             return answer::status(connection, Status::Forbidden);
         };
+        let before = self.answering.fetch_add(1, Ordering::SeqCst);
+        let answered = match before < MOST_CONNECTIONS {
+            true => self.answer(connection, request, asked),
+            false => answer::status(connection, Status::Busy),
+        };
+        self.answering.fetch_sub(1, Ordering::SeqCst);
+        answered
+    }
+
+    fn answer(&self, connection: &mut TcpStream, request: Request, asked: &str) -> io::Result<()> {
+        connection.set_read_timeout(Some(PATIENCE))?;
         match (asked, request.method.as_str()) {
             ("", "GET") => answer::page(connection, &self.page, &self.policy),
             ("events", "GET") => self.events(connection),

@@ -179,6 +179,14 @@ pub enum MeshFileProblem {
         /// How many.
         corners: usize,
     },
+    /// A polygon of more corners than are cut into triangles.
+    #[error("a face has {corners} corners, and polygons of at most {most} are cut into triangles")]
+    LargePolygon {
+        /// How many.
+        corners: usize,
+        /// The largest number.
+        most: usize,
+    },
     /// More vertices than 32-bit numbers can count.
     #[error("the file has {vertices} vertices, more than 32-bit numbers can count")]
     TooManyVertices {
@@ -262,7 +270,9 @@ impl Advice for MeshFileProblem {
             Self::Polygon { .. } => Some(
                 "triangulate the file, or ask for `Polygons::Triangulate` (each diagonal is a new crease)",
             ),
-            Self::ConcavePolygon { .. } => Some("triangulate the file first"),
+            Self::ConcavePolygon { .. } | Self::LargePolygon { .. } => {
+                Some("triangulate the file first")
+            }
             Self::TooManyVertices { .. } => Some("split it"),
             Self::Syntax { .. } | Self::Ply(..) | Self::Stl { .. } | Self::Json(..) => {
                 Some("correct the file or export it again")

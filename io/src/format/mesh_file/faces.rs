@@ -4,6 +4,10 @@ use super::error::{Located, MeshFileProblem, Place};
 use super::{MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
 use std::path::PathBuf;
 
+/// Most corners of a polygon that is cut into triangles: all corners are tried as the one from which it is cut,
+/// and a thousand triangles at one vertex are no sheet that bends.
+const MOST_CORNERS: usize = 1000;
+
 /// Vertices and polygons as a file has them.
 #[derive(Debug, Default)]
 pub(super) struct Polyhedron {
@@ -116,6 +120,10 @@ impl Polyhedron {
                 let face: Vec<u32> = face.iter().map(vertex).collect::<Result<_, _>>()?;
                 if options.polygons == Polygons::Refuse {
                     return Err(MeshFileProblem::Polygon { corners });
+                }
+                if corners > MOST_CORNERS {
+                    let most = MOST_CORNERS;
+                    return Err(MeshFileProblem::LargePolygon { corners, most });
                 }
                 let points = self.positions.as_chunks::<3>().0;
                 let cut = polygon::triangulate(&face, |v| points[v as usize])

@@ -7,10 +7,12 @@ pub use problem::GltfProblem;
 use super::error::{Located, MeshFileProblem, Place};
 use super::faces::Polyhedron;
 use super::{MeshOptions, SeparateBuffers};
+use crate::format::input;
 use base64::Engine;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
 use gltf::{Accessor, Document, Gltf, Mesh, Semantic};
+use std::io::{self, Read};
 use std::path::Path;
 
 /// Bytes of the header of a binary file.
@@ -132,9 +134,18 @@ fn read_buffers(
 ) -> Result<Vec<Vec<u8>>, MeshFileProblem> {
     let problem = |buffer: usize, problem: String| GltfProblem::Buffer { buffer, problem };
     let mut buffers = Vec::new();
+    let mut all = 0_u64;
     for buffer in document.buffers() {
-        let k = buffer.index();
-        let bytes = match buffer.source() {
+        let (k, length) = (buffer.index(), buffer.length());
+        all = all.saturating_add(length as u64);
+        if all > input::LARGEST {
+            let problem = format!(
+                "with those before it has more than {} bytes",
+                input::LARGEST
+            );
+            return Err(GltfProblem::Buffer { buffer: k, problem }.into());
+        }
+        let mut bytes = match buffer.source() {
             gltf::buffer::Source::Bin => blob
                 .take()
                 .ok_or_else(|| problem(k, "the file has no binary part for it".to_owned()))?,
@@ -152,15 +163,29 @@ fn read_buffers(
                 }
                 None => {
                     let folder = path.parent().unwrap_or(Path::new(""));
-                    let file = folder.join(uri.replace("%20", " "));
-                    std::fs::read(&file)
-                        .map_err(|e| problem(k, format!("cannot read {}: {e}", file.display())))?
+                    let name = uri.replace("%20", " ");
+                    read_separate(folder, &name, length)
+                        .map_err(|e| problem(k, format!("cannot read the file {name:?}: {e}")))?
                 }
             },
         };
+        if bytes.len() < length {
+            let found = bytes.len();
+            let short = format!("it has {found} bytes, and {length} by its `byteLength`");
+            return Err(problem(k, short).into());
+        }
+        bytes.truncate(length);
         buffers.push(bytes);
     }
     Ok(buffers)
+}
+
+/// The first bytes of a file in a folder or beneath it, as many as there are up to `length`.
+fn read_separate(folder: &Path, name: &str, length: usize) -> io::Result<Vec<u8>> {
+    let file = input::open(&input::within(folder, Path::new(name))?)?;
+    let mut bytes = Vec::new();
+    file.take(length as u64).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// The bytes of each element of an accessor, `size` bytes long each.

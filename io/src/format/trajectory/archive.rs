@@ -1,21 +1,98 @@
 //! Arrays in an archive of numpy: a zip file with one `.npy` file for each.
 
 use super::TrajectoryError;
+use crate::format::{input, memory};
 use npyz::npz::file_name_from_array_name;
 use npyz::{AutoSerialize, Deserialize, NpyFile, Order, WriteOptions, WriterBuilder};
 use std::fs::File;
-use std::io::{self, BufReader, Seek, Write};
+use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 /// Writes arrays.
-pub(super) struct ArchiveWriter<W: Write + Seek>(ZipWriter<W>);
+pub(super) struct ArchiveWriter<W: Write + Seek>(ZipWriter<UntilFailure<W>>);
+
+/// A file to which nothing more is written once that has failed, without a further word: the library ends an
+/// archive that is given up, and prints what goes wrong with that.
+struct UntilFailure<W> {
+    file: W,
+    /// After a failure the place and the length that the file would have.
+    lost: Option<[u64; 2]>,
+    /// The place in the file.
+    place: u64,
+}
+
+impl<W> UntilFailure<W> {
+    fn new(file: W) -> Self {
+        Self {
+            file,
+            lost: None,
+            place: 0,
+        }
+    }
+
+    /// Takes note of a failure.
+    fn note<T>(&mut self, done: io::Result<T>) -> io::Result<T> {
+        if done
+            .as_ref()
+            .is_err_and(|e| e.kind() != io::ErrorKind::Interrupted)
+        {
+            self.lost = Some([self.place; 2]);
+        }
+        done
+    }
+}
+
+impl<W: Write> Write for UntilFailure<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if let Some([place, length]) = &mut self.lost {
+            *place += bytes.len() as u64;
+            *length = (*length).max(*place);
+            return Ok(bytes.len());
+        }
+        let written = self.file.write(bytes);
+        self.place += *written.as_ref().unwrap_or(&0) as u64;
+        self.note(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.lost.is_some() {
+            return Ok(());
+        }
+        let flushed = self.file.flush();
+        self.note(flushed)
+    }
+}
+
+impl<W: Seek> Seek for UntilFailure<W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        if let Some([place, length]) = &mut self.lost {
+            *place = match to {
+                SeekFrom::Start(place) => place,
+                SeekFrom::Current(by) => place.saturating_add_signed(by),
+                SeekFrom::End(by) => length.saturating_add_signed(by),
+            };
+            return Ok(*place);
+        }
+        let sought = self.file.seek(to);
+        self.place = *sought.as_ref().unwrap_or(&self.place);
+        self.note(sought)
+    }
+}
+
+/// The error of the system, where it is one.
+fn of_archive(error: ZipError) -> io::Error {
+    match error {
+        ZipError::Io(error) => error,
+        error => io::Error::other(error),
+    }
+}
 
 impl<W: Write + Seek> ArchiveWriter<W> {
     pub(super) fn new(file: W) -> Self {
-        Self(ZipWriter::new(file))
+        Self(ZipWriter::new(UntilFailure::new(file)))
     }
 
     /// Adds an array with the values of its entries by rows.
@@ -25,6 +102,29 @@ impl<W: Write + Seek> ArchiveWriter<W> {
         shape: &[u64],
         values: impl Iterator<Item = T>,
     ) -> io::Result<()> {
+        self.begin::<T>(name, shape)?;
+        let options = WriteOptions::new().default_dtype().shape(shape);
+        let mut writer = options.writer(&mut self.0).begin_nd()?;
+        writer.extend(values)?;
+        writer.finish()
+    }
+
+    /// Adds an array whose rows `rows` puts, one after the other.
+    pub(super) fn put_rows(
+        &mut self,
+        name: &str,
+        shape: &[u64],
+        rows: impl FnOnce(&mut dyn FnMut(&[f64]) -> io::Result<()>) -> io::Result<()>,
+    ) -> io::Result<()> {
+        self.begin::<f64>(name, shape)?;
+        let options = WriteOptions::new().default_dtype().shape(shape);
+        let mut writer = options.writer(&mut self.0).begin_nd()?;
+        rows(&mut |row| row.iter().try_for_each(|value| writer.push(value)))?;
+        writer.finish()
+    }
+
+    /// Begins the file of an array.
+    fn begin<T>(&mut self, name: &str, shape: &[u64]) -> io::Result<()> {
         let bytes = shape.iter().product::<u64>() * size_of::<T>() as u64;
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Deflated)
@@ -33,22 +133,20 @@ impl<W: Write + Seek> ArchiveWriter<W> {
             // An entry of more than 4 GiB, with its header, has another form.
             .large_file(bytes > u64::from(u32::MAX) / 2);
         self.0
-            .start_file(file_name_from_array_name(name), options)?;
-        let options = WriteOptions::new().default_dtype().shape(shape);
-        let mut writer = options.writer(&mut self.0).begin_nd()?;
-        writer.extend(values)?;
-        writer.finish()
+            .start_file(file_name_from_array_name(name), options)
+            .map_err(of_archive)
     }
 
     pub(super) fn finish(self) -> io::Result<()> {
-        self.0.finish()?;
-        Ok(())
+        self.0.finish().map(drop).map_err(of_archive)
     }
 }
 
 /// Reads arrays.
 pub(super) struct ArchiveReader<'a> {
     zip: ZipArchive<BufReader<File>>,
+    /// The bytes that further arrays may take.
+    left: u64,
     /// For messages.
     path: &'a Path,
 }
@@ -58,8 +156,10 @@ pub(super) type Shaped<T> = (Vec<u64>, Vec<T>);
 
 impl<'a> ArchiveReader<'a> {
     pub(super) fn open(path: &'a Path) -> io::Result<Self> {
-        let zip = ZipArchive::new(BufReader::new(File::open(path)?))?;
-        Ok(Self { zip, path })
+        let zip = ZipArchive::new(BufReader::new(input::open(path)?))?;
+        // What is read is used, too.
+        let left = memory::free() / 2;
+        Ok(Self { zip, left, path })
     }
 
     /// An array of so many dimensions.
@@ -91,7 +191,9 @@ impl<'a> ArchiveReader<'a> {
             Err(ZipError::FileNotFound) => return Ok(None),
             other => other.map_err(|e| error(e.to_string()))?,
         };
-        let npy = NpyFile::new(entry).map_err(|e| error(e.to_string()))?;
+        let announced = entry.size();
+        let npy = whole_header(entry).and_then(NpyFile::new);
+        let npy = npy.map_err(|e| error(e.to_string()))?;
         let shape = npy.shape().to_vec();
         if shape.len() != dimensions {
             return Err(error(format!(
@@ -110,15 +212,44 @@ impl<'a> ArchiveReader<'a> {
         let values = npy
             .try_data::<T>()
             .map_err(|npy| error(format!("its type is {:?}", npy.dtype().descr())))?;
-        let values: Vec<T> = values
-            .collect::<Result<_, _>>()
-            .map_err(|e| error(e.to_string()))?;
-        if values.len() as u64 != expected {
+        let bytes = expected.saturating_mul(size_of::<T>() as u64);
+        if bytes > announced {
             return Err(error(format!(
-                "it holds {} values, {expected} expected",
-                values.len()
+                "its shape {shape:?} needs {bytes} bytes, and it has {announced}"
             )));
         }
-        Ok(Some((shape, values)))
+        if bytes > self.left {
+            return Err(error(format!(
+                "it needs {bytes} bytes, and there is memory for {}",
+                self.left
+            )));
+        }
+        let mut read = Vec::new();
+        let reserved = read.try_reserve_exact(expected as usize);
+        reserved.map_err(|e| error(e.to_string()))?;
+        for value in values {
+            read.push(value.map_err(|e| error(e.to_string()))?);
+        }
+        self.left -= bytes;
+        Ok(Some((shape, read)))
     }
+}
+
+/// The longest header of an array, bytes: that of version 1 of the format.
+const LONGEST_HEADER: u32 = 65_535;
+
+/// The content of an array, whose header has at most [`LONGEST_HEADER`] bytes.
+fn whole_header(mut array: impl Read) -> io::Result<impl Read> {
+    // Six bytes of magic, two of the version, and the length of the header in two or four bytes.
+    let mut start = [0; 12];
+    array.read_exact(&mut start)?;
+    let length = match start[6] {
+        1 => u32::from(u16::from_le_bytes([start[8], start[9]])),
+        _ => u32::from_le_bytes([start[8], start[9], start[10], start[11]]),
+    };
+    if length > LONGEST_HEADER {
+        let problem = format!("its header announces {length} bytes");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, problem));
+    }
+    Ok(Cursor::new(start).chain(array))
 }

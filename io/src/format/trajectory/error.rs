@@ -129,7 +129,9 @@ impl Advice for TrajectoryError {
             ),
             Self::File(error) => error.advice(),
             Self::Read { .. } => Some("check that it is an .npz file"),
-            Self::Array { .. } => Some("give a trajectory that this program wrote"),
+            Self::Array { .. } => {
+                Some("give a trajectory that this program wrote, and that memory can hold")
+            }
             Self::DataCount { .. } => Some("give them in all frames or in none"),
             Self::WrongLength { .. } => None,
         }

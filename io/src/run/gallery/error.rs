@@ -21,6 +21,20 @@ pub enum GalleryError {
         /// The folder.
         folder: PathBuf,
     },
+    /// The entries name a run as no gallery does.
+    #[error("{} names the run {name:?}, which is no name of a file of a gallery", path.display())]
+    Name {
+        /// The file with the entries.
+        path: PathBuf,
+        /// The name.
+        name: String,
+    },
+    /// A link has the name of the folder of pages and pictures.
+    #[error("{} is a link or no folder", path.display())]
+    Linked {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A folder cannot be read.
     #[error("cannot read {}: {source}", path.display())]
     Read {
@@ -41,7 +55,9 @@ impl Advice for GalleryError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::NoRuns { .. } => Some("name folders in which `isosheet simulate` has written"),
-            Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
+            Self::Foreign { .. } | Self::Name { .. } | Self::Linked { .. } => {
+                Some("choose an empty or a new folder with --out")
+            }
             Self::Read { .. } => Some("check the path and the permissions"),
             Self::Write(error) => error.advice(),
             Self::Json(error) => error.advice(),

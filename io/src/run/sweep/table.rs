@@ -1,7 +1,7 @@
 //! The table of the runs of a sweep.
 
 use super::SweepError;
-use crate::format::write_atomically;
+use crate::format::{input, write_atomically};
 use std::path::Path;
 
 /// The first two columns; the keys follow.
@@ -39,7 +39,7 @@ impl SweepTable {
 
     /// Reads what [`SweepTable::write`] has written.
     pub(crate) fn read(path: &Path) -> Result<Self, SweepError> {
-        let text = std::fs::read(path).map_err(|source| SweepError::Read {
+        let text = input::read(path).map_err(|source| SweepError::Read {
             path: path.to_owned(),
             source,
         })?;

@@ -1,4 +1,5 @@
 use super::*;
+use std::fs;
 
 fn sweep(variations: &[&str]) -> Result<Sweep, SweepError> {
     let variations = variations.iter().map(|v| v.parse().unwrap()).collect();

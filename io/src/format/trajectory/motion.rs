@@ -1,0 +1,77 @@
+//! Motions whose frames need not all be in memory.
+
+use super::{FrameData, Quantity, Trajectory, TrajectoryError};
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+
+/// A frame of a motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotionFrame<'a> {
+    /// Its number, from 0.
+    pub(crate) number: usize,
+    /// Time, seconds.
+    pub(crate) t: f64,
+    /// Positions (length 3V, metres).
+    pub(crate) x: &'a [f64],
+    /// What it has besides.
+    pub(crate) data: FrameData<'a>,
+}
+
+/// Frames that are shown one after the other, as often as they are asked for.
+pub(crate) trait Motion {
+    /// Why a frame cannot be shown.
+    type Error;
+
+    /// Shows the frames in their order, until `show` breaks.
+    fn each(
+        &self,
+        show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
+    ) -> Result<(), Self::Error>;
+}
+
+impl Motion for Trajectory {
+    type Error = Infallible;
+
+    fn each(
+        &self,
+        show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
+    ) -> Result<(), Infallible> {
+        for (number, &t) in self.t.iter().enumerate() {
+            let n = 3 * self.vertex_count;
+            let frame = MotionFrame {
+                number,
+                t,
+                x: &self.x[n * number..n * (number + 1)],
+                data: FrameData::each(|q: Quantity| self.values(q, number).unwrap_or_default()),
+            };
+            if show(&frame).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why the frames of a motion cannot be written.
+#[derive(Debug)]
+pub(crate) enum MotionError<E> {
+    /// One of them cannot be shown.
+    Frame(E),
+    /// They are no trajectory, or it cannot be written.
+    Trajectory(TrajectoryError),
+}
+
+impl<E> From<TrajectoryError> for MotionError<E> {
+    fn from(error: TrajectoryError) -> Self {
+        Self::Trajectory(error)
+    }
+}
+
+impl From<MotionError<Infallible>> for TrajectoryError {
+    fn from(error: MotionError<Infallible>) -> Self {
+        match error {
+            MotionError::Frame(never) => match never {},
+            MotionError::Trajectory(error) => error,
+        }
+    }
+}

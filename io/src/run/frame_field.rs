@@ -1,0 +1,209 @@
+//! Fields of a page, frame by frame.
+
+use crate::format::{MotionFrame, Quantity};
+use crate::view::{Field, Place, Scale, ViewError, strains};
+use isosheet_collide::Obstacle;
+use isosheet_dynamics::{ElasticDeformation, SheetModel};
+use isosheet_mesh::Sheet;
+use nalgebra::Point3;
+
+/// A field whose values are made of each frame of a motion.
+pub(super) struct FrameField<'a> {
+    /// The field without values.
+    pub(super) head: Field,
+    values: Box<Values<'a>>,
+}
+
+/// The values in a frame.
+type Values<'a> = dyn Fn(&MotionFrame<'_>) -> Vec<f64> + 'a;
+
+impl<'a> FrameField<'a> {
+    fn new(head: Field, values: impl Fn(&MotionFrame<'_>) -> Vec<f64> + 'a) -> Self {
+        Self {
+            head,
+            values: Box::new(values),
+        }
+    }
+
+    /// The fields of a motion of a sheet among obstacles: the strain of the edges, the distance to obstacles, and of
+    /// each quantity that `has` names what a page shows of it.
+    pub(super) fn all(
+        sheet: &Sheet,
+        obstacles: &'a [Obstacle],
+        has: impl Fn(Quantity) -> bool,
+    ) -> Vec<Self> {
+        let strain = strains(sheet.topology(), sheet.positions());
+        let mut fields = vec![Self::new(Field::strain(), move |frame| strain(frame.x))];
+        if !obstacles.is_empty() {
+            fields.push(Self::obstacle_distance(obstacles));
+        }
+        let shown = [
+            (Quantity::RodForces, Self::rod_force()),
+            (Quantity::ContactForces, Self::contact_force()),
+            (Quantity::Gaps, Self::gap()),
+            (Quantity::PlasticCurvatures, Self::plastic_curvature()),
+            (Quantity::PlasticAngles, Self::plastic_angle()),
+        ];
+        let shown = shown.into_iter().filter(|(quantity, _)| has(*quantity));
+        fields.extend(shown.map(|(_, field)| field));
+        fields
+    }
+
+    /// The values in a frame of a motion.
+    pub(super) fn values(&self, frame: &MotionFrame<'_>) -> Vec<f64> {
+        (self.values)(frame)
+    }
+
+    /// The distance of each vertex from the nearest obstacle, metres. The thickness of the sheet is not
+    /// subtracted, and a face or an edge may be nearer to an obstacle than its vertices are; the series
+    /// "smallest gap" has both.
+    fn obstacle_distance(obstacles: &'a [Obstacle]) -> Self {
+        let head = Field {
+            name: "distance to obstacles".into(),
+            unit: "m".into(),
+            place: Place::Vertex,
+            scale: Scale::Logarithmic,
+            note: String::new(),
+            values: Vec::new(),
+        };
+        Self::new(head, |frame| {
+            let into_body: Vec<_> = obstacles
+                .iter()
+                .map(|body| (body.shape(), body.motion().pose(frame.t).inverse()))
+                .collect();
+            let distance = |p: &[f64; 3]| {
+                let distances = into_body.iter().map(|(shape, pose)| {
+                    let local = pose * Point3::from(*p);
+                    shape.signed_distance(&local.coords).value.abs()
+                });
+                distances.fold(f64::INFINITY, f64::min)
+            };
+            frame.x.as_chunks::<3>().0.iter().map(distance).collect()
+        })
+    }
+
+    /// The force of the rod along each edge, newtons, tension positive.
+    fn rod_force() -> Self {
+        let head = Field {
+            name: "rod force (tension +)".into(),
+            unit: "N".into(),
+            place: Place::Edge,
+            scale: Scale::Signed,
+            note: "Where rods depend on each other, as in a flat part of the sheet, their forces are not unique."
+                .into(),
+            values: Vec::new(),
+        };
+        Self::new(head, |frame| frame.data.rod_forces.to_vec())
+    }
+
+    /// The size of the force of contact on each vertex, newtons: of bodies and of the sheet on itself.
+    fn contact_force() -> Self {
+        let head = Field {
+            name: "contact force".into(),
+            unit: "N".into(),
+            place: Place::Vertex,
+            scale: Scale::Magnitude,
+            note: String::new(),
+            values: Vec::new(),
+        };
+        let size = |f: &[f64; 3]| f[0].hypot(f[1]).hypot(f[2]);
+        Self::new(head, move |frame| {
+            let forces = frame.data.contact_forces.as_chunks::<3>().0;
+            forces.iter().map(size).collect()
+        })
+    }
+
+    /// The gap of each vertex, metres.
+    fn gap() -> Self {
+        let head = Field {
+            name: "gap".into(),
+            unit: "m".into(),
+            place: Place::Vertex,
+            scale: Scale::Linear,
+            note: String::new(),
+            values: Vec::new(),
+        };
+        Self::new(head, |frame| frame.data.gaps.to_vec())
+    }
+
+    /// Of plates the principal value of the plastic curvature of each face that is larger in size, 1/m.
+    fn plastic_curvature() -> Self {
+        let head = plastic("curvature that stays (valley +)", "1/m", Place::Face);
+        Self::new(head, |frame| {
+            let pairs = frame.data.plastic_curvatures.as_chunks::<2>().0;
+            pairs.iter().map(|p| p[0]).collect()
+        })
+    }
+
+    /// Of edges that yield the plastic angle, degrees.
+    fn plastic_angle() -> Self {
+        let head = plastic("angle that stays (valley +)", "°", Place::Edge);
+        Self::new(head, |frame| {
+            let angles = frame.data.plastic_angles.iter();
+            angles.map(|a| a.to_degrees()).collect()
+        })
+    }
+
+    /// The strain of each face of an elastic sheet, and the part of stretching in its elastic energy; none for
+    /// sheets of rods.
+    pub(super) fn elastic(model: &'a SheetModel) -> Vec<Self> {
+        if model.elastic_sheet().is_none() {
+            return Vec::new();
+        }
+        let field = |name: &str, scale, note: &str| Field {
+            name: name.into(),
+            unit: String::new(),
+            place: Place::Face,
+            scale,
+            note: note.into(),
+            values: Vec::new(),
+        };
+        let strain = field(
+            "strain of faces",
+            Scale::Logarithmic,
+            "The norm of Green's strain of each face, which the limit of the sheet bounds.",
+        );
+        let share = field(
+            "share of stretching",
+            Scale::Linear,
+            "The part of stretching in the elastic energy of each face; the rest is bending. Where a mesh is fine \
+             enough, a sheet that carries no load in its plane has little of it.",
+        );
+        let shares = |d: ElasticDeformation| (0..d.strain.len()).map(|f| d.share(f)).collect();
+        vec![
+            Self::new(strain, |frame| {
+                let deformation = model.elastic_deformation(frame.x);
+                deformation.map(|d| d.strain).unwrap_or_default()
+            }),
+            Self::new(share, move |frame| {
+                let deformation = model.elastic_deformation(frame.x);
+                deformation.map(shares).unwrap_or_default()
+            }),
+        ]
+    }
+}
+
+/// A field of what has yielded, without values.
+fn plastic(name: &str, unit: &str, place: Place) -> Field {
+    Field {
+        name: name.into(),
+        unit: unit.into(),
+        place,
+        scale: Scale::Signed,
+        note: "What has yielded, and stays where no moment acts.".into(),
+        values: Vec::new(),
+    }
+}
+
+/// Checks that a frame is one of a sheet.
+pub(super) fn check_frame(frame: &MotionFrame<'_>, sheet: &Sheet) -> Result<(), ViewError> {
+    let (got, expected) = (frame.x.len(), sheet.positions().len());
+    if got == expected {
+        return Ok(());
+    }
+    Err(ViewError::Length {
+        what: format!("the positions of frame {}", frame.number),
+        got,
+        expected,
+    })
+}

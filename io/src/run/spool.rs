@@ -1,0 +1,131 @@
+//! The frames of a page on the disk, while the page is made.
+
+use super::RunError;
+use super::frame_field::{FrameField, check_frame};
+use crate::format::{Motion, MotionFrame};
+use crate::view::{Kept, ShownFrame, ShownFrames, ViewError};
+use isosheet_mesh::Sheet;
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// Positions and values of fields of all frames in a file without a name, which ends with the process. They are
+/// computed once, and a page needs them several times.
+pub(super) struct Spool {
+    folder: PathBuf,
+    file: File,
+    /// How many numbers a frame has of each list: positions, and the values of each field.
+    sizes: Vec<usize>,
+    /// Times of the frames, seconds.
+    pub(super) times: Vec<f64>,
+    /// The lower and the upper corner of the box of all positions, metres.
+    pub(super) corners: [[f64; 3]; 2],
+}
+
+impl Spool {
+    /// Writes what a page shows of the frames of a motion to a file in a folder.
+    pub(super) fn of<M: Motion<Error = RunError>>(
+        motion: &M,
+        sheet: &Sheet,
+        fields: &[FrameField<'_>],
+        folder: &Path,
+    ) -> Result<Self, RunError> {
+        let unwritable = |source| RunError::Unwritable {
+            folder: folder.to_owned(),
+            source,
+        };
+        let mut spool = Self {
+            folder: folder.to_owned(),
+            file: tempfile::tempfile_in(folder).map_err(unwritable)?,
+            sizes: Vec::new(),
+            times: Vec::new(),
+            corners: [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
+        };
+        let mut file = BufWriter::new(spool.file.try_clone().map_err(unwritable)?);
+        let mut done = Ok(());
+        motion.each(&mut |frame| {
+            done = check_frame(frame, sheet)
+                .map_err(RunError::from)
+                .and_then(|()| spool.add(frame, fields, &mut file).map_err(unwritable));
+            match done {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(_) => ControlFlow::Break(()),
+            }
+        })?;
+        done?;
+        file.flush().map_err(unwritable)?;
+        Ok(spool)
+    }
+
+    fn add(
+        &mut self,
+        frame: &MotionFrame<'_>,
+        fields: &[FrameField<'_>],
+        file: &mut impl Write,
+    ) -> io::Result<()> {
+        let mut sizes = vec![write_numbers(file, frame.x)?];
+        for field in fields {
+            sizes.push(write_numbers(file, &field.values(frame))?);
+        }
+        self.sizes = sizes;
+        self.times.push(frame.t);
+        let [low, high] = &mut self.corners;
+        for (i, &c) in frame.x.iter().enumerate() {
+            low[i % 3] = low[i % 3].min(c);
+            high[i % 3] = high[i % 3].max(c);
+        }
+        Ok(())
+    }
+
+    /// The numbers of a frame.
+    fn read(&self, number: usize, file: &mut BufReader<&File>) -> io::Result<Vec<f64>> {
+        let mut bytes = vec![0; 8 * self.sizes.iter().sum::<usize>()];
+        file.seek(SeekFrom::Start(bytes.len() as u64 * number as u64))?;
+        file.read_exact(&mut bytes)?;
+        let numbers = bytes.as_chunks::<8>().0.iter();
+        Ok(numbers.map(|bytes| f64::from_le_bytes(*bytes)).collect())
+    }
+}
+
+/// Writes numbers, and returns how many there are.
+fn write_numbers(file: &mut impl Write, numbers: &[f64]) -> io::Result<usize> {
+    for number in numbers {
+        file.write_all(&number.to_le_bytes())?;
+    }
+    Ok(numbers.len())
+}
+
+impl ShownFrames for Spool {
+    type Error = RunError;
+
+    fn each(
+        &self,
+        kept: Kept,
+        show: &mut dyn FnMut(&ShownFrame<'_>) -> ControlFlow<()>,
+    ) -> Result<(), RunError> {
+        let mut file = BufReader::new(&self.file);
+        for number in kept.numbers() {
+            let numbers = self.read(number, &mut file);
+            let numbers = numbers.map_err(|source| RunError::Read {
+                path: self.folder.clone(),
+                source,
+            })?;
+            let mut rest = &numbers[..];
+            let lists = self.sizes.iter().map(|&size| {
+                let (list, further) = rest.split_at(size);
+                rest = further;
+                list
+            });
+            let lists: Vec<&[f64]> = lists.collect();
+            let Some((x, values)) = lists.split_first() else {
+                return Err(ViewError::NoFrames.into());
+            };
+            let frame = ShownFrame { number, x, values };
+            if show(&frame).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
