@@ -335,33 +335,22 @@ impl Convert {
     }
 
     fn say_mesh(&self, mesh: &MeshFile) -> Done {
-        let changes = mesh.changes;
-        let notes = [
-            (mesh.polygons, ["polygon", "polygons"], "cut into triangles"),
-            (changes.welded_vertices, VERTICES, "welded"),
-            (changes.collapsed_faces, FACES, "without area removed"),
-            (
-                changes.reversed_faces,
-                FACES,
-                "reversed, which were clockwise",
-            ),
-            (changes.vertices_at_cuts, VERTICES, "added at cuts"),
-        ];
-        let notes = notes.iter().filter(|(count, ..)| *count > 0);
-        let notes: String = notes
-            .map(|(count, [one, more], what)| format!(", {} {what}", counted(*count, one, more)))
-            .collect();
+        let polygons = match mesh.polygons {
+            0 => String::new(),
+            n => format!(", {} cut into triangles", counted(n, "polygon", "polygons")),
+        };
+        let changes = match mesh.changes.is_nothing() {
+            true => String::new(),
+            false => format!(", {}", mesh.changes),
+        };
         to_stdout(&format!(
-            "{}: {} and {}{notes}\n",
+            "{}: {} and {}{polygons}{changes}\n",
             self.output().display(),
-            counted(mesh.vertex_count(), VERTICES[0], VERTICES[1]),
-            counted(mesh.faces.len(), FACES[0], FACES[1])
+            counted(mesh.vertex_count(), "vertex", "vertices"),
+            counted(mesh.faces.len(), "face", "faces")
         ))
     }
 }
-
-const VERTICES: [&str; 2] = ["vertex", "vertices"];
-const FACES: [&str; 2] = ["face", "faces"];
 
 /// The file that was asked for.
 fn last(files: &[PathBuf]) -> &Path {

@@ -10,7 +10,7 @@ use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use crate::format::{
     self, FoldFrame, FoldProblem, MeshFileError, MeshFileProblem, MeshOptions, Polygons,
-    SeparateBuffers, read_mesh_with,
+    ReadingChanges, SeparateBuffers, read_mesh_with,
 };
 use isosheet_mesh::Advice;
 use isosheet_mesh::Sheet;
@@ -254,13 +254,24 @@ impl MeshFile {
 pub(crate) struct RestMesh {
     pub(crate) sheet: Sheet,
     pub(crate) roles: Option<EdgeRoles>,
+    /// What reading a file changed.
+    pub(crate) changes: ReadingChanges,
 }
 
 impl RestMesh {
     fn of(pattern: FoldPattern, roles: EdgeRoles) -> Self {
         Self {
-            sheet: pattern.sheet,
             roles: Some(roles),
+            ..Self::plain(pattern.sheet)
+        }
+    }
+
+    /// Of which it is not known what its edges are meant to do.
+    fn plain(sheet: Sheet) -> Self {
+        Self {
+            sheet,
+            roles: None,
+            changes: ReadingChanges::default(),
         }
     }
 }
@@ -424,14 +435,12 @@ impl Mesh {
             Self::Triangles { vertices, faces } => {
                 let sheet = Sheet::new(vertices.as_flattened().to_vec(), faces);
                 let sheet = sheet.map_err(|e| Problem::from_error(key.name("faces"), &e))?;
-                return Ok(RestMesh { sheet, roles: None });
+                return Ok(RestMesh::plain(sheet));
             }
             Self::File(file) => return read_sheet(file, &key, folder),
         };
-        Ok(RestMesh {
-            sheet: made.map_err(|e| generator_problem(&key, &e))?,
-            roles: None,
-        })
+        let sheet = made.map_err(|e| generator_problem(&key, &e))?;
+        Ok(RestMesh::plain(sheet))
     }
 }
 
@@ -455,6 +464,7 @@ fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Pro
             ..EdgeRoles::default()
         }),
         sheet,
+        changes: mesh.changes,
     })
 }
 

@@ -7,6 +7,7 @@ use super::problem::Problem;
 use super::refined::Refined;
 use super::sheets::sheet_key;
 use super::{Key, Selection, Sheet as SheetOfScene, Weight, sheets};
+use crate::format::ReadingChanges;
 use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
 use std::path::Path;
 
@@ -23,6 +24,8 @@ pub(super) struct PlacedSheet<'a> {
     /// Where it is in the union.
     pub(super) part: Part,
     pub(super) mass: MassMatrix,
+    /// What reading its file changed.
+    pub(super) changes: ReadingChanges,
 }
 
 /// All sheets.
@@ -106,7 +109,11 @@ impl<'a> PlacedSheet<'a> {
     /// With its positions at the start. Its part is not known yet.
     fn new(of: &'a SheetOfScene, key: Key, folder: &Path) -> Result<(Self, Vec<f64>), SceneError> {
         let mesh_key = key.name("mesh");
-        let RestMesh { sheet, roles } = of.mesh.build(&mesh_key, folder)?;
+        let RestMesh {
+            sheet,
+            roles,
+            changes,
+        } = of.mesh.build(&mesh_key, folder)?;
         let pose = &of.placement;
         let unplaced = Refined::new(sheet, of.refine, &key.name("refine"))?;
         let placed = unplaced
@@ -140,6 +147,7 @@ impl<'a> PlacedSheet<'a> {
             unplaced,
             part: Part::default(),
             mass,
+            changes,
         };
         Ok((sheet, x))
     }

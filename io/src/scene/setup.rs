@@ -5,6 +5,7 @@ use super::error::{SceneError, SceneText};
 use super::folding::FoldTargets;
 use super::key::Key;
 use super::problem::Problem;
+use super::warning::SceneWarning;
 use super::{Gauge, Origins};
 use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
@@ -55,6 +56,8 @@ pub struct Setup {
     pub folding: Option<FoldTargets>,
     /// What is read off the sheet at each step.
     pub measures: Vec<Gauge>,
+    /// What to know of the sheets before the scene is run.
+    pub(crate) of_sheets: Vec<SceneWarning>,
     /// Which entry of the scene made what.
     pub origins: Origins,
     /// The text of the scene, if it is a file.

@@ -52,7 +52,7 @@ impl MeshFile {
         self.faces.retain(|[a, b, c]| a != b && b != c && c != a);
         self.changes.collapsed_faces += before - self.faces.len();
         self.diagonals.retain(|[a, b]| a != b);
-        self.creases.retain(|c| c.ends[0] != c.ends[1]);
+        self.unite_creases();
     }
 }
 
