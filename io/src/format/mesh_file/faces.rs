@@ -13,6 +13,8 @@ pub(super) struct Polyhedron {
     corners: Vec<i64>,
     /// The end of each face in `corners`, and its place.
     ends: Vec<(usize, Place)>,
+    /// The first vertices of the objects of the file, where it has several and they do not share vertices.
+    parts: Vec<usize>,
     /// The number that the format gives to the first vertex, for errors.
     first: i64,
     /// Elements of the file that are not faces, for errors.
@@ -33,6 +35,21 @@ impl Polyhedron {
     pub(super) fn push_face(&mut self, corners: impl IntoIterator<Item = i64>, place: Place) {
         self.corners.extend(corners);
         self.ends.push((self.corners.len(), place));
+    }
+
+    /// Says that the vertices that follow belong to another object of the file.
+    pub(super) fn begin_part(&mut self) {
+        self.parts.push(self.positions.len() / 3);
+    }
+
+    /// Checks the faces as [`Self::assemble`] does, and makes copies of a vertex one, each object for itself.
+    pub(super) fn assemble_copies(mut self, options: &MeshOptions) -> Result<MeshFile, Located> {
+        let parts = std::mem::take(&mut self.parts);
+        let mut mesh = self.assemble(options)?;
+        if options.weld.is_none() {
+            mesh.weld(0.0, &parts);
+        }
+        Ok(mesh)
     }
 
     /// The number of faces.

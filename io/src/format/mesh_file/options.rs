@@ -33,12 +33,12 @@ pub struct MeshOptions {
     /// Vertices that are at most so far apart, in the unit of the file, become one: the first of them. `None`
     /// (the default) welds STL and glTF files with tolerance 0, and other files not at all: STL has no shared
     /// vertices and glTF none between faces with different normals, but programs that write them give each
-    /// copy of a vertex the same digits.
+    /// copy of a vertex the same digits. Different meshes of a glTF file stay apart then, where they touch.
     pub weld: Option<f64>,
     /// Of FOLD files: the frame. `None` (the default) is the first with vertices. Other files have no frames
     /// and are refused with this option.
     pub frame: Option<FoldFrame>,
-    /// Of glTF files: the name of the mesh. `None` (the default) is the first of the file.
+    /// Of glTF files: the name of the mesh. `None` (the default) is all meshes that the scene of the file shows.
     pub mesh: Option<String>,
     /// Of glTF files: buffers in files of their own, which are read unless asked otherwise.
     pub buffers: SeparateBuffers,
