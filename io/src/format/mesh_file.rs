@@ -9,6 +9,7 @@ mod mesh;
 mod obj;
 mod off;
 mod options;
+mod plane;
 mod ply;
 mod polygon;
 mod repair;
@@ -108,6 +109,9 @@ fn parse(
     options.validate().map_err(|problem| (None, problem))?;
     if options.frame.is_some() && format != MeshFormat::Fold {
         return Err((None, MeshFileProblem::NoFrames));
+    }
+    if options.mesh.is_some() && !matches!(format, MeshFormat::Gltf | MeshFormat::Glb) {
+        return Err((None, MeshFileProblem::NoNames));
     }
     let mut mesh = match format {
         MeshFormat::Obj => obj::parse(bytes)?.assemble(options)?,

@@ -9,8 +9,8 @@ use super::pattern::{
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use crate::format::{
-    self, FoldFrame, FoldProblem, MeshFileError, MeshFileProblem, MeshOptions, Polygons,
-    ReadingChanges, SeparateBuffers, read_mesh_with,
+    self, FoldFrame, FoldProblem, GltfProblem, MeshFileError, MeshFileProblem, MeshOptions,
+    Polygons, ReadingChanges, SeparateBuffers, read_mesh_with,
 };
 use isosheet_mesh::Advice;
 use isosheet_mesh::Sheet;
@@ -151,6 +151,10 @@ pub struct MeshFile {
     /// pattern to `sheet.mesh` and a folded form of it to `sheet.start.file`.
     #[serde(default)]
     pub frame: Option<FoldFrame>,
+    /// Of a glTF file: the name of the mesh that is taken; if left out, all meshes that its scene shows, each where
+    /// its nodes place it.
+    #[serde(default)]
+    pub mesh: Option<String>,
 }
 
 fn one() -> f64 {
@@ -212,10 +216,14 @@ impl MeshFile {
     /// Reads the file, in metres and with z upwards; relative paths are relative to `folder`.
     pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<format::MeshFile, Problem> {
         self.read_frame(self.frame.as_ref(), folder).map_err(|e| {
-            let name = if is_about_frame(&e.problem) {
-                "frame"
-            } else {
-                "path"
+            let name = match &e.problem {
+                problem if is_about_frame(problem) => "frame",
+                MeshFileProblem::NoNames | MeshFileProblem::Gltf(GltfProblem::NoMesh { .. })
+                    if self.mesh.is_some() =>
+                {
+                    "mesh"
+                }
+                _ => "path",
             };
             Problem::new(key.name(name), e.to_string(), file_remedy(&e))
         })
@@ -235,6 +243,7 @@ impl MeshFile {
             // The folder of a run keeps a copy of one file for each mesh.
             buffers: SeparateBuffers::Refuse,
             frame: frame.cloned(),
+            mesh: self.mesh.clone(),
             ..MeshOptions::default()
         };
         let path = folder.join(&self.path);

@@ -11,6 +11,32 @@ use crate::format::ReadingChanges;
 use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
 use std::path::Path;
 
+/// The mesh of a sheet as it is simulated, not placed yet.
+pub(super) struct RefinedMesh {
+    pub(super) refined: Refined,
+    /// What the edges of the refined mesh are meant to do.
+    pub(super) roles: Option<EdgeRoles>,
+    /// What reading its file changed.
+    pub(super) changes: ReadingChanges,
+}
+
+impl SheetOfScene {
+    /// Makes the mesh and divides its faces; files are relative to `folder`.
+    pub(super) fn refined(&self, key: &Key, folder: &Path) -> Result<RefinedMesh, Problem> {
+        let RestMesh {
+            sheet,
+            roles,
+            changes,
+        } = self.mesh.build(&key.name("mesh"), folder)?;
+        let refined = Refined::new(sheet, self.refine, &key.name("refine"))?;
+        Ok(RefinedMesh {
+            roles: roles.map(|roles| refined.roles(roles)),
+            refined,
+            changes,
+        })
+    }
+}
+
 /// A sheet in its place.
 pub(super) struct PlacedSheet<'a> {
     /// What the scene says of it.
@@ -108,18 +134,16 @@ impl<'a> PlacedSheets<'a> {
 impl<'a> PlacedSheet<'a> {
     /// With its positions at the start. Its part is not known yet.
     fn new(of: &'a SheetOfScene, key: Key, folder: &Path) -> Result<(Self, Vec<f64>), SceneError> {
-        let mesh_key = key.name("mesh");
-        let RestMesh {
-            sheet,
+        let RefinedMesh {
+            refined: unplaced,
             roles,
             changes,
-        } = of.mesh.build(&mesh_key, folder)?;
+        } = of.refined(&key, folder)?;
         let pose = &of.placement;
-        let unplaced = Refined::new(sheet, of.refine, &key.name("refine"))?;
         let placed = unplaced
             .sheet()
             .map_positions(|p| pose.place(p))
-            .map_err(|e| Problem::from_error(mesh_key, &e))?;
+            .map_err(|e| Problem::from_error(key.name("mesh"), &e))?;
         let x = match &of.start.file {
             None => placed.positions().to_vec(),
             Some(file) => {
@@ -143,7 +167,7 @@ impl<'a> PlacedSheet<'a> {
             of,
             key,
             placed,
-            roles: roles.map(|roles| unplaced.roles(roles)),
+            roles,
             unplaced,
             part: Part::default(),
             mass,

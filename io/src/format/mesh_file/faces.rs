@@ -134,12 +134,15 @@ impl Polyhedron {
                 if options.polygons == Polygons::Refuse {
                     return Err(MeshFileProblem::Polygon { corners });
                 }
+                let limit = polygon::MOST_CORNERS;
+                if corners > limit {
+                    return Err(MeshFileProblem::LargePolygon { corners, limit });
+                }
                 let points = self.positions.as_chunks::<3>().0;
-                let cut = polygon::triangulate(&face, |v| points[v as usize])
-                    .ok_or(MeshFileProblem::ConcavePolygon { corners })?;
-                // All triangles begin at the same corner; two neighbours have a diagonal in common.
-                mesh.diagonals.extend(cut[1..].iter().map(|t| [t[0], t[1]]));
-                mesh.faces.extend(cut);
+                let pieces = polygon::triangulate(&face, |v| points[v as usize])
+                    .ok_or(MeshFileProblem::CrossedPolygon { corners })?;
+                mesh.diagonals.extend(pieces.cuts);
+                mesh.faces.extend(pieces.triangles);
                 mesh.polygons += 1;
             }
         }

@@ -15,6 +15,7 @@ pub use problem::FoldProblem;
 
 use super::error::{Located, MeshFileProblem, Place};
 use super::faces::Polyhedron;
+use super::plane;
 use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
 use frames::Frame;
 use std::collections::HashMap;
@@ -190,5 +191,5 @@ fn is_clockwise(points: &[[f64; 3]], face: &[i64]) -> bool {
     let Some(corners) = face.iter().map(corner).collect::<Option<Vec<_>>>() else {
         return false;
     };
-    pattern::twice_area(corners.into_iter()) < 0.0
+    plane::twice_area(corners.into_iter()) < 0.0
 }

@@ -9,8 +9,8 @@ pub enum Polygons {
     /// Refuse the file. In a model of rods a polygon's diagonals are lines along which the sheet can fold,
     /// and its author did not draw them.
     Refuse,
-    /// Cut each polygon into triangles from that one of its corners which sees all others and needs the
-    /// shortest cuts (so a quad is cut along its shorter diagonal). [`MeshFile::diagonals`] lists the cuts.
+    /// Cut each polygon into triangles, corner after corner by the shortest cut inside (so a quad is cut along its
+    /// shorter diagonal). [`MeshFile::diagonals`] lists the cuts.
     ///
     /// [`MeshFile::diagonals`]: super::MeshFile::diagonals
     Triangulate,
@@ -39,6 +39,7 @@ pub struct MeshOptions {
     /// and are refused with this option.
     pub frame: Option<FoldFrame>,
     /// Of glTF files: the name of the mesh. `None` (the default) is all meshes that the scene of the file shows.
+    /// Other files are refused with this option.
     pub mesh: Option<String>,
     /// Of glTF files: buffers in files of their own, which are read unless asked otherwise.
     pub buffers: SeparateBuffers,

@@ -307,6 +307,12 @@ fn defects_of_ply_files_name_their_place() {
     ));
     let flat = TEXT_PLY.replace("float z", "float w");
     assert!(matches!(ply(&flat), (None, P::Ply(_))));
+    // Triangles that would be lost beside those of the faces.
+    let strips = "element tristrips 1\nproperty list int int vertex_indices\nelement face";
+    let strips = TEXT_PLY
+        .replace("element face", strips)
+        .replace("3 0 1 2", "4 0 1 2 3\n3 0 1 2");
+    assert!(matches!(ply(&strips), (None, P::Ply(text)) if text.contains("tristrips")));
 }
 
 #[test]
