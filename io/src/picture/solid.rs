@@ -291,6 +291,8 @@ pub(super) struct Triangles {
     pub(super) faces: Vec<[usize; 3]>,
     /// Faces of the sheet.
     pub(super) own: usize,
+    /// Of several sheets the number of faces before the end of each.
+    pub(super) sheets: Vec<usize>,
     /// Of each body its surface, and the number of faces before the end of its own.
     skins: Vec<(Skin, usize)>,
     /// Edges of bodies, with the surfaces that they follow.
@@ -312,6 +314,7 @@ impl Triangles {
             x: positions.as_chunks::<3>().0.to_vec(),
             faces: own.map(|f| f.map(VertexId::index)).collect(),
             own: topology.face_count(),
+            sheets: Vec::new(),
             skins: Vec::new(),
             ridges: Vec::new(),
         };
@@ -327,6 +330,11 @@ impl Triangles {
             scene.skins.push((shell.skin, scene.faces.len()));
         }
         scene
+    }
+
+    /// The number of the sheet that a face is of.
+    pub(super) fn sheet(&self, face: usize) -> usize {
+        self.sheets.partition_point(|end| *end <= face)
     }
 
     /// The surface of which a face is a part; none for the sheet.

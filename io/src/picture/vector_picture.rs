@@ -91,7 +91,7 @@ fn faces(painter: &Painter<'_>, scene: &mut Triangles) -> Vec<Mark> {
             .as_ref()
             .map_or(flat, |skin| skin.normal(&flat, &centre));
         let [sky, sun] = light_on(painter.camera, &n, &centre);
-        let colour = painter.colour(piece, skin.as_ref(), &centre, sky + sun);
+        let colour = painter.colour(piece, scene, &centre, sky + sun);
         let fill = hex(colour.map(srgb));
         let behind = if skin.is_some() {
             BEHIND * painter.scale
@@ -186,6 +186,7 @@ mod tests {
             pins: &[],
             immobile: &[],
             solids: &[],
+            parts: &[],
         };
         let camera = Camera::new([0.4, 0.4, 0.0], -60.0, 89.0, 1.4, 20.0);
         let look = Look {
@@ -229,6 +230,7 @@ mod tests {
             pins: &[],
             immobile: &[],
             solids: &[],
+            parts: &[],
         };
         let camera = Camera::new([0.0; 3], 0.0, 0.0, 1.0, 2.0);
         let result = render_svg(&picture, &camera, &Look::default());

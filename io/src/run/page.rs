@@ -30,6 +30,11 @@ impl Recording {
             .extend(Field::elastic(&self.model, &replay.positions));
         Ok(Replay {
             title: self.name.clone(),
+            sheets: self
+                .parts
+                .iter()
+                .map(|(_, part)| part.faces.len())
+                .collect(),
             pins: self.pins.iter().map(|v| v.0).collect(),
             immobile: self.immobile.iter().map(|v| v.0).collect(),
             summary: self.facts(),

@@ -39,6 +39,8 @@ pub struct Replay {
     pub rest: Vec<f64>,
     /// The direction that is up on the screen and along which heights are measured.
     pub up: Axis,
+    /// Of several sheets the number of faces of each, so that each has a colour of its own.
+    pub sheets: Vec<usize>,
     /// Bodies that the sheet meets.
     pub bodies: Vec<Body>,
     /// Vertices that are held.
@@ -84,6 +86,10 @@ impl Replay {
         for (frame, (x, t)) in self.positions.iter().zip(&self.times).enumerate() {
             check::length_of(x.len(), 3 * vertices, || positions_of(frame, *t))?;
             check::finite_of(x, || positions_of(frame, *t))?;
+        }
+        if !self.sheets.is_empty() {
+            let of_sheets = self.sheets.iter().sum();
+            check::length("the faces of all sheets", self.faces.len(), of_sheets)?;
         }
         check::vertices("the pins", &self.pins, vertices)?;
         check::vertices("the immobile vertices", &self.immobile, vertices)?;

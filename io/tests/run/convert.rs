@@ -511,3 +511,50 @@ fn refined_patterns_are_exported() {
     assert!(whole.iter().all(|n| *n > 0));
     assert_eq!(count("halves", "sheet.refine=1"), whole.map(|n| 2 * n));
 }
+
+/// The share of the pixels of a PNG file that have the warm tint of the upper side of a sheet.
+fn share_of_paper(png: &[u8]) -> f64 {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png))
+        .read_info()
+        .unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    let pixels = pixels.as_chunks::<3>().0;
+    let is_paper = |p: &&[u8; 3]| i16::from(p[0]) > i16::from(p[2]) + 15;
+    pixels.iter().filter(is_paper).count() as f64 / pixels.len() as f64
+}
+
+/// Where a plate stands between the usual viewer and the sheet, the picture is taken from elsewhere. Bodies can be
+/// left out.
+#[test]
+fn pictures_show_the_sheet_and_not_a_plate_before_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = "version = 1
+        [sheet]
+        mesh = { square = { side = 0.2, level = 1 } }
+        placement = { position = [-0.1, -0.1, 0] }
+        [[obstacle]]
+        shape = { box = { size = [3, 0.01, 3] } }
+        pose = { position = [0, -0.3, 0] }
+        [stop]
+        time = 0.02";
+    fs::write(dir.join("plate.toml"), scene).unwrap();
+    done(dir, &["simulate", "plate.toml"]);
+    let share = |options: &[&str]| {
+        done(dir, &[&["convert", "plate-run", "x.png"], options].concat());
+        share_of_paper(&fs::read(dir.join("x.png")).unwrap())
+    };
+    assert!(share(&[]) > 0.2);
+    assert_eq!(share(&["--view", "-60,25"]), 0.0);
+    assert!(share(&["--view", "-60,25", "--no-bodies"]) > 0.2);
+    for (option, has) in [(None, true), (Some("--no-bodies"), false)] {
+        let convert = ["convert", "plate-run", "x.usda"].into_iter().chain(option);
+        done(dir, &convert.collect::<Vec<_>>());
+        let text = fs::read_to_string(dir.join("x.usda")).unwrap();
+        assert_eq!(text.contains("obstacle_0"), has, "{option:?}");
+    }
+    fs::write(dir.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let said = refused(dir, &["convert", "a.obj", "b.obj", "--no-bodies"], 2);
+    assert!(said.contains("--no-bodies"), "{said}");
+}
