@@ -112,6 +112,22 @@ impl Setup {
     /// # Errors
     /// [`SceneError`] if the checkpoint belongs to another scene.
     pub fn resume(self, checkpoint: Checkpoint) -> Result<Simulation, SceneError> {
+        self.resume_or(checkpoint, Origins::of_start)
+    }
+
+    /// The simulation at a checkpoint of one of another scene that has been changed to this one.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the change is none that a simulation can go on with.
+    pub(crate) fn resume_changed(self, checkpoint: Checkpoint) -> Result<Simulation, SceneError> {
+        self.resume_or(checkpoint, Origins::of_change)
+    }
+
+    fn resume_or(
+        self,
+        checkpoint: Checkpoint,
+        problem: fn(&Origins, &SimulationError) -> Problem,
+    ) -> Result<Simulation, SceneError> {
         let contact = self.contacts.map(|c| Box::new(c) as Box<dyn Contact>);
         let resumed = match self.integration {
             Integration::Free { .. } => Simulation::resume(self.model, contact, checkpoint),
@@ -121,7 +137,7 @@ impl Setup {
                 Simulation::resume_in_chart(self.model, chart, contact, checkpoint)
             }
         };
-        resumed.map_err(|e| placed(self.origins.of_start(&e), self.text.as_ref()))
+        resumed.map_err(|e| placed(problem(&self.origins, &e), self.text.as_ref()))
     }
 }
 
