@@ -558,3 +558,30 @@ fn pictures_show_the_sheet_and_not_a_plate_before_it() {
     let said = refused(dir, &["convert", "a.obj", "b.obj", "--no-bodies"], 2);
     assert!(said.contains("--no-bodies"), "{said}");
 }
+
+/// A file that does not fit on the disk (here: into the size that the system allows) is one error of this program, and
+/// no text of a library beside it; nothing is left.
+#[cfg(unix)]
+#[test]
+fn files_that_do_not_fit_are_one_error() {
+    let dir = with_scene(StartingPoint::Stamp);
+    let dir = dir.path();
+    done(dir, &["simulate", "scene.toml", "--set", "stop.time=0.04"]);
+    // The shell counts in blocks of half a kilobyte or a whole one.
+    let script = "trap '' XFSZ; ulimit -f 4; exec \"$0\" convert scene-run \"$1\"";
+    let series = SeriesFormat::ALL.map(SeriesFormat::extension);
+    for extension in series.into_iter().chain(["png", "svg", "apng"]) {
+        let out = format!("x.{extension}");
+        let ended = std::process::Command::new("sh")
+            .current_dir(dir)
+            .args(["-c", script, env!("CARGO_BIN_EXE_isosheet"), &out])
+            .output()
+            .unwrap();
+        let said = stderr(&ended);
+        assert_eq!(code(&ended), Some(6), "{extension}: {said}");
+        let (first, rest) = said.split_once('\n').unwrap();
+        assert!(first.starts_with("error: cannot write x"), "{said}");
+        assert_eq!(rest, "  = help: check the free space\n", "{extension}");
+        assert!(!dir.join(out).is_file());
+    }
+}

@@ -4,18 +4,80 @@ use super::TrajectoryError;
 use npyz::npz::file_name_from_array_name;
 use npyz::{AutoSerialize, Deserialize, NpyFile, Order, WriteOptions, WriterBuilder};
 use std::fs::File;
-use std::io::{self, BufReader, Seek, Write};
+use std::io::{self, BufReader, Seek, SeekFrom, Write};
 use std::path::Path;
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 /// Writes arrays.
-pub(super) struct ArchiveWriter<W: Write + Seek>(ZipWriter<W>);
+pub(super) struct ArchiveWriter<W: Write + Seek>(ZipWriter<UntilError<W>>);
+
+/// Writes until that fails, and only seems to write from then on. An archive that is given up after an error is ended by
+/// its library, which would print what fails then.
+struct UntilError<W> {
+    inner: W,
+    has_failed: bool,
+    /// Where the next byte goes.
+    place: u64,
+    /// Where the last byte ends.
+    end: u64,
+}
+
+impl<W> UntilError<W> {
+    fn new(inner: W) -> Self {
+        Self {
+            inner,
+            has_failed: false,
+            place: 0,
+            end: 0,
+        }
+    }
+
+    /// Does something, or nothing after an error.
+    fn unless_failed<T>(
+        &mut self,
+        otherwise: T,
+        f: impl FnOnce(&mut W) -> io::Result<T>,
+    ) -> io::Result<T> {
+        if self.has_failed {
+            return Ok(otherwise);
+        }
+        let done = f(&mut self.inner);
+        let is_final = |e: &io::Error| e.kind() != io::ErrorKind::Interrupted;
+        self.has_failed = done.as_ref().is_err_and(is_final);
+        done
+    }
+}
+
+impl<W: Write> Write for UntilError<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.unless_failed(bytes.len(), |w| w.write(bytes))?;
+        self.place += written as u64;
+        self.end = self.end.max(self.place);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.unless_failed((), |w| w.flush())
+    }
+}
+
+impl<W: Seek> Seek for UntilError<W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let place = match to {
+            SeekFrom::Start(place) => place,
+            SeekFrom::Current(by) => self.place.saturating_add_signed(by),
+            SeekFrom::End(by) => self.end.saturating_add_signed(by),
+        };
+        self.place = self.unless_failed(place, |w| w.seek(to))?;
+        Ok(self.place)
+    }
+}
 
 impl<W: Write + Seek> ArchiveWriter<W> {
     pub(super) fn new(file: W) -> Self {
-        Self(ZipWriter::new(file))
+        Self(ZipWriter::new(UntilError::new(file)))
     }
 
     /// Adds an array with the values of its entries by rows.
