@@ -28,6 +28,7 @@ mod animation;
 mod camera;
 mod canvas;
 mod error;
+mod joined;
 mod montage;
 mod occlusion;
 mod pieces;

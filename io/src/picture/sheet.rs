@@ -406,8 +406,8 @@ mod tests {
             first[0] > first[2] && second[2] > second[0],
             "{first:?} {second:?}"
         );
-        let [first, second] = colours(&[]);
-        assert_eq!(first, second);
+        let alike = colours(&[]);
+        assert!(alike.iter().all(|c| c[0] > c[2]), "{alike:?}");
     }
 
     #[test]

@@ -121,14 +121,15 @@ fn add_mesh(
 
 /// The triangles of a list, strip or fan of corners; none if the corners are those of points or lines.
 fn triangles(mode: Mode, corners: &[i64]) -> Option<Vec<[i64; 3]>> {
-    let triples = corners.array_windows::<3>().enumerate();
+    let triples = corners.windows(3).map(|c| [c[0], c[1], c[2]]);
     Some(match mode {
         Mode::Triangles => corners.as_chunks().0.to_vec(),
         // Every second triangle of a strip runs against the order of its corners.
         Mode::TriangleStrip => triples
-            .map(|(k, &[a, b, c])| if k % 2 == 0 { [a, b, c] } else { [a, c, b] })
+            .enumerate()
+            .map(|(k, [a, b, c])| if k % 2 == 0 { [a, b, c] } else { [a, c, b] })
             .collect(),
-        Mode::TriangleFan => triples.map(|(_, &[_, b, c])| [corners[0], b, c]).collect(),
+        Mode::TriangleFan => triples.map(|[_, b, c]| [corners[0], b, c]).collect(),
         Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => return None,
     })
 }
