@@ -11,7 +11,6 @@ mod exit;
 mod failure;
 mod frames;
 mod gallery;
-mod hints;
 mod info;
 mod interrupt;
 mod live;

@@ -17,6 +17,7 @@
 //!     pins: &[],
 //!     immobile: &[],
 //!     solids: &[],
+//!     parts: &[],
 //! };
 //! let image = render(&picture, &camera, &Look { size: [80, 80], ..Look::default() })?;
 //! assert!(image.to_png()?.starts_with(b"\x89PNG"));
@@ -27,6 +28,7 @@ mod animation;
 mod camera;
 mod canvas;
 mod error;
+mod joined;
 mod montage;
 mod occlusion;
 mod pieces;

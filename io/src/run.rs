@@ -47,6 +47,8 @@ mod spool;
 mod stepping;
 mod summary;
 mod sweep;
+#[cfg(feature = "picture")]
+mod viewpoint;
 mod warning;
 mod watch;
 
@@ -67,6 +69,8 @@ pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, VariationError};
+#[cfg(feature = "picture")]
+pub use viewpoint::Viewpoint;
 pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 

@@ -57,7 +57,6 @@ mod problem;
 mod profile;
 mod reference;
 mod refined;
-mod replaced;
 mod resolution;
 mod selection;
 mod setup;

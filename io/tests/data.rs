@@ -257,7 +257,7 @@ const FILES: [(&str, Expected); 79] = [
     ("nasty/nonplanar_cap.obj", Read(217, 384, 0, Chi(1))),
     ("nasty/off_whitespace.off", Read(8, 12, 6, Chi(2))),
     ("nasty/points_only.obj", Refused("NoFaces")),
-    ("nasty/polygon_faces.obj", Refused("ConcavePolygon")),
+    ("nasty/polygon_faces.obj", Refused("CrossedPolygon")),
     ("nasty/shared_edge_solids.STL", Read(14, 24, 0, No("NonManifoldEdge"))),
     ("nasty/triangle_soup.stl", Read(300, 100, 0, Chi(100))),
     ("nasty/two_objects.obj", Read(12, 16, 0, Chi(4))),

@@ -9,7 +9,7 @@ use isosheet_io::write_obj;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyType};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -127,6 +127,14 @@ impl Mesh {
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let written = py.detach(|| write_obj(&path, self.sheet.topology(), self.sheet.positions()));
         written.map_err(|e| plain(py, &e))
+    }
+
+    /// For `pickle` and `copy`: vertices and faces.
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyType>, (Bound<'py, PyAny>, Bound<'py, PyAny>))> {
+        let arrays = (slf.getattr("vertices")?, slf.getattr("faces")?);
+        Ok((slf.get_type(), arrays))
     }
 
     /// Positions of the vertices, metres, of shape (V, 3).

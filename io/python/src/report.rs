@@ -1,6 +1,8 @@
 //! What a step reports.
 
+use crate::value::{Remade, remade};
 use isosheet_io::dynamics::{self, StepOutcome};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -47,7 +49,7 @@ pub(crate) struct StepReport {
     taut: Option<String>,
     /// What the hardest sub-step needed: "newton", "globalised", "`branch_seeded`", "fallback", "chart" or
     /// "rebased".
-    path: &'static str,
+    path: String,
 }
 
 impl From<dynamics::StepReport> for StepReport {
@@ -79,7 +81,8 @@ impl From<dynamics::StepReport> for StepReport {
                 StepOutcome::Fallback => "fallback",
                 StepOutcome::Chart => "chart",
                 StepOutcome::Rebased => "rebased",
-            },
+            }
+            .to_owned(),
         }
     }
 }
@@ -90,6 +93,38 @@ impl StepReport {
     #[getter]
     fn total(&self) -> f64 {
         self.kinetic + self.potential
+    }
+
+    /// The report of the values that `to_dict` gives.
+    #[staticmethod]
+    fn _of(values: &Bound<'_, PyDict>) -> PyResult<Self> {
+        Ok(Self {
+            time: value(values, "time")?,
+            h: value(values, "h")?,
+            substeps: value(values, "substeps")?,
+            rejected: value(values, "rejected")?,
+            iterations: value(values, "iterations")?,
+            factorisations: value(values, "factorisations")?,
+            residual: value(values, "residual")?,
+            kinetic: value(values, "kinetic")?,
+            potential: value(values, "potential")?,
+            work: value(values, "work")?,
+            dissipated: value(values, "dissipated")?,
+            friction: value(values, "friction")?,
+            plastic: value(values, "plastic")?,
+            energy_drift: value(values, "energy_drift")?,
+            strain: value(values, "strain")?,
+            constrained_strain: value(values, "constrained_strain")?,
+            gap: value(values, "gap")?,
+            violation: value(values, "violation")?,
+            taut: value(values, "taut")?,
+            path: value(values, "path")?,
+        })
+    }
+
+    /// For `pickle` and `copy`: all values.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
+        remade(slf, "_of", vec![Self::to_dict(slf)?.into_any()])
     }
 
     /// All values by name.
@@ -116,6 +151,16 @@ impl StepReport {
              strain={strain:.1e} path={path}>"
         )
     }
+}
+
+/// One of the values of a report.
+fn value<T>(values: &Bound<'_, PyDict>, name: &str) -> PyResult<T>
+where
+    T: for<'a, 'py> FromPyObject<'a, 'py, Error = PyErr>,
+{
+    let value = values.get_item(name)?;
+    let value = value.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
+    value.extract()
 }
 
 /// The names of all values.

@@ -2,7 +2,7 @@
 
 use crate::error::{of_file, of_run};
 use crate::run::Run;
-use crate::value::{edits, table, to_python};
+use crate::value::{Remade, edits, remade, table, to_python};
 use isosheet_io::run::{self, StepPart, Tick, Watch};
 use isosheet_io::scene::{Key, KeyPart, SceneFile, SceneFileError, StartingPoint};
 use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt, PyValueError};
@@ -107,6 +107,21 @@ impl Scene {
         let text = self.file.text();
         let file = SceneFile::parse(text.text.clone(), &text.path, &self::edits(edits)?);
         file.map(Self::of).map_err(|e| of_file(py, &e))
+    }
+
+    /// The scene of a text, as if it had been read from a path.
+    #[staticmethod]
+    fn _of_text(py: Python<'_>, text: String, path: PathBuf) -> PyResult<Self> {
+        let file = SceneFile::parse(text, &path, &[]);
+        file.map(Self::of).map_err(|e| of_file(py, &e))
+    }
+
+    /// For `pickle` and `copy`: text and path. Mesh files that the scene names are not part of it.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
+        let (py, text) = (slf.py(), slf.get().file.text());
+        let path = text.path.to_string_lossy();
+        let arguments = [&text.text, &*path].map(|text| PyString::new(py, text).into_any());
+        remade(slf, "_of_text", arguments.into())
     }
 
     /// The scene as TOML, with comments and edits.

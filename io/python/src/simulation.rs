@@ -5,12 +5,12 @@ use crate::error::{of_file, of_scene, of_step, plain};
 use crate::mesh::edges;
 use crate::report::StepReport;
 use crate::scene::{Scene, Signals};
-use crate::value::edits;
+use crate::value::{Remade, edits, remade};
 use isosheet_io::dynamics::{self, Checkpoint, Support};
 use isosheet_io::mesh::VertexId;
 use isosheet_io::scene::{Key, KeyError, LiveScene};
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::PyKeyError;
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::{Mutex, PoisonError};
@@ -104,6 +104,13 @@ impl Simulation {
         Ok(PyBytes::new(py, &bytes))
     }
 
+    /// For `pickle` and `copy`: the scene and a checkpoint, from which the copy goes on with the same bits.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
+        let (py, own) = (slf.py(), slf.get());
+        let scene = Bound::new(py, own.scene(py))?.into_any();
+        remade(slf, "resume", vec![scene, own.checkpoint(py)?.into_any()])
+    }
+
     /// Advances by `h` seconds, by default the step of the scene, and returns a `StepReport`.
     ///
     /// Raises `StepFailed`, which has key, time and advice; then and after Ctrl-C the state is that of the
@@ -117,7 +124,7 @@ impl Simulation {
     ///
     /// each: a function that is called after every step with its report, and ends the run by returning True.
     ///
-    /// Returns the reports. Ctrl-C raises `KeyboardInterrupt` within a step or after it, and the run can go
+    /// Returns the reports. Raises `ValueError` for a time that is no number. Ctrl-C raises `KeyboardInterrupt` within a step or after it, and the run can go
     /// on.
     #[pyo3(signature = (until, each = None))]
     fn run(
@@ -126,6 +133,11 @@ impl Simulation {
         until: f64,
         each: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Vec<Py<StepReport>>> {
+        if until.is_nan() {
+            return Err(PyValueError::new_err(
+                "until is nan; give a time in seconds",
+            ));
+        }
         let mut reports = Vec::new();
         while let Some(report) = self.advance(py, Length::Until(until))? {
             let report = Py::new(py, report)?;

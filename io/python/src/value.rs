@@ -4,7 +4,7 @@ use crate::mesh::Mesh;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple, PyType};
 use toml::{Table, Value};
 
 /// Deepest nesting of a value: twice that of the deepest scene.
@@ -114,6 +114,25 @@ pub(crate) fn edits(dict: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
         Ok(format!("{key}={}", from_python(&value)?))
     };
     dict.iter().map(edit).collect()
+}
+
+/// How `pickle` and `copy` make an object again: what is called with which class.
+pub(crate) type Remade<'py> = (Bound<'py, PyAny>, (Bound<'py, PyType>,));
+
+/// An object is made again by a static method of its class with some arguments.
+pub(crate) fn remade<'py, T>(
+    object: &Bound<'py, T>,
+    method: &str,
+    arguments: Vec<Bound<'py, PyAny>>,
+) -> PyResult<Remade<'py>> {
+    let py = object.py();
+    let method = PyString::new(py, method).into_any();
+    let all = PyTuple::new(
+        py,
+        std::iter::once(method).chain(arguments).collect::<Vec<_>>(),
+    )?;
+    let caller = py.import("operator")?.getattr("methodcaller")?;
+    Ok((caller.call1(all)?, (object.as_any().get_type(),)))
 }
 
 /// The value of Python that stands for one of TOML.

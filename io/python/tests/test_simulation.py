@@ -1,5 +1,7 @@
 """Simulations: exact motions, forces, control, checkpoints, threads."""
 
+import copy
+import pickle
 import threading
 import time
 
@@ -131,6 +133,9 @@ def test_what_cannot_change_is_refused_and_changes_nothing():
     with pytest.raises(isosheet.SceneError) as caught:
         simulation.change({"support[0].hold.moving_pin.z": 0.001})
     assert caught.value.key.startswith("support[0]")
+    with pytest.raises(isosheet.SceneError, match="during a simulation") as caught:
+        simulation.change({"sheet.density": 0.1})
+    assert "checkpoint" not in str(caught.value)
     with pytest.raises(isosheet.SceneError, match="no function of time"):
         simulation.drive({"sheet.mesh": 1.0}, until=1.0)
     with pytest.raises(KeyError):
@@ -156,12 +161,30 @@ def test_a_simulation_is_resumed_bit_for_bit():
         isosheet.Simulation.resume(hanging(sheet={**simulation.scene["sheet"], "density": 0.1}), bytes_)
 
 
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one))])
+def test_objects_are_copied_and_pickled(again):
+    scene = hanging()
+    assert again(scene).text == scene.text and again(scene).to_dict() == scene.to_dict()
+    simulation = isosheet.Simulation(scene)
+    report = simulation.step()
+    assert again(report).to_dict() == report.to_dict()
+    other = again(simulation)
+    assert other is not simulation and other.time == simulation.time
+    for one in (simulation, other):
+        one.run(0.05)
+    assert np.array_equal(simulation.x, other.x) and np.array_equal(simulation.v, other.v)
+    mesh = isosheet.Mesh.generate("square", side=0.2, level=1)
+    assert np.array_equal(again(mesh).vertices, mesh.vertices) and np.array_equal(again(mesh).faces, mesh.faces)
+
+
 def test_a_failed_step_has_time_and_advice():
     simulation = isosheet.Simulation(hanging())
     simulation.step()
     with pytest.raises(isosheet.StepFailed) as caught:
         simulation.step(-1.0)
     assert caught.value.time == 0.01 and caught.value.key is not None
+    # A smaller step is no remedy for a negative one.
+    assert "positive" in caught.value.advice and "smaller" not in str(caught.value)
     assert simulation.time == 0.01
     simulation.step()
 
@@ -173,6 +196,8 @@ def test_a_run_ends_where_it_is_told():
     assert [r.time for r in reports] == seen == pytest.approx([0.01, 0.02, 0.03, 0.035])
     assert len(simulation.run(1.0, each=lambda report: report.time > 0.05)) == 2
     assert simulation.run(0.01) == []
+    with pytest.raises(ValueError, match="nan"):
+        simulation.run(float("nan"))
 
     def fail(report):
         raise RuntimeError("enough")

@@ -1,13 +1,12 @@
 //! `isosheet check`.
 
 use super::failure::{Code, Done, Failure};
-use super::hints;
 use super::info::{describe_scene, is_scene, refuse_edits, refuse_folder};
 use super::message::{counted, print_warnings};
 use super::write::{is_same_file, to_stdout};
 use crate::mesh::Sheet;
 use crate::run::Estimate;
-use crate::scene::{Isometry, Mesh, SceneFile};
+use crate::scene::{SceneFile, SceneWarning};
 use crate::{
     Advice, MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
     write_mesh,
@@ -51,25 +50,12 @@ impl Check {
         let scene = SceneFile::read(&self.file, &self.edits)?;
         let setup = scene.build()?;
         let text = describe_scene(&setup);
-        let sheets = &scene.scene().sheet;
-        let closed = match sheets
-            .iter()
-            .any(|sheet| sheet.isometry() == Isometry::Rods)
-        {
-            true => hints::closed(&setup.sheet),
-            false => String::new(),
-        };
-        let is_unscaled = |mesh: &Mesh| matches!(mesh, Mesh::File(file) if file.scale == 1.0);
-        let wide = match sheets.iter().any(|sheet| is_unscaled(&sheet.mesh)) {
-            true => hints::wide(&setup.sheet),
-            false => String::new(),
-        };
         let (estimate, folder) = (Estimate::of(scene.scene(), &setup), Path::new("."));
         let warnings = [setup.warnings(), estimate.warnings(folder)].concat();
         estimate.check(&scene, folder)?;
         setup.start()?;
         to_stdout(&format!(
-            "{}: a scene that can start\n{text}a run            {estimate}\n{closed}{wide}",
+            "{}: a scene that can start\n{text}a run            {estimate}\n",
             self.file.display()
         ))?;
         print_warnings(&warnings);
@@ -85,13 +71,18 @@ impl Check {
         }
         let mesh = read(&self.file, Polygons::Refuse)?;
         match mesh.clone().into_sheet() {
-            Ok(sheet) => to_stdout(&format!(
-                "{name}: a sheet of {}\n{}{}{}",
-                counts(&sheet),
-                hints::closed(&sheet),
-                hints::wide(&sheet),
-                what_merging_does(mesh)
-            )),
+            Ok(sheet) => {
+                let counts = counts(&sheet);
+                let changes = what_reading_did(&mesh);
+                let merging = what_merging_does(mesh);
+                to_stdout(&format!("{name}: a sheet of {counts}\n{changes}{merging}"))?;
+                let warnings = [
+                    SceneWarning::closed(&sheet),
+                    SceneWarning::wide_file(&sheet),
+                ];
+                print_warnings(&warnings.into_iter().flatten().collect::<Vec<_>>());
+                Ok(())
+            }
             Err(error) => {
                 let remedy = what_repair_does(mesh, &error, &self.file);
                 Err(Failure::new(Code::Input, error).remedy(remedy))
@@ -113,6 +104,10 @@ impl Check {
         let polygons = match mesh.polygons {
             0 => String::new(),
             n => format!("{} cut into triangles, ", counted(n, "polygon", "polygons")),
+        };
+        let polygons = match given.changes.is_nothing() {
+            true => polygons,
+            false => format!("{polygons}{}, ", given.changes),
         };
         let repaired = repair.and_then(|repair| match mesh.clone().into_sheet() {
             Ok(sheet) => Ok((mesh, sheet, repair.to_string())),
@@ -139,6 +134,14 @@ impl Check {
             fixed.display(),
             counts(&sheet)
         ))
+    }
+}
+
+/// What reading a mesh changed, as a line; none if nothing.
+pub(super) fn what_reading_did(mesh: &MeshFile) -> String {
+    match mesh.changes.is_nothing() {
+        true => String::new(),
+        false => format!("note: {}\n", mesh.changes),
     }
 }
 

@@ -75,9 +75,12 @@ pub(crate) struct Convert {
     #[arg(long, value_name = "SIZE")]
     size: Option<Size>,
     /// Of pictures, where the viewer is: front, back, left, right, top, bottom, or degrees counter-clockwise
-    /// from the x axis and above the horizon [default: -60,25]
+    /// from the x axis and above the horizon [default: -60,25, or elsewhere if bodies hide the sheet from there]
     #[arg(long, value_name = "VIEW", allow_hyphen_values = true)]
     view: Option<View>,
+    /// Of a run, leave its bodies out
+    #[arg(long)]
+    no_bodies: bool,
     /// Of a mesh file, make vertices one that are at most T apart, in the unit of the file [default: 0 for
     /// STL and glTF, no welding for others]
     #[arg(long, value_name = "T")]
@@ -114,12 +117,13 @@ impl Convert {
         }
         self.check_input()?;
         let of_runs = [
-            ("--frames", self.frames.is_some()),
-            ("--every", self.every.is_some()),
-            ("--fps", self.fps.is_some()),
+            ("--frames", self.frames.is_some(), "chooses frames"),
+            ("--every", self.every.is_some(), "chooses frames"),
+            ("--fps", self.fps.is_some(), "chooses frames"),
+            ("--no-bodies", self.no_bodies, "leaves out bodies"),
         ];
-        if let Some((option, _)) = of_runs.iter().find(|(_, given)| *given) {
-            let message = format!("{option} chooses frames of a run, and a mesh file has none");
+        if let Some((option, _, what)) = of_runs.iter().find(|(_, given, _)| *given) {
+            let message = format!("{option} {what} of a run, and a mesh file has none");
             return Err(wrong(&message, "leave it out"));
         }
         self.check_look()?;
@@ -139,6 +143,9 @@ impl Convert {
     fn convert_run(&self) -> Done {
         let mut recording = Recording::read(&self.input).map_err(Failure::from)?;
         recording.trajectory = self.at_rate(recording.trajectory)?;
+        if self.no_bodies {
+            recording.obstacles.clear();
+        }
         if let Some(format) = PictureFormat::of(self.output()) {
             return self.write_pictures(&recording, format);
         }
@@ -292,9 +299,7 @@ impl Convert {
         if let Some(size) = self.size {
             (options.width, options.height) = (size.width, size.height);
         }
-        if let Some(view) = self.view {
-            (options.azimuth, options.elevation) = (view.azimuth, view.elevation);
-        }
+        options.view = self.view.map(|View(view)| view);
         pictures::write(recording, choice, format, &options, self.output())
     }
 
@@ -335,33 +340,22 @@ impl Convert {
     }
 
     fn say_mesh(&self, mesh: &MeshFile) -> Done {
-        let changes = mesh.changes;
-        let notes = [
-            (mesh.polygons, ["polygon", "polygons"], "cut into triangles"),
-            (changes.welded_vertices, VERTICES, "welded"),
-            (changes.collapsed_faces, FACES, "without area removed"),
-            (
-                changes.reversed_faces,
-                FACES,
-                "reversed, which were clockwise",
-            ),
-            (changes.vertices_at_cuts, VERTICES, "added at cuts"),
-        ];
-        let notes = notes.iter().filter(|(count, ..)| *count > 0);
-        let notes: String = notes
-            .map(|(count, [one, more], what)| format!(", {} {what}", counted(*count, one, more)))
-            .collect();
+        let polygons = match mesh.polygons {
+            0 => String::new(),
+            n => format!(", {} cut into triangles", counted(n, "polygon", "polygons")),
+        };
+        let changes = match mesh.changes.is_nothing() {
+            true => String::new(),
+            false => format!(", {}", mesh.changes),
+        };
         to_stdout(&format!(
-            "{}: {} and {}{notes}\n",
+            "{}: {} and {}{polygons}{changes}\n",
             self.output().display(),
-            counted(mesh.vertex_count(), VERTICES[0], VERTICES[1]),
-            counted(mesh.faces.len(), FACES[0], FACES[1])
+            counted(mesh.vertex_count(), "vertex", "vertices"),
+            counted(mesh.faces.len(), "face", "faces")
         ))
     }
 }
-
-const VERTICES: [&str; 2] = ["vertex", "vertices"];
-const FACES: [&str; 2] = ["face", "faces"];
 
 /// The file that was asked for.
 fn last(files: &[PathBuf]) -> &Path {

@@ -1,5 +1,6 @@
 //! Values of options for frames and pictures.
 
+use crate::run::Viewpoint;
 use std::str::FromStr;
 
 /// Frames of a run, `A..B`, both included.
@@ -66,12 +67,9 @@ impl FromStr for Size {
     }
 }
 
-/// Where the viewer is, degrees.
+/// Where the viewer is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct View {
-    pub(crate) azimuth: f64,
-    pub(crate) elevation: f64,
-}
+pub(crate) struct View(pub(crate) Viewpoint);
 
 impl FromStr for View {
     type Err = String;
@@ -93,7 +91,7 @@ impl FromStr for View {
                 (angle(azimuth)?, angle(elevation)?)
             }
         };
-        Ok(Self { azimuth, elevation })
+        Ok(Self(Viewpoint { azimuth, elevation }))
     }
 }
 
@@ -114,7 +112,7 @@ mod tests {
         assert_eq!(size("640x480"), Ok((Some(640), 480)));
         assert_eq!(size("720"), Ok((None, 720)));
         assert!(size("720p").is_err() && size("x").is_err());
-        let view = |text: &str| text.parse::<View>().map(|v| (v.azimuth, v.elevation));
+        let view = |text: &str| text.parse::<View>().map(|View(v)| (v.azimuth, v.elevation));
         assert_eq!(view("-30,12.5"), Ok((-30.0, 12.5)));
         assert_eq!(view("top"), Ok((-90.0, 90.0)));
         assert!(view("above").is_err() && view("1,2,3").is_err());

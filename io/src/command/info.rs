@@ -1,5 +1,6 @@
 //! `isosheet info`.
 
+use super::check::what_reading_did;
 use super::failure::{Code, Done, Failure};
 use super::message::print_warnings;
 use super::write::to_stdout;
@@ -7,7 +8,7 @@ use crate::dynamics::{SheetModel, rod_rank};
 use crate::mesh::{Dof, MassKind, Sheet};
 use crate::run::Recording;
 use crate::scene::{SceneFile, Setup};
-use crate::{MeshFileProblem, read_sheet};
+use crate::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -56,27 +57,38 @@ impl Info {
     pub(crate) fn run(&self) -> Done {
         if is_scene(&self.file) {
             let setup = SceneFile::read(&self.file, &self.edits)?.build()?;
-            return to_stdout(&describe_scene(&setup));
+            to_stdout(&describe_scene(&setup))?;
+            print_warnings(&setup.warnings());
+            return Ok(());
         }
         refuse_edits(&self.edits)?;
         if self.file.join("scene.toml").is_file() {
             return describe_run(&self.file);
         }
         refuse_folder(&self.file)?;
-        let sheet = read_sheet(&self.file).map_err(|e| match e.problem {
-            MeshFileProblem::Mesh(_) => {
-                let remedy = format!("`isosheet check {}` says more", self.file.display());
-                Failure::new(Code::Input, e).remedy(remedy)
-            }
-            MeshFileProblem::Polygon { .. } => {
-                let remedy = "`isosheet convert` cuts polygons into triangles";
-                Failure::new(Code::Input, e).remedy(remedy)
-            }
-            _ => Failure::of(Code::Input, &e),
-        })?;
+        let options = MeshOptions {
+            polygons: Polygons::Refuse,
+            ..MeshOptions::default()
+        };
+        let mesh = read_mesh_with(&self.file, &options);
+        let changes = mesh.as_ref().map_or(String::new(), what_reading_did);
+        let sheet = mesh
+            .and_then(MeshFile::into_sheet)
+            .map_err(|e| match e.problem {
+                MeshFileProblem::Mesh(_) => {
+                    let remedy = format!("`isosheet check {}` says more", self.file.display());
+                    Failure::new(Code::Input, e).remedy(remedy)
+                }
+                MeshFileProblem::Polygon { .. } => {
+                    let remedy = "`isosheet convert` cuts polygons into triangles";
+                    Failure::new(Code::Input, e).remedy(remedy)
+                }
+                _ => Failure::of(Code::Input, &e),
+            })?;
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped)
             .map_err(|e| Failure::of(Code::Input, &e))?;
-        to_stdout(&describe_sheet(&sheet, &model, sheet.positions()))
+        let description = describe_sheet(&sheet, &model, sheet.positions());
+        to_stdout(&format!("{description}{changes}"))
     }
 }
 

@@ -9,6 +9,7 @@ mod mesh;
 mod obj;
 mod off;
 mod options;
+mod plane;
 mod ply;
 mod polygon;
 mod repair;
@@ -110,23 +111,22 @@ fn parse(
     if options.frame.is_some() && format != MeshFormat::Fold {
         return Err((None, MeshFileProblem::NoFrames));
     }
+    if options.mesh.is_some() && !matches!(format, MeshFormat::Gltf | MeshFormat::Glb) {
+        return Err((None, MeshFileProblem::NoNames));
+    }
     let mut mesh = match format {
         MeshFormat::Obj => obj::parse(bytes)?.assemble(options)?,
         MeshFormat::Off => off::parse(bytes)?.assemble(options)?,
-        MeshFormat::Stl => stl::parse(bytes)?.assemble(options)?,
+        MeshFormat::Stl => stl::parse(bytes)?.assemble_copies(options)?,
         MeshFormat::Ply => ply::parse(bytes)?.assemble(options)?,
         MeshFormat::Fold => fold::parse(bytes, options)?,
         MeshFormat::Gltf | MeshFormat::Glb => {
-            gltf::parse(bytes, path, options)?.assemble(options)?
+            gltf::parse(bytes, path, options)?.assemble_copies(options)?
         }
     };
     mesh.path = path.to_owned();
-    let weld_by_default = match format {
-        MeshFormat::Stl | MeshFormat::Gltf | MeshFormat::Glb => Some(0.0),
-        _ => None,
-    };
-    if let Some(tolerance) = options.weld.or(weld_by_default) {
-        mesh.weld(tolerance);
+    if let Some(tolerance) = options.weld {
+        mesh.weld(tolerance, &[]);
     }
     Ok(mesh)
 }

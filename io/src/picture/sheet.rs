@@ -6,9 +6,9 @@ use super::error::PictureError;
 use super::occlusion::Occlusion;
 use super::pieces::{Cutter, Piece};
 use super::raster::{Corner, Drawing, Facet, Stroke};
-use super::solid::{Skin, Solid, Triangles};
+use super::solid::{Solid, Triangles};
 use super::vector::{axpy, dot};
-use isosheet_mesh::{Topology, VertexId};
+use isosheet_mesh::{Part, Topology, VertexId};
 
 /// How far faces darken each other, as part of what the picture shows.
 const REACH: f64 = 0.3;
@@ -50,6 +50,8 @@ pub struct SheetPicture<'a> {
     pub immobile: &'a [VertexId],
     /// Bodies that the sheet meets.
     pub solids: &'a [Solid],
+    /// Of several sheets where each is in the topology, in their order; empty for one.
+    pub parts: &'a [Part],
 }
 
 impl SheetPicture<'_> {
@@ -87,9 +89,10 @@ impl SheetPicture<'_> {
 pub struct Look {
     /// Size of the picture, pixels; 480 x 480 by default.
     pub size: [usize; 2],
-    /// sRGB colours of the upper and the lower side of the sheet as it lies flat. The default is paper white
-    /// with a warm tint above, and below a blue that stays apart from it under any colour vision.
-    pub sides: [[u8; 3]; 2],
+    /// sRGB colours of the upper and the lower side of the sheet as it lies flat; several sheets take them by turns. By
+    /// default the first one is paper white with a warm tint above, and below a blue that stays apart from it under
+    /// any colour vision; the others are tints above that stay apart from each other, with a darker side below.
+    pub sides: [[[u8; 3]; 2]; 6],
     /// sRGB colour of bodies; a light grey by default.
     pub body: [u8; 3],
     /// Width of the wires, pixels; 0.7 by default. Edges of the boundary are 1.7 times as wide.
@@ -100,7 +103,14 @@ impl Default for Look {
     fn default() -> Self {
         Self {
             size: [480, 480],
-            sides: [[250, 240, 214], [120, 172, 214]],
+            sides: [
+                [[250, 240, 214], [120, 172, 214]],
+                [[160, 206, 222], [66, 122, 146]],
+                [[246, 190, 140], [190, 106, 52]],
+                [[188, 216, 150], [98, 140, 62]],
+                [[214, 186, 222], [136, 92, 152]],
+                [[244, 222, 112], [178, 146, 30]],
+            ],
             body: [186, 186, 182],
             wire: 0.7,
         }
@@ -192,9 +202,12 @@ impl<'a> Painter<'a> {
             topology,
             positions,
             solids,
+            parts,
             ..
         } = *picture;
-        Triangles::new(topology, positions, solids, &target, reach)
+        let mut scene = Triangles::new(topology, positions, solids, &target, reach);
+        scene.sheets = parts.iter().map(|part| part.faces.end).collect();
+        scene
     }
 
     /// What cuts faces of bodies until edges are at most so long, as a part of the height of the picture.
@@ -217,16 +230,17 @@ impl<'a> Painter<'a> {
         ]
     }
 
-    /// The colour of a point of a body or of the sheet, under light of this strength.
+    /// The colour of a point of a body or of a sheet, under light of this strength.
     pub(super) fn colour(
         &self,
         piece: &Piece,
-        skin: Option<&Skin>,
+        scene: &Triangles,
         p: &[f64; 3],
         shade: f64,
     ) -> Light {
-        let Some(skin) = skin else {
-            let side = self.look.sides[usize::from(piece.back)];
+        let Some(skin) = scene.skin(piece.face) else {
+            let sides = self.look.sides;
+            let side = sides[scene.sheet(piece.face) % sides.len()][usize::from(piece.back)];
             return light(side).map(|c| c * shade as f32);
         };
         // What has faded out is white, as the background is.
@@ -266,7 +280,7 @@ impl<'a> Painter<'a> {
                     Some(skin) => light_on(self.camera, &skin.normal(&flat, p), p),
                 };
                 let shade = sky * o + sun * (0.4 + 0.6 * o);
-                self.corner(p, self.colour(piece, skin.as_ref(), p, shade))
+                self.corner(p, self.colour(piece, scene, p, shade))
             });
             Facet {
                 corners,
@@ -358,7 +372,43 @@ impl<'a> Painter<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isosheet_mesh::Sheet;
     use isosheet_mesh::generate::isotropic_square;
+
+    /// Two squares side by side, each in the colour that it has as the first or the second sheet.
+    #[test]
+    fn every_sheet_has_its_own_colour() {
+        let sheet = isotropic_square(0, 1.0).unwrap();
+        let beside = sheet.map_positions(|[x, y, z]| [x + 1.5, y, z]).unwrap();
+        let sheets = [&sheet, &beside];
+        let union = Sheet::union(&sheets).unwrap();
+        let look = Look {
+            size: [128, 64],
+            wire: 0.0,
+            ..Look::default()
+        };
+        let colours = |parts: &[Part]| {
+            let picture = SheetPicture {
+                topology: union.topology(),
+                positions: union.positions(),
+                pins: &[],
+                immobile: &[],
+                solids: &[],
+                parts,
+            };
+            let camera = Camera::new([1.25, 0.5, 0.0], -90.0, 90.0, 1.5, 100.0);
+            let image = render(&picture, &camera, &look).unwrap();
+            // 0.75 to either side of the middle are 32 pixels.
+            [32, 96].map(|x| image.pixels[32 * 128 + x])
+        };
+        let [first, second] = colours(&Part::of_union(&sheets));
+        assert!(
+            first[0] > first[2] && second[2] > second[0],
+            "{first:?} {second:?}"
+        );
+        let alike = colours(&[]);
+        assert!(alike.iter().all(|c| c[0] > c[2]), "{alike:?}");
+    }
 
     #[test]
     fn the_two_sides_have_their_own_colours() {
@@ -373,6 +423,7 @@ mod tests {
             pins: &[],
             immobile: &[],
             solids: &[],
+            parts: &[],
         };
         let middle = |elevation: f64| {
             let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
@@ -396,6 +447,7 @@ mod tests {
                 pins,
                 immobile: &[],
                 solids: &[],
+                parts: &[],
             };
             render(&picture, &camera, &look).map(|image| image.size())
         };

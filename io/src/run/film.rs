@@ -1,9 +1,10 @@
 //! Shaded pictures of the frames of a run.
 
-use super::Recording;
+use super::{Recording, Viewpoint};
 use crate::picture::{
     Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render, render_svg,
 };
+use isosheet_mesh::Part;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How a run is shown.
@@ -13,10 +14,9 @@ pub struct FilmOptions {
     pub height: usize,
     /// Width of the pictures, pixels; by default an even number that follows from what is seen.
     pub width: Option<usize>,
-    /// Where the viewer is, degrees counter-clockwise from the x axis as seen from above; -60 by default.
-    pub azimuth: f64,
-    /// Where the viewer is, degrees above the horizon; 25 by default.
-    pub elevation: f64,
+    /// Where the viewer is; by default -60 degrees from the x axis and 25 degrees above the horizon, or elsewhere if
+    /// bodies hide the sheet from there.
+    pub view: Option<Viewpoint>,
 }
 
 impl Default for FilmOptions {
@@ -24,8 +24,7 @@ impl Default for FilmOptions {
         Self {
             height: 480,
             width: None,
-            azimuth: -60.0,
-            elevation: 25.0,
+            view: None,
         }
     }
 }
@@ -45,16 +44,17 @@ impl FilmOptions {
         if !(1..=LARGEST).contains(&width) || !(1..=LARGEST).contains(&height) {
             return Err(PictureError::Size { width, height });
         }
-        if !self.azimuth.is_finite() {
+        let Viewpoint { azimuth, elevation } = self.view.unwrap_or_default();
+        if !azimuth.is_finite() {
             return Err(PictureError::Angle {
                 name: "azimuth",
-                value: self.azimuth,
+                value: azimuth,
             });
         }
-        if !(-90.0..=90.0).contains(&self.elevation) {
+        if !(-90.0..=90.0).contains(&elevation) {
             return Err(PictureError::Angle {
                 name: "elevation",
-                value: self.elevation,
+                value: elevation,
             });
         }
         Ok(())
@@ -67,6 +67,8 @@ pub struct Film<'a> {
     recording: &'a Recording,
     frames: Vec<usize>,
     solids: Vec<Solid>,
+    /// Of several sheets where each is in the union.
+    parts: Vec<Part>,
     camera: Camera,
     look: Look,
 }
@@ -122,9 +124,10 @@ impl<'a> Film<'a> {
         let FilmOptions {
             height,
             width,
-            azimuth,
-            elevation,
+            view,
         } = *options;
+        let sight = || Viewpoint::of_sight(recording, &frames, size, DISTANCE * size);
+        let Viewpoint { azimuth, elevation } = view.unwrap_or_else(sight);
         let camera = Camera::new(middle, azimuth, elevation, size, DISTANCE * size);
         let seen = || points.iter().copied();
         // Films are encoded in squares of two pixels.
@@ -138,6 +141,11 @@ impl<'a> Film<'a> {
             recording,
             frames,
             solids,
+            parts: recording
+                .parts
+                .iter()
+                .map(|(_, part)| part.clone())
+                .collect(),
             camera: camera.framing(seen(), width as f64 / height as f64, MARGIN),
             look: Look {
                 size: [width, height],
@@ -187,6 +195,7 @@ impl<'a> Film<'a> {
             pins: &self.recording.pins,
             immobile: &self.recording.immobile,
             solids: &solids.collect::<Vec<_>>(),
+            parts: &self.parts,
         };
         draw(&picture, &self.camera, &self.look)
     }

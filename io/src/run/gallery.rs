@@ -9,7 +9,7 @@ pub use error::GalleryError;
 
 use super::folder::{RunFolder, holds_other_files, remove_unfinished};
 use super::page::page_of;
-use super::{Film, FilmOptions, Recording, RunError};
+use super::{Film, FilmOptions, Recording, RunError, Sweep};
 use crate::format::{WriteError, read_json, write_atomically, write_json};
 use crate::picture::PictureError;
 use crate::view::PageOptions;
@@ -176,11 +176,24 @@ fn entry(name: String, folder: PathBuf, recording: &Recording) -> GalleryEntry {
         name,
         title: recording.name.clone(),
         caption: caption(&recording.scene.text().text),
+        values: swept(&folder),
         t: trajectory.times().last().copied().unwrap_or_default(),
         vertices: trajectory.vertex_count(),
         summary: recording.summary.clone(),
         folder,
     }
+}
+
+/// The values of the keys of the sweep that a run belongs to; none if it belongs to none that can be read.
+fn swept(folder: &Path) -> Vec<(String, String)> {
+    let of_sweep = || {
+        let whole = folder.canonicalize().ok()?;
+        let table = Sweep::table_in(whole.parent()?).ok()??;
+        let name = whole.file_name()?.to_str()?;
+        let (_, values) = table.runs.into_iter().find(|(folder, _)| folder == name)?;
+        Some(table.keys.into_iter().zip(values).collect())
+    };
+    of_sweep().unwrap_or_default()
 }
 
 /// A run with its page and its picture.

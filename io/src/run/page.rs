@@ -51,6 +51,11 @@ impl Recording {
         replay.series.extend(Series::of_measures(&self.measures));
         Replay {
             title: self.name.clone(),
+            sheets: self
+                .parts
+                .iter()
+                .map(|(_, part)| part.faces.len())
+                .collect(),
             pins: self.pins.iter().map(|v| v.0).collect(),
             immobile: self.immobile.iter().map(|v| v.0).collect(),
             summary: self.facts(),

@@ -533,12 +533,14 @@ impl<'a> Builder<'a> {
             let name = sheet.of.name.clone()?;
             Some((name, sheet.part.clone()))
         };
+        let parts = match &sheets[..] {
+            [_] => Vec::new(),
+            several => several.iter().filter_map(part).collect(),
+        };
+        let of_sheets = self.sheets.warnings(self.scene);
         Setup {
             start,
-            parts: match &sheets[..] {
-                [_] => Vec::new(),
-                several => several.iter().filter_map(part).collect(),
-            },
+            parts,
             material: materials_in_words(sheets),
             sheet: self.sheets.union,
             model: model.expect("a change that fails ends the building"),
@@ -548,6 +550,7 @@ impl<'a> Builder<'a> {
             modelled: self.modelled,
             targets: self.targets,
             measures: Vec::new(),
+            of_sheets,
             origins: self.origins,
             text: None,
         }

@@ -4,7 +4,7 @@ use super::key::Key;
 use super::problem::Problem;
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
 use isosheet_dynamics::{
-    Driver, Reason, SheetModel, Simulation, SimulationError, StepError, Support,
+    CheckpointError, Driver, Reason, SheetModel, Simulation, SimulationError, StepError, Support,
 };
 use isosheet_mesh::VertexId;
 use isosheet_mesh::wording::brief;
@@ -195,12 +195,46 @@ impl Origins {
                 root.name("forces"),
                 "check the sizes of forces and stiffnesses",
             ),
+            StepError::StepSize { .. } | StepError::Time { .. } => {
+                return Problem::from_error(root.name("method"), error);
+            }
             _ => (
                 root.name("method"),
                 "take a smaller `method.step` or more damping",
             ),
         };
         Problem::new(key, error.to_string(), remedy)
+    }
+
+    /// A change that a simulation cannot go on with: what it keeps is not that of the changed scene.
+    pub(crate) fn of_change(&self, error: &SimulationError) -> Problem {
+        let SimulationError::Checkpoint(error) = error else {
+            return self.of_start(error);
+        };
+        let root = Key::root();
+        let (key, message) = match error {
+            CheckpointError::Contact { expected: false } => (
+                root.name("contact"),
+                "contact does not begin during a simulation".to_owned(),
+            ),
+            CheckpointError::Contact { expected: true } => (
+                root.name("contact"),
+                "contact does not end during a simulation".to_owned(),
+            ),
+            CheckpointError::OtherSheet { what } => (
+                root,
+                format!("the {what} of the sheet do not change during a simulation"),
+            ),
+            _ => {
+                let message = "the change gives the simulation other supports, creases or sheets than it began with";
+                (root, message.to_owned())
+            }
+        };
+        Problem::new(
+            key,
+            message,
+            "begin a new simulation with the changed scene",
+        )
     }
 
     /// A simulation that cannot start, at the place of the scene that is to blame as far as that is known.

@@ -156,7 +156,7 @@ impl Folding {
         folder: &Path,
     ) -> Result<FoldTargets, Problem> {
         let t = refined.mesh().topology();
-        let (frame, name) = match &self.frame {
+        let (mut frame, name) = match &self.frame {
             None => {
                 let key = Key::root().name("sheet.mesh.file");
                 (
@@ -179,6 +179,9 @@ impl Folding {
             let remedy = "choose a frame of the same vertices";
             return Err(Problem::new(key.name("frame"), message, remedy));
         }
+        frame
+            .orient_creases(t)
+            .map_err(|e| Problem::from_error(key.name("frame"), &e))?;
         let mut targets = FoldTargets {
             flat: refined.inside_faces(),
             ..FoldTargets::default()

@@ -1,10 +1,9 @@
-//! The form of a scene against the reference: unknown and replaced keys, and lists, tables and numbers that
+//! The form of a scene against the reference: unknown keys, and lists, tables and numbers that
 //! stand where the scene has something else. All of them are found at once, each at its place in the text.
 
 use super::key::{Key, KeyPart};
 use super::problem::Problem;
 use super::reference::{as_written, schema};
-use super::replaced::replaced;
 use super::toml_problem::suggestion;
 use serde_json::Value as Schema;
 use std::collections::BTreeMap;
@@ -83,11 +82,6 @@ fn visit(
             let message = format!("`{key}` is a number, and the scene has a list there");
             problems.push(place.problem(message, list_remedy(forms, key)));
         }
-        DeValue::String(text) => {
-            if let Some([message, remedy]) = replaced(&format!("{}.{text}", header(key))) {
-                problems.push(place.problem(message.to_owned(), remedy));
-            }
-        }
         _ => {}
     }
 }
@@ -115,10 +109,6 @@ fn visit_table(
                     span: name.span(),
                     ..place
                 };
-                if let Some([message, remedy]) = replaced(&header(&place.key)) {
-                    problems.push(place.problem(message.to_owned(), remedy));
-                    continue;
-                }
                 let what = if is_choice(forms) { "choice" } else { "key" };
                 let message = format!("unknown {what} `{}`", name.get_ref());
                 problems.push(place.problem(message, suggestion(name.get_ref(), &names)));

@@ -223,9 +223,9 @@ impl LiveScene {
         if let Some(hand) = &hand {
             setup.model = setup.model.with_potential(hand.clone());
         }
-        let resumed = setup.resume(self.simulation.checkpoint())?;
+        let resumed = setup.resume_changed(self.simulation.checkpoint())?;
         let changed = resumed.changed_from(&self.simulation).map_err(|e| {
-            let problem = facts.origins.of_start(&e);
+            let problem = facts.origins.of_change(&e);
             SceneError::from(problem).in_text(file.text())
         })?;
         *self = Self {

@@ -9,8 +9,8 @@ use super::pattern::{
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use crate::format::{
-    self, FoldFrame, FoldProblem, MeshFileError, MeshFileProblem, MeshOptions, Polygons,
-    SeparateBuffers, read_mesh_with,
+    self, FoldFrame, FoldProblem, GltfProblem, MeshFileError, MeshFileProblem, MeshOptions,
+    Polygons, ReadingChanges, SeparateBuffers, read_mesh_with,
 };
 use isosheet_mesh::Advice;
 use isosheet_mesh::Sheet;
@@ -151,6 +151,10 @@ pub struct MeshFile {
     /// pattern to `sheet.mesh` and a folded form of it to `sheet.start.file`.
     #[serde(default)]
     pub frame: Option<FoldFrame>,
+    /// Of a glTF file: the name of the mesh that is taken; if left out, all meshes that its scene shows, each where
+    /// its nodes place it.
+    #[serde(default)]
+    pub mesh: Option<String>,
 }
 
 fn one() -> f64 {
@@ -212,10 +216,14 @@ impl MeshFile {
     /// Reads the file, in metres and with z upwards; relative paths are relative to `folder`.
     pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<format::MeshFile, Problem> {
         self.read_frame(self.frame.as_ref(), folder).map_err(|e| {
-            let name = if is_about_frame(&e.problem) {
-                "frame"
-            } else {
-                "path"
+            let name = match &e.problem {
+                problem if is_about_frame(problem) => "frame",
+                MeshFileProblem::NoNames | MeshFileProblem::Gltf(GltfProblem::NoMesh { .. })
+                    if self.mesh.is_some() =>
+                {
+                    "mesh"
+                }
+                _ => "path",
             };
             Problem::new(key.name(name), e.to_string(), file_remedy(&e))
         })
@@ -235,6 +243,7 @@ impl MeshFile {
             // The folder of a run keeps a copy of one file for each mesh.
             buffers: SeparateBuffers::Refuse,
             frame: frame.cloned(),
+            mesh: self.mesh.clone(),
             ..MeshOptions::default()
         };
         let path = folder.join(&self.path);
@@ -254,13 +263,24 @@ impl MeshFile {
 pub(crate) struct RestMesh {
     pub(crate) sheet: Sheet,
     pub(crate) roles: Option<EdgeRoles>,
+    /// What reading a file changed.
+    pub(crate) changes: ReadingChanges,
 }
 
 impl RestMesh {
     fn of(pattern: FoldPattern, roles: EdgeRoles) -> Self {
         Self {
-            sheet: pattern.sheet,
             roles: Some(roles),
+            ..Self::plain(pattern.sheet)
+        }
+    }
+
+    /// Of which it is not known what its edges are meant to do.
+    fn plain(sheet: Sheet) -> Self {
+        Self {
+            sheet,
+            roles: None,
+            changes: ReadingChanges::default(),
         }
     }
 }
@@ -424,14 +444,12 @@ impl Mesh {
             Self::Triangles { vertices, faces } => {
                 let sheet = Sheet::new(vertices.as_flattened().to_vec(), faces);
                 let sheet = sheet.map_err(|e| Problem::from_error(key.name("faces"), &e))?;
-                return Ok(RestMesh { sheet, roles: None });
+                return Ok(RestMesh::plain(sheet));
             }
             Self::File(file) => return read_sheet(file, &key, folder),
         };
-        Ok(RestMesh {
-            sheet: made.map_err(|e| generator_problem(&key, &e))?,
-            roles: None,
-        })
+        let sheet = made.map_err(|e| generator_problem(&key, &e))?;
+        Ok(RestMesh::plain(sheet))
     }
 }
 
@@ -455,6 +473,7 @@ fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Pro
             ..EdgeRoles::default()
         }),
         sheet,
+        changes: mesh.changes,
     })
 }
 

@@ -8,8 +8,35 @@ use super::refined::Refined;
 use super::resolution::check_shape;
 use super::sheets::sheet_key;
 use super::{Key, Selection, Sheet as SheetOfScene, Weight, sheets};
+use crate::format::ReadingChanges;
 use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
 use std::path::Path;
+
+/// The mesh of a sheet as it is simulated, not placed yet.
+pub(super) struct RefinedMesh {
+    pub(super) refined: Refined,
+    /// What the edges of the refined mesh are meant to do.
+    pub(super) roles: Option<EdgeRoles>,
+    /// What reading its file changed.
+    pub(super) changes: ReadingChanges,
+}
+
+impl SheetOfScene {
+    /// Makes the mesh and divides its faces; files are relative to `folder`.
+    pub(super) fn refined(&self, key: &Key, folder: &Path) -> Result<RefinedMesh, Problem> {
+        let RestMesh {
+            sheet,
+            roles,
+            changes,
+        } = self.mesh.build(&key.name("mesh"), folder)?;
+        let refined = Refined::new(sheet, self.refine, &key.name("refine"))?;
+        Ok(RefinedMesh {
+            roles: roles.map(|roles| refined.roles(roles)),
+            refined,
+            changes,
+        })
+    }
+}
 
 /// A sheet in its place.
 pub(super) struct PlacedSheet<'a> {
@@ -24,6 +51,8 @@ pub(super) struct PlacedSheet<'a> {
     /// Where it is in the union.
     pub(super) part: Part,
     pub(super) mass: MassMatrix,
+    /// What reading its file changed.
+    pub(super) changes: ReadingChanges,
 }
 
 /// All sheets.
@@ -106,10 +135,13 @@ impl<'a> PlacedSheets<'a> {
 impl<'a> PlacedSheet<'a> {
     /// With its positions at the start. Its part is not known yet.
     fn new(of: &'a SheetOfScene, key: Key, folder: &Path) -> Result<(Self, Vec<f64>), SceneError> {
+        let RefinedMesh {
+            refined: unplaced,
+            roles,
+            changes,
+        } = of.refined(&key, folder)?;
         let mesh_key = key.name("mesh");
-        let RestMesh { sheet, roles } = of.mesh.build(&mesh_key, folder)?;
         let pose = &of.placement;
-        let unplaced = Refined::new(sheet, of.refine, &key.name("refine"))?;
         let placed = unplaced
             .sheet()
             .map_positions(|p| pose.place(p))
@@ -138,10 +170,11 @@ impl<'a> PlacedSheet<'a> {
             of,
             key,
             placed,
-            roles: roles.map(|roles| unplaced.roles(roles)),
+            roles,
             unplaced,
             part: Part::default(),
             mass,
+            changes,
         };
         Ok((sheet, x))
     }

@@ -95,7 +95,7 @@ impl Selection {
                 ids.filter(|&v| topology.is_boundary_vertex(v)).collect()
             }
             Self::Vertices(numbers) => by_number(numbers, key, points.len())?,
-            Self::Nearest(wanted) => wanted.iter().map(|p| nearest(points, p)).collect(),
+            Self::Nearest(wanted) => wanted.iter().map(|p| nearest(points, p).0).collect(),
             Self::Box { min, max } => {
                 in_region(&|p| (0..3).all(|k| (min[k] - slack..=max[k] + slack).contains(&p[k])))
             }
@@ -118,6 +118,14 @@ impl Selection {
         }
         Ok(found)
     }
+
+    /// The distance of each point of [`Selection::Nearest`] from the vertex that it chooses, metres.
+    pub(super) fn distances(&self, points: &[[f64; 3]]) -> Vec<f64> {
+        match self {
+            Self::Nearest(wanted) => wanted.iter().map(|p| nearest(points, p).1).collect(),
+            _ => Vec::new(),
+        }
+    }
 }
 
 pub(super) fn by_number(
@@ -135,7 +143,8 @@ pub(super) fn by_number(
     Ok(numbers.iter().map(|&n| VertexId::from_index(n)).collect())
 }
 
-fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> VertexId {
+/// The vertex that is nearest to a point, and its distance.
+fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> (VertexId, f64) {
     let distance2 = |p: &[f64; 3]| -> f64 { (0..3).map(|k| (p[k] - wanted[k]).powi(2)).sum() };
     let (mut best, mut least) = (0, f64::INFINITY);
     for (i, p) in points.iter().enumerate() {
@@ -144,7 +153,7 @@ fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> VertexId {
             (best, least) = (i, d);
         }
     }
-    VertexId::from_index(best)
+    (VertexId::from_index(best), least.sqrt())
 }
 
 /// Largest distance of a vertex from a line that it is on, and of two that coincide, as a part of the size of

@@ -5,6 +5,7 @@ use super::error::{SceneError, SceneText};
 use super::key::Key;
 use super::problem::Problem;
 use super::targets::Targets;
+use super::warning::SceneWarning;
 use super::{Gauge, Origins};
 use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
@@ -53,6 +54,8 @@ pub struct Setup {
     pub targets: Targets,
     /// What is read off the sheet at each step.
     pub measures: Vec<Gauge>,
+    /// What to know of the sheets before the scene is run.
+    pub(crate) of_sheets: Vec<SceneWarning>,
     /// Which entry of the scene made what.
     pub origins: Origins,
     /// The text of the scene, if it is a file.
@@ -107,6 +110,22 @@ impl Setup {
     /// # Errors
     /// [`SceneError`] if the checkpoint belongs to another scene.
     pub fn resume(self, checkpoint: Checkpoint) -> Result<Simulation, SceneError> {
+        self.resume_or(checkpoint, Origins::of_start)
+    }
+
+    /// The simulation at a checkpoint of one of another scene that has been changed to this one.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the change is none that a simulation can go on with.
+    pub(crate) fn resume_changed(self, checkpoint: Checkpoint) -> Result<Simulation, SceneError> {
+        self.resume_or(checkpoint, Origins::of_change)
+    }
+
+    fn resume_or(
+        self,
+        checkpoint: Checkpoint,
+        problem: fn(&Origins, &SimulationError) -> Problem,
+    ) -> Result<Simulation, SceneError> {
         let contact = self.contacts.map(|c| Box::new(c) as Box<dyn Contact>);
         let resumed = match self.integration {
             Integration::Free { .. } => Simulation::resume(self.model, contact, checkpoint),
@@ -116,7 +135,7 @@ impl Setup {
                 Simulation::resume_in_chart(self.model, chart, contact, checkpoint)
             }
         };
-        resumed.map_err(|e| placed(self.origins.of_start(&e), self.text.as_ref()))
+        resumed.map_err(|e| placed(problem(&self.origins, &e), self.text.as_ref()))
     }
 }
 

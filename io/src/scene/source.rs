@@ -176,11 +176,11 @@ impl SceneFile {
         let sheets = &self.scene.sheet;
         let mut all = Vec::new();
         for (k, sheet) in sheets.iter().enumerate() {
-            let key = sheet_key(sheets.len(), k).name("mesh");
-            let rest = sheet.mesh.build(&key, &self.folder);
-            let rest = rest.map_err(|e| SceneError::from(e).in_text(&self.text))?;
-            let edges = rest.sheet.topology().edge_count();
-            all.push(rest.roles.map_or(vec![None; edges], |r| r.assignments));
+            let key = sheet_key(sheets.len(), k);
+            let mesh = sheet.refined(&key, &self.folder);
+            let mesh = mesh.map_err(|e| SceneError::from(e).in_text(&self.text))?;
+            let edges = mesh.refined.sheet().topology().edge_count();
+            all.push(mesh.roles.map_or(vec![None; edges], |r| r.assignments));
         }
         let all = all.concat();
         Ok(all.iter().any(Option::is_some).then_some(all))

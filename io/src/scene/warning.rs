@@ -1,13 +1,18 @@
 //! What to know of a scene before it is run.
 
 use super::in_words::bytes_in_words;
+use super::placed::PlacedSheets;
+use super::selection::{self, Selection};
 use super::setup::Setup;
-use isosheet_mesh::wording::counted;
-use isosheet_mesh::{Advice, VertexId};
+use super::{Key, Mesh, Quantity, Scene};
+use isosheet_dynamics::Isometry;
+use isosheet_mesh::wording::{brief, counted};
+use isosheet_mesh::{Advice, Sheet, VertexId};
+use std::path::PathBuf;
 use thiserror::Error;
 
 /// A reason why a scene that can start may not do what was meant.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SceneWarning {
     /// A sheet of rods is clamped where no line of edges of its mesh runs along the clamp
@@ -41,39 +46,199 @@ pub enum SceneWarning {
         /// Wall time on one core of a sheet of rods without contact, days.
         days: u64,
     },
+    /// Sheets of rods are closed surfaces: these have `3V - E = 3 chi`, at most the six degrees of freedom of a
+    /// rigid body, and almost all of them are rigid ([`Dof`](isosheet_mesh::Dof)).
+    #[error(
+        "{}: a sheet of rigid rods without a boundary cannot bend",
+        closed_parts(*closed, *parts)
+    )]
+    Closed {
+        /// The number of closed parts.
+        closed: usize,
+        /// The number of all parts.
+        parts: usize,
+    },
+    /// A sheet of a file is so wide that the unit of the file is probably not the metre.
+    #[error("the sheet is {} m wide, as the numbers of a file are taken for metres", brief(*width))]
+    WideFile {
+        /// The largest extent along an axis, metres.
+        width: f64,
+    },
+    /// A sheet is so wide that its lengths are probably not in metres.
+    #[error("`{key}` is {} m wide", brief(*width))]
+    Wide {
+        /// The sheet.
+        key: Key,
+        /// The largest extent along an axis, metres.
+        width: f64,
+    },
+    /// A point is farther from the sheet whose nearest vertex it chooses than that is wide.
+    #[error(
+        "`{key}` is {} m away from the nearest vertex, and the sheet is {} m wide",
+        brief(*distance), brief(*width)
+    )]
+    FarPoint {
+        /// The point.
+        key: Key,
+        /// The distance of the nearest vertex, metres.
+        distance: f64,
+        /// The largest extent of the sheet along an axis, metres.
+        width: f64,
+    },
+    /// Faces of a crease pattern were clockwise and have been reversed.
+    #[error(
+        "{} of {} are clockwise: they were reversed, with the mountains and valleys at them",
+        counted(*faces, "face", "faces"), path.display()
+    )]
+    ReversedFaces {
+        /// The file.
+        path: PathBuf,
+        /// How many.
+        faces: usize,
+    },
 }
 
 impl Advice for SceneWarning {
     fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::ClampAcrossMesh { .. } => Some(
-                "name what the sheet is made of, `sheet.material`, which makes it elastic; or make a mesh with a line of \
-                 edges along the clamp",
-            ),
-            Self::Disk { .. } => Some("take fewer frames a second, `output.frames_per_second`"),
-            Self::Memory { .. } => Some("make the mesh coarser"),
-            Self::Time { .. } => {
-                Some("make the mesh coarser, the steps longer or the time shorter")
+        Some(match self {
+            Self::ClampAcrossMesh { .. } => {
+                "name what the sheet is made of, `sheet.material`, which makes it elastic; or make a mesh with a line \
+                 of edges along the clamp"
+            }
+            Self::Disk { .. } => "take fewer frames a second, `output.frames_per_second`",
+            Self::Memory { .. } => "make the mesh coarser",
+            Self::Time { .. } => "make the mesh coarser, the steps longer or the time shorter",
+            Self::Closed { .. } => "cut it open along some edges, or make it an obstacle",
+            Self::WideFile { .. } => {
+                "of a file in millimetres write `scale = 0.001` beside `path` in the scene"
+            }
+            Self::Wide { .. } => "give lengths in metres",
+            Self::FarPoint { .. } => {
+                "give coordinates in metres of where the sheet is at the start: `isosheet info` gives its bounds"
+            }
+            Self::ReversedFaces { .. } => {
+                "a valley folds towards the side from which its faces are counter-clockwise in the file: if the sheet \
+                 folds the wrong way, list the faces counter-clockwise there"
+            }
+        })
+    }
+}
+
+/// Width from which the unit of lengths is questioned, metres: hardly a sheet is larger than a big tent, and
+/// files in millimetres, points or pixels are.
+const WIDE: f64 = 20.0;
+
+impl SceneWarning {
+    /// Closed parts of a sheet of rods.
+    pub(crate) fn closed(sheet: &Sheet) -> Option<Self> {
+        let t = sheet.topology();
+        let parts = t.components();
+        let is_closed = |part: &&Vec<VertexId>| !part.iter().any(|&v| t.is_boundary_vertex(v));
+        let closed = parts.iter().filter(is_closed).count();
+        (closed > 0).then_some(Self::Closed {
+            closed,
+            parts: parts.len(),
+        })
+    }
+
+    /// A sheet of a file whose unit is not the metre, as it seems.
+    pub(crate) fn wide_file(sheet: &Sheet) -> Option<Self> {
+        let width = selection::size(sheet.positions().as_chunks::<3>().0);
+        (width > WIDE).then_some(Self::WideFile { width })
+    }
+}
+
+impl PlacedSheets<'_> {
+    /// What to know of the sheets, and of how a scene names their vertices.
+    pub(super) fn warnings(&self, scene: &Scene) -> Vec<SceneWarning> {
+        let of_sheets = self.list.iter().flat_map(|sheet| {
+            let wide = match &sheet.of.mesh {
+                // A scale says that the unit was thought of.
+                Mesh::File(file) if file.scale != 1.0 => None,
+                Mesh::File(_) => SceneWarning::wide_file(&sheet.placed),
+                _ => {
+                    let width = selection::size(sheet.placed.positions().as_chunks::<3>().0);
+                    let key = sheet.key.clone();
+                    (width > WIDE).then_some(SceneWarning::Wide { key, width })
+                }
+            };
+            let reversed = match (&sheet.of.mesh, sheet.changes.reversed_faces) {
+                (Mesh::File(file), faces @ 1..) => Some(SceneWarning::ReversedFaces {
+                    path: file.path.clone(),
+                    faces,
+                }),
+                _ => None,
+            };
+            wide.into_iter().chain(reversed)
+        });
+        of_sheets.chain(self.far_points(scene)).collect()
+    }
+
+    /// Points that choose vertices which are far away.
+    fn far_points(&self, scene: &Scene) -> Vec<SceneWarning> {
+        let mut selections: Vec<(Key, Option<&String>, &Selection)> = Vec::new();
+        let entry = |name: &str, k: usize| Key::root().name(name).entry(k);
+        for (k, support) in scene.support.iter().enumerate() {
+            let key = entry("support", k).name("at");
+            selections.push((key, support.sheet.as_ref(), &support.at));
+        }
+        for (k, load) in scene.forces.load.iter().enumerate() {
+            let key = entry("forces.load", k).name("at");
+            selections.push((key, load.sheet.as_ref(), &load.at));
+        }
+        for (k, weight) in scene.weight.iter().enumerate() {
+            let key = entry("weight", k).name("at");
+            selections.push((key, weight.sheet.as_ref(), &weight.at));
+        }
+        for (k, measure) in scene.measure.iter().enumerate() {
+            let (key, sheet) = (entry("measure", k), measure.sheet.as_ref());
+            selections.push((key.name("at"), sheet, &measure.at));
+            if let Quantity::DistanceTo(others) = &measure.quantity {
+                selections.push((key.name("quantity.distance_to"), sheet, others));
             }
         }
+        let far = selections.into_iter().flat_map(|(key, sheet, at)| {
+            let points = self.start_of(sheet).as_chunks::<3>().0;
+            let width = selection::size(points);
+            let distances = at.distances(points).into_iter().enumerate();
+            let far = distances.filter(move |(_, distance)| *distance > width);
+            far.map(move |(k, distance)| SceneWarning::FarPoint {
+                key: key.name("nearest").entry(k),
+                distance,
+                width,
+            })
+        });
+        far.collect()
+    }
+
+    /// The positions at the start of the sheet of a name, or of all.
+    fn start_of(&self, name: Option<&String>) -> &[f64] {
+        let named = self
+            .list
+            .iter()
+            .find(|s| name.is_some() && s.of.name.as_ref() == name);
+        named.map_or(&self.start, |sheet| &self.start[sheet.part.coordinates()])
     }
 }
 
 impl Setup {
     /// What to know before the scene is run.
     pub fn warnings(&self) -> Vec<SceneWarning> {
-        let clamps = self.model.clamps_across_the_mesh(&self.start.x);
-        let warning = |edge: Vec<VertexId>| {
-            let pins = edge.iter().filter_map(|v| self.origins.pins.get(v));
+        let mut warnings = self.of_sheets.clone();
+        if self.model.isometry() == Isometry::Rods {
+            warnings.extend(SceneWarning::closed(&self.sheet));
+        }
+        for clamp in self.model.clamps_across_the_mesh(&self.start.x) {
+            let pins = clamp.edge.iter().filter_map(|v| self.origins.pins.get(v));
             let mut supports: Vec<usize> = pins.copied().collect();
             supports.sort_unstable();
             supports.dedup();
-            SceneWarning::ClampAcrossMesh { supports, edge }
-        };
-        clamps
-            .into_iter()
-            .map(|clamp| warning(clamp.edge))
-            .collect()
+            warnings.push(SceneWarning::ClampAcrossMesh {
+                supports,
+                edge: clamp.edge,
+            });
+        }
+        warnings
     }
 }
 
@@ -81,4 +246,12 @@ impl Setup {
 fn keys(numbers: &[usize]) -> String {
     let keys: Vec<String> = numbers.iter().map(|k| format!("`support[{k}]`")).collect();
     keys.join(" and ")
+}
+
+/// How many parts of a surface are closed.
+fn closed_parts(closed: usize, parts: usize) -> String {
+    match closed {
+        all if all == parts => "the surface is closed".to_owned(),
+        some => format!("{some} of the {parts} parts are closed surfaces"),
+    }
 }

@@ -40,6 +40,8 @@ pub struct Replay {
     pub rest: Vec<f64>,
     /// The direction that is up on the screen and along which heights are measured.
     pub up: Axis,
+    /// Of several sheets the number of faces of each, so that each has a colour of its own.
+    pub sheets: Vec<usize>,
     /// Bodies that the sheet meets.
     pub bodies: Vec<Body>,
     /// Vertices that are held.
@@ -113,6 +115,10 @@ impl Replay {
         let topology = Topology::from_faces(vertices, &self.faces)?;
         check::finite("the rest positions", &self.rest)?;
         check::times("the times of the frames", &self.times)?;
+        if !self.sheets.is_empty() {
+            let of_sheets = self.sheets.iter().sum();
+            check::length("the faces of all sheets", self.faces.len(), of_sheets)?;
+        }
         check::vertices("the pins", &self.pins, vertices)?;
         check::vertices("the immobile vertices", &self.immobile, vertices)?;
         for (index, body) in self.bodies.iter().enumerate() {

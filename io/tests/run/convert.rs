@@ -1,11 +1,11 @@
 //! `isosheet convert`.
 
-use crate::{code, run, stderr};
+use crate::{code, run, stderr, with_scene};
 use isosheet_io::run::Recording;
-use isosheet_io::scene::StartingPoint;
+use isosheet_io::scene::{SceneFile, StartingPoint};
 use isosheet_io::{
-    EdgeAssignment, ExportMeshFormat, FoldFrame, MeshFormat, MeshOptions, SeriesFormat, read_mesh,
-    read_mesh_with,
+    EdgeAssignment, ExportMeshFormat, FoldFrame, MeshFormat, MeshOptions, SeriesFormat, Trajectory,
+    read_mesh, read_mesh_with,
 };
 use std::fs;
 use std::path::Path;
@@ -303,7 +303,7 @@ fn size(png: &[u8]) -> [u32; 2] {
 /// film.
 #[test]
 fn films_are_numbered_pictures() {
-    let dir = crate::with_scene(StartingPoint::Drape);
+    let dir = with_scene(StartingPoint::Drape);
     let dir = dir.path();
     let arguments = [
         "simulate",
@@ -382,7 +382,7 @@ fn films_are_numbered_pictures() {
 /// The frame that is asked for, animations of all frames, and what cannot be drawn.
 #[test]
 fn frames_of_runs_become_pictures() {
-    let dir = crate::with_scene(StartingPoint::Drape);
+    let dir = with_scene(StartingPoint::Drape);
     let dir = dir.path();
     let short = [
         "simulate",
@@ -443,4 +443,145 @@ fn frames_of_runs_become_pictures() {
     refused(dir, &["convert", "run/trajectory.npz", "x.png"], 2);
     refused(dir, &["convert", "run", "x.png", "--weld", "0.1"], 2);
     assert!(!dir.join("x.png").exists() && !dir.join("x.apng").exists());
+}
+
+/// Every kind of scene to start from, after a few steps, in every format: with refined meshes and crease patterns,
+/// several sheets, glue, bodies and bends that stay.
+#[test]
+fn every_kind_of_run_is_converted_to_every_format() {
+    let series = SeriesFormat::ALL.map(SeriesFormat::extension);
+    let meshes = ExportMeshFormat::ALL.map(ExportMeshFormat::extension);
+    for kind in StartingPoint::ALL {
+        let dir = with_scene(kind);
+        let dir = dir.path();
+        let scene = SceneFile::read(&dir.join("scene.toml"), &[]).unwrap();
+        let step = scene.scene().method.step;
+        let edits = [
+            format!("stop.time={}", 2.0 * step),
+            format!("output.frames_per_second={}", 1.0 / step),
+        ];
+        done(
+            dir,
+            &[
+                "simulate",
+                "scene.toml",
+                "--set",
+                &edits[0],
+                "--set",
+                &edits[1],
+            ],
+        );
+        for extension in series.into_iter().chain(["apng"]) {
+            let out = format!("series.{extension}");
+            let said = done(dir, &["convert", "scene-run", &out, "--frames", "0..2"]);
+            assert!(said.starts_with("series"), "{kind:?} {said}");
+            assert!(
+                dir.join(out).exists() || dir.join("series").exists(),
+                "{kind:?} {said}"
+            );
+        }
+        for extension in meshes.into_iter().chain(["png", "svg"]) {
+            let out = format!("frame.{extension}");
+            done(dir, &["convert", "scene-run", &out, "--frame", "2"]);
+            assert!(dir.join(out).is_file(), "{kind:?} {extension}");
+        }
+        let frames = read_mesh(&dir.join("frame.fold")).unwrap();
+        let trajectory = Trajectory::read(&dir.join("scene-run/trajectory.npz")).unwrap();
+        assert_eq!(frames.positions, trajectory.frame(2).unwrap(), "{kind:?}");
+        assert_eq!(frames.faces, trajectory.faces());
+    }
+}
+
+/// The pattern of a refined sheet is that of its mesh: the pleats of the hyperbolic paraboloid have as many parts as
+/// `refine` makes of an edge, and are mountains and valleys in turn.
+#[test]
+fn refined_patterns_are_exported() {
+    let dir = with_scene(StartingPoint::Hypar);
+    let dir = dir.path();
+    let count = |out: &str, refine: &str| {
+        let [stop, more] = ["stop.time=1e-3", refine].map(|edit| ["--set", edit]);
+        let simulate = [&["simulate", "scene.toml", "-o", out], &stop[..], &more].concat();
+        done(dir, &simulate);
+        done(dir, &["convert", out, "x.fold", "--frame", "0"]);
+        let creases = read_mesh(&dir.join("x.fold")).unwrap().creases;
+        [EdgeAssignment::Mountain, EdgeAssignment::Valley]
+            .map(|a| creases.iter().filter(|c| c.assignment == a).count())
+    };
+    let whole = count("whole", "sheet.refine=0");
+    assert!(whole.iter().all(|n| *n > 0));
+    assert_eq!(count("halves", "sheet.refine=1"), whole.map(|n| 2 * n));
+}
+
+/// The share of the pixels of a PNG file that have the warm tint of the upper side of a sheet.
+fn share_of_paper(png: &[u8]) -> f64 {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png))
+        .read_info()
+        .unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    let pixels = pixels.as_chunks::<3>().0;
+    let is_paper = |p: &&[u8; 3]| i16::from(p[0]) > i16::from(p[2]) + 15;
+    pixels.iter().filter(is_paper).count() as f64 / pixels.len() as f64
+}
+
+/// Where a plate stands between the usual viewer and the sheet, the picture is taken from elsewhere. Bodies can be
+/// left out.
+#[test]
+fn pictures_show_the_sheet_and_not_a_plate_before_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = "version = 1
+        [sheet]
+        mesh = { square = { side = 0.2, level = 1 } }
+        placement = { position = [-0.1, -0.1, 0] }
+        [[obstacle]]
+        shape = { box = { size = [3, 0.01, 3] } }
+        pose = { position = [0, -0.3, 0] }
+        [stop]
+        time = 0.02";
+    fs::write(dir.join("plate.toml"), scene).unwrap();
+    done(dir, &["simulate", "plate.toml"]);
+    let share = |options: &[&str]| {
+        done(dir, &[&["convert", "plate-run", "x.png"], options].concat());
+        share_of_paper(&fs::read(dir.join("x.png")).unwrap())
+    };
+    assert!(share(&[]) > 0.2);
+    assert_eq!(share(&["--view", "-60,25"]), 0.0);
+    assert!(share(&["--view", "-60,25", "--no-bodies"]) > 0.2);
+    for (option, has) in [(None, true), (Some("--no-bodies"), false)] {
+        let convert = ["convert", "plate-run", "x.usda"].into_iter().chain(option);
+        done(dir, &convert.collect::<Vec<_>>());
+        let text = fs::read_to_string(dir.join("x.usda")).unwrap();
+        assert_eq!(text.contains("obstacle_0"), has, "{option:?}");
+    }
+    fs::write(dir.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let said = refused(dir, &["convert", "a.obj", "b.obj", "--no-bodies"], 2);
+    assert!(said.contains("--no-bodies"), "{said}");
+}
+
+/// A file that does not fit on the disk (here: into the size that the system allows) is one error of this program, and
+/// no text of a library beside it; nothing is left.
+#[cfg(unix)]
+#[test]
+fn files_that_do_not_fit_are_one_error() {
+    let dir = with_scene(StartingPoint::Stamp);
+    let dir = dir.path();
+    done(dir, &["simulate", "scene.toml", "--set", "stop.time=0.04"]);
+    // The shell counts in blocks of half a kilobyte or a whole one.
+    let script = "trap '' XFSZ; ulimit -f 4; exec \"$0\" convert scene-run \"$1\"";
+    let series = SeriesFormat::ALL.map(SeriesFormat::extension);
+    for extension in series.into_iter().chain(["png", "svg", "apng"]) {
+        let out = format!("x.{extension}");
+        let ended = std::process::Command::new("sh")
+            .current_dir(dir)
+            .args(["-c", script, env!("CARGO_BIN_EXE_isosheet"), &out])
+            .output()
+            .unwrap();
+        let said = stderr(&ended);
+        assert_eq!(code(&ended), Some(6), "{extension}: {said}");
+        let (first, rest) = said.split_once('\n').unwrap();
+        assert!(first.starts_with("error: cannot write x"), "{said}");
+        assert_eq!(rest, "  = help: check the free space\n", "{extension}");
+        assert!(!dir.join(out).is_file());
+    }
 }

@@ -197,27 +197,6 @@ time = 0.1
     }
 }
 
-/// Choices and keys of earlier versions are refused with what replaces them.
-#[test]
-fn former_keys_name_what_replaces_them() {
-    let dir = tempfile::tempdir().unwrap();
-    let dir = dir.path();
-    let scene = "version = 1
-[sheet]
-mesh = { square = { side = 1.0, level = 1 } }
-";
-    fs::write(dir.join("old.toml"), scene).unwrap();
-    for (edit, replacement) in [
-        ("method.fallback=hold", "which makes it elastic"),
-        ("method.hold_after=300", "`max_factorisations` bounds"),
-    ] {
-        let refused = run(dir, &["check", "old.toml", "--set", edit]);
-        assert_ne!(code(&refused), Some(0), "{edit}");
-        let said = stderr(&refused);
-        assert!(said.contains(replacement), "{edit}: {said}");
-    }
-}
-
 /// The straight edge of a banner that hangs by two corners cannot move: the engine holds its vertices, and
 /// their forces are those of the corners. At rest the forces balance weight and torque: half of it at each
 /// corner.

@@ -227,3 +227,34 @@ fn a_gallery_is_replaced_and_other_folders_are_not() {
         assert!(stderr(&refused).contains(part), "{}", stderr(&refused));
     }
 }
+
+/// Cards of the runs of a sweep say by what these differ.
+#[test]
+fn runs_of_sweeps_show_their_values() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    write_scene(dir, StartingPoint::Hanging);
+    let sweep = [
+        "sweep",
+        "scene.toml",
+        "--over",
+        "sheet.damping=2.0,5.0",
+        "--set",
+        "stop.time=0.05",
+        "--out",
+        "many",
+    ];
+    let done = run(dir, &sweep);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let made = run(dir, &["gallery", "many"]);
+    assert_eq!(code(&made), Some(0), "{}", stderr(&made));
+    let entries: Vec<GalleryEntry> = read_json(&dir.join("gallery/gallery.json")).unwrap();
+    let values: Vec<_> = entries.iter().map(|entry| entry.values.clone()).collect();
+    let damping = |value: &str| vec![("sheet.damping".to_owned(), value.to_owned())];
+    assert_eq!(values, [damping("2.0"), damping("5.0")]);
+    let page = fs::read_to_string(dir.join("gallery/index.html")).unwrap();
+    assert!(
+        page.contains("<dt>sheet.damping</dt><dd>2.0</dd>"),
+        "{page}"
+    );
+}

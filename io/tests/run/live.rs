@@ -524,3 +524,34 @@ fn strangers_who_are_slow_take_no_place_of_a_page() {
     }
     assert_eq!(served.wait(), Some(0));
 }
+
+/// While nothing is close there is no gap: none is not the number 0.
+#[test]
+fn gaps_are_absent_while_nothing_is_close() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "version = 1
+        [sheet]
+        mesh = { square = { side = 0.2, level = 1 } }
+        placement = { position = [0, 0, 0.05] }
+        [forces]
+        gravity = [0, 0, -9.81]
+        [[obstacle]]
+        shape = \"half_space\"";
+    fs::write(folder.path().join("scene.toml"), text).unwrap();
+    let served = Served::start(folder.path(), &[]);
+    let mut viewer = served.watch();
+    let first = viewer.frame(|_| true);
+    let series = first["series"].as_array().unwrap();
+    let absent: Vec<usize> = (0..series.len()).filter(|&k| series[k].is_null()).collect();
+    let [place] = absent[..] else {
+        panic!("one series has no value: {first}")
+    };
+    let gap = |frame: &Value| frame["series"][place].clone();
+    assert_eq!(served.order(viewer.number, json!("play")), 204);
+    // Contact begins somewhere above the floor.
+    let close = viewer.frame(|frame| !gap(frame).is_null());
+    assert!(
+        gap(&close).as_f64().unwrap() > 0.0 && time(&close) > 0.05,
+        "{close}"
+    );
+}

@@ -191,12 +191,64 @@ fn sheets_that_cannot_do_what_was_meant_are_told() {
     for (file, parts) in cases {
         let check = run(dir, &["check", file]);
         assert_eq!(code(&check), Some(0), "{file}: {}", stderr(&check));
-        let text = String::from_utf8_lossy(&check.stdout).into_owned();
+        let text = stderr(&check);
         assert!(
             parts.iter().all(|part| text.contains(part)),
             "{file}: {text}"
         );
-        assert_eq!(text.contains("note: "), !parts.is_empty(), "{file}: {text}");
+        assert_eq!(
+            text.contains("warning: "),
+            !parts.is_empty(),
+            "{file}: {text}"
+        );
+    }
+}
+
+/// What `check` warns of is said where the scene is run, too: a sheet in the unit of another program, and a point
+/// that chooses a vertex far away.
+#[test]
+fn runs_warn_of_wrong_units() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(
+        dir.join("wide.obj"),
+        "v 0 0 0\nv 800 0 0\nv 0 800 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    let scene = |name: &str, mesh: &str, more: &str| {
+        let stop = "[method]\nstep = 0.01\n[stop]\ntime = 0.01\n";
+        let text = format!("version = 1\n[sheet]\nmesh = {mesh}\n{more}{stop}");
+        fs::write(dir.join(name), text).unwrap();
+    };
+    scene("file.toml", "{ file = { path = \"wide.obj\" } }", "");
+    scene(
+        "office.toml",
+        "{ rectangle = { width = 300, height = 210, columns = 2, rows = 2 } }",
+        "material = \"office paper\"\n",
+    );
+    // The far corner of the unit square is nearest.
+    let pins = "[[support]]\nat = { nearest = [[0, 0, 0], [301, 401, 0]] }\nhold = \"pin\"\n";
+    scene("far.toml", "{ square = { side = 1, level = 0 } }", pins);
+    let far = [
+        "`support[0].at.nearest[1]` is 500 m away",
+        "the sheet is 1 m wide",
+    ];
+    let cases: [(&str, &[&str]); 3] = [
+        ("file.toml", &["800 m wide", "scale = 0.001"]),
+        ("office.toml", &["`sheet` is 300 m wide", "in metres"]),
+        ("far.toml", &far),
+    ];
+    for (file, parts) in cases {
+        for command in ["check", "simulate", "info"] {
+            let output = run(dir, &[command, file]);
+            assert_eq!(code(&output), Some(0), "{file}: {}", stderr(&output));
+            let text = stderr(&output);
+            assert_eq!(text.matches("warning: ").count(), 1, "{file}: {text}");
+            assert!(
+                parts.iter().all(|part| text.contains(part)),
+                "{file}: {text}"
+            );
+        }
     }
 }
 

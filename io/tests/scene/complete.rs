@@ -190,7 +190,7 @@ const ALL_KEYS: [&str; 5] = [
     taut = "refuse""#,
     r#"version = 1
     [sheet]
-    mesh = { file = { path = "a.obj", up = "z", polygons = "triangulate" } }
+    mesh = { file = { path = "a.obj", up = "z", polygons = "triangulate", mesh = "panel" } }
     material = { youngs = 7e10, thickness = 1e-4, density = 2700, poisson = 0.3, yield_stress = 1e8 }
     isometry = "rods"
     bending = "none"

@@ -1,5 +1,6 @@
 //! Scenes with mesh files of several formats.
 
+use isosheet_io::collide::Shape;
 use isosheet_io::dynamics::Simulation;
 use isosheet_io::mesh::generate;
 use isosheet_io::scene::SceneFile;
@@ -92,4 +93,52 @@ fn bodies_come_from_stl_files() {
         simulation(dir.path(), &text)
     };
     agree(scene("floor.stl"), scene("same.off"));
+}
+
+/// A body of several meshes in one file is all of them; a name chooses one.
+#[test]
+fn bodies_are_all_meshes_of_a_file() {
+    let dir = tempfile::tempdir().unwrap();
+    // The triangle (0, 0), (1, 0), (0, 1) three times, side by side.
+    let gltf = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [{"mesh": 0}, {"mesh": 0, "translation": [2, 0, 0]}, {"mesh": 1, "translation": [4, 0, 0]}],
+        "meshes": [{"name": "block", "primitives": [{"attributes": {"POSITION": 0}}]},
+            {"name": "last", "primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, -1], "max": [1, 0, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36,
+            "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAIC/"}]}"#;
+    fs::write(dir.path().join("blocks.gltf"), gltf).unwrap();
+    let body = |more: &str| {
+        let text = format!(
+            "version = 1
+            [sheet]
+            mesh = {{ square = {{ side = 1, level = 0 }} }}
+            placement = {{ position = [0, 0, 1] }}
+            [[obstacle]]
+            shape = {{ file = {{ path = \"blocks.gltf\" {more} }} }}"
+        );
+        let scene = SceneFile::parse(text, &dir.path().join("scene.toml"), &[]);
+        scene
+            .unwrap_or_else(|e| panic!("{e}"))
+            .build()
+            .map(|setup| {
+                let Shape::Surface(surface) = setup.obstacles[0].shape() else {
+                    panic!("a mesh is a surface")
+                };
+                let x = surface.positions().iter().map(|p| p.x);
+                let ends = x.clone().fold(f64::INFINITY, f64::min);
+                (
+                    surface.positions().len(),
+                    [ends, x.fold(f64::NEG_INFINITY, f64::max)],
+                )
+            })
+    };
+    assert_eq!(body("").unwrap(), (9, [0.0, 5.0]));
+    assert_eq!(body(", mesh = \"block\"").unwrap(), (6, [0.0, 3.0]));
+    assert_eq!(body(", mesh = \"last\"").unwrap(), (3, [4.0, 5.0]));
+    let error = body(", mesh = \"first\"").unwrap_err();
+    assert_eq!(error.placed()[0].key, "obstacle[0].shape.file.mesh");
+    assert!(error.to_string().contains("\"block\", \"last\""), "{error}");
 }

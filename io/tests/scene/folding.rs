@@ -310,7 +310,8 @@ fn springs_begin_at_the_angles_of_the_start() {
 }
 
 /// A file with a crease pattern of quads and its folded form. Each quad is a rectangle in the flat and a
-/// rectangle in the folded frame, and the faces of the flat frame are clockwise, as some programs write them.
+/// rectangle in the folded frame, and the faces of the flat frame are clockwise, as some programs write them: what
+/// is a mountain as seen from their front is a valley as seen from above.
 fn bent_strip() -> Value {
     let (c, s) = (0.5, 0.75_f64.sqrt());
     json!({
@@ -318,8 +319,8 @@ fn bent_strip() -> Value {
         "vertices_coords": [[0, 0], [0.2, 0], [0.4, 0], [0, 0.1], [0.2, 0.1], [0.4, 0.1]],
         "faces_vertices": [[3, 4, 1, 0], [4, 5, 2, 1]],
         "edges_vertices": [[0, 1], [1, 2], [2, 5], [5, 4], [4, 3], [3, 0], [1, 4]],
-        "edges_assignment": ["B", "B", "B", "B", "B", "B", "V"],
-        "edges_foldAngle": [0, 0, 0, 0, 0, 0, 30],
+        "edges_assignment": ["B", "B", "B", "B", "B", "B", "M"],
+        "edges_foldAngle": [0, 0, 0, 0, 0, 0, -30],
         "file_frames": [{
             "frame_title": "folded", "frame_classes": ["foldedForm"],
             "frame_inherit": true, "frame_parent": 0,
@@ -498,7 +499,8 @@ fn frames_that_do_not_exist_are_answered_with_those_that_do() {
 fn what_cannot_be_folded_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let pattern = pattern();
-    let mut fold = fold_file(&pattern, |_| 30.0);
+    let is_mountain = |e: usize| pattern.assignments[e] == FoldAssignment::Mountain;
+    let mut fold = fold_file(&pattern, |e| if is_mountain(e) { -30.0 } else { 30.0 });
     let said = refused(dir.path(), &fold, "frame = 7");
     assert!(said.contains("no frame 7"), "{said}");
     let said = refused(dir.path(), &fold, "part = 1.5");
@@ -531,5 +533,75 @@ fn what_cannot_be_folded_is_refused() {
     assert!(
         said.contains("the creases may be of several sheets"),
         "{said}"
+    );
+}
+
+/// The corner of a square that folds along its diagonal goes to the side that a valley leads to: that from which the
+/// faces are counter-clockwise. The same drawing with clockwise faces folds into the mirror image.
+#[test]
+fn clockwise_faces_fold_to_the_other_side() {
+    let dir = tempfile::tempdir().unwrap();
+    let corner = |name: &str, faces: Value, second: Value| {
+        let fold = json!({
+            "file_spec": 1.2, "frame_unit": "m", "frame_classes": ["creasePattern"],
+            "vertices_coords": [[0, 0], [0.1, 0], [0.1, 0.1], [0, 0.1]],
+            "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2]],
+            "edges_assignment": ["B", "B", "B", "B", "V"],
+            "edges_foldAngle": [0, 0, 0, 0, 90],
+            "faces_vertices": faces,
+            "file_frames": [second],
+        });
+        fs::write(dir.path().join(name), fold.to_string()).unwrap();
+        let heights = [None, Some(1)].map(|frame| {
+            let frame = frame.map_or(String::new(), |k| format!("frame = {k}"));
+            let text = format!(
+                "version = 1
+                [sheet]
+                mesh = {{ file = {{ path = \"{name}\" }} }}
+                density = 0.1
+                damping = 5.0
+                [[support]]
+                at = {{ vertices = [0, 1, 2] }}
+                hold = \"pin\"
+                [folding]
+                time = 0.5
+                stiffness = 0.01
+                {frame}"
+            );
+            let scene = SceneFile::parse(text, &dir.path().join("scene.toml"), &[]).unwrap();
+            let setup = scene.build().unwrap_or_else(|e| panic!("{e}"));
+            let warnings: Vec<String> = setup.warnings().iter().map(ToString::to_string).collect();
+            let mut simulation = setup.start().unwrap();
+            for _ in 0..120 {
+                simulation.step(1.0 / 60.0).unwrap();
+            }
+            (simulation.state().x[11], warnings)
+        });
+        let [(first, warnings), (second, _)] = heights;
+        (first, second, warnings)
+    };
+    // A folded form that lies flat and says the same of the same faces.
+    let folded = json!({
+        "frame_inherit": true, "frame_classes": ["foldedForm"],
+        "vertices_coords": [[0, 0], [0.1, 0], [0.1, 0.1], [0.1, 0]],
+    });
+    let height = 0.1 / 2_f64.sqrt();
+    let (up, folded_up, warnings) =
+        corner("up.fold", json!([[0, 1, 2], [0, 2, 3]]), folded.clone());
+    assert!(
+        (up - height).abs() < 1e-5 && (folded_up - height).abs() < 1e-5,
+        "{up} {folded_up}"
+    );
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let (down, folded_down, warnings) = corner("down.fold", json!([[2, 1, 0], [3, 2, 0]]), folded);
+    assert!(
+        (down + height).abs() < 1e-5 && (folded_down + height).abs() < 1e-5,
+        "{down} {folded_down}"
+    );
+    assert_eq!(
+        warnings,
+        [
+            "2 faces of down.fold are clockwise: they were reversed, with the mountains and valleys at them"
+        ]
     );
 }

@@ -133,12 +133,15 @@ fn what_cannot_change_is_refused() {
         ("support[0].hold.moving_pin.z=0", "support[0].hold"),
         ("sheet.density=-1", "sheet.density"),
         ("sheet.density=0.1", ""),
+        ("contact.self_contact=true", "contact"),
     ] {
         let before = (live.file().clone(), live.simulation().checkpoint());
         let Err(SceneFileError::Scene(error)) = live.change(&[edit.into()]) else {
             panic!("{edit} is no error of the scene");
         };
         assert_eq!(error.problems()[0].key.to_string(), at, "{error}");
+        // Nobody who changes a scene knows of the checkpoint by which the simulation goes on.
+        assert!(!error.to_string().contains("checkpoint"), "{error}");
         assert_eq!(
             (live.file().clone(), live.simulation().checkpoint()),
             before
@@ -297,4 +300,18 @@ fn pins_and_vertices_that_there_are_not_cannot_be_held() {
     let held = live.hold(VertexId(25)).map(drop);
     assert!(matches!(held, Err(HoldError::Hand(_))), "{held:?}");
     assert_eq!(live.simulation().checkpoint(), before);
+}
+
+/// The length of a step is what is wrong with a step of a wrong length; a smaller one is no remedy.
+#[test]
+fn lengths_of_steps_are_positive() {
+    let mut live = live(HANGING);
+    for h in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
+        let said = live.step(h).unwrap_err().to_string();
+        assert!(
+            said.contains("the step size is") && said.contains("positive finite"),
+            "{said}"
+        );
+        assert!(!said.contains("smaller"), "{said}");
+    }
 }

@@ -308,30 +308,6 @@ fn wrong_materials_are_told_with_what_to_write() {
             && text.contains("smaller `sheet.start.perturbation`"),
         "{text}"
     );
-    // Keys of earlier versions.
-    for (lines, remedy) in [
-        (
-            "isometry = { weak = {} }",
-            "an elastic sheet bends in every direction",
-        ),
-        (
-            "isometry = \"weak\"",
-            "an elastic sheet bends in every direction",
-        ),
-        (
-            "isometry = { membrane = { stiffness = 3e5 } }",
-            "`isometry = { elastic = { stiffness = ..., poisson = ..., limit = 0.01 } }`",
-        ),
-    ] {
-        let text = refused(&with(lines))
-            .split_whitespace()
-            .collect::<Vec<_>>()
-            .join(" ");
-        assert!(
-            text.contains("any more") && text.contains(remedy),
-            "{lines}: {text}"
-        );
-    }
     // All names are listed, so that one can be chosen.
     let text = refused(&with("material = \"adamantium\""));
     for name in dynamics::Material::names() {

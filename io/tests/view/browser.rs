@@ -93,6 +93,24 @@ fn check_numbers(result: &Value, replay: &Replay, page: &str) {
     assert_eq!(ends.next(), None);
 }
 
+/// A sheet that falls twenty times its size is in view in every frame, as large as at the start.
+#[test]
+fn a_sheet_that_falls_far_is_followed() {
+    let mut replay = waving(2, 20);
+    for (k, x) in replay.positions.iter_mut().enumerate() {
+        x.iter_mut().skip(2).step_by(3).for_each(|z| *z -= k as f64);
+    }
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    for list in ["exceptions", "glErrors"] {
+        assert_eq!(result[list], serde_json::json!([]), "{list}");
+    }
+    let [emptiest, start] = ["covered", "coveredAtStart"].map(|name| number(&result[name]));
+    assert!(emptiest > 0.3 * start, "{emptiest} of {start}");
+}
+
 #[test]
 fn every_body_is_drawn_and_moves() {
     let replay = every_body(5);

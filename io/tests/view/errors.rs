@@ -53,6 +53,10 @@ fn of_frames() {
 #[test]
 fn of_the_mesh() {
     says(
+        |r| r.sheets = vec![100, 27],
+        &["the faces of all sheets", "127", "128"],
+    );
+    says(
         |r| r.rest.truncate(242),
         &["the rest positions", "242", "240"],
     );

@@ -7,7 +7,6 @@ import {
   CapsuleGeometry,
   CylinderGeometry,
   DoubleSide,
-  EdgesGeometry,
   Group,
   LineBasicMaterial,
   LineSegments,
@@ -19,6 +18,7 @@ import {
   SphereGeometry,
   Vector3,
 } from "three";
+import { drawEdges, edgeUniforms, outline } from "./edges.js";
 
 /** Shapes of three.js stand along y, those of the document along z. */
 const upright = (geometry) => geometry.rotateX(Math.PI / 2);
@@ -29,7 +29,7 @@ const OUTLINED = 25;
 /** Gives an object the name of its colour in the theme, which sets the colour. */
 const coloured = (name, object) => Object.assign(object, { name });
 
-/** A group for a body with its surface and its outline; half-spaces get theirs from `addPatch`. */
+/** A group for a body with its surface, which draws its outline; half-spaces get theirs from `addPatch`. */
 export function makeBody(body) {
   const group = new Group();
   group.name = body.name;
@@ -38,15 +38,14 @@ export function makeBody(body) {
       roughness: 0.9,
       side: DoubleSide,
       flatShading: body.shape.kind === "mesh",
+      // Of what is in the same place, the sheet is in front.
       polygonOffset: true,
-      polygonOffsetFactor: 2,
-      polygonOffsetUnits: 6,
+      polygonOffsetUnits: 4,
     });
-    const geometry = geometryOf(body.shape),
-      centre = centreOf(body.shape);
-    const outline = new LineSegments(new EdgesGeometry(geometry, OUTLINED), new LineBasicMaterial());
-    group.add(coloured("body", new Mesh(geometry, material)), coloured("outline", outline));
-    for (const child of group.children) child.position.set(...centre);
+    const geometry = geometryOf(body.shape).toNonIndexed();
+    group.sides = outline(geometry, OUTLINED);
+    group.add(coloured("body", new Mesh(geometry, drawEdges(material, edgeUniforms()))));
+    group.children[0].position.set(...centreOf(body.shape));
   }
   return group;
 }

@@ -57,6 +57,16 @@ export class Replay {
     });
   }
 
+  /** The mean place of the vertices in each frame, metres. */
+  middles() {
+    const x = new Float64Array(this.x.length);
+    return Array.from({ length: this.frames }, (_, frame) => {
+      const sum = [0, 0, 0];
+      this.positionsOf(frame, x).forEach((c, k) => (sum[k % 3] += c));
+      return sum.map((c) => c / this.data.vertices);
+    });
+  }
+
   /** The range of the fold angles in degrees, and whether there are others. */
   get foldRange() {
     return (this.foundFolds ??= foldRange(this));

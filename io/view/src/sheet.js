@@ -1,4 +1,4 @@
-// The sheet as objects of three.js: faces with two sides, edges as lines of some width, pins, the rest shape.
+// The sheet as objects of three.js: faces with two sides and edges, pins, the rest shape.
 // Positions are those of the stage: metres less a centre, divided by a size.
 
 import {
@@ -20,6 +20,7 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { put } from "./colour.js";
+import { Sides, drawEdges, edgeUniforms } from "./edges.js";
 import { placing } from "./replay.js";
 
 /** Opacity of edges at full strength. */
@@ -50,27 +51,32 @@ export class SheetObjects {
     geometry.setAttribute("position", this.corners);
     geometry.setAttribute("color", this.shades);
     geometry.boundingSphere = everywhere();
-    this.materials = [FrontSide, BackSide].map(
-      (side) =>
-        new MeshStandardMaterial({
-          side,
-          vertexColors: true,
-          flatShading: true,
-          roughness: 0.85,
-          polygonOffset: true,
-          polygonOffsetFactor: 2,
-          polygonOffsetUnits: 2,
-        }),
-    );
-    this.surfaces = this.materials.map((material) => new Surface(geometry, material));
-    this.lines = makeLines(mesh.edgeCount, 1);
-    // Of what is in the same place, bars are in front of edges, edges in front of faces, faces in front of
-    // bodies. Bodies have the slope factor of faces, so that a sheet close behind a wall stays hidden.
-    Object.assign(this.lines.material, {
-      polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
+    this.uniforms = edgeUniforms();
+    // Each sheet has materials of its own.
+    const sheets = replay.data.sheets.length > 1 ? replay.data.sheets : [mesh.faceCount];
+    let first = 0;
+    sheets.forEach((faces, sheet) => {
+      geometry.addGroup(3 * first, 3 * faces, sheet);
+      first += faces;
     });
+    this.materials = [FrontSide, BackSide].map((side) =>
+      sheets.map(
+        () => {
+          const look = { side, vertexColors: true, flatShading: true, roughness: 0.85 };
+          return drawEdges(new MeshStandardMaterial(look), this.uniforms);
+        },
+      ),
+    );
+    this.sides = new Sides(geometry, mesh.faceCount);
+    const { faceEdges, hinges } = mesh;
+    this.sides.show(
+      () => true,
+      (face, k) => hinges[2 * faceEdges[3 * face + ((k + 1) % 3)]] < 0,
+    );
+    this.surfaces = this.materials.map((materials) => new Surface(geometry, materials));
+    // In a wireframe edges are lines, and faces draw them else.
+    this.lines = makeLines(mesh.edgeCount, 1);
+    Object.assign(this.lines.material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     this.bars = makeLines(mesh.edgeCount, 1);
     this.bars.geometry.setColors(new Float32Array(6 * mesh.edgeCount));
     this.bars.material.vertexColors = true;
@@ -113,10 +119,14 @@ export class SheetObjects {
     this.place = quantity.map ? placing(quantity) : null;
     const onFaces = quantity.place === "vertex" || quantity.place === "face";
     const pale = quantity.place === "edge";
-    const [front, back] = this.materials;
-    front.color.set(onFaces ? "#ffffff" : pale ? this.colours.pale : this.colours.front);
-    back.color.set(onFaces ? "#ffffff" : pale ? this.colours.pale : this.colours.back);
+    this.materials.forEach((materials, side) =>
+      materials.forEach((material, sheet) => {
+        const own = this.colours.sheets[sheet % this.colours.sheets.length][side];
+        material.color.set(onFaces ? "#ffffff" : pale ? this.colours.pale : own);
+      }),
+    );
     this.lines.material.color.set(this.colours.edge);
+    this.sides.colourAll(new Color(this.colours.edge).toArray());
     this.bars.visible = false;
     if (!onFaces) this.shades.array.fill(1);
     this.shades.needsUpdate = true;
@@ -150,8 +160,9 @@ export class SheetObjects {
   }
 
   colour() {
-    this.bars.visible = this.wireframe || this.quantity.place === "edge";
-    if (this.bars.visible) this.colourEdges();
+    this.bars.visible = this.wireframe;
+    if (this.wireframe) this.colourEdges();
+    else if (this.quantity.place === "edge") this.colourSides();
     else this.colourFaces(this.replay.mesh.faces);
   }
 
@@ -198,6 +209,22 @@ export class SheetObjects {
     ends.needsUpdate = colours.needsUpdate = true;
   }
 
+  /** Colours the sides of faces that have something to show. */
+  colourSides() {
+    const { quantity, place, sides } = this,
+      { faceEdges } = this.replay.mesh;
+    const edge = new Color(this.colours.edge).toArray(),
+      colour = [0, 0, 0];
+    for (let k = 0; k < faceEdges.length; k++) {
+      const at = place(quantity.value(faceEdges[k])),
+        isBar = !quantity.leavesOut(at);
+      if (isBar) put(quantity.map, at, colour, 0);
+      // The side that begins at a corner is opposite to the last one.
+      sides.colour(Math.floor(k / 3), (k + 2) % 3, isBar ? colour : edge, isBar);
+    }
+    sides.changed();
+  }
+
   colourFaces(faces) {
     const { quantity, place } = this,
       shades = this.shades.array;
@@ -212,8 +239,10 @@ export class SheetObjects {
   fade(pixels) {
     const share = Math.min(Math.max((pixels - FADED_LENGTH) / (FULL_LENGTH - FADED_LENGTH), 0), 1);
     this.bars.material.linewidth = Math.min(Math.max(pixels / 6, 1), VALUE_WIDTH);
-    this.lines.material.opacity = STRENGTH * (this.wireframe ? Math.max(share, 0.5) : share);
-    this.lines.visible = this.wireframe || (this.showEdges && share > 0);
+    this.uniforms.barWidth.value = this.bars.material.linewidth;
+    this.uniforms.strength.value = this.showEdges ? STRENGTH * share : 0;
+    this.lines.material.opacity = STRENGTH * Math.max(share, 0.5);
+    this.lines.visible = this.wireframe;
   }
 
   /** Marks an edge, or none for null. */

@@ -4,6 +4,7 @@
 
 import {
   Box3,
+  Color,
   DirectionalLight,
   Group,
   HemisphereLight,
@@ -88,8 +89,9 @@ export class Stage {
   }
 
   /**
-   * Frames the rest shape, the first frame and the bodies, and where the sheet usually is, unless this is so
-   * far away that everything else would be small. Half-spaces then reach beyond that.
+   * Frames the rest shape, the first frame, the bodies and all other frames, or where the sheet usually is, unless
+   * this is so far away that everything else would be small. Where the sheet leaves what is framed, the camera follows
+   * it. Half-spaces reach beyond what is framed.
    */
   chooseUnits() {
     const { rest } = this.replay.data;
@@ -100,11 +102,18 @@ export class Stage {
     }
     this.bodies.updateMatrixWorld(true);
     for (const group of this.bodyGroups) if (group.children.length > 0) box.expandByObject(group);
-    const usual = box.clone(),
-      range = this.replay.usualRange(USUAL);
-    for (const end of [0, 1]) usual.expandByPoint(point.set(...range.map((ends) => ends[end])));
     const length = (b) => b.getSize(point).length();
-    if (length(usual) <= LARGEST_FRAME * length(box)) box.copy(usual);
+    const wider = [1, USUAL].map((share) => {
+      const wide = box.clone(),
+        range = this.replay.usualRange(share);
+      for (const end of [0, 1]) wide.expandByPoint(point.set(...range.map((ends) => ends[end])));
+      return wide;
+    });
+    const fitting = wider.find((wide) => length(wide) <= LARGEST_FRAME * length(box));
+    if (fitting) box.copy(fitting);
+    // How far the camera has moved along with a sheet that leaves its view.
+    this.shift = new Vector3();
+    this.follows = !this.replay.middles().every((middle) => box.containsPoint(point.set(...middle)));
     this.centre = box.getCenter(new Vector3()).toArray();
     this.size = box.getSize(point).length() / 2 || 1;
     const half = point.divideScalar(2 * this.size);
@@ -119,6 +128,26 @@ export class Stage {
     this.meanLength = this.replay.mesh.meanLength(rest) / this.size;
   }
 
+  /** The mean place of the vertices, on the stage. */
+  middle() {
+    const middle = new Vector3(),
+      { positions } = this;
+    for (let k = 0; k < positions.length; k++) middle.setComponent(k % 3, middle.getComponent(k % 3) + positions[k]);
+    return middle.divideScalar(positions.length / 3);
+  }
+
+  /** Moves the camera along with the sheet, which leaves what it frames. */
+  follow() {
+    const middle = this.middle();
+    this.anchor ??= middle.clone();
+    const shift = middle.sub(this.anchor),
+      step = shift.clone().sub(this.shift);
+    this.shift = shift;
+    this.camera.position.add(step);
+    this.controls.target.add(step);
+    this.controls.update();
+  }
+
   toStage(x, out) {
     for (let k = 0; k < x.length; k++) out[k] = (x[k] - this.centre[k % 3]) / this.size;
     return out;
@@ -127,6 +156,7 @@ export class Stage {
   /** Shows the frame that the replay is at. */
   update() {
     this.sheet.update(this.toStage(this.replay.x, this.positions));
+    if (this.follows) this.follow();
     this.replay.data.bodies.forEach((body, k) => {
       if (body.poses.length > 7) placeBody(this.bodyGroups[k], body, this.replay.frame);
     });
@@ -135,13 +165,17 @@ export class Stage {
 
   /**
    * Takes the camera back so far that the sheet, as it is now, is in the box that fills the view, up to some times
-   * its size at the start. Says whether the camera has moved.
+   * its size at the start, and follows the sheet from there on. Says whether the camera has been taken back.
    */
   keepInView() {
     const box = this.box.clone().union(new Box3().setFromArray(this.positions)),
       length = (b) => b.getSize(new Vector3()).length();
     this.firstLength ??= length(this.box);
-    if (box.equals(this.box) || length(box) > LARGEST_FRAME * this.firstLength) return false;
+    if (this.follows || box.equals(this.box)) return false;
+    if (length(box) > LARGEST_FRAME * this.firstLength) {
+      this.follows = true;
+      return false;
+    }
     this.box = box;
     this.frameBox(box, this.camera.position.clone().sub(this.controls.target));
     return true;
@@ -162,6 +196,7 @@ export class Stage {
     this.renderer.setClearColor(this.colours.background);
     this.sheet.setColours(this.colours);
     this.bodies.traverse((object) => object.material?.color.set(this.colours[object.name]));
+    for (const { sides } of this.bodyGroups) sides?.colourAll(new Color(this.colours.outline).toArray());
     this.update();
   }
 
@@ -186,15 +221,15 @@ export class Stage {
       .setComponent(a, right)
       .setComponent(b, depth)
       .setComponent(this.replay.up, up);
-    this.frameBox(this.box, direction);
+    this.frameBox(this.box.clone().translate(this.shift), direction);
   }
 
-  /** Where the camera is and what it looks at, in metres: six numbers with commas. */
+  /** Where the camera is and what it looks at, in metres: six numbers with commas. Without what it has followed. */
   cameraText() {
     // A ten-thousandth of what is framed cannot be seen.
     const digits = Math.min(Math.max(Math.ceil(4 - Math.log10(this.size)), 0), 20);
     const ends = [this.camera.position, this.controls.target];
-    const metres = ends.flatMap((p) => p.toArray().map((c, k) => c * this.size + this.centre[k]));
+    const metres = ends.flatMap((p) => p.clone().sub(this.shift).toArray().map((c, k) => c * this.size + this.centre[k]));
     // The sum has no negative zero.
     return metres.map((c) => Number(c.toFixed(digits)) + 0).join(",");
   }
@@ -202,7 +237,7 @@ export class Stage {
   /** Puts the camera where six numbers say, in metres: its position and what it looks at. */
   lookFrom(metres) {
     const [position, target] = [0, 3].map((from) =>
-      new Vector3(...metres.slice(from, from + 3).map((c, k) => (c - this.centre[k]) / this.size)),
+      new Vector3(...metres.slice(from, from + 3).map((c, k) => (c - this.centre[k]) / this.size)).add(this.shift),
     );
     const isPlace = metres.length === 6 && metres.every(Number.isFinite);
     if (!isPlace || position.distanceTo(target) < NEAREST) return;

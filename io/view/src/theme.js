@@ -2,8 +2,6 @@
 
 const NAMES = [
   "background",
-  "front",
-  "back",
   "pale",
   "edge",
   "ghost",
@@ -19,9 +17,15 @@ const NAMES = [
   "axis",
 ];
 
+/** How many sheets have colours of their own; further ones have these by turns. */
+const SHEETS = 6;
+
+/** Colours by their names, and for `sheets` the front and the back of each. */
 export function themeColours() {
   const style = getComputedStyle(document.documentElement);
-  return Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  const colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  const sheets = Array.from({ length: SHEETS }, (_, k) => [colour(`front-${k}`), colour(`back-${k}`)]);
+  return { ...Object.fromEntries(NAMES.map((name) => [name, colour(name)])), sheets };
 }
 
 export function onThemeChange(act) {

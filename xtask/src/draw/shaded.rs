@@ -62,6 +62,7 @@ impl Viewpoint {
                 pins: shot.pins,
                 immobile: &[],
                 solids: &shot.solids,
+                parts: &[],
             };
             Ok(render(&picture, &camera, &look)?)
         };

@@ -24,6 +24,11 @@ pub(super) fn page(session: &Session, title: &str, nonce: &str) -> Result<String
     let file = live.file().text().path.display();
     let replay = Replay {
         title: title.into(),
+        sheets: live
+            .parts()
+            .iter()
+            .map(|(_, part)| part.faces.len())
+            .collect(),
         faces: live.sheet().face_indices(),
         rest: live.sheet().positions().to_vec(),
         times: times.to_vec(),

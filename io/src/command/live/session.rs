@@ -90,16 +90,29 @@ impl Session {
     }
 
     /// The series that are plotted, at the present state: energies, strain, and the gap in scenes with
-    /// contact.
+    /// contact, which has no value while nothing is close.
     pub(super) fn plotted(&self) -> Vec<Series> {
-        let is_contact = self.live.simulation().contacts().is_some();
-        let row = HistoryRow {
-            h: 0.0,
-            gap: is_contact.then(|| self.row.gap.unwrap_or_default()),
-            ..self.row
+        let series = |gap: Option<f64>| {
+            let row = HistoryRow {
+                h: 0.0,
+                gap,
+                ..self.row
+            };
+            let all = Series::of_history(&[row]).into_iter();
+            all.filter(|series| !series.times.is_empty())
         };
-        let all = Series::of_history(&[row]).into_iter();
-        all.filter(|series| !series.times.is_empty()).collect()
+        let is_contact = self.live.simulation().contacts().is_some();
+        let known: Vec<Series> = series(self.row.gap).collect();
+        let named = series(is_contact.then_some(0.0));
+        let with_value = |named: Series| {
+            let known = known.iter().find(|series| series.name == named.name);
+            known.cloned().unwrap_or(Series {
+                times: Vec::new(),
+                values: Vec::new(),
+                ..named
+            })
+        };
+        named.map(with_value).collect()
     }
 
     /// Does what a page asks for. A single step is not taken here.

@@ -23,7 +23,8 @@ struct File<'a> {
     vertices_coords: &'a [[f64; 3]],
     edges_vertices: Vec<[u32; 2]>,
     edges_assignment: Vec<&'a str>,
-    #[serde(rename = "edges_foldAngle")]
+    /// Left out where no edge has an angle.
+    #[serde(rename = "edges_foldAngle", skip_serializing_if = "Vec::is_empty")]
     fold_angles: Vec<Option<f64>>,
     faces_vertices: &'a [[u32; 3]],
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -111,6 +112,9 @@ pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError
         ends.push(edge);
         assignments.push(if faces == 1 { "B" } else { "U" });
         angles.push(None);
+    }
+    if angles.iter().all(Option::is_none) {
+        angles.clear();
     }
     let is_flat = points.iter().all(|p| p[2] == 0.0);
     let area = |f: &[u32; 3]| {

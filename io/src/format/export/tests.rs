@@ -3,7 +3,8 @@
 use super::*;
 use crate::format::Trajectory;
 use crate::{
-    EdgeAssignment, FoldFrame, MeshFormat, MeshOptions, parse_mesh, read_mesh, read_mesh_with,
+    EdgeAssignment, FoldFrame, MeshFile, MeshFormat, MeshOptions, parse_mesh, read_mesh,
+    read_mesh_with,
 };
 use isosheet_mesh::generate::{self, Diagonals, FoldAssignment};
 use isosheet_mesh::{Sheet, Topology, fold_angle};
@@ -102,6 +103,18 @@ fn meshes_come_back_from_every_format() {
     );
 }
 
+const POINTS: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+
+/// Whether a JSON value has nulls or empty lists in it.
+fn has_empty_entries(value: &serde_json::Value) -> bool {
+    match value {
+        serde_json::Value::Null => true,
+        serde_json::Value::Array(list) => list.is_empty() || list.iter().any(has_empty_entries),
+        serde_json::Value::Object(map) => map.values().any(has_empty_entries),
+        _ => false,
+    }
+}
+
 #[test]
 fn creases_and_cuts_come_back_from_fold_files() {
     let text = r#"{"vertices_coords": [[0,0],[1,0],[2,0],[2,1],[1,1],[0,1]],
@@ -119,6 +132,14 @@ fn creases_and_cuts_come_back_from_fold_files() {
         second.creases, first.creases,
         "diagonals are flat edges now"
     );
+    // Where no edge has an angle there is no list of angles.
+    let square = MeshFile::of_frame(POINTS.concat(), vec![[0, 1, 2], [0, 2, 3]], Vec::new());
+    let plain = folder.path().join("plain.fold");
+    write_mesh(&plain, &square).unwrap();
+    let written: serde_json::Value = serde_json::from_slice(&fs::read(&plain).unwrap()).unwrap();
+    assert!(!has_empty_entries(&written), "{written}");
+    assert!(written.get("edges_foldAngle").is_none());
+    assert_eq!(read_mesh(&plain).unwrap().faces, square.faces);
     assert_eq!((second.polygons, second.changes), (0, first.changes));
     let valley = second.creases[6];
     assert_eq!(valley.assignment, EdgeAssignment::Valley);
@@ -386,8 +407,16 @@ fn bodies_are_beside_the_sheet() {
         paths,
         [(0, MorphTargetWeights), (1, Translation), (1, Rotation)]
     );
-    // The first mesh is the sheet, as readers of one mesh expect.
-    assert_eq!(read_mesh(&path).unwrap().faces, trajectory.faces());
+    // The first mesh is the sheet, as readers of one mesh expect; this one reads all that are shown.
+    let named = MeshOptions {
+        mesh: Some("sheet".to_owned()),
+        ..MeshOptions::default()
+    };
+    let sheet = read_mesh_with(&path, &named).unwrap();
+    assert_eq!(sheet.faces, trajectory.faces());
+    let all = read_mesh(&path).unwrap();
+    let [first, second] = [0, 1].map(|k| bodies(3)[k].faces.len());
+    assert_eq!(all.faces.len(), sheet.faces.len() + first + second);
 
     let wrong = |change: fn(&mut SeriesBody)| {
         let mut bodies = bodies(3);

@@ -78,6 +78,9 @@ pub enum MeshFileProblem {
     /// A frame was asked for in a file that is no FOLD file.
     #[error("a frame is asked for, and only FOLD files have frames")]
     NoFrames,
+    /// A mesh was named, and the file is no glTF file.
+    #[error("a mesh is named, and only the meshes of glTF files have names")]
+    NoNames,
     /// The file could not be opened or read.
     #[error("cannot read the file: {0}")]
     Read(std::io::Error),
@@ -170,22 +173,24 @@ pub enum MeshFileProblem {
         /// How many.
         corners: usize,
     },
-    /// A polygon that cannot be cut into triangles from one corner.
+    /// A polygon whose outline crosses or touches itself, or has no area.
     #[error(
-        "a face of {corners} corners cannot be cut into triangles from any one of its corners (it is \
-         too concave, or repeats a point)"
+        "the outline of a face of {corners} corners crosses or touches itself, or has no area, so that it cannot be \
+         cut into triangles"
     )]
-    ConcavePolygon {
-        /// How many.
+    CrossedPolygon {
+        /// How many corners.
         corners: usize,
     },
-    /// A polygon of more corners than are cut into triangles.
-    #[error("a face has {corners} corners, and polygons of at most {most} are cut into triangles")]
+    /// A polygon with too many corners.
+    #[error(
+        "a face has {corners} corners, more than the {limit} of a polygon that is cut into triangles"
+    )]
     LargePolygon {
         /// How many.
         corners: usize,
-        /// The largest number.
-        most: usize,
+        /// The limit.
+        limit: usize,
     },
     /// More vertices than 32-bit numbers can count.
     #[error("the file has {vertices} vertices, more than 32-bit numbers can count")]
@@ -254,6 +259,7 @@ impl Advice for MeshFileProblem {
                 Some("give a length of 0 or more in the unit of the file")
             }
             Self::NoFrames => Some("leave the frame out"),
+            Self::NoNames => Some("leave the name out"),
             Self::Read(..) => Some("check the path and the permissions"),
             Self::Empty | Self::Truncated { .. } => Some("copy or export it again"),
             Self::NotObj { .. } => Some("check that it is an OBJ file"),
@@ -270,9 +276,8 @@ impl Advice for MeshFileProblem {
             Self::Polygon { .. } => Some(
                 "triangulate the file, or ask for `Polygons::Triangulate` (each diagonal is a new crease)",
             ),
-            Self::ConcavePolygon { .. } | Self::LargePolygon { .. } => {
-                Some("triangulate the file first")
-            }
+            Self::CrossedPolygon { .. } => Some("correct the face, or remove it"),
+            Self::LargePolygon { .. } => Some("triangulate the file first"),
             Self::TooManyVertices { .. } => Some("split it"),
             Self::Syntax { .. } | Self::Ply(..) | Self::Stl { .. } | Self::Json(..) => {
                 Some("correct the file or export it again")

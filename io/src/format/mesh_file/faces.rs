@@ -4,10 +4,6 @@ use super::error::{Located, MeshFileProblem, Place};
 use super::{MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
 use std::path::PathBuf;
 
-/// Most corners of a polygon that is cut into triangles: all corners are tried as the one from which it is cut,
-/// and a thousand triangles at one vertex are no sheet that bends.
-const MOST_CORNERS: usize = 1000;
-
 /// Vertices and polygons as a file has them.
 #[derive(Debug, Default)]
 pub(super) struct Polyhedron {
@@ -17,6 +13,8 @@ pub(super) struct Polyhedron {
     corners: Vec<i64>,
     /// The end of each face in `corners`, and its place.
     ends: Vec<(usize, Place)>,
+    /// The first vertices of the objects of the file, where it has several and they do not share vertices.
+    parts: Vec<usize>,
     /// The number that the format gives to the first vertex, for errors.
     first: i64,
     /// Elements of the file that are not faces, for errors.
@@ -37,6 +35,21 @@ impl Polyhedron {
     pub(super) fn push_face(&mut self, corners: impl IntoIterator<Item = i64>, place: Place) {
         self.corners.extend(corners);
         self.ends.push((self.corners.len(), place));
+    }
+
+    /// Says that the vertices that follow belong to another object of the file.
+    pub(super) fn begin_part(&mut self) {
+        self.parts.push(self.positions.len() / 3);
+    }
+
+    /// Checks the faces as [`Self::assemble`] does, and makes copies of a vertex one, each object for itself.
+    pub(super) fn assemble_copies(mut self, options: &MeshOptions) -> Result<MeshFile, Located> {
+        let parts = std::mem::take(&mut self.parts);
+        let mut mesh = self.assemble(options)?;
+        if options.weld.is_none() {
+            mesh.weld(0.0, &parts);
+        }
+        Ok(mesh)
     }
 
     /// The number of faces.
@@ -121,16 +134,15 @@ impl Polyhedron {
                 if options.polygons == Polygons::Refuse {
                     return Err(MeshFileProblem::Polygon { corners });
                 }
-                if corners > MOST_CORNERS {
-                    let most = MOST_CORNERS;
-                    return Err(MeshFileProblem::LargePolygon { corners, most });
+                let limit = polygon::MOST_CORNERS;
+                if corners > limit {
+                    return Err(MeshFileProblem::LargePolygon { corners, limit });
                 }
                 let points = self.positions.as_chunks::<3>().0;
-                let cut = polygon::triangulate(&face, |v| points[v as usize])
-                    .ok_or(MeshFileProblem::ConcavePolygon { corners })?;
-                // All triangles begin at the same corner; two neighbours have a diagonal in common.
-                mesh.diagonals.extend(cut[1..].iter().map(|t| [t[0], t[1]]));
-                mesh.faces.extend(cut);
+                let pieces = polygon::triangulate(&face, |v| points[v as usize])
+                    .ok_or(MeshFileProblem::CrossedPolygon { corners })?;
+                mesh.diagonals.extend(pieces.cuts);
+                mesh.faces.extend(pieces.triangles);
                 mesh.polygons += 1;
             }
         }

@@ -6,6 +6,7 @@ mod cuts;
 mod frames;
 mod pattern;
 mod problem;
+mod sides;
 #[cfg(test)]
 mod tests;
 
@@ -14,15 +15,19 @@ pub use problem::FoldProblem;
 
 use super::error::{Located, MeshFileProblem, Place};
 use super::faces::Polyhedron;
+use super::plane;
 use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
 use frames::Frame;
+use std::collections::HashMap;
 
 /// Reads a frame of a FOLD file.
 ///
 /// - Vertices have two or three coordinates; two mean z = 0. A `frame_unit` that is a length is converted to
 ///   metres.
 /// - Without `faces_vertices` the faces are those of the flat crease pattern.
-/// - The faces of a flat frame that is no folded form are made counter-clockwise, as the format demands.
+/// - The faces of a flat frame that is no folded form are made counter-clockwise, as the format demands. Mountains,
+///   valleys and fold angles are as seen from the side from which faces are counter-clockwise, so that those at
+///   reversed faces are turned with them.
 /// - Edges with the assignment `C` separate the sheet: vertices there are doubled.
 /// - Fold angles are degrees in the file.
 pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Located> {
@@ -31,7 +36,11 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     let mut polyhedron = Polyhedron::default();
     add_vertices(&frame, &mut polyhedron).map_err(plain)?;
     let vertices = polyhedron.positions.len() / 3;
-    let edges = read_edges(&frame, vertices).map_err(|e| plain(e.into()))?;
+    let is_folded = frame.has_class("foldedForm");
+    let mut edges = read_edges(&frame, vertices).map_err(|e| plain(e.into()))?;
+    if !is_folded {
+        check_angles(&edges).map_err(|e| plain(e.into()))?;
+    }
     let points = polyhedron.positions.as_chunks::<3>().0;
     let is_flat = points.iter().all(|p| p[2] == 0.0);
     let mut faces = match &frame.faces_vertices {
@@ -40,14 +49,19 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
         _ if !is_flat => return Err(plain(FoldProblem::NoFacesInSpace.into())),
         _ => pattern::faces(points, &edges).map_err(|e| plain(e.into()))?,
     };
-    let is_folded = frame.has_class("foldedForm");
-    let mut reversed_faces = 0;
-    if is_flat && !is_folded {
-        for face in faces.iter_mut().filter(|f| is_clockwise(points, f)) {
+    let (mut sides, mut reversed_faces) = (Vec::new(), 0);
+    for (k, face) in faces.iter_mut().enumerate() {
+        let is_reversed = is_flat && !is_folded && is_clockwise(points, face);
+        if is_reversed {
             face.reverse();
             reversed_faces += 1;
         }
+        sides.extend(sides::sides_of(k, face, is_reversed));
     }
+    if !faces.is_empty() {
+        sides::check_faces(&edges, &sides).map_err(|e| plain(e.into()))?;
+    }
+    sides::turn(&mut edges, &sides).map_err(|e| plain(e.into()))?;
     for (k, face) in faces.into_iter().enumerate() {
         polyhedron.push_face(face, Place::Face(k));
     }
@@ -97,6 +111,7 @@ fn read_edges(frame: &Frame, vertices: usize) -> Result<Vec<FileCrease>, FoldPro
     let (assignments, angles) = (&frame.edges_assignment, &frame.fold_angles);
     same_length("edges_assignment", assignments.as_ref().map(Vec::len))?;
     same_length("edges_foldAngle", angles.as_ref().map(Vec::len))?;
+    let mut seen = HashMap::new();
     let crease = |(edge, &ends): (usize, &[u32; 2])| {
         if let Some(&vertex) = ends.iter().find(|&&v| v as usize >= vertices) {
             let count = vertices;
@@ -104,6 +119,18 @@ fn read_edges(frame: &Frame, vertices: usize) -> Result<Vec<FileCrease>, FoldPro
                 edge,
                 vertex,
                 count,
+            });
+        }
+        let [a, b] = ends;
+        if a == b {
+            return Err(FoldProblem::EdgeToItself { edge, vertex: a });
+        }
+        if let Some(first) = seen.insert(sides::sorted(ends), edge) {
+            let second = edge;
+            return Err(FoldProblem::EdgeTwice {
+                first,
+                second,
+                ends,
             });
         }
         let text = assignments.as_ref().and_then(|a| a[edge].as_deref());
@@ -118,6 +145,28 @@ fn read_edges(frame: &Frame, vertices: usize) -> Result<Vec<FileCrease>, FoldPro
         })
     };
     ends.iter().enumerate().map(crease).collect()
+}
+
+/// Refuses fold angles of a crease pattern that its assignments exclude. Those of a folded form are what the
+/// folds have come to.
+fn check_angles(edges: &[FileCrease]) -> Result<(), FoldProblem> {
+    let contradicts = |crease: &FileCrease| {
+        let angle = crease.angle.unwrap_or(0.0);
+        match crease.assignment {
+            EdgeAssignment::Mountain => angle > 0.0,
+            EdgeAssignment::Valley => angle < 0.0,
+            EdgeAssignment::Flat | EdgeAssignment::Join => angle != 0.0,
+            EdgeAssignment::Boundary | EdgeAssignment::Unassigned | EdgeAssignment::Cut => false,
+        }
+    };
+    match edges.iter().position(contradicts) {
+        Some(edge) => Err(FoldProblem::Contradiction {
+            edge,
+            assignment: edges[edge].assignment,
+            degrees: edges[edge].angle.unwrap_or(0.0).to_degrees(),
+        }),
+        None => Ok(()),
+    }
 }
 
 fn assignment(edge: usize, text: Option<&str>) -> Result<EdgeAssignment, FoldProblem> {
@@ -142,5 +191,5 @@ fn is_clockwise(points: &[[f64; 3]], face: &[i64]) -> bool {
     let Some(corners) = face.iter().map(corner).collect::<Option<Vec<_>>>() else {
         return false;
     };
-    pattern::twice_area(corners.into_iter()) < 0.0
+    plane::twice_area(corners.into_iter()) < 0.0
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 /// Bytes of the header of a binary file.
 const GLB_HEADER: usize = 12;
 
-/// Reads the triangles of one mesh, as it is placed by the first node of the scene that shows it.
+/// Reads the triangles of all meshes that the default scene shows, each where its nodes place it.
 ///
 /// Coordinates are metres and have y upwards by definition of the format; they are turned to z upwards,
 /// `(x, y, z) -> (x, -z, y)`. Materials, skins and morph targets are skipped.
@@ -50,27 +50,37 @@ fn read(bytes: &[u8], path: &Path, options: &MeshOptions) -> Result<Polyhedron, 
         let name = name.to_owned();
         return Err(GltfProblem::Extension { name }.into());
     }
-    let wanted = |m: &Mesh<'_>| name.is_none() || m.name() == name;
-    let mesh = document.meshes().find(wanted).ok_or_else(|| {
+    let placed = placed_meshes(&document, name);
+    if placed.is_empty() {
         let names = document
             .meshes()
             .map(|m| m.name().unwrap_or_default().to_owned());
-        GltfProblem::NoMesh {
+        let problem = GltfProblem::NoMesh {
             wanted: name.map(str::to_owned),
             names: names.collect(),
-        }
-    })?;
+        };
+        return Err(problem.into());
+    }
     let buffers = read_buffers(&document, blob, path, options.buffers)?;
-    let placed = placement(&document, mesh.index());
-    let mirrored = determinant(&placed) < 0.0;
     let mut polyhedron = Polyhedron::default();
-    let mut face = 0;
+    for (mesh, placement) in &placed {
+        polyhedron.begin_part();
+        add_mesh(mesh, placement, &buffers, &mut polyhedron)?;
+    }
+    Ok(polyhedron)
+}
+
+/// Adds the triangles of a mesh where it is placed.
+fn add_mesh(
+    mesh: &Mesh<'_>,
+    placement: &Matrix,
+    buffers: &[Vec<u8>],
+    polyhedron: &mut Polyhedron,
+) -> Result<(), MeshFileProblem> {
+    let is_mirrored = determinant(placement) < 0.0;
     for (k, primitive) in mesh.primitives().enumerate() {
-        if primitive.mode() != Mode::Triangles {
-            let mode = format!("{:?}", primitive.mode());
-            return Err(GltfProblem::Mode { primitive: k, mode }.into());
-        }
         let array = |array, problem: String| GltfProblem::Array {
+            mesh: mesh.index(),
             primitive: k,
             array,
             problem,
@@ -78,28 +88,52 @@ fn read(bytes: &[u8], path: &Path, options: &MeshOptions) -> Result<Polyhedron, 
         let first = (polyhedron.positions.len() / 3) as i64;
         let positions = primitive.get(&Semantic::Positions);
         let positions = positions.ok_or_else(|| array("positions", "are missing".to_owned()))?;
-        let points = vectors(&positions, &buffers).map_err(|e| array("positions", e))?;
+        let points = vectors(&positions, buffers).map_err(|e| array("positions", e))?;
         let count = points.len() as i64;
-        for p in points {
-            let [x, y, z] = apply(&placed, p);
-            polyhedron.push_vertex([x, -z, y])?;
-        }
         let corners: Vec<i64> = match primitive.indices() {
-            Some(indices) => scalars(&indices, &buffers).map_err(|e| array("indices", e))?,
+            Some(indices) => scalars(&indices, buffers).map_err(|e| array("indices", e))?,
             None => (0..count).collect(),
         };
         if let Some(v) = corners.iter().find(|&&v| v >= count) {
             let problem = format!("refer to vertex {v} of {count}");
             return Err(array("indices", problem).into());
         }
-        for t in corners.as_chunks::<3>().0 {
+        let Some(triangles) = triangles(primitive.mode(), &corners) else {
+            let (mesh, mode) = (mesh.index(), format!("{:?}", primitive.mode()));
+            return Err(GltfProblem::Mode {
+                mesh,
+                primitive: k,
+                mode,
+            }
+            .into());
+        };
+        for p in points {
+            let [x, y, z] = apply(placement, p);
+            polyhedron.push_vertex([x, -z, y])?;
+        }
+        for t in triangles {
             let [a, b, c] = t.map(|v| first + v);
-            let corners = if mirrored { [a, c, b] } else { [a, b, c] };
-            polyhedron.push_face(corners, Place::Face(face));
-            face += 1;
+            let corners = if is_mirrored { [a, c, b] } else { [a, b, c] };
+            let place = Place::Face(polyhedron.face_count());
+            polyhedron.push_face(corners, place);
         }
     }
-    Ok(polyhedron)
+    Ok(())
+}
+
+/// The triangles of a list, strip or fan of corners; none if the corners are those of points or lines.
+fn triangles(mode: Mode, corners: &[i64]) -> Option<Vec<[i64; 3]>> {
+    let triples = corners.windows(3).map(|c| [c[0], c[1], c[2]]);
+    Some(match mode {
+        Mode::Triangles => corners.as_chunks().0.to_vec(),
+        // Every second triangle of a strip runs against the order of its corners.
+        Mode::TriangleStrip => triples
+            .enumerate()
+            .map(|(k, [a, b, c])| if k % 2 == 0 { [a, b, c] } else { [a, c, b] })
+            .collect(),
+        Mode::TriangleFan => triples.map(|[_, b, c]| [corners[0], b, c]).collect(),
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => return None,
+    })
 }
 
 /// The valid document and the binary part of a file.
@@ -256,8 +290,10 @@ const IDENTITY: Matrix = [
     [0.0, 0.0, 0.0, 1.0],
 ];
 
-/// The matrix of the first node that shows a mesh; the identity if none does.
-fn placement(document: &Document, mesh: usize) -> Matrix {
+/// The meshes that nodes of the scene show, each with the matrix of its node, as often as they are shown: all of
+/// them, or those of a name. Where no node shows one of these, they are as they are.
+fn placed_meshes<'a>(document: &'a Document, name: Option<&str>) -> Vec<(Mesh<'a>, Matrix)> {
+    let is_wanted = |m: &Mesh<'_>| name.is_none() || m.name() == name;
     let scene = document
         .default_scene()
         .or_else(|| document.scenes().next());
@@ -267,6 +303,7 @@ fn placement(document: &Document, mesh: usize) -> Matrix {
         .flat_map(|s| s.nodes().collect::<Vec<_>>());
     let mut pending: Vec<_> = roots.map(|node| (node, IDENTITY)).collect();
     pending.reverse();
+    let mut placed = Vec::new();
     while let Some((node, parent)) = pending.pop() {
         // The nodes of a valid file are trees; a circle ends here.
         if std::mem::replace(&mut seen[node.index()], true) {
@@ -279,13 +316,16 @@ fn placement(document: &Document, mesh: usize) -> Matrix {
         let matrix: Matrix = own.map(|column| {
             std::array::from_fn(|row| (0..4).map(|k| parent[k][row] * column[k]).sum())
         });
-        if node.mesh().is_some_and(|m| m.index() == mesh) {
-            return matrix;
-        }
+        let mesh = node.mesh().filter(is_wanted);
+        placed.extend(mesh.map(|mesh| (mesh, matrix)));
         let children: Vec<_> = node.children().collect();
         pending.extend(children.into_iter().rev().map(|child| (child, matrix)));
     }
-    IDENTITY
+    if placed.is_empty() {
+        let meshes = document.meshes().filter(is_wanted);
+        placed.extend(meshes.map(|mesh| (mesh, IDENTITY)));
+    }
+    placed
 }
 
 fn apply(m: &Matrix, p: [f64; 3]) -> [f64; 3] {

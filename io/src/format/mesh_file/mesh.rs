@@ -2,7 +2,11 @@
 
 use super::error::MeshFileError;
 use isosheet_mesh::generate::FoldAssignment;
+use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Sheet, Topology, VertexId};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// What an edge of a FOLD file is meant to do.
@@ -24,6 +28,20 @@ pub enum EdgeAssignment {
     Join,
 }
 
+impl fmt::Display for EdgeAssignment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Boundary => "is on the boundary",
+            Self::Mountain => "is a mountain",
+            Self::Valley => "is a valley",
+            Self::Flat => "stays flat",
+            Self::Unassigned => "is unassigned",
+            Self::Cut => "is cut",
+            Self::Join => "joins two faces of a flat panel",
+        })
+    }
+}
+
 /// An edge of a FOLD file, or a diagonal of one of its polygons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FileCrease {
@@ -42,10 +60,40 @@ pub struct ReadingChanges {
     pub welded_vertices: usize,
     /// Faces that were removed because two of their corners were welded.
     pub collapsed_faces: usize,
-    /// Faces of flat crease patterns that were clockwise and have been reversed.
+    /// Faces of flat crease patterns that were clockwise and have been reversed, with the mountains, valleys and
+    /// fold angles at them.
     pub reversed_faces: usize,
     /// Vertices that were added because the sheet is cut there.
     pub vertices_at_cuts: usize,
+}
+
+impl ReadingChanges {
+    /// Whether nothing was changed.
+    pub fn is_nothing(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// What was changed, in words; nothing if nothing was.
+impl fmt::Display for ReadingChanges {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const VERTICES: [&str; 2] = ["vertex", "vertices"];
+        const FACES: [&str; 2] = ["face", "faces"];
+        let changes = [
+            (self.welded_vertices, VERTICES, "welded"),
+            (self.collapsed_faces, FACES, "without area removed"),
+            (
+                self.reversed_faces,
+                FACES,
+                "reversed, clockwise in the file, with the mountains and valleys at them",
+            ),
+            (self.vertices_at_cuts, VERTICES, "added at cuts"),
+        ];
+        let made = changes.iter().filter(|(count, ..)| *count > 0);
+        let made =
+            made.map(|&(count, [one, more], what)| format!("{} {what}", counted(count, one, more)));
+        f.write_str(&made.collect::<Vec<_>>().join(", "))
+    }
 }
 
 /// The vertices and triangles of a mesh file, as numbered there (from 0), not yet checked to be a surface.
@@ -125,6 +173,32 @@ impl MeshFile {
         for v in self.faces.iter_mut().flatten().chain(edges).chain(creases) {
             *v = label[*v as usize];
         }
+    }
+
+    /// Makes one crease of those between the same vertices, which is unassigned where they are meant to do
+    /// different things, and removes those whose ends have become one vertex.
+    pub(super) fn unite_creases(&mut self) {
+        let mut first: HashMap<[u32; 2], usize> = HashMap::new();
+        let mut united: Vec<FileCrease> = Vec::new();
+        for crease in &self.creases {
+            let [a, b] = crease.ends;
+            if a == b {
+                continue;
+            }
+            match first.entry([a.min(b), a.max(b)]) {
+                Entry::Vacant(place) => {
+                    place.insert(united.len());
+                    united.push(*crease);
+                }
+                Entry::Occupied(place) => {
+                    let other = &mut united[*place.get()];
+                    if (other.assignment, other.angle) != (crease.assignment, crease.angle) {
+                        (other.assignment, other.angle) = (EdgeAssignment::Unassigned, None);
+                    }
+                }
+            }
+        }
+        self.creases = united;
     }
 
     /// Checks that the faces are an oriented surface of rigid triangles, and makes it a sheet.

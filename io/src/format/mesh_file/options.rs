@@ -9,8 +9,8 @@ pub enum Polygons {
     /// Refuse the file. In a model of rods a polygon's diagonals are lines along which the sheet can fold,
     /// and its author did not draw them.
     Refuse,
-    /// Cut each polygon into triangles from that one of its corners which sees all others and needs the
-    /// shortest cuts (so a quad is cut along its shorter diagonal). [`MeshFile::diagonals`] lists the cuts.
+    /// Cut each polygon into triangles, corner after corner by the shortest cut inside (so a quad is cut along its
+    /// shorter diagonal). [`MeshFile::diagonals`] lists the cuts.
     ///
     /// [`MeshFile::diagonals`]: super::MeshFile::diagonals
     Triangulate,
@@ -33,12 +33,13 @@ pub struct MeshOptions {
     /// Vertices that are at most so far apart, in the unit of the file, become one: the first of them. `None`
     /// (the default) welds STL and glTF files with tolerance 0, and other files not at all: STL has no shared
     /// vertices and glTF none between faces with different normals, but programs that write them give each
-    /// copy of a vertex the same digits.
+    /// copy of a vertex the same digits. Different meshes of a glTF file stay apart then, where they touch.
     pub weld: Option<f64>,
     /// Of FOLD files: the frame. `None` (the default) is the first with vertices. Other files have no frames
     /// and are refused with this option.
     pub frame: Option<FoldFrame>,
-    /// Of glTF files: the name of the mesh. `None` (the default) is the first of the file.
+    /// Of glTF files: the name of the mesh. `None` (the default) is all meshes that the scene of the file shows.
+    /// Other files are refused with this option.
     pub mesh: Option<String>,
     /// Of glTF files: buffers in files of their own, which are read unless asked otherwise.
     pub buffers: SeparateBuffers,

@@ -142,6 +142,9 @@ fn check(header: &Header, available: u64) -> Result<(), Located> {
         {
             return problem(format!("the vertices have no property {missing:?}"));
         }
+        if name == "tristrips" && count > 0 {
+            return problem("the triangles of the element \"tristrips\" are in strips".to_owned());
+        }
         if name == "face" && !has(element, "vertex_indices") && !has(element, "vertex_index") {
             return problem("the faces have no property \"vertex_indices\"".to_owned());
         }

@@ -1,38 +1,149 @@
 //! Cutting polygons into triangles.
 
+use super::plane::{NEAR, meet, twice_area};
+
 type Point = [f64; 3];
 
-/// Part of the shortest cuts by which cuts may be longer and count as equal: above the round-off of
-/// coordinates of seven digits. A rectangle has the same cuts in every position then, flat and folded.
+/// Part of the shortest cut by which a cut may be longer and count as equal: above the round-off of
+/// coordinates of seven digits. A panel has the same cuts in every position then, flat and folded.
 const EQUAL_CUTS: f64 = 1e-6;
 
-/// Cuts a polygon into triangles that all contain one of its corners and are turned like the polygon as a
-/// whole; `None` when no corner sees all the others. A quad is cut along the shorter diagonal if both will
-/// do; of equal ones, that with the smallest vertex number.
-pub(crate) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<Vec<[u32; 3]>> {
-    let n = corners.len();
-    let points: Vec<Point> = corners.iter().map(|&c| at(c)).collect();
-    // Newell: the sum of the cross products about any point is twice the polygon's area vector.
-    let whole = (1..n - 1).fold([0.0; 3], |sum, k| {
-        add(sum, turn(points[0], points[k], points[k + 1]))
-    });
-    let fan = |start: usize| (1..n - 1).map(move |k| [start, (start + k) % n, (start + k + 1) % n]);
-    let good = |start: usize| {
-        fan(start).all(|[a, b, c]| dot(turn(points[a], points[b], points[c]), whole) > 0.0)
+/// More corners of a polygon are refused: cutting takes up to the third power of their number, a second for so
+/// many.
+pub(super) const MOST_CORNERS: usize = 1000;
+
+/// A polygon in triangles.
+pub(super) struct Pieces {
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The cuts between them, one fewer.
+    pub(super) cuts: Vec<[u32; 2]>,
+}
+
+/// Cuts a polygon into triangles that are turned like the polygon as a whole; `None` if its outline crosses or
+/// touches itself, seen along its normal, or has no area.
+///
+/// Corner after corner is cut off, always by the shortest cut that is inside: a quad is cut along its shorter
+/// diagonal if both will do. Of equal cuts that with the smallest vertex number is made. A Delaunay triangulation
+/// would leave it to round-off how the corners of a rectangle are joined.
+pub(super) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<Pieces> {
+    let places = in_plane(&corners.iter().map(|&c| at(c)).collect::<Vec<_>>());
+    let near = NEAR * extent(&places);
+    if !is_simple(corners, &places, near) {
+        return None;
+    }
+    let mut pieces = Pieces {
+        triangles: Vec::with_capacity(corners.len() - 2),
+        cuts: Vec::with_capacity(corners.len() - 3),
     };
-    // The length of the cuts decides among the corners that will do.
-    let cuts = |start: usize| {
-        (2..n - 1)
-            .map(|k| distance(points[start], points[(start + k) % n]))
-            .sum::<f64>()
+    let mut left: Vec<usize> = (0..corners.len()).collect();
+    while left.len() > 3 {
+        let k = next_ear(&left, corners, &places, near)?;
+        let [a, b, c] = around(&left, k).map(|k| corners[k]);
+        pieces.triangles.push([a, b, c]);
+        pieces.cuts.push([a, c]);
+        left.remove(k);
+        // The last triangle begins where the last cut begins.
+        let first = left.iter().position(|&k| corners[k] == a).unwrap_or(0);
+        left.rotate_left(first);
+    }
+    let last = around(&left, 1);
+    let is_left = height(last, &places) > 0.0;
+    pieces.triangles.push(last.map(|k| corners[k]));
+    is_left.then_some(pieces)
+}
+
+/// The place in `left` of the corner that is cut off next.
+fn next_ear(left: &[usize], corners: &[u32], places: &[Point], near: f64) -> Option<usize> {
+    // No corner that bulges outwards is in the way of another one without one that does not.
+    let inward = (0..left.len()).filter(|&k| height(around(left, k), places) <= near);
+    let inward: Vec<usize> = inward.map(|k| left[k]).collect();
+    let is_ear = |&k: &usize| {
+        let ear = around(left, k);
+        let is_free =
+            |p: &usize| ear.contains(p) || is_outside(places[*p], ear.map(|k| places[k]), near);
+        height(ear, places) > near && inward.iter().all(is_free)
     };
-    let candidates: Vec<(usize, f64)> = (0..n).filter(|&s| good(s)).map(|s| (s, cuts(s))).collect();
-    let shortest = candidates.iter().map(|c| c.1).min_by(f64::total_cmp)?;
-    let equal = candidates
+    let length = |k: usize| {
+        let [a, _, c] = around(left, k).map(|k| places[k]);
+        (a[0] - c[0]).hypot(a[1] - c[1])
+    };
+    let ears: Vec<(usize, f64)> = (0..left.len())
+        .filter(is_ear)
+        .map(|k| (k, length(k)))
+        .collect();
+    let shortest = ears.iter().map(|ear| ear.1).min_by(f64::total_cmp)?;
+    let equal = ears
         .iter()
-        .filter(|c| c.1 <= (1.0 + EQUAL_CUTS) * shortest);
-    let start = equal.map(|c| c.0).min_by_key(|&s| corners[s])?;
-    Some(fan(start).map(|t| t.map(|k| corners[k])).collect())
+        .filter(|ear| ear.1 <= (1.0 + EQUAL_CUTS) * shortest);
+    let by_number = |&k: &usize| {
+        let [a, _, c] = around(left, k).map(|k| corners[k]);
+        (a.min(c), a.max(c), a > c)
+    };
+    equal.map(|ear| ear.0).min_by_key(by_number)
+}
+
+/// A corner between its neighbours.
+fn around(left: &[usize], k: usize) -> [usize; 3] {
+    let n = left.len();
+    [left[(k + n - 1) % n], left[k], left[(k + 1) % n]]
+}
+
+/// The height of a corner outside of the line between its neighbours.
+fn height(corner: [usize; 3], places: &[Point]) -> f64 {
+    let [a, b, c] = corner.map(|k| places[k]);
+    twice_area([a, b, c].iter()) / (a[0] - c[0]).hypot(a[1] - c[1])
+}
+
+/// Whether a point is farther than `near` from a counter-clockwise triangle.
+fn is_outside(p: Point, [a, b, c]: [Point; 3], near: f64) -> bool {
+    let sides = [[a, b], [b, c], [c, a]];
+    sides
+        .iter()
+        .any(|&[a, b]| twice_area([a, b, p].iter()) < -near * (a[0] - b[0]).hypot(a[1] - b[1]))
+}
+
+/// Whether an outline neither crosses nor touches itself.
+fn is_simple(corners: &[u32], places: &[Point], near: f64) -> bool {
+    let n = corners.len() as u32;
+    let side = |k: u32| [k, (k + 1) % n];
+    let mut numbers = corners.to_vec();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let meets = |i: u32| (i + 1..n).any(|j| meet(side(i), side(j), places, near));
+    numbers.len() == corners.len() && near > 0.0 && !(0..n).any(meets)
+}
+
+/// The places of corners in the plane of a polygon, counter-clockwise.
+fn in_plane(points: &[Point]) -> Vec<Point> {
+    // Newell: the sum of the cross products about any point is twice the polygon's area vector.
+    let area = points.windows(2).fold([0.0; 3], |sum, p| {
+        add(sum, cross(sub(p[0], points[0]), sub(p[1], points[0])))
+    });
+    let normal = unit(area);
+    // The axis that is farthest from the normal, turned into the plane, so that coordinates in the plane of two
+    // axes stay as they are.
+    let axis = match normal.map(f64::abs) {
+        [x, y, z] if z >= x && z >= y => [1.0, 0.0, 0.0],
+        [x, y, _] if y >= x => [0.0, 0.0, 1.0],
+        _ => [0.0, 1.0, 0.0],
+    };
+    let along = dot(axis, normal);
+    let first = unit(sub(axis, normal.map(|c| along * c)));
+    let second = cross(normal, first);
+    let place = |p: &Point| {
+        let from = sub(*p, points[0]);
+        [dot(from, first), dot(from, second), 0.0]
+    };
+    points.iter().map(place).collect()
+}
+
+/// The largest extent along an axis.
+fn extent(places: &[Point]) -> f64 {
+    let along = |k: usize| {
+        let values = places.iter().map(|p| p[k]);
+        values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+    };
+    along(0).max(along(1))
 }
 
 fn sub(a: Point, b: Point) -> Point {
@@ -47,18 +158,17 @@ fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn distance(a: Point, b: Point) -> f64 {
-    dot(sub(a, b), sub(a, b)).sqrt()
-}
-
-/// Twice the area vector of a triangle.
-fn turn(a: Point, b: Point, c: Point) -> Point {
-    let (u, v) = (sub(b, a), sub(c, a));
+fn cross(u: Point, v: Point) -> Point {
     [
         u[1] * v[2] - u[2] * v[1],
         u[2] * v[0] - u[0] * v[2],
         u[0] * v[1] - u[1] * v[0],
     ]
+}
+
+fn unit(a: Point) -> Point {
+    let length = dot(a, a).sqrt();
+    a.map(|c| c / length)
 }
 
 #[cfg(test)]
@@ -67,7 +177,7 @@ mod tests {
 
     fn cut(points: &[Point]) -> Option<Vec<[u32; 3]>> {
         let corners: Vec<u32> = (0..points.len() as u32).collect();
-        triangulate(&corners, |c| points[c as usize])
+        Some(triangulate(&corners, |c| points[c as usize])?.triangles)
     }
 
     #[test]
@@ -102,9 +212,13 @@ mod tests {
             // As a file of seven digits has them.
             let points = points.map(|(x, y)| turned(x, y).map(|p| (1e7 * p).round() / 1e7));
             let at = |c: u32| points[corners.iter().position(|&d| d == c).unwrap()];
-            assert_eq!(triangulate(&corners, at).unwrap(), expected, "position {k}");
+            assert_eq!(
+                triangulate(&corners, at).unwrap().triangles,
+                expected,
+                "position {k}"
+            );
             let reversed = [5, 9, 3, 7];
-            let cuts = triangulate(&reversed, at).unwrap();
+            let cuts = triangulate(&reversed, at).unwrap().triangles;
             assert!(
                 cuts.iter().all(|t| t.contains(&3) && t.contains(&5)),
                 "{cuts:?}"
@@ -112,13 +226,18 @@ mod tests {
         }
     }
 
+    /// Twice the area vector of triangles.
+    fn area(points: &[Point], triangles: &[[u32; 3]]) -> Point {
+        let areas = triangles.iter().map(|t| {
+            let [a, b, c] = t.map(|k| points[k as usize]);
+            cross(sub(b, a), sub(c, a))
+        });
+        areas.fold([0.0; 3], add)
+    }
+
+    /// Outlines of which no corner sees all others, with their areas.
     #[test]
-    fn areas_add_up_or_the_polygon_is_refused() {
-        let regular: Vec<Point> = (0..7)
-            .map(|k| [(k as f64 * 0.9).cos(), 0.5, (k as f64 * 0.9).sin()])
-            .collect();
-        assert_eq!(cut(&regular).unwrap().len(), 5);
-        // A comb: no corner sees all.
+    fn concave_polygons_are_cut() {
         let comb = [
             [0.0, 0.0],
             [6.0, 0.0],
@@ -133,8 +252,96 @@ mod tests {
             [1.0, 3.0],
             [0.0, 3.0],
         ];
-        let comb: Vec<Point> = comb.iter().map(|p| [p[0], p[1], 0.0]).collect();
-        assert!(cut(&comb).is_none());
+        // The bar of 6 by 1, and three teeth of 1 by 2.
+        let comb_area = 6.0 + 3.0 * 2.0;
+        let spiral: Vec<[f64; 2]> = {
+            let round = |k: usize, r: f64| {
+                let a = 0.5 * k as f64;
+                [(r + 0.1 * a) * a.cos(), (r + 0.1 * a) * a.sin()]
+            };
+            let (inner, outer) = (
+                (0..30).map(|k| round(k, 1.0)),
+                (0..30).map(|k| round(k, 1.3)),
+            );
+            outer.chain(inner.rev()).collect()
+        };
+        let shoelace = |outline: &[[f64; 2]]| {
+            let next = outline.iter().cycle().skip(1);
+            let sum: f64 = outline
+                .iter()
+                .zip(next)
+                .map(|(p, q)| p[0] * q[1] - p[1] * q[0])
+                .sum();
+            0.5 * sum
+        };
+        assert_eq!(shoelace(&comb), comb_area);
+        for outline in [&comb[..], &spiral] {
+            let mut first = None;
+            for k in 0..20 {
+                // Turned about two axes, in seven digits, and bent a little out of its plane.
+                let (s, c) = (0.3 * f64::from(k)).sin_cos();
+                let points: Vec<Point> = outline
+                    .iter()
+                    .map(|&[x, y]| {
+                        let (u, v, w) = (c * x - s * y, s * x + c * y, 1e-4 * x * y);
+                        let turned = [u, 0.6 * v - 0.8 * w, 0.8 * v + 0.6 * w];
+                        turned.map(|p| (1e6 * p).round() / 1e6)
+                    })
+                    .collect();
+                let triangles = cut(&points).unwrap();
+                assert_eq!(triangles.len(), outline.len() - 2);
+                let expected = shoelace(outline);
+                let sides = outline.len() as u32;
+                let found = 0.5 * dot(area(&points, &triangles), [0.0, -0.8, 0.6]);
+                assert!((found - expected).abs() < 1e-4, "{found} {expected}");
+                // Every side is one of a triangle, in its direction.
+                for k in 0..sides {
+                    let side = [k, (k + 1) % sides];
+                    let has = |t: &[u32; 3]| (0..3).any(|i| [t[i], t[(i + 1) % 3]] == side);
+                    assert_eq!(triangles.iter().filter(|t| has(t)).count(), 1);
+                }
+                // The same cuts in every position.
+                assert_eq!(first.get_or_insert_with(|| triangles.clone()), &triangles);
+            }
+        }
+    }
+
+    #[test]
+    fn corners_on_a_straight_side_make_no_triangles_without_area() {
+        let side = [0.0, 1.0, 2.0, 3.0];
+        let mut points: Vec<Point> = side.iter().map(|&x| [0.1 * x, 0.3 * x, 0.7 * x]).collect();
+        points.push([1.0, 0.0, 0.0]);
+        let triangles = cut(&points).unwrap();
+        assert_eq!(triangles.len(), 3);
+        assert!(triangles.iter().all(|t| t.contains(&4)), "{triangles:?}");
+    }
+
+    #[test]
+    fn outlines_that_cross_or_touch_themselves_are_refused() {
+        let regular: Vec<Point> = (0..7)
+            .map(|k| [(k as f64 * 0.9).cos(), 0.5, (k as f64 * 0.9).sin()])
+            .collect();
+        assert_eq!(cut(&regular).unwrap().len(), 5);
         assert!(cut(&[[0.0; 3]; 4]).is_none());
+        let line: Vec<Point> = (0..5).map(|k| [f64::from(k), 0.0, 1.0]).collect();
+        assert!(cut(&line).is_none());
+        let flat = |points: &[[f64; 2]]| {
+            let points: Vec<Point> = points.iter().map(|p| [p[0], p[1], 2.0]).collect();
+            cut(&points)
+        };
+        // A bow tie with unequal halves, a pentagram, and a corner on another side.
+        assert!(flat(&[[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [1.0, 3.0]]).is_none());
+        let star: Vec<[f64; 2]> = (0..5)
+            .map(|k| (144_f64.to_radians() * f64::from(k)).sin_cos().into())
+            .collect();
+        assert!(flat(&star).is_none());
+        assert!(flat(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 0.0], [0.0, 4.0]]).is_none());
+        let square = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+        ];
+        assert!(triangulate(&[0, 1, 2, 3, 1], |c| square[c as usize]).is_none());
     }
 }

@@ -1,7 +1,7 @@
 //! Repair of mesh files on request.
 
-use super::MeshFile;
-use isosheet_mesh::{Sheet, TopologyError, orient_consistently};
+use super::{MeshFile, MeshFileProblem};
+use isosheet_mesh::{MeshError, Sheet, orient_consistently};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
@@ -16,7 +16,7 @@ pub struct Repair {
     pub duplicate_faces: usize,
     /// Vertices that were removed because no face uses them.
     pub unused_vertices: usize,
-    /// Faces whose winding was reversed, so that neighbours agree.
+    /// Faces whose winding was reversed, so that neighbours agree, with the mountains and valleys at them.
     pub reversed_faces: usize,
 }
 
@@ -76,11 +76,12 @@ impl MeshFile {
     /// that neighbours agree. The order of what stays is kept.
     ///
     /// Not repaired, because there is more than one way: edges with more than two faces, vertices at which a
-    /// surface only touches itself, Moebius bands, holes.
+    /// surface only touches itself, Moebius bands, holes, folds of FOLD files between faces in opposite directions.
     ///
     /// # Errors
-    /// [`TopologyError`] if the faces cannot be oriented; everything else is then repaired.
-    pub fn repair(&mut self) -> Result<Repair, TopologyError> {
+    /// [`MeshFileProblem::Mesh`] if the faces cannot be oriented, [`MeshFileProblem::Fold`] if a fold is between
+    /// faces in opposite directions; everything else is then repaired.
+    pub fn repair(&mut self) -> Result<Repair, MeshFileProblem> {
         let mut repair = Repair {
             merged_vertices: self.merge_vertices(),
             degenerate_faces: self.remove_degenerate(),
@@ -90,7 +91,9 @@ impl MeshFile {
         // A vertex that was merged away is not counted twice.
         repair.unused_vertices = self.drop_unreferenced() - repair.merged_vertices;
         let count = self.vertex_count();
-        repair.reversed_faces = orient_consistently(count, &mut self.faces)?.len();
+        let reversed = orient_consistently(count, &mut self.faces).map_err(MeshError::from)?;
+        self.turn_creases(&reversed)?;
+        repair.reversed_faces = reversed.len();
         Ok(repair)
     }
 
@@ -106,6 +109,7 @@ impl MeshFile {
         let moved = |v: &&u32| label[**v as usize] != **v;
         merged.extend(self.faces.iter().flatten().filter(moved).copied());
         self.relabel(&label);
+        self.unite_creases();
         merged.len()
     }
 
@@ -135,6 +139,7 @@ impl MeshFile {
 mod tests {
     use super::*;
     use crate::{MeshFormat, MeshOptions, parse_mesh};
+    use isosheet_mesh::TopologyError;
     use std::path::Path;
 
     fn mesh(text: &str) -> MeshFile {
@@ -177,7 +182,10 @@ mod tests {
         let error = mesh(fan).repair().unwrap_err();
         assert!(matches!(
             error,
-            TopologyError::NonManifoldEdge { count: 3, .. }
+            MeshFileProblem::Mesh(MeshError::Topology(TopologyError::NonManifoldEdge {
+                count: 3,
+                ..
+            }))
         ));
     }
 }

@@ -307,6 +307,12 @@ fn defects_of_ply_files_name_their_place() {
     ));
     let flat = TEXT_PLY.replace("float z", "float w");
     assert!(matches!(ply(&flat), (None, P::Ply(_))));
+    // Triangles that would be lost beside those of the faces.
+    let strips = "element tristrips 1\nproperty list int int vertex_indices\nelement face";
+    let strips = TEXT_PLY
+        .replace("element face", strips)
+        .replace("3 0 1 2", "4 0 1 2 3\n3 0 1 2");
+    assert!(matches!(ply(&strips), (None, P::Ply(text)) if text.contains("tristrips")));
 }
 
 #[test]
@@ -408,6 +414,83 @@ fn defects_of_gltf_are_typed() {
         let bytes = [&b"glTF\x02\0\0\0\x05\0\0\0"[..length], b""].concat();
         assert!(parse(MeshFormat::Glb, &bytes).is_err());
     }
+}
+
+/// The square of [`gltf`] with other roots and nodes of its scene; node 0 of that has the translation [1, 0, 0].
+fn placed_gltf(roots: &str, nodes: &str) -> String {
+    let scale = "\"scale\":[1,1,1]}]";
+    gltf(1.0)
+        .replace(
+            "\"scenes\":[{\"nodes\":[0]}]",
+            &format!("\"scenes\":[{{\"nodes\":{roots}}}]"),
+        )
+        .replace(
+            &format!(
+                "\"nodes\":[{{\"translation\":[1,0,0],\"children\":[1]}},{{\"mesh\":0,{scale}"
+            ),
+            &format!("\"nodes\":{nodes}"),
+        )
+}
+
+/// Every node of the scene that shows a mesh adds a copy of it: below others, by a matrix or by its parts, mirrored.
+#[test]
+fn all_placed_meshes_of_a_gltf_file_are_read() {
+    // Node 0 moves by 1 along x, which all others are below; node 2 turns by 90 degrees about y (upwards) and doubles;
+    // node 3 mirrors x by a matrix; node 4 is not in the scene.
+    let nodes = r#"[{"translation":[1,0,0],"children":[1,2,3]},{"mesh":0},
+        {"translation":[0,5,0],"rotation":[0,0.7071067811865476,0,0.7071067811865476],"scale":[2,2,2],"mesh":0},
+        {"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,10,0,1],"mesh":0},{"translation":[9,9,9],"mesh":0}]"#;
+    let mesh = parse(MeshFormat::Gltf, placed_gltf("[0]", nodes).as_bytes()).unwrap();
+    let points = mesh.positions.as_chunks::<3>().0;
+    assert_eq!(points.len(), 12);
+    assert_eq!(points[..4], POINTS);
+    // With z upwards the square is (u, v, 1/2) before it is placed, and the turn is one about z.
+    for (k, [x, y, _]) in POINTS.into_iter().enumerate() {
+        let (u, v) = (x - 1.0, y);
+        let turned = [1.0 - 2.0 * v, 2.0 * u, 5.0 + 1.0];
+        let mirrored = [1.0 - u, v, 10.5];
+        for (found, expected) in [(points[4 + k], turned), (points[8 + k], mirrored)] {
+            for c in 0..3 {
+                assert!(
+                    (found[c] - expected[c]).abs() < 1e-6,
+                    "{found:?} {expected:?}"
+                );
+            }
+        }
+    }
+    let faces = [
+        [0, 1, 2],
+        [0, 2, 3],
+        [4, 5, 6],
+        [4, 6, 7],
+        [8, 10, 9],
+        [8, 11, 10],
+    ];
+    assert_eq!(mesh.faces, faces);
+    // All of them show their front upwards.
+    let sheet = mesh.into_sheet().unwrap();
+    assert_eq!(sheet.topology().component_count(), 3);
+
+    // Neighbours that touch stay apart, and what no node shows is read as it is.
+    let beside = r#"[{"mesh":0},{"translation":[1,0,0],"mesh":0}]"#;
+    let mesh = parse(MeshFormat::Gltf, placed_gltf("[0,1]", beside).as_bytes()).unwrap();
+    assert_eq!((mesh.vertex_count(), mesh.changes.welded_vertices), (8, 0));
+    let unplaced = parse(
+        MeshFormat::Gltf,
+        placed_gltf("[0]", r#"[{"translation":[1,0,0]}]"#).as_bytes(),
+    );
+    assert_eq!(unplaced.unwrap().positions[..3], [0.0, 0.0, 0.5]);
+}
+
+/// Strips and fans are triangles in short: every second one of a strip is turned.
+#[test]
+fn strips_and_fans_of_gltf_files_are_triangles() {
+    let read = |mode: u32| {
+        let text = gltf(1.0).replace("\"indices\":1", &format!("\"mode\":{mode}"));
+        parse(MeshFormat::Gltf, text.as_bytes()).unwrap().faces
+    };
+    assert_eq!(read(5), [[0, 1, 2], [1, 3, 2]]);
+    assert_eq!(read(6), [[0, 1, 2], [0, 2, 3]]);
 }
 
 /// A pattern of four panels about a vertex, with or without a hole in the middle instead.

@@ -13,8 +13,8 @@ impl MeshFile {
     /// one that was kept that vertex, and removes faces of which two corners were welded.
     ///
     /// Vertices are visited in order; of several kept ones within reach the nearest is taken, the first on a
-    /// tie. With tolerance 0 coordinates have to be equal.
-    pub(super) fn weld(&mut self, tolerance: f64) {
+    /// tie. With tolerance 0 coordinates have to be equal. `parts` are the first vertices of parts that stay apart.
+    pub(super) fn weld(&mut self, tolerance: f64, parts: &[usize]) {
         let points = self.positions.as_chunks::<3>().0;
         let bound = |take: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
             std::array::from_fn(|k| points.iter().fold(start, |m, p| take(m, p[k])))
@@ -32,11 +32,11 @@ impl MeshFile {
                 if index.is_finite() { index as i64 } else { 0 }
             })
         };
-        let mut kept: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        let mut kept: HashMap<Cell, Vec<u32>> = HashMap::new();
         let mut label = Vec::with_capacity(points.len());
         let mut places = Vec::new();
-        for p in points {
-            let at = cell(p);
+        for (v, p) in points.iter().enumerate() {
+            let at = (parts.partition_point(|&first| first <= v), cell(p));
             let found = nearest(&kept, &places, at, p, tolerance);
             label.push(found.unwrap_or_else(|| {
                 let v = places.len() as u32;
@@ -52,15 +52,18 @@ impl MeshFile {
         self.faces.retain(|[a, b, c]| a != b && b != c && c != a);
         self.changes.collapsed_faces += before - self.faces.len();
         self.diagonals.retain(|[a, b]| a != b);
-        self.creases.retain(|c| c.ends[0] != c.ends[1]);
+        self.unite_creases();
     }
 }
 
+/// A part of the mesh and a cell of the grid.
+type Cell = (usize, [i64; 3]);
+
 /// The nearest kept vertex within the tolerance.
 fn nearest(
-    kept: &HashMap<[i64; 3], Vec<u32>>,
+    kept: &HashMap<Cell, Vec<u32>>,
     places: &[[f64; 3]],
-    at: [i64; 3],
+    (part, at): Cell,
     p: &[f64; 3],
     tolerance: f64,
 ) -> Option<u32> {
@@ -69,7 +72,7 @@ fn nearest(
     for offset in if tolerance > 0.0 { 0..27_i64 } else { 13..14 } {
         let shift = [offset % 3 - 1, offset / 3 % 3 - 1, offset / 9 - 1];
         let neighbour = std::array::from_fn(|k| at[k].saturating_add(shift[k]));
-        for &v in kept.get(&neighbour).into_iter().flatten() {
+        for &v in kept.get(&(part, neighbour)).into_iter().flatten() {
             let q = places[v as usize];
             let distance = (p[0] - q[0]).hypot(p[1] - q[1]).hypot(p[2] - q[2]);
             let better = best.is_none_or(|b| (distance, v) < b);

@@ -19,6 +19,9 @@ pub struct GalleryEntry {
     /// The comment at the top of the scene, up to the first line that ends with a full stop; empty without
     /// one.
     pub caption: String,
+    /// Of a run of a sweep, the keys that the runs differ by, with their values in this one.
+    #[serde(default)]
+    pub values: Vec<(String, String)>,
     /// The time that was reached, seconds.
     pub t: f64,
     /// Number of vertices.

@@ -70,9 +70,13 @@ fn card(entry: &GalleryEntry) -> Markup {
     }
 }
 
-/// The key numbers of a run.
-fn numbers(entry: &GalleryEntry) -> Vec<(&'static str, String)> {
-    let mut rows = vec![("vertices", entry.vertices.to_string())];
+/// The values by which a run of a sweep differs from the others, and the key numbers of a run.
+fn numbers(entry: &GalleryEntry) -> Vec<(&str, String)> {
+    let swept = entry.values.iter();
+    let mut rows: Vec<(&str, String)> = swept
+        .map(|(key, value)| (&key[..], value.clone()))
+        .collect();
+    rows.push(("vertices", entry.vertices.to_string()));
     let Some(summary) = &entry.summary else {
         rows.push(("state", format!("not complete: up to {:.3} s", entry.t)));
         return rows;

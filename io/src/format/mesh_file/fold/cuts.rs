@@ -1,5 +1,6 @@
 //! Cuts: the two sides of a cut edge have vertices of their own.
 
+use super::sides::sorted;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -101,8 +102,4 @@ impl MeshFile {
         }
         groups
     }
-}
-
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

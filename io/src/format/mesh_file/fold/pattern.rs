@@ -1,18 +1,12 @@
 //! Faces of a flat crease pattern that has vertices and edges alone.
 
 use super::FoldProblem;
+use crate::format::mesh_file::plane::{NEAR, Point, meet, twice_area};
 use crate::format::mesh_file::{EdgeAssignment, FileCrease};
-use std::collections::HashSet;
-
-type Point = [f64; 3];
 
 /// More edges are refused: pairs of edges are compared, which takes a second or two for so many edges that
 /// all overlap in one direction.
 const MOST_EDGES: usize = 50_000;
-
-/// An edge meets another one if an end of it is so near, as a part of the size of the pattern: above the
-/// round-off of coordinates of seven digits, below any distance in a drawing.
-const NEAR: f64 = 1e-7;
 
 /// The faces, counter-clockwise, as corners from 0.
 ///
@@ -54,19 +48,6 @@ pub(super) fn faces(points: &[Point], edges: &[FileCrease]) -> Result<Vec<Vec<i6
         .collect())
 }
 
-/// Twice the signed area of a polygon in the plane z = 0.
-pub(super) fn twice_area<'a>(mut corners: impl Iterator<Item = &'a Point>) -> f64 {
-    let Some(first) = corners.next() else {
-        return 0.0;
-    };
-    let from_first = |p: &Point| [p[0] - first[0], p[1] - first[1]];
-    let (sum, _) = corners.fold((0.0, [0.0; 2]), |(sum, a), p| {
-        let b = from_first(p);
-        (sum + a[0] * b[1] - a[1] * b[0], b)
-    });
-    sum
-}
-
 /// Where a side begins. Side `2 e` runs along edge `e`, side `2 e + 1` against it.
 fn tail(edges: &[FileCrease], side: usize) -> usize {
     edges[side / 2].ends[side % 2] as usize
@@ -104,12 +85,11 @@ fn check(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldProblem> {
             limit: MOST_EDGES,
         });
     }
-    let mut seen = HashSet::new();
     let mut degree = vec![0_usize; points.len()];
     let mut piece: Vec<usize> = (0..points.len()).collect();
     for (edge, crease) in edges.iter().enumerate() {
         let [a, b] = crease.ends.map(|v| v as usize);
-        if points[a] == points[b] || !seen.insert([a.min(b), a.max(b)]) {
+        if points[a] == points[b] {
             return Err(FoldProblem::UselessEdge { edge });
         }
         degree[a] += 1;
@@ -177,33 +157,4 @@ fn bounds(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], c| {
         [low.min(c), high.max(c)]
     })
-}
-
-/// Whether two edges meet elsewhere than at a vertex that both have.
-fn meet(e: [u32; 2], f: [u32; 2], points: &[Point], near: f64) -> bool {
-    let at = |v: u32| points[v as usize];
-    let ends_near = |e: [u32; 2], f: [u32; 2]| {
-        let apart = |v: &&u32| !f.contains(v);
-        e.iter()
-            .filter(apart)
-            .any(|&v| distance(at(v), f.map(at)) <= near)
-    };
-    if ends_near(e, f) || ends_near(f, e) {
-        return true;
-    }
-    if e.iter().any(|v| f.contains(v)) {
-        return false;
-    }
-    let ([a, b], [c, d]) = (e.map(at), f.map(at));
-    let side = |p: Point, q: Point, r: Point| twice_area([p, q, r].iter());
-    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
-}
-
-/// The distance of a point from a segment in the plane.
-fn distance(p: Point, [a, b]: [Point; 2]) -> f64 {
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let from = [p[0] - a[0], p[1] - a[1]];
-    let squared = along[0] * along[0] + along[1] * along[1];
-    let part = ((along[0] * from[0] + along[1] * from[1]) / squared).clamp(0.0, 1.0);
-    (from[0] - part * along[0]).hypot(from[1] - part * along[1])
 }

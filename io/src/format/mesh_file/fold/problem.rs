@@ -1,6 +1,7 @@
 //! What can be wrong with a FOLD file.
 
 use super::FoldFrame;
+use crate::format::mesh_file::EdgeAssignment;
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::brief;
 use thiserror::Error;
@@ -91,6 +92,54 @@ pub enum FoldProblem {
         /// The angle, in degrees.
         degrees: f64,
     },
+    /// An edge leads from a vertex to the same vertex.
+    #[error("edge {edge} leads from vertex {vertex} to the same vertex")]
+    EdgeToItself {
+        /// The edge, from 0.
+        edge: usize,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// An edge is listed twice.
+    #[error("edges {first} and {second} are the same edge, between the vertices {} and {}", ends[0], ends[1])]
+    EdgeTwice {
+        /// The first one, from 0.
+        first: usize,
+        /// The second one, from 0.
+        second: usize,
+        /// The vertices at their ends.
+        ends: [u32; 2],
+    },
+    /// The assignment of an edge and its fold angle exclude each other.
+    #[error(
+        "edge {edge} {assignment} and has the fold angle {degrees} degrees", degrees = brief(*degrees)
+    )]
+    Contradiction {
+        /// The edge, from 0.
+        edge: usize,
+        /// What it is meant to do.
+        assignment: EdgeAssignment,
+        /// The angle, in degrees.
+        degrees: f64,
+    },
+    /// A crease or a cut is a side of no face.
+    #[error("edge {edge} is a crease or a cut, and no face of `faces_vertices` has it as a side")]
+    NoFace {
+        /// The edge, from 0.
+        edge: usize,
+    },
+    /// A fold is between a face that is clockwise and one that is counter-clockwise.
+    #[error(
+        "edge {edge} folds between face {kept} and face {reversed}, whose vertices are listed in opposite          directions, so that it is a mountain as seen from one of them and a valley from the other"
+    )]
+    OppositeFaces {
+        /// The edge, from 0.
+        edge: usize,
+        /// The face, from 0, whose direction stays.
+        kept: usize,
+        /// The face, from 0, that has to be reversed.
+        reversed: usize,
+    },
     /// There are no faces, and the vertices are not those of a flat crease pattern.
     #[error(
         "the file has no `faces_vertices`, and its vertices do not lie in the plane z = 0, in which \
@@ -108,10 +157,8 @@ pub enum FoldProblem {
         /// The second edge, from 0.
         second: usize,
     },
-    /// An edge of a crease pattern without faces has no length, or is there twice.
-    #[error(
-        "the file has no `faces_vertices`, and its edge {edge} has no length or is there twice"
-    )]
+    /// An edge of a crease pattern without faces has no length.
+    #[error("the file has no `faces_vertices`, and its edge {edge} has no length")]
     UselessEdge {
         /// The edge, from 0.
         edge: usize,
@@ -163,6 +210,15 @@ impl Advice for FoldProblem {
             Self::EdgeVertex { .. } => Some("correct `edges_vertices`"),
             Self::Assignment { .. } => Some("use B, M, V, F, U, C or J"),
             Self::Angle { .. } => Some("give -180 to 180"),
+            Self::EdgeToItself { .. } => Some("remove it"),
+            Self::EdgeTwice { .. } => Some("remove one of them"),
+            Self::Contradiction { .. } => Some(
+                "correct one of them: mountains have negative angles, valleys positive ones, flat edges 0",
+            ),
+            Self::NoFace { .. } => Some("divide the face along it, or remove the edge"),
+            Self::OppositeFaces { .. } => {
+                Some("list the vertices of all faces counter-clockwise as seen from the same side")
+            }
             Self::NoFacesInSpace => Some("export the file with its faces"),
             Self::Crossing { .. } => Some("add the vertex, or export the file with its faces"),
             Self::UselessEdge { .. } => Some("remove it, or export the file with its faces"),

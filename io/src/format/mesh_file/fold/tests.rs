@@ -213,9 +213,10 @@ fn patterns_without_faces_that_are_no_drawing_are_refused() {
             second: 5
         }
     );
+    let coincident = format!("{square},[0,0]");
     assert_eq!(
-        refused(square, &with("[0,2],[2,0]")),
-        FoldProblem::UselessEdge { edge: 5 }
+        refused(&coincident, &with("[0,4]")),
+        FoldProblem::UselessEdge { edge: 4 }
     );
     let inner = format!("{square},[0.5,0.4]");
     assert_eq!(
@@ -234,15 +235,193 @@ fn patterns_without_faces_that_are_no_drawing_are_refused() {
     );
 }
 
+/// Seen from the other side, mountains are valleys: where all faces are clockwise the file shows the back of the
+/// sheet.
 #[test]
-fn clockwise_faces_of_flat_patterns_are_turned_over() {
-    let clockwise = ", \"faces_vertices\": [[7,8,1,0],[8,3,2,1],[8,3,4,5],[7,8,5,6]]";
-    let mesh = parse(MeshFormat::Fold, cross(clockwise).as_bytes()).unwrap();
-    assert_eq!(mesh.changes.reversed_faces, 2);
+fn clockwise_faces_of_flat_patterns_are_turned_over_with_their_creases() {
+    let read = |faces: &str, more: &str| {
+        let text = cross(&format!(", \"faces_vertices\": [{faces}]{more}"));
+        parse(MeshFormat::Fold, text.as_bytes())
+    };
+    let angles = ", \"edges_foldAngle\": [0,0,0,0,0,0,0,0,-30,40,50,null]";
+    let clockwise = "[7,8,1,0],[8,3,2,1],[5,4,3,8],[6,5,8,7]";
+    let mesh = read(clockwise, angles).unwrap();
+    assert_eq!(mesh.changes.reversed_faces, 4);
+    let creases = mesh.creases[8..12].iter();
+    let creases: Vec<_> = creases
+        .map(|c| (c.assignment, c.angle.map(|a| a.to_degrees().round())))
+        .collect();
+    use EdgeAssignment::{Mountain, Valley};
+    assert_eq!(
+        creases,
+        [
+            (Valley, Some(30.0)),
+            (Mountain, Some(-40.0)),
+            (Mountain, Some(-50.0)),
+            (Mountain, None)
+        ]
+    );
+    assert!(
+        mesh.creases
+            .iter()
+            .all(|c| c.angle != Some(0.0) || c.angle.unwrap().is_sign_positive())
+    );
     assert_eq!(mesh.into_sheet().unwrap().area(), 4.0);
-    let folded = format!("{clockwise}, \"frame_classes\": [\"foldedForm\"]");
-    let mesh = parse(MeshFormat::Fold, cross(&folded).as_bytes()).unwrap();
-    assert_eq!(mesh.changes.reversed_faces, 0);
+    // Faces and edges of the same drawing that are not listed clockwise.
+    let counter = "[0,1,8,7],[1,2,3,8],[8,3,4,5],[7,8,5,6]";
+    let mesh = read(counter, angles).unwrap();
+    assert_eq!(
+        (mesh.changes.reversed_faces, mesh.creases[8].assignment),
+        (0, Mountain)
+    );
+    // Which side is meant at an edge between both kinds of faces, nobody can say.
+    let both = "[7,8,1,0],[8,3,2,1],[8,3,4,5],[7,8,5,6]";
+    let refused = read(both, "").unwrap_err().problem;
+    let expected = FoldProblem::OppositeFaces {
+        edge: 9,
+        kept: 2,
+        reversed: 1,
+    };
+    assert!(matches!(refused, MeshFileProblem::Fold(p) if p == expected));
+    let flat = cross(&format!(", \"faces_vertices\": [{both}]")).replace("\"V\"", "\"U\"");
+    let mesh = parse(MeshFormat::Fold, flat.as_bytes()).unwrap();
+    assert_eq!(
+        (mesh.changes.reversed_faces, mesh.creases[8].assignment),
+        (2, Valley)
+    );
+    // In a folded form some faces are clockwise as they lie.
+    let folded = ", \"frame_classes\": [\"foldedForm\"]";
+    let mesh = read(clockwise, folded).unwrap();
+    assert_eq!(
+        (mesh.changes.reversed_faces, mesh.creases[8].assignment),
+        (0, Mountain)
+    );
+}
+
+/// A repair that reverses a face turns the creases at it, and refuses what it cannot know.
+#[test]
+fn repairs_turn_creases_with_their_faces() {
+    // Three strips one above the other, the middle one in the other direction.
+    let text = |second: &str| {
+        format!(
+            r#"{{"frame_classes": ["foldedForm"],
+            "vertices_coords": [[0,0,1],[1,0,1],[0,1,0],[1,1,0],[0,2,0],[1,2,0]],
+            "edges_vertices": [[0,3],[2,3],[2,5]], "edges_assignment": ["F", "{second}", "M"],
+            "faces_vertices": [[0,1,3],[0,3,2],[5,3,2],[5,2,4]]}}"#
+        )
+    };
+    let mut mesh = parse(MeshFormat::Fold, text("F").as_bytes()).unwrap();
+    assert_eq!(mesh.repair().unwrap().reversed_faces, 2);
+    let letters: Vec<_> = mesh.creases.iter().map(|c| c.assignment).collect();
+    assert_eq!(
+        letters,
+        [
+            EdgeAssignment::Flat,
+            EdgeAssignment::Flat,
+            EdgeAssignment::Valley
+        ]
+    );
+    let mut mesh = parse(MeshFormat::Fold, text("V").as_bytes()).unwrap();
+    assert!(matches!(
+        mesh.repair(),
+        Err(MeshFileProblem::Fold(FoldProblem::OppositeFaces {
+            edge: 1,
+            ..
+        }))
+    ));
+}
+
+/// What contradicts itself is refused where faces are given as where they are not.
+#[test]
+fn contradictions_are_refused() {
+    let faces = ", \"faces_vertices\": [[0,1,8,7],[1,2,3,8],[8,3,4,5],[7,8,5,6]]";
+    for faces in [faces, ""] {
+        let refused = |from: &str, to: &str| {
+            let text = cross(faces).replace(from, to);
+            match problem(MeshFormat::Fold, text.as_bytes()).1 {
+                MeshFileProblem::Fold(problem) => problem,
+                other => panic!("{other}"),
+            }
+        };
+        let twice = FoldProblem::EdgeTwice {
+            first: 8,
+            second: 12,
+            ends: [8, 1],
+        };
+        let text = cross(faces)
+            .replace("[7,8]]", "[7,8],[8,1]]")
+            .replace("\"V\"]", "\"V\",\"F\"]");
+        let found = problem(MeshFormat::Fold, text.as_bytes()).1;
+        assert!(matches!(found, MeshFileProblem::Fold(p) if p == twice));
+        assert_eq!(
+            refused("[7,8]]", "[8,8]]"),
+            FoldProblem::EdgeToItself {
+                edge: 11,
+                vertex: 8
+            }
+        );
+        let angles = |angles: &str| {
+            refused(
+                "\"edges_assignment\"",
+                &format!("\"edges_foldAngle\": [0,0,0,0,0,0,0,0,{angles}], \"edges_assignment\""),
+            )
+        };
+        assert_eq!(
+            angles("90,null,null,null"),
+            FoldProblem::Contradiction {
+                edge: 8,
+                assignment: EdgeAssignment::Mountain,
+                degrees: 90.0
+            }
+        );
+        assert!(matches!(
+            angles("-90,null,-45,null"),
+            FoldProblem::Contradiction {
+                edge: 10,
+                assignment: EdgeAssignment::Valley,
+                ..
+            }
+        ));
+    }
+    // A crease from corner to corner of a face.
+    let lost = cross(faces)
+        .replace("[7,8]]", "[7,8],[0,8]]")
+        .replace("\"V\"]", "\"V\",\"V\"]");
+    let (_, lost) = problem(MeshFormat::Fold, lost.as_bytes());
+    assert!(matches!(
+        lost,
+        MeshFileProblem::Fold(FoldProblem::NoFace { edge: 12 })
+    ));
+    // The angles of a folded form are what the folds have come to.
+    let folded = format!(
+        "{faces}, \"frame_classes\": [\"foldedForm\"], \"edges_foldAngle\": [0,0,0,0,0,0,0,0,3,1,1,1]"
+    );
+    assert!(parse(MeshFormat::Fold, cross(&folded).as_bytes()).is_ok());
+}
+
+/// Two edges that become one by welding are one crease, which does what both were meant to do.
+#[test]
+fn creases_are_welded_with_their_vertices() {
+    let text = |second: &str| {
+        format!(
+            r#"{{"vertices_coords": [[0,0],[1,0],[0,1],[1,0],[1,1],[0,1]],
+            "edges_vertices": [[1,2],[3,5]], "edges_assignment": ["V", "{second}"],
+            "faces_vertices": [[0,1,2],[3,4,5]]}}"#
+        )
+    };
+    let options = MeshOptions {
+        weld: Some(0.0),
+        ..MeshOptions::default()
+    };
+    for (second, expected) in [
+        ("V", EdgeAssignment::Valley),
+        ("M", EdgeAssignment::Unassigned),
+    ] {
+        let text = text(second);
+        let mesh = parse_mesh(text.as_bytes(), MeshFormat::Fold, Path::new("x"), &options).unwrap();
+        let letters: Vec<_> = mesh.creases.iter().map(|c| c.assignment).collect();
+        assert_eq!(letters, [expected]);
+    }
 }
 
 #[test]

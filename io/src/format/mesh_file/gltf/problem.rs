@@ -24,17 +24,21 @@ pub enum GltfProblem {
         /// The names of the meshes in the file; a mesh without a name has an empty one.
         names: Vec<String>,
     },
-    /// A part of the mesh is no list of triangles.
-    #[error("part {primitive} of the mesh is made of {mode}")]
+    /// A part of a mesh is points or lines.
+    #[error("part {primitive} of mesh {mesh} is made of {mode}")]
     Mode {
+        /// The mesh, from 0.
+        mesh: usize,
         /// The part, from 0.
         primitive: usize,
         /// What it is made of.
         mode: String,
     },
     /// An array of numbers is missing or of another type.
-    #[error("part {primitive} of the mesh: {array} {problem}")]
+    #[error("part {primitive} of mesh {mesh}: {array} {problem}")]
     Array {
+        /// The mesh, from 0.
+        mesh: usize,
         /// The part, from 0.
         primitive: usize,
         /// "positions" or "indices".
@@ -66,7 +70,7 @@ impl Advice for GltfProblem {
             Self::Format(..) => Some("export the file again; the Khronos glTF validator says more"),
             Self::Extension { .. } => Some("export the file without it"),
             Self::NoMesh { .. } => Some("name a mesh of the file, or export it with one"),
-            Self::Mode { .. } => Some("export it as a list of triangles"),
+            Self::Mode { .. } => Some("export it as triangles, or without this part"),
             Self::Array { .. } => Some("export the file again"),
             Self::Separate { .. } => Some("export the mesh as one file, as .glb"),
             Self::Buffer { .. } => Some("keep the file and its buffers together, or use .glb"),

@@ -198,7 +198,7 @@ fn polygons_are_cut_on_request() {
     let e = parse_obj(flat.as_bytes(), Polygons::Triangulate).unwrap_err();
     assert!(matches!(
         e.problem,
-        MeshFileProblem::ConcavePolygon { corners: 4 }
+        MeshFileProblem::CrossedPolygon { corners: 4 }
     ));
 }
 
