@@ -24,7 +24,8 @@ use isosheet_dynamics::{
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
-use std::collections::BTreeSet;
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 impl Scene {
@@ -556,6 +557,30 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// Pairs of vertices at the two sides of cuts that are closed at the start: at the boundary of a sheet, in
+    /// one place at rest and at the start. What has them in common may stay together, and part.
+    fn cuts(&self) -> Vec<[VertexId; 2]> {
+        let mut pairs = Vec::new();
+        for PlacedSheet { placed, part, .. } in &self.sheets.list {
+            let start = self.x[part.coordinates()].as_chunks::<3>().0;
+            let rest = placed.positions().as_chunks::<3>().0;
+            let mut first_there = HashMap::new();
+            let t = placed.topology();
+            for v in t.vertex_ids().filter(|v| t.is_boundary_vertex(*v)) {
+                // (A zero may have either sign.)
+                let bits = |p: [f64; 3]| p.map(|c| (c + 0.0).to_bits());
+                let place = [rest, start].map(|x| bits(x[v.index()]));
+                match first_there.entry(place) {
+                    Entry::Occupied(first) => {
+                        pairs.push([part.vertex(*first.get()), part.vertex(v)])
+                    }
+                    Entry::Vacant(place) => drop(place.insert(v)),
+                }
+            }
+        }
+        pairs
+    }
+
     fn contacts(&mut self, folder: &Path) -> Result<(Option<Contacts>, Vec<Obstacle>), SceneError> {
         let (scene, key) = (self.scene, Key::root());
         if !scene.has_contact() {
@@ -566,7 +591,7 @@ impl<'a> Builder<'a> {
             .options(self.model(), scene.sheet[0].thickness);
         let mut contacts = Contacts::new(self.model(), options)
             .map_err(at(&key.name("contact")))?
-            .with_glue(&self.targets.glued());
+            .with_glue(&[self.targets.glued(), self.cuts()].concat());
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);

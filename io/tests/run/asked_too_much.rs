@@ -1,8 +1,9 @@
 //! What a scene asks for and its sheet cannot do is told: where, by what, how much.
 
 use crate::{code, run, stderr, stdout, summary};
-use isosheet_io::read_history;
 use isosheet_io::run::EndReason;
+use isosheet_io::{Trajectory, read_history};
+use nalgebra::Vector3;
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -320,4 +321,52 @@ fn extremes_of_a_run_include_its_start() {
     let gaps = history.iter().filter_map(|row| row.gap);
     assert!(history[0].gap.is_some(), "{:?}", history[0]);
     assert_eq!(summary.smallest_gap, gaps.reduce(f64::min));
+}
+
+/// A square sheet with a slit, drawn as a cut edge, whose sides touch at the start: with self-contact it hangs
+/// by one side, and the slit opens.
+#[test]
+fn sides_of_a_slit_start_together_and_part() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let slit = serde_json::json!({
+        "file_spec": 1.2, "frame_classes": ["creasePattern"], "frame_unit": "m",
+        "vertices_coords": [[0, 0], [0.1, 0], [0.1, 0.1], [0, 0.1], [0.02, 0.05], [0.05, 0.05], [0.08, 0.05]],
+        "edges_vertices": [[4, 5], [5, 6]],
+        "edges_assignment": ["C", "C"],
+        "faces_vertices": [[0, 1, 5], [0, 5, 4], [0, 4, 3], [1, 6, 5], [1, 2, 6], [2, 5, 6], [2, 3, 5], [3, 4, 5]],
+    });
+    fs::write(dir.join("slit.fold"), slit.to_string()).unwrap();
+    let scene = "version = 1
+        [sheet]
+        mesh = { file = { path = \"slit.fold\" } }
+        refine = 2
+        material = \"office paper\"
+        damping = 5
+        [[support]]
+        at = { half_space = { point = [0, 0.001, 0], normal = [0, -1, 0] } }
+        [[support]]
+        at = { half_space = { point = [0, 0.099, 0], normal = [0, 1, 0] } }
+        hold = { moving_pin = { y = { smooth_step = { to = -0.01, end = 0.3 } } } }
+        [forces]
+        gravity = [0, 0, -9.81]
+        [contact]
+        self_contact = true
+        [stop]
+        time = 0.4";
+    fs::write(dir.join("scene.toml"), scene).unwrap();
+    let done = run(dir, &["simulate", "scene.toml"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let trajectory = Trajectory::read(&dir.join("scene-run/trajectory.npz")).unwrap();
+    let [first, last] = [0, trajectory.times().len() - 1].map(|k| trajectory.frame(k).unwrap());
+    let place = |x: &[f64], v: usize| Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
+    let count = first.len() / 3;
+    let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+    let together = pairs.filter(|&[a, b]| place(first, a) == place(first, b));
+    let parted: Vec<f64> = together
+        .map(|[a, b]| (place(last, a) - place(last, b)).norm())
+        .collect();
+    // Seven vertices of the two cut edges, divided in four, lie between the ends of the slit.
+    assert_eq!(parted.len(), 7, "{parted:?}");
+    assert!(parted.iter().all(|d| *d > 1e-6), "{parted:?}");
 }
