@@ -525,6 +525,19 @@ mod tests {
             }
             assert_eq!(std::fs::read(&path).unwrap(), bytes);
         }
+        // Every byte that counts is looked at.
+        for at in 0..lengths[2].length as usize {
+            let mut changed = bytes.clone();
+            changed[at] ^= 1;
+            std::fs::write(&path, &changed).unwrap();
+            let refused = HistoryWriter::resume(&path, lengths[2]);
+            assert!(
+                matches!(refused, Err(HistoryError::Changed { .. })),
+                "byte {at}"
+            );
+            assert_eq!(std::fs::read(&path).unwrap(), changed);
+        }
+        std::fs::write(&path, &bytes).unwrap();
         let longer = HistoryWriter::resume(
             &path,
             Written {
