@@ -1,6 +1,7 @@
 //! Files that a run reads and writes, one format a file. Needs the mesh alone.
 
 pub(crate) mod atomic;
+#[cfg(feature = "run")]
 mod cell;
 mod export;
 mod finite;
