@@ -27,8 +27,8 @@ pub enum SceneWarning {
         /// The clamped vertices beside the free part of the sheet.
         edge: Vec<VertexId>,
     },
-    /// Sheets of rods are closed surfaces: these have `3V - E = 3 chi`, at most the six degrees of freedom of a
-    /// rigid body, and almost all of them are rigid ([`Dof`](isosheet_mesh::Dof)).
+    /// Sheets of rods are closed surfaces: these have `3V - E = 3 chi`, at most the six degrees of freedom of
+    /// a rigid body, and almost all of them are rigid ([`Dof`](isosheet_mesh::Dof)).
     #[error(
         "{}: a sheet of rigid rods without a boundary cannot bend",
         closed_parts(*closed, *parts)

@@ -60,8 +60,8 @@ pub struct ReadingChanges {
     pub welded_vertices: usize,
     /// Faces that were removed because two of their corners were welded.
     pub collapsed_faces: usize,
-    /// Faces of flat crease patterns that were clockwise and have been reversed, with the mountains, valleys and
-    /// fold angles at them.
+    /// Faces of flat crease patterns that were clockwise and have been reversed, with the mountains, valleys
+    /// and fold angles at them.
     pub reversed_faces: usize,
     /// Vertices that were added because the sheet is cut there.
     pub vertices_at_cuts: usize,

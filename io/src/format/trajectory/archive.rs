@@ -13,8 +13,8 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 /// Writes arrays.
 pub(super) struct ArchiveWriter<W: Write + Seek>(ZipWriter<UntilError<W>>);
 
-/// Writes until that fails, and only seems to write from then on. An archive that is given up after an error is ended by
-/// its library, which would print what fails then.
+/// Writes until that fails, and only seems to write from then on. An archive that is given up after an error
+/// is ended by its library, which would print what fails then.
 struct UntilError<W> {
     inner: W,
     has_failed: bool,
