@@ -13,6 +13,9 @@ use pyo3::types::{PyDict, PyType};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
+/// Vertices and faces.
+type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+
 /// A mesh of triangles, whose edges have their lengths here as rest lengths.
 ///
 /// vertices: array of shape (V, 3), metres.
@@ -130,11 +133,11 @@ impl Mesh {
     }
 
     /// For `pickle` and `copy`: vertices and faces.
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyType>, (Bound<'py, PyAny>, Bound<'py, PyAny>))> {
-        let arrays = (slf.getattr("vertices")?, slf.getattr("faces")?);
-        Ok((slf.get_type(), arrays))
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyType>, Arrays<'py>)> {
+        Ok((
+            slf.get_type(),
+            (slf.getattr("vertices")?, slf.getattr("faces")?),
+        ))
     }
 
     /// Positions of the vertices, metres, of shape (V, 3).

@@ -124,8 +124,8 @@ impl Simulation {
     ///
     /// each: a function that is called after every step with its report, and ends the run by returning True.
     ///
-    /// Returns the reports. Raises `ValueError` for a time that is no number. Ctrl-C raises `KeyboardInterrupt` within a step or after it, and the run can go
-    /// on.
+    /// Returns the reports. Raises `ValueError` for a time that is no number. Ctrl-C raises
+    /// `KeyboardInterrupt` within a step or after it, and the run can go on.
     #[pyo3(signature = (until, each = None))]
     fn run(
         &self,

@@ -75,7 +75,8 @@ pub(crate) struct Convert {
     #[arg(long, value_name = "SIZE")]
     size: Option<Size>,
     /// Of pictures, where the viewer is: front, back, left, right, top, bottom, or degrees counter-clockwise
-    /// from the x axis and above the horizon [default: -60,25, or elsewhere if bodies hide the sheet from there]
+    /// from the x axis and above the horizon [default: -60,25, or elsewhere if bodies hide the sheet from
+    /// there]
     #[arg(long, value_name = "VIEW", allow_hyphen_values = true)]
     view: Option<View>,
     /// Of a run, leave its bodies out

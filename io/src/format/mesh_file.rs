@@ -1,5 +1,6 @@
 //! Reading meshes from files of other programs.
 
+mod assignment;
 mod error;
 mod faces;
 mod fold;
@@ -18,11 +19,12 @@ mod stl;
 mod tests;
 mod weld;
 
+pub use assignment::EdgeAssignment;
 pub use error::{MeshFileError, MeshFileProblem, Place};
 pub use fold::{FoldFrame, FoldProblem};
 pub use format::MeshFormat;
 pub use gltf::GltfProblem;
-pub use mesh::{EdgeAssignment, FileCrease, MeshFile, ReadingChanges};
+pub use mesh::{FileCrease, MeshFile, ReadingChanges};
 pub use options::{MeshOptions, Polygons, SeparateBuffers};
 pub use repair::Repair;
 

@@ -1,4 +1,5 @@
-//! Marks of a vector drawing that are joined: the pieces of a body to areas of one colour, and its edges to lines.
+//! Marks of a vector drawing that are joined: the pieces of a body to areas of one colour, and its edges to
+//! lines.
 
 use super::pieces::Piece;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -7,7 +8,8 @@ use std::fmt::Write;
 /// Side of the squares in which marks are looked for that cover each other, pixels.
 const SQUARE: f64 = 2.0;
 
-/// Steps of colours of bodies, of 255: neighbours that differ by less are hardly told apart, and are one area.
+/// Steps of colours of bodies, of 255: neighbours that differ by less are hardly told apart, and are one
+/// area.
 const COLOUR_STEP: u8 = 4;
 
 /// A point of the drawing, hundredths of a pixel.
@@ -37,8 +39,8 @@ pub(super) enum Shape {
     Line { layer: usize, ends: [[f64; 2]; 2] },
 }
 
-/// The elements of marks from the farthest to the nearest one. The pieces and edges of a layer wait for others of it
-/// until something nearer covers them.
+/// The elements of marks from the farthest to the nearest one. The pieces and edges of a layer wait for
+/// others of it until something nearer covers them.
 pub(super) fn elements(marks: Vec<Mark>, ink: &str) -> Vec<String> {
     let mut waiting = Waiting::default();
     let mut done = Vec::new();
@@ -150,8 +152,8 @@ struct Layer {
     covered: HashSet<[i32; 2]>,
     /// The layers that have to be drawn before.
     after: BTreeSet<usize>,
-    /// The sides of pieces by the colour of these: which corner follows on which, with the place of the first. Sides that
-    /// two pieces have in common are left out.
+    /// The sides of pieces by the colour of these: which corner follows on which, with the place of the
+    /// first. Sides that two pieces have in common are left out.
     areas: BTreeMap<[u8; 3], HashMap<[usize; 2], Point>>,
     lines: Vec<[Point; 2]>,
 }

@@ -89,9 +89,10 @@ impl SheetPicture<'_> {
 pub struct Look {
     /// Size of the picture, pixels; 480 x 480 by default.
     pub size: [usize; 2],
-    /// sRGB colours of the upper and the lower side of the sheet as it lies flat; several sheets take them by turns. By
-    /// default the first one is paper white with a warm tint above, and below a blue that stays apart from it under
-    /// any colour vision; the others are tints above that stay apart from each other, with a darker side below.
+    /// sRGB colours of the upper and the lower side of the sheet as it lies flat; several sheets take them by
+    /// turns. By default the first one is paper white with a warm tint above, and below a blue that stays
+    /// apart from it under any colour vision; the others are tints above that stay apart from each other,
+    /// with a darker side below.
     pub sides: [[[u8; 3]; 2]; 6],
     /// sRGB colour of bodies; a light grey by default.
     pub body: [u8; 3],

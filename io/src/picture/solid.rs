@@ -37,7 +37,8 @@ struct Form {
 /// The surface that faces of a body approximate, in space.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Skin {
-    /// The faces themselves; of a closed body the back sides are never seen, and of a convex one no face hides another.
+    /// The faces themselves; of a closed body the back sides are never seen, and of a convex one no face
+    /// hides another.
     Flat { is_closed: bool, is_convex: bool },
     /// A ball or a capsule: all points at a distance from a segment.
     Round { ends: [[f64; 3]; 2], radius: f64 },
@@ -347,8 +348,8 @@ impl Triangles {
         self.sheets.partition_point(|end| *end <= face)
     }
 
-    /// The layer of a piece of a body: no two pieces of one layer cover each other. Convex bodies are a layer, and each
-    /// face of others is one.
+    /// The layer of a piece of a body: no two pieces of one layer cover each other. Convex bodies are a
+    /// layer, and each face of others is one.
     pub(super) fn layer_of_face(&self, face: usize) -> usize {
         let body = self.skins.partition_point(|(_, end)| *end <= face);
         match self.skins.get(body) {

@@ -26,9 +26,9 @@ const DOT: f64 = 3.0;
 ///
 /// Faces are painted from the farthest to the nearest one (the painter's algorithm), by the mean depth of
 /// their corners; faces of bodies are cut into pieces for this. Where faces penetrate or overlap in a circle,
-/// no order is right. Pieces of a body of about the same colour, and the parts of its edges, are joined again as far as
-/// nothing lies between them. Light falls as in [`render`](super::render()), without the shadows of faces on each
-/// other.
+/// no order is right. Pieces of a body of about the same colour, and the parts of its edges, are joined again
+/// as far as nothing lies between them. Light falls as in [`render`](super::render()), without the shadows of
+/// faces on each other.
 ///
 /// # Errors
 /// Those of [`Look::validate`]; [`PictureError::Coordinates`], [`PictureError::NotFinite`] and

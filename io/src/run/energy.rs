@@ -22,6 +22,8 @@ pub struct EnergySummary {
     /// Largest energy that was exchanged: kinetic energy, change of the potential energy, work, or what
     /// damping, friction and yielding took, joules.
     pub largest_exchange: f64,
+    /// Largest kinetic energy that the round-off of the positions looks like over a step, joules.
+    pub round_off: f64,
     /// `largest_error` over `largest_kinetic`; none if the sheet never moved.
     pub relative_error: Option<f64>,
     /// `largest_gain` over `largest_kinetic`; none if the sheet never moved.
@@ -42,8 +44,10 @@ impl EnergySummary {
         start
     }
 
-    /// Takes in a step.
-    pub(crate) fn observe(&mut self, report: &StepReport) {
+    /// Takes in a step of a sheet of a mass (kilograms) whose coordinates are of a size (metres).
+    pub(crate) fn observe(&mut self, report: &StepReport, mass: f64, size: f64) {
+        let speed = f64::EPSILON * size / report.h;
+        self.round_off = self.round_off.max(mass * speed * speed);
         self.largest_kinetic = self.largest_kinetic.max(report.kinetic);
         self.least_potential = self.least_potential.min(report.potential);
         self.largest_error = self.largest_error.max(report.energy_drift.abs());

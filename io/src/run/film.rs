@@ -14,8 +14,8 @@ pub struct FilmOptions {
     pub height: usize,
     /// Width of the pictures, pixels; by default an even number that follows from what is seen.
     pub width: Option<usize>,
-    /// Where the viewer is; by default -60 degrees from the x axis and 25 degrees above the horizon, or elsewhere if
-    /// bodies hide the sheet from there.
+    /// Where the viewer is; by default -60 degrees from the x axis and 25 degrees above the horizon, or
+    /// elsewhere if bodies hide the sheet from there.
     pub view: Option<Viewpoint>,
 }
 

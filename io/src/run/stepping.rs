@@ -274,10 +274,13 @@ impl Stepping<'_> {
 
     fn count(&mut self, report: &StepReport) {
         let displacement = self.displacement();
+        let mass = self.simulation.model().mass().total();
+        let coordinates = self.simulation.state().x.iter();
+        let size = coordinates.fold(0.0, |size: f64, c| size.max(c.abs()));
         let progress = &mut self.progress;
         progress.strain = progress.strain.max(report.strain);
         progress.displacement = progress.displacement.max(displacement);
-        progress.energy.observe(report);
+        progress.energy.observe(report, mass, size);
         progress.iterations += report.iterations as u64;
         progress.factorisations += report.factorisations as u64;
         progress.rejected += report.rejected as u64;

@@ -13,8 +13,8 @@ pub struct Viewpoint {
     pub elevation: f64,
 }
 
-/// The viewpoint that is taken where the sheet is seen from there, and others: from all sides, from high above and
-/// from below.
+/// The viewpoint that is taken where the sheet is seen from there, and others: from all sides, from high
+/// above and from below.
 const VIEWPOINTS: [[f64; 2]; 16] = [
     [-60.0, 25.0],
     [-120.0, 25.0],
@@ -44,8 +44,8 @@ const SAMPLES: usize = 150;
 const NEAR: f64 = 5e-3;
 
 impl Viewpoint {
-    /// The first viewpoint from which bodies hide no more than half of the sheet in some frames, seen from a distance in
-    /// metres; without one that from which they hide least.
+    /// The first viewpoint from which bodies hide no more than half of the sheet in some frames, seen from a
+    /// distance in metres; without one that from which they hide least.
     pub(super) fn of_sight(
         recording: &Recording,
         frames: &[usize],
@@ -105,8 +105,8 @@ impl Default for Viewpoint {
     }
 }
 
-/// Whether a body is between a point and a viewer at a distance in some direction. A body that the point is close to is
-/// so only if the line of sight leads into it.
+/// Whether a body is between a point and a viewer at a distance in some direction. A body that the point is
+/// close to is so only if the line of sight leads into it.
 fn is_between(
     body: &Obstacle,
     t: f64,

@@ -75,7 +75,7 @@ impl Summary {
             wrong: f.wrong_side,
             creases: f.creases,
         });
-        let gains = gain > Self::ENERGY_GAIN * exchanged;
+        let gains = gain > Self::ENERGY_GAIN * exchanged + self.energy.round_off;
         let gained = gains.then_some(RunWarning::EnergyGain { gain, exchanged });
         let sharpest = self.elastic.and_then(|elastic| elastic.sharpest);
         let coarse = sharpest.filter(|bend| bend.shortening() > Self::CHORD_ERROR);

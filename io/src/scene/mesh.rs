@@ -151,8 +151,8 @@ pub struct MeshFile {
     /// pattern to `sheet.mesh` and a folded form of it to `sheet.start.file`.
     #[serde(default)]
     pub frame: Option<FoldFrame>,
-    /// Of a glTF file: the name of the mesh that is taken; if left out, all meshes that its scene shows, each where
-    /// its nodes place it.
+    /// Of a glTF file: the name of the mesh that is taken; if left out, all meshes that its scene shows, each
+    /// where its nodes place it.
     #[serde(default)]
     pub mesh: Option<String>,
 }

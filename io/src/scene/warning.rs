@@ -46,8 +46,8 @@ pub enum SceneWarning {
         /// Wall time on one core of a sheet of rods without contact, days.
         days: u64,
     },
-    /// Sheets of rods are closed surfaces: these have `3V - E = 3 chi`, at most the six degrees of freedom of a
-    /// rigid body, and almost all of them are rigid ([`Dof`](isosheet_mesh::Dof)).
+    /// Sheets of rods are closed surfaces: these have `3V - E = 3 chi`, at most the six degrees of freedom of
+    /// a rigid body, and almost all of them are rigid ([`Dof`](isosheet_mesh::Dof)).
     #[error(
         "{}: a sheet of rigid rods without a boundary cannot bend",
         closed_parts(*closed, *parts)

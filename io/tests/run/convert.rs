@@ -445,8 +445,8 @@ fn frames_of_runs_become_pictures() {
     assert!(!dir.join("x.png").exists() && !dir.join("x.apng").exists());
 }
 
-/// Every kind of scene to start from, after a few steps, in every format: with refined meshes and crease patterns,
-/// several sheets, glue, bodies and bends that stay.
+/// Every kind of scene to start from, after a few steps, in every format: with refined meshes and crease
+/// patterns, several sheets, glue, bodies and bends that stay.
 #[test]
 fn every_kind_of_run_is_converted_to_every_format() {
     let series = SeriesFormat::ALL.map(SeriesFormat::extension);
@@ -492,8 +492,8 @@ fn every_kind_of_run_is_converted_to_every_format() {
     }
 }
 
-/// The pattern of a refined sheet is that of its mesh: the pleats of the hyperbolic paraboloid have as many parts as
-/// `refine` makes of an edge, and are mountains and valleys in turn.
+/// The pattern of a refined sheet is that of its mesh: the pleats of the hyperbolic paraboloid have as many
+/// parts as `refine` makes of an edge, and are mountains and valleys in turn.
 #[test]
 fn refined_patterns_are_exported() {
     let dir = with_scene(StartingPoint::Hypar);
@@ -524,8 +524,8 @@ fn share_of_paper(png: &[u8]) -> f64 {
     pixels.iter().filter(is_paper).count() as f64 / pixels.len() as f64
 }
 
-/// Where a plate stands between the usual viewer and the sheet, the picture is taken from elsewhere. Bodies can be
-/// left out.
+/// Where a plate stands between the usual viewer and the sheet, the picture is taken from elsewhere. Bodies
+/// can be left out.
 #[test]
 fn pictures_show_the_sheet_and_not_a_plate_before_it() {
     let dir = tempfile::tempdir().unwrap();
@@ -559,8 +559,8 @@ fn pictures_show_the_sheet_and_not_a_plate_before_it() {
     assert!(said.contains("--no-bodies"), "{said}");
 }
 
-/// A file that does not fit on the disk (here: into the size that the system allows) is one error of this program, and
-/// no text of a library beside it; nothing is left.
+/// A file that does not fit on the disk (here: into the size that the system allows) is one error of this
+/// program, and no text of a library beside it; nothing is left.
 #[cfg(unix)]
 #[test]
 fn files_that_do_not_fit_are_one_error() {

@@ -368,7 +368,7 @@ fn thousands_of_corners_and_of_unknown_keys_are_answered_shortly() {
     assert_eq!(code(&refused), Some(3), "{}", stderr(&refused));
     let said = stderr(&refused);
     assert!(
-        said.contains("100000 corners, and polygons of at most 1000"),
+        said.contains("100000 corners, more than the 1000 of a polygon"),
         "{said}"
     );
     let mut scene = "version = 1\n".to_owned();

@@ -204,8 +204,8 @@ fn sheets_that_cannot_do_what_was_meant_are_told() {
     }
 }
 
-/// What `check` warns of is said where the scene is run, too: a sheet in the unit of another program, and a point
-/// that chooses a vertex far away.
+/// What `check` warns of is said where the scene is run, too: a sheet in the unit of another program, and a
+/// point that chooses a vertex far away.
 #[test]
 fn runs_warn_of_wrong_units() {
     let dir = tempfile::tempdir().unwrap();

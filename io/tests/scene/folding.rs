@@ -310,8 +310,8 @@ fn springs_begin_at_the_angles_of_the_start() {
 }
 
 /// A file with a crease pattern of quads and its folded form. Each quad is a rectangle in the flat and a
-/// rectangle in the folded frame, and the faces of the flat frame are clockwise, as some programs write them: what
-/// is a mountain as seen from their front is a valley as seen from above.
+/// rectangle in the folded frame, and the faces of the flat frame are clockwise, as some programs write them:
+/// what is a mountain as seen from their front is a valley as seen from above.
 fn bent_strip() -> Value {
     let (c, s) = (0.5, 0.75_f64.sqrt());
     json!({
@@ -536,8 +536,8 @@ fn what_cannot_be_folded_is_refused() {
     );
 }
 
-/// The corner of a square that folds along its diagonal goes to the side that a valley leads to: that from which the
-/// faces are counter-clockwise. The same drawing with clockwise faces folds into the mirror image.
+/// The corner of a square that folds along its diagonal goes to the side that a valley leads to: that from
+/// which the faces are counter-clockwise. The same drawing with clockwise faces folds into the mirror image.
 #[test]
 fn clockwise_faces_fold_to_the_other_side() {
     let dir = tempfile::tempdir().unwrap();

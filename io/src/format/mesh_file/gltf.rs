@@ -290,8 +290,8 @@ const IDENTITY: Matrix = [
     [0.0, 0.0, 0.0, 1.0],
 ];
 
-/// The meshes that nodes of the scene show, each with the matrix of its node, as often as they are shown: all of
-/// them, or those of a name. Where no node shows one of these, they are as they are.
+/// The meshes that nodes of the scene show, each with the matrix of its node, as often as they are shown: all
+/// of them, or those of a name. Where no node shows one of these, they are as they are.
 fn placed_meshes<'a>(document: &'a Document, name: Option<&str>) -> Vec<(Mesh<'a>, Matrix)> {
     let is_wanted = |m: &Mesh<'_>| name.is_none() || m.name() == name;
     let scene = document

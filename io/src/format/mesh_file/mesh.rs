@@ -1,5 +1,6 @@
 //! The mesh that a file has.
 
+use super::assignment::EdgeAssignment;
 use super::error::MeshFileError;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::wording::counted;
@@ -8,39 +9,6 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fmt;
 use std::path::{Path, PathBuf};
-
-/// What an edge of a FOLD file is meant to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EdgeAssignment {
-    /// `B`: the boundary of the sheet.
-    Boundary,
-    /// `M`: folds away from the side from which faces are counter-clockwise.
-    Mountain,
-    /// `V`: folds towards that side.
-    Valley,
-    /// `F`: stays flat.
-    Flat,
-    /// `U`, or not said.
-    Unassigned,
-    /// `C`: the sheet is cut here; its two sides have vertices of their own.
-    Cut,
-    /// `J`: joins two triangles of one panel; stays flat.
-    Join,
-}
-
-impl fmt::Display for EdgeAssignment {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Boundary => "is on the boundary",
-            Self::Mountain => "is a mountain",
-            Self::Valley => "is a valley",
-            Self::Flat => "stays flat",
-            Self::Unassigned => "is unassigned",
-            Self::Cut => "is cut",
-            Self::Join => "joins two faces of a flat panel",
-        })
-    }
-}
 
 /// An edge of a FOLD file, or a diagonal of one of its polygons.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,8 +28,8 @@ pub struct ReadingChanges {
     pub welded_vertices: usize,
     /// Faces that were removed because two of their corners were welded.
     pub collapsed_faces: usize,
-    /// Faces of flat crease patterns that were clockwise and have been reversed, with the mountains, valleys and
-    /// fold angles at them.
+    /// Faces of flat crease patterns that were clockwise and have been reversed, with the mountains, valleys
+    /// and fold angles at them.
     pub reversed_faces: usize,
     /// Vertices that were added because the sheet is cut there.
     pub vertices_at_cuts: usize,

@@ -9,8 +9,8 @@ pub enum Polygons {
     /// Refuse the file. In a model of rods a polygon's diagonals are lines along which the sheet can fold,
     /// and its author did not draw them.
     Refuse,
-    /// Cut each polygon into triangles, corner after corner by the shortest cut inside (so a quad is cut along its
-    /// shorter diagonal). [`MeshFile::diagonals`] lists the cuts.
+    /// Cut each polygon into triangles, corner after corner by the shortest cut inside (so a quad is cut
+    /// along its shorter diagonal). [`MeshFile::diagonals`] lists the cuts.
     ///
     /// [`MeshFile::diagonals`]: super::MeshFile::diagonals
     Triangulate,
@@ -38,8 +38,8 @@ pub struct MeshOptions {
     /// Of FOLD files: the frame. `None` (the default) is the first with vertices. Other files have no frames
     /// and are refused with this option.
     pub frame: Option<FoldFrame>,
-    /// Of glTF files: the name of the mesh. `None` (the default) is all meshes that the scene of the file shows.
-    /// Other files are refused with this option.
+    /// Of glTF files: the name of the mesh. `None` (the default) is all meshes that the scene of the file
+    /// shows. Other files are refused with this option.
     pub mesh: Option<String>,
     /// Of glTF files: buffers in files of their own, which are read unless asked otherwise.
     pub buffers: SeparateBuffers,

@@ -8,8 +8,8 @@ type Point = [f64; 3];
 /// coordinates of seven digits. A panel has the same cuts in every position then, flat and folded.
 const EQUAL_CUTS: f64 = 1e-6;
 
-/// More corners of a polygon are refused: cutting takes up to the third power of their number, a second for so
-/// many.
+/// More corners of a polygon are refused: cutting takes up to the third power of their number, a second for
+/// so many.
 pub(super) const MOST_CORNERS: usize = 1000;
 
 /// A polygon in triangles.
@@ -19,12 +19,12 @@ pub(super) struct Pieces {
     pub(super) cuts: Vec<[u32; 2]>,
 }
 
-/// Cuts a polygon into triangles that are turned like the polygon as a whole; `None` if its outline crosses or
-/// touches itself, seen along its normal, or has no area.
+/// Cuts a polygon into triangles that are turned like the polygon as a whole; `None` if its outline crosses
+/// or touches itself, seen along its normal, or has no area.
 ///
 /// Corner after corner is cut off, always by the shortest cut that is inside: a quad is cut along its shorter
-/// diagonal if both will do. Of equal cuts that with the smallest vertex number is made. A Delaunay triangulation
-/// would leave it to round-off how the corners of a rectangle are joined.
+/// diagonal if both will do. Of equal cuts that with the smallest vertex number is made. A Delaunay
+/// triangulation would leave it to round-off how the corners of a rectangle are joined.
 pub(super) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<Pieces> {
     let places = in_plane(&corners.iter().map(|&c| at(c)).collect::<Vec<_>>());
     let near = NEAR * extent(&places);
@@ -120,8 +120,8 @@ fn in_plane(points: &[Point]) -> Vec<Point> {
         add(sum, cross(sub(p[0], points[0]), sub(p[1], points[0])))
     });
     let normal = unit(area);
-    // The axis that is farthest from the normal, turned into the plane, so that coordinates in the plane of two
-    // axes stay as they are.
+    // The axis that is farthest from the normal, turned into the plane, so that coordinates in the plane of
+    // two axes stay as they are.
     let axis = match normal.map(f64::abs) {
         [x, y, z] if z >= x && z >= y => [1.0, 0.0, 0.0],
         [x, y, _] if y >= x => [0.0, 0.0, 1.0],

@@ -76,11 +76,12 @@ impl MeshFile {
     /// that neighbours agree. The order of what stays is kept.
     ///
     /// Not repaired, because there is more than one way: edges with more than two faces, vertices at which a
-    /// surface only touches itself, Moebius bands, holes, folds of FOLD files between faces in opposite directions.
+    /// surface only touches itself, Moebius bands, holes, folds of FOLD files between faces in opposite
+    /// directions.
     ///
     /// # Errors
-    /// [`MeshFileProblem::Mesh`] if the faces cannot be oriented, [`MeshFileProblem::Fold`] if a fold is between
-    /// faces in opposite directions; everything else is then repaired.
+    /// [`MeshFileProblem::Mesh`] if the faces cannot be oriented, [`MeshFileProblem::Fold`] if a fold is
+    /// between faces in opposite directions; everything else is then repaired.
     pub fn repair(&mut self) -> Result<Repair, MeshFileProblem> {
         let mut repair = Repair {
             merged_vertices: self.merge_vertices(),

@@ -416,7 +416,8 @@ fn defects_of_gltf_are_typed() {
     }
 }
 
-/// The square of [`gltf`] with other roots and nodes of its scene; node 0 of that has the translation [1, 0, 0].
+/// The square of [`gltf`] with other roots and nodes of its scene; node 0 of that has the translation [1, 0,
+/// 0].
 fn placed_gltf(roots: &str, nodes: &str) -> String {
     let scale = "\"scale\":[1,1,1]}]";
     gltf(1.0)
@@ -432,11 +433,12 @@ fn placed_gltf(roots: &str, nodes: &str) -> String {
         )
 }
 
-/// Every node of the scene that shows a mesh adds a copy of it: below others, by a matrix or by its parts, mirrored.
+/// Every node of the scene that shows a mesh adds a copy of it: below others, by a matrix or by its parts,
+/// mirrored.
 #[test]
 fn all_placed_meshes_of_a_gltf_file_are_read() {
-    // Node 0 moves by 1 along x, which all others are below; node 2 turns by 90 degrees about y (upwards) and doubles;
-    // node 3 mirrors x by a matrix; node 4 is not in the scene.
+    // Node 0 moves by 1 along x, which all others are below; node 2 turns by 90 degrees about y (upwards) and
+    // doubles; node 3 mirrors x by a matrix; node 4 is not in the scene.
     let nodes = r#"[{"translation":[1,0,0],"children":[1,2,3]},{"mesh":0},
         {"translation":[0,5,0],"rotation":[0,0.7071067811865476,0,0.7071067811865476],"scale":[2,2,2],"mesh":0},
         {"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,10,0,1],"mesh":0},{"translation":[9,9,9],"mesh":0}]"#;

@@ -13,7 +13,8 @@ impl MeshFile {
     /// one that was kept that vertex, and removes faces of which two corners were welded.
     ///
     /// Vertices are visited in order; of several kept ones within reach the nearest is taken, the first on a
-    /// tie. With tolerance 0 coordinates have to be equal. `parts` are the first vertices of parts that stay apart.
+    /// tie. With tolerance 0 coordinates have to be equal. `parts` are the first vertices of parts that stay
+    /// apart.
     pub(super) fn weld(&mut self, tolerance: f64, parts: &[usize]) {
         let points = self.positions.as_chunks::<3>().0;
         let bound = |take: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {

@@ -1,5 +1,5 @@
-//! Edges and the faces beside them: whether an edge is a mountain or a valley depends on the side of these that
-//! it is seen from.
+//! Edges and the faces beside them: whether an edge is a mountain or a valley depends on the side of these
+//! that it is seen from.
 
 use super::FoldProblem;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
@@ -49,8 +49,8 @@ pub(super) fn check_faces(edges: &[FileCrease], sides: &[Side]) -> Result<(), Fo
 /// Turns the edges at faces that were reversed: mountains become valleys, and angles change their sign.
 ///
 /// # Errors
-/// [`FoldProblem::OppositeFaces`] for a fold between a face that was reversed and one that was not, of which the
-/// file does not say where it leads.
+/// [`FoldProblem::OppositeFaces`] for a fold between a face that was reversed and one that was not, of which
+/// the file does not say where it leads.
 pub(super) fn turn(edges: &mut [FileCrease], sides: &[Side]) -> Result<(), FoldProblem> {
     let mut beside: HashMap<[u32; 2], [Option<usize>; 2]> = HashMap::new();
     for side in sides {

@@ -235,8 +235,8 @@ fn patterns_without_faces_that_are_no_drawing_are_refused() {
     );
 }
 
-/// Seen from the other side, mountains are valleys: where all faces are clockwise the file shows the back of the
-/// sheet.
+/// Seen from the other side, mountains are valleys: where all faces are clockwise the file shows the back of
+/// the sheet.
 #[test]
 fn clockwise_faces_of_flat_patterns_are_turned_over_with_their_creases() {
     let read = |faces: &str, more: &str| {
