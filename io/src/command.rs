@@ -20,6 +20,7 @@ mod page;
 mod pictures;
 mod printable;
 mod progress;
+mod reading;
 mod simulate;
 mod start;
 mod sweep;

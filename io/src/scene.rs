@@ -29,6 +29,7 @@
 
 mod air;
 mod build;
+mod bytes;
 mod chart;
 mod contact;
 mod creases;
@@ -66,6 +67,7 @@ mod size;
 mod source;
 mod start;
 mod starting_point;
+mod step_path;
 mod stop;
 mod support_forces;
 mod supports;
@@ -73,6 +75,7 @@ mod targets;
 mod toml_problem;
 mod unit;
 mod warning;
+mod warnings;
 mod weight;
 mod yields;
 
@@ -121,7 +124,7 @@ pub use weight::Weight;
 pub use yields::{CreaseYield, SheetYield};
 
 #[cfg(feature = "run")]
-pub(crate) use in_words::bytes_in_words;
+pub(crate) use bytes::bytes_in_words;
 #[cfg(feature = "run")]
 pub(crate) use resolution::check_positions;
 #[cfg(feature = "run")]

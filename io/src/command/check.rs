@@ -3,6 +3,7 @@
 use super::failure::{Code, Done, Failure};
 use super::info::{describe_scene, is_scene, refuse_edits, refuse_folder};
 use super::message::{counted, print_warnings};
+use super::reading::what_reading_did;
 use super::write::{is_same_file, to_stdout};
 use crate::mesh::Sheet;
 use crate::run::Estimate;
@@ -134,14 +135,6 @@ impl Check {
             fixed.display(),
             counts(&sheet)
         ))
-    }
-}
-
-/// What reading a mesh changed, as a line; none if nothing.
-pub(super) fn what_reading_did(mesh: &MeshFile) -> String {
-    match mesh.changes.is_nothing() {
-        true => String::new(),
-        false => format!("note: {}\n", mesh.changes),
     }
 }
 

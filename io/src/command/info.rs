@@ -1,8 +1,8 @@
 //! `isosheet info`.
 
-use super::check::what_reading_did;
 use super::failure::{Code, Done, Failure};
 use super::message::print_warnings;
+use super::reading::what_reading_did;
 use super::write::to_stdout;
 use crate::dynamics::{SheetModel, rod_rank};
 use crate::mesh::{Dof, MassKind, Sheet};

@@ -14,6 +14,7 @@ pub(crate) use motion::{Motion, MotionError, MotionFrame};
 use crate::format::atomic::write_atomically;
 use archive::{ArchiveReader, ArchiveWriter};
 use isosheet_mesh::{Sheet, VertexId};
+use std::convert::Infallible;
 use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -52,6 +53,29 @@ struct Contents {
     times: Vec<f64>,
     /// What the frames have besides positions.
     quantities: Vec<Quantity>,
+}
+
+impl Motion for Trajectory {
+    type Error = Infallible;
+
+    fn each(
+        &self,
+        show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
+    ) -> Result<(), Infallible> {
+        for (number, &t) in self.t.iter().enumerate() {
+            let n = 3 * self.vertex_count;
+            let frame = MotionFrame {
+                number,
+                t,
+                x: &self.x[n * number..n * (number + 1)],
+                data: FrameData::each(|q: Quantity| self.values(q, number).unwrap_or_default()),
+            };
+            if show(&frame).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
 }
 
 impl Trajectory {

@@ -3,8 +3,9 @@
 use super::frames::FrameShape;
 use super::stepping::step_count;
 use crate::format::memory;
+use crate::scene::bytes_in_words;
 use crate::scene::{
-    Key, MEMORY_OF_FACE, Problem, Scene, SceneError, SceneFile, SceneWarning, Setup, bytes_in_words,
+    Key, MEMORY_OF_FACE, Problem, Scene, SceneError, SceneFile, SceneWarning, Setup,
 };
 use std::fmt;
 use std::path::Path;

@@ -9,8 +9,8 @@ use super::mesh::Mesh;
 use super::placed::{PlacedSheet, PlacedSheets};
 use super::pose::Motion;
 use super::problem::Problem;
-use super::resolution::check_step;
 use super::sheet::{Bending, Elasticity, Isometry};
+use super::step_path::check_step;
 use super::supports::{Hold, frame_motion};
 use super::targets::{DrivenCrease, Targets};
 use super::{Air, Measure, Origins, Scene, Setup};
@@ -24,7 +24,6 @@ use isosheet_dynamics::{
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
-use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
@@ -570,11 +569,10 @@ impl<'a> Builder<'a> {
                 // (A zero may have either sign.)
                 let bits = |p: [f64; 3]| p.map(|c| (c + 0.0).to_bits());
                 let place = [rest, start].map(|x| bits(x[v.index()]));
-                match first_there.entry(place) {
-                    Entry::Occupied(first) => {
-                        pairs.push([part.vertex(*first.get()), part.vertex(v)])
-                    }
-                    Entry::Vacant(place) => drop(place.insert(v)),
+                if let Some(first) = first_there.get(&place) {
+                    pairs.push([part.vertex(*first), part.vertex(v)]);
+                } else {
+                    first_there.insert(place, v);
                 }
             }
         }

@@ -75,7 +75,7 @@ pub(super) fn check(sheets: &[Sheet], checks: &mut Checks) {
         }
     }
     if checks.problems.len() == before
-        && let Err(problem) = size::check_sheets(sheets)
+        && let Err(problem) = size::check_sheets(sheets, |k| sheet_key(sheets.len(), k))
     {
         checks.problems.push(problem);
     }

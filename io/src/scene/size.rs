@@ -1,11 +1,10 @@
 //! How large the mesh of a scene is, before it is made.
 
-use super::in_words::bytes_in_words;
+use super::bytes::bytes_in_words;
 use super::key::Key;
 use super::mesh::Mesh;
 use super::problem::Problem;
 use super::sheet::Sheet;
-use super::sheets::sheet_key;
 use crate::format::memory;
 use isosheet_mesh::wording::brief;
 
@@ -32,11 +31,11 @@ pub(super) fn check_memory(faces: f64, key: Key) -> Result<(), Problem> {
 }
 
 /// Refuses sheets of a scene that memory cannot hold together, as far as their numbers of faces are known before
-/// they are made.
-pub(super) fn check_sheets(sheets: &[Sheet]) -> Result<(), Problem> {
+/// they are made; `key` is that of a sheet by its number.
+pub(super) fn check_sheets(sheets: &[Sheet], key: impl Fn(usize) -> Key) -> Result<(), Problem> {
     let mut all = 0.0;
     for (k, sheet) in sheets.iter().enumerate() {
-        let key = sheet_key(sheets.len(), k);
+        let key = key(k);
         let faces = sheet.mesh.face_count();
         if faces > MOST_GENERATED {
             continue;

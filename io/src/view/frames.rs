@@ -1,7 +1,6 @@
 //! The frames of a page, which need not all be in memory.
 
 use super::error::ViewError;
-use super::replay::Replay;
 use std::ops::ControlFlow;
 
 /// Which frames of a run are kept: every `stride`-th one and the last one.
@@ -63,28 +62,5 @@ pub(crate) trait ShownFrames {
             }
         })?;
         Ok(done?)
-    }
-}
-
-impl ShownFrames for Replay {
-    type Error = ViewError;
-
-    fn each(
-        &self,
-        kept: Kept,
-        show: &mut dyn FnMut(&ShownFrame<'_>) -> ControlFlow<()>,
-    ) -> Result<(), ViewError> {
-        for number in kept.numbers() {
-            let values: Vec<&[f64]> = self.fields.iter().map(|f| &f.values[number][..]).collect();
-            let frame = ShownFrame {
-                number,
-                x: &self.positions[number],
-                values: &values,
-            };
-            if show(&frame).is_break() {
-                break;
-            }
-        }
-        Ok(())
     }
 }

@@ -6,8 +6,9 @@ use super::body::Body;
 use super::check;
 use super::error::ViewError;
 use super::field::{Field, Series};
-use super::frames::{Kept, ShownFrames};
+use super::frames::{Kept, ShownFrame, ShownFrames};
 use serde::Serialize;
+use std::ops::ControlFlow;
 
 /// An axis of space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -133,4 +134,27 @@ impl Replay {
 
 fn positions_of(frame: usize, time: f64) -> String {
     format!("the positions of frame {frame} at {time} s")
+}
+
+impl ShownFrames for Replay {
+    type Error = ViewError;
+
+    fn each(
+        &self,
+        kept: Kept,
+        show: &mut dyn FnMut(&ShownFrame<'_>) -> ControlFlow<()>,
+    ) -> Result<(), ViewError> {
+        for number in kept.numbers() {
+            let values: Vec<&[f64]> = self.fields.iter().map(|f| &f.values[number][..]).collect();
+            let frame = ShownFrame {
+                number,
+                x: &self.positions[number],
+                values: &values,
+            };
+            if show(&frame).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
 }

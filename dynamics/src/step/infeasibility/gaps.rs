@@ -145,10 +145,8 @@ impl Gaps {
             if !bodies.contains(&gap.body) {
                 bodies.push(gap.body);
             }
-            if by.is_none_or(|body| body == gap.body) {
-                if !vertices.contains(&gap.vertex) {
-                    vertices.push(gap.vertex);
-                }
+            if by.is_none_or(|body| body == gap.body) && !vertices.contains(&gap.vertex) {
+                vertices.push(gap.vertex);
             }
         }
         bodies.sort_unstable();

@@ -1,6 +1,7 @@
 //! Motions whose frames need not all be in memory.
 
-use super::{FrameData, Quantity, Trajectory, TrajectoryError};
+use super::data::FrameData;
+use super::error::TrajectoryError;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
@@ -27,29 +28,6 @@ pub(crate) trait Motion {
         &self,
         show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
     ) -> Result<(), Self::Error>;
-}
-
-impl Motion for Trajectory {
-    type Error = Infallible;
-
-    fn each(
-        &self,
-        show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
-    ) -> Result<(), Infallible> {
-        for (number, &t) in self.t.iter().enumerate() {
-            let n = 3 * self.vertex_count;
-            let frame = MotionFrame {
-                number,
-                t,
-                x: &self.x[n * number..n * (number + 1)],
-                data: FrameData::each(|q: Quantity| self.values(q, number).unwrap_or_default()),
-            };
-            if show(&frame).is_break() {
-                break;
-            }
-        }
-        Ok(())
-    }
 }
 
 /// Why the frames of a motion cannot be written.

@@ -3,7 +3,7 @@
 
 use super::FoldProblem;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
-use isosheet_mesh::{FaceId, Topology};
+use isosheet_mesh::FaceId;
 use std::collections::{HashMap, HashSet};
 
 /// A side of a face.
@@ -117,7 +117,11 @@ impl MeshFile {
     ///
     /// # Errors
     /// As [`Self::turn_creases`].
-    pub(crate) fn orient_creases(&mut self, t: &Topology) -> Result<(), FoldProblem> {
+    #[cfg(feature = "scene")]
+    pub(crate) fn orient_creases(
+        &mut self,
+        t: &isosheet_mesh::Topology,
+    ) -> Result<(), FoldProblem> {
         let of_topology = t.faces().iter().map(|f| first_least(f.map(|v| v.0)));
         let of_topology: HashSet<[u32; 3]> = of_topology.collect();
         let mut sides = Vec::new();
@@ -133,6 +137,7 @@ impl MeshFile {
 }
 
 /// The corners in the same order, the smallest number first.
+#[cfg(feature = "scene")]
 fn first_least(mut corners: [u32; 3]) -> [u32; 3] {
     let least = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
     corners.rotate_left(least);
