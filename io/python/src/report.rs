@@ -73,7 +73,7 @@ impl From<dynamics::StepReport> for StepReport {
             constrained_strain: report.constrained_strain,
             gap: report.gap,
             violation: report.violation,
-            taut: report.taut.map(|t| t.support.to_string()),
+            taut: report.taut.map(|t| t.by.to_string()),
             path: match report.outcome {
                 StepOutcome::Newton => "newton",
                 StepOutcome::Globalised => "globalised",
