@@ -5,10 +5,10 @@
 //! | file | what |
 //! |---|---|
 //! | `scene.toml` | the scene as it is run, edits included; mesh files are copied to `meshes/` |
-//! | `history.csv` | one row for each step ([`HistoryRow`](crate::HistoryRow)) |
+//! | `history.csv` | one row for each step ([`HistoryRow`]) |
 //! | `loads.csv` | the loads of each support and obstacle at each step ([`LoadRow`](crate::LoadRow)), if there are any |
 //! | `measures.csv` | what each measure of the scene shows at the start and at each step ([`MeasureRow`](crate::MeasureRow)), if there are any |
-//! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), when the run ends, fails or is stopped |
+//! | `trajectory.npz` | the frames ([`Trajectory`]), when the run ends, fails or is stopped |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
 //! | `index.html` | the 3D page of the run ([`view`](crate::view)), unless the scene says `page = false` |
 //! | `summary.json` | what came of it ([`Summary`]), last: a folder that has it is complete |
