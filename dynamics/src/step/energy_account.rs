@@ -6,6 +6,11 @@ use crate::{SheetModel, State};
 use isosheet_coords::linalg::norm_inf;
 use serde::{Deserialize, Serialize};
 
+/// Part of the energy that friction takes by which it may differ from that by the normal forces at the end of the
+/// step. Sheets that are crumpled differ by up to a fifth where they jam for a moment, and go on; where it is more
+/// than a half, most of the friction is not that of the step.
+const UNSETTLED: f64 = 0.5;
+
 /// Energy gains of the steps of a damped method, without the work of forces, bodies and supports.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnergyAccount {
@@ -76,7 +81,7 @@ impl EnergyAccount {
             + model.mass().total() * noise * noise
             + exchange.length_slack;
         let unsettled = (exchange.friction - exchange.settled_friction).abs();
-        let settled = tuning.friction_settled * exchange.friction.max(exchange.settled_friction);
+        let settled = UNSETTLED * exchange.friction.max(exchange.settled_friction);
         if unsettled
             > settled.max(tuning.gain * self.kinetic.max(kinetic[0]).max(kinetic[1])) + round_off
         {
