@@ -27,7 +27,7 @@ const EXACT: f64 = 1e-12;
 /// Flat is a singular state of a sheet of rods: from it the sheet can fold along several branches, and a step
 /// that is short leaves it along any of them. Here springs of the given weights are let come to rest from
 /// several starts, by long steps in which inertia does not count, and the one with the least energy is taken.
-/// The starts are the flat state and the [first-order displacement](folding_from_flat) towards all angles.
+/// The starts are the flat state and the displacement that turns all creases to their sides to first order.
 ///
 /// Nothing if the sheet is not flat, no edge has a target, or no branch is found.
 ///

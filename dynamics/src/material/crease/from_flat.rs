@@ -22,15 +22,14 @@ const RETURN: f64 = 1e-9;
 /// ```
 ///
 /// with the heights `w_i` of the vertices, the derivatives `g_ei` of the fold angle of edge `e`, its length
-/// `l_e` and its weight `k_e`; vertices of `held` stay. A sheet of rods can fold from flat along several
-/// branches, between which first-order forces do not decide; this is the one along which all creases turn to
-/// their side together.
+/// `l_e` and its weight `k_e`; vertices of `held` stay. The lengths of rods are of second order here and are left
+/// out, so that this is a direction to search in, and not yet a branch along which rods can fold.
 ///
 /// Nothing if the sheet is not flat, or no edge has a target.
 ///
 /// # Panics
 /// If an edge is at the boundary, or `x` is not of length `3V`.
-pub fn folding_from_flat(
+pub(crate) fn folding_from_flat(
     topology: &Topology,
     x: &[f64],
     targets: &[(EdgeId, f64, f64)],
