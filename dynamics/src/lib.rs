@@ -8,7 +8,6 @@
 //! |---|---|---|---|---|
 //! | [`Method::Bdf2`] (default) | 2 | lightly damped | yes | Cholesky, `3V` unknowns |
 //! | [`Method::ImplicitEuler`] | 1 | strongly damped | yes | Cholesky, `3V` unknowns |
-//! | [`Method::Projection`] | 1 | strongly damped | yes | Cholesky, `3V` unknowns |
 //! | [`Method::EnergyMomentum`] | 2 | conserved | unloaded ones | LU, `3V + E` unknowns |
 //! | [`Method::Rattle`] | 2 | bounded error | unloaded ones | LU, `3V + E` unknowns |
 //! | [`Method::RattleComposition`] | 4 | bounded error | unloaded ones | LU, `3V + E` unknowns |
@@ -73,7 +72,6 @@ pub use conservative::energy_momentum::EnergyMomentumOptions;
 pub use conservative::rattle::RattleOptions;
 pub use constraint::VertexConstraint;
 pub use damped::options::ImplicitOptions;
-pub use damped::projection_step::ProjectionStepOptions;
 pub use damped::start::{leave_flat, leave_flat_in, project_positions};
 pub use linear::rank::{RodRank, rod_rank};
 pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
@@ -87,9 +85,11 @@ pub use model::clamps::ClampAcrossMesh;
 pub use model::hand::{Hand, HandError};
 pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};
+pub use model::memory::Memories;
 pub use model::part::PotentialOfPart;
 pub use model::potential::{
-    CouplingKind, Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape,
+    At, CouplingKind, Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape,
+    Reached, Settled,
 };
 pub use model::state::State;
 pub use model::support::Support;

@@ -2,6 +2,7 @@
 
 use super::{ChartDynamicsError, MassSolver, MassSolverKind};
 use crate::SheetModel;
+use crate::model::memory::Memories;
 use isosheet_coords::{Chart, Linearised, RodSystem};
 use isosheet_mesh::VertexId;
 
@@ -25,6 +26,8 @@ pub enum Equations {
 /// Call [`ChartMechanics::at`] first; the other methods refer to the state given there.
 pub struct ChartMechanics {
     model: SheetModel,
+    /// What the potentials remember.
+    memories: Memories,
     system: RodSystem,
     chart: Box<dyn Chart>,
     linear: Linearised,
@@ -98,6 +101,7 @@ impl ChartMechanics {
             rates: Vec::new(),
         };
         Ok(Self {
+            memories: model.memories(),
             model,
             system,
             chart,
@@ -106,6 +110,16 @@ impl ChartMechanics {
             kind,
             work,
         })
+    }
+
+    /// What the potentials remember.
+    pub(crate) fn memories(&self) -> &Memories {
+        &self.memories
+    }
+
+    /// The same, to be changed between two steps.
+    pub(super) fn memories_mut(&mut self) -> &mut Memories {
+        &mut self.memories
     }
 
     /// The model.
@@ -238,7 +252,7 @@ impl ChartMechanics {
         let twice: f64 = p.iter().zip(&qdot).map(|(p, q)| p * q).sum();
         self.work.p = qdot;
         solved?;
-        Ok(0.5 * twice + self.model.potential_energy(t, x))
+        Ok(0.5 * twice + self.model.energy_with(&self.memories, t, x))
     }
 
     /// `pdot = -dH/dq + Q` (Eqs. 19 and 22) at (x, p), with v the velocities of the vertices that belong to
@@ -288,7 +302,8 @@ impl ChartMechanics {
     /// Adds potential and applied forces on the unknowns.
     pub(super) fn add_forces(&mut self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]) {
         let w = &mut self.work;
-        self.model.whole_potential_force(t, x, &mut w.full);
+        let memories = &self.memories;
+        self.model.force_with(memories, t, x, &mut w.full);
         self.system.gather(&w.full, &mut w.reduced);
         for (f, r) in force.iter_mut().zip(&w.reduced) {
             *f += r;

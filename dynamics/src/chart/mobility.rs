@@ -400,7 +400,7 @@ impl Mobility {
         if !balance.begin(model, |i| full[i]) {
             return Ok(());
         }
-        balance.add_potentials(model, t, x, 1.0);
+        balance.add_potentials(model, mechanics.memories(), (t, x), 1.0);
         balance.add_applied(model, t, x, v, 1.0);
         let mut rods = vec![0.0; model.rods().len()];
         for (edge, mu) in system.edges().zip(&self.mu) {

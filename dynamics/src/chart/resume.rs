@@ -15,6 +15,7 @@ impl ChartSimulation {
         ChartState {
             eigenvalue,
             eigenvector: eigenvector.to_vec(),
+            memories: self.memories().clone(),
             balance: self.motion.balance.as_ref().map(Balance::compact),
             ..self.motion.clone()
         }
@@ -54,7 +55,16 @@ impl ChartSimulation {
         if let Some(reference) = &motion.reference {
             chart = chart.rebased(reference)?;
         }
-        let mechanics = ChartMechanics::new(model, chart, options.solver)?;
+        let mut mechanics = ChartMechanics::new(model, chart, options.solver)?;
+        let (found, expected) = (motion.memories.lists(), mechanics.memories().lists());
+        if !found.iter().map(Vec::len).eq(expected.iter().map(Vec::len)) {
+            return Err(ChartDynamicsError::WrongLength {
+                what: "the memories of potentials",
+                found: found.len(),
+                expected: expected.len(),
+            });
+        }
+        mechanics.memories_mut().copy_from(&motion.memories);
         let n = mechanics.dimension();
         for (what, found) in [
             ("q", motion.state.q.len()),

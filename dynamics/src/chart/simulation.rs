@@ -7,10 +7,13 @@ use super::stepping::{PhaseState, Stepper};
 use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
 };
+use crate::HandError;
 use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
+use crate::model::memory::Memories;
 use crate::step::reaction::{Balance, ForceTime, Reaction};
 use crate::{Isometry, SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
+use isosheet_mesh::VertexId;
 
 /// What one step did.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -358,11 +361,31 @@ impl ChartSimulation {
         Ok(done)
     }
 
+    /// What the potentials remember.
+    pub(crate) fn memories(&self) -> &Memories {
+        self.stepper.mechanics.memories()
+    }
+
+    /// Leads the hand that holds a vertex to a point (metres) until time `end`, seconds.
+    pub(crate) fn lead_hand(
+        &mut self,
+        vertex: VertexId,
+        to: [f64; 3],
+        end: f64,
+    ) -> Result<(), HandError> {
+        let (number, hand) = self.stepper.mechanics.model().hand(vertex)?;
+        let (t, mut memory) = (self.motion.t, self.memories().lists()[number].clone());
+        hand.lead(to, [t, end], &mut memory)?;
+        let memories = self.stepper.mechanics.memories_mut();
+        memories.list_mut(number).copy_from_slice(&memory);
+        Ok(())
+    }
+
     /// Velocity damping over `h`; returns the potential energy.
     pub(super) fn damp(&mut self, h: f64) -> Result<f64, ChartDynamicsError> {
-        let model = self.stepper.mechanics.model();
+        let (model, memories) = (self.stepper.mechanics.model(), self.memories());
         let damping = (-model.damping() * h).exp();
-        let potential = model.potential_energy(self.motion.t, &self.motion.state.x);
+        let potential = model.energy_with(memories, self.motion.t, &self.motion.state.x);
         let kinetic = self.motion.state.hamiltonian - potential;
         let driven = model.has_drives();
         self.motion.state.p.iter_mut().for_each(|p| *p *= damping);

@@ -2,6 +2,7 @@
 
 use super::ContactImpulse;
 use super::stepping::PhaseState;
+use crate::model::memory::Memories;
 use crate::step::checkpoint_error::{CheckpointError, check_finite};
 use crate::step::reaction::Balance;
 use nalgebra::Vector3;
@@ -45,6 +46,8 @@ pub(crate) struct ChartState {
     pub(super) pins: Vec<Vector3<f64>>,
     /// Forces of the supports now, in scenes where they move.
     pub(super) balance: Option<Balance>,
+    /// What the potentials remember.
+    pub(super) memories: Memories,
     /// Impulses of contacts at the end of the last step.
     pub(super) impulses: Vec<ContactImpulse>,
 }
@@ -83,6 +86,7 @@ impl ChartState {
             eigenvalue: 0.0,
             pins,
             balance: None,
+            memories: Memories::default(),
             impulses: Vec::new(),
         }
     }

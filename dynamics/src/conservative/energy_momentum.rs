@@ -1,6 +1,7 @@
 //! The energy-momentum integrator.
 
 use super::newton::{Newton, Terms};
+use crate::model::memory::Memories;
 use crate::model::round_off::strain_floor;
 use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
@@ -62,6 +63,8 @@ pub(crate) struct EnergyMomentum {
     options: EnergyMomentumOptions,
     /// Its velocity is that at the middle of the step.
     newton: Newton,
+    /// What the potentials remember.
+    memories: Memories,
     density: Vec<f64>,
     xm: Vec<f64>,
     force: Vec<f64>,
@@ -82,6 +85,7 @@ impl EnergyMomentum {
         Ok(Self {
             options,
             newton: Newton::new(model)?,
+            memories: model.memories(),
             density: vec![0.0; m],
             xm: vec![0.0; n],
             force: vec![0.0; n],
@@ -93,7 +97,7 @@ impl EnergyMomentum {
     /// Force over the step from the potentials at the current iterate.
     fn discrete_force(&mut self, model: &SheetModel, state: &State, h: f64) {
         let t = state.t + 0.5 * h;
-        model.potential_force(t, &self.xm, &mut self.force);
+        model.acting_force(&self.memories, t, &self.xm, &mut self.force);
         if model.has_constant_forces() {
             return;
         }
@@ -104,8 +108,8 @@ impl EnergyMomentum {
         model.apply_mass(&self.difference, &mut self.newton.momentum);
         let squared = dot(&self.difference, &self.newton.momentum);
         if squared > 0.0 {
-            let change =
-                model.potential_energy(t, &self.newton.x1) - model.potential_energy(t, &state.x);
+            let change = model.energy_with(&self.memories, t, &self.newton.x1)
+                - model.energy_with(&self.memories, t, &state.x);
             let correction = (change + dot(&self.force, &self.difference)) / squared;
             for (f, m) in self.force.iter_mut().zip(&self.newton.momentum) {
                 *f -= correction * m;
@@ -121,7 +125,7 @@ impl EnergyMomentum {
             return false;
         }
         let t = state.t + 0.5 * h;
-        model.potential_force(t, &state.x, &mut self.force);
+        model.acting_force(&self.memories, t, &state.x, &mut self.force);
         model.applied_force(t, &state.x, &state.v, &mut self.applied);
         let mass = &model.mass().vertex;
         for i in 0..self.newton.u.len() {
@@ -146,7 +150,7 @@ impl EnergyMomentum {
             return;
         }
         let t = state.t + 0.5 * h;
-        balance.add_potentials(model, t, &self.xm, 1.0);
+        balance.add_potentials(model, &self.memories, (t, &self.xm), 1.0);
         balance.add_applied(model, t, &self.xm, &self.newton.u, 1.0);
         balance.add_rods(model, &self.xm, &self.newton.impulse, -1.0 / h);
         balance.add_loads(
@@ -207,27 +211,28 @@ impl Integrator for EnergyMomentum {
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let (model, state, h) = (scene.model, attempt.state, attempt.h);
+        self.memories.copy_from(attempt.memories);
         self.begin(model, &attempt);
         let (residual, outcome) = self.solve(model, state, h, effort)?;
-        let solver = &mut proposal.solver;
+        let motion = &mut proposal.motion;
         // Impulses of dependent rods are not unique, and what a regularised solve makes of round-off in their
         // lengths would buckle the next step: they are found anew there.
         if outcome == StepOutcome::Newton {
             let constraints = self.newton.constraints.full_impulses();
-            solver
+            motion
                 .history
                 .multipliers
                 .set(h, &self.newton.impulse, constraints);
         } else {
-            solver.history.multipliers.clear();
+            motion.history.multipliers.clear();
         }
-        self.set_balance(model, state, h, &mut solver.balance);
+        self.set_balance(model, state, h, &mut motion.balance);
         for i in 0..self.newton.u.len() {
-            solver.state.v[i] = 2.0 * self.newton.u[i] - state.v[i];
+            motion.state.v[i] = 2.0 * self.newton.u[i] - state.v[i];
         }
-        model.set_pin_velocities(state.t + h, h, &mut solver.state.v);
-        solver.state.x.copy_from_slice(&self.newton.x1);
-        solver.state.t = state.t + h;
+        model.set_pin_velocities(state.t + h, h, &mut motion.state.v);
+        motion.state.x.copy_from_slice(&self.newton.x1);
+        motion.state.t = state.t + h;
         let work = h * dot(&self.applied, &self.newton.u);
         proposal.account = StepAccount::without_contact(residual, work, outcome);
         Ok(())
@@ -291,7 +296,7 @@ impl EnergyMomentum {
                 mass: 2.0,
                 density: &self.density,
                 left: Some(&self.xm),
-                potentials: Some((state.t + 0.5 * h, &self.xm, 0.5 * h * h)),
+                potentials: Some((&self.memories, state.t + 0.5 * h, &self.xm, 0.5 * h * h)),
             };
             let used = self.newton.correct(model, state.t, &terms, effort)?;
             outcome = outcome.max(used);

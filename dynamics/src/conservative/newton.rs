@@ -2,6 +2,7 @@
 
 use crate::constraint::conservative::ConservativeRows;
 use crate::linear::saddle::{SaddleMatrix, System};
+use crate::model::memory::Memories;
 use crate::model::round_off::velocity_round_off;
 use crate::step::effort::SolverEffort;
 use crate::step::history::Multipliers;
@@ -32,7 +33,7 @@ pub(super) struct Terms<'a> {
     pub(super) density: &'a [f64],
     /// Positions at which the impulses act; those at the end of the step where there are none.
     pub(super) left: Option<&'a [f64]>,
-    pub(super) potentials: Option<(f64, &'a [f64], f64)>,
+    pub(super) potentials: Option<(&'a Memories, f64, &'a [f64], f64)>,
 }
 
 impl Newton {

@@ -1,6 +1,7 @@
 //! RATTLE and its fourth-order composition.
 
 use super::newton::{Newton, Terms};
+use crate::model::memory::Memories;
 use crate::model::round_off::{strain_floor, velocity_round_off};
 use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
@@ -53,6 +54,8 @@ pub(crate) struct Rattle {
     parts: Vec<f64>,
     /// Its velocity is that after the first half of the forces.
     newton: Newton,
+    /// What the potentials remember.
+    memories: Memories,
     rates: Vec<f64>,
     none: Vec<f64>,
     force: Vec<f64>,
@@ -96,6 +99,7 @@ impl Rattle {
             options,
             parts,
             newton: Newton::new(model)?,
+            memories: model.memories(),
             rates: vec![0.0; m],
             none: vec![0.0; m],
             force: vec![0.0; n],
@@ -274,8 +278,8 @@ impl Rattle {
         }
         let (t, end) = (state.t, state.t + h);
         let balance = &mut self.balance;
-        balance.add_potentials(model, t, &state.x, 0.5);
-        balance.add_potentials(model, end, &self.newton.x1, 0.5);
+        balance.add_potentials(model, &self.memories, (t, &state.x), 0.5);
+        balance.add_potentials(model, &self.memories, (end, &self.newton.x1), 0.5);
         balance.add_applied(model, t, &state.x, &state.v, 0.5);
         balance.add_applied(model, end, &self.newton.x1, &self.newton.u, 0.5);
         balance.add_rods(model, &state.x, &self.newton.impulse, -1.0 / h);
@@ -309,7 +313,7 @@ impl Rattle {
         h: f64,
         effort: &mut SolverEffort<'_>,
     ) -> Result<StepAccount, StepError> {
-        model.potential_force(state.t, &state.x, &mut self.force);
+        model.acting_force(&self.memories, state.t, &state.x, &mut self.force);
         model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
         for i in 0..self.newton.u.len() {
             self.kick[i] = 0.5 * h * (self.force[i] + self.applied[i]);
@@ -317,7 +321,12 @@ impl Rattle {
         let mut work: f64 = 0.5 * h * dot(&self.applied, &state.v);
         let (residual, outcome) = self.solve_positions(model, state, multipliers, h, effort)?;
         // Velocity: the momentum after the second half kick, projected onto G(x1) v = 0.
-        model.potential_force(state.t + h, &self.newton.x1, &mut self.force);
+        model.acting_force(
+            &self.memories,
+            state.t + h,
+            &self.newton.x1,
+            &mut self.force,
+        );
         model.applied_force(
             state.t + h,
             &self.newton.x1,
@@ -398,21 +407,22 @@ impl Integrator for Rattle {
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let (model, h) = (scene.model, attempt.h);
-        let solver = &mut proposal.solver;
-        solver.state.copy_from(attempt.state);
-        let multipliers = &mut solver.history.multipliers;
+        self.memories.copy_from(attempt.memories);
+        let motion = &mut proposal.motion;
+        motion.state.copy_from(attempt.state);
+        let multipliers = &mut motion.history.multipliers;
         multipliers.copy_from(attempt.multipliers());
-        solver.balance.clear();
+        motion.balance.clear();
         let mut total = StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton);
         for k in 0..self.parts.len() {
-            let (part, state) = (self.parts[k], &mut solver.state);
+            let (part, state) = (self.parts[k], &mut motion.state);
             let done = self.advance(model, state, multipliers, part * h, effort)?;
             total.residual = total.residual.max(done.residual);
             total.work += done.work;
             total.outcome = total.outcome.max(done.outcome);
-            solver.balance.add_share(&self.balance, part);
+            motion.balance.add_share(&self.balance, part);
         }
-        solver.state.t = attempt.state.t + h;
+        motion.state.t = attempt.state.t + h;
         proposal.account = total;
         Ok(())
     }

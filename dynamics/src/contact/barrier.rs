@@ -177,8 +177,10 @@ fn load(model: &SheetModel, state: &State) -> f64 {
 /// forces on a start that is strained by round-off say nothing about loads; metres per second squared.
 fn largest_acceleration(model: &SheetModel, state: &State) -> f64 {
     let mut gradient = vec![0.0; state.x.len()];
-    for p in model.outer_potentials() {
-        p.add_gradient(state.t, &state.x, &mut gradient);
+    let memories = model.memories();
+    let potentials = model.potentials_at(state.t, &state.x, &memories);
+    for (p, at) in potentials.take(model.outer_potential_count()) {
+        p.add_gradient(at, &mut gradient);
     }
     model.clear_pinned(&mut gradient);
     let per_mass = gradient.as_chunks::<3>().0.iter().zip(&model.mass().vertex);

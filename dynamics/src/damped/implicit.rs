@@ -51,7 +51,7 @@ impl Integrator for Implicit {
     ) -> Result<(), StepError> {
         let (state, h, minimiser) = (attempt.state, attempt.h, &mut self.minimiser);
         if self.formula == Formula::OneStep {
-            proposal.solver.history.previous = None;
+            proposal.motion.history.previous = None;
             return two_step(minimiser, scene, attempt, None, proposal, effort);
         }
         let previous = attempt
@@ -59,7 +59,7 @@ impl Integrator for Implicit {
             .filter(|before| h <= MAX_STEP_RATIO * (state.t - before.t));
         let damping = (-scene.model.damping() * h).exp();
         two_step(minimiser, scene, attempt, previous, proposal, effort)?;
-        let history = &mut proposal.solver.history;
+        let history = &mut proposal.motion.history;
         history.set_previous(Some(state));
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
         // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
@@ -109,6 +109,7 @@ fn two_step(
     }
     let problem = StepProblem {
         model,
+        memories: attempt.memories,
         contact: scene.contact,
         state,
         span: h,
@@ -122,23 +123,23 @@ fn two_step(
     (minimiser.applied, minimiser.prediction) = (applied, prediction);
     minimiser.air = air;
     let (minimum, contact) = outcome?;
-    let solver = &mut proposal.solver;
+    let motion = &mut proposal.motion;
     let mut work = 0.0;
     for i in 0..state.x.len() {
         let dx = minimiser.x()[i] - state.x[i];
         work += minimiser.applied[i] * dx;
-        solver.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
+        motion.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
     }
-    solver.state.x.copy_from_slice(minimiser.x());
-    solver.state.t = state.t + h;
-    solver.balance.copy_from(minimiser.balance());
-    solver.set_contacts(minimiser.contact_state());
-    minimiser.remember(k * h, &mut solver.history);
+    motion.state.x.copy_from_slice(minimiser.x());
+    motion.state.t = state.t + h;
+    motion.balance.copy_from(minimiser.balance());
+    motion.set_contacts(minimiser.contact_state());
+    minimiser.remember(k * h, &mut motion.history);
     proposal.account = StepAccount {
         residual: minimum.residual,
         work,
         air: match &mut minimiser.air {
-            Some(air) => air.work(model, state, formula, &solver.state.x),
+            Some(air) => air.work(model, state, formula, &motion.state.x),
             None => 0.0,
         },
         outcome: minimum.outcome,

@@ -6,6 +6,5 @@ pub(crate) mod implicit;
 pub(crate) mod iterate;
 pub(crate) mod minimiser;
 pub(crate) mod options;
-pub(crate) mod projection_step;
 pub(crate) mod restoration;
 pub(crate) mod start;

@@ -9,6 +9,7 @@ use crate::contact::{ContactTerms, CouplingSink};
 use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
+use crate::model::memory::Memories;
 use crate::step::effort::SolverEffort;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
@@ -305,12 +306,17 @@ impl PrimalMatrix {
     }
 
     /// Adds `scale` times the Hessians of the potentials.
-    pub(crate) fn add_potentials(&mut self, model: &SheetModel, t: f64, x: &[f64], scale: f64) {
-        for p in model.potentials() {
+    pub(crate) fn add_potentials(
+        &mut self,
+        model: &SheetModel,
+        memories: &Memories,
+        (t, x): (f64, &[f64]),
+        scale: f64,
+    ) {
+        for (p, at) in model.potentials_at(t, x, memories) {
             let matrix = &mut *self;
             p.add_hessian(
-                t,
-                x,
+                at,
                 &mut Sink {
                     matrix,
                     model,
@@ -324,15 +330,14 @@ impl PrimalMatrix {
     pub(crate) fn add_semidefinite_potentials(
         &mut self,
         model: &SheetModel,
-        t: f64,
-        x: &[f64],
+        memories: &Memories,
+        (t, x): (f64, &[f64]),
         scale: f64,
     ) {
-        for p in model.potentials() {
+        for (p, at) in model.potentials_at(t, x, memories) {
             let matrix = &mut *self;
             p.add_semidefinite_hessian(
-                t,
-                x,
+                at,
                 &mut Sink {
                     matrix,
                     model,

@@ -4,6 +4,7 @@ use crate::constraint::conservative::SaddleBlocks;
 use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{DIAGONAL, FULL, Layout, Slots};
 use crate::model::PINNED;
+use crate::model::memory::Memories;
 use crate::step::effort::SolverEffort;
 use crate::step::report::StepOutcome;
 use crate::{HessianSink, SheetModel};
@@ -106,7 +107,7 @@ pub(crate) struct System<'a> {
     /// Positions at which its rows are taken.
     pub(crate) right: &'a [f64],
     /// Time, positions and factor `s` of the Hessians of the potentials.
-    pub(crate) potentials: Option<(f64, &'a [f64], f64)>,
+    pub(crate) potentials: Option<(&'a Memories, f64, &'a [f64], f64)>,
     /// The vertex constraints.
     pub(crate) constraints: &'a [SaddleBlocks],
 }
@@ -252,12 +253,11 @@ impl SaddleMatrix {
         if self.width == Width::Diagonal {
             return;
         }
-        if let Some((t, x, scale)) = system.potentials {
+        if let Some((memories, t, x, scale)) = system.potentials {
             let scale = scale / self.mass_scale;
-            for p in model.potentials() {
+            for (p, at) in model.potentials_at(t, x, memories) {
                 p.add_hessian(
-                    t,
-                    x,
+                    at,
                     &mut Sink {
                         matrix: self,
                         scale,

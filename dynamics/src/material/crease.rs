@@ -9,6 +9,9 @@ mod rest_angle;
 #[cfg(test)]
 mod tests;
 
+use crate::model::potential::At;
+use crate::model::potential::Reached;
+use crate::model::potential::Settled;
 pub(crate) use from_flat::folding_from_flat;
 pub use rest_angle::RestAngle;
 
@@ -173,8 +176,6 @@ impl Advice for CreaseError {
 #[derive(Debug)]
 pub struct CreaseSprings {
     hinges: Vec<Hinge>,
-    /// The plastic angles of the layers of the hinges that yield, radians.
-    plastic: Vec<f64>,
 }
 
 #[derive(Debug)]
@@ -206,12 +207,8 @@ impl CreaseSprings {
     /// be used.
     pub fn new(topology: &Topology, springs: Vec<CreaseSpring>) -> Result<Self, CreaseError> {
         let hinges = springs.into_iter().map(|s| Hinge::new(topology, s));
-        Ok(Self::of(hinges.collect::<Result<_, _>>()?))
-    }
-
-    fn of(hinges: Vec<Hinge>) -> Self {
-        let plastic = vec![0.0; hinges.iter().map(Hinge::layers).sum()];
-        Self { hinges, plastic }
+        let hinges = hinges.collect::<Result<_, _>>()?;
+        Ok(Self { hinges })
     }
 
     /// Makes springs of the bending stiffness of a sheet ([`CreaseSprings::bending`]) yield as the sheet
@@ -231,7 +228,7 @@ impl CreaseSprings {
                 ..yields
             });
         }
-        Ok(Self::of(self.hinges))
+        Ok(self)
     }
 
     /// The bending stiffness of a uniform material on all interior edges, at rest when flat:
@@ -275,18 +272,22 @@ impl CreaseSprings {
         Self::new(t, springs.collect())
     }
 
-    /// Moments `k (rest - theta)` of the springs at time `t` and positions `x`, newton metres, in the order
-    /// given: positive where a spring folds towards a valley.
-    pub fn moments(&self, t: f64, x: &[f64]) -> Vec<f64> {
+    /// Moments `k (rest - theta)` of the springs, newton metres, in the order given: positive where a spring
+    /// folds towards a valley.
+    pub fn moments(&self, at: At<'_>) -> Vec<f64> {
         let moment = |(h, p): (&Hinge, &[f64])| {
-            -h.stiffness * h.respond(t, Fold::at(x, &h.vertices).angle(), p).elastic
+            let angle = Fold::at(at.x, &h.vertices).angle();
+            -h.stiffness * h.respond(at.t, angle, p).elastic
         };
-        self.with_plastic().map(moment).collect()
+        self.with_plastic(at.memory).map(moment).collect()
     }
 
-    /// The hinges with the plastic angles of their layers.
-    fn with_plastic(&self) -> impl Iterator<Item = (&Hinge, &[f64])> {
-        let mut plastic = self.plastic.as_slice();
+    /// The hinges with the plastic angles of their layers, radians, of a memory.
+    fn with_plastic<'a>(
+        &'a self,
+        memory: &'a [f64],
+    ) -> impl Iterator<Item = (&'a Hinge, &'a [f64])> {
+        let mut plastic = memory;
         self.hinges.iter().map(move |h| {
             let (own, others) = plastic.split_at(h.layers());
             plastic = others;
@@ -380,16 +381,18 @@ impl Hinge {
 }
 
 impl Potential for CreaseSprings {
-    fn energy(&self, t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { t, x, .. } = at;
         let energy = |(h, p): (&Hinge, &[f64])| {
             let response = h.respond(t, Fold::at(x, &h.vertices).angle(), p);
             0.5 * h.stiffness * response.elastic * response.elastic + response.plastic_energy
         };
-        self.with_plastic().map(energy).sum()
+        self.with_plastic(at.memory).map(energy).sum()
     }
 
-    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
-        for (h, p) in self.with_plastic() {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { t, x, .. } = at;
+        for (h, p) in self.with_plastic(at.memory) {
             let fold = Fold::at(x, &h.vertices);
             let moment = h.stiffness * h.respond(t, fold.angle(), p).elastic;
             for (v, g) in h.vertices.iter().zip(&fold.gradient()) {
@@ -400,8 +403,9 @@ impl Potential for CreaseSprings {
         }
     }
 
-    fn add_hessian(&self, t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
-        for (h, p) in self.with_plastic() {
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        let At { t, x, .. } = at;
+        for (h, p) in self.with_plastic(at.memory) {
             let fold = Fold::at(x, &h.vertices);
             let tangent = match h.yields {
                 None => h.stiffness,
@@ -430,22 +434,25 @@ impl Potential for CreaseSprings {
         self.hinges.iter().any(|h| h.rest.is_driven())
     }
 
-    fn plastic_angles(&self) -> Vec<(EdgeId, f64)> {
-        let yielding = self.with_plastic().filter(|(h, _)| h.yields.is_some());
+    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
+        let yielding = self
+            .with_plastic(memory)
+            .filter(|(h, _)| h.yields.is_some());
         yielding.map(|(h, p)| (h.edge(), h.plastic(p))).collect()
     }
 
-    fn memory(&self) -> &[f64] {
-        &self.plastic
+    fn memory(&self) -> Vec<f64> {
+        vec![0.0; self.hinges.iter().map(Hinge::layers).sum()]
     }
 
-    fn set_memory(&mut self, memory: &[f64]) {
-        self.plastic.copy_from_slice(memory);
+    fn can_yield(&self) -> bool {
+        self.hinges.iter().any(|h| h.layers() > 0)
     }
 
-    fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
+    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
+        let Reached { t, x, .. } = state;
         let mut dissipated = 0.0;
-        let mut plastic = self.plastic.as_mut_slice();
+        let mut plastic = memory;
         for h in &self.hinges {
             let (own, others) = plastic.split_at_mut(h.layers());
             plastic = others;
@@ -454,6 +461,7 @@ impl Potential for CreaseSprings {
             let excess = h.excess(t, theta, h.plastic(own));
             dissipated += yields.settle(h.stiffness, Vector1::new(excess), own);
         }
-        dissipated
+        let work = 0.0;
+        Settled { dissipated, work }
     }
 }

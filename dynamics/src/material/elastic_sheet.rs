@@ -7,13 +7,14 @@ mod load;
 #[cfg(test)]
 mod tests;
 
+use crate::model::potential::{At, Reached, Settled};
 use crate::{HessianSink, Potential};
 pub use deformation::ElasticDeformation;
 use face::Face;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, FaceId, Part, Sheet};
 use limit::StrainLimit;
-pub(crate) use load::strain_barrier;
+use load::strain_barrier;
 
 /// Why an elastic sheet cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -115,6 +116,8 @@ pub struct ElasticSheet {
     stiffness: f64,
     /// Edge length up to which no face is softened, metres.
     unsoftened_size: f64,
+    /// Kilograms; zero before a simulation has started.
+    mass: f64,
     /// Largest acceleration by constant forces, m/s2; zero before a simulation has started.
     acceleration: f64,
     limit: StrainLimit,
@@ -168,6 +171,7 @@ impl ElasticSheet {
             poisson,
             stiffness,
             unsoftened_size: f64::INFINITY,
+            mass: 0.0,
             acceleration: 0.0,
             limit: StrainLimit::new(Self::LIMIT),
         };
@@ -255,12 +259,20 @@ impl ElasticSheet {
         self.faces.iter().map(|face| face.at(x).norm())
     }
 
-    /// The elastic energy of each face at positions `x` (`3V`, metres), joules, with that of the barrier;
-    /// infinite beyond the limit.
-    pub fn face_energies<'a>(&'a self, x: &'a [f64]) -> impl ExactSizeIterator<Item = f64> + 'a {
+    /// The elastic energy of each face, joules, with that of the barrier; infinite beyond the limit.
+    pub fn face_energies<'a>(&'a self, at: At<'a>) -> impl ExactSizeIterator<Item = f64> + 'a {
+        let limit = self.limit_of(at.memory);
         self.faces
             .iter()
-            .map(|face| face.energy(&face.at(x), &self.limit))
+            .map(move |face| face.energy(&face.at(at.x), &limit))
+    }
+
+    /// The limit with the stiffness of the barrier in a memory, none without.
+    fn limit_of(&self, memory: &[f64]) -> StrainLimit {
+        match memory {
+            [stiffness, ..] => self.limit.with_stiffness(*stiffness),
+            [] => self.limit,
+        }
     }
 
     /// The angles by which the faces bend that have the given energies of bending (joules), radians.
@@ -294,27 +306,18 @@ impl ElasticSheet {
     /// `sum_T A_T k max(0, |E_T| - m)^2 / 2` with a stiffness `k` (joules per square metre).
     pub(crate) fn excess(&self, stiffness: f64) -> Self {
         let mut excess = self.clone();
-        excess.limit = self.limit.excess();
-        excess.limit.set_stiffness(stiffness);
+        excess.limit = self.limit.excess().with_stiffness(stiffness);
         for face in &mut excess.faces {
             face.set_stiffness(0.0, self.poisson);
         }
         excess
     }
 
-    /// Sets the largest acceleration by constant forces, m/s2, which the barrier follows.
-    pub(crate) fn set_acceleration(&mut self, acceleration: f64) {
+    /// Sets what the barrier follows besides the motion: the mass of the sheet, kilograms, and the largest
+    /// acceleration by constant forces, m/s2.
+    pub(crate) fn set_load(&mut self, mass: f64, acceleration: f64) {
+        self.mass = mass;
         self.acceleration = acceleration;
-    }
-
-    /// Sets the stiffness `kappa` of the barrier, joules per square metre.
-    pub(crate) fn set_barrier(&mut self, kappa: f64) {
-        self.limit.set_stiffness(kappa);
-    }
-
-    /// The stiffness `kappa` of the barrier, joules per square metre; zero before a simulation has started.
-    pub fn barrier(&self) -> f64 {
-        self.limit.stiffness()
     }
 
     /// Size of the round-off in the energy where the coordinates are of the given size (metres), joules: what
@@ -335,9 +338,16 @@ impl ElasticSheet {
 
     /// Adds `scale` times what the strains of second order in the displacement `dx` (`3V`, metres) change the
     /// gradient at `x` by: the tangent law of each face times `|dx_a - dx_b|^2 / 2` for each edge.
-    pub(crate) fn add_second_order(&self, x: &[f64], dx: &[f64], scale: f64, gradient: &mut [f64]) {
+    pub(crate) fn add_second_order(
+        &self,
+        at: At<'_>,
+        dx: &[f64],
+        scale: f64,
+        gradient: &mut [f64],
+    ) {
+        let limit = self.limit_of(at.memory);
         for face in &self.faces {
-            face.add_second_order(x, dx, &self.limit, scale, gradient);
+            face.add_second_order(at.x, dx, &limit, scale, gradient);
         }
     }
 
@@ -359,31 +369,53 @@ impl ElasticSheet {
 }
 
 impl Potential for ElasticSheet {
-    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
-        self.face_energies(x).sum()
+    fn energy(&self, at: At<'_>) -> f64 {
+        self.face_energies(at).sum()
     }
 
-    fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let limit = self.limit_of(at.memory);
         for face in &self.faces {
-            face.add_gradient(&face.at(x), &self.limit, gradient);
+            face.add_gradient(&face.at(at.x), &limit, gradient);
         }
     }
 
-    fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        let limit = self.limit_of(at.memory);
         for face in &self.faces {
-            face.add_hessian(&face.at(x), &self.limit, |density| density, hessian);
+            face.add_hessian(&face.at(at.x), &limit, |density| density, hessian);
         }
     }
 
     /// With the curvature of edges under tension alone.
-    fn add_semidefinite_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        let limit = self.limit_of(at.memory);
         for face in &self.faces {
-            face.add_hessian(
-                &face.at(x),
-                &self.limit,
-                |density| density.max(0.0),
-                hessian,
-            );
+            face.add_hessian(&face.at(at.x), &limit, |density| density.max(0.0), hessian);
+        }
+    }
+
+    /// The stiffness of the barrier, joules per square metre.
+    fn memory(&self) -> Vec<f64> {
+        vec![0.0]
+    }
+
+    fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
+        self.settle(state, memory);
+    }
+
+    /// Raises the stiffness of the barrier to what the state asks for, which is work.
+    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
+        let needed = strain_barrier(self, state);
+        if needed <= memory[0] {
+            return Settled::default();
+        }
+        let energy = |memory: &[f64]| self.energy(At::new(state.t, state.x).with_memory(memory));
+        let before = energy(memory);
+        memory[0] = needed;
+        Settled {
+            dissipated: 0.0,
+            work: energy(memory) - before,
         }
     }
 }

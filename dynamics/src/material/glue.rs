@@ -1,5 +1,6 @@
 //! Glue between pairs of vertices.
 
+use crate::model::potential::At;
 use crate::motion::profile::{Profile, ProfileError};
 use crate::potential::CouplingKind;
 use crate::vectors::point;
@@ -161,12 +162,14 @@ impl Glue {
 }
 
 impl Potential for Glue {
-    fn energy(&self, t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { t, x, .. } = at;
         let squares = (0..self.pairs.len()).map(|p| self.gap(p, t, x).norm_squared());
         0.5 * self.stiffness * squares.sum::<f64>()
     }
 
-    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { t, x, .. } = at;
         for (p, pair) in self.pairs.iter().enumerate() {
             let force = self.stiffness * self.gap(p, t, x);
             let [a, b] = pair.map(|v| 3 * v.index());
@@ -177,7 +180,7 @@ impl Potential for Glue {
         }
     }
 
-    fn add_hessian(&self, _t: f64, _x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, _at: At<'_>, hessian: &mut dyn HessianSink) {
         let block = Matrix3::from_diagonal_element(self.stiffness);
         for &[a, b] in &self.pairs {
             hessian.add_vertex(a, &block);

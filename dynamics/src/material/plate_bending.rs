@@ -8,6 +8,9 @@ mod stencil;
 mod tests;
 
 use super::plasticity::Yield;
+use crate::model::potential::At;
+use crate::model::potential::Reached;
+use crate::model::potential::Settled;
 use crate::options::OptionsError;
 use crate::{HessianSink, Potential};
 use isosheet_mesh::wording::given;
@@ -218,27 +221,30 @@ impl PlateBending {
 }
 
 impl Potential for PlateBending {
-    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { x, .. } = at;
         if let Some(plastic) = &self.plastic {
             let faces = self.stencils.iter().enumerate();
-            let energy = |(k, s)| plastic.energy(k, &plastic.bent(k, &s, x));
+            let energy = |(k, s)| plastic.energy(k, &plastic.bent(k, &s, at));
             return faces.map(energy).sum();
         }
         let energy = |h: Matrix3<f64>| 0.5 * h.norm_squared();
         self.stencils.iter().map(|s| energy(s.apply(x))).sum()
     }
 
-    fn add_bending_energies(&self, x: &[f64], faces: &mut [f64]) {
+    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
+        let At { x, .. } = at;
         for (k, (face, stencil)) in faces.iter_mut().zip(self.stencils.iter()).enumerate() {
             let elastic = match &self.plastic {
                 None => stencil.apply(x),
-                Some(plastic) => plastic.bent(k, &stencil, x).elastic,
+                Some(plastic) => plastic.bent(k, &stencil, at).elastic,
             };
             *face += 0.5 * elastic.norm_squared();
         }
     }
 
-    fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { x, .. } = at;
         let mut add = |v: usize, force: Vector3<f64>| {
             for k in 0..3 {
                 gradient[3 * v + k] += force[k];
@@ -248,7 +254,7 @@ impl Potential for PlateBending {
             let h = match &self.plastic {
                 None => stencil.apply(x),
                 Some(plastic) => {
-                    let bent = plastic.bent(k, &stencil, x);
+                    let bent = plastic.bent(k, &stencil, at);
                     for (v, force) in bent.turning_forces() {
                         add(v.index(), force);
                     }
@@ -261,9 +267,9 @@ impl Potential for PlateBending {
         }
     }
 
-    fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
         let plastic = self.plastic.as_ref();
-        let plastic = plastic.and_then(|plastic| plastic.blocks(&self.stencils, x));
+        let plastic = plastic.and_then(|plastic| plastic.blocks(&self.stencils, at));
         let block = |value: f64, list: fn(&Blocks) -> &[Matrix3<f64>], k: usize| {
             let elastic = Matrix3::from_diagonal_element(value);
             plastic
@@ -284,26 +290,28 @@ impl Potential for PlateBending {
     fn couplings(&self) -> Vec<[VertexId; 2]> {
         self.at_pairs.iter().map(|(pair, _)| *pair).collect()
     }
-    fn plastic_curvatures(&self) -> Vec<(FaceId, Matrix2<f64>)> {
-        let matrices = self.plastic.iter().flat_map(PlasticCurvature::matrices);
+
+    fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
+        let plastic = self.plastic.iter();
+        let matrices = plastic.flat_map(|plastic| plastic.matrices(memory));
         let faces = (0..).map(FaceId::from_index);
         faces.zip(matrices).collect()
     }
 
-    fn memory(&self) -> &[f64] {
-        self.plastic
-            .as_ref()
-            .map_or(&[], PlasticCurvature::curvatures)
+    fn memory(&self) -> Vec<f64> {
+        let plastic = self.plastic.as_ref();
+        plastic.map_or_else(Vec::new, PlasticCurvature::memory)
     }
 
-    fn set_memory(&mut self, memory: &[f64]) {
-        if let Some(plastic) = &mut self.plastic {
-            plastic.set_curvatures(memory);
+    fn can_yield(&self) -> bool {
+        self.plastic.is_some()
+    }
+
+    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
+        let settle = |plastic: &PlasticCurvature| plastic.settle(&self.stencils, state.x, memory);
+        Settled {
+            dissipated: self.plastic.as_ref().map_or(0.0, settle),
+            work: 0.0,
         }
-    }
-
-    fn settle(&mut self, _t: f64, x: &[f64]) -> f64 {
-        let plastic = self.plastic.as_mut();
-        plastic.map_or(0.0, |plastic| plastic.settle(&self.stencils, x))
     }
 }

@@ -22,14 +22,16 @@ impl Quartic {
 }
 
 impl Potential for Quartic {
-    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { x, .. } = at;
         self.edges
             .iter()
             .map(|&e| 0.25 * self.stiffness * Self::difference(x, e).norm_squared().powi(2))
             .sum()
     }
 
-    fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { x, .. } = at;
         for &e in &self.edges {
             let d = Self::difference(x, e);
             for k in 0..3 {
@@ -40,7 +42,8 @@ impl Potential for Quartic {
         }
     }
 
-    fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        let At { x, .. } = at;
         for (i, &e) in self.edges.iter().enumerate() {
             let d = Self::difference(x, e);
             let block =
@@ -63,12 +66,14 @@ const P: [f64; 3] = [0.3, -1.0, 0.7];
 const Q: [f64; 3] = [1.1, 0.4, -0.2];
 
 impl Potential for Bilinear {
-    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { x, .. } = at;
         let at = |v: usize, w: [f64; 3]| (0..3).map(|k| x[3 * v + k] * w[k]).sum::<f64>();
         self.edges.iter().map(|&[a, b]| at(a, P) * at(b, Q)).sum()
     }
 
-    fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { x, .. } = at;
         let at = |v: usize, w: [f64; 3]| (0..3).map(|k| x[3 * v + k] * w[k]).sum::<f64>();
         for &[a, b] in &self.edges {
             for k in 0..3 {
@@ -78,7 +83,7 @@ impl Potential for Bilinear {
         }
     }
 
-    fn add_hessian(&self, _t: f64, _x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, _at: At<'_>, hessian: &mut dyn HessianSink) {
         let block = Vector3::from(P) * Vector3::from(Q).transpose();
         for i in 0..self.edges.len() {
             hessian.add_edge(EdgeId(i as u32), &block);

@@ -1,10 +1,10 @@
 //! A spring by which somebody pulls at a vertex while the simulation runs.
 
-use crate::model::potential::{HessianSink, Potential};
+use crate::SheetModel;
+use crate::model::potential::{At, HessianSink, Potential};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, Topology, VertexId};
 use nalgebra::{Matrix3, Vector3};
-use std::sync::{Arc, Mutex, PoisonError};
 
 /// Why a hand cannot pull.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -16,6 +16,12 @@ pub enum HandError {
         vertex: VertexId,
         /// Number of vertices.
         vertex_count: usize,
+    },
+    /// No hand holds the vertex.
+    #[error("no hand holds {vertex}")]
+    NoHand {
+        /// The vertex.
+        vertex: VertexId,
     },
     /// The stiffness is not positive and finite.
     #[error("the stiffness of the hand is {stiffness} N/m", stiffness = given(*stiffness))]
@@ -35,6 +41,7 @@ impl Advice for HandError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::NoSuchVertex { .. } => None,
+            Self::NoHand { .. } => Some("give the model a hand at this vertex"),
             Self::Stiffness { .. } => Some("give a positive number"),
             Self::Target { .. } => Some("give three finite numbers"),
         }
@@ -42,8 +49,9 @@ impl Advice for HandError {
 }
 
 /// A spring between a vertex and a point in space that is led from outside, `V(t, x) = k |x_v - p(t)|^2 / 2`:
-/// a hand that holds a vertex. Between two steps it is led elsewhere without a change of the simulation, and
-/// its work enters the energy balance. Clones are the same hand.
+/// a hand that holds a vertex. Between two steps it is led elsewhere ([`Simulation::lead_hand`]), and its work
+/// enters the energy balance. Where it is and where it goes is what it remembers: a part of the state of a
+/// simulation and of its checkpoints.
 ///
 /// ```
 /// use isosheet_dynamics::{Hand, Method, SheetModel, Simulation, State};
@@ -53,25 +61,28 @@ impl Advice for HandError {
 /// let sheet = generate::isotropic_square(1, 0.21)?;
 /// let corner = VertexId(20);
 /// let hand = Hand::new(sheet.topology(), corner, 10.0, sheet.position(corner))?;
-/// let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?.with_potential(hand.clone());
+/// let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?.with_hand(hand);
 /// let mut simulation = Simulation::new(model, State::at_rest(sheet.positions().to_vec()), Method::default())?;
 /// for _ in 0..60 {
 ///     // The hand rises by 0.1 m/s.
 ///     let t = simulation.state().t;
-///     let mut to = hand.target(t);
+///     let mut to = simulation.hand_target(corner)?;
 ///     to[2] += 0.1 / 60.0;
-///     hand.lead(to, t, t + 1.0 / 60.0)?;
+///     simulation.lead_hand(corner, to, t + 1.0 / 60.0)?;
 ///     simulation.step(1.0 / 60.0)?;
 /// }
 /// assert!((simulation.state().x[62] - 0.1).abs() < 0.01);
 /// # Ok(())
 /// # }
 /// ```
+///
+/// [`Simulation::lead_hand`]: crate::Simulation::lead_hand
 #[derive(Debug, Clone)]
 pub struct Hand {
     vertex: VertexId,
     stiffness: f64,
-    way: Arc<Mutex<Way>>,
+    /// Where it is at first, metres.
+    at: Vector3<f64>,
 }
 
 /// A straight way of the point: at `from` until `begin`, at `to` from `end` on (seconds).
@@ -90,6 +101,12 @@ impl Way {
         }
         let part = ((t - self.begin) / (self.end - self.begin)).clamp(0.0, 1.0);
         self.from + part * (self.to - self.from)
+    }
+
+    /// As it is kept in a memory.
+    fn numbers(&self) -> [f64; 8] {
+        let [[a, b, c], [d, e, f]] = [self.from, self.to].map(<[f64; 3]>::from);
+        [a, b, c, d, e, f, self.begin, self.end]
     }
 }
 
@@ -116,16 +133,10 @@ impl Hand {
             return Err(HandError::Stiffness { stiffness });
         }
         let at = point(at)?;
-        let way = Way {
-            from: at,
-            to: at,
-            begin: 0.0,
-            end: 0.0,
-        };
         Ok(Self {
             vertex,
             stiffness,
-            way: Arc::new(Mutex::new(way)),
+            at,
         })
     }
 
@@ -139,37 +150,68 @@ impl Hand {
         self.stiffness
     }
 
-    /// Where the hand is at time `t` (seconds), metres.
-    pub fn target(&self, t: f64) -> [f64; 3] {
-        self.way().at(t).into()
+    /// Where the hand of a memory is at time `t` (seconds), metres.
+    pub(crate) fn target(&self, t: f64, memory: &[f64]) -> Vector3<f64> {
+        self.way(memory).at(t)
     }
 
-    /// Leads the hand from where it is at time `begin` to a point (metres) until time `end` (seconds), on a
-    /// straight way with a constant speed. `begin` is the time of the simulation: between two steps the
-    /// energy does not jump.
-    ///
-    /// # Errors
-    /// [`HandError::Target`]; then nothing has changed.
-    pub fn lead(&self, to: [f64; 3], begin: f64, end: f64) -> Result<(), HandError> {
+    /// Leads the hand of a memory from where it is at time `begin` to a point (metres) until time `end`
+    /// (seconds).
+    pub(crate) fn lead(
+        &self,
+        to: [f64; 3],
+        [begin, end]: [f64; 2],
+        memory: &mut [f64],
+    ) -> Result<(), HandError> {
         let to = point(to)?;
-        let from = self.way().at(begin);
-        let mut way = self.way.lock().unwrap_or_else(PoisonError::into_inner);
-        *way = Way {
+        let from = self.way(memory).at(begin);
+        let way = Way {
             from,
             to,
             begin,
             end,
         };
+        memory.copy_from_slice(&way.numbers());
         Ok(())
     }
 
-    fn way(&self) -> Way {
-        *self.way.lock().unwrap_or_else(PoisonError::into_inner)
+    fn way(&self, memory: &[f64]) -> Way {
+        match *memory {
+            [a, b, c, d, e, f, begin, end] => Way {
+                from: Vector3::new(a, b, c),
+                to: Vector3::new(d, e, f),
+                begin,
+                end,
+            },
+            _ => Way {
+                from: self.at,
+                to: self.at,
+                begin: 0.0,
+                end: 0.0,
+            },
+        }
     }
 
     /// From the hand to the vertex, metres.
-    fn stretch(&self, t: f64, x: &[f64]) -> Vector3<f64> {
-        Vector3::from(x.as_chunks::<3>().0[self.vertex.index()]) - self.way().at(t)
+    fn stretch(&self, at: At<'_>) -> Vector3<f64> {
+        let place = Vector3::from(at.x.as_chunks::<3>().0[self.vertex.index()]);
+        place - self.target(at.t, at.memory)
+    }
+}
+
+impl SheetModel {
+    /// Adds a hand.
+    #[must_use]
+    pub fn with_hand(mut self, hand: Hand) -> Self {
+        self.hands.push((self.potentials.len(), hand.clone()));
+        self.with_potential(hand)
+    }
+
+    /// The hand that holds a vertex, with the number of its potential.
+    pub(crate) fn hand(&self, vertex: VertexId) -> Result<(usize, &Hand), HandError> {
+        let hand = self.hands.iter().find(|(_, hand)| hand.vertex == vertex);
+        let (number, hand) = hand.ok_or(HandError::NoHand { vertex })?;
+        Ok((*number, hand))
     }
 }
 
@@ -181,19 +223,19 @@ fn point(to: [f64; 3]) -> Result<Vector3<f64>, HandError> {
 }
 
 impl Potential for Hand {
-    fn energy(&self, t: f64, x: &[f64]) -> f64 {
-        0.5 * self.stiffness * self.stretch(t, x).norm_squared()
+    fn energy(&self, at: At<'_>) -> f64 {
+        0.5 * self.stiffness * self.stretch(at).norm_squared()
     }
 
-    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
-        let force = self.stiffness * self.stretch(t, x);
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let force = self.stiffness * self.stretch(at);
         let row = &mut gradient.as_chunks_mut::<3>().0[self.vertex.index()];
         for k in 0..3 {
             row[k] += force[k];
         }
     }
 
-    fn add_hessian(&self, _t: f64, _x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, _at: At<'_>, hessian: &mut dyn HessianSink) {
         let block = Matrix3::from_diagonal_element(self.stiffness);
         hessian.add_vertex(self.vertex, &block);
     }
@@ -201,12 +243,17 @@ impl Potential for Hand {
     fn is_driven(&self) -> bool {
         true
     }
+
+    /// The way that it is led.
+    fn memory(&self) -> Vec<f64> {
+        self.way(&[]).numbers().to_vec()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Method, SheetModel, Simulation, State};
+    use crate::{Method, Simulation, State};
     use isosheet_mesh::{EdgeId, MassKind, Sheet, generate};
 
     const STEP: f64 = 1.0 / 60.0;
@@ -242,15 +289,18 @@ mod tests {
     fn derivatives_match_differences() {
         let sheet = sheet();
         let hand = hand(&sheet, 7.0);
-        hand.lead([0.4, -0.1, 0.3], 1.0, 2.0).expect("finite");
-        let (t, x) = (1.25, sheet.positions().to_vec());
+        let mut memory = hand.memory();
+        hand.lead([0.4, -0.1, 0.3], [1.0, 2.0], &mut memory)
+            .expect("finite");
+        let x = sheet.positions().to_vec();
+        let at = |x| At::new(1.25, x).with_memory(&memory);
         let gradient = |x: &[f64]| {
             let mut gradient = vec![0.0; x.len()];
-            hand.add_gradient(t, x, &mut gradient);
+            hand.add_gradient(at(x), &mut gradient);
             gradient
         };
         let mut blocks = Blocks(Vec::new());
-        hand.add_hessian(t, &x, &mut blocks);
+        hand.add_hessian(at(&x), &mut blocks);
         let [(vertex, block)] = blocks.0[..] else {
             panic!("{} blocks", blocks.0.len());
         };
@@ -260,13 +310,14 @@ mod tests {
             let (mut up, mut down) = (x.clone(), x.clone());
             up[i] += 0.5;
             down[i] -= 0.5;
-            let difference = hand.energy(t, &up) - hand.energy(t, &down);
+            let difference = hand.energy(at(&up)) - hand.energy(at(&down));
             assert!((difference - slope[i]).abs() < 1e-13, "coordinate {i}");
             for (j, (a, b)) in gradient(&up).iter().zip(gradient(&down)).enumerate() {
-                let at = 3 * CORNER.index();
-                let is_inside = (at..at + 3).contains(&i) && (at..at + 3).contains(&j);
+                let first = 3 * CORNER.index();
+                let own = first..first + 3;
+                let is_inside = own.contains(&i) && own.contains(&j);
                 let want = if is_inside {
-                    block[(i - at, j - at)]
+                    block[(i - first, j - first)]
                 } else {
                     0.0
                 };
@@ -278,20 +329,23 @@ mod tests {
     #[test]
     fn the_way_is_straight_and_begins_where_the_hand_is() {
         let hand = hand(&sheet(), 1.0);
-        let start = Vector3::from(hand.target(3.0));
+        let mut memory = hand.memory();
+        let start = hand.target(3.0, &memory);
         let to = start + Vector3::new(0.0, 0.0, 0.4);
-        hand.lead(to.into(), 1.0, 3.0).expect("finite");
-        let at = |t: f64| Vector3::from(hand.target(t)) - start;
-        assert_eq!(at(0.5), Vector3::zeros());
-        assert!((at(1.5) - Vector3::new(0.0, 0.0, 0.1)).norm() < 1e-15);
-        assert_eq!(Vector3::from(hand.target(5.0)), to);
+        hand.lead(to.into(), [1.0, 3.0], &mut memory)
+            .expect("finite");
+        let at = |t: f64, memory: &[f64]| hand.target(t, memory) - start;
+        assert_eq!(at(0.5, &memory), Vector3::zeros());
+        assert!((at(1.5, &memory) - Vector3::new(0.0, 0.0, 0.1)).norm() < 1e-15);
+        assert_eq!(hand.target(5.0, &memory), to);
         // On the way it is led back, from where it is.
-        hand.lead(start.into(), 2.0, 2.5).expect("finite");
-        assert!((at(2.0) - Vector3::new(0.0, 0.0, 0.2)).norm() < 1e-15);
-        assert!((at(2.25) - Vector3::new(0.0, 0.0, 0.1)).norm() < 1e-15);
-        let error = hand.lead([0.0, f64::NAN, 0.0], 0.0, 1.0);
+        hand.lead(start.into(), [2.0, 2.5], &mut memory)
+            .expect("finite");
+        assert!((at(2.0, &memory) - Vector3::new(0.0, 0.0, 0.2)).norm() < 1e-15);
+        assert!((at(2.25, &memory) - Vector3::new(0.0, 0.0, 0.1)).norm() < 1e-15);
+        let error = hand.lead([0.0, f64::NAN, 0.0], [0.0, 1.0], &mut memory);
         assert!(matches!(error, Err(HandError::Target { .. })), "{error:?}");
-        assert_eq!(Vector3::from(hand.target(9.0)), start);
+        assert_eq!(hand.target(9.0, &memory), start);
     }
 
     #[test]
@@ -323,14 +377,15 @@ mod tests {
         let hand = hand(&sheet, 3.0);
         let model = SheetModel::new(&sheet, mass, MassKind::Lumped).expect("a model");
         let model = model.with_acceleration([0.0, 0.0, -9.81]);
-        let model = model.with_potential(hand.clone());
+        let model = model.with_hand(hand);
         let model = model.with_damping(20.0).expect("positive");
         let start = State::at_rest(sheet.positions().to_vec());
         let mut simulation = Simulation::new(model, start, Method::default()).expect("valid");
         for _ in 0..600 {
             simulation.step(STEP).expect("accepted");
         }
-        let stretch = hand.stretch(simulation.state().t, &simulation.state().x);
+        let held = Vector3::from(simulation.hand_target(CORNER).expect("a hand"));
+        let stretch = crate::vectors::point(&simulation.state().x, CORNER) - held;
         let want = Vector3::new(0.0, 0.0, -mass * 9.81 / 3.0);
         assert!((stretch - want).norm() < 1e-6, "{stretch}, {want}");
     }
@@ -343,7 +398,7 @@ mod tests {
             let sheet = sheet();
             let hand = hand(&sheet, 2.0);
             let model = SheetModel::new(&sheet, 1e-2, MassKind::Lumped).expect("a model");
-            let model = model.with_potential(hand.clone());
+            let model = model.with_hand(hand);
             let start = State::at_rest(sheet.positions().to_vec());
             let mut simulation = Simulation::new(model, start, Method::default()).expect("valid");
             let (mut largest, mut work) = (0.0_f64, 0.0);
@@ -351,7 +406,9 @@ mod tests {
                 let t = simulation.state().t;
                 let to = Vector3::from(sheet.position(CORNER))
                     + 0.1 * (f64::from(step) * STEP) * Vector3::new(1.0, 1.0, 0.0);
-                hand.lead(to.into(), t, t + STEP).expect("finite");
+                simulation
+                    .lead_hand(CORNER, to.into(), t + STEP)
+                    .expect("finite");
                 for _ in 0..parts {
                     let report = simulation.step(STEP / f64::from(parts)).expect("accepted");
                     largest = largest.max(report.energy_drift.abs());

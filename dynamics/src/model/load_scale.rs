@@ -1,5 +1,6 @@
 //! The sizes of accelerations and speeds that barriers have to withstand.
 
+use crate::model::potential::At;
 use crate::vectors::largest_norm;
 use crate::{PAPER_GRAVITY, PotentialShape, SheetModel, State};
 use nalgebra::Vector3;
@@ -30,7 +31,7 @@ pub(crate) fn constant_acceleration(model: &SheetModel, state: &State) -> Option
     let mut gradient = vec![0.0; state.x.len()];
     for p in model.potentials() {
         if p.shape() == PotentialShape::Linear {
-            p.add_gradient(state.t, &state.x, &mut gradient);
+            p.add_gradient(At::new(state.t, &state.x), &mut gradient);
         }
     }
     for (g, m) in gradient

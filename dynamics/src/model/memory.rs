@@ -1,21 +1,80 @@
 //! What the potentials of a model remember.
 
-use crate::SheetModel;
+use crate::model::potential::{At, Potential, Reached, Settled};
+use crate::{SheetModel, State};
 use isosheet_mesh::{EdgeId, FaceId};
 use nalgebra::Matrix2;
+use serde::{Deserialize, Serialize};
+
+/// What each of the potentials of a model remembers ([`Potential::memory`]), in the order of
+/// [`SheetModel::potentials`].
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Memories(Vec<Vec<f64>>);
+
+impl Memories {
+    /// One list of numbers for each potential, most of them empty.
+    pub fn lists(&self) -> &[Vec<f64>] {
+        &self.0
+    }
+
+    /// The memory of the potential of a number.
+    pub(crate) fn list_mut(&mut self, number: usize) -> &mut [f64] {
+        &mut self.0[number]
+    }
+
+    /// Takes over other memories of the same model, in place.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.0.clone_from(&other.0);
+    }
+}
 
 impl SheetModel {
-    /// Whether bends or creases can yield: whether a potential has a memory
-    /// ([`Potential::memory`](crate::Potential::memory)).
+    /// What the potentials remember before anything has happened.
+    pub fn memories(&self) -> Memories {
+        Memories(self.potentials().map(Potential::memory).collect())
+    }
+
+    /// The potentials, each with where it is evaluated.
+    pub(crate) fn potentials_at<'a>(
+        &'a self,
+        t: f64,
+        x: &'a [f64],
+        memories: &'a Memories,
+    ) -> impl Iterator<Item = (&'a dyn Potential, At<'a>)> {
+        let at = move |memory: &'a Vec<f64>| At::new(t, x).with_memory(memory);
+        self.potentials().zip(memories.0.iter().map(at))
+    }
+
+    /// What the potentials remember at the start of a simulation.
+    pub(crate) fn memories_at_start(&self, state: &State) -> Memories {
+        let mut memories = self.memories();
+        for (p, memory) in self.potentials().zip(&mut memories.0) {
+            p.start(reached(state), memory);
+        }
+        memories
+    }
+
+    /// Makes what the potentials remember that of the end of a step; what that does to the energy.
+    pub(crate) fn settle(&self, state: &State, memories: &mut Memories) -> Settled {
+        let mut sum = Settled::default();
+        for (p, memory) in self.potentials().zip(&mut memories.0) {
+            let Settled { dissipated, work } = p.settle(reached(state), memory);
+            sum.dissipated += dissipated;
+            sum.work += work;
+        }
+        sum
+    }
+
+    /// Whether bends or creases can yield.
     pub fn can_yield(&self) -> bool {
-        self.potentials().any(|p| !p.memory().is_empty())
+        self.potentials().any(|p| p.can_yield())
     }
 
     /// The plastic angle of each edge (length E, radians, positive for valleys), 0 where nothing yields;
     /// `None` where no edge can yield. It is what stays of a fold angle where the moment is zero.
-    pub fn plastic_angles(&self) -> Option<Vec<f64>> {
-        let known: Vec<(EdgeId, f64)> =
-            self.potentials().flat_map(|p| p.plastic_angles()).collect();
+    pub fn plastic_angles(&self, memories: &Memories) -> Option<Vec<f64>> {
+        let all = self.potentials().zip(&memories.0);
+        let known: Vec<(EdgeId, f64)> = all.flat_map(|(p, m)| p.plastic_angles(m)).collect();
         if known.is_empty() {
             return None;
         }
@@ -30,11 +89,10 @@ impl SheetModel {
     /// first, positive where the sheet is a valley as seen from the side from which faces are
     /// counter-clockwise; `None` where no face can yield. They are what stays of the curvature where the
     /// moment is zero.
-    pub fn plastic_curvatures(&self) -> Option<Vec<[f64; 2]>> {
-        let known: Vec<(FaceId, Matrix2<f64>)> = self
-            .potentials()
-            .flat_map(|p| p.plastic_curvatures())
-            .collect();
+    pub fn plastic_curvatures(&self, memories: &Memories) -> Option<Vec<[f64; 2]>> {
+        let all = self.potentials().zip(&memories.0);
+        let known: Vec<(FaceId, Matrix2<f64>)> =
+            all.flat_map(|(p, m)| p.plastic_curvatures(m)).collect();
         if known.is_empty() {
             return None;
         }
@@ -44,27 +102,13 @@ impl SheetModel {
         }
         Some(curvatures.iter().map(principal).collect())
     }
+}
 
-    /// What each of the potentials remembers that have a memory, in the order in which they were added.
-    pub(crate) fn memories(&self) -> Vec<Vec<f64>> {
-        let memories = self.outer_potentials().map(|p| p.memory());
-        let memories = memories.filter(|memory| !memory.is_empty());
-        memories.map(<[f64]>::to_vec).collect()
-    }
-
-    /// Replaces what these potentials remember by memories of the same numbers of values.
-    pub(crate) fn set_memories(&mut self, memories: &[Vec<f64>]) {
-        let remembering = self.potentials.iter_mut();
-        let remembering = remembering.filter(|p| !p.memory().is_empty());
-        for (potential, memory) in remembering.zip(memories) {
-            potential.set_memory(memory);
-        }
-    }
-
-    /// Makes what the potentials remember that of the end of a step; the energy that has been dissipated,
-    /// joules.
-    pub(crate) fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
-        self.potentials.iter_mut().map(|p| p.settle(t, x)).sum()
+fn reached(state: &State) -> Reached<'_> {
+    Reached {
+        t: state.t,
+        x: &state.x,
+        v: &state.v,
     }
 }
 
@@ -132,10 +176,13 @@ mod tests {
         let springs = CreaseSprings::new(t, vec![spring]).expect("a spring");
         let plain = SheetModel::new(&both, 0.1, MassKind::Lumped).expect("mass");
         assert_eq!(
-            (plain.plastic_angles(), plain.plastic_curvatures()),
+            (
+                plain.plastic_angles(&plain.memories()),
+                plain.plastic_curvatures(&plain.memories())
+            ),
             (None, None)
         );
-        let mut model = plain
+        let model = plain
             .with_potential(PotentialOfPart::new(plate, &parts[1]))
             .with_potential(PotentialOfPart::new(springs, &parts[1]));
         let turn = |x: f64| (curvature * x).sin_cos();
@@ -150,8 +197,16 @@ mod tests {
             .iter()
             .flat_map(|p| rolled(*p))
             .collect();
-        assert!(model.settle(0.0, &x) > 0.0);
-        let curvatures = model.plastic_curvatures().expect("a plate that yields");
+        let mut memories = model.memories();
+        assert!(
+            model
+                .settle(&State::at_rest(x.clone()), &mut memories)
+                .dissipated
+                > 0.0
+        );
+        let curvatures = model
+            .plastic_curvatures(&memories)
+            .expect("a plate that yields");
         let expected = curvature - moment / rigidity;
         let own = parts[1].faces.clone();
         for (face, [first, second]) in curvatures.iter().enumerate() {
@@ -166,7 +221,9 @@ mod tests {
                 assert_eq!([*first, *second], [0.0; 2]);
             }
         }
-        let angles = model.plastic_angles().expect("a spring that yields");
+        let angles = model
+            .plastic_angles(&memories)
+            .expect("a spring that yields");
         let bent: Vec<usize> = (0..angles.len()).filter(|e| angles[*e] != 0.0).collect();
         assert_eq!(bent, [parts[1].edge(rung).index()]);
         let fold =

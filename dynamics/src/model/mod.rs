@@ -9,7 +9,7 @@ pub(crate) mod hand;
 pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;
-mod memory;
+pub(crate) mod memory;
 pub(crate) mod part;
 pub mod potential;
 pub(crate) mod round_off;
@@ -19,8 +19,10 @@ mod supports;
 
 use crate::State;
 use crate::constraint::VertexConstraint;
-use crate::material::elastic_sheet::{ElasticSheet, strain_barrier};
-use crate::model::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
+use crate::material::elastic_sheet::ElasticSheet;
+use crate::model::load_scale::LoadScale;
+use crate::model::memory::Memories;
+use crate::model::potential::{At, Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
 use air::{Air, AirOnFaces};
 pub use error::ModelError;
 use isosheet_mesh::{LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
@@ -52,6 +54,8 @@ pub struct SheetModel {
     rods: LengthConstraints,
     mass: MassMatrix,
     potentials: Vec<Box<dyn Potential>>,
+    /// The hands among the potentials, with their numbers.
+    hands: Vec<(usize, hand::Hand)>,
     forces: Vec<Box<dyn Force>>,
     air: Option<AirOnFaces>,
     damping: f64,
@@ -114,6 +118,7 @@ impl SheetModel {
             mean_mass: mass.total() / n as f64,
             mass,
             potentials: Vec::new(),
+            hands: Vec::new(),
             forces: Vec::new(),
             air: None,
             damping: 0.0,
@@ -268,42 +273,19 @@ impl SheetModel {
         self.potentials.iter().map(Box::as_ref).chain(elastic)
     }
 
-    /// The potentials without that of an elastic sheet.
-    pub(crate) fn outer_potentials(&self) -> impl Iterator<Item = &dyn Potential> {
-        self.potentials.iter().map(Box::as_ref)
+    /// The number of potentials without that of an elastic sheet, which is the last one.
+    pub(crate) fn outer_potential_count(&self) -> usize {
+        self.potentials.len()
     }
 
-    /// Sets the stiffness of the barrier of an elastic sheet for a simulation that goes on at a state with
-    /// the largest acceleration by constant forces (metres per second squared): to a known one (joules per
-    /// square metre), or to what the state asks for.
-    pub(crate) fn set_strain_barrier(
-        &mut self,
-        state: &State,
-        acceleration: f64,
-        known: Option<f64>,
-    ) {
+    /// Tells an elastic sheet what its barrier has to withstand, for a simulation that starts or goes on at a
+    /// state.
+    pub(crate) fn set_load(&mut self, state: &State) {
+        let acceleration = LoadScale::at(self, state).acceleration;
+        let mass = self.mass.total();
         if let Some(elastic) = &mut self.elastic {
-            elastic.set_acceleration(acceleration);
-            elastic.set_barrier(known.unwrap_or(0.0));
+            elastic.set_load(mass, acceleration);
         }
-        if known.is_none() {
-            self.raise_strain_barrier(state);
-        }
-    }
-
-    /// Raises the stiffness of the barrier of an elastic sheet to what a state asks for; the energy that this
-    /// adds to the sheet, joules.
-    pub(crate) fn raise_strain_barrier(&mut self, state: &State) -> f64 {
-        let Some(elastic) = &self.elastic else {
-            return 0.0;
-        };
-        let needed = strain_barrier(self.mass.total(), elastic, state);
-        let Some(elastic) = self.elastic.as_mut().filter(|e| needed > e.barrier()) else {
-            return 0.0;
-        };
-        let before = elastic.energy(state.t, &state.x);
-        elastic.set_barrier(needed);
-        elastic.energy(state.t, &state.x) - before
     }
 
     /// Whether the sheet has a limit of its strain.
@@ -360,9 +342,15 @@ impl SheetModel {
         self.mean_mass
     }
 
-    /// Total potential energy, joules.
+    /// Total potential energy, joules, where nothing has happened yet that a potential remembers.
     pub fn potential_energy(&self, t: f64, x: &[f64]) -> f64 {
-        self.potentials().map(|p| p.energy(t, x)).sum()
+        self.energy_with(&self.memories(), t, x)
+    }
+
+    /// Total potential energy with memories, joules.
+    pub(crate) fn energy_with(&self, memories: &Memories, t: f64, x: &[f64]) -> f64 {
+        let potentials = self.potentials_at(t, x, memories);
+        potentials.map(|(p, at)| p.energy(at)).sum()
     }
 
     /// Whether a potential depends on time.
@@ -372,10 +360,20 @@ impl SheetModel {
 
     /// Work of changing the driven potentials while the sheet moves from `x0` at `t0` to `x1` at `t1`,
     /// joules: the integral of dV/dt at fixed positions, by the mean of the changes at both.
-    pub(crate) fn potential_work(&self, (t0, x0): (f64, &[f64]), (t1, x1): (f64, &[f64])) -> f64 {
-        let driven = self.potentials().filter(|p| p.is_driven());
-        let change = |p: &dyn Potential, x: &[f64]| p.energy(t1, x) - p.energy(t0, x);
-        driven.map(|p| 0.5 * (change(p, x0) + change(p, x1))).sum()
+    pub(crate) fn potential_work(
+        &self,
+        memories: &Memories,
+        (t0, x0): (f64, &[f64]),
+        (t1, x1): (f64, &[f64]),
+    ) -> f64 {
+        let driven = self.potentials_at(t0, x0, memories);
+        let driven = driven.filter(|(p, _)| p.is_driven());
+        let change = |p: &dyn Potential, at: At<'_>| {
+            p.energy(At { t: t1, ..at }) - p.energy(At { t: t0, ..at })
+        };
+        driven
+            .map(|(p, at)| 0.5 * (change(p, at) + change(p, At { x: x1, ..at })))
+            .sum()
     }
 
     /// Kinetic energy `v^T M v / 2` (Eq. 2), joules.
@@ -383,17 +381,23 @@ impl SheetModel {
         self.mass.kinetic_energy(&self.topology, v)
     }
 
-    /// Conservative force `f = -dV/dx`, overwriting `f`; zero at pinned vertices.
+    /// Conservative force `f = -dV/dx` where nothing has happened yet that a potential remembers, overwriting
+    /// `f`; zero at pinned vertices.
     pub fn potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {
-        self.whole_potential_force(t, x, f);
+        self.acting_force(&self.memories(), t, x, f);
+    }
+
+    /// Conservative force with memories, overwriting `f`; zero at pinned vertices.
+    pub(crate) fn acting_force(&self, memories: &Memories, t: f64, x: &[f64], f: &mut [f64]) {
+        self.force_with(memories, t, x, f);
         self.clear_pinned(f);
     }
 
-    /// As [`SheetModel::potential_force`], at pinned vertices too.
-    pub(crate) fn whole_potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {
+    /// Conservative force with memories, overwriting `f`, at pinned vertices too.
+    pub(crate) fn force_with(&self, memories: &Memories, t: f64, x: &[f64], f: &mut [f64]) {
         f.fill(0.0);
-        for p in self.potentials() {
-            p.add_gradient(t, x, f);
+        for (p, at) in self.potentials_at(t, x, memories) {
+            p.add_gradient(at, f);
         }
         f.iter_mut().for_each(|v| *v = -*v);
     }

@@ -1,6 +1,8 @@
 //! Potentials of one of several sheets.
 
-use crate::{CouplingKind, HessianSink, Potential, PotentialShape};
+use crate::model::potential::{
+    At, CouplingKind, HessianSink, Potential, PotentialShape, Reached, Settled,
+};
 use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
 use nalgebra::{Matrix2, Matrix3};
 
@@ -40,30 +42,40 @@ impl<P: Potential> PotentialOfPart<P> {
         let part = part.clone();
         Self { potential, part }
     }
+
+    fn own<'a>(&self, at: At<'a>) -> At<'a> {
+        let x = &at.x[self.part.coordinates()];
+        At { x, ..at }
+    }
+
+    fn reached<'a>(&self, Reached { t, x, v }: Reached<'a>) -> Reached<'a> {
+        let own = self.part.coordinates();
+        let (x, v) = (&x[own.clone()], &v[own]);
+        Reached { t, x, v }
+    }
 }
 
 impl<P: Potential> Potential for PotentialOfPart<P> {
-    fn energy(&self, t: f64, x: &[f64]) -> f64 {
-        self.potential.energy(t, &x[self.part.coordinates()])
+    fn energy(&self, at: At<'_>) -> f64 {
+        self.potential.energy(self.own(at))
     }
 
-    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
-        let own = self.part.coordinates();
-        self.potential
-            .add_gradient(t, &x[own.clone()], &mut gradient[own]);
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let own = &mut gradient[self.part.coordinates()];
+        self.potential.add_gradient(self.own(at), own);
     }
 
-    fn add_hessian(&self, t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
         let part = &self.part;
-        self.potential
-            .add_hessian(t, &x[part.coordinates()], &mut Shifted { part, hessian });
+        let hessian = &mut Shifted { part, hessian };
+        self.potential.add_hessian(self.own(at), hessian);
     }
 
-    fn add_semidefinite_hessian(&self, t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
         let part = &self.part;
-        let own = &x[part.coordinates()];
+        let hessian = &mut Shifted { part, hessian };
         self.potential
-            .add_semidefinite_hessian(t, own, &mut Shifted { part, hessian });
+            .add_semidefinite_hessian(self.own(at), hessian);
     }
 
     fn couplings(&self) -> Vec<[VertexId; 2]> {
@@ -81,32 +93,35 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
         self.potential.is_driven()
     }
 
-    fn add_bending_energies(&self, x: &[f64], faces: &mut [f64]) {
+    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
         let own = &mut faces[self.part.faces.clone()];
-        self.potential
-            .add_bending_energies(&x[self.part.coordinates()], own);
+        self.potential.add_bending_energies(self.own(at), own);
     }
 
-    fn memory(&self) -> &[f64] {
+    fn memory(&self) -> Vec<f64> {
         self.potential.memory()
     }
 
-    fn set_memory(&mut self, memory: &[f64]) {
-        self.potential.set_memory(memory);
+    fn can_yield(&self) -> bool {
+        self.potential.can_yield()
     }
 
-    fn settle(&mut self, t: f64, x: &[f64]) -> f64 {
-        self.potential.settle(t, &x[self.part.coordinates()])
+    fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
+        self.potential.start(self.reached(state), memory);
     }
 
-    fn plastic_angles(&self) -> Vec<(EdgeId, f64)> {
-        let own = self.potential.plastic_angles().into_iter();
+    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
+        self.potential.settle(self.reached(state), memory)
+    }
+
+    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
+        let own = self.potential.plastic_angles(memory).into_iter();
         own.map(|(e, angle)| (self.part.edge(e), angle)).collect()
     }
 
-    fn plastic_curvatures(&self) -> Vec<(FaceId, Matrix2<f64>)> {
+    fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
         let first = self.part.faces.start;
-        let own = self.potential.plastic_curvatures().into_iter();
+        let own = self.potential.plastic_curvatures(memory).into_iter();
         own.map(|(f, curvature)| (FaceId::from_index(first + f.index()), curvature))
             .collect()
     }

@@ -4,6 +4,50 @@ use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use nalgebra::{Matrix2, Matrix3};
 use std::fmt::Debug;
 
+/// Where a potential is evaluated.
+#[derive(Debug, Clone, Copy)]
+pub struct At<'a> {
+    /// Time, seconds.
+    pub t: f64,
+    /// Positions, `3V`, metres.
+    pub x: &'a [f64],
+    /// What the potential remembers, see [`Potential::memory`]; empty for most.
+    pub memory: &'a [f64],
+}
+
+impl<'a> At<'a> {
+    /// At a time (seconds) and positions (`3V`, metres), for potentials without memory.
+    pub fn new(t: f64, x: &'a [f64]) -> Self {
+        Self { t, x, memory: &[] }
+    }
+
+    /// With a memory.
+    #[must_use]
+    pub fn with_memory(self, memory: &'a [f64]) -> Self {
+        Self { memory, ..self }
+    }
+}
+
+/// A state that a simulation has reached, as far as a potential sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct Reached<'a> {
+    /// Time, seconds.
+    pub t: f64,
+    /// Positions, `3V`, metres.
+    pub x: &'a [f64],
+    /// Velocities, `3V`, metres per second.
+    pub v: &'a [f64],
+}
+
+/// What making a memory that of the end of a step does to the energy of a potential.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Settled {
+    /// Energy that has been dissipated in the step, by which the energy falls, joules.
+    pub dissipated: f64,
+    /// Work by which the energy rises, joules.
+    pub work: f64,
+}
+
 /// A potential energy of the vertex positions, `V(t, x)`, from which the forces are
 /// `f = -dV/dx`.
 ///
@@ -11,20 +55,20 @@ use std::fmt::Debug;
 /// without it their Newton iterations converge linearly in this term instead of
 /// quadratically.
 pub trait Potential: Debug + Send + Sync {
-    /// Energy in joules at time `t` (seconds) and positions `x` (`3V`, metres).
-    fn energy(&self, t: f64, x: &[f64]) -> f64;
+    /// Energy, joules.
+    fn energy(&self, at: At<'_>) -> f64;
 
     /// Adds `dV/dx` (`3V`, newtons) to `gradient`.
-    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]);
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]);
 
     /// Adds second derivatives to `hessian`. The default adds none.
-    fn add_hessian(&self, _t: f64, _x: &[f64], _hessian: &mut dyn HessianSink) {}
+    fn add_hessian(&self, _at: At<'_>, _hessian: &mut dyn HessianSink) {}
 
     /// Adds a positive semidefinite part of the second derivatives, for minimisations where the whole Hessian
     /// is indefinite. The default adds what [`Potential::add_hessian`] adds; where that is indefinite too,
     /// the curvature of all potentials is left out.
-    fn add_semidefinite_hessian(&self, t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
-        self.add_hessian(t, x, hessian);
+    fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        self.add_hessian(at, hessian);
     }
 
     /// The pairs of vertices without a common edge that [`Potential::add_hessian`] couples by
@@ -45,37 +89,42 @@ pub trait Potential: Debug + Send + Sync {
         false
     }
 
-    /// Adds the energy of bending of each face (joules) at positions `x` to `faces`, for reports that compare
-    /// it with that of stretching ([`ElasticDeformation`](crate::ElasticDeformation)). The default adds none.
-    fn add_bending_energies(&self, _x: &[f64], _faces: &mut [f64]) {}
+    /// Adds the energy of bending of each face (joules) to `faces`, for reports that compare it with that of
+    /// stretching ([`ElasticDeformation`](crate::ElasticDeformation)). The default adds none.
+    fn add_bending_energies(&self, _at: At<'_>, _faces: &mut [f64]) {}
 
-    /// What the energy depends on besides time and positions: plastic deformations, for instance. The default
-    /// has none. A potential with memory is moved by methods that minimise it (BDF2, implicit Euler).
-    fn memory(&self) -> &[f64] {
-        &[]
-    }
-
-    /// Replaces the memory by another one of the same length, where a simulation goes on from a checkpoint.
-    fn set_memory(&mut self, _memory: &[f64]) {}
-
-    /// Makes the memory that of time `t` (seconds) and positions `x` (`3V`, metres), at which a step of time
-    /// has ended; the energy that has been dissipated in the step, joules, by which the energy falls. It
-    /// changes no force at `x`, and as the energy before it is that of the step, nothing is dissipated where
-    /// a step is refused.
-    fn settle(&mut self, _t: f64, _x: &[f64]) -> f64 {
-        0.0
-    }
-
-    /// The edges at which it can yield, with the plastic angles that stay there, radians, positive for
-    /// valleys. The default has none.
-    fn plastic_angles(&self) -> Vec<(EdgeId, f64)> {
+    /// What the energy depends on besides time and positions, as it is at the start: plastic deformations, for
+    /// instance. A simulation keeps it, and its length never changes. The default has none.
+    fn memory(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// The faces on which it can yield, with the plastic curvature that stays there, 1/m, the first axis
-    /// along the first edge of the face, positive where the sheet is a valley as seen from the side from
+    /// Whether its memory is that of a material that yields. Such potentials are for methods that minimise
+    /// them (BDF2, implicit Euler).
+    fn can_yield(&self) -> bool {
+        false
+    }
+
+    /// Makes a memory that of a state at which a simulation starts.
+    fn start(&self, _state: Reached<'_>, _memory: &mut [f64]) {}
+
+    /// Makes a memory that of the state at which a step has ended; what that does to the energy. It changes
+    /// no force at the state, and as the energy before it is that of the step, nothing is dissipated where a
+    /// step is refused.
+    fn settle(&self, _state: Reached<'_>, _memory: &mut [f64]) -> Settled {
+        Settled::default()
+    }
+
+    /// The edges at which it can yield, with the plastic angles that stay there by a memory, radians, positive
+    /// for valleys. The default has none.
+    fn plastic_angles(&self, _memory: &[f64]) -> Vec<(EdgeId, f64)> {
+        Vec::new()
+    }
+
+    /// The faces on which it can yield, with the plastic curvature that stays there by a memory, 1/m, the first
+    /// axis along the first edge of the face, positive where the sheet is a valley as seen from the side from
     /// which faces are counter-clockwise. The default has none.
-    fn plastic_curvatures(&self) -> Vec<(FaceId, Matrix2<f64>)> {
+    fn plastic_curvatures(&self, _memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
         Vec::new()
     }
 
@@ -144,7 +193,8 @@ impl Gravity {
 }
 
 impl Potential for Gravity {
-    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { x, .. } = at;
         let g = self.acceleration;
         -self
             .weights
@@ -154,7 +204,7 @@ impl Potential for Gravity {
             .sum::<f64>()
     }
 
-    fn add_gradient(&self, _t: f64, _x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, _at: At<'_>, gradient: &mut [f64]) {
         for (w, row) in self.weights.iter().zip(gradient.as_chunks_mut::<3>().0) {
             for k in 0..3 {
                 row[k] -= w * self.acceleration[k];
@@ -185,12 +235,12 @@ mod tests {
         let g = Gravity::new(vec![0.3, 2.0], [1.0, -2.0, -9.8]);
         let x = [0.1, 0.7, -0.4, 1.0, 2.0, 3.0];
         let mut gradient = [0.0; 6];
-        g.add_gradient(0.0, &x, &mut gradient);
+        g.add_gradient(At::new(0.0, &x), &mut gradient);
         for i in 0..6 {
             let (mut up, mut down) = (x, x);
             up[i] += 0.5;
             down[i] -= 0.5;
-            let slope = g.energy(0.0, &up) - g.energy(0.0, &down);
+            let slope = g.energy(At::new(0.0, &up)) - g.energy(At::new(0.0, &down));
             assert!((slope - gradient[i]).abs() < 1e-13, "coordinate {i}");
         }
     }

@@ -2,14 +2,14 @@
 
 use crate::chart::{ChartOptions, ChartState};
 use crate::step::checkpoint_error::{CheckpointError, check_finite};
-use crate::step::free_state::FreeState;
+use crate::step::engine::WithoutChart;
 use crate::{Isometry, SheetModel};
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Format version; it grows with every change of the fields.
-const VERSION: u32 = 13;
+const VERSION: u32 = 14;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
@@ -54,7 +54,7 @@ pub struct Checkpoint {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum EngineState {
     /// A chart-free method.
-    Free(Box<FreeState>),
+    Free(Box<WithoutChart>),
     /// A method in a chart.
     Chart(Box<InChart>),
 }
@@ -283,13 +283,13 @@ mod tests {
     fn what_was_changed_from_outside_is_refused() {
         let good = checkpoint();
         assert!(Simulation::resume(model(), None, good.clone()).is_ok());
-        let changes: [fn(&mut super::FreeState); 6] = [
-            |m| m.solver.state.t = f64::INFINITY,
-            |m| m.solver.state.x[4] = f64::NAN,
-            |m| m.solver.state.v[26] = f64::NEG_INFINITY,
-            |m| m.solver.balance.pins[18] = f64::NAN,
-            |m| m.solver.balance.pins.truncate(26),
-            |m| m.solver.history.rod_stiffness = f64::NAN,
+        let changes: [fn(&mut crate::step::engine::WithoutChart); 6] = [
+            |m| m.motion.state.t = f64::INFINITY,
+            |m| m.motion.state.x[4] = f64::NAN,
+            |m| m.motion.state.v[26] = f64::NEG_INFINITY,
+            |m| m.motion.balance.pins[18] = f64::NAN,
+            |m| m.motion.balance.pins.truncate(26),
+            |m| m.motion.history.rod_stiffness = f64::NAN,
         ];
         for (k, change) in changes.into_iter().enumerate() {
             let mut changed = good.clone();

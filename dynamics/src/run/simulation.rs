@@ -4,6 +4,7 @@ use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
 use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
 use crate::damped::start::{check_finite, check_motions, check_state};
+use crate::model::memory::Memories;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
 use crate::step::checkpoint_error::CheckpointError;
 use crate::step::effort::{SolverEffort, StepProgress, TraceSink, Watch};
@@ -13,7 +14,7 @@ use crate::step::report::{StepError, StepReport, StepTotals};
 use crate::step::simulation_error::SimulationError;
 use crate::step::trace::TraceEvent;
 use crate::step::tuning::Tuning;
-use crate::{Method, SheetModel, State, StepControl};
+use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
 use isosheet_mesh::VertexId;
 use std::ops::ControlFlow;
@@ -122,7 +123,7 @@ impl Simulation {
     /// The checkpoint of the present state.
     pub fn checkpoint(&self) -> Checkpoint {
         let motion = match &self.engine {
-            Engine::Free(engine) => EngineState::Free(Box::new(engine.motion())),
+            Engine::Free(engine) => EngineState::Free(Box::new(engine.kept())),
             Engine::Chart(chart) => EngineState::Chart(Box::new(chart.motion())),
         };
         Checkpoint::new(self.sheet, self.energy, motion)
@@ -141,10 +142,10 @@ impl Simulation {
     ) -> Result<Self, SimulationError> {
         checkpoint.check_model(&model)?;
         checkpoint.energy.check()?;
-        let EngineState::Free(motion) = checkpoint.motion else {
+        let EngineState::Free(kept) = checkpoint.motion else {
             return Err(CheckpointError::Chart { in_chart: true }.into());
         };
-        let engine = FreeEngine::resume(model, contact, *motion)?;
+        let engine = FreeEngine::resume(model, contact, *kept)?;
         let engine = Engine::Free(Box::new(engine));
         Ok(Self::resumed(engine, checkpoint.sheet, checkpoint.energy))
     }
@@ -352,7 +353,7 @@ impl Simulation {
     }
 
     /// Forces of the rods in the last accepted sub-step, newtons, tension positive, in the order of the
-    /// edges. `None` in charts, for elastic sheets and in projection ([`Method::solves_for_rod_forces`]).
+    /// edges. `None` in charts and for elastic sheets.
     ///
     /// | method | time of the forces |
     /// |---|---|
@@ -395,6 +396,53 @@ impl Simulation {
         }
     }
 
+    /// What the potentials of the model remember ([`Potential::memory`](crate::Potential::memory)).
+    pub fn memories(&self) -> &Memories {
+        match &self.engine {
+            Engine::Free(engine) => engine.memories(),
+            Engine::Chart(chart) => chart.simulation.memories(),
+        }
+    }
+
+    /// Leads the hand that holds a vertex ([`Hand`](crate::Hand)) from where it is to a point (metres) until
+    /// time `end` (seconds), on a straight way with a constant speed. The energy does not jump.
+    ///
+    /// # Errors
+    /// [`HandError`] if there is no such hand, or the point is not finite; then nothing has changed.
+    pub fn lead_hand(&mut self, vertex: VertexId, to: [f64; 3], end: f64) -> Result<(), HandError> {
+        match &mut self.engine {
+            Engine::Free(engine) => engine.lead_hand(vertex, to, end),
+            Engine::Chart(chart) => chart.simulation.lead_hand(vertex, to, end),
+        }
+    }
+
+    /// Where the hand is now that holds a vertex, metres.
+    ///
+    /// # Errors
+    /// [`HandError::NoHand`].
+    pub fn hand_target(&self, vertex: VertexId) -> Result<[f64; 3], HandError> {
+        let (number, hand) = self.model().hand(vertex)?;
+        let memory = &self.memories().lists()[number];
+        Ok(hand.target(self.state().t, memory).into())
+    }
+
+    /// The plastic angle of each edge now, see [`SheetModel::plastic_angles`].
+    pub fn plastic_angles(&self) -> Option<Vec<f64>> {
+        self.model().plastic_angles(self.memories())
+    }
+
+    /// The principal values of the plastic curvature of each face now, see
+    /// [`SheetModel::plastic_curvatures`].
+    pub fn plastic_curvatures(&self) -> Option<Vec<[f64; 2]>> {
+        self.model().plastic_curvatures(self.memories())
+    }
+
+    /// How an elastic sheet is deformed now, see [`SheetModel::elastic_deformation`].
+    pub fn elastic_deformation(&self) -> Option<ElasticDeformation> {
+        self.model()
+            .elastic_deformation(&self.state().x, self.memories())
+    }
+
     /// Total energy `T + V`, contact included, joules.
     pub fn energy(&self) -> f64 {
         self.model().kinetic_energy(&self.state().v) + self.potential_energy()
@@ -407,7 +455,7 @@ impl Simulation {
 
     fn potential_energy(&self) -> f64 {
         let State { t, x, .. } = self.state();
-        let potential = self.model().potential_energy(*t, x);
+        let potential = self.model().energy_with(self.memories(), *t, x);
         match self.barrier() {
             None => potential,
             Some((contact, contacts)) => potential + contact.barrier_energy(contacts),
@@ -554,7 +602,7 @@ impl Simulation {
         let mut sum = std::mem::take(&mut self.force);
         let State { t, x, v } = self.state();
         let model = self.model();
-        model.potential_force(*t, x, &mut sum);
+        model.acting_force(self.memories(), *t, x, &mut sum);
         model.add_applied_force(*t, x, v, &mut sum);
         let bad = sum.iter().position(|f| !f.is_finite());
         let result = match bad {

@@ -44,20 +44,21 @@ pub(crate) struct Exchange {
 }
 
 impl EnergyAccount {
-    /// The account after a step.
+    /// The account after a step between two states, with the potential energies of both at the end of the step
+    /// (joules) and the sum of the magnitudes of the components of the conservative forces there (newtons).
     ///
     /// # Errors
     /// [`StepError::EnergyGain`], [`StepError::Friction`], [`StepError::NonFiniteEnergy`].
     pub(crate) fn after(
         &self,
         model: &SheetModel,
-        before: &State,
-        after: &State,
+        [before, after]: [&State; 2],
+        potential: [f64; 2],
+        force_sum: impl FnOnce() -> f64,
         exchange: &Exchange,
         tuning: &Tuning,
     ) -> Result<Self, StepError> {
         let kinetic = [&before.v, &after.v].map(|v| model.kinetic_energy(v));
-        let potential = [&before.x, &after.x].map(|x| model.potential_energy(after.t, x));
         let drives = exchange.bodies.abs() + exchange.supports.abs() + exchange.air.abs();
         let gain = kinetic[1] + potential[1] + exchange.barrier
             - kinetic[0]
@@ -105,7 +106,7 @@ impl EnergyAccount {
         if is_too_much(round_off) {
             // Forces far above the weight do work over the noise of positions, which energies near zero do
             // not show.
-            round_off += tuning.position_noise * size * force_sum(model, after);
+            round_off += tuning.position_noise * size * force_sum();
             if is_too_much(round_off) {
                 return Err(StepError::EnergyGain {
                     t: before.t,
@@ -127,13 +128,6 @@ impl EnergyAccount {
     pub(crate) fn spend(&mut self, dissipated: f64) {
         self.net -= dissipated;
     }
-}
-
-/// Sum of the magnitudes of the components of the conservative forces, newtons.
-fn force_sum(model: &SheetModel, state: &State) -> f64 {
-    let mut force = vec![0.0; state.x.len()];
-    model.potential_force(state.t, &state.x, &mut force);
-    force.iter().map(|f| f.abs()).sum()
 }
 
 #[cfg(test)]
@@ -198,11 +192,12 @@ mod tests {
     }
 
     impl crate::Potential for Pull {
-        fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+        fn energy(&self, at: At<'_>) -> f64 {
+            let At { x, .. } = at;
             -self.force * (x[0] - self.origin)
         }
 
-        fn add_gradient(&self, _t: f64, _x: &[f64], gradient: &mut [f64]) {
+        fn add_gradient(&self, _at: At<'_>, gradient: &mut [f64]) {
             gradient[0] -= self.force;
         }
     }

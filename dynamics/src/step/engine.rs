@@ -4,18 +4,17 @@ use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::damped::air_step::Formula;
 use crate::damped::implicit::Implicit;
 use crate::linear::rank::rod_rank;
-use crate::material::elastic_sheet::ElasticSheet;
 use crate::model::immobile::immobile_vertices;
-use crate::model::load_scale::LoadScale;
+use crate::model::memory::Memories;
 use crate::step::blocked::{blocked_vertices, dependent_vertices};
-use crate::step::checkpoint_error::{CheckpointError, check_length};
+use crate::step::checkpoint_error::CheckpointError;
 use crate::step::control::{Decision, Stepping, take_substep};
-use crate::step::energy_account::{EnergyAccount, Exchange};
-use crate::step::free_state::FreeState;
+use crate::step::energy_account::Exchange;
 use crate::step::infeasibility::{Infeasibility, infeasibility};
 use crate::step::integrator::{
-    Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene, SolverState,
+    Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
 };
+use crate::step::motion::Motion;
 use crate::step::pressing::{Pressing, pressing};
 use crate::step::reaction::Balance;
 use crate::step::report::{StepError, StepOutcome, StepTotals};
@@ -24,9 +23,21 @@ use crate::step::subdivision::Subdivision;
 use crate::step::trace::TraceEvent;
 use crate::step::tuning::Tuning;
 use crate::{
-    Fallback, Isometry, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
+    Fallback, HandError, Isometry, Method, SheetModel, SimulationError, State, StepControl,
+    Unsatisfiable,
 };
 use isosheet_mesh::VertexId;
+use serde::{Deserialize, Serialize};
+
+/// What a checkpoint keeps of a simulation without a chart.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct WithoutChart {
+    pub(crate) method: Method,
+    pub(crate) control: StepControl,
+    pub(crate) motion: Motion,
+    /// Vertices that were pinned at the start because they cannot move.
+    pub(crate) fixed: Vec<u32>,
+}
 
 /// A sheet that a chart-free method moves.
 pub(crate) struct Engine {
@@ -39,11 +50,8 @@ pub(crate) struct Engine {
     control: StepControl,
     tuning: Tuning,
     fallback: Option<Box<dyn Integrator>>,
-    /// Where the sheet is. Nothing but [`Substeps::commit`] changes it.
-    solver: SolverState,
-    account: EnergyAccount,
-    /// Steps taken since the start.
-    has_moved: bool,
+    /// Where the sheet is. Nothing but [`Substeps::commit`] changes it in a step.
+    motion: Motion,
     proposal: Proposal,
 }
 
@@ -57,8 +65,7 @@ impl Engine {
         let fixed = immobile_vertices(&model, &state.x);
         model.fix(&fixed);
         model.clear_velocities(&fixed, &mut state.v);
-        let acceleration = LoadScale::at(&model, &state).acceleration;
-        model.set_strain_barrier(&state, acceleration, None);
+        model.set_load(&state);
         Self::with_fixed(model, method, state, fixed)
     }
 
@@ -84,15 +91,13 @@ impl Engine {
             return Err(SimulationError::OneSided { index });
         }
         Ok(Self {
-            solver: SolverState::at(state, &model, traits),
+            motion: Motion::at(state, &model, traits.balance(&model)),
             proposal: Proposal::new(&model, traits),
             fallback: fallback(&model, &control, &tuning)?,
             integrator,
             control,
             tuning,
             contact: None,
-            account: EnergyAccount::default(),
-            has_moved: false,
             method,
             fixed,
             model,
@@ -100,17 +105,12 @@ impl Engine {
     }
 
     /// What a checkpoint keeps.
-    pub(crate) fn motion(&self) -> FreeState {
-        FreeState {
+    pub(crate) fn kept(&self) -> WithoutChart {
+        WithoutChart {
             method: self.method.clone(),
             control: self.control.clone(),
-            solver: self.solver.compact(),
-            account: self.account,
-            has_moved: self.has_moved,
+            motion: self.motion.compact(),
             fixed: self.fixed.iter().map(|v| v.0).collect(),
-            barrier: self.contact.as_ref().map(RunContact::barrier),
-            strain_barrier: self.model.elastic_sheet().map(ElasticSheet::barrier),
-            memories: self.model.memories(),
         }
     }
 
@@ -118,28 +118,22 @@ impl Engine {
     pub(crate) fn resume(
         mut model: SheetModel,
         contact: Option<Box<dyn Contact>>,
-        motion: FreeState,
+        kept: WithoutChart,
     ) -> Result<Self, SimulationError> {
-        check_lengths(&model, &motion)?;
-        motion.check_numbers()?;
-        model.set_memories(&motion.memories);
-        let fixed: Vec<VertexId> = motion.fixed.iter().copied().map(VertexId).collect();
+        let motion = kept.motion;
+        motion.check(&model, &kept.fixed)?;
+        let fixed: Vec<VertexId> = kept.fixed.iter().copied().map(VertexId).collect();
         model.fix(&fixed);
-        let start = &motion.solver.state;
-        let acceleration = LoadScale::at(&model, start).acceleration;
-        model.set_strain_barrier(start, acceleration, motion.strain_barrier);
-        motion.solver.balance.check(&model)?;
-        check_energy(&model, &motion.solver.state)?;
-        let state = motion.solver.state.clone();
-        let mut engine = Self::with_fixed(model, motion.method, state, fixed)?;
-        engine.set_control(motion.control)?;
-        engine.solver.copy_from(&motion.solver);
-        engine.account = motion.account;
-        engine.has_moved = motion.has_moved;
+        model.set_load(&motion.state);
+        motion.balance.check(&model)?;
+        check_energy(&model, &motion.memories, &motion.state)?;
+        let mut engine = Self::with_fixed(model, kept.method, motion.state.clone(), fixed)?;
+        engine.set_control(kept.control)?;
+        engine.motion.copy_from(&motion);
         engine.contact = match (contact, motion.barrier) {
             (None, None) => None,
             (Some(contact), Some(barrier)) => {
-                let state = &engine.solver.state;
+                let state = &engine.motion.state;
                 Some(RunContact::resume(contact, barrier, &engine.model, state)?)
             }
             (_, barrier) => {
@@ -152,12 +146,12 @@ impl Engine {
 
     /// Contact, if the scene has any.
     pub(crate) fn contact(&self) -> Option<(&RunContact, &ContactState)> {
-        self.contact.as_ref().zip(self.solver.contacts.as_ref())
+        self.contact.as_ref().zip(self.motion.contacts.as_ref())
     }
 
     /// Forces of the rods in the last accepted sub-step; `None` where the method does not solve for them.
     pub(crate) fn rod_forces(&self) -> Option<Vec<f64>> {
-        let SolverState { state, history, .. } = &self.solver;
+        let Motion { state, history, .. } = &self.motion;
         rod_forces(&self.model, &self.method, &history.multipliers, &state.x)
     }
 
@@ -167,12 +161,34 @@ impl Engine {
     }
 
     pub(crate) fn state(&self) -> &State {
-        &self.solver.state
+        &self.motion.state
+    }
+
+    /// What the potentials remember.
+    pub(crate) fn memories(&self) -> &Memories {
+        &self.motion.memories
+    }
+
+    /// Leads the hand that holds a vertex to a point (metres) until time `end`, seconds.
+    pub(crate) fn lead_hand(
+        &mut self,
+        vertex: VertexId,
+        to: [f64; 3],
+        end: f64,
+    ) -> Result<(), HandError> {
+        let (number, hand) = self.model.hand(vertex)?;
+        let Motion {
+            state, memories, ..
+        } = &mut self.motion;
+        hand.lead(to, [state.t, end], memories.list_mut(number))
     }
 
     /// Forces of the supports in the last sub-step.
     pub(crate) fn balance(&self) -> Option<&Balance> {
-        self.has_moved.then_some(&self.solver.balance)
+        let Motion {
+            balance, has_moved, ..
+        } = &self.motion;
+        has_moved.then_some(balance)
     }
 
     /// Adds contact.
@@ -180,9 +196,10 @@ impl Engine {
         if self.integrator.traits().contact == ContactSupport::None {
             return Err(ContactError::Method.into());
         }
-        let (contact, contacts) = RunContact::new(contact, &self.model, &self.solver.state)?;
+        let (contact, contacts) = RunContact::new(contact, &self.model, &self.motion.state)?;
+        self.motion.barrier = Some(contact.barrier());
         self.contact = Some(contact);
-        self.solver.contacts = Some(contacts);
+        self.motion.contacts = Some(contacts);
         Ok(())
     }
 
@@ -210,7 +227,7 @@ impl Engine {
             lengths,
             memory: Memory::All,
             proposer: Proposer::Method,
-            pending: Pending::default(),
+            exchange: Exchange::default(),
             totals,
         };
         run.totals.effort.begin(run.limit);
@@ -247,9 +264,9 @@ impl Engine {
         if self.surroundings_rest(t) {
             return None;
         }
-        let SolverState {
+        let Motion {
             state, contacts, ..
-        } = &self.solver;
+        } = &self.motion;
         let contact = self.contact.as_mut().zip(contacts.as_ref());
         infeasibility(&self.model, contact, state, t)
     }
@@ -257,7 +274,7 @@ impl Engine {
     /// The body that presses the sheet most while it moves on until time `end`, seconds, if one does.
     fn pressing(&mut self, end: f64) -> Option<Pressing> {
         let t0 = self.state().t;
-        let (contact, contacts) = self.contact.as_mut().zip(self.solver.contacts.as_ref())?;
+        let (contact, contacts) = self.contact.as_mut().zip(self.motion.contacts.as_ref())?;
         pressing(contact, contacts, StepSpan { t0, h: end - t0 })
     }
 
@@ -293,7 +310,8 @@ struct Substeps<'a, 'w> {
     /// What of the history the next proposal begins with.
     memory: Memory,
     proposer: Proposer,
-    pending: Pending,
+    /// The energy exchanged in the proposed sub-step.
+    exchange: Exchange,
     totals: &'a mut StepTotals<'w>,
 }
 
@@ -304,13 +322,6 @@ enum Proposer {
     Method,
     /// The fallback of the step control.
     Fallback,
-}
-
-/// What the energy accounts will be once the proposal is committed.
-#[derive(Debug, Clone, Copy, Default)]
-struct Pending {
-    account: EnergyAccount,
-    exchange: Exchange,
 }
 
 /// Why a step ends early.
@@ -354,8 +365,8 @@ impl Substeps<'_, '_> {
             return None;
         }
         let rests = self.engine.surroundings_rest(self.lengths.end());
-        let Engine { model, solver, .. } = &*self.engine;
-        let state = &solver.state;
+        let Engine { model, motion, .. } = &*self.engine;
+        let state = &motion.state;
         let mut vertices = blocked_vertices(model, state, self.lengths.length());
         if vertices.is_empty() && rests {
             vertices = dependent_vertices(model, &state.x);
@@ -380,20 +391,18 @@ impl Substeps<'_, '_> {
             contact,
             integrator,
             fallback,
-            solver,
-            account,
-            has_moved,
+            motion,
             proposal,
             tuning,
             ..
         } = &mut *self.engine;
-        let t = solver.state.t + h;
+        let t = motion.state.t + h;
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
         }
         if let Some(contact) = contact {
             contact.check_bodies(StepSpan {
-                t0: solver.state.t,
+                t0: motion.state.t,
                 h,
             })?;
         }
@@ -401,19 +410,19 @@ impl Substeps<'_, '_> {
             model,
             contact: contact.as_mut().map(RunContact::step),
         };
-        let attempt = Attempt::new(solver, h, self.memory).with(phases);
+        let attempt = Attempt::new(motion, h, self.memory).with(phases);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
-        effort.t = solver.state.t;
+        effort.t = motion.state.t;
         let proposed = match fallback {
             Some(fallback) if is_fallback => fallback.propose(scene, attempt, proposal, effort),
             _ => integrator.propose(scene, attempt, proposal, effort),
         };
         if effort.is_interrupted() {
-            return Err(StepError::Interrupted { t: solver.state.t });
+            return Err(StepError::Interrupted { t: motion.state.t });
         }
         proposed?;
-        let (before, after) = (&solver.state, &proposal.solver.state);
+        let (before, after) = (&motion.state, &proposal.motion.state);
         let step = &proposal.account;
         let mut exchange = Exchange {
             forces: step.work,
@@ -426,22 +435,31 @@ impl Substeps<'_, '_> {
             ..Exchange::default()
         };
         if model.has_drives() {
-            let kept = has_moved.then_some(&solver.balance);
+            let kept = motion.has_moved.then_some(&motion.balance);
             let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
-            let balance = &proposal.solver.balance;
+            let balance = &proposal.motion.balance;
             exchange.supports = balance.drive_work(model, kept, ends.0, ends.1);
             exchange.forces += model.applied_work_at_pins(before, after);
         }
-        self.pending = Pending {
-            account: *account,
-            exchange,
-        };
+        self.exchange = exchange;
         // The conservative methods keep the energy by themselves.
-        if integrator.traits().demand == RodDemand::Nothing || is_fallback {
-            self.pending.account = account.after(model, before, after, &exchange, tuning)?;
-            return Ok(());
-        }
-        check_energy(model, after)
+        let damps = integrator.traits().demand == RodDemand::Nothing || is_fallback;
+        let account = match damps {
+            true => {
+                let potential =
+                    [before, after].map(|s| model.energy_with(&motion.memories, after.t, &s.x));
+                let force = || force_sum(model, &motion.memories, after);
+                motion
+                    .account
+                    .after(model, [before, after], potential, force, &exchange, tuning)?
+            }
+            false => {
+                check_energy(model, &motion.memories, after)?;
+                motion.account
+            }
+        };
+        proposal.motion.account = account;
+        Ok(())
     }
 
     /// What follows from a refusal that another sub-step may mend:
@@ -453,7 +471,7 @@ impl Substeps<'_, '_> {
     ///
     /// Where the step is not to be halved any more, the fallback takes it if there is one.
     fn follow(&mut self, refusal: StepError) -> Decision<Stop> {
-        let looks_back = self.memory > Memory::Restart && self.engine.solver.history.looks_back();
+        let looks_back = self.memory > Memory::Restart && self.engine.motion.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         if self.proposer == Proposer::Fallback {
             Decision::Stop(self.stop(refusal))
@@ -538,38 +556,38 @@ impl Stepping for Substeps<'_, '_> {
 
     fn commit(&mut self, h: f64) -> Result<(), Stop> {
         let engine = &mut *self.engine;
-        let (step, exchange) = (engine.proposal.account, self.pending.exchange);
-        std::mem::swap(&mut engine.solver, &mut engine.proposal.solver);
-        engine.account = self.pending.account;
-        engine.has_moved = true;
+        let (step, exchange) = (engine.proposal.account, self.exchange);
+        std::mem::swap(&mut engine.motion, &mut engine.proposal.motion);
+        let (model, before, motion) = (&engine.model, &engine.proposal.motion, &mut engine.motion);
+        motion.memories.copy_from(&before.memories);
+        motion.barrier = before.barrier;
+        motion.has_moved = true;
         // Free of accumulated round-off, for the pins in motion too.
-        let state = &mut engine.solver.state;
-        state.t = self.lengths.advance();
-        engine.model.place_pins(state.t, &mut state.x);
+        motion.state.t = self.lengths.advance();
+        model.place_pins(motion.state.t, &mut motion.state.x);
         let totals = &mut *self.totals;
-        if engine.model.has_driven_potentials() {
-            let (before, after) = (&engine.proposal.solver.state, &engine.solver.state);
-            let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
-            totals.work += engine.model.potential_work(ends.0, ends.1);
+        if model.has_driven_potentials() {
+            let ends = [&before.state, &motion.state].map(|s| (s.t, &s.x[..]));
+            totals.work += model.potential_work(&motion.memories, ends[0], ends[1]);
         }
-        let State { t, x, .. } = &engine.solver.state;
-        totals.plastic += engine.model.settle(*t, x);
         totals.substeps += 1;
         totals.residual = totals.residual.max(step.residual);
         totals.outcome = totals.outcome.max(step.outcome);
         totals.work += exchange.forces + exchange.air + exchange.supports + exchange.bodies;
         totals.friction += step.contact.friction;
-        let dissipated = damp(&engine.model, &mut engine.solver.state, h);
+        let dissipated = damp(model, &mut motion.state, h);
         totals.dissipated += dissipated;
-        engine.account.spend(dissipated);
-        totals.work += engine.model.raise_strain_barrier(&engine.solver.state);
+        motion.account.spend(dissipated);
+        let settled = model.settle(&motion.state, &mut motion.memories);
+        totals.plastic += settled.dissipated;
+        totals.work += settled.work;
         if self.proposer == Proposer::Fallback {
             // What the fallback remembers means nothing to the method that was asked for.
-            engine.solver.history.previous = None;
-            engine.solver.history.multipliers.clear();
+            motion.history.previous = None;
+            motion.history.multipliers.clear();
             totals.outcome = totals.outcome.max(StepOutcome::Fallback);
         }
-        let (t, factorisations) = (engine.solver.state.t, totals.effort.spent());
+        let (t, factorisations) = (motion.state.t, totals.effort.spent());
         totals.effort.trace(|| TraceEvent::Accepted {
             t,
             h,
@@ -597,8 +615,8 @@ fn fallback(
 }
 
 /// Refuses a state whose energy is not finite.
-fn check_energy(model: &SheetModel, state: &State) -> Result<(), StepError> {
-    let value = model.kinetic_energy(&state.v) + model.potential_energy(state.t, &state.x);
+fn check_energy(model: &SheetModel, memories: &Memories, state: &State) -> Result<(), StepError> {
+    let value = model.kinetic_energy(&state.v) + model.energy_with(memories, state.t, &state.x);
     if value.is_finite() {
         return Ok(());
     }
@@ -609,62 +627,11 @@ fn check_energy(model: &SheetModel, state: &State) -> Result<(), StepError> {
     })
 }
 
-/// Refuses arrays of the wrong length.
-fn check_lengths(model: &SheetModel, motion: &FreeState) -> Result<(), CheckpointError> {
-    let (n, m, k) = (
-        model.coordinate_count(),
-        model.rods().len(),
-        model.constraints().len(),
-    );
-    let SolverState { state, history, .. } = &motion.solver;
-    let previous = history.previous.as_ref().unwrap_or(state);
-    let multipliers = &history.multipliers;
-    let optional = |length: usize, expected: usize| if length == 0 { expected } else { length };
-    let vertices = model.topology().vertex_count();
-    let largest = history
-        .couplings
-        .iter()
-        .flatten()
-        .chain(&motion.fixed)
-        .max();
-    let memories = model.memories();
-    check_length(
-        "the list of potentials that yield",
-        motion.memories.len(),
-        memories.len(),
-    )?;
-    for (found, expected) in motion.memories.iter().zip(&memories) {
-        check_length(
-            "the list of plastic deformations",
-            found.len(),
-            expected.len(),
-        )?;
-    }
-    for (what, found, expected) in [
-        ("positions", state.x.len(), n),
-        ("velocities", state.v.len(), n),
-        ("positions of the step before", previous.x.len(), n),
-        ("velocities of the step before", previous.v.len(), n),
-        (
-            "multipliers of the isometry",
-            optional(multipliers.rods.len(), m),
-            m,
-        ),
-        (
-            "multipliers of vertex constraints",
-            optional(multipliers.constraints.len(), k),
-            k,
-        ),
-    ] {
-        check_length(what, found, expected)?;
-    }
-    match largest {
-        Some(&v) if v as usize >= vertices => Err(CheckpointError::NoSuchVertex {
-            vertex: v,
-            vertices,
-        }),
-        _ => Ok(()),
-    }
+/// Sum of the magnitudes of the components of the conservative forces, newtons.
+fn force_sum(model: &SheetModel, memories: &Memories, state: &State) -> f64 {
+    let mut force = vec![0.0; state.x.len()];
+    model.acting_force(memories, state.t, &state.x, &mut force);
+    force.iter().map(|f| f.abs()).sum()
 }
 
 /// Applies velocity damping over a step; returns the energy taken out.

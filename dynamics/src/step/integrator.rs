@@ -1,12 +1,13 @@
 //! What all chart-free integrators have in common: they propose, and leave it to the step control to commit.
 
-use crate::contact::{ContactState, ContactWork, StepContact};
+use crate::contact::{ContactWork, StepContact};
+use crate::model::memory::Memories;
 use crate::step::effort::SolverEffort;
 use crate::step::history::{History, Multipliers};
+use crate::step::motion::Motion;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::step::report::{StepError, StepOutcome};
 use crate::{SheetModel, State};
-use serde::{Deserialize, Serialize};
 
 /// What an integrator moves: a sheet, and what the sheet may touch.
 pub(crate) struct Scene<'a> {
@@ -16,24 +17,11 @@ pub(crate) struct Scene<'a> {
     pub(crate) contact: Option<StepContact<'a>>,
 }
 
-/// A point of a motion: all that the next step depends on besides the scene and the options of the method.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct SolverState {
-    /// Time, positions and velocities.
-    pub(crate) state: State,
-    /// What the method remembers of earlier steps.
-    pub(crate) history: History,
-    /// Forces of the supports in the step that ended here. Meaningless before the first step.
-    pub(crate) balance: Balance,
-    /// The contacts at the state, with the friction of the step that ended here; `None` without contact.
-    pub(crate) contacts: Option<ContactState>,
-}
-
 /// A sub-step that could be taken.
 #[derive(Debug, Clone)]
 pub(crate) struct Proposal {
     /// Where the sub-step would end.
-    pub(crate) solver: SolverState,
+    pub(crate) motion: Motion,
     /// What it would achieve.
     pub(crate) account: StepAccount,
 }
@@ -57,56 +45,10 @@ pub(crate) struct StepAccount {
 impl Proposal {
     /// Room for the proposals of a method.
     pub(crate) fn new(model: &SheetModel, traits: MethodTraits) -> Self {
+        let nowhere = State::at_rest(vec![0.0; model.coordinate_count()]);
         Self {
-            solver: SolverState::at(
-                State::at_rest(vec![0.0; model.coordinate_count()]),
-                model,
-                traits,
-            ),
+            motion: Motion::at(nowhere, model, traits.balance(model)),
             account: StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton),
-        }
-    }
-}
-
-impl SolverState {
-    /// A start without memory.
-    pub(crate) fn at(state: State, model: &SheetModel, traits: MethodTraits) -> Self {
-        Self {
-            state,
-            history: History::default(),
-            balance: match traits.demand {
-                RodDemand::Independent => Balance::new(model, ForceTime::Mean),
-                RodDemand::Nothing => Balance::with_residual(model, ForceTime::End),
-            },
-            contacts: None,
-        }
-    }
-}
-
-impl SolverState {
-    /// What a checkpoint keeps.
-    pub(crate) fn compact(&self) -> Self {
-        Self {
-            state: self.state.clone(),
-            history: self.history.clone(),
-            balance: self.balance.compact(),
-            contacts: self.contacts.clone(),
-        }
-    }
-
-    /// Takes over another solver state of the same model, in place.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.state.copy_from(&other.state);
-        self.history.copy_from(&other.history);
-        self.balance.copy_from(&other.balance);
-        self.set_contacts(other.contacts.as_ref());
-    }
-
-    /// Sets the contacts, in place.
-    pub(crate) fn set_contacts(&mut self, contacts: Option<&ContactState>) {
-        match (&mut self.contacts, contacts) {
-            (Some(mine), Some(other)) => mine.copy_from(other),
-            (mine, other) => *mine = other.cloned(),
         }
     }
 }
@@ -132,6 +74,8 @@ pub(crate) struct Attempt<'a> {
     pub(crate) h: f64,
     /// The phases of a minimisation that may be tried.
     pub(crate) phases: Phases,
+    /// What the potentials remember.
+    pub(crate) memories: &'a Memories,
     history: &'a History,
     memory: Memory,
 }
@@ -164,12 +108,13 @@ static NONE: Multipliers = Multipliers {
 };
 
 impl<'a> Attempt<'a> {
-    /// A sub-step of `h` seconds from a solver state that may try all phases.
-    pub(crate) fn new(start: &'a SolverState, h: f64, memory: Memory) -> Self {
+    /// A sub-step of `h` seconds from a motion that may try all phases.
+    pub(crate) fn new(start: &'a Motion, h: f64, memory: Memory) -> Self {
         Self {
             state: &start.state,
             h,
             phases: Phases::All,
+            memories: &start.memories,
             history: &start.history,
             memory,
         }
@@ -219,7 +164,7 @@ impl<'a> Attempt<'a> {
     }
 }
 
-/// A one-step or multistep method, as a function from a solver state to a proposal.
+/// A one-step or multistep method, as a function from a motion to a proposal.
 ///
 /// An integrator owns work arrays and factorisations, and nothing that a later step depends on: after a
 /// refusal, and after a proposal that is not committed, it answers the same question with the same bits.
@@ -252,6 +197,14 @@ pub(crate) struct MethodTraits {
 }
 
 impl MethodTraits {
+    /// Room for the forces of supports in the steps of the method.
+    pub(crate) fn balance(self, model: &SheetModel) -> Balance {
+        match self.demand {
+            RodDemand::Independent => Balance::new(model, ForceTime::Mean),
+            RodDemand::Nothing => Balance::with_residual(model, ForceTime::End),
+        }
+    }
+
     /// BDF2 and implicit Euler: minimisations, at any rank of the rods, with contact as a barrier.
     pub(crate) fn minimising() -> Self {
         Self {

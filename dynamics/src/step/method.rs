@@ -5,7 +5,6 @@ use crate::conservative::rattle::{Rattle, RattleOptions};
 use crate::damped::air_step::Formula;
 use crate::damped::implicit::Implicit;
 use crate::damped::options::ImplicitOptions;
-use crate::damped::projection_step::{ProjectionStep, ProjectionStepOptions};
 use crate::options::OptionsError;
 use crate::step::integrator::Integrator;
 use crate::step::tuning::Tuning;
@@ -41,11 +40,6 @@ pub enum Method {
     /// step `k h`. The first step, the first after a change of the state from outside, and steps with `w > 2`
     /// are implicit Euler (`w = 0`). Non-conservative forces are explicit, of first order.
     Bdf2(ImplicitOptions),
-    /// Explicit step projected onto `c(x) = 0`, with the velocity of the displacement projected onto
-    /// `G(x1) v = 0` (after Goldenthal et al., "Efficient simulation of inextensible cloth", ACM Transactions
-    /// on Graphics 26, 2007). First order, strongly dissipative. The linear systems are positive definite at
-    /// any rank of `G`.
-    Projection(ProjectionStepOptions),
     /// Energy-momentum method (after Simo and Gonzalez): second order, symmetric. With `w = (v0 + v1) / 2`,
     /// `x1 = x0 + h w` and `xm = (x0 + x1) / 2`:
     ///
@@ -95,10 +89,6 @@ impl Method {
             Self::Bdf2(o) => {
                 o.validate()?;
                 Box::new(Implicit::new(Formula::TwoStep, model, o, tuning)?)
-            }
-            Self::Projection(o) => {
-                o.validate()?;
-                Box::new(ProjectionStep::new(model, o, tuning)?)
             }
             Self::EnergyMomentum(o) => {
                 o.validate()?;

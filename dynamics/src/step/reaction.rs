@@ -3,6 +3,7 @@
 use crate::constraint::rows::VertexRows;
 use crate::contact::ContactTerms;
 use crate::damped::air_step::AirStep;
+use crate::model::memory::Memories;
 use crate::model::support::Support;
 use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::residual_momentum::ResidualMomentum;
@@ -179,10 +180,16 @@ impl Balance {
     }
 
     /// Subtracts `share` of the potential forces.
-    pub(crate) fn add_potentials(&mut self, model: &SheetModel, t: f64, x: &[f64], share: f64) {
+    pub(crate) fn add_potentials(
+        &mut self,
+        model: &SheetModel,
+        memories: &Memories,
+        (t, x): (f64, &[f64]),
+        share: f64,
+    ) {
         self.work.fill(0.0);
-        for p in model.potentials() {
-            p.add_gradient(t, x, &mut self.work);
+        for (p, at) in model.potentials_at(t, x, memories) {
+            p.add_gradient(at, &mut self.work);
         }
         self.add_work(share);
     }

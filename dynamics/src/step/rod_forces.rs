@@ -5,11 +5,6 @@ use crate::step::history::Multipliers;
 use crate::{Isometry, Method, SheetModel};
 
 impl Method {
-    /// Whether the method solves for the forces of rigid rods: all but projection.
-    pub fn solves_for_rod_forces(&self) -> bool {
-        !matches!(self, Self::Projection(_))
-    }
-
     /// Force density (tension over length, N/m) of a unit multiplier: BDF2 and implicit Euler have
     /// multipliers `h^2` times the density, with the effective step `h`; energy-momentum the impulse over the
     /// step, RATTLE that over its first half, both compressive.
@@ -18,7 +13,6 @@ impl Method {
             Self::ImplicitEuler(_) | Self::Bdf2(_) => 1.0 / (h * h),
             Self::EnergyMomentum(_) => -1.0 / h,
             Self::Rattle(_) | Self::RattleComposition(_) => -2.0 / h,
-            Self::Projection(_) => 0.0,
         }
     }
 }
@@ -36,7 +30,7 @@ pub(crate) fn rod_forces(
     multipliers: &Multipliers,
     x: &[f64],
 ) -> Option<Vec<f64>> {
-    if model.isometry() != Isometry::Rods || !method.solves_for_rod_forces() {
+    if model.isometry() != Isometry::Rods {
         return None;
     }
     let rods = model.rods();

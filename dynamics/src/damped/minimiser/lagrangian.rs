@@ -284,7 +284,7 @@ impl Lagrangian {
             squares += h * h * elastic.round_off(size);
         }
         if self.energy_at.moves_to(t, x) {
-            self.energy = model.potential_energy(t, x);
+            self.energy = model.energy_with(problem.memories, t, x);
         }
         let mut energy = self.energy;
         if let Some(terms) = self.iterate.terms(problem.contact()) {
@@ -315,7 +315,7 @@ impl Lagrangian {
         }
         model.apply_mass(&self.difference, &mut self.weighted);
         if self.force_at.moves_to(t, x) {
-            model.potential_force(t, x, &mut self.force);
+            model.acting_force(problem.memories, t, x, &mut self.force);
         }
         for i in 0..x.len() {
             self.gradient[i] = self.weighted[i] - h * h * (self.force[i] + problem.applied[i]);
@@ -378,8 +378,9 @@ impl Lagrangian {
             vector: &self.weighted,
             product: &mut self.gradient,
         };
-        for potential in model.potentials() {
-            potential.add_hessian(problem.t(), self.iterate.x(), &mut product);
+        let (t, x) = (problem.t(), self.iterate.x());
+        for (potential, at) in model.potentials_at(t, x, problem.memories) {
+            potential.add_hessian(at, &mut product);
         }
         if let Some(air) = problem.air {
             air.add_hessian(self.iterate.x(), 1.0, &mut product);
@@ -433,7 +434,7 @@ impl Lagrangian {
         let (t, x) = (problem.t(), self.iterate.x());
         let scale = problem.h * problem.h;
         self.matrix
-            .add_semidefinite_potentials(problem.model, t, x, scale);
+            .add_semidefinite_potentials(problem.model, problem.memories, (t, x), scale);
         if self.matrix.factorize().is_err() {
             count()?;
             self.assemble(problem, HessianPart::PositiveSemidefinite);
@@ -479,7 +480,8 @@ impl Lagrangian {
     fn add_potentials(&mut self, problem: &StepProblem<'_>) {
         let (t, x) = (problem.t(), self.iterate.x());
         let scale = problem.h * problem.h;
-        self.matrix.add_potentials(problem.model, t, x, scale);
+        let (model, memories) = (problem.model, problem.memories);
+        self.matrix.add_potentials(model, memories, (t, x), scale);
     }
 
     /// Solves for minus the search direction; the slope of the value along the search direction.

@@ -2,6 +2,7 @@
 
 use crate::contact::StepContact;
 use crate::damped::air_step::AirStep;
+use crate::model::memory::Memories;
 use crate::step::integrator::Phases;
 use crate::{SheetModel, State};
 
@@ -14,6 +15,8 @@ use crate::{SheetModel, State};
 pub(crate) struct StepProblem<'a> {
     /// The sheet.
     pub(crate) model: &'a SheetModel,
+    /// What its potentials remember.
+    pub(crate) memories: &'a Memories,
     /// Contact, in scenes that name it.
     pub(crate) contact: Option<StepContact<'a>>,
     /// The state at the start of the step.

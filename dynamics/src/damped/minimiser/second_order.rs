@@ -85,7 +85,11 @@ impl Lagrangian {
         let scale = problem.h * problem.h;
         let (x, force) = (self.iterate.x(), &mut self.difference);
         force.fill(0.0);
-        elastic.add_second_order(x, &self.dx, scale, force);
+        let potentials = model.potentials_at(problem.t(), x, problem.memories);
+        let Some((_, at)) = potentials.last() else {
+            return false;
+        };
+        elastic.add_second_order(at, &self.dx, scale, force);
         model.clear_pinned(force);
         self.matrix.solve(model, force, &mut self.curved);
         self.is_curved = true;

@@ -106,7 +106,8 @@ impl Workspace {
         if !self.balance.begin(model, |i| per * (x[i] - prediction[i])) {
             return;
         }
-        self.balance.add_potentials(model, problem.t(), x, 1.0);
+        self.balance
+            .add_potentials(model, problem.memories, (problem.t(), x), 1.0);
         self.balance.add_explicit(model, state);
         if let Some(air) = problem.air {
             self.balance.add_air(air, x);

@@ -197,11 +197,13 @@ impl Moment {
 }
 
 impl Potential for Moment {
-    fn energy(&self, t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { t, x, .. } = at;
         -Self::at(t) * Fold::at(x, &self.0).angle()
     }
 
-    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { t, x, .. } = at;
         for (v, g) in self.0.iter().zip(Fold::at(x, &self.0).gradient()) {
             for k in 0..3 {
                 gradient[3 * v.index() + k] -= Self::at(t) * g[k];

@@ -1,6 +1,8 @@
 //! How an elastic sheet is deformed, face by face.
 
 use crate::SheetModel;
+use crate::model::memory::Memories;
+use crate::model::potential::At;
 
 /// How an elastic sheet is deformed, one value for each face: what a report needs to say whether the mesh is
 /// fine enough ([`SheetModel::elastic_deformation`]).
@@ -43,22 +45,29 @@ fn share(stretching: f64, bending: f64) -> f64 {
 }
 
 impl SheetModel {
-    /// How an elastic sheet is deformed at positions `x` (`3V`, metres); nothing for a sheet of rods. Bending
+    /// How an elastic sheet is deformed at positions `x` (`3V`, metres) by what its potentials remember; nothing for a sheet of rods. Bending
     /// is that of the potentials that know it by face
     /// ([`Potential::add_bending_energies`](crate::Potential)), and has an angle if the sheet was told its
     /// rigidity ([`ElasticSheet::softened`](crate::ElasticSheet::softened)).
     ///
     /// # Panics
     /// If `x` is not of length `3V`.
-    pub fn elastic_deformation(&self, x: &[f64]) -> Option<ElasticDeformation> {
+    pub fn elastic_deformation(
+        &self,
+        x: &[f64],
+        memories: &Memories,
+    ) -> Option<ElasticDeformation> {
         let elastic = self.elastic_sheet()?;
         let mut bending = vec![0.0; elastic.face_count()];
-        for potential in self.outer_potentials() {
-            potential.add_bending_energies(x, &mut bending);
+        let mut own = At::new(0.0, x);
+        for (potential, at) in self.potentials_at(0.0, x, memories) {
+            potential.add_bending_energies(at, &mut bending);
+            // That of the elastic sheet is the last one.
+            own = at;
         }
         Some(ElasticDeformation {
             strain: elastic.strains(x).collect(),
-            stretching: elastic.face_energies(x).collect(),
+            stretching: elastic.face_energies(own).collect(),
             angle: elastic.bend_angles(&bending),
             bending,
         })

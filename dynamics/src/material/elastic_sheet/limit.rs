@@ -39,12 +39,8 @@ impl StrainLimit {
         self.limit
     }
 
-    pub(super) fn stiffness(&self) -> f64 {
-        self.stiffness
-    }
-
-    pub(super) fn set_stiffness(&mut self, stiffness: f64) {
-        self.stiffness = stiffness;
+    pub(super) fn with_stiffness(self, stiffness: f64) -> Self {
+        Self { stiffness, ..self }
     }
 
     /// `p` and its derivative by the square of the strain.

@@ -1,7 +1,7 @@
 //! How stiff the barrier at the limit of the strain has to be.
 
 use super::ElasticSheet;
-use crate::State;
+use crate::model::potential::Reached;
 use crate::vectors::{diameter, largest_norm};
 
 /// Stiffness of the barrier in parts of the energy of the motion to come, see [`strain_barrier`]. From 0.01
@@ -10,12 +10,12 @@ use crate::vectors::{diameter, largest_norm};
 /// vertices on two corners 8.8, 8.1, 9.1, 10, 11, 13, 15.
 const BARRIER_PART: f64 = 0.03;
 
-/// The stiffness `kappa` of the barrier that an elastic sheet of a mass (kilograms) needs at a state, joules
+/// The stiffness `kappa` of the barrier that an elastic sheet needs at a state, joules
 /// per square metre: 3 % of `rho (a L + v^2)`, with the mass per area `rho`, the largest acceleration `a` by
 /// constant forces (9.8 m/s2 if there are none), the diameter `L` of the sheet and its largest speed `v`.
 /// What is in parentheses is about the square of the speed with which the sheet meets an obstacle.
-pub(crate) fn strain_barrier(mass: f64, elastic: &ElasticSheet, state: &State) -> f64 {
-    let density = mass / elastic.area();
-    let speed = largest_norm(&state.v);
-    BARRIER_PART * density * (elastic.acceleration * diameter(&state.x) + speed * speed)
+pub(super) fn strain_barrier(elastic: &ElasticSheet, state: Reached<'_>) -> f64 {
+    let density = elastic.mass / elastic.area();
+    let speed = largest_norm(state.v);
+    BARRIER_PART * density * (elastic.acceleration * diameter(state.x) + speed * speed)
 }

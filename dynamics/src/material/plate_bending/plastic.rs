@@ -2,11 +2,13 @@
 
 use super::stencil::{Stencil, Stencils};
 use crate::material::plasticity::{Flow, Yield};
+use crate::model::potential::At;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::SQRT_2;
+use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The plastic curvatures of the faces of a plate.
@@ -19,9 +21,6 @@ pub(super) struct PlasticCurvature {
     /// Of each pair of vertices of each stencil, the second one being before the first, where its block of
     /// the Hessian is.
     slots: Vec<Slot>,
-    /// Plastic curvature of each layer of each face, 1/m: the components `(11, sqrt(2) 12, 22)`, the first
-    /// axis along the first edge of the face.
-    curvatures: Vec<f64>,
     /// Room for the blocks, so that no step allocates.
     blocks: Mutex<Blocks>,
 }
@@ -166,7 +165,6 @@ impl PlasticCurvature {
         Self {
             yields,
             rigidity,
-            curvatures: vec![0.0; 3 * yields.layers * faces.len()],
             faces,
             slots,
             blocks: Mutex::new(Blocks {
@@ -178,31 +176,30 @@ impl PlasticCurvature {
         }
     }
 
-    pub(super) fn curvatures(&self) -> &[f64] {
-        &self.curvatures
+    /// No plastic curvature. A memory has one for each layer of each face, 1/m: the components
+    /// `(11, sqrt(2) 12, 22)`, the first axis along the first edge of the face.
+    pub(super) fn memory(&self) -> Vec<f64> {
+        vec![0.0; 3 * self.yields.layers * self.faces.len()]
     }
 
-    pub(super) fn set_curvatures(&mut self, curvatures: &[f64]) {
-        self.curvatures.copy_from_slice(curvatures);
-    }
-
-    /// The plastic curvatures of the layers of a face.
-    fn layers(&self, face: usize) -> &[f64] {
+    /// The plastic curvatures of the layers of a face, in a memory.
+    fn layers(&self, face: usize) -> Range<usize> {
         let count = 3 * self.yields.layers;
-        &self.curvatures[count * face..count * (face + 1)]
+        count * face..count * (face + 1)
     }
 
-    /// The plastic curvatures as matrices, 1/m.
-    pub(super) fn matrices(&self) -> impl Iterator<Item = Matrix2<f64>> {
+    /// The plastic curvatures of a memory as matrices, 1/m.
+    pub(super) fn matrices(&self, memory: &[f64]) -> impl Iterator<Item = Matrix2<f64>> {
         let matrix = |face| {
-            let p: Vector3<f64> = self.yields.plastic(self.layers(face));
+            let p: Vector3<f64> = self.yields.plastic(&memory[self.layers(face)]);
             Matrix2::new(p[0], p[1] / SQRT_2, p[1] / SQRT_2, p[2])
         };
         (0..self.faces.len()).map(matrix)
     }
 
-    /// A face at positions.
-    pub(super) fn bent(&self, face: usize, stencil: &Stencil<'_>, x: &[f64]) -> BentFace {
+    /// A face at positions, with the plastic curvatures of a memory.
+    pub(super) fn bent(&self, face: usize, stencil: &Stencil<'_>, at: At<'_>) -> BentFace {
+        let At { x, memory, .. } = at;
         let PlasticFace { corners, area, .. } = self.faces[face];
         let scale = (self.rigidity * area).sqrt();
         let [a, b, c] = corners.map(|v| point(x, v));
@@ -211,7 +208,7 @@ impl PlasticCurvature {
         let normal = normal / double_area;
         let hats = [c - b, a - c, b - a].map(|opposite| normal.cross(&opposite) / double_area);
         let derivatives = stencil.apply(x);
-        let layers = self.layers(face);
+        let layers = &memory[self.layers(face)];
         let before: Vector3<f64> = self.yields.plastic(layers);
         let trial = derivatives.tr_mul(&normal) / scale - before;
         let flow = self.yields.flow(self.rigidity, trial, layers);
@@ -233,13 +230,14 @@ impl PlasticCurvature {
         0.5 * bent.elastic.norm_squared() + self.faces[face].area * bent.flow.energy
     }
 
-    /// Makes the curvatures those at the end of a step; the energy that has been dissipated, joules.
-    pub(super) fn settle(&mut self, stencils: &Stencils, x: &[f64]) -> f64 {
+    /// Makes the curvatures of a memory those at the end of a step; the energy that has been dissipated,
+    /// joules.
+    pub(super) fn settle(&self, stencils: &Stencils, x: &[f64], memory: &mut [f64]) -> f64 {
         let mut dissipated = 0.0;
         for (face, stencil) in stencils.iter().enumerate() {
-            let trial = self.bent(face, &stencil, x).trial;
-            let count = 3 * self.yields.layers;
-            let layers = &mut self.curvatures[count * face..count * (face + 1)];
+            let at = At::new(0.0, x).with_memory(memory);
+            let trial = self.bent(face, &stencil, at).trial;
+            let layers = &mut memory[self.layers(face)];
             dissipated += self.faces[face].area * self.yields.settle(self.rigidity, trial, layers);
         }
         dissipated
@@ -252,11 +250,11 @@ impl PlasticCurvature {
     /// along the normal, and of `max(0, p . (k - p)) |dn|^2`: it is positive semidefinite, and differs from
     /// the second derivatives by terms that vanish where the sheet is isometric and no face is bent against
     /// its plastic curvature.
-    pub(super) fn blocks(&self, stencils: &Stencils, x: &[f64]) -> Option<MutexGuard<'_, Blocks>> {
+    pub(super) fn blocks(&self, stencils: &Stencils, at: At<'_>) -> Option<MutexGuard<'_, Blocks>> {
         let mut blocks = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
         let mut is_elastic = true;
         for (face, stencil) in stencils.iter().enumerate() {
-            let bent = self.bent(face, &stencil, x);
+            let bent = self.bent(face, &stencil, at);
             if bent.is_elastic() {
                 continue;
             }

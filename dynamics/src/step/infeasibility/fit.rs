@@ -5,6 +5,7 @@ use super::gaps::Gaps;
 use crate::constraint::rows::{HessianPart, VertexRows};
 use crate::linear::primal::PrimalMatrix;
 use crate::material::elastic_sheet::ElasticSheet;
+use crate::model::potential::At;
 use crate::model::support::Support;
 use crate::vectors::{add, point};
 use crate::{Potential, SheetModel, State};
@@ -145,7 +146,7 @@ impl<'a> Fit<'a> {
             .rods()
             .apply_transpose_add(&self.x, &self.tension, &mut self.gradient);
         if let Some(excess) = &self.excess {
-            excess.add_gradient(self.t, &self.x, &mut self.gradient);
+            excess.add_gradient(At::new(self.t, &self.x), &mut self.gradient);
         }
         self.gaps.add_gradient(&self.x, &mut self.gradient);
         self.rows
@@ -159,7 +160,7 @@ impl<'a> Fit<'a> {
         let excess = self
             .excess
             .as_ref()
-            .map_or(0.0, |excess| excess.energy(self.t, &self.x));
+            .map_or(0.0, |excess| excess.energy(At::new(self.t, &self.x)));
         0.5 * rods + excess + self.gaps.energy(&self.x) + self.rows.value()
     }
 
@@ -250,7 +251,7 @@ impl<'a> Fit<'a> {
             .assemble(self.model, &self.x, &self.penalty, &transverse);
         let mut sink = self.matrix.sink(self.model);
         if let Some(excess) = &self.excess {
-            excess.add_semidefinite_hessian(self.t, &self.x, &mut sink);
+            excess.add_semidefinite_hessian(At::new(self.t, &self.x), &mut sink);
         }
         self.gaps.add_hessian(&self.x, &mut sink);
         self.rows
