@@ -59,13 +59,18 @@ mod conservative;
 pub mod constraint;
 pub mod contact;
 mod damped;
+mod hessian;
 mod linear;
 mod material;
 mod model;
 mod motion;
+mod objective;
 mod options;
+pub mod potential;
 mod run;
+mod state;
 mod step;
+mod term;
 mod vectors;
 
 pub use conservative::energy_momentum::EnergyMomentumOptions;
@@ -73,6 +78,7 @@ pub use conservative::rattle::RattleOptions;
 pub use constraint::VertexConstraint;
 pub use damped::options::ImplicitOptions;
 pub use damped::start::{leave_flat, leave_flat_in, project_positions};
+pub use hessian::HessianSink;
 pub use linear::rank::{RodRank, rod_rank};
 pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use material::elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheetError};
@@ -85,13 +91,7 @@ pub use model::clamps::ClampAcrossMesh;
 pub use model::hand::{Hand, HandError};
 pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};
-pub use model::memory::Memories;
 pub use model::part::PotentialOfPart;
-pub use model::potential::{
-    At, CouplingKind, Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape,
-    Reached, Settled,
-};
-pub use model::state::State;
 pub use model::support::Support;
 pub use model::{Isometry, ModelError, SheetModel};
 pub use motion::profile::{Interpolation, Profile, ProfileError};
@@ -100,10 +100,15 @@ pub use motion::{
     RigidMotion, RigidProfile,
 };
 pub use options::OptionsError;
+pub use potential::{
+    At, CouplingKind, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape, Reached,
+    Settled,
+};
 pub use run::checkpoint::Checkpoint;
 pub use run::fold_start::start_of_folding;
 pub use run::observe::{Frames, History, Observer, RunEnd};
 pub use run::simulation::Simulation;
+pub use state::State;
 pub use step::checkpoint_error::CheckpointError;
 pub use step::effort::StepProgress;
 pub use step::infeasibility::{Driver, Infeasibility};
@@ -117,7 +122,6 @@ pub use step::trace::{Continuation, Cut, TraceEvent};
 #[doc(hidden)]
 pub use step::tuning::{Constant, Tuning};
 
-pub use model::potential;
 pub use nalgebra;
 
 /// The code of the README is compiled and run as a test.

@@ -2,7 +2,7 @@
 
 use super::{ChartDynamicsError, MassSolver, MassSolverKind};
 use crate::SheetModel;
-use crate::model::memory::Memories;
+use crate::potential::Memories;
 use isosheet_coords::{Chart, Linearised, RodSystem};
 use isosheet_mesh::VertexId;
 

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::HandError;
 use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
-use crate::model::memory::Memories;
+use crate::potential::Memories;
 use crate::step::reaction::{Balance, ForceTime, Reaction};
 use crate::{Isometry, SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};

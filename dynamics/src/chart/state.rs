@@ -2,7 +2,7 @@
 
 use super::ContactImpulse;
 use super::stepping::PhaseState;
-use crate::model::memory::Memories;
+use crate::potential::Memories;
 use crate::step::checkpoint_error::{CheckpointError, check_finite};
 use crate::step::reaction::Balance;
 use nalgebra::Vector3;

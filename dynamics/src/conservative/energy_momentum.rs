@@ -1,9 +1,9 @@
 //! The energy-momentum integrator.
 
 use super::newton::{Newton, Terms};
-use crate::model::memory::Memories;
 use crate::model::round_off::strain_floor;
 use crate::options::OptionsError;
+use crate::potential::Memories;
 use crate::step::effort::SolverEffort;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::reaction::Balance;
@@ -234,7 +234,7 @@ impl Integrator for EnergyMomentum {
         motion.state.x.copy_from_slice(&self.newton.x1);
         motion.state.t = state.t + h;
         let work = h * dot(&self.applied, &self.newton.u);
-        proposal.account = StepAccount::without_contact(residual, work, outcome);
+        proposal.account = StepAccount::of_forces(residual, work, outcome);
         Ok(())
     }
 }

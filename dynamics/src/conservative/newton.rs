@@ -2,8 +2,8 @@
 
 use crate::constraint::conservative::ConservativeRows;
 use crate::linear::saddle::{SaddleMatrix, System};
-use crate::model::memory::Memories;
 use crate::model::round_off::velocity_round_off;
+use crate::potential::Memories;
 use crate::step::effort::SolverEffort;
 use crate::step::history::Multipliers;
 use crate::step::report::{StepError, StepOutcome};

@@ -1,9 +1,9 @@
 //! RATTLE and its fourth-order composition.
 
 use super::newton::{Newton, Terms};
-use crate::model::memory::Memories;
 use crate::model::round_off::{strain_floor, velocity_round_off};
 use crate::options::OptionsError;
+use crate::potential::Memories;
 use crate::step::effort::SolverEffort;
 use crate::step::history::Multipliers;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
@@ -374,7 +374,7 @@ impl Rattle {
         state.x.copy_from_slice(&self.newton.x1);
         state.v.copy_from_slice(&self.newton.momentum);
         state.t += h;
-        Ok(StepAccount::without_contact(
+        Ok(StepAccount::of_forces(
             residual,
             work,
             outcome.max(projected),
@@ -413,12 +413,12 @@ impl Integrator for Rattle {
         let multipliers = &mut motion.history.multipliers;
         multipliers.copy_from(attempt.multipliers());
         motion.balance.clear();
-        let mut total = StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton);
+        let mut total = StepAccount::of_forces(0.0, 0.0, StepOutcome::Newton);
         for k in 0..self.parts.len() {
             let (part, state) = (self.parts[k], &mut motion.state);
             let done = self.advance(model, state, multipliers, part * h, effort)?;
             total.residual = total.residual.max(done.residual);
-            total.work += done.work;
+            total.exchange.add(done.exchange);
             total.outcome = total.outcome.max(done.outcome);
             motion.balance.add_share(&self.balance, part);
         }

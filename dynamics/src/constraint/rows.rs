@@ -1,7 +1,7 @@
 //! The equations of all vertex constraints of a model, beside those of the rods.
 
 use super::{ConstrainedVertex, LocalEquations, VertexConstraint};
-use crate::model::potential::HessianSink;
+use crate::hessian::{HessianPart, HessianSink};
 use crate::vectors::{add, point};
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
@@ -28,15 +28,6 @@ pub(crate) struct VertexRows {
     pub(crate) active: Vec<bool>,
     /// Whether the constraint is treated as an equality: always, unless it is one-sided.
     pub(crate) equality: Vec<bool>,
-}
-
-/// Which part of the constraints' curvature under load enters a Hessian.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum HessianPart {
-    /// All of it.
-    Full,
-    /// Of each constraint the nearest positive semidefinite matrix.
-    PositiveSemidefinite,
 }
 
 impl VertexRows {
@@ -185,7 +176,7 @@ impl VertexRows {
             }
             let local = &self.local[i];
             let mut curvature = local.hessian(&self.multiplier_estimate(i));
-            if part == HessianPart::PositiveSemidefinite {
+            if part != HessianPart::Full {
                 curvature = positive_semidefinite(&curvature);
             }
             let stiffness = self.penalties[i] * local.jacobian.tr_mul(&local.jacobian);

@@ -438,11 +438,10 @@ impl ActiveContacts {
         has_any
     }
 
-    /// The pairs of vertices, lower number first, that the Hessian couples; may hold pairs twice and pairs
-    /// that are mesh edges. Clears `out` first. Contact with bodies couples no vertices that are not
-    /// neighbours already and is left out.
-    pub fn couplings(&self, out: &mut Vec<[u32; 2]>) {
-        out.clear();
+    /// Appends the pairs of vertices, lower number first, that the Hessian couples; may append pairs twice and
+    /// pairs that are mesh edges. Contact with bodies couples no vertices that are not neighbours already and
+    /// is left out.
+    pub fn append_couplings(&self, out: &mut Vec<[u32; 2]>) {
         for c in &self.list {
             couple(c.key, &c.vertices, out);
         }

@@ -32,8 +32,8 @@ mod impulse;
 mod lagged;
 mod laws;
 mod parallel;
-mod run;
 mod set;
+mod term;
 mod terms;
 mod vertex_data;
 
@@ -47,10 +47,11 @@ pub use impulse::ContactPoint;
 pub use lagged::{FrictionContact, LaggedFriction};
 pub use laws::{ContactLaws, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;
-pub(crate) use run::{RunContact, StepContact, check_start};
+pub(crate) use term::{ContactTerm, check_start};
 
+pub use crate::hessian::CouplingSink;
 pub use set::{ContactKey, ContactKind, ContactSet, JointMotion};
-pub use terms::{BodyLoad, ContactState, ContactTerms, ContactWork};
+pub use terms::{BodyLoad, ContactState, ContactTerms};
 
 use crate::{SheetModel, State};
 use nalgebra::{Matrix3, Vector3};
@@ -92,13 +93,6 @@ pub trait Contact: Send + Sync {
     /// [`ContactError`] if something touches or passes through at the start, or the implementation was made
     /// for another sheet.
     fn check_start(&mut self, model: &SheetModel, state: &State) -> Result<(), ContactError>;
-}
-
-/// Receives 3x3 blocks of a symmetric Hessian.
-pub trait CouplingSink {
-    /// Adds `block` to `d2/dx_a dx_b`, rows at `a`; for `a != b` its transpose belongs to `ba` and is not
-    /// given again. For `a = b` the block is symmetric.
-    fn add(&mut self, a: u32, b: u32, block: &Matrix3<f64>);
 }
 
 /// Adds `w_i w_j block` for all pairs of a stencil; the block is symmetric.

@@ -1,6 +1,7 @@
 //! Barrier and friction together.
 
 use super::{ActiveContacts, BarrierPotential, CouplingSink, LaggedFriction, couple};
+use crate::term::Exchange;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -13,24 +14,11 @@ pub struct BodyLoad {
     pub torque: Vector3<f64>,
 }
 
-/// What contact did over a step.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ContactWork {
-    /// Work done on the sheet by the motion of the bodies, joules: trapezoidal rule over the step.
-    pub bodies: f64,
-    /// Energy lost to friction, joules; not negative.
-    pub friction: f64,
-    /// The same by the normal forces at the end of the step, joules.
-    pub settled_friction: f64,
-    /// Change of the barrier potential `B`, joules.
-    pub stored: f64,
-    /// Energy that the tolerance of the lengths leaves open, joules.
-    pub length_slack: f64,
-}
-
-/// Contacts at the positions of a state, with the friction of the step that led there.
+/// Contacts at the positions of a state, with the barrier and the friction of the step that led there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
+    /// The barrier.
+    pub barrier: BarrierPotential,
     /// The contacts.
     pub active: ActiveContacts,
     /// The friction.
@@ -40,6 +28,7 @@ pub struct ContactState {
 impl ContactState {
     /// Becomes a copy; reuses memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.barrier = other.barrier;
         self.active.copy_from(&other.active);
         self.friction.copy_from(&other.friction);
     }
@@ -58,7 +47,17 @@ pub struct ContactTerms<'a> {
     pub friction: &'a LaggedFriction,
 }
 
-impl ContactTerms<'_> {
+impl<'a> ContactTerms<'a> {
+    /// Of contacts at positions `x` (`3V`, metres).
+    pub fn of(state: &'a ContactState, x: &'a [f64]) -> Self {
+        Self {
+            x,
+            active: &state.active,
+            barrier: &state.barrier,
+            friction: &state.friction,
+        }
+    }
+
     /// `B + D`, joules; infinite if anything touches.
     pub fn energy(&self) -> f64 {
         self.barrier_energy() + self.friction.energy(self.x, self.active.bodies())
@@ -90,11 +89,11 @@ impl ContactTerms<'_> {
             .add_hessian(self.x, self.active.bodies(), sink);
     }
 
-    /// The pairs of vertices, lower number first, that the Hessian couples; may hold pairs twice and pairs
-    /// that are mesh edges. Clears `out` first. Contact with bodies couples no vertices that are not
-    /// neighbours already and is left out.
-    pub fn couplings(&self, out: &mut Vec<[u32; 2]>) {
-        self.active.couplings(out);
+    /// Appends the pairs of vertices, lower number first, that the Hessian couples; may append pairs twice and
+    /// pairs that are mesh edges. Contact with bodies couples no vertices that are not neighbours already and
+    /// is left out.
+    pub fn append_couplings(&self, out: &mut Vec<[u32; 2]>) {
+        self.active.append_couplings(out);
         for c in self.friction.contacts() {
             couple(c.key, &c.vertices, out);
         }
@@ -129,19 +128,19 @@ impl ContactTerms<'_> {
 
     /// What contact did over the step that ends here, from the barrier's work at the start of the step
     /// ([`ActiveContacts::barrier_work`]) and its energy there.
-    pub(crate) fn work(&self, start_work: f64, start_energy: f64) -> ContactWork {
+    pub(crate) fn exchange(&self, start_work: f64, start_energy: f64) -> Exchange {
         let bodies = self.active.bodies();
-        let mut work = ContactWork {
-            bodies: 0.0,
-            friction: self.friction.loss(self.x, bodies),
-            settled_friction: 0.0,
-            stored: self.barrier_energy() - start_energy,
-            length_slack: 0.0,
+        let driven = match bodies.iter().any(|b| b.moves()) {
+            true => {
+                0.5 * (start_work + self.active.barrier_work(self.barrier))
+                    + self.friction.body_work(self.x, bodies)
+            }
+            false => 0.0,
         };
-        if bodies.iter().any(|b| b.moves()) {
-            work.bodies = 0.5 * (start_work + self.active.barrier_work(self.barrier))
-                + self.friction.body_work(self.x, bodies);
+        Exchange {
+            friction: self.friction.loss(self.x, bodies),
+            stored: self.barrier_energy() - start_energy,
+            ..Exchange::driven(driven)
         }
-        work
     }
 }

@@ -1,12 +1,12 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
-use crate::damped::air_step::Formula;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
 use crate::step::effort::SolverEffort;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::report::StepError;
 use crate::step::tuning::Tuning;
+use crate::term::{Formula, StepStart};
 use crate::{ImplicitOptions, SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 
@@ -91,59 +91,48 @@ fn two_step(
     minimiser
         .recall(model, &attempt, k * h)
         .map_err(|source| StepError::Linalg { t: state.t, source })?;
-    if let Some(air) = &mut minimiser.air {
-        air.begin(model, state, (h, k * h), |i| {
-            state.x[i] + b * (state.x[i] - before.x[i])
-        })?;
-    }
     // The minimiser lends its arrays to the problem.
-    let mut applied = std::mem::take(&mut minimiser.applied);
-    let mut prediction = std::mem::take(&mut minimiser.prediction);
-    let air = minimiser.air.take();
-    applied.fill(0.0);
-    model.add_explicit_force(state.t, &state.x, &state.v, &mut applied);
-    model.clear_pinned(&mut applied);
+    let [mut rest, mut prediction, mut ahead] = std::mem::take(&mut minimiser.start);
     for i in 0..state.x.len() {
         let (x, v) = (state.x[i], state.v[i]);
-        prediction[i] = x + b * (x - before.x[i]) + k * h * (v + b * (v - before.v[i]));
+        rest[i] = x + b * (x - before.x[i]);
+        prediction[i] = rest[i] + k * h * (v + b * (v - before.v[i]));
+        ahead[i] = x + h * v;
     }
-    let problem = StepProblem {
-        model,
-        memories: attempt.memories,
-        contact: scene.contact,
+    model.place_pins(state.t + h, &mut ahead);
+    let start = StepStart {
         state,
         span: h,
         h: k * h,
+        formula,
+        rest: &rest,
         prediction: &prediction,
-        applied: &applied,
-        air: air.as_ref(),
+        ahead: &ahead,
+    };
+    let problem = StepProblem {
+        model,
+        memories: attempt.memories,
+        objective: scene.objective,
+        start,
         phases: attempt.phases,
     };
     let outcome = minimiser.minimise(problem, effort);
-    (minimiser.applied, minimiser.prediction) = (applied, prediction);
-    minimiser.air = air;
-    let (minimum, contact) = outcome?;
+    minimiser.start = [rest, prediction, ahead];
+    let (minimum, exchange) = outcome?;
     let motion = &mut proposal.motion;
-    let mut work = 0.0;
     for i in 0..state.x.len() {
         let dx = minimiser.x()[i] - state.x[i];
-        work += minimiser.applied[i] * dx;
         motion.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
     }
     motion.state.x.copy_from_slice(minimiser.x());
     motion.state.t = state.t + h;
     motion.balance.copy_from(minimiser.balance());
-    motion.set_contacts(minimiser.contact_state());
+    scene.objective.leave(motion);
     minimiser.remember(k * h, &mut motion.history);
     proposal.account = StepAccount {
         residual: minimum.residual,
-        work,
-        air: match &mut minimiser.air {
-            Some(air) => air.work(model, state, formula, &motion.state.x),
-            None => 0.0,
-        },
         outcome: minimum.outcome,
-        contact,
+        exchange,
     };
     Ok(())
 }

@@ -9,8 +9,6 @@ mod second_order;
 mod tests;
 mod workspace;
 
-use crate::contact::{ContactState, ContactWork};
-use crate::damped::air_step::AirStep;
 use crate::step::effort::SolverEffort;
 use crate::step::history::History;
 use crate::step::integrator::Attempt;
@@ -19,6 +17,7 @@ use crate::step::reason::Reason;
 use crate::step::report::{self, StepError};
 use crate::step::trace::TraceEvent;
 use crate::step::tuning::Tuning;
+use crate::term::Exchange;
 use crate::{ImplicitOptions, SheetModel};
 use isosheet_coords::linalg::LinalgError;
 use lagrangian::Merit;
@@ -38,12 +37,10 @@ use workspace::Workspace;
 pub(crate) struct Minimiser {
     work: Workspace,
     faces: Faces,
-    /// Where inertia alone would take the sheet.
-    pub(crate) prediction: Vec<f64>,
-    /// Non-conservative forces, constant over the step.
-    pub(crate) applied: Vec<f64>,
-    /// The air, in scenes that name it.
-    pub(crate) air: Option<AirStep>,
+    /// The arrays of [`StepStart`]: `y`, the prediction, and where the velocities lead.
+    ///
+    /// [`StepStart`]: crate::term::StepStart
+    pub(crate) start: [Vec<f64>; 3],
 }
 
 impl Minimiser {
@@ -56,20 +53,13 @@ impl Minimiser {
         Ok(Self {
             work: Workspace::new(model, options, *tuning)?,
             faces: Faces::of(model, tuning),
-            prediction: vec![0.0; n],
-            applied: vec![0.0; n],
-            air: model.air_on_faces().map(|_| AirStep::default()),
+            start: [(); 3].map(|()| vec![0.0; n]),
         })
     }
 
     /// The result, positions of `3V` coordinates.
     pub(crate) fn x(&self) -> &[f64] {
-        self.work.lagrangian.iterate.x()
-    }
-
-    /// The contacts at the result.
-    pub(crate) fn contact_state(&self) -> Option<&ContactState> {
-        self.work.lagrangian.iterate.contact_state()
+        &self.work.lagrangian.x
     }
 
     /// Forces of the supports at the result.
@@ -136,9 +126,9 @@ impl Minimiser {
         &mut self,
         mut problem: StepProblem<'_>,
         effort: &mut SolverEffort<'_>,
-    ) -> Result<(Minimum, ContactWork), StepError> {
+    ) -> Result<(Minimum, Exchange), StepError> {
         let problem = &mut problem;
-        self.work.lagrangian.begin(problem);
+        self.work.lagrangian.begin(problem)?;
         let is_driven = self.work.lagrangian.is_driven(problem) || problem.model.has_drives();
         let bound = (!is_driven).then(|| self.work.lagrangian.merit(problem));
         let phases = Phase::table(problem, self.faces, &self.work.options, &self.work.tuning);
@@ -148,11 +138,11 @@ impl Minimiser {
         });
         for (rank, phase) in phases.into_iter().flatten().enumerate() {
             if rank > 0 {
-                self.work.lagrangian.begin(problem);
+                self.work.lagrangian.begin(problem)?;
             }
             effort.trace(|| TraceEvent::Phase {
-                t: problem.state.t,
-                h: problem.span,
+                t: problem.state().t,
+                h: problem.start.span,
                 phase: phase.name,
             });
             found = Newton::new(&mut self.work, problem, effort, phase).run();
@@ -173,23 +163,15 @@ impl Minimiser {
         }
         let minimum = found.map_err(|Failure { reason, residual }| {
             let strain = problem.model.constrained_strain(self.x());
-            let (t, h) = (problem.state.t, problem.span);
+            let (t, h) = (problem.state().t, problem.start.span);
             report::not_converged(t, h, effort, reason, residual, strain)
         })?;
-        let iterate = &mut self.work.lagrangian.iterate;
-        let mut work = iterate.contact_work(problem.contact(), &problem.state.x);
-        if let Some(terms) = iterate.terms(problem.contact()) {
-            let gap = terms.active.gap();
-            if gap <= 0.0 || gap.is_nan() {
-                return Err(StepError::Contact {
-                    t: problem.state.t,
-                    h: problem.span,
-                    gap,
-                });
-            }
-        }
-        work.length_slack = self.length_slack(problem);
-        Ok((minimum, work))
+        let start = problem.start;
+        let (objective, at) = problem.objective_at(&self.work.lagrangian.x);
+        let finished = objective.finish(&start, at);
+        let mut exchange = finished.map_err(|refusal| problem.error(refusal))?;
+        exchange.length_slack = self.length_slack(problem);
+        Ok((minimum, exchange))
     }
 
     /// Whether the incremental potential at the iterate is not above `bound`, but for what the tolerance of
@@ -200,7 +182,7 @@ impl Minimiser {
         &mut self,
         bound: Option<&Merit>,
         phase: &Phase,
-        problem: &StepProblem<'_>,
+        problem: &mut StepProblem<'_>,
     ) -> bool {
         let Some(bound) = bound else { return true };
         let now = self.work.lagrangian.merit(problem);
@@ -208,7 +190,7 @@ impl Minimiser {
             Multipliers::Solved => 0.0,
             Multipliers::Rounds => now.rod_scale.max(bound.rod_scale),
         };
-        let slack = problem.h * problem.h * self.length_slack(problem)
+        let slack = problem.h().powi(2) * self.length_slack(problem)
             + self.work.tuning.round_off_operations
                 * (now.round_off
                     + bound.round_off
@@ -225,7 +207,6 @@ impl Minimiser {
             return 0.0;
         }
         let fold = self.work.options.strain_tolerance.sqrt() * problem.model.mean_length();
-        let force = &self.work.lagrangian.force;
-        fold * force.iter().map(|f| f.abs()).sum::<f64>()
+        fold * problem.objective.force_sum()
     }
 }

@@ -1,9 +1,8 @@
 //! The damped methods: a step is a minimum over the positions with the rest lengths, or a projection onto
 //! them.
 
-pub(crate) mod air_step;
 pub(crate) mod implicit;
-pub(crate) mod iterate;
+
 pub(crate) mod minimiser;
 pub(crate) mod options;
 pub(crate) mod restoration;

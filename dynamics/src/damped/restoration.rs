@@ -1,17 +1,18 @@
-//! Projection of positions onto the rest lengths and of velocities onto their rates.
+//! Projection of positions onto the rest lengths.
 
 mod correction;
 
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
-use crate::contact::StepContact;
-use crate::damped::iterate::Iterate;
-use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRows};
+use crate::linear::constrained::ConstrainedSolver;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
+use crate::objective::Objective;
+use crate::potential::Memories;
 use crate::step::effort::SolverEffort;
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::step::tuning::Tuning;
+use crate::term::{Barrier, Iterate};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -27,8 +28,8 @@ use rand_chacha::ChaCha8Rng;
 /// shortens them. Positive definite at any rank of `G`, so flat states are no obstacle; close to them
 /// convergence is linear instead of quadratic.
 ///
-/// Where there is contact its Hessian joins the mass matrix, so that the nearest positions are those that
-/// press least on it, and nothing is passed through on the way.
+/// Where there are barriers their Hessian joins the mass matrix, so that the nearest positions are those that
+/// press least on them, and nothing is passed through on the way.
 pub(crate) struct Restoration {
     tuning: Tuning,
     axial: Vec<f64>,
@@ -40,8 +41,8 @@ pub(crate) struct Restoration {
     dx: Vec<f64>,
     start: Vec<f64>,
     solver: ConstrainedSolver,
-    /// Minus the gradient of contact at `start`, newtons times the factor of its energy.
-    contact_start: Vec<f64>,
+    /// Minus the gradient of the barriers at `start`, newtons times the factor of their energies.
+    barrier_start: Vec<f64>,
     /// Momentum that the iterations of the last projection of positions gave, kilogram metres.
     pub(crate) residual_momentum: ResidualMomentum,
     /// Vertices on curves and surfaces.
@@ -74,11 +75,27 @@ pub(crate) enum FirstMatrix {
     Factorised,
 }
 
-/// Contact that a projection has to keep.
-pub(crate) struct RestorationContact<'a, 'b> {
-    pub(crate) contact: &'a mut StepContact<'b>,
-    /// Factor of its energy in the incremental potential, `h^2`.
+/// Barriers that a projection has to keep.
+pub(crate) struct Barriers<'a> {
+    pub(crate) objective: &'a mut Objective,
+    /// What potentials remember.
+    pub(crate) memories: &'a Memories,
+    /// Factor of their energies in the incremental potential, `h^2`.
     pub(crate) scale: f64,
+}
+
+impl Barriers<'_> {
+    fn are_there(&self) -> bool {
+        [Barrier::Contact, Barrier::StrainLimit]
+            .into_iter()
+            .any(|barrier| self.objective.has(barrier))
+    }
+
+    /// The objective, and where it is evaluated at positions `x` at time `t`.
+    fn at<'a>(&'a mut self, t: f64, x: &'a [f64]) -> (&'a mut Objective, Iterate<'a>) {
+        let memories = self.memories;
+        (self.objective, Iterate { t, x, memories })
+    }
 }
 
 /// How the linear system of an iteration went.
@@ -106,40 +123,41 @@ impl Restoration {
             dx: vec![0.0; n],
             start: vec![0.0; n],
             solver: ConstrainedSolver::new(model),
-            contact_start: vec![0.0; n],
+            barrier_start: vec![0.0; n],
             residual_momentum: ResidualMomentum::new(model),
             vertex_rows: VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0),
         }
     }
 
-    /// Restores the lengths of an iterate in place; returns the strain reached, which exceeds
+    /// Restores the lengths of positions `x` in place; returns the strain reached, which exceeds
     /// `goal.tolerance` if `goal.max_iterations` did not suffice.
     pub(crate) fn positions(
         &mut self,
         model: &SheetModel,
         matrix: &mut PrimalMatrix,
-        mut contact: Option<RestorationContact<'_, '_>>,
-        iterate: &mut Iterate,
+        barriers: Option<Barriers<'_>>,
+        x: &mut [f64],
         goal: RestorationGoal<'_>,
         effort: &mut SolverEffort<'_>,
     ) -> f64 {
         let tolerance = goal.tolerance;
         let (mut penalty, mut slow) = (self.tuning.restoration_penalty, 0_usize);
-        let max_openings = match (goal.may_be_far, &contact) {
+        let mut barriers = barriers.filter(Barriers::are_there);
+        let max_openings = match (goal.may_be_far, &barriers) {
             (true, _) => 0,
             (false, Some(_)) => self.tuning.openings_in_contact as i32,
             (false, None) => i32::MAX,
         };
         let mut openings = 0;
-        self.begin(model, &goal, iterate);
+        self.begin(model, &goal, x);
         if goal.matrix == FirstMatrix::Factorised && model.constraints().is_empty() {
-            let target = match contact {
+            let target = match barriers {
                 Some(_) => self.tuning.reserve * tolerance,
                 None => tolerance,
             };
-            self.correct(model, matrix, contact.as_mut(), iterate, target);
+            self.correct(model, matrix, barriers.as_mut(), x, (goal.t, target));
         }
-        let mut strain = self.worst(model, iterate.x());
+        let mut strain = self.worst(model, x);
         for _ in 0..goal.max_iterations {
             if strain <= tolerance || strain.is_nan() {
                 break;
@@ -148,7 +166,7 @@ impl Restoration {
                 break;
             }
             effort.iterations += 1;
-            match self.solve(model, matrix, contact.as_mut(), iterate, penalty) {
+            match self.solve(model, matrix, barriers.as_mut(), x, (goal.t, penalty)) {
                 Solved::Yes => {}
                 Solved::PenaltyTooLarge if penalty > 1.0 => {
                     penalty = (penalty / self.tuning.penalty_step.powi(2)).max(1.0);
@@ -157,20 +175,17 @@ impl Restoration {
                 Solved::PenaltyTooLarge | Solved::No => break,
             }
             let before = self.error();
-            self.start.copy_from_slice(iterate.x());
-            let geometry = contact.as_mut().map(|c| &mut *c.contact);
-            let limit = iterate.safe_fraction(geometry, &self.dx);
+            self.start.copy_from_slice(x);
+            let limit = self.safe_part(barriers.as_mut(), goal.t, x);
             if limit < self.tuning.shortest_part() {
                 // Contact is in the way; more pressure has to build up before.
                 break;
             }
-            let linear = self.linearised_error(model, iterate.x());
-            let (length, after) = self.line_search(model, goal.t, iterate, limit, before);
-            self.keep_momentum(model, contact.as_ref(), iterate, None);
-            if after > self.tuning.contraction * before
-                && self.worst(model, iterate.x()) <= tolerance
-            {
-                return self.worst(model, iterate.x());
+            let linear = self.linearised_error(model, x);
+            let (length, after) = self.line_search(model, goal.t, x, limit, before);
+            self.keep_momentum(model, barriers.as_mut(), (goal.t, x), None);
+            if after > self.tuning.contraction * before && self.worst(model, x) <= tolerance {
+                return self.worst(model, x);
             }
             slow = if after > self.tuning.slow * before {
                 slow + 1
@@ -186,7 +201,7 @@ impl Restoration {
                 // The masses hold the step back.
                 penalty *= self.tuning.penalty_step.powi(2);
             } else if is_stationary && openings == max_openings {
-                strain = self.worst(model, iterate.x());
+                strain = self.worst(model, x);
                 break;
             } else if is_stationary {
                 // Stationary, but not solved: the error lies across the range of G, which happens where a
@@ -195,30 +210,30 @@ impl Restoration {
                 penalty = self.tuning.restoration_penalty;
                 let size = self.tuning.opening_growth.powi(openings) * strain.sqrt();
                 let size = size.min(self.tuning.iterate_strain);
-                self.unfold(model, contact.as_mut(), iterate, size);
+                self.unfold(model, barriers.as_mut(), (goal.t, x), size);
                 openings += 1;
                 slow = 0;
-                self.evaluate(model, goal.t, iterate.x());
+                self.evaluate(model, goal.t, x);
             } else if length < limit {
                 penalty /= self.tuning.penalty_step;
             } else if limit == 1.0 && after > self.tuning.contraction * before {
                 penalty *= self.tuning.penalty_step;
             }
             penalty = penalty.clamp(1.0, self.tuning.last_stiffness);
-            strain = self.worst(model, iterate.x());
+            strain = self.worst(model, x);
         }
         strain
     }
 
-    /// Forgets earlier restorations and evaluates the constraints at the iterate.
-    fn begin(&mut self, model: &SheetModel, goal: &RestorationGoal<'_>, iterate: &Iterate) {
+    /// Forgets earlier restorations and evaluates the constraints at positions `x`.
+    fn begin(&mut self, model: &SheetModel, goal: &RestorationGoal<'_>, x: &[f64]) {
         self.residual_momentum.clear();
         for (i, c) in model.constraints().iter().enumerate() {
             let is_loaded = goal.loads.get(i).is_some_and(|l| l.x < 0.0);
             self.vertex_rows.equality[i] = is_loaded || !c.is_one_sided();
         }
         self.vertex_rows.corrected.fill(false);
-        self.evaluate(model, goal.t, iterate.x());
+        self.evaluate(model, goal.t, x);
     }
 
     /// Evaluates the constraints.
@@ -232,9 +247,9 @@ impl Restoration {
         &mut self,
         model: &SheetModel,
         matrix: &mut PrimalMatrix,
-        contact: Option<&mut RestorationContact<'_, '_>>,
-        iterate: &mut Iterate,
-        penalty: f64,
+        mut barriers: Option<&mut Barriers<'_>>,
+        x: &[f64],
+        (t, penalty): (f64, f64),
     ) -> Solved {
         let rods = model.rods();
         for e in 0..self.c.len() {
@@ -242,26 +257,26 @@ impl Restoration {
             self.w[e] = -self.axial[e] * self.c[e];
         }
         self.transverse.fill(0.0);
-        let geometry = contact.as_ref().map(|c| &*c.contact);
-        if let Some(terms) = iterate.terms(geometry)
-            && matrix.make_room(model, &terms).is_err()
-        {
-            return Solved::No;
+        if let Some(barriers) = &mut barriers {
+            let (objective, at) = barriers.at(t, x);
+            if objective.make_room(at, matrix).is_err() {
+                return Solved::No;
+            }
         }
-        matrix.assemble(model, iterate.x(), &self.axial, &self.transverse);
+        matrix.assemble(model, x, &self.axial, &self.transverse);
         self.rhs.fill(0.0);
         self.vertex_rows
             .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
-        if let Some(contact) = &contact
-            && let Some(terms) = iterate.terms(Some(contact.contact))
-        {
-            matrix.add_contact(model, &terms, contact.scale);
+        if let Some(barriers) = &mut barriers {
+            let scale = barriers.scale;
+            let (objective, at) = barriers.at(t, x);
+            objective.add_barrier_hessian(at, scale, matrix);
         }
-        self.keep_contact_forces(contact.as_deref(), iterate);
+        self.keep_barrier_forces(barriers, t, x);
         if matrix.factorize().is_err() {
             return Solved::PenaltyTooLarge;
         }
-        rods.apply_transpose_add(iterate.x(), &self.w, &mut self.rhs);
+        rods.apply_transpose_add(x, &self.w, &mut self.rhs);
         matrix.solve(model, &self.rhs, &mut self.dx);
         Solved::Yes
     }
@@ -272,16 +287,16 @@ impl Restoration {
         &mut self,
         model: &SheetModel,
         t: f64,
-        iterate: &mut Iterate,
+        x: &mut [f64],
         limit: f64,
         before: f64,
     ) -> (f64, f64) {
         let mut length = limit;
         loop {
-            for (i, xi) in iterate.x_mut().iter_mut().enumerate() {
+            for (i, xi) in x.iter_mut().enumerate() {
                 *xi = self.start[i] + length * self.dx[i];
             }
-            self.evaluate(model, t, iterate.x());
+            self.evaluate(model, t, x);
             let after = self.error();
             let is_enough = after <= (1.0 - self.tuning.armijo * length) * before;
             if is_enough || length < self.tuning.shortest_part() {
@@ -310,57 +325,55 @@ impl Restoration {
     fn unfold(
         &mut self,
         model: &SheetModel,
-        contact: Option<&mut RestorationContact<'_, '_>>,
-        iterate: &mut Iterate,
+        barriers: Option<&mut Barriers<'_>>,
+        (t, x): (f64, &mut [f64]),
         relative: f64,
     ) {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed_of(iterate.x()));
+        let mut rng = ChaCha8Rng::seed_from_u64(seed_of(x));
         for (i, d) in self.dx.iter_mut().enumerate() {
             let size = relative * model.shortest_rod(i / 3);
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
-        let part = iterate.safe_fraction(contact.map(|c| &mut *c.contact), &self.dx);
-        for (xi, d) in iterate.x_mut().iter_mut().zip(&self.dx) {
+        let part = self.safe_part(barriers, t, x);
+        for (xi, d) in x.iter_mut().zip(&self.dx) {
             *xi += part * d;
         }
     }
 
-    /// Releases one-sided constraints that the last projection of positions did not press on.
-    pub(crate) fn release(&mut self, model: &SheetModel) {
-        for (i, c) in model.constraints().iter().enumerate() {
-            self.vertex_rows.equality[i] = !c.is_one_sided() || self.vertex_rows.corrected[i];
-        }
+    /// Largest part of the displacement that the barriers allow.
+    fn safe_part(&self, barriers: Option<&mut Barriers<'_>>, t: f64, x: &[f64]) -> f64 {
+        barriers.map_or(1.0, |barriers| {
+            let (objective, at) = barriers.at(t, x);
+            objective.safe_part(at, &self.dx).0
+        })
     }
 
-    /// Keeps the forces of contact at the iterate, where an iteration starts.
-    fn keep_contact_forces(
-        &mut self,
-        contact: Option<&RestorationContact<'_, '_>>,
-        iterate: &mut Iterate,
-    ) {
-        if let Some(RestorationContact { contact, scale }) = contact
+    /// Keeps the forces of the barriers at positions `x`, where an iteration starts.
+    fn keep_barrier_forces(&mut self, barriers: Option<&mut Barriers<'_>>, t: f64, x: &[f64]) {
+        if let Some(barriers) = barriers
             && self.residual_momentum.has_room()
-            && let Some(terms) = iterate.terms(Some(contact))
         {
-            self.contact_start.fill(0.0);
-            terms.add_gradient(-scale, &mut self.contact_start);
+            self.barrier_start.fill(0.0);
+            let scale = -barriers.scale;
+            let (objective, at) = barriers.at(t, x);
+            objective.add_barrier_gradient(at, scale, &mut self.barrier_start);
         }
     }
 
-    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to the iterate.
+    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to positions `x`.
     /// The rods have the directions of the positions `rods_at`, those of `start` if none are given.
     fn keep_momentum(
         &mut self,
         model: &SheetModel,
-        contact: Option<&RestorationContact<'_, '_>>,
-        iterate: &mut Iterate,
+        barriers: Option<&mut Barriers<'_>>,
+        (t, x): (f64, &[f64]),
         rods_at: Option<&[f64]>,
     ) {
         if !self.residual_momentum.has_room() {
             return;
         }
-        for ((d, x), x0) in self.dx.iter_mut().zip(iterate.x()).zip(&self.start) {
+        for ((d, x), x0) in self.dx.iter_mut().zip(x).zip(&self.start) {
             *d = x - x0;
         }
         model
@@ -372,69 +385,13 @@ impl Restoration {
             active,
             self.rhs.iter().copied(),
         );
-        if let Some(RestorationContact { contact, scale }) = contact
-            && let Some(terms) = iterate.terms(Some(contact))
-        {
-            for (s, g) in sum.iter_mut().zip(&self.contact_start) {
+        if let Some(barriers) = barriers {
+            for (s, g) in sum.iter_mut().zip(&self.barrier_start) {
                 *s += g;
             }
-            terms.add_gradient(*scale, sum);
-        }
-    }
-
-    /// Projects `v` in place onto `G(x) v = 0` (and, at the vertex constraints that are equalities, `J v +
-    /// rate = 0` with `J` as last evaluated), nearest in the sense of the mass matrix, by passes of the
-    /// method of multipliers with one factorisation, see [`ConstrainedSolver`].
-    ///
-    /// Returns the largest rate left, relative to the speed and the length of the rod.
-    pub(crate) fn velocities(
-        &mut self,
-        model: &SheetModel,
-        matrix: &mut PrimalMatrix,
-        x: &[f64],
-        v: &mut [f64],
-        rates: &[Vector3<f64>],
-        effort: &mut SolverEffort<'_>,
-    ) -> f64 {
-        let penalty = self.tuning.restoration_penalty;
-        for e in 0..model.rods().len() {
-            self.axial[e] = penalty * self.unit[e];
-        }
-        self.transverse.fill(0.0);
-        matrix.assemble(model, x, &self.axial, &self.transverse);
-        let rows = &self.vertex_rows;
-        rows.add_equalities(penalty, &mut matrix.sink(model));
-        if !effort.count_factorisation() || matrix.factorize().is_err() {
-            return f64::INFINITY;
-        }
-        let supports = SupportRows::Equalities { rows, penalty };
-        let mut system = ConstrainedSystem {
-            model,
-            matrix,
-            supports,
-        };
-        let solver = &mut self.solver;
-        let mut rate = f64::INFINITY;
-        loop {
-            let before = rate;
-            solver.residual.clear();
-            for (i, r) in solver.residual.supports.iter_mut().enumerate() {
-                *r = rows
-                    .equality_penalty(i)
-                    .map_or(Vector3::zeros(), |_| -rates[i]);
-            }
-            solver.subtract(&system, v);
-            let speed = v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-            let lengths = model.rods().lengths();
-            let left = solver.residual.rods.iter().zip(lengths);
-            rate = left.fold(0.0_f64, |m, (r, l)| m.max(r.abs() / l));
-            let left = solver.residual.supports.iter();
-            rate = left.fold(rate, |m, r| m.max(r.norm())) / speed.max(f64::MIN_POSITIVE);
-            let is_better = rate < self.tuning.contraction * before;
-            if rate < 4.0 * f64::EPSILON || !is_better {
-                return rate;
-            }
-            solver.pass(&mut system, v);
+            let scale = barriers.scale;
+            let (objective, at) = barriers.at(t, x);
+            objective.add_barrier_gradient(at, scale, sum);
         }
     }
 

@@ -1,6 +1,5 @@
 //! Making and checking states to start from.
 
-use crate::damped::iterate::Iterate;
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::linear::primal::PrimalMatrix;
 use crate::model::support::Support;
@@ -37,7 +36,7 @@ pub fn project_positions(
     check_count(model, x)?;
     let mut matrix = PrimalMatrix::of_rods(model)?;
     let mut effort = SolverEffort::default();
-    let mut moved = Iterate::without_contact(x.to_vec());
+    let mut moved = x.to_vec();
     let strain = Restoration::new(model, Tuning::default()).positions(
         model,
         &mut matrix,
@@ -54,7 +53,7 @@ pub fn project_positions(
         &mut effort,
     );
     if strain <= tolerance {
-        x.copy_from_slice(moved.x());
+        x.copy_from_slice(&moved);
         Ok(strain)
     } else {
         Err(SimulationError::Start(StepError::Projection {

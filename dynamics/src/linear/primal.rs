@@ -5,11 +5,10 @@ mod far;
 mod iterative;
 mod whole;
 
-use crate::contact::{ContactTerms, CouplingSink};
+use crate::hessian::{BlockSink, CouplingSink};
 use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
-use crate::model::memory::Memories;
 use crate::step::effort::SolverEffort;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
@@ -68,7 +67,6 @@ pub(crate) struct PrimalMatrix {
     extra: Vec<[u32; 2]>,
     /// Pairs that potentials couple stiffly, in the same form.
     stiff: Vec<[u32; 2]>,
-    couplings: Vec<[u32; 2]>,
     /// Positions at the last assembly (`3V`, metres) and the penalties of the equations.
     x: Vec<f64>,
     axial: Vec<f64>,
@@ -166,7 +164,6 @@ impl PrimalMatrix {
             rhs: vec![0.0; n],
             extra,
             stiff,
-            couplings: Vec::new(),
             x: vec![0.0; model.coordinate_count()],
             axial: vec![0.0; model.rods().len()],
             factorised: Factorised::Nothing,
@@ -201,16 +198,14 @@ impl PrimalMatrix {
         &self.extra
     }
 
-    /// Makes room for what contact couples. The matrix is analysed anew only when a pair
-    /// appears that it has no room for; pairs that have parted keep their room until they
+    /// Makes room for further pairs of vertices, which become pairs of free ones. The matrix is analysed anew
+    /// only when a pair appears that it has no room for; pairs that have parted keep their room until they
     /// outnumber the ones in use.
     pub(crate) fn make_room(
         &mut self,
         model: &SheetModel,
-        contact: &ContactTerms<'_>,
+        pairs: &mut Vec<[u32; 2]>,
     ) -> Result<(), LinalgError> {
-        let mut pairs = std::mem::take(&mut self.couplings);
-        contact.couplings(&mut pairs);
         let free = model.free_index();
         pairs.retain_mut(|[a, b]| {
             let (i, j) = (free[*a as usize], free[*b as usize]);
@@ -231,26 +226,53 @@ impl PrimalMatrix {
             extra.dedup();
             self.set_extra(model, extra)?;
         }
-        self.couplings = pairs;
         Ok(())
     }
 
-    /// Adds `scale` times the Hessian of contact; call [`PrimalMatrix::make_room`] before.
-    pub(crate) fn add_contact(
+    /// Sets the matrix to masses and rods alone: `axial[e] = r_e`, `transverse[e] = p_e`.
+    pub(crate) fn assemble(
         &mut self,
         model: &SheetModel,
-        contact: &ContactTerms<'_>,
-        scale: f64,
+        x: &[f64],
+        axial: &[f64],
+        transverse: &[f64],
     ) {
-        contact.add_hessian(&mut Sink {
-            matrix: self,
-            model,
-            scale,
-        });
+        self.clear();
+        self.add_masses(model);
+        self.add_rods(model, x, axial, transverse);
     }
 
-    /// Sets the values: `axial[e] = r_e`, `transverse[e] = p_e`.
-    pub(crate) fn assemble(
+    /// Sets the matrix to zero.
+    pub(crate) fn clear(&mut self) {
+        self.factorised = Factorised::Nothing;
+        self.far.clear();
+        self.near.values_mut().fill(0.0);
+    }
+
+    fn add_masses(&mut self, model: &SheetModel) {
+        let values = self.near.values_mut();
+        for (slots, mass) in self.vertex_slots.iter().zip(&model.mass().vertex) {
+            if let Some(slots) = slots {
+                for k in [0, 2, 5] {
+                    values[slots[k] as usize] += mass;
+                }
+            }
+        }
+        for (slots, m) in self
+            .edge_slots
+            .iter()
+            .zip(model.mass().edge.iter().flatten())
+        {
+            if let Some((slots, _)) = slots {
+                for k in [0, 4, 8] {
+                    values[slots[k] as usize] += m;
+                }
+            }
+        }
+    }
+
+    /// Adds the rods at positions `x` (`3V`, metres): `axial[e] = r_e`, `transverse[e] = p_e`.
+    pub(crate) fn add_rods(
         &mut self,
         model: &SheetModel,
         x: &[f64],
@@ -259,18 +281,7 @@ impl PrimalMatrix {
     ) {
         self.x.copy_from_slice(x);
         self.axial.copy_from_slice(axial);
-        self.factorised = Factorised::Nothing;
-        self.far.clear();
         let values = self.near.values_mut();
-        values.fill(0.0);
-        for (slots, mass) in self.vertex_slots.iter().zip(&model.mass().vertex) {
-            if let Some(slots) = slots {
-                for k in [0, 2, 5] {
-                    values[slots[k] as usize] += mass;
-                }
-            }
-        }
-        let off_mass = model.mass().edge.as_deref();
         for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
             let (ia, ib) = (3 * a, 3 * b);
             let d = [x[ia] - x[ib], x[ia + 1] - x[ib + 1], x[ia + 2] - x[ib + 2]];
@@ -296,66 +307,25 @@ impl PrimalMatrix {
                 for k in 0..9 {
                     values[slots[k] as usize] -= block[SYMMETRIC[k]];
                 }
-                if let Some(m) = off_mass {
-                    for k in [0, 4, 8] {
-                        values[slots[k] as usize] += m[e];
-                    }
-                }
             }
         }
     }
 
-    /// Adds `scale` times the Hessians of the potentials.
-    pub(crate) fn add_potentials(
-        &mut self,
-        model: &SheetModel,
-        memories: &Memories,
-        (t, x): (f64, &[f64]),
-        scale: f64,
-    ) {
-        for (p, at) in model.potentials_at(t, x, memories) {
-            let matrix = &mut *self;
-            p.add_hessian(
-                at,
-                &mut Sink {
-                    matrix,
-                    model,
-                    scale,
-                },
-            );
-        }
-    }
-
-    /// Adds `scale` times positive semidefinite parts of the Hessians of the potentials.
-    pub(crate) fn add_semidefinite_potentials(
-        &mut self,
-        model: &SheetModel,
-        memories: &Memories,
-        (t, x): (f64, &[f64]),
-        scale: f64,
-    ) {
-        for (p, at) in model.potentials_at(t, x, memories) {
-            let matrix = &mut *self;
-            p.add_semidefinite_hessian(
-                at,
-                &mut Sink {
-                    matrix,
-                    model,
-                    scale,
-                },
-            );
-        }
-    }
-
     /// Receives blocks that are added as they are.
-    pub(crate) fn sink<'a>(
+    pub(crate) fn sink<'a>(&'a mut self, model: &'a SheetModel) -> impl BlockSink + 'a {
+        self.scaled_sink(model, 1.0)
+    }
+
+    /// Receives blocks that are added by `scale` times.
+    pub(crate) fn scaled_sink<'a>(
         &'a mut self,
         model: &'a SheetModel,
-    ) -> impl HessianSink + CouplingSink + 'a {
+        scale: f64,
+    ) -> impl BlockSink + 'a {
         Sink {
             matrix: self,
             model,
-            scale: 1.0,
+            scale,
         }
     }
 
@@ -576,7 +546,7 @@ impl CouplingSink for Sink<'_> {
         }
         let near = &mut self.matrix.near;
         let start = block_start(near.pattern(), i.max(j), i.min(j))
-            .expect("contact has named the pair in make_room");
+            .expect("the pair has been named in make_room");
         let values = near.values_mut();
         for c in 0..3 {
             for r in 0..3 {

@@ -4,7 +4,7 @@ use crate::constraint::conservative::SaddleBlocks;
 use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{DIAGONAL, FULL, Layout, Slots};
 use crate::model::PINNED;
-use crate::model::memory::Memories;
+use crate::potential::Memories;
 use crate::step::effort::SolverEffort;
 use crate::step::report::StepOutcome;
 use crate::{HessianSink, SheetModel};

@@ -9,9 +9,9 @@ mod rest_angle;
 #[cfg(test)]
 mod tests;
 
-use crate::model::potential::At;
-use crate::model::potential::Reached;
-use crate::model::potential::Settled;
+use crate::potential::At;
+use crate::potential::Reached;
+use crate::potential::Settled;
 pub(crate) use from_flat::folding_from_flat;
 pub use rest_angle::RestAngle;
 

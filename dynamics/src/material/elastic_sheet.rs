@@ -7,7 +7,7 @@ mod load;
 #[cfg(test)]
 mod tests;
 
-use crate::model::potential::{At, Reached, Settled};
+use crate::potential::{At, Reached, Settled};
 use crate::{HessianSink, Potential};
 pub use deformation::ElasticDeformation;
 use face::Face;
@@ -320,12 +320,6 @@ impl ElasticSheet {
         self.acceleration = acceleration;
     }
 
-    /// Size of the round-off in the energy where the coordinates are of the given size (metres), joules: what
-    /// the round-off of positions makes of a sheet without strains.
-    pub(crate) fn round_off(&self, size: f64) -> f64 {
-        self.faces.iter().map(|face| face.round_off(size)).sum()
-    }
-
     /// Area at rest, square metres.
     pub(crate) fn area(&self) -> f64 {
         self.faces.iter().map(Face::area).sum()
@@ -334,37 +328,6 @@ impl ElasticSheet {
     /// Number of faces that the sheet was built for.
     pub(crate) fn face_count(&self) -> usize {
         self.faces.len()
-    }
-
-    /// Adds `scale` times what the strains of second order in the displacement `dx` (`3V`, metres) change the
-    /// gradient at `x` by: the tangent law of each face times `|dx_a - dx_b|^2 / 2` for each edge.
-    pub(crate) fn add_second_order(
-        &self,
-        at: At<'_>,
-        dx: &[f64],
-        scale: f64,
-        gradient: &mut [f64],
-    ) {
-        let limit = self.limit_of(at.memory);
-        for face in &self.faces {
-            face.add_second_order(at.x, dx, &limit, scale, gradient);
-        }
-    }
-
-    /// Whether every face keeps a part of its distance from the limit where the sheet goes from `x` to `end`.
-    pub(crate) fn stays_within(&self, x: &[f64], end: &[f64]) -> bool {
-        let limit = self.limit();
-        self.faces
-            .iter()
-            .all(|face| face.stays_within(x, end, limit))
-    }
-
-    /// Largest part of the displacement `dx` (`3V`, metres), at most one, along which every face keeps a part
-    /// of its distance from the limit.
-    pub(crate) fn safe_fraction(&self, x: &[f64], dx: &[f64]) -> f64 {
-        let limit = self.limit();
-        let cut = |part: f64, face: &Face| face.safe_part(x, dx, limit, part);
-        self.faces.iter().fold(1.0, cut)
     }
 }
 
@@ -393,6 +356,38 @@ impl Potential for ElasticSheet {
         for face in &self.faces {
             face.add_hessian(&face.at(at.x), &limit, |density| density.max(0.0), hessian);
         }
+    }
+
+    fn has_limit(&self) -> bool {
+        true
+    }
+
+    /// Along the part every face keeps a part of its distance from the limit.
+    fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
+        let limit = self.limit();
+        let cut = |part: f64, face: &Face| face.safe_part(at.x, dx, limit, part);
+        self.faces.iter().fold(1.0, cut)
+    }
+
+    /// Whether every face keeps a part of its distance from the limit.
+    fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
+        let limit = self.limit();
+        let stays = |face: &Face| face.stays_within(at.x, end, limit);
+        self.faces.iter().all(stays)
+    }
+
+    /// The tangent law of each face times the strains of second order, `|dx_a - dx_b|^2 / 2` for each edge.
+    fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, gradient: &mut [f64]) -> bool {
+        let limit = self.limit_of(at.memory);
+        for face in &self.faces {
+            face.add_second_order(at.x, dx, &limit, scale, gradient);
+        }
+        true
+    }
+
+    /// What the round-off of positions makes of a sheet without strains.
+    fn round_off(&self, size: f64) -> f64 {
+        self.faces.iter().map(|face| face.round_off(size)).sum()
     }
 
     /// The stiffness of the barrier, joules per square metre.

@@ -1,7 +1,7 @@
 //! Glue between pairs of vertices.
 
-use crate::model::potential::At;
 use crate::motion::profile::{Profile, ProfileError};
+use crate::potential::At;
 use crate::potential::CouplingKind;
 use crate::vectors::point;
 use crate::{HessianSink, Potential};

@@ -8,10 +8,10 @@ mod stencil;
 mod tests;
 
 use super::plasticity::Yield;
-use crate::model::potential::At;
-use crate::model::potential::Reached;
-use crate::model::potential::Settled;
 use crate::options::OptionsError;
+use crate::potential::At;
+use crate::potential::Reached;
+use crate::potential::Settled;
 use crate::{HessianSink, Potential};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, FaceId, Sheet, VertexId};

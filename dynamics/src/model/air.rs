@@ -3,7 +3,11 @@
 #[cfg(test)]
 mod tests;
 
+use crate::SheetModel;
+use crate::hessian::{BlockSink, HessianPart};
 use crate::motion::profile::{Profile, ProfileError};
+use crate::potential::Force;
+use crate::term::{Exchange, Formula, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
 use crate::vectors::{add, point};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Topology, VertexId, area_from_lengths};
@@ -189,24 +193,37 @@ impl Air {
     }
 }
 
+impl SheetModel {
+    /// Surrounds the sheet with air.
+    ///
+    /// # Errors
+    /// [`AirError`] if density, a coefficient or a profile makes no sense.
+    pub fn with_air(self, air: Air) -> Result<Self, AirError> {
+        air.validate()?;
+        let faces = on_faces(&air, self.topology(), self.rods().lengths());
+        let wind = air.wind;
+        Ok(self.with_implicit_force(Drag(Arc::new(OnFaces { wind, faces }))))
+    }
+}
+
 /// A face in the air.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Face {
-    pub(crate) vertices: [VertexId; 3],
-    pub(crate) edges: [EdgeId; 3],
+struct Face {
+    vertices: [VertexId; 3],
+    edges: [EdgeId; 3],
     /// Factors `rho A c / 2` of the drag along the normal and along the face, kilograms per metre.
     factors: [f64; 2],
 }
 
 /// The drag on a face whose normal is given, as a function of the relative velocity `u` of the air.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct FaceDrag {
+struct FaceDrag {
     normal: Vector3<f64>,
     factors: [f64; 2],
 }
 
 /// The mean of the corners.
-pub(crate) fn centroid(values: &[f64], vertices: [VertexId; 3]) -> Vector3<f64> {
+fn centroid(values: &[f64], vertices: [VertexId; 3]) -> Vector3<f64> {
     let [a, b, c] = vertices.map(|v| point(values, v));
     (a + b + c) / 3.0
 }
@@ -214,7 +231,7 @@ pub(crate) fn centroid(values: &[f64], vertices: [VertexId; 3]) -> Vector3<f64> 
 impl Face {
     /// The drag on the face at positions `x`. (A face that is a line has no normal: all of its drag is
     /// friction.)
-    pub(crate) fn drag(&self, x: &[f64]) -> FaceDrag {
+    fn drag(&self, x: &[f64]) -> FaceDrag {
         let [a, b, c] = self.vertices.map(|v| point(x, v));
         let across = (b - a).cross(&(c - a));
         FaceDrag {
@@ -232,21 +249,21 @@ impl FaceDrag {
     }
 
     /// Force of the air on the face, newtons.
-    pub(crate) fn force(&self, u: &Vector3<f64>) -> Vector3<f64> {
+    fn force(&self, u: &Vector3<f64>) -> Vector3<f64> {
         let (across, along) = self.split(u);
         let [n, t] = self.factors;
         n * across.abs() * across * self.normal + t * along.norm() * along
     }
 
     /// The convex function `(n |u_n|^3 + t |u_t|^3) / 3` whose gradient is the force, watts.
-    pub(crate) fn potential(&self, u: &Vector3<f64>) -> f64 {
+    fn potential(&self, u: &Vector3<f64>) -> f64 {
         let (across, along) = self.split(u);
         let [n, t] = self.factors;
         (n * across.abs().powi(3) + t * along.norm().powi(3)) / 3.0
     }
 
     /// Derivative of the force, kilograms per second: symmetric and positive semidefinite.
-    pub(crate) fn derivative(&self, u: &Vector3<f64>) -> Matrix3<f64> {
+    fn derivative(&self, u: &Vector3<f64>) -> Matrix3<f64> {
         let (across, along) = self.split(u);
         let [n, t] = self.factors;
         let normals = self.normal * self.normal.transpose();
@@ -261,44 +278,182 @@ impl FaceDrag {
     }
 }
 
-/// The air and all faces of a sheet.
-#[derive(Debug)]
-pub(crate) struct AirOnFaces {
-    pub(crate) air: Air,
-    pub(crate) faces: Vec<Face>,
+/// The faces of a sheet in the air, with the rest lengths of its edges, metres.
+fn on_faces(air: &Air, topology: &Topology, lengths: &[f64]) -> Vec<Face> {
+    let face = |f| {
+        let edges = topology.face_edges(f);
+        let area = area_from_lengths(edges.map(|e| lengths[e.index()]));
+        let factor = |coefficient| 0.5 * air.density * area * coefficient;
+        Face {
+            vertices: topology.faces()[f.index()],
+            edges,
+            factors: [factor(air.normal), factor(air.tangential)],
+        }
+    };
+    topology.face_ids().map(face).collect()
 }
 
-impl AirOnFaces {
-    /// Around a sheet with the given rest lengths of its edges, metres.
-    pub(crate) fn new(air: Air, topology: &Topology, lengths: &[f64]) -> Self {
-        let face = |f| {
-            let edges = topology.face_edges(f);
-            let area = area_from_lengths(edges.map(|e| lengths[e.index()]));
-            let factor = |coefficient| 0.5 * air.density * area * coefficient;
-            Face {
-                vertices: topology.faces()[f.index()],
-                edges,
-                factors: [factor(air.normal), factor(air.tangential)],
-            }
-        };
-        let faces = topology.face_ids().map(face).collect();
-        Self { air, faces }
-    }
+/// The wind and all faces of a sheet.
+#[derive(Debug)]
+struct OnFaces {
+    wind: Wind,
+    faces: Vec<Face>,
+}
 
+impl OnFaces {
     /// Velocity of the air at the centroid of a face, metres per second.
-    pub(crate) fn wind_at(&self, face: &Face, t: f64, x: &[f64]) -> Vector3<f64> {
+    fn wind_at(&self, face: &Face, t: f64, x: &[f64]) -> Vector3<f64> {
         let point = centroid(x, face.vertices);
-        self.air.wind.velocity(point.into(), t).into()
+        self.wind.velocity(point.into(), t).into()
     }
+}
 
-    /// Adds the force (`3V`, newtons) at time `t`, positions `x` and velocities `v`.
-    pub(crate) fn add_force(&self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]) {
-        for face in &self.faces {
-            let u = self.wind_at(face, t, x) - centroid(v, face.vertices);
+/// The force of the air.
+#[derive(Debug)]
+struct Drag(Arc<OnFaces>);
+
+impl Force for Drag {
+    fn add_force(&self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]) {
+        for face in &self.0.faces {
+            let u = self.0.wind_at(face, t, x) - centroid(v, face.vertices);
             let share = face.drag(x).force(&u) / 3.0;
             for vertex in face.vertices {
                 add(force, vertex, &share);
             }
         }
+    }
+}
+
+impl ImplicitForce for Drag {
+    fn term(&self, free: Arc<[bool]>) -> Box<dyn Term> {
+        Box::new(AirStep {
+            drag: Self(Arc::clone(&self.0)),
+            free,
+            faces: Vec::new(),
+            rest: Vec::new(),
+            h: 0.0,
+            force: Vec::new(),
+        })
+    }
+}
+
+/// The incremental potential of the drag of the air in a step that makes velocities of positions by `x = y +
+/// h v`, over `h`,
+///
+/// ```text
+/// R(x) = h sum_f (n_f |u_n|^3 + t_f |u_t|^3) / 3,   u = w - (x_c - y_c) / h,
+/// ```
+///
+/// with the centroids `x_c`, `y_c` of the faces and the factors `n_f`, `t_f` of [`FaceDrag`]. Its gradient is
+/// minus the force at the velocities `v` at the end of the step. Normals and wind `w` are those at the end of
+/// the step at the positions that the velocities at its start lead to, which leaves a second-order method its
+/// order. With fixed normals `R` is convex, and in air at rest the force takes energy from the sheet,
+/// whatever the normals are.
+#[derive(Debug)]
+struct AirStep {
+    drag: Drag,
+    /// Which vertices are free.
+    free: Arc<[bool]>,
+    faces: Vec<FaceInStep>,
+    /// `y`, `3V`, metres.
+    rest: Vec<f64>,
+    /// The effective step `h`, seconds.
+    h: f64,
+    /// `3V`.
+    force: Vec<f64>,
+}
+
+#[derive(Debug)]
+struct FaceInStep {
+    face: Face,
+    drag: FaceDrag,
+    /// Velocity of the air, metres per second.
+    wind: Vector3<f64>,
+}
+
+impl AirStep {
+    /// The faces with the velocity of the air relative to them.
+    fn relative(&self, x: &[f64]) -> impl Iterator<Item = (&FaceInStep, Vector3<f64>)> {
+        self.faces.iter().map(move |f| {
+            let moved = centroid(x, f.face.vertices) - centroid(&self.rest, f.face.vertices);
+            (f, f.wind - moved / self.h)
+        })
+    }
+}
+
+impl Term for AirStep {
+    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
+        let (t, ahead) = (step.t(), step.ahead);
+        self.h = step.h;
+        self.rest.clear();
+        self.rest.extend_from_slice(step.rest);
+        self.faces.clear();
+        let on_faces = &self.drag.0;
+        for face in &on_faces.faces {
+            let wind = on_faces.wind_at(face, t, ahead);
+            if let Some(&value) = wind.iter().find(|w| !w.is_finite()) {
+                let vertex = face.vertices[0];
+                return Err(Refusal::NonFiniteForce { vertex, value, t });
+            }
+            self.faces.push(FaceInStep {
+                face: *face,
+                drag: face.drag(ahead),
+                wind,
+            });
+        }
+        Ok(())
+    }
+
+    fn value(&mut self, at: Iterate<'_>) -> Value {
+        let potentials = self.relative(at.x).map(|(f, u)| f.drag.potential(&u));
+        Value::of(self.h * potentials.sum::<f64>())
+    }
+
+    fn add_gradient(&mut self, at: Iterate<'_>, scale: f64, out: &mut [f64]) {
+        for (f, u) in self.relative(at.x) {
+            let share = -scale / 3.0 * f.drag.force(&u);
+            for v in f.face.vertices {
+                add(out, v, &share);
+            }
+        }
+    }
+
+    /// Positive semidefinite.
+    fn add_hessian(&mut self, at: Iterate<'_>, _part: HessianPart, sink: &mut dyn BlockSink) {
+        // Each of two corners moves the centroid by a third.
+        let scale = 1.0 / (9.0 * self.h);
+        for (f, u) in self.relative(at.x) {
+            let block = scale * f.drag.derivative(&u);
+            for v in f.face.vertices {
+                sink.add_vertex(v, &block);
+            }
+            for e in f.face.edges {
+                sink.add_edge(e, &block);
+            }
+        }
+    }
+
+    /// Work of the air at the free vertices: of implicit Euler with the force at the end, which balances the
+    /// energy but for what the method dissipates; of a two-step formula by the trapezoidal rule with the force
+    /// at the start, at the order of the formula.
+    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
+        let start = step.state;
+        let mut force = std::mem::take(&mut self.force);
+        force.clear();
+        force.resize(at.x.len(), 0.0);
+        self.add_gradient(at, -1.0, &mut force);
+        if step.formula == Formula::TwoStep {
+            self.drag.add_force(start.t, &start.x, &start.v, &mut force);
+            force.iter_mut().for_each(|f| *f *= 0.5);
+        }
+        let rows = force.as_chunks::<3>().0.iter().zip(self.free.iter());
+        let mut work = 0.0;
+        for (v, (row, _)) in rows.enumerate().filter(|(_, (_, is_free))| **is_free) {
+            for k in 0..3 {
+                work += row[k] * (at.x[3 * v + k] - start.x[3 * v + k]);
+            }
+        }
+        self.force = force;
+        Ok(Exchange::driven(work))
     }
 }

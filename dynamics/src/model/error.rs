@@ -1,6 +1,5 @@
 //! Why a model cannot be built.
 
-use crate::model::air::AirError;
 use crate::motion::MotionError;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, MeshError, VertexId};
@@ -51,9 +50,6 @@ pub enum ModelError {
         /// Faces of the sheet.
         face_count: usize,
     },
-    /// The air cannot be used.
-    #[error(transparent)]
-    Air(#[from] AirError),
     /// The damping rate is negative or not finite.
     #[error("damping rate is {rate}", rate = given(*rate))]
     Damping {
@@ -69,7 +65,6 @@ impl Advice for ModelError {
             Self::MassLength { .. } | Self::ElasticSheet { .. } => Some("build it for this sheet"),
             Self::Mass { .. } => Some("give every vertex that is not pinned a positive mass"),
             Self::Motion { source, .. } => source.advice(),
-            Self::Air(error) => error.advice(),
             Self::Damping { .. } => Some("give a finite rate of at least 0 per second"),
             Self::NoSuchVertex { .. } => None,
         }

@@ -1,7 +1,8 @@
 //! A spring by which somebody pulls at a vertex while the simulation runs.
 
 use crate::SheetModel;
-use crate::model::potential::{At, HessianSink, Potential};
+use crate::hessian::HessianSink;
+use crate::potential::{At, Potential};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, Topology, VertexId};
 use nalgebra::{Matrix3, Vector3};

@@ -1,7 +1,7 @@
 //! Prescribed forces: loads on vertices and fields of acceleration whose size follows a profile.
 
-use crate::model::potential::Force;
 use crate::motion::profile::{Profile, ProfileError};
+use crate::potential::Force;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, Topology, VertexId};
 use nalgebra::Vector3;

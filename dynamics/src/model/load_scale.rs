@@ -1,6 +1,6 @@
 //! The sizes of accelerations and speeds that barriers have to withstand.
 
-use crate::model::potential::At;
+use crate::potential::At;
 use crate::vectors::largest_norm;
 use crate::{PAPER_GRAVITY, PotentialShape, SheetModel, State};
 use nalgebra::Vector3;

@@ -1,37 +1,14 @@
 //! What the potentials of a model remember.
 
-use crate::model::potential::{At, Potential, Reached, Settled};
+use crate::potential::{At, Memories, Potential, Reached, Settled};
 use crate::{SheetModel, State};
 use isosheet_mesh::{EdgeId, FaceId};
 use nalgebra::Matrix2;
-use serde::{Deserialize, Serialize};
-
-/// What each of the potentials of a model remembers ([`Potential::memory`]), in the order of
-/// [`SheetModel::potentials`].
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Memories(Vec<Vec<f64>>);
-
-impl Memories {
-    /// One list of numbers for each potential, most of them empty.
-    pub fn lists(&self) -> &[Vec<f64>] {
-        &self.0
-    }
-
-    /// The memory of the potential of a number.
-    pub(crate) fn list_mut(&mut self, number: usize) -> &mut [f64] {
-        &mut self.0[number]
-    }
-
-    /// Takes over other memories of the same model, in place.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.0.clone_from(&other.0);
-    }
-}
 
 impl SheetModel {
     /// What the potentials remember before anything has happened.
     pub fn memories(&self) -> Memories {
-        Memories(self.potentials().map(Potential::memory).collect())
+        Memories::of(self.potentials().map(Potential::memory))
     }
 
     /// The potentials, each with where it is evaluated.
@@ -42,13 +19,13 @@ impl SheetModel {
         memories: &'a Memories,
     ) -> impl Iterator<Item = (&'a dyn Potential, At<'a>)> {
         let at = move |memory: &'a Vec<f64>| At::new(t, x).with_memory(memory);
-        self.potentials().zip(memories.0.iter().map(at))
+        self.potentials().zip(memories.lists().iter().map(at))
     }
 
     /// What the potentials remember at the start of a simulation.
     pub(crate) fn memories_at_start(&self, state: &State) -> Memories {
         let mut memories = self.memories();
-        for (p, memory) in self.potentials().zip(&mut memories.0) {
+        for (p, memory) in self.potentials().zip(memories.lists_mut()) {
             p.start(reached(state), memory);
         }
         memories
@@ -57,7 +34,7 @@ impl SheetModel {
     /// Makes what the potentials remember that of the end of a step; what that does to the energy.
     pub(crate) fn settle(&self, state: &State, memories: &mut Memories) -> Settled {
         let mut sum = Settled::default();
-        for (p, memory) in self.potentials().zip(&mut memories.0) {
+        for (p, memory) in self.potentials().zip(memories.lists_mut()) {
             let Settled { dissipated, work } = p.settle(reached(state), memory);
             sum.dissipated += dissipated;
             sum.work += work;
@@ -73,7 +50,7 @@ impl SheetModel {
     /// The plastic angle of each edge (length E, radians, positive for valleys), 0 where nothing yields;
     /// `None` where no edge can yield. It is what stays of a fold angle where the moment is zero.
     pub fn plastic_angles(&self, memories: &Memories) -> Option<Vec<f64>> {
-        let all = self.potentials().zip(&memories.0);
+        let all = self.potentials().zip(memories.lists());
         let known: Vec<(EdgeId, f64)> = all.flat_map(|(p, m)| p.plastic_angles(m)).collect();
         if known.is_empty() {
             return None;
@@ -90,7 +67,7 @@ impl SheetModel {
     /// counter-clockwise; `None` where no face can yield. They are what stays of the curvature where the
     /// moment is zero.
     pub fn plastic_curvatures(&self, memories: &Memories) -> Option<Vec<[f64; 2]>> {
-        let all = self.potentials().zip(&memories.0);
+        let all = self.potentials().zip(memories.lists());
         let known: Vec<(FaceId, Matrix2<f64>)> =
             all.flat_map(|(p, m)| p.plastic_curvatures(m)).collect();
         if known.is_empty() {

@@ -9,11 +9,9 @@ pub(crate) mod hand;
 pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;
-pub(crate) mod memory;
+mod memory;
 pub(crate) mod part;
-pub mod potential;
 pub(crate) mod round_off;
-pub(crate) mod state;
 pub(crate) mod support;
 mod supports;
 
@@ -21,9 +19,8 @@ use crate::State;
 use crate::constraint::VertexConstraint;
 use crate::material::elastic_sheet::ElasticSheet;
 use crate::model::load_scale::LoadScale;
-use crate::model::memory::Memories;
-use crate::model::potential::{At, Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
-use air::{Air, AirOnFaces};
+use crate::potential::{At, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape};
+use crate::term::ImplicitForce;
 pub use error::ModelError;
 use isosheet_mesh::{LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
 use support::MovingPin;
@@ -57,7 +54,8 @@ pub struct SheetModel {
     /// The hands among the potentials, with their numbers.
     hands: Vec<(usize, hand::Hand)>,
     forces: Vec<Box<dyn Force>>,
-    air: Option<AirOnFaces>,
+    /// Forces that damped steps take as terms of their objective.
+    implicit: Vec<Box<dyn ImplicitForce>>,
     damping: f64,
     free_index: Vec<u32>,
     free_count: usize,
@@ -120,7 +118,7 @@ impl SheetModel {
             potentials: Vec::new(),
             hands: Vec::new(),
             forces: Vec::new(),
-            air: None,
+            implicit: Vec::new(),
             damping: 0.0,
             free_index: (0..n as u32).collect(),
             free_count: n,
@@ -195,24 +193,15 @@ impl SheetModel {
         self
     }
 
-    /// Surrounds the sheet with air, in place of any before.
-    ///
-    /// # Errors
-    /// [`ModelError::Air`] if density, a coefficient or a profile makes no sense.
-    pub fn with_air(mut self, air: Air) -> Result<Self, ModelError> {
-        air.validate()?;
-        self.air = Some(AirOnFaces::new(air, &self.topology, self.rods.lengths()));
-        Ok(self)
+    /// Adds a force that damped steps take as a term of their objective.
+    pub(crate) fn with_implicit_force(mut self, force: impl ImplicitForce + 'static) -> Self {
+        self.implicit.push(Box::new(force));
+        self
     }
 
-    /// The air around the sheet.
-    pub fn air(&self) -> Option<&Air> {
-        self.air.as_ref().map(|on_faces| &on_faces.air)
-    }
-
-    /// The air and the faces that it acts on.
-    pub(crate) fn air_on_faces(&self) -> Option<&AirOnFaces> {
-        self.air.as_ref()
+    /// The forces that damped steps take as terms of their objective.
+    pub(crate) fn implicit_forces(&self) -> impl Iterator<Item = &dyn ImplicitForce> {
+        self.implicit.iter().map(Box::as_ref)
     }
 
     /// Sets the rate `gamma` (1/s) of the velocity damping `v <- v exp(-gamma h)` that follows
@@ -286,19 +275,6 @@ impl SheetModel {
         if let Some(elastic) = &mut self.elastic {
             elastic.set_load(mass, acceleration);
         }
-    }
-
-    /// Whether the sheet has a limit of its strain.
-    pub(crate) fn has_strain_limit(&self) -> bool {
-        self.elastic.is_some()
-    }
-
-    /// Largest part of the displacement `dx`, at most one, that is proven to stay within the limit of the
-    /// strain.
-    pub(crate) fn fraction_within_limit(&self, x: &[f64], dx: &[f64]) -> f64 {
-        self.elastic
-            .as_ref()
-            .map_or(1.0, |elastic| elastic.safe_fraction(x, dx))
     }
 
     /// The non-conservative forces in the order in which they were added.
@@ -402,23 +378,22 @@ impl SheetModel {
         f.iter_mut().for_each(|v| *v = -*v);
     }
 
-    /// Sum of the non-conservative forces and of that of the air, overwriting `f`; zero at pinned vertices.
+    /// Sum of the non-conservative forces, overwriting `f`; zero at pinned vertices.
     pub(crate) fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
         self.add_applied_force(t, x, v, f);
         self.clear_pinned(f);
     }
 
-    /// Adds the non-conservative forces and that of the air, at pinned vertices too.
+    /// Adds the non-conservative forces, at pinned vertices too.
     pub(crate) fn add_applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.add_explicit_force(t, x, v, f);
-        if let Some(air) = &self.air {
-            air.add_force(t, x, v, f);
+        for force in self.implicit_forces() {
+            force.add_force(t, x, v, f);
         }
     }
 
-    /// Adds the non-conservative forces without that of the air, at pinned vertices too: what is constant
-    /// over a step of a method that minimises.
+    /// Adds the non-conservative forces that are constant over a damped step, at pinned vertices too.
     pub(crate) fn add_explicit_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         for force in &self.forces {
             force.add_force(t, x, v, f);
@@ -427,7 +402,7 @@ impl SheetModel {
 
     /// Whether anything but potentials acts on the sheet.
     pub(crate) fn has_applied_forces(&self) -> bool {
-        !self.forces.is_empty() || self.air.is_some()
+        !self.forces.is_empty() || !self.implicit.is_empty()
     }
 
     /// Whether every potential is linear, so that its force is constant.

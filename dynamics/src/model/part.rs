@@ -1,8 +1,7 @@
 //! Potentials of one of several sheets.
 
-use crate::model::potential::{
-    At, CouplingKind, HessianSink, Potential, PotentialShape, Reached, Settled,
-};
+use crate::hessian::HessianSink;
+use crate::potential::{At, CouplingKind, Potential, PotentialShape, Reached, Settled};
 use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
 use nalgebra::{Matrix2, Matrix3};
 

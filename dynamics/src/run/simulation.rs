@@ -2,9 +2,9 @@
 
 use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
-use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
+use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, ContactTerms};
 use crate::damped::start::{check_finite, check_motions, check_state};
-use crate::model::memory::Memories;
+use crate::potential::Memories;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
 use crate::step::checkpoint_error::CheckpointError;
 use crate::step::effort::{SolverEffort, StepProgress, TraceSink, Watch};
@@ -271,7 +271,7 @@ impl Simulation {
     /// The contacts of the present state; `None` without contact.
     pub fn contacts(&self) -> Option<&ActiveContacts> {
         match &self.engine {
-            Engine::Free(engine) => engine.contact().map(|(_, contacts)| &contacts.active),
+            Engine::Free(engine) => engine.contacts().map(|contacts| &contacts.active),
             Engine::Chart(chart) => chart.simulation.contacts(),
         }
     }
@@ -279,8 +279,8 @@ impl Simulation {
     /// Loads of the sheet on the bodies, in order of addition; empty without contact and in charts, where
     /// impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
-        self.barrier().map_or_else(Vec::new, |(contact, contacts)| {
-            contact.terms(contacts, &self.state().x).loads()
+        self.barrier().map_or_else(Vec::new, |contacts| {
+            ContactTerms::of(contacts, &self.state().x).loads()
         })
     }
 
@@ -297,8 +297,8 @@ impl Simulation {
     pub fn contact_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => {
-                let (contact, contacts) = engine.contact()?;
-                Some(contact.terms(contacts, &self.state().x).vertex_forces())
+                let terms = ContactTerms::of(engine.contacts()?, &self.state().x);
+                Some(terms.vertex_forces())
             }
             Engine::Chart(chart) => chart.contact_forces(),
         }
@@ -309,7 +309,7 @@ impl Simulation {
     /// without contact.
     pub fn vertex_gaps(&self) -> Option<Vec<f64>> {
         let reach = match &self.engine {
-            Engine::Free(engine) => engine.contact()?.0.barrier().activation(),
+            Engine::Free(engine) => engine.contacts()?.barrier.activation(),
             Engine::Chart(chart) => chart.simulation.activation()?,
         };
         let vertices = self.model().topology().vertex_count();
@@ -317,9 +317,9 @@ impl Simulation {
     }
 
     /// Contact by a barrier.
-    fn barrier(&self) -> Option<(&RunContact, &ContactState)> {
+    fn barrier(&self) -> Option<&ContactState> {
         match &self.engine {
-            Engine::Free(engine) => engine.contact(),
+            Engine::Free(engine) => engine.contacts(),
             Engine::Chart(_) => None,
         }
     }
@@ -458,7 +458,7 @@ impl Simulation {
         let potential = self.model().energy_with(self.memories(), *t, x);
         match self.barrier() {
             None => potential,
-            Some((contact, contacts)) => potential + contact.barrier_energy(contacts),
+            Some(contacts) => potential + contacts.active.barrier_energy(&contacts.barrier),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::step::report::StepError;
 use crate::step::tuning::Tuning;
+use crate::term::Exchange;
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::norm_inf;
 use serde::{Deserialize, Serialize};
@@ -22,27 +23,6 @@ pub(crate) struct EnergyAccount {
     kinetic: f64,
 }
 
-/// Energy exchanged in a step.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Exchange {
-    /// Work of the non-conservative forces, joules.
-    pub(crate) forces: f64,
-    /// Work of the air, joules.
-    pub(crate) air: f64,
-    /// Work of moving pins and vertex constraints, joules.
-    pub(crate) supports: f64,
-    /// Work of moving bodies, joules.
-    pub(crate) bodies: f64,
-    /// Energy lost to friction, joules.
-    pub(crate) friction: f64,
-    /// The same by the normal forces at the end of the step, joules.
-    pub(crate) settled_friction: f64,
-    /// Change of the barrier potential, joules.
-    pub(crate) barrier: f64,
-    /// Uncertainty in contact from the tolerance of the lengths, joules.
-    pub(crate) length_slack: f64,
-}
-
 impl EnergyAccount {
     /// The account after a step between two states, with the potential energies of both at the end of the step
     /// (joules) and the sum of the magnitudes of the components of the conservative forces there (newtons).
@@ -59,14 +39,12 @@ impl EnergyAccount {
         tuning: &Tuning,
     ) -> Result<Self, StepError> {
         let kinetic = [&before.v, &after.v].map(|v| model.kinetic_energy(v));
-        let drives = exchange.bodies.abs() + exchange.supports.abs() + exchange.air.abs();
-        let gain = kinetic[1] + potential[1] + exchange.barrier
+        let drives = exchange.driven_size;
+        let gain = kinetic[1] + potential[1] + exchange.stored
             - kinetic[0]
             - potential[0]
-            - exchange.forces
-            - exchange.air
-            - exchange.supports
-            - exchange.bodies;
+            - exchange.work
+            - exchange.driven;
         if !gain.is_finite() {
             // A comparison with a bound would let it pass, and spoil the account for good.
             return Err(StepError::NonFiniteEnergy {
@@ -78,7 +56,7 @@ impl EnergyAccount {
         let size = norm_inf(&after.x);
         let noise = tuning.position_noise * size / (after.t - before.t);
         let energies = kinetic[0] + potential[0].abs() + potential[1].abs();
-        let mut round_off = tuning.energy_round_off * (energies + exchange.forces.abs() + drives)
+        let mut round_off = tuning.energy_round_off * (energies + exchange.work.abs() + drives)
             + model.mass().total() * noise * noise
             + exchange.length_slack;
         let unsettled = (exchange.friction - exchange.settled_friction).abs();

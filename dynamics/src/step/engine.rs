@@ -1,15 +1,14 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
-use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
-use crate::damped::air_step::Formula;
+use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan};
 use crate::damped::implicit::Implicit;
 use crate::linear::rank::rod_rank;
 use crate::model::immobile::immobile_vertices;
-use crate::model::memory::Memories;
+use crate::objective::Objective;
+use crate::potential::Memories;
 use crate::step::blocked::{blocked_vertices, dependent_vertices};
 use crate::step::checkpoint_error::CheckpointError;
 use crate::step::control::{Decision, Stepping, take_substep};
-use crate::step::energy_account::Exchange;
 use crate::step::infeasibility::{Infeasibility, infeasibility};
 use crate::step::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
@@ -22,12 +21,14 @@ use crate::step::rod_forces::rod_forces;
 use crate::step::subdivision::Subdivision;
 use crate::step::trace::TraceEvent;
 use crate::step::tuning::Tuning;
+use crate::term::{Exchange, Formula};
 use crate::{
     Fallback, HandError, Isometry, Method, SheetModel, SimulationError, State, StepControl,
     Unsatisfiable,
 };
 use isosheet_mesh::VertexId;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// What a checkpoint keeps of a simulation without a chart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -41,8 +42,9 @@ pub(crate) struct WithoutChart {
 
 /// A sheet that a chart-free method moves.
 pub(crate) struct Engine {
-    pub(crate) model: SheetModel,
-    contact: Option<RunContact>,
+    pub(crate) model: Arc<SheetModel>,
+    /// What damped steps minimise, with the geometry of contact.
+    objective: Objective,
     method: Method,
     /// Vertices that became pins at the start because they cannot move.
     fixed: Vec<VertexId>,
@@ -81,6 +83,7 @@ impl Engine {
         if model.can_yield() && !method.is_minimising() {
             return Err(SimulationError::Plastic);
         }
+        let model = Arc::new(model);
         let tuning = Tuning::default();
         let integrator = method.build(&model, &tuning)?;
         let control = StepControl::default();
@@ -97,7 +100,7 @@ impl Engine {
             integrator,
             control,
             tuning,
-            contact: None,
+            objective: Objective::new(&model),
             method,
             fixed,
             model,
@@ -130,11 +133,13 @@ impl Engine {
         let mut engine = Self::with_fixed(model, kept.method, motion.state.clone(), fixed)?;
         engine.set_control(kept.control)?;
         engine.motion.copy_from(&motion);
-        engine.contact = match (contact, motion.barrier) {
+        let barrier = motion.contacts.map(|contacts| contacts.barrier);
+        engine.objective.contact = match (contact, barrier) {
             (None, None) => None,
             (Some(contact), Some(barrier)) => {
                 let state = &engine.motion.state;
-                Some(RunContact::resume(contact, barrier, &engine.model, state)?)
+                let term = ContactTerm::resume(contact, barrier, &engine.model, state)?;
+                Some(term)
             }
             (_, barrier) => {
                 let expected = barrier.is_some();
@@ -144,9 +149,9 @@ impl Engine {
         Ok(engine)
     }
 
-    /// Contact, if the scene has any.
-    pub(crate) fn contact(&self) -> Option<(&RunContact, &ContactState)> {
-        self.contact.as_ref().zip(self.motion.contacts.as_ref())
+    /// The contacts, if the scene has any.
+    pub(crate) fn contacts(&self) -> Option<&ContactState> {
+        self.motion.contacts.as_ref()
     }
 
     /// Forces of the rods in the last accepted sub-step; `None` where the method does not solve for them.
@@ -196,9 +201,8 @@ impl Engine {
         if self.integrator.traits().contact == ContactSupport::None {
             return Err(ContactError::Method.into());
         }
-        let (contact, contacts) = RunContact::new(contact, &self.model, &self.motion.state)?;
-        self.motion.barrier = Some(contact.barrier());
-        self.contact = Some(contact);
+        let (term, contacts) = ContactTerm::new(contact, &self.model, &self.motion.state)?;
+        self.objective.contact = Some(term);
         self.motion.contacts = Some(contacts);
         Ok(())
     }
@@ -267,14 +271,15 @@ impl Engine {
         let Motion {
             state, contacts, ..
         } = &self.motion;
-        let contact = self.contact.as_mut().zip(contacts.as_ref());
+        let contact = self.objective.contact.as_mut().zip(contacts.as_ref());
         infeasibility(&self.model, contact, state, t)
     }
 
     /// The body that presses the sheet most while it moves on until time `end`, seconds, if one does.
     fn pressing(&mut self, end: f64) -> Option<Pressing> {
         let t0 = self.state().t;
-        let (contact, contacts) = self.contact.as_mut().zip(self.motion.contacts.as_ref())?;
+        let contact = self.objective.contact.as_mut();
+        let (contact, contacts) = contact.zip(self.motion.contacts.as_ref())?;
         pressing(contact, contacts, StepSpan { t0, h: end - t0 })
     }
 
@@ -282,8 +287,8 @@ impl Engine {
     fn surroundings_rest(&mut self, end: f64) -> bool {
         let t0 = self.state().t;
         let span = StepSpan { t0, h: end - t0 };
-        let contact = self.contact.as_mut();
-        !self.model.has_drives() && contact.is_none_or(|contact| contact.bodies_rest(span))
+        let contact = self.objective.contact.as_mut();
+        !self.model.has_drives() && contact.is_none_or(|contact| !contact.motions(span).any_moves())
     }
 
     /// The error of dependent rods, if there are any and the method needs independent ones.
@@ -388,7 +393,7 @@ impl Substeps<'_, '_> {
         };
         let Engine {
             model,
-            contact,
+            objective,
             integrator,
             fallback,
             motion,
@@ -400,16 +405,13 @@ impl Substeps<'_, '_> {
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
         }
-        if let Some(contact) = contact {
+        if let Some(contact) = &mut objective.contact {
             contact.check_bodies(StepSpan {
                 t0: motion.state.t,
                 h,
             })?;
         }
-        let scene = Scene {
-            model,
-            contact: contact.as_mut().map(RunContact::step),
-        };
+        let scene = Scene { model, objective };
         let attempt = Attempt::new(motion, h, self.memory).with(phases);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
@@ -423,23 +425,14 @@ impl Substeps<'_, '_> {
         }
         proposed?;
         let (before, after) = (&motion.state, &proposal.motion.state);
-        let step = &proposal.account;
-        let mut exchange = Exchange {
-            forces: step.work,
-            air: step.air,
-            bodies: step.contact.bodies,
-            friction: step.contact.friction,
-            settled_friction: step.contact.settled_friction,
-            barrier: step.contact.stored,
-            length_slack: step.contact.length_slack,
-            ..Exchange::default()
-        };
+        let mut exchange = proposal.account.exchange;
         if model.has_drives() {
             let kept = motion.has_moved.then_some(&motion.balance);
             let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
             let balance = &proposal.motion.balance;
-            exchange.supports = balance.drive_work(model, kept, ends.0, ends.1);
-            exchange.forces += model.applied_work_at_pins(before, after);
+            let supports = balance.drive_work(model, kept, ends.0, ends.1);
+            exchange.add(Exchange::driven(supports));
+            exchange.work += model.applied_work_at_pins(before, after);
         }
         self.exchange = exchange;
         // The conservative methods keep the energy by themselves.
@@ -560,7 +553,6 @@ impl Stepping for Substeps<'_, '_> {
         std::mem::swap(&mut engine.motion, &mut engine.proposal.motion);
         let (model, before, motion) = (&engine.model, &engine.proposal.motion, &mut engine.motion);
         motion.memories.copy_from(&before.memories);
-        motion.barrier = before.barrier;
         motion.has_moved = true;
         // Free of accumulated round-off, for the pins in motion too.
         motion.state.t = self.lengths.advance();
@@ -573,8 +565,8 @@ impl Stepping for Substeps<'_, '_> {
         totals.substeps += 1;
         totals.residual = totals.residual.max(step.residual);
         totals.outcome = totals.outcome.max(step.outcome);
-        totals.work += exchange.forces + exchange.air + exchange.supports + exchange.bodies;
-        totals.friction += step.contact.friction;
+        totals.work += exchange.work + exchange.driven;
+        totals.friction += exchange.friction;
         let dissipated = damp(model, &mut motion.state, h);
         totals.dissipated += dissipated;
         motion.account.spend(dissipated);

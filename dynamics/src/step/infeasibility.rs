@@ -4,7 +4,7 @@ mod driver;
 mod fit;
 mod gaps;
 
-use crate::contact::{ContactState, RunContact};
+use crate::contact::{ContactState, ContactTerm};
 use crate::{SheetModel, State};
 pub use driver::Driver;
 use fit::{Fit, ROD_STIFFNESS};
@@ -81,12 +81,12 @@ impl fmt::Display for Infeasibility {
 /// of all that moves over its motion.
 pub(crate) fn infeasibility(
     model: &SheetModel,
-    contact: Option<(&mut RunContact, &ContactState)>,
+    contact: Option<(&mut ContactTerm, &ContactState)>,
     state: &State,
     t: f64,
 ) -> Option<Infeasibility> {
-    let gaps = contact.map_or_else(Gaps::default, |(run, contacts)| {
-        Gaps::of(run, contacts, state, t, ROD_STIFFNESS * model.mean_mass())
+    let gaps = contact.map_or_else(Gaps::default, |(term, contacts)| {
+        Gaps::of(term, contacts, state, t, ROD_STIFFNESS * model.mean_mass())
     });
     let fit = Fit::new(model, state, t, gaps)?.minimised()?;
     let (by, distance) = fit.demand()?;

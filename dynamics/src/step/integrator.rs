@@ -1,20 +1,20 @@
 //! What all chart-free integrators have in common: they propose, and leave it to the step control to commit.
 
-use crate::contact::{ContactWork, StepContact};
-use crate::model::memory::Memories;
+use crate::objective::Objective;
+use crate::potential::Memories;
 use crate::step::effort::SolverEffort;
 use crate::step::history::{History, Multipliers};
 use crate::step::motion::Motion;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::step::report::{StepError, StepOutcome};
+use crate::term::Exchange;
 use crate::{SheetModel, State};
 
-/// What an integrator moves: a sheet, and what the sheet may touch.
+/// What an integrator moves: a sheet, with what damped steps minimise.
 pub(crate) struct Scene<'a> {
     /// The sheet.
     pub(crate) model: &'a SheetModel,
-    /// Contact, in scenes that name it.
-    pub(crate) contact: Option<StepContact<'a>>,
+    pub(crate) objective: &'a mut Objective,
 }
 
 /// A sub-step that could be taken.
@@ -31,15 +31,10 @@ pub(crate) struct Proposal {
 pub(crate) struct StepAccount {
     /// Relative residual of the momentum balance.
     pub(crate) residual: f64,
-    /// Work of the non-conservative forces at the free vertices, joules; of methods that do not minimise with
-    /// that of the air.
-    pub(crate) work: f64,
-    /// Work of the air at the free vertices in a method that minimises, joules.
-    pub(crate) air: f64,
     /// How the sub-step was obtained.
     pub(crate) outcome: StepOutcome,
-    /// What contact did; zero without contact.
-    pub(crate) contact: ContactWork,
+    /// Energy exchanged at the free vertices.
+    pub(crate) exchange: Exchange,
 }
 
 impl Proposal {
@@ -48,19 +43,21 @@ impl Proposal {
         let nowhere = State::at_rest(vec![0.0; model.coordinate_count()]);
         Self {
             motion: Motion::at(nowhere, model, traits.balance(model)),
-            account: StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton),
+            account: StepAccount::of_forces(0.0, 0.0, StepOutcome::Newton),
         }
     }
 }
 
 impl StepAccount {
-    pub(crate) fn without_contact(residual: f64, work: f64, outcome: StepOutcome) -> Self {
+    /// Of a step in which forces did work (joules), and nothing else.
+    pub(crate) fn of_forces(residual: f64, work: f64, outcome: StepOutcome) -> Self {
         Self {
             residual,
-            work,
-            air: 0.0,
             outcome,
-            contact: ContactWork::default(),
+            exchange: Exchange {
+                work,
+                ..Exchange::default()
+            },
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The state of a chart-free simulation, as one value.
 
-use crate::contact::{BarrierPotential, ContactState};
-use crate::model::memory::Memories;
+use crate::contact::ContactState;
+use crate::potential::Memories;
 use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::energy_account::EnergyAccount;
 use crate::step::history::History;
@@ -21,10 +21,9 @@ pub(crate) struct Motion {
     pub(crate) memories: Memories,
     /// Forces of the supports in the step that ended here. Meaningless before the first step.
     pub(crate) balance: Balance,
-    /// The contacts at the state, with the friction of the step that ended here; `None` without contact.
+    /// The contacts at the state, with the barrier and the friction of the step that ended here; `None` without
+    /// contact.
     pub(crate) contacts: Option<ContactState>,
-    /// The barrier of contact, in scenes that have any.
-    pub(crate) barrier: Option<BarrierPotential>,
     /// The energy that a damped method has gained.
     pub(crate) account: EnergyAccount,
     /// Whether a step has been taken since the start.
@@ -40,7 +39,6 @@ impl Motion {
             history: History::default(),
             balance,
             contacts: None,
-            barrier: None,
             account: EnergyAccount::default(),
             has_moved: false,
         }
@@ -61,7 +59,6 @@ impl Motion {
         self.memories.copy_from(&other.memories);
         self.balance.copy_from(&other.balance);
         self.set_contacts(other.contacts.as_ref());
-        self.barrier = other.barrier;
         self.account = other.account;
         self.has_moved = other.has_moved;
     }

@@ -1,6 +1,6 @@
 //! What presses the sheet where no step is found.
 
-use crate::contact::{ContactState, RunContact, StepSpan};
+use crate::contact::{ContactState, ContactTerm, StepSpan};
 use isosheet_mesh::VertexId;
 use isosheet_mesh::wording::{brief, listed};
 use std::fmt;
@@ -34,12 +34,12 @@ impl fmt::Display for Pressing {
 /// Of the bodies that move on within a span of time from the state of the contacts, the one that the sheet
 /// resists most: by the work of its present normal forces. Nothing if none moves into the sheet.
 pub(crate) fn pressing(
-    run: &mut RunContact,
+    term: &mut ContactTerm,
     contacts: &ContactState,
     span: StepSpan,
 ) -> Option<Pressing> {
-    let barrier = run.barrier();
-    let motions = run.motions(span).list();
+    let barrier = contacts.barrier;
+    let motions = term.motions(span).list();
     let mut work = vec![0.0; motions.len()];
     let touching: Vec<_> = contacts
         .active

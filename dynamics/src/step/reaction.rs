@@ -1,14 +1,12 @@
 //! Forces of supports on the sheet.
 
+use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
-use crate::contact::ContactTerms;
-use crate::damped::air_step::AirStep;
-use crate::model::memory::Memories;
 use crate::model::support::Support;
+use crate::potential::Memories;
 use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::vectors::{add, point};
-use crate::{SheetModel, State};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -108,6 +106,19 @@ impl Balance {
         true
     }
 
+    /// Sets the forces at all vertices to those that `add` adds to zero; false if there are no supports.
+    pub(crate) fn begin_with(&mut self, add: impl FnOnce(&mut [f64])) -> bool {
+        if self.pins.is_empty() {
+            return false;
+        }
+        self.pins.fill(0.0);
+        add(&mut self.pins);
+        self.multipliers.fill(Vector3::zeros());
+        self.constraints.fill(Vector3::zeros());
+        self.residual_momentum.clear();
+        true
+    }
+
     /// Adds more inertia.
     pub(crate) fn add_inertia(&mut self, model: &SheetModel, a: impl Fn(usize) -> f64) {
         for (i, w) in self.work.iter_mut().enumerate() {
@@ -194,7 +205,7 @@ impl Balance {
         self.add_work(share);
     }
 
-    /// Subtracts `share` of the non-conservative forces and of that of the air.
+    /// Subtracts `share` of the non-conservative forces.
     pub(crate) fn add_applied(
         &mut self,
         model: &SheetModel,
@@ -206,23 +217,6 @@ impl Balance {
         self.work.fill(0.0);
         model.add_applied_force(t, x, v, &mut self.work);
         self.add_work(-share);
-    }
-
-    /// Subtracts the non-conservative forces at a state, without that of the air.
-    pub(crate) fn add_explicit(&mut self, model: &SheetModel, State { t, x, v }: &State) {
-        self.work.fill(0.0);
-        model.add_explicit_force(*t, x, v, &mut self.work);
-        self.add_work(-1.0);
-    }
-
-    /// Subtracts the force of the air in a step that ends at `x`.
-    pub(crate) fn add_air(&mut self, air: &AirStep, x: &[f64]) {
-        air.add_gradient(x, 1.0, &mut self.pins);
-    }
-
-    /// Subtracts the contact forces.
-    pub(crate) fn add_contact(&mut self, contact: &ContactTerms<'_>) {
-        contact.add_gradient(1.0, &mut self.pins);
     }
 
     /// Subtracts the rod forces `-share G(x)^T multipliers`.
@@ -289,17 +283,6 @@ impl Balance {
         {
             self.pins[3 * v.index()..3 * v.index() + 3].fill(0.0);
         }
-    }
-
-    /// Distributes the residual momentum of a step that ended at time `t`.
-    pub(crate) fn settle(&mut self, model: &SheetModel, t: f64) {
-        let shares = self.residual_momentum.shares(model, t);
-        self.residual_momentum.clear();
-        for (p, share) in self.pins.iter_mut().zip(&shares.pins) {
-            *p += share;
-        }
-        self.add_loads(shares.loads.into_iter());
-        self.finish(model);
     }
 
     /// The reactions, with the distributed residual momentum of a step that ended at time `t`.

@@ -1,6 +1,7 @@
 //! What a simulation tells about its steps while it takes them.
 
 use crate::step::reason::Reason;
+use crate::term::Barrier;
 use serde::Serialize;
 
 /// A line of a trace, see [`Simulation::with_trace`](crate::Simulation::with_trace).
@@ -90,6 +91,16 @@ pub enum Cut {
     Driven,
     /// The direction would have raised the potential to mend the lengths, which were restored instead.
     Lengths,
+}
+
+impl From<Option<Barrier>> for Cut {
+    fn from(barrier: Option<Barrier>) -> Self {
+        match barrier {
+            None => Self::Nothing,
+            Some(Barrier::Contact) => Self::Contact,
+            Some(Barrier::StrainLimit) => Self::StrainLimit,
+        }
+    }
 }
 
 /// Why an iteration goes on from a point where it has converged.

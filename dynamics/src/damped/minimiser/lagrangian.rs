@@ -1,9 +1,9 @@
 //! The augmented Lagrangian of a step at an iterate: value, gradient and Hessian.
 
 use super::problem::StepProblem;
-use crate::constraint::rows::{HessianPart, VertexRows};
-use crate::contact::StepSpan;
-use crate::damped::iterate::Iterate;
+use crate::SheetModel;
+use crate::constraint::rows::VertexRows;
+use crate::hessian::HessianPart;
 use crate::linear::constrained::{
     ConstrainedSolver, ConstrainedSystem, MultiplierGoal, RowValues, SupportRows,
 };
@@ -15,10 +15,8 @@ use crate::step::report::StepError;
 use crate::step::trace::Cut;
 use crate::step::tuning::Tuning;
 use crate::vectors::dot;
-use crate::{HessianSink, SheetModel};
-use isosheet_coords::linalg::LinalgError;
-use isosheet_mesh::{EdgeId, VertexId};
-use nalgebra::{Matrix3, Vector3};
+use isosheet_coords::linalg::{LinalgError, norm_inf};
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -32,7 +30,8 @@ use rand_chacha::ChaCha8Rng;
 /// `r_e`.
 pub(crate) struct Lagrangian {
     pub(super) tuning: Tuning,
-    pub(super) iterate: Iterate,
+    /// The iterate, `3V`, metres.
+    pub(super) x: Vec<f64>,
     pub(super) matrix: PrimalMatrix,
     pub(super) multipliers: Vec<f64>,
     /// Multipliers before a linear system was solved.
@@ -48,13 +47,6 @@ pub(crate) struct Lagrangian {
     /// `L_e + r_e c_e` at the last gradient.
     estimates: Vec<f64>,
     pub(super) gradient: Vec<f64>,
-    /// Conservative forces without contact at the last gradient, newtons.
-    pub(super) force: Vec<f64>,
-    /// Where these were evaluated.
-    force_at: Evaluated,
-    /// Energy of the potentials at the last evaluation, joules.
-    energy: f64,
-    energy_at: Evaluated,
     /// Solution of the last linear system: minus the search direction.
     pub(super) dx: Vec<f64>,
     /// What cut that step.
@@ -72,84 +64,6 @@ pub(crate) struct Lagrangian {
     /// The step before its second-order correction.
     pub(super) uncorrected: Vec<f64>,
     pub(super) weighted: Vec<f64>,
-}
-
-/// Adds the product of a Hessian and a vector to another vector.
-struct HessianProduct<'a> {
-    edges: &'a [[usize; 2]],
-    scale: f64,
-    vector: &'a [f64],
-    product: &'a mut [f64],
-}
-
-impl HessianProduct<'_> {
-    fn add(&mut self, row: usize, column: usize, block: &Matrix3<f64>) {
-        let v = Vector3::from_column_slice(&self.vector[3 * column..3 * column + 3]);
-        if v == Vector3::zeros() {
-            return;
-        }
-        let product = self.scale * block * v;
-        for k in 0..3 {
-            self.product[3 * row + k] += product[k];
-        }
-    }
-}
-
-impl HessianSink for HessianProduct<'_> {
-    fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
-        self.add(v.index(), v.index(), block);
-    }
-
-    fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>) {
-        let [a, b] = self.edges[e.index()];
-        self.add(a, b, block);
-        self.add(b, a, &block.transpose());
-    }
-
-    fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
-        self.add(a.index(), b.index(), block);
-        self.add(b.index(), a.index(), &block.transpose());
-    }
-}
-
-/// Largest part of a displacement of the iterate, at most one, that is proven to bring nothing into contact
-/// and to stay within the limit of the strain, see [`Iterate::safe_fraction`].
-fn safe_fraction(iterate: &mut Iterate, problem: &mut StepProblem<'_>, dx: &[f64]) -> (f64, Cut) {
-    let within_limit = problem.model.fraction_within_limit(iterate.x(), dx);
-    let free = iterate.safe_fraction(problem.contact_mut(), dx);
-    match (within_limit, free) {
-        (1.0, 1.0) => (1.0, Cut::Nothing),
-        _ if free <= within_limit => (free, Cut::Contact),
-        _ => (within_limit, Cut::StrainLimit),
-    }
-}
-
-/// Time and positions at which potentials were evaluated. Multipliers change more often than positions.
-struct Evaluated {
-    t: f64,
-    x: Vec<f64>,
-}
-
-impl Evaluated {
-    /// Nowhere.
-    fn new(n: usize) -> Self {
-        let (t, x) = (f64::NAN, vec![0.0; n]);
-        Self { t, x }
-    }
-
-    /// Whether that was somewhere else; from now on it is here.
-    fn moves_to(&mut self, t: f64, x: &[f64]) -> bool {
-        if self.t == t && self.x == x {
-            return false;
-        }
-        self.t = t;
-        self.x.copy_from_slice(x);
-        true
-    }
-
-    fn forget(&mut self) {
-        self.t = f64::NAN;
-    }
 }
 
 /// The augmented Lagrangian at an iterate, and what its parts say about round-off.
@@ -191,7 +105,7 @@ impl Lagrangian {
         let vertices = model.constrained_vertices();
         Ok(Self {
             tuning,
-            iterate: Iterate::new(n),
+            x: vec![0.0; n],
             matrix: PrimalMatrix::new(model)?,
             multipliers: vec![0.0; m],
             kept: RowValues::new(model),
@@ -202,10 +116,6 @@ impl Lagrangian {
             c: vec![0.0; m],
             estimates: vec![0.0; m],
             gradient: vec![0.0; n],
-            force: vec![0.0; n],
-            force_at: Evaluated::new(n),
-            energy: 0.0,
-            energy_at: Evaluated::new(n),
             dx: vec![0.0; n],
             cut: Cut::Nothing,
             curved: vec![0.0; n],
@@ -220,15 +130,17 @@ impl Lagrangian {
         })
     }
 
-    /// Puts the iterate, the ends of prescribed motions and the bodies where a step starts.
-    pub(super) fn begin(&mut self, problem: &mut StepProblem<'_>) {
-        let (state, h) = (problem.state, problem.span);
-        self.force_at.forget();
-        self.energy_at.forget();
-        self.end.copy_from_slice(&state.x);
+    /// Puts the iterate, the ends of prescribed motions and the terms where a step starts.
+    ///
+    /// # Errors
+    /// [`StepError`] if what acts in the step is not finite.
+    pub(super) fn begin(&mut self, problem: &mut StepProblem<'_>) -> Result<(), StepError> {
+        let start = &problem.state().x;
+        self.x.copy_from_slice(start);
+        self.end.copy_from_slice(start);
         problem.model.place_pins(problem.t(), &mut self.end);
-        let span = StepSpan { t0: state.t, h };
-        self.iterate.begin(problem.contact_mut(), span, &state.x);
+        let begun = problem.objective.begin(&problem.start);
+        begun.map_err(|refusal| problem.error(refusal))
     }
 
     /// Sets the penalties of rods and of vertex constraints: so many times as stiff as the masses.
@@ -249,24 +161,17 @@ impl Lagrangian {
     }
 
     /// Whether bodies or pins have not arrived yet.
-    pub(super) fn is_driven(&self, problem: &StepProblem<'_>) -> bool {
-        let x = self.iterate.x();
-        let has_arrived = |v: usize| x[3 * v..3 * v + 3] == self.end[3 * v..3 * v + 3];
-        self.iterate.progress() < 1.0 || !problem.model.moving_pins().all(has_arrived)
+    pub(super) fn is_driven(&self, problem: &mut StepProblem<'_>) -> bool {
+        let has_arrived = |v: usize| self.x[3 * v..3 * v + 3] == self.end[3 * v..3 * v + 3];
+        problem.objective.progress() < 1.0 || !problem.model.moving_pins().all(has_arrived)
     }
 
     /// Evaluates value and constraints at the iterate.
-    pub(super) fn merit(&mut self, problem: &StepProblem<'_>) -> Merit {
-        let (model, t, h) = (problem.model, problem.t(), problem.h);
-        let x = self.iterate.x();
-        for i in 0..x.len() {
-            self.difference[i] = x[i] - problem.prediction[i];
-        }
-        let inertia = model.kinetic_energy(&self.difference);
-        let work = dot(problem.applied, &self.difference);
-        model.rods().residual_into(x, &mut self.c);
-        self.vertex_rows.evaluate(model.constraints(), t, x);
-        let size = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    pub(super) fn merit(&mut self, problem: &mut StepProblem<'_>) -> Merit {
+        let (model, t, h) = (problem.model, problem.t(), problem.h());
+        model.rods().residual_into(&self.x, &mut self.c);
+        self.vertex_rows.evaluate(model.constraints(), t, &self.x);
+        let size = norm_inf(&self.x);
         // Round-off of c is that of the squared lengths; and where inertia alone has the right lengths
         // already, nothing but the round-off of the positions is left to minimise.
         let (mut rods, mut rod_scale, mut squares) = (0.0, 0.0, 0.0);
@@ -279,26 +184,14 @@ impl Lagrangian {
         rods += self.vertex_rows.value();
         let (vertex_scale, vertex_squares) = self.vertex_rows.scales(size);
         rod_scale += vertex_scale;
-        squares += vertex_squares;
-        if let Some(elastic) = model.elastic_sheet() {
-            squares += h * h * elastic.round_off(size);
-        }
-        if self.energy_at.moves_to(t, x) {
-            self.energy = model.energy_with(problem.memories, t, x);
-        }
-        let mut energy = self.energy;
-        if let Some(terms) = self.iterate.terms(problem.contact()) {
-            energy += terms.energy();
-        }
-        if let Some(air) = problem.air {
-            energy += air.energy(self.iterate.x());
-        }
-        let potential = inertia + h * h * (energy - work);
-        let sizes = inertia + h * h * (energy.abs() + work.abs()) + rods.abs() + rod_scale;
+        let (objective, at) = problem.objective_at(&self.x);
+        let potential = objective.value(at, h);
+        squares += vertex_squares + potential.round_off;
+        let sizes = potential.size + rods.abs() + rod_scale;
         Merit {
-            inertia,
-            value: potential + rods,
-            potential,
+            inertia: potential.inertia,
+            value: potential.value + rods,
+            potential: potential.value,
             rod_scale,
             round_off: self.tuning.round_off_operations * f64::EPSILON * sizes
                 + self.tuning.round_off_operations.powi(2) * squares,
@@ -307,44 +200,26 @@ impl Lagrangian {
 
     /// Sets the gradient at the iterate, whose constraints have to be current. While bodies or pins move,
     /// with what the rest of their motions will change the gradient by, to first order.
-    pub(super) fn set_gradient(&mut self, problem: &StepProblem<'_>) {
-        let (model, t, h) = (problem.model, problem.t(), problem.h);
-        let x = self.iterate.x();
-        for i in 0..x.len() {
-            self.difference[i] = x[i] - problem.prediction[i];
-        }
-        model.apply_mass(&self.difference, &mut self.weighted);
-        if self.force_at.moves_to(t, x) {
-            model.acting_force(problem.memories, t, x, &mut self.force);
-        }
-        for i in 0..x.len() {
-            self.gradient[i] = self.weighted[i] - h * h * (self.force[i] + problem.applied[i]);
-        }
+    pub(super) fn set_gradient(&mut self, problem: &mut StepProblem<'_>) {
+        let (model, h) = (problem.model, problem.h());
+        let is_driven = self.is_driven(problem);
+        let (objective, at) = problem.objective_at(&self.x);
+        objective.set_gradient(at, h, &mut self.gradient);
         for e in 0..self.c.len() {
             self.estimates[e] = self.multipliers[e] + self.penalty(e) * self.c[e];
         }
         let rods = model.rods();
-        rods.apply_transpose_add(x, &self.estimates, &mut self.gradient);
+        rods.apply_transpose_add(&self.x, &self.estimates, &mut self.gradient);
         self.vertex_rows.add_gradient(&mut self.gradient);
-        if let Some(terms) = self.iterate.terms(problem.contact()) {
-            terms.add_gradient(h * h, &mut self.gradient);
-        }
-        if let Some(air) = problem.air {
-            air.add_gradient(self.iterate.x(), h * h, &mut self.gradient);
-        }
-        if self.is_driven(problem) {
+        if is_driven {
             self.add_drive(problem);
         }
         model.clear_pinned(&mut self.gradient);
     }
 
     /// Adds the change of the gradient by the motions to come of bodies and pins, to first order.
-    fn add_drive(&mut self, problem: &StepProblem<'_>) {
-        let model = problem.model;
-        if let Some(terms) = self.iterate.terms(problem.contact()) {
-            terms.add_drive(problem.h * problem.h, &mut self.gradient);
-        }
-        let x = self.iterate.x();
+    fn add_drive(&mut self, problem: &mut StepProblem<'_>) {
+        let (model, h) = (problem.model, problem.h());
         let free = model.free_index();
         for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
             let (pin, end) = match (free[a] == PINNED, free[b] == PINNED) {
@@ -353,38 +228,20 @@ impl Lagrangian {
                 _ => continue,
             };
             let at = |x: &[f64], v: usize| Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
-            let (d, u) = (at(x, end) - at(x, pin), at(&self.end, pin) - at(x, pin));
+            let here = at(&self.x, pin);
+            let (d, u) = (at(&self.x, end) - here, at(&self.end, pin) - here);
             let stretch = self.penalty(e) * d.dot(&u);
             let change = self.estimates[e] * u + stretch * d;
             for k in 0..3 {
                 self.gradient[3 * end + k] -= change[k];
             }
         }
-        self.add_potential_drive(problem);
-    }
-
-    /// Adds what the potentials change the gradient by along the motions to come of pins, to first order.
-    fn add_potential_drive(&mut self, problem: &StepProblem<'_>) {
-        let model = problem.model;
         self.weighted.fill(0.0);
-        for v in model.moving_pins() {
-            for i in 3 * v..3 * v + 3 {
-                self.weighted[i] = self.end[i] - self.iterate.x()[i];
-            }
+        for i in model.moving_pins().flat_map(|v| 3 * v..3 * v + 3) {
+            self.weighted[i] = self.end[i] - self.x[i];
         }
-        let mut product = HessianProduct {
-            edges: model.rods().edges(),
-            scale: problem.h * problem.h,
-            vector: &self.weighted,
-            product: &mut self.gradient,
-        };
-        let (t, x) = (problem.t(), self.iterate.x());
-        for (potential, at) in model.potentials_at(t, x, problem.memories) {
-            potential.add_hessian(at, &mut product);
-        }
-        if let Some(air) = problem.air {
-            air.add_hessian(self.iterate.x(), 1.0, &mut product);
-        }
+        let (objective, at) = problem.objective_at(&self.x);
+        objective.add_drive(at, h, &self.weighted, &mut self.gradient);
     }
 
     /// Factorises the Hessian at the iterate; where it is indefinite, or `part` asks for no more, a
@@ -397,22 +254,19 @@ impl Lagrangian {
     /// number; [`StepError::Interrupted`].
     pub(super) fn factorize(
         &mut self,
-        problem: &StepProblem<'_>,
+        problem: &mut StepProblem<'_>,
         load: RodLoad,
         part: HessianPart,
         effort: &mut SolverEffort<'_>,
     ) -> Result<Definiteness, StepError> {
-        let t0 = problem.state.t;
+        let t0 = problem.state().t;
         let failed = |source| StepError::Linalg { t: t0, source };
         let mut count = || match effort.count_factorisation() {
             true => Ok(()),
             false => Err(StepError::Interrupted { t: t0 }),
         };
-        if let Some(terms) = self.iterate.terms(problem.contact()) {
-            self.matrix
-                .make_room(problem.model, &terms)
-                .map_err(failed)?;
-        }
+        let (objective, at) = problem.objective_at(&self.x);
+        objective.make_room(at, &mut self.matrix).map_err(failed)?;
         for e in 0..self.c.len() {
             self.axial[e] = self.penalty(e);
         }
@@ -423,7 +277,6 @@ impl Lagrangian {
         if part == HessianPart::Full {
             count()?;
             self.assemble(problem, HessianPart::Full);
-            self.add_potentials(problem);
             if self.matrix.factorize().is_ok() {
                 return Ok(Definiteness::Definite);
             }
@@ -431,13 +284,9 @@ impl Lagrangian {
         self.project_rods(problem.model, load);
         count()?;
         self.assemble(problem, HessianPart::PositiveSemidefinite);
-        let (t, x) = (problem.t(), self.iterate.x());
-        let scale = problem.h * problem.h;
-        self.matrix
-            .add_semidefinite_potentials(problem.model, problem.memories, (t, x), scale);
         if self.matrix.factorize().is_err() {
             count()?;
-            self.assemble(problem, HessianPart::PositiveSemidefinite);
+            self.assemble(problem, HessianPart::Certain);
             self.matrix.factorize().map_err(failed)?;
         }
         Ok(Definiteness::Modified)
@@ -460,28 +309,16 @@ impl Lagrangian {
         }
     }
 
-    /// Sets the matrix: masses, rods, vertex constraints, contact and air.
-    fn assemble(&mut self, problem: &StepProblem<'_>, part: HessianPart) {
-        let model = problem.model;
+    /// Sets the matrix: the terms of the objective, rods and vertex constraints.
+    fn assemble(&mut self, problem: &mut StepProblem<'_>, part: HessianPart) {
+        let (model, h) = (problem.model, problem.h());
+        self.matrix.clear();
+        let (objective, at) = problem.objective_at(&self.x);
+        objective.add_hessian(at, h, part, &mut self.matrix);
         self.matrix
-            .assemble(model, self.iterate.x(), &self.axial, &self.transverse);
+            .add_rods(model, &self.x, &self.axial, &self.transverse);
         self.vertex_rows
             .add_hessian(part, &mut self.matrix.sink(model));
-        if let Some(terms) = self.iterate.terms(problem.contact()) {
-            self.matrix
-                .add_contact(model, &terms, problem.h * problem.h);
-        }
-        if let Some(air) = problem.air {
-            let x = self.iterate.x();
-            air.add_hessian(x, problem.h * problem.h, &mut self.matrix.sink(model));
-        }
-    }
-
-    fn add_potentials(&mut self, problem: &StepProblem<'_>) {
-        let (t, x) = (problem.t(), self.iterate.x());
-        let scale = problem.h * problem.h;
-        let (model, memories) = (problem.model, problem.memories);
-        self.matrix.add_potentials(model, memories, (t, x), scale);
     }
 
     /// Solves for minus the search direction; the slope of the value along the search direction.
@@ -553,14 +390,14 @@ impl Lagrangian {
     /// going to their ends.
     pub(super) fn begin_line_search(&mut self, problem: &mut StepProblem<'_>) -> f64 {
         self.is_curved = false;
-        self.start.copy_from_slice(self.iterate.x());
+        self.start.copy_from_slice(&self.x);
         self.safe_part(problem)
     }
 
     /// Brings the iterate back to the start of the line search, where contact knows the motion that the next
     /// trial is part of.
     pub(super) fn return_to_start(&mut self, problem: &mut StepProblem<'_>) {
-        self.iterate.x_mut().copy_from_slice(&self.start);
+        self.x.copy_from_slice(&self.start);
         if !self.is_curved {
             self.safe_part(problem);
         }
@@ -580,11 +417,8 @@ impl Lagrangian {
     }
 
     pub(super) fn safe_part(&mut self, problem: &mut StepProblem<'_>) -> f64 {
-        let x = self.iterate.x();
-        for v in problem.model.moving_pins() {
-            for i in 3 * v..3 * v + 3 {
-                self.dx[i] = x[i] - self.end[i];
-            }
+        for i in problem.model.moving_pins().flat_map(|v| 3 * v..3 * v + 3) {
+            self.dx[i] = self.x[i] - self.end[i];
         }
         self.cut = Cut::Nothing;
         if !problem.is_bounded() {
@@ -593,8 +427,9 @@ impl Lagrangian {
         for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
             *w = -d;
         }
-        let part;
-        (part, self.cut) = safe_fraction(&mut self.iterate, problem, &self.weighted);
+        let (objective, at) = problem.objective_at(&self.x);
+        let (part, by) = objective.safe_part(at, &self.weighted);
+        self.cut = by.into();
         part
     }
 
@@ -606,50 +441,50 @@ impl Lagrangian {
     /// Puts the iterate at the part `length` of the step `-dx` from the start of the line search.
     pub(super) fn move_along(&mut self, length: f64) {
         let displaced = self.start.iter().zip(&self.dx);
-        for (x, (start, dx)) in self.iterate.x_mut().iter_mut().zip(displaced) {
+        for (x, (start, dx)) in self.x.iter_mut().zip(displaced) {
             *x = start - length * dx;
         }
     }
 
     /// Moves sheet, pins and bodies on together by a part of the rest of their motions.
-    pub(super) fn drive(&mut self, problem: &StepProblem<'_>, part: f64) {
+    pub(super) fn drive(&mut self, problem: &mut StepProblem<'_>, part: f64) {
         self.move_along(part);
         if part == 1.0 {
-            let x = self.iterate.x_mut();
             for v in problem.model.moving_pins() {
-                x[3 * v..3 * v + 3].copy_from_slice(&self.end[3 * v..3 * v + 3]);
+                self.x[3 * v..3 * v + 3].copy_from_slice(&self.end[3 * v..3 * v + 3]);
             }
         }
-        self.iterate.advance_bodies(part);
+        problem.objective.advance(part);
     }
 
     /// Puts the iterate where inertia alone would take the sheet, unless contact or the limit of the strain
     /// is in the way, and pins and bodies to the ends of their motions.
     pub(super) fn predict(&mut self, problem: &mut StepProblem<'_>) {
-        self.start.copy_from_slice(problem.prediction);
+        self.start.copy_from_slice(problem.start.prediction);
         problem.model.place_pins(problem.t(), &mut self.start);
         if problem.is_bounded() {
-            for ((d, x), x0) in self.dx.iter_mut().zip(&self.start).zip(self.iterate.x()) {
+            for ((d, x), x0) in self.dx.iter_mut().zip(&self.start).zip(&self.x) {
                 *d = x - x0;
             }
-            if safe_fraction(&mut self.iterate, problem, &self.dx).0 < 1.0 {
+            let (objective, at) = problem.objective_at(&self.x);
+            if objective.safe_part(at, &self.dx).0 < 1.0 {
                 return;
             }
-            self.iterate.advance_bodies(1.0);
+            objective.advance(1.0);
         }
-        self.iterate.x_mut().copy_from_slice(&self.start);
+        self.x.copy_from_slice(&self.start);
     }
 
     /// Puts pins in motion where they are at the end of the step.
     pub(super) fn place_pins(&mut self, problem: &StepProblem<'_>) {
-        problem.model.place_pins(problem.t(), self.iterate.x_mut());
+        problem.model.place_pins(problem.t(), &mut self.x);
     }
 
-    /// Lags friction anew at the iterate where its normal forces have changed by more than `settled`,
-    /// relative to the largest; whether they have.
-    pub(super) fn renew_friction(&mut self, problem: &StepProblem<'_>, settled: f64) -> bool {
-        let x0 = &problem.state.x;
-        self.iterate.renew_friction(problem.contact(), x0, settled)
+    /// Brings what lags to the iterate where it has changed by more than `settled`, such as the normal forces
+    /// of friction, relative to the largest; whether it has.
+    pub(super) fn renew(&mut self, problem: &mut StepProblem<'_>, settled: f64) -> bool {
+        let (objective, at) = problem.objective_at(&self.x);
+        objective.renew(at, settled)
     }
 
     /// Displaces the iterate off a saddle, in the direction that belongs to `seed`: for sheets that may be
@@ -662,8 +497,9 @@ impl Lagrangian {
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
-        let (part, _) = safe_fraction(&mut self.iterate, problem, &self.dx);
-        for (x, d) in self.iterate.x_mut().iter_mut().zip(&self.dx) {
+        let (objective, at) = problem.objective_at(&self.x);
+        let (part, _) = objective.safe_part(at, &self.dx);
+        for (x, d) in self.x.iter_mut().zip(&self.dx) {
             *x += part * d;
         }
     }
@@ -688,22 +524,22 @@ impl Lagrangian {
             return false;
         }
         let before = self.merit(problem);
-        self.start.copy_from_slice(self.iterate.x());
+        self.start.copy_from_slice(&self.x);
         for size in [self.tuning.perturbation, 0.1 * self.tuning.perturbation] {
             let scale = size * model.mean_length();
             for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
                 *w = scale * d;
             }
-            let contact = problem.contact_mut();
-            let part = self.iterate.safe_fraction(contact, &self.weighted);
+            let (objective, at) = problem.objective_at(&self.x);
+            let (part, _) = objective.safe_part(at, &self.weighted);
             let displaced = self.start.iter().zip(&self.weighted);
-            for (x, (x0, d)) in self.iterate.x_mut().iter_mut().zip(displaced) {
+            for (x, (x0, d)) in self.x.iter_mut().zip(displaced) {
                 *x = x0 + part * d;
             }
             if self.merit(problem).value < before.value - least - before.round_off {
                 return true;
             }
-            self.iterate.x_mut().copy_from_slice(&self.start);
+            self.x.copy_from_slice(&self.start);
         }
         self.merit(problem);
         false

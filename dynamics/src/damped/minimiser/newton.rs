@@ -4,8 +4,8 @@ use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::phase::{Multipliers, Phase, Saddle, Start};
 use super::problem::StepProblem;
 use super::workspace::{LengthGoal, Workspace};
-use crate::constraint::rows::HessianPart;
 use crate::damped::restoration::FirstMatrix;
+use crate::hessian::HessianPart;
 use crate::linear::constrained::MultiplierGoal;
 use crate::step::effort::SolverEffort;
 use crate::step::reason::Reason;
@@ -195,7 +195,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 let start = lagrangian.merit(problem).value;
                 lagrangian.predict(problem);
                 if lagrangian.merit(problem).value >= start {
-                    lagrangian.begin(problem);
+                    // It has begun before.
+                    let _ = lagrangian.begin(problem);
                     lagrangian.place_pins(problem);
                 }
             }
@@ -464,8 +465,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     }
 
     fn strain(&self) -> f64 {
-        let x = self.work.lagrangian.iterate.x();
-        self.problem.model.constrained_strain(x)
+        self.problem
+            .model
+            .constrained_strain(&self.work.lagrangian.x)
     }
 
     /// Lags friction anew at the iterate, unless it has settled or been renewed too often; whether it was
@@ -482,7 +484,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             return false;
         }
         let lagrangian = &mut self.work.lagrangian;
-        let is_renewed = lagrangian.renew_friction(self.problem, self.phase.friction_tolerance);
+        let is_renewed = lagrangian.renew(self.problem, self.phase.friction_tolerance);
         if is_renewed {
             lagrangian.merit(self.problem);
         }
@@ -604,9 +606,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         if !self.effort.is_traced() {
             return;
         }
-        let contact = self.problem.contact();
-        let terms = self.work.lagrangian.iterate.terms(contact);
-        let contacts = terms.map_or(0, |terms| terms.active.list().len());
+        let contacts = self.problem.objective.contact_count();
         let event = TraceEvent::Iteration {
             iteration: self.iterations,
             round: self.round,

@@ -131,7 +131,7 @@ impl Phase {
         let programming = Self::programming(problem, options, tuning);
         let prediction = Self::rounds(problem, faces, options, tuning);
         let exact = prediction.exact(options);
-        let repeats = !has_slivers && !has_contact && problem.prediction == problem.state.x;
+        let repeats = !has_slivers && !has_contact && problem.start.prediction == problem.state().x;
         let last = (!repeats).then_some(exact);
         if !is_rods || has_contact && model.has_drives() {
             [None, Some(prediction), last]

@@ -35,10 +35,10 @@ impl Lagrangian {
             *w = -d;
         }
         self.difference.fill(0.0);
-        let scale = problem.h * problem.h;
+        let scale = problem.h().powi(2);
         let (step, force) = (&self.weighted, &mut self.difference);
-        let contact = problem.contact();
-        if !self.iterate.add_gap_correction(contact, step, scale, force) {
+        let (objective, at) = problem.objective_at(&self.x);
+        if !objective.add_correction(at, step, scale, force) {
             return limit;
         }
         let model = problem.model;
@@ -77,19 +77,14 @@ impl Lagrangian {
     ///
     /// for a solve and no factorisation, as in the second-order correction of constraints (Nocedal and
     /// Wright, "Numerical Optimization", 2006, Sec. 15.6).
-    pub(super) fn correct_strains(&mut self, problem: &StepProblem<'_>) -> bool {
-        let model = problem.model;
-        let Some(elastic) = model.elastic_sheet() else {
-            return false;
-        };
-        let scale = problem.h * problem.h;
-        let (x, force) = (self.iterate.x(), &mut self.difference);
+    pub(super) fn correct_strains(&mut self, problem: &mut StepProblem<'_>) -> bool {
+        let (model, scale) = (problem.model, problem.h().powi(2));
+        let force = &mut self.difference;
         force.fill(0.0);
-        let potentials = model.potentials_at(problem.t(), x, problem.memories);
-        let Some((_, at)) = potentials.last() else {
+        let (objective, at) = problem.objective_at(&self.x);
+        if !objective.add_second_order(at, &self.dx, scale, force) {
             return false;
-        };
-        elastic.add_second_order(at, &self.dx, scale, force);
+        }
         model.clear_pinned(force);
         self.matrix.solve(model, force, &mut self.curved);
         self.is_curved = true;
@@ -110,19 +105,18 @@ impl Lagrangian {
         {
             *w = -length * (d + length * c);
         }
-        let free = self
-            .iterate
-            .safe_fraction(problem.contact_mut(), &self.weighted);
+        let (objective, at) = problem.objective_at(&self.start);
+        let free = objective.safe_chord(at, &self.weighted);
         let displaced = self.start.iter().zip(&self.weighted);
-        for (x, (start, w)) in self.iterate.x_mut().iter_mut().zip(displaced) {
+        for (x, (start, w)) in self.x.iter_mut().zip(displaced) {
             *x = start + free * w;
         }
         self.cut = match free {
             1.0 => Cut::Nothing,
             _ => Cut::Contact,
         };
-        let elastic = problem.model.elastic_sheet()?;
-        let is_within = elastic.stays_within(&self.start, self.iterate.x());
+        let (objective, at) = problem.objective_at(&self.start);
+        let is_within = objective.stays_within(at, &self.x);
         is_within.then_some(free * length)
     }
 }

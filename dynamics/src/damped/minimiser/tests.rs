@@ -3,9 +3,9 @@
 use super::Minimiser;
 use super::lagrangian::{Definiteness, Lagrangian, RodLoad};
 use super::problem::StepProblem;
-use crate::constraint::rows::HessianPart;
 use crate::damped::iterate::Iterate;
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
+use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;
 use crate::step::effort::SolverEffort;
 use crate::step::integrator::Phases;

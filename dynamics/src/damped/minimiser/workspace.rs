@@ -2,7 +2,7 @@
 
 use super::lagrangian::Lagrangian;
 use super::problem::StepProblem;
-use crate::damped::restoration::{FirstMatrix, Restoration, RestorationContact, RestorationGoal};
+use crate::damped::restoration::{Barriers, FirstMatrix, Restoration, RestorationGoal};
 use crate::model::round_off::strain_floor;
 use crate::step::effort::SolverEffort;
 use crate::step::reaction::{Balance, ForceTime};
@@ -60,7 +60,7 @@ impl Workspace {
         to: LengthGoal,
         effort: &mut SolverEffort<'_>,
     ) -> f64 {
-        let per = 1.0 / (problem.h * problem.h);
+        let per = 1.0 / problem.h().powi(2);
         let is_last = to.strain <= self.strain_tolerance(problem);
         if is_last {
             self.set_balance(problem);
@@ -75,14 +75,15 @@ impl Workspace {
             loads: &lagrangian.vertex_rows.multipliers,
             matrix: to.matrix,
         };
-        let contact = problem.contact_mut().map(|contact| RestorationContact {
-            contact,
+        let barriers = Barriers {
+            objective: problem.objective,
+            memories: problem.memories,
             scale: 1.0 / per,
-        });
-        let (matrix, iterate) = (&mut lagrangian.matrix, &mut lagrangian.iterate);
+        };
+        let (matrix, x) = (&mut lagrangian.matrix, &mut lagrangian.x);
         let strain = self
             .restoration
-            .positions(model, matrix, contact, iterate, goal, effort);
+            .positions(model, matrix, Some(barriers), x, goal, effort);
         if is_last {
             self.balance
                 .residual_momentum
@@ -93,29 +94,21 @@ impl Workspace {
 
     /// Edge strain that accepted positions may have.
     pub(super) fn strain_tolerance(&self, problem: &StepProblem<'_>) -> f64 {
-        let floor = strain_floor(problem.model, problem.state);
+        let floor = strain_floor(problem.model, problem.state());
         self.options.strain_tolerance.max(floor)
     }
 
     /// Forces of the supports at the iterate, with what it leaves unbalanced.
-    fn set_balance(&mut self, problem: &StepProblem<'_>) {
-        let (model, state) = (problem.model, problem.state);
-        let per = 1.0 / (problem.h * problem.h);
+    fn set_balance(&mut self, problem: &mut StepProblem<'_>) {
+        let (model, h) = (problem.model, problem.h());
+        let per = 1.0 / (h * h);
         let lagrangian = &mut self.lagrangian;
-        let (x, prediction) = (lagrangian.iterate.x(), problem.prediction);
-        if !self.balance.begin(model, |i| per * (x[i] - prediction[i])) {
+        let (objective, at) = problem.objective_at(&lagrangian.x);
+        let add = |out: &mut [f64]| objective.add_unbalanced(at, h, out);
+        if !self.balance.begin_with(add) {
             return;
         }
-        self.balance
-            .add_potentials(model, problem.memories, (problem.t(), x), 1.0);
-        self.balance.add_explicit(model, state);
-        if let Some(air) = problem.air {
-            self.balance.add_air(air, x);
-        }
-        if let Some(terms) = lagrangian.iterate.terms(problem.contact()) {
-            self.balance.add_contact(&terms);
-        }
-        let (rows, x) = (&lagrangian.vertex_rows, lagrangian.iterate.x());
+        let (rows, x) = (&lagrangian.vertex_rows, &lagrangian.x);
         self.balance
             .add_rods(model, x, &lagrangian.multipliers, per);
         self.balance.add_constraints(rows, &rows.multipliers, per);

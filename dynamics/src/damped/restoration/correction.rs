@@ -1,8 +1,7 @@
 //! Corrections of small length errors with a matrix that is factorised already.
 
-use super::{Restoration, RestorationContact};
+use super::{Barriers, Restoration};
 use crate::SheetModel;
-use crate::damped::iterate::Iterate;
 use crate::linear::constrained::{ConstrainedSystem, SupportRows};
 use crate::linear::primal::PrimalMatrix;
 
@@ -18,16 +17,16 @@ impl Restoration {
     /// displacement from where the matrix was assembled. After a step of Newton's method on the incremental
     /// potential `H` is its Hessian, and a correction is the displacement that raises the potential least.
     /// Ends where a correction gains too little, and stays where the best one has led. The constraints have
-    /// to be evaluated at the iterate, and there must be none at vertices.
+    /// to be evaluated at `x`, and there must be none at vertices.
     pub(super) fn correct(
         &mut self,
         model: &SheetModel,
         matrix: &mut PrimalMatrix,
-        mut contact: Option<&mut RestorationContact<'_, '_>>,
-        iterate: &mut Iterate,
-        target: f64,
+        mut barriers: Option<&mut Barriers<'_>>,
+        x: &mut [f64],
+        (t, target): (f64, f64),
     ) {
-        let mut strain = self.worst(model, iterate.x());
+        let mut strain = self.worst(model, x);
         loop {
             if strain <= target || strain.is_nan() {
                 return;
@@ -45,25 +44,24 @@ impl Restoration {
             };
             self.dx.fill(0.0);
             self.solver.pass(&mut system, &mut self.dx);
-            self.start.copy_from_slice(iterate.x());
-            self.keep_contact_forces(contact.as_deref(), iterate);
-            let geometry = contact.as_mut().map(|c| &mut *c.contact);
-            if iterate.safe_fraction(geometry, &self.dx) < 1.0 {
+            self.start.copy_from_slice(x);
+            self.keep_barrier_forces(barriers.as_deref_mut(), t, x);
+            if self.safe_part(barriers.as_deref_mut(), t, x) < 1.0 {
                 return;
             }
-            for (x, d) in iterate.x_mut().iter_mut().zip(&self.dx) {
+            for (x, d) in x.iter_mut().zip(&self.dx) {
                 *x += d;
             }
-            self.evaluate(model, 0.0, iterate.x());
+            self.evaluate(model, t, x);
             let before = strain;
-            strain = self.worst(model, iterate.x());
+            strain = self.worst(model, x);
             if strain >= before || strain.is_nan() {
-                iterate.x_mut().copy_from_slice(&self.start);
-                self.evaluate(model, 0.0, iterate.x());
+                x.copy_from_slice(&self.start);
+                self.evaluate(model, t, x);
                 return;
             }
             let rods_at = matrix.linearisation().map(|l| l.x);
-            self.keep_momentum(model, contact.as_deref(), iterate, rods_at);
+            self.keep_momentum(model, barriers.as_deref_mut(), (t, x), rods_at);
             if strain > self.tuning.contraction * before {
                 return;
             }

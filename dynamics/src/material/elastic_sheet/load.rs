@@ -1,7 +1,7 @@
 //! How stiff the barrier at the limit of the strain has to be.
 
 use super::ElasticSheet;
-use crate::model::potential::Reached;
+use crate::potential::Reached;
 use crate::vectors::{diameter, largest_norm};
 
 /// Stiffness of the barrier in parts of the energy of the motion to come, see [`strain_barrier`]. From 0.01

@@ -2,7 +2,7 @@
 
 use super::stencil::{Stencil, Stencils};
 use crate::material::plasticity::{Flow, Yield};
-use crate::model::potential::At;
+use crate::potential::At;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};

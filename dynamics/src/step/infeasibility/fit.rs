@@ -2,11 +2,12 @@
 
 use super::driver::{Drive, Driver};
 use super::gaps::Gaps;
-use crate::constraint::rows::{HessianPart, VertexRows};
+use crate::constraint::rows::VertexRows;
+use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;
 use crate::material::elastic_sheet::ElasticSheet;
-use crate::model::potential::At;
 use crate::model::support::Support;
+use crate::potential::At;
 use crate::vectors::{add, point};
 use crate::{Potential, SheetModel, State};
 use isosheet_mesh::VertexId;

@@ -1,7 +1,7 @@
 //! Gaps between the sheet and bodies, linearised at a state.
 
 use super::driver::{Drive, Driver};
-use crate::contact::{ContactState, CouplingSink, RunContact, StepSpan, add_at, add_weighted};
+use crate::contact::{ContactState, ContactTerm, CouplingSink, StepSpan, add_at, add_weighted};
 use crate::{State, vectors::point};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
@@ -41,7 +41,7 @@ pub(super) struct Gaps {
 impl Gaps {
     /// Of the contacts at a state, at time `t` of the bodies, with a stiffness in kilograms.
     pub(super) fn of(
-        run: &mut RunContact,
+        term: &mut ContactTerm,
         contacts: &ContactState,
         state: &State,
         t: f64,
@@ -51,7 +51,7 @@ impl Gaps {
             t0: state.t,
             h: t - state.t,
         };
-        let motions = run.motions(span);
+        let motions = term.motions(span);
         let mut list = Vec::new();
         for contact in contacts.active.list() {
             let Some(body) = contact.key.body else {

@@ -1,7 +1,9 @@
 //! Potential energies (Liu, Tang and Joneja 2007, Eq. 1).
 
+use crate::hessian::HessianSink;
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
-use nalgebra::{Matrix2, Matrix3};
+use nalgebra::Matrix2;
+use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 
 /// Where a potential is evaluated.
@@ -128,9 +130,69 @@ pub trait Potential: Debug + Send + Sync {
         Vec::new()
     }
 
+    /// Whether displacements are bounded: whether the energy is infinite beyond a limit.
+    fn has_limit(&self) -> bool {
+        false
+    }
+
+    /// Largest part of the displacement `dx` (`3V`, metres), at most one, that is proven to stay within the
+    /// limit.
+    fn safe_part(&self, _at: At<'_>, _dx: &[f64]) -> f64 {
+        1.0
+    }
+
+    /// Whether the energy at positions `end` is within the limit, of a displacement from where it is, whatever
+    /// the way.
+    fn stays_within(&self, _at: At<'_>, _end: &[f64]) -> bool {
+        true
+    }
+
+    /// Adds `scale` times what is of second order in the displacement `dx` (`3V`, metres) and can be taken
+    /// back by a displacement of second order, such as the strain of faces that turn, to the gradient at its
+    /// start; whether there is any. The steps of potentials that have it are curved.
+    fn add_second_order(&self, _at: At<'_>, _dx: &[f64], _scale: f64, _out: &mut [f64]) -> bool {
+        false
+    }
+
+    /// Size of the round-off in the energy where the coordinates are of the given size (metres), joules, if
+    /// it is more than that of the energy itself.
+    fn round_off(&self, _size: f64) -> f64 {
+        0.0
+    }
+
     /// How the energy depends on the positions.
     fn shape(&self) -> PotentialShape {
         PotentialShape::General
+    }
+}
+
+/// What each of the potentials of a model remembers ([`Potential::memory`]), in the order of
+/// [`SheetModel::potentials`](crate::SheetModel::potentials).
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Memories(Vec<Vec<f64>>);
+
+impl Memories {
+    pub(crate) fn of(lists: impl Iterator<Item = Vec<f64>>) -> Self {
+        Self(lists.collect())
+    }
+
+    pub(crate) fn lists_mut(&mut self) -> &mut [Vec<f64>] {
+        &mut self.0
+    }
+
+    /// One list of numbers for each potential, most of them empty.
+    pub fn lists(&self) -> &[Vec<f64>] {
+        &self.0
+    }
+
+    /// The memory of the potential of a number.
+    pub(crate) fn list_mut(&mut self, number: usize) -> &mut [f64] {
+        &mut self.0[number]
+    }
+
+    /// Takes over other memories of the same model, in place.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.0.clone_from(&other.0);
     }
 }
 
@@ -152,22 +214,6 @@ pub enum PotentialShape {
     Linear,
     /// Anything else: the energy-momentum integrator uses a discrete gradient.
     General,
-}
-
-/// Receives the 3 x 3 blocks of a potential's Hessian.
-///
-/// Blocks exist where the rods have them, at every vertex and along every edge, and for the pairs that
-/// [`Potential::couplings`] names. Other couplings have to be left out, which costs iterations, not accuracy.
-pub trait HessianSink {
-    /// Adds `d2V / dx_v dx_v`, symmetric.
-    fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>);
-
-    /// Adds `d2V / dx_a dx_b` for the edge `a -> b`; the transposed block is implied.
-    fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>);
-
-    /// Adds `d2V / dx_a dx_b` for a pair named by [`Potential::couplings`], rows at `a`; the transposed block
-    /// is implied.
-    fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>);
 }
 
 /// Uniform gravity, `V = -sum_i w_i g . x_i` with the weights `w_i` (kilograms) of the vertices.

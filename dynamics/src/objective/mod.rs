@@ -1,0 +1,311 @@
+//! The objective of a damped step, a sum of terms.
+
+mod acting;
+mod inertia;
+
+use crate::SheetModel;
+use crate::contact::ContactTerm;
+use crate::hessian::HessianProduct;
+use crate::linear::primal::PrimalMatrix;
+use crate::model::PINNED;
+use crate::step::motion::Motion;
+use crate::term::{Barrier, Exchange, Iterate, Refusal, StepStart, Term, Value};
+use acting::Acting;
+use inertia::Inertia;
+use isosheet_coords::linalg::LinalgError;
+use std::sync::Arc;
+
+pub(crate) use crate::hessian::HessianPart;
+
+/// What the damped methods minimise in a step of the effective length `h`,
+///
+/// ```text
+/// Phi(x) = |x - x^|_M^2 / 2 + h^2 sum_k T_k(x),
+/// ```
+///
+/// the inertia and the other terms. A term is registered in [`Objective::new`], or belongs to a force of the
+/// model.
+pub(crate) struct Objective {
+    inertia: Inertia,
+    /// Potentials and constant forces.
+    acting: Acting,
+    /// Contact, in scenes that name it.
+    pub(crate) contact: Option<ContactTerm>,
+    /// Those of implicit forces.
+    others: Vec<Box<dyn Term>>,
+    model: Arc<SheetModel>,
+    couplings: Vec<[u32; 2]>,
+}
+
+/// The incremental potential `Phi` at an iterate, joules times squared seconds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Potential {
+    pub(crate) value: f64,
+    /// Its inertia term.
+    pub(crate) inertia: f64,
+    /// Size of what was summed.
+    pub(crate) size: f64,
+    /// What the round-off of positions makes besides.
+    pub(crate) round_off: f64,
+}
+
+impl Objective {
+    /// Of a model, without contact.
+    pub(crate) fn new(model: &Arc<SheetModel>) -> Self {
+        let free = model.free_index().iter().map(|i| *i != PINNED);
+        let free: Arc<[bool]> = free.collect();
+        let others = model.implicit_forces();
+        Self {
+            inertia: Inertia::new(model),
+            acting: Acting::new(model),
+            contact: None,
+            others: others.map(|f| f.term(Arc::clone(&free))).collect(),
+            model: Arc::clone(model),
+            couplings: Vec::new(),
+        }
+    }
+
+    /// All terms, each with its factor.
+    fn weighted(&mut self, h: f64) -> impl Iterator<Item = (&mut dyn Term, f64)> {
+        let contact = self.contact.as_mut().map(|term| term as &mut dyn Term);
+        let others = self.others.iter_mut().map(|term| &mut **term as _);
+        let acting = std::iter::once(&mut self.acting as &mut dyn Term);
+        let terms = acting.chain(contact).chain(others);
+        let inertia = std::iter::once((&mut self.inertia as &mut dyn Term, 1.0));
+        inertia.chain(terms.map(move |term| (term, h * h)))
+    }
+
+    /// All terms but the inertia.
+    fn terms(&mut self) -> impl Iterator<Item = &mut dyn Term> {
+        self.weighted(1.0).skip(1).map(|(term, _)| term)
+    }
+
+    /// The terms that cut displacements.
+    fn barriers(&mut self) -> impl Iterator<Item = &mut dyn Term> {
+        self.terms().filter(|term| term.barrier().is_some())
+    }
+
+    /// Whether there is a barrier of this kind.
+    pub(crate) fn has(&self, barrier: Barrier) -> bool {
+        match barrier {
+            Barrier::Contact => self.contact.is_some(),
+            Barrier::StrainLimit => self.acting.barrier().is_some(),
+        }
+    }
+
+    /// Begins a step, or begins it anew.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub(crate) fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
+        self.inertia.begin(step)?;
+        self.terms().try_for_each(|term| term.begin(step))
+    }
+
+    /// The incremental potential in a step of the effective length `h`, seconds.
+    pub(crate) fn value(&mut self, at: Iterate<'_>, h: f64) -> Potential {
+        let inertia = self.inertia.value(at).energy;
+        let mut sum = Value::default();
+        for term in self.terms() {
+            let Value {
+                energy,
+                size,
+                round_off,
+            } = term.value(at);
+            sum.energy += energy;
+            sum.size += size;
+            sum.round_off += round_off;
+        }
+        Potential {
+            value: inertia + h * h * sum.energy,
+            inertia,
+            size: inertia + h * h * sum.size,
+            round_off: h * h * sum.round_off,
+        }
+    }
+
+    /// Sets the gradient of the incremental potential.
+    pub(crate) fn set_gradient(&mut self, at: Iterate<'_>, h: f64, out: &mut [f64]) {
+        out.fill(0.0);
+        for (term, scale) in self.weighted(h) {
+            term.add_gradient(at, scale, out);
+        }
+    }
+
+    /// Adds the forces that the terms leave to be balanced, `dPhi/dx / h^2`, newtons.
+    pub(crate) fn add_unbalanced(&mut self, at: Iterate<'_>, h: f64, out: &mut [f64]) {
+        self.inertia.add_gradient(at, 1.0 / (h * h), out);
+        for term in self.terms() {
+            term.add_gradient(at, 1.0, out);
+        }
+    }
+
+    /// Adds the change of the gradient by the rest of the prescribed motions, `rest` being that of the pins
+    /// (`3V`, metres), to first order.
+    pub(crate) fn add_drive(&mut self, at: Iterate<'_>, h: f64, rest: &[f64], out: &mut [f64]) {
+        let model = Arc::clone(&self.model);
+        for (term, scale) in self.weighted(h) {
+            let mut product = HessianProduct {
+                edges: model.rods().edges(),
+                scale,
+                vector: rest,
+                product: out,
+            };
+            term.add_drive(at, &mut product);
+        }
+    }
+
+    /// Makes room for what the terms couple.
+    ///
+    /// # Errors
+    /// [`LinalgError::Symbolic`] if memory runs out.
+    pub(crate) fn make_room(
+        &mut self,
+        at: Iterate<'_>,
+        matrix: &mut PrimalMatrix,
+    ) -> Result<(), LinalgError> {
+        let mut pairs = std::mem::take(&mut self.couplings);
+        pairs.clear();
+        for term in self.terms() {
+            term.append_couplings(at, &mut pairs);
+        }
+        let done = matrix.make_room(&self.model, &mut pairs);
+        self.couplings = pairs;
+        done
+    }
+
+    /// Adds the Hessian of the incremental potential; call [`Objective::make_room`] before.
+    pub(crate) fn add_hessian(
+        &mut self,
+        at: Iterate<'_>,
+        h: f64,
+        part: HessianPart,
+        matrix: &mut PrimalMatrix,
+    ) {
+        let model = Arc::clone(&self.model);
+        for (term, scale) in self.weighted(h) {
+            term.add_hessian(at, part, &mut matrix.scaled_sink(&model, scale));
+        }
+    }
+
+    /// Adds `scale` times the gradient of the barriers.
+    pub(crate) fn add_barrier_gradient(&mut self, at: Iterate<'_>, scale: f64, out: &mut [f64]) {
+        for term in self.barriers() {
+            term.add_gradient(at, scale, out);
+        }
+    }
+
+    /// Adds `scale` times the Hessian of the barriers, a semidefinite part of it.
+    pub(crate) fn add_barrier_hessian(
+        &mut self,
+        at: Iterate<'_>,
+        scale: f64,
+        matrix: &mut PrimalMatrix,
+    ) {
+        let model = Arc::clone(&self.model);
+        let part = HessianPart::PositiveSemidefinite;
+        for term in self.barriers() {
+            term.add_hessian(at, part, &mut matrix.scaled_sink(&model, scale));
+        }
+    }
+
+    /// Largest part of a displacement that all terms allow, and what cut it; see [`Term::safe_part`].
+    pub(crate) fn safe_part(&mut self, at: Iterate<'_>, dx: &[f64]) -> (f64, Option<Barrier>) {
+        let (mut least, mut by) = (1.0, None);
+        for term in self.barriers() {
+            let part = term.safe_part(at, dx);
+            if part < 1.0 && part <= least {
+                (least, by) = (part, term.barrier());
+            }
+        }
+        (least, by)
+    }
+
+    /// Largest part of the chord of a curved way that is allowed but for limits of the strain, which are
+    /// checked at its end, see [`Objective::stays_within`].
+    pub(crate) fn safe_chord(&mut self, at: Iterate<'_>, dx: &[f64]) -> f64 {
+        self.barriers()
+            .filter(|term| term.barrier() != Some(Barrier::StrainLimit))
+            .map(|term| term.safe_part(at, dx))
+            .fold(1.0, f64::min)
+    }
+
+    /// Whether positions `end` are within all limits.
+    pub(crate) fn stays_within(&mut self, at: Iterate<'_>, end: &[f64]) -> bool {
+        self.terms().all(|term| term.stays_within(at, end))
+    }
+
+    /// Adds the forces of all corrections of second order; whether there are any.
+    pub(crate) fn add_correction(
+        &mut self,
+        at: Iterate<'_>,
+        dx: &[f64],
+        scale: f64,
+        out: &mut [f64],
+    ) -> bool {
+        self.barriers().fold(false, |any, term| {
+            term.add_correction(at, dx, scale, out) || any
+        })
+    }
+
+    /// Adds what displacements of second order take back; whether there is any.
+    pub(crate) fn add_second_order(
+        &mut self,
+        at: Iterate<'_>,
+        dx: &[f64],
+        scale: f64,
+        out: &mut [f64],
+    ) -> bool {
+        self.terms().fold(false, |any, term| {
+            term.add_second_order(at, dx, scale, out) || any
+        })
+    }
+
+    /// How far prescribed motions of terms have gone on, from 0 to 1.
+    pub(crate) fn progress(&mut self) -> f64 {
+        self.terms().map(|term| term.progress()).fold(1.0, f64::min)
+    }
+
+    /// Goes on by a part of the rest of these motions.
+    pub(crate) fn advance(&mut self, part: f64) {
+        self.terms().for_each(|term| term.advance(part));
+    }
+
+    /// Brings what lags to the iterate; whether it had changed by more than `settled`.
+    pub(crate) fn renew(&mut self, at: Iterate<'_>, settled: f64) -> bool {
+        self.terms()
+            .fold(false, |any, term| term.renew(at, settled) || any)
+    }
+
+    /// Number of contacts that are active.
+    pub(crate) fn contact_count(&mut self) -> usize {
+        self.terms().map(|term| term.contact_count()).sum()
+    }
+
+    /// Sum of the magnitudes of the components of the conservative forces of potentials at the last gradient,
+    /// newtons.
+    pub(crate) fn force_sum(&self) -> f64 {
+        self.acting.force_sum()
+    }
+
+    /// Leaves what the terms show of the end of a step.
+    pub(crate) fn leave(&self, motion: &mut Motion) {
+        motion.set_contacts(self.contact.as_ref().and_then(ContactTerm::state));
+    }
+
+    /// What all terms did in a step that ends at an iterate.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub(crate) fn finish(
+        &mut self,
+        step: &StepStart<'_>,
+        at: Iterate<'_>,
+    ) -> Result<Exchange, Refusal> {
+        let mut sum = Exchange::default();
+        for term in self.terms() {
+            sum.add(term.finish(step, at)?);
+        }
+        Ok(sum)
+    }
+}
