@@ -117,11 +117,11 @@ fn a_flat_sheet_has_no_chart() {
 struct Broken(Arc<AtomicBool>);
 
 impl Potential for Broken {
-    fn energy(&self, _t: f64, _x: &[f64]) -> f64 {
+    fn energy(&self, _at: At<'_>) -> f64 {
         0.0
     }
 
-    fn add_gradient(&self, _t: f64, _x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, _at: At<'_>, gradient: &mut [f64]) {
         if self.0.load(Ordering::Relaxed) {
             gradient.fill(f64::NAN);
         }

@@ -32,13 +32,15 @@ impl Shell {
 }
 
 impl Potential for Shell {
-    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { x, .. } = at;
         Self::offsets(x)
             .map(|d| 0.25 * self.stiffness * (d.norm_squared() - RADIUS * RADIUS).powi(2))
             .sum()
     }
 
-    fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { x, .. } = at;
         for (d, g) in Self::offsets(x).zip(gradient.chunks_mut(3)) {
             let factor = self.stiffness * (d.norm_squared() - RADIUS * RADIUS);
             for k in 0..3 {
@@ -47,7 +49,8 @@ impl Potential for Shell {
         }
     }
 
-    fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        let At { x, .. } = at;
         if self.with_hessian == Hessian::Missing {
             return;
         }
@@ -226,11 +229,11 @@ fn consistent_mass_swings_like_a_uniform_plate() {
 struct Broken;
 
 impl Potential for Broken {
-    fn energy(&self, _t: f64, _x: &[f64]) -> f64 {
+    fn energy(&self, _at: At<'_>) -> f64 {
         f64::NAN
     }
 
-    fn add_gradient(&self, _t: f64, _x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, _at: At<'_>, gradient: &mut [f64]) {
         gradient[4] = f64::NAN;
     }
 }

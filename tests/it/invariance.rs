@@ -20,7 +20,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 struct Loads(Vec<Vector3<f64>>);
 
 impl Potential for Loads {
-    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { x, .. } = at;
         let points = x.as_chunks::<3>().0.iter();
         points
             .zip(&self.0)
@@ -28,7 +29,7 @@ impl Potential for Loads {
             .sum()
     }
 
-    fn add_gradient(&self, _t: f64, _x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, _at: At<'_>, gradient: &mut [f64]) {
         for (g, f) in gradient
             .iter_mut()
             .zip(self.0.iter().flat_map(|f| f.iter()))
@@ -388,11 +389,13 @@ impl Broken {
 }
 
 impl Potential for Broken {
-    fn energy(&self, t: f64, _x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { t, .. } = at;
         self.value(t, 0)
     }
 
-    fn add_gradient(&self, t: f64, _x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { t, .. } = at;
         gradient[4] += self.value(t, 1);
     }
 }

@@ -57,19 +57,22 @@ impl Form {
 }
 
 impl Potential for Form {
-    fn energy(&self, t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { t, x, .. } = at;
         let squares: f64 = self.off(t, x).map(|d| d.norm_squared()).sum();
         0.5 * Self::stiffness(t) * squares
     }
 
-    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { t, x, .. } = at;
         let rows = gradient.as_chunks_mut::<3>().0.iter_mut();
         for (g, off) in rows.zip(self.off(t, x)) {
             (0..3).for_each(|k| g[k] += Self::stiffness(t) * off[k]);
         }
     }
 
-    fn add_hessian(&self, t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        let At { t, x, .. } = at;
         let block = Matrix3::from_diagonal_element(Self::stiffness(t));
         (0..x.len() / 3).for_each(|v| hessian.add_vertex(VertexId::from_index(v), &block));
     }
@@ -206,11 +209,12 @@ fn what_stays_does_not_depend_on_the_step() {
 struct Until(f64);
 
 impl Potential for Until {
-    fn energy(&self, t: f64, _x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { t, .. } = at;
         if t > self.0 { f64::NAN } else { 0.0 }
     }
 
-    fn add_gradient(&self, _t: f64, _x: &[f64], _gradient: &mut [f64]) {}
+    fn add_gradient(&self, _at: At<'_>, _gradient: &mut [f64]) {}
 }
 
 #[test]

@@ -223,11 +223,11 @@ fn a_flat_sheet_in_flight_keeps_its_momentum_until_rods_answer_round_off() {
 struct BadEnergy;
 
 impl Potential for BadEnergy {
-    fn energy(&self, _t: f64, _x: &[f64]) -> f64 {
+    fn energy(&self, _at: At<'_>) -> f64 {
         f64::NAN
     }
 
-    fn add_gradient(&self, _t: f64, _x: &[f64], _gradient: &mut [f64]) {}
+    fn add_gradient(&self, _at: At<'_>, _gradient: &mut [f64]) {}
 }
 
 /// A force that breaks after a while.

@@ -189,7 +189,7 @@ fn primal_matrix_is_the_hessian_of_the_augmented_lagrangian() {
             .collect();
         let mut matrix = PrimalMatrix::new(&model).expect("small");
         matrix.assemble(&model, &stretched, &vec![penalty; rods.len()], &transverse);
-        matrix.add_potentials(&model, 0.0, &stretched, 0.7);
+        add_potentials(&mut matrix, &model, 0.0, &stretched, 0.7);
         let got = matrix.product(&model, &direction);
         let error = got
             .iter()

@@ -81,7 +81,7 @@ fn derivatives_match_differences_across_the_yield() {
     springs.set_memory(&memory);
     let gradient = |x: &[f64]| {
         let mut g = vec![0.0; x.len()];
-        springs.add_gradient(0.0, x, &mut g);
+        springs.add_gradient(At::new(0.0, x), &mut g);
         g
     };
     let g = gradient(&x);
@@ -90,7 +90,7 @@ fn derivatives_match_differences_across_the_yield() {
         let at = |s: f64| {
             let mut moved = x.clone();
             moved[i] += s * 1e-5;
-            springs.energy(0.0, &moved)
+            springs.energy(At::new(0.0, &moved))
         };
         let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 12e-5;
         assert!(
@@ -133,7 +133,7 @@ fn the_hessian_matches_differences_where_springs_yield() {
         let mut matrix = PrimalMatrix::new(model).expect("pattern");
         let none = vec![0.0; model.rods().len()];
         matrix.assemble(model, x, &none, &none);
-        matrix.add_potentials(model, 0.0, x, 1.0);
+        add_potentials(&mut matrix, model, 0.0, x, 1.0);
         let product = matrix.product(model, &d);
         let h = 1e-6;
         let force = |s: f64| {
@@ -176,7 +176,7 @@ fn dissipation_is_work_less_energy() {
         work += 0.5 * (moment + before.1) * (angle - before.0);
         before = (angle, moment);
     }
-    let stored = springs.energy(0.0, &folded(0.0));
+    let stored = springs.energy(At::new(0.0, &folded(0.0)));
     assert!(dissipated > 3.0 * YIELD.moment, "{dissipated} J");
     assert!(
         (work - stored - dissipated).abs() < 1e-5 * work,

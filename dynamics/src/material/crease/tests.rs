@@ -37,7 +37,7 @@ fn springs(t: &Topology, rest: impl Fn(EdgeId) -> f64) -> CreaseSprings {
 
 fn gradient(p: &CreaseSprings, t: f64, x: &[f64]) -> Vec<f64> {
     let mut g = vec![0.0; x.len()];
-    p.add_gradient(t, x, &mut g);
+    p.add_gradient(At::new(t, x), &mut g);
     g
 }
 
@@ -73,7 +73,7 @@ fn the_gradient_matches_differences_of_the_energy() {
         let at = |s: f64| {
             let mut moved = x.clone();
             moved[i] += s * h;
-            p.energy(time, &moved)
+            p.energy(At::new(time, &moved))
         };
         // Fourth order.
         let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
@@ -105,7 +105,7 @@ fn the_hessian_matches_differences_of_the_gradient_where_the_springs_rest() {
     let mut matrix = PrimalMatrix::new(&model).expect("pattern");
     let none = vec![0.0; model.rods().len()];
     matrix.assemble(&model, &x, &none, &none);
-    matrix.add_potentials(&model, 1.0, &x, 1.0);
+    add_potentials(&mut matrix, &model, 1.0, &x, 1.0);
     let product = matrix.product(&model, &d);
     let h = 1e-5;
     let force = |s: f64| {

@@ -52,9 +52,9 @@ fn homogeneous_deformations_have_the_energy_of_the_material() {
         let p = (4.0 * e.norm_squared() / (limit * limit) - 1.0) / 3.0;
         assert_eq!(p > 0.0, factor > 0.0, "{p}");
         let exact = elastic - factor * kappa * p * p * (1.0 - p).ln();
-        let energy = sheet_of_limit.energy(0.0, &x);
+        let energy = sheet_of_limit.energy(At::new(0.0, &x));
         assert!((energy / exact - 1.0).abs() < 1e-12, "{energy} {exact}");
-        assert!(sheet_of_limit.energy(0.0, sheet.positions()) < 1e-25);
+        assert!(sheet_of_limit.energy(At::new(0.0, sheet.positions())) < 1e-25);
         for strain in sheet_of_limit.strains(&x) {
             assert!((strain - e.norm()).abs() < 1e-13);
         }
@@ -78,7 +78,7 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
     );
     let gradient = |x: &[f64]| {
         let mut g = vec![0.0; x.len()];
-        elastic().add_gradient(0.0, x, &mut g);
+        elastic().add_gradient(At::new(0.0, x), &mut g);
         g
     };
     let g = gradient(&x);
@@ -89,7 +89,7 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
         let at = |s: f64| {
             let mut y = x.clone();
             y[i] += s;
-            elastic().energy(0.0, &y)
+            elastic().energy(At::new(0.0, &y))
         };
         let slope = (at(d) - at(-d)) / (2.0 * d);
         assert!(
@@ -111,7 +111,7 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
         if semidefinite {
             matrix.add_semidefinite_potentials(&model, 0.0, &x, 1.0);
         } else {
-            matrix.add_potentials(&model, 0.0, &x, 1.0);
+            add_potentials(&mut matrix, &model, 0.0, &x, 1.0);
         }
         products.push(matrix.product(&model, &along));
     }
@@ -144,14 +144,14 @@ fn a_displacement_that_turns_is_curved_so_that_it_does_not_stretch() {
     let none = vec![0.0; model.rods().len()];
     let mut matrix = PrimalMatrix::new(&model).unwrap();
     matrix.assemble(&model, x, &none, &none);
-    matrix.add_potentials(&model, 0.0, x, 1.0);
+    add_potentials(&mut matrix, &model, 0.0, x, 1.0);
     matrix.factorize().unwrap();
     let (mut force, mut curved) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     elastic.add_second_order(x, &dx, 1.0, &mut force);
     matrix.solve(&model, &force, &mut curved);
     let energy = |s: f64, square: f64| {
         let end = (0..x.len()).map(|i| x[i] - s * (dx[i] + s * square * curved[i]));
-        elastic.energy(0.0, &end.collect::<Vec<f64>>())
+        elastic.energy(At::new(0.0, &end.collect::<Vec<f64>>()))
     };
     // Energies grow with the square of the strain.
     let [straight, bent] =
@@ -171,7 +171,7 @@ fn the_barrier_begins_at_half_the_limit_and_ends_at_it() {
     let energy = |stretch: f64| {
         // `|E| = e` for a stretch in one direction.
         let f = Matrix2::new((1.0 + 2.0 * stretch).sqrt(), 0.0, 0.0, 1.0);
-        elastic.energy(0.0, &deformed(&sheet, f))
+        elastic.energy(At::new(0.0, &deformed(&sheet, f)))
     };
     assert!(energy(0.4999e-2) < 1e-12 && energy(0.501e-2) > 1e-12);
     // To third order: with `p` = 8 d / 3 the energy is `p^3`.

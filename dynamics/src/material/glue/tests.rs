@@ -58,19 +58,19 @@ fn derivatives_match_differences() {
     }
     let gradient = |x: &[f64]| {
         let mut g = vec![0.0; x.len()];
-        glue.add_gradient(0.3, x, &mut g);
+        glue.add_gradient(At::new(0.3, x), &mut g);
         g
     };
     let n = x.len();
     let mut hessian = Dense(t, vec![0.0; n * n]);
-    glue.add_hessian(0.3, &x, &mut hessian);
+    glue.add_hessian(At::new(0.3, &x), &mut hessian);
     let (g, h) = (gradient(&x), 1e-3);
     for i in 0..n {
         let [mut up, mut down] = [x.clone(), x.clone()];
         up[i] += h;
         down[i] -= h;
         // The energy is quadratic, so that central differences are exact.
-        let slope = (glue.energy(0.3, &up) - glue.energy(0.3, &down)) / (2.0 * h);
+        let slope = (glue.energy(At::new(0.3, &up)) - glue.energy(At::new(0.3, &down))) / (2.0 * h);
         assert!((slope - g[i]).abs() < 1e-11);
         let column = gradient(&up)
             .iter()

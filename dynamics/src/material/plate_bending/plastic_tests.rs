@@ -58,7 +58,7 @@ fn interior(sheet: &Sheet) -> impl Iterator<Item = usize> {
 
 fn gradient(plate: &PlateBending, x: &[f64]) -> Vec<f64> {
     let mut g = vec![0.0; x.len()];
-    plate.add_gradient(0.0, x, &mut g);
+    plate.add_gradient(At::new(0.0, x), &mut g);
     g
 }
 
@@ -73,7 +73,7 @@ fn product(sheet: &Sheet, plate: PlateBending, x: &[f64], d: &[f64]) -> Vec<f64>
     let mut matrix = PrimalMatrix::new(&model).expect("pattern");
     let none = vec![0.0; model.rods().len()];
     matrix.assemble(&model, x, &none, &none);
-    matrix.add_potentials(&model, 0.0, x, 1.0);
+    add_potentials(&mut matrix, &model, 0.0, x, 1.0);
     matrix.product(&model, d)
 }
 
@@ -118,7 +118,7 @@ fn check_gradient(layers: usize) {
         let at = |s: f64| {
             let mut moved = x.clone();
             moved[i] += s * 1e-6;
-            plate.energy(0.0, &moved)
+            plate.energy(At::new(0.0, &moved))
         };
         let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 12e-6;
         assert!(
@@ -185,7 +185,7 @@ fn a_sheet_at_its_plastic_curvature_is_at_rest_and_turns_freely() {
         plate.set_memory(soft.memory());
         plate
     };
-    let ratio = bent().energy(0.0, &x) / elastic.energy(0.0, &x);
+    let ratio = bent().energy(At::new(0.0, &x)) / elastic.energy(At::new(0.0, &x));
     assert!(ratio < 1e-2, "{ratio}");
     let forces = norm(&gradient(&bent(), &x)) / norm(&gradient(&elastic, &x));
     assert!(forces < 0.1, "{forces}");
@@ -206,9 +206,9 @@ fn a_rolled_sheet_keeps_the_curvature_beyond_the_yield() {
     let mut plate = plate(&sheet);
     let expected = (RIGIDITY * curvature - YIELD.moment) / (RIGIDITY + YIELD.hardening);
     let x = rolled(&sheet, curvature);
-    let before = plate.energy(0.0, &x);
+    let before = plate.energy(At::new(0.0, &x));
     let dissipated = plate.settle(0.0, &x);
-    let fall = before - plate.energy(0.0, &x);
+    let fall = before - plate.energy(At::new(0.0, &x));
     assert!(
         (fall - dissipated).abs() < 1e-12 * before,
         "{fall} {dissipated}"
