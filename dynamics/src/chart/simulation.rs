@@ -219,7 +219,8 @@ impl ChartSimulation {
             Some(balance) => balance.clone(),
             None => self.new_balance(self.motion.next_step)?,
         };
-        Ok(balance.reactions(self.stepper.mechanics.model(), self.motion.t))
+        let end = (self.motion.t, &self.motion.state.x[..]);
+        Ok(balance.reactions(self.stepper.mechanics.model(), end))
     }
 
     /// Time, seconds.

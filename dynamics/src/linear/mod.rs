@@ -7,3 +7,4 @@ pub(crate) mod primal;
 pub(crate) mod rank;
 pub(crate) mod rod_least_squares;
 pub(crate) mod saddle;
+pub(crate) mod shares;

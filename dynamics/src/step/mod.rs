@@ -15,7 +15,6 @@ pub(crate) mod pressing;
 pub(crate) mod reaction;
 pub(crate) mod reason;
 pub(crate) mod report;
-pub(crate) mod residual_momentum;
 pub(crate) mod rod_forces;
 pub(crate) mod simulation_error;
 pub(crate) mod subdivision;

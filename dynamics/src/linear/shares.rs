@@ -1,0 +1,92 @@
+//! The forces of supports that balance given forces at free vertices.
+
+use crate::SheetModel;
+use crate::constraint::rows::VertexRows;
+use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRows};
+use crate::linear::free::penalties;
+use crate::linear::primal::PrimalMatrix;
+use crate::vectors::point;
+use isosheet_coords::linalg::norm_inf;
+use isosheet_mesh::VertexId;
+use nalgebra::Vector3;
+
+/// Penalty relative to the masses: beyond, the masses drown in round-off.
+const ROD_PENALTY: f64 = 1e9;
+/// Passes of the method of multipliers: each contracts what is left by the penalty, except along rods that
+/// are nearly dependent.
+const MAX_PASSES: usize = 30;
+/// Part of the forces that may be left: the sum of the supports' forces is as good.
+const BALANCED_PART: f64 = 1e-12;
+
+/// Forces of supports, newtons.
+pub(crate) struct Shares {
+    /// At pinned vertices; `3V`.
+    pins: Vec<f64>,
+    /// Of each vertex constraint.
+    pub(crate) constraints: Vec<Vector3<f64>>,
+}
+
+impl Shares {
+    /// At a pin.
+    pub(crate) fn pin(&self, v: VertexId) -> Vector3<f64> {
+        point(&self.pins, v)
+    }
+}
+
+/// Forces of the supports that, with tensions of the rods, balance the forces `left` (`3V`, newtons) at time
+/// `t` and positions `x`: `left = -G(x)^T m - J(x, t)^T n` at free vertices, in the sense of least squares in
+/// the inverse of the mass matrix, with the vertex constraints that are `active`, and what is missing at
+/// pinned ones.
+///
+/// For one factorisation. Nothing where there is nothing to balance, or the linear algebra fails.
+pub(crate) fn shares(
+    model: &SheetModel,
+    (t, x): (f64, &[f64]),
+    left: &[f64],
+    active: &[bool],
+) -> Option<Shares> {
+    if left.iter().all(|f| *f == 0.0) {
+        return None;
+    }
+    let mut matrix = PrimalMatrix::of_rods(model).ok()?;
+    let mut rows = VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0);
+    rows.evaluate(model.constraints(), t, x);
+    rows.equality.copy_from_slice(active);
+    let axial = penalties(model, ROD_PENALTY);
+    matrix.assemble(model, x, &axial, &vec![0.0; axial.len()]);
+    rows.add_equalities(ROD_PENALTY, &mut matrix.sink(model));
+    matrix.factorize().ok()?;
+    let mut solver = ConstrainedSolver::new(model);
+    let supports = SupportRows::Equalities {
+        rows: &rows,
+        penalty: ROD_PENALTY,
+    };
+    let system = ConstrainedSystem {
+        model,
+        matrix: &mut matrix,
+        supports,
+    };
+    let (mut rest, mut y) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    let mut goal = None;
+    for _ in 0..=MAX_PASSES {
+        rest.copy_from_slice(left);
+        system.apply_transpose_add(&solver.multipliers, &mut rest);
+        let mut free = rest.clone();
+        model.clear_pinned(&mut free);
+        let size = norm_inf(&free);
+        if size <= *goal.get_or_insert(BALANCED_PART * size) {
+            break;
+        }
+        system.matrix.solve(model, &free, &mut y);
+        solver.residual.clear();
+        solver.subtract(&system, &y);
+        solver.update(&system);
+    }
+    let loads = solver.multipliers.supports.iter().enumerate();
+    Some(Shares {
+        pins: rest,
+        constraints: loads
+            .map(|(i, m)| -rows.local(i).jacobian.tr_mul(m))
+            .collect(),
+    })
+}
