@@ -128,11 +128,6 @@ fn steps(c: &mut Criterion) {
                 1.0 / 60.0,
             ),
             (
-                "projection 1/60 s",
-                Method::Projection(Default::default()),
-                1.0 / 60.0,
-            ),
-            (
                 "energy-momentum 1 ms",
                 Method::EnergyMomentum(Default::default()),
                 1e-3,

@@ -571,4 +571,6 @@ fn block_start(pattern: &Pattern, row: u32, col: u32) -> Option<[usize; 3]> {
 }
 
 #[cfg(test)]
+pub(crate) mod testing;
+#[cfg(test)]
 mod tests;

@@ -1,6 +1,8 @@
 //! The drag of the air on the faces of a sheet.
 
 #[cfg(test)]
+mod step_tests;
+#[cfg(test)]
 mod tests;
 
 use crate::SheetModel;

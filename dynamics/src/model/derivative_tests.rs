@@ -1,8 +1,9 @@
 //! The matrices of the implicit methods against finite differences of what they are derivatives of.
 
 use crate::linear::primal::PrimalMatrix;
+use crate::linear::primal::testing::add_potentials;
 use crate::linear::saddle::{SaddleMatrix, System};
-use crate::{HessianSink, Potential, SheetModel};
+use crate::{At, HessianSink, Potential, SheetModel};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId, generate};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -237,12 +238,13 @@ fn saddle_matrix_is_the_jacobian_of_the_momentum_and_length_equations() {
         let want_rods = difference(&right, &direction, |x| rods.residual(x));
         let negative: Vec<f64> = impulses.iter().map(|l| -l).collect();
         let mut matrix = SaddleMatrix::new(&model).expect("small");
+        let memories = model.memories();
         let system = System {
             mass,
             density: &negative,
             left: &x,
             right: &right,
-            potentials: Some((0.0, &x, scale)),
+            potentials: Some((&memories, 0.0, &x, scale)),
             constraints: &[],
         };
         let (got, got_rods) = matrix.product(&model, &system, &direction, &other);

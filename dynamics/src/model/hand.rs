@@ -254,7 +254,7 @@ impl Potential for Hand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Method, Simulation, State};
+    use crate::{Checkpoint, Method, Simulation, State};
     use isosheet_mesh::{EdgeId, MassKind, Sheet, generate};
 
     const STEP: f64 = 1.0 / 60.0;
@@ -294,14 +294,16 @@ mod tests {
         hand.lead([0.4, -0.1, 0.3], [1.0, 2.0], &mut memory)
             .expect("finite");
         let x = sheet.positions().to_vec();
-        let at = |x| At::new(1.25, x).with_memory(&memory);
+        fn at<'a>(x: &'a [f64], memory: &'a [f64]) -> At<'a> {
+            At::new(1.25, x).with_memory(memory)
+        }
         let gradient = |x: &[f64]| {
             let mut gradient = vec![0.0; x.len()];
-            hand.add_gradient(at(x), &mut gradient);
+            hand.add_gradient(at(x, &memory), &mut gradient);
             gradient
         };
         let mut blocks = Blocks(Vec::new());
-        hand.add_hessian(at(&x), &mut blocks);
+        hand.add_hessian(at(&x, &memory), &mut blocks);
         let [(vertex, block)] = blocks.0[..] else {
             panic!("{} blocks", blocks.0.len());
         };
@@ -311,7 +313,7 @@ mod tests {
             let (mut up, mut down) = (x.clone(), x.clone());
             up[i] += 0.5;
             down[i] -= 0.5;
-            let difference = hand.energy(at(&up)) - hand.energy(at(&down));
+            let difference = hand.energy(at(&up, &memory)) - hand.energy(at(&down, &memory));
             assert!((difference - slope[i]).abs() < 1e-13, "coordinate {i}");
             for (j, (a, b)) in gradient(&up).iter().zip(gradient(&down)).enumerate() {
                 let first = 3 * CORNER.index();
@@ -389,6 +391,35 @@ mod tests {
         let stretch = crate::vectors::point(&simulation.state().x, CORNER) - held;
         let want = Vector3::new(0.0, 0.0, -mass * 9.81 / 3.0);
         assert!((stretch - want).norm() < 1e-6, "{stretch}, {want}");
+    }
+
+    /// A run that goes on from a checkpoint on the way of the hand moves as if it had not been interrupted.
+    #[test]
+    fn a_hand_on_its_way_goes_on_after_a_checkpoint() {
+        let sheet = sheet();
+        let model = || {
+            let model = SheetModel::new(&sheet, 1e-2, MassKind::Lumped).expect("a model");
+            model.with_gravity().with_hand(hand(&sheet, 2.0))
+        };
+        let start = State::at_rest(sheet.positions().to_vec());
+        let mut run = Simulation::new(model(), start, Method::default()).expect("valid");
+        let (to, end) = ([0.3, 0.1, 0.2], 6.0 * STEP);
+        run.lead_hand(CORNER, to, end).expect("finite");
+        for _ in 0..2 {
+            run.step(STEP).expect("accepted");
+        }
+        let on_its_way = run.hand_target(CORNER).expect("a hand");
+        assert!(on_its_way != to && on_its_way != sheet.position(CORNER));
+        let written = run.checkpoint().to_bytes().expect("serialised");
+        let read = Checkpoint::from_bytes(&written).expect("what was written");
+        let mut resumed = Simulation::resume(model(), None, read).expect("the same model");
+        assert_eq!(resumed.hand_target(CORNER), Ok(on_its_way));
+        for _ in 0..8 {
+            let reports = [&mut run, &mut resumed].map(|run| run.step(STEP).expect("accepted"));
+            assert_eq!(reports[0], reports[1]);
+            assert_eq!(run.state(), resumed.state());
+        }
+        assert_eq!(resumed.hand_target(CORNER), Ok(to));
     }
 
     /// The work of the hand that drags a sheet is the energy of the sheet and the spring, up to what the

@@ -137,7 +137,7 @@ impl fmt::Debug for SolverEffort<'_> {
 mod tests {
     use super::*;
     use crate::{EnergyMomentumOptions, Method, SheetModel, Simulation, State, StepError};
-    use crate::{ProjectionStepOptions, RattleOptions, leave_flat};
+    use crate::{RattleOptions, leave_flat};
     use isosheet_mesh::{MassKind, VertexId, generate};
 
     const H: f64 = 1.0 / 240.0;
@@ -159,7 +159,6 @@ mod tests {
         vec![
             Method::default(),
             Method::ImplicitEuler(crate::ImplicitOptions::default()),
-            Method::Projection(ProjectionStepOptions::default()),
             Method::EnergyMomentum(EnergyMomentumOptions::default()),
             Method::Rattle(RattleOptions::default()),
         ]

@@ -111,10 +111,11 @@ impl EnergyAccount {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::At;
     use isosheet_mesh::{MassKind, generate};
 
     /// Flies through a cycle of speeds, metres per second; the first step that is refused.
-    fn refused(speeds: &[f64], dissipated: f64, bodies: f64) -> Option<usize> {
+    fn refused(speeds: &[f64], dissipated: f64, driven: f64) -> Option<usize> {
         let sheet = generate::isotropic_square(0, 1.0).unwrap();
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).unwrap();
         let state = |k: usize| State {
@@ -123,15 +124,13 @@ mod tests {
             v: vec![speeds[k]; sheet.positions().len()],
         };
         let mut account = EnergyAccount::default();
-        let exchange = Exchange {
-            bodies,
-            ..Exchange::default()
-        };
+        let exchange = Exchange::driven(driven);
         (1..speeds.len()).find(|&k| {
             let after = account.after(
                 &model,
-                &state(k - 1),
-                &state(k),
+                [&state(k - 1), &state(k)],
+                [0.0; 2],
+                || 0.0,
                 &exchange,
                 &Tuning::default(),
             );
@@ -190,10 +189,12 @@ mod tests {
         let enter = |back: f64| {
             let mut end = start.clone();
             (end.t, end.x[0]) = (1e-3, origin - back);
+            let potential = [&start, &end].map(|s| model.potential_energy(s.t, &s.x));
             EnergyAccount::default().after(
                 &model,
-                &start,
-                &end,
+                [&start, &end],
+                potential,
+                || 1e6,
                 &Exchange::default(),
                 &Tuning::default(),
             )

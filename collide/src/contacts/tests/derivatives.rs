@@ -121,8 +121,8 @@ fn check_hessian(name: &str, step: &Step, x: &[f64], tolerance: f64) {
     let truth = sum_of_positive_parts(step, x);
     let error = (&ours - &truth).norm() / size;
     assert!(error < tolerance, "{name}: error {error}");
-    let mut couplings = vec![[9, 9]];
-    step.terms(x, |t| t.couplings(&mut couplings));
+    let mut couplings = Vec::new();
+    step.terms(x, |t| t.append_couplings(&mut couplings));
     for pair in dense.pairs {
         let [a, b] = pair;
         let neighbours = step

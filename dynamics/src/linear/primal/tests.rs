@@ -1,4 +1,6 @@
+use super::testing::{add_potentials, add_potentials_with};
 use super::*;
+use crate::hessian::HessianPart;
 use crate::linear::free::penalties;
 use crate::vectors::dot;
 use crate::{CreaseSprings, ElasticSheet, PlateBending};
@@ -48,7 +50,11 @@ fn assembled(model: &SheetModel, x: &[f64], (stiffness, density): (f64, f64)) ->
     let mut matrix = PrimalMatrix::new(model).unwrap();
     let axial = penalties(model, stiffness);
     matrix.assemble(model, x, &axial, &vec![density; model.rods().len()]);
-    matrix.add_semidefinite_potentials(model, 0.0, x, SCALE);
+    let (at, part) = (
+        (0.0, x, &model.memories()),
+        HessianPart::PositiveSemidefinite,
+    );
+    add_potentials_with(&mut matrix, model, at, part, SCALE);
     matrix
 }
 
@@ -197,7 +203,7 @@ fn slow_iterations_end_with_the_whole_matrix() {
     let axial = penalties(&model, 1e2);
     let again = |matrix: &mut PrimalMatrix| {
         matrix.assemble(&model, &x, &axial, &vec![0.0; model.rods().len()]);
-        matrix.add_potentials(&model, 0.0, &x, SCALE);
+        add_potentials(matrix, &model, 0.0, &x, SCALE);
         matrix.factorize().unwrap();
         matrix.factorised
     };

@@ -1,5 +1,6 @@
 use super::*;
 use crate::linear::primal::PrimalMatrix;
+use crate::linear::primal::testing::add_potentials;
 use crate::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, fold_angle, generate};
 use rand::{RngExt, SeedableRng};
@@ -53,7 +54,7 @@ fn angles_are_those_of_the_mesh_in_sign_and_size() {
             yields: None,
         };
         let own = CreaseSprings::new(t, vec![spring]).expect("interior");
-        let moment = own.moments(0.0, &x)[0];
+        let moment = own.moments(At::new(0.0, &x))[0];
         let angle = fold_angle(t, &x, e).expect("interior");
         assert!(
             (moment + angle).abs() < 1e-13,
@@ -208,7 +209,7 @@ fn bending_along_grid_lines_has_the_energy_of_a_plate() {
         .collect();
     let energy = CreaseSprings::bending(&sheet, rigidity)
         .expect("valid")
-        .energy(0.0, &x);
+        .energy(At::new(0.0, &x));
     // n - 1 lines inside, each for a row of cells; the two outermost half-cells are not bent.
     let exact = 0.5 * rigidity * (turn / step).powi(2) * side * step * (n - 1) as f64;
     assert!((energy - exact).abs() < 1e-12 * exact, "{energy} {exact}");

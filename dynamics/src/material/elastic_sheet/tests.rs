@@ -1,5 +1,8 @@
 use super::*;
+use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;
+use crate::linear::primal::testing::{add_potentials, add_potentials_with};
+use crate::potential::Memories;
 use crate::{
     ImplicitOptions, Method, PlateBending, SheetModel, Simulation, SimulationError, State,
     StepError,
@@ -48,13 +51,13 @@ fn homogeneous_deformations_have_the_energy_of_the_material() {
     for (limit, factor) in [(0.45, 0.0), (0.2, 1.0)] {
         let mut sheet_of_limit = ElasticSheet::new(&sheet, stiffness, nu).unwrap();
         sheet_of_limit = sheet_of_limit.with_limit(limit).unwrap();
-        sheet_of_limit.set_barrier(kappa);
         let p = (4.0 * e.norm_squared() / (limit * limit) - 1.0) / 3.0;
         assert_eq!(p > 0.0, factor > 0.0, "{p}");
         let exact = elastic - factor * kappa * p * p * (1.0 - p).ln();
-        let energy = sheet_of_limit.energy(At::new(0.0, &x));
+        let energy = sheet_of_limit.energy(At::new(0.0, &x).with_memory(&[kappa]));
         assert!((energy / exact - 1.0).abs() < 1e-12, "{energy} {exact}");
-        assert!(sheet_of_limit.energy(At::new(0.0, sheet.positions())) < 1e-25);
+        let rest = At::new(0.0, sheet.positions());
+        assert!(sheet_of_limit.energy(rest.with_memory(&[kappa])) < 1e-25);
         for strain in sheet_of_limit.strains(&x) {
             assert!((strain - e.norm()).abs() < 1e-13);
         }
@@ -66,11 +69,10 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
     let sheet = delaunay(0.3);
     let x = displaced(&sheet, 0.01, 5);
     let elastic = || {
-        let mut new = ElasticSheet::new(&sheet, 3.0, 0.25).unwrap();
-        new = new.with_limit(0.1).unwrap();
-        new.set_barrier(0.02);
-        new
+        let new = ElasticSheet::new(&sheet, 3.0, 0.25).unwrap();
+        new.with_limit(0.1).unwrap()
     };
+    let barrier = [0.02];
     let loaded = elastic().strains(&x).filter(|s| *s > 0.05).count();
     assert!(
         loaded > 5 && elastic().beyond_limit(&x).is_none(),
@@ -78,7 +80,7 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
     );
     let gradient = |x: &[f64]| {
         let mut g = vec![0.0; x.len()];
-        elastic().add_gradient(At::new(0.0, x), &mut g);
+        elastic().add_gradient(At::new(0.0, x).with_memory(&barrier), &mut g);
         g
     };
     let g = gradient(&x);
@@ -89,7 +91,7 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
         let at = |s: f64| {
             let mut y = x.clone();
             y[i] += s;
-            elastic().energy(At::new(0.0, &y))
+            elastic().energy(At::new(0.0, &y).with_memory(&barrier))
         };
         let slope = (at(d) - at(-d)) / (2.0 * d);
         assert!(
@@ -106,13 +108,10 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
     let none = vec![0.0; model.rods().len()];
     let mut matrix = PrimalMatrix::new(&model).unwrap();
     let mut products = Vec::new();
-    for semidefinite in [false, true] {
+    let memories = Memories::of([barrier.to_vec()].into_iter());
+    for part in [HessianPart::Full, HessianPart::PositiveSemidefinite] {
         matrix.assemble(&model, &x, &none, &none);
-        if semidefinite {
-            matrix.add_semidefinite_potentials(&model, 0.0, &x, 1.0);
-        } else {
-            add_potentials(&mut matrix, &model, 0.0, &x, 1.0);
-        }
+        add_potentials_with(&mut matrix, &model, (0.0, &x, &memories), part, 1.0);
         products.push(matrix.product(&model, &along));
     }
     let steepest = products[0].iter().fold(0.0_f64, |m, p| m.max(p.abs()));
@@ -147,7 +146,7 @@ fn a_displacement_that_turns_is_curved_so_that_it_does_not_stretch() {
     add_potentials(&mut matrix, &model, 0.0, x, 1.0);
     matrix.factorize().unwrap();
     let (mut force, mut curved) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    elastic.add_second_order(x, &dx, 1.0, &mut force);
+    elastic.add_second_order(At::new(0.0, x), &dx, 1.0, &mut force);
     matrix.solve(&model, &force, &mut curved);
     let energy = |s: f64, square: f64| {
         let end = (0..x.len()).map(|i| x[i] - s * (dx[i] + s * square * curved[i]));
@@ -166,12 +165,11 @@ fn a_displacement_that_turns_is_curved_so_that_it_does_not_stretch() {
 #[test]
 fn the_barrier_begins_at_half_the_limit_and_ends_at_it() {
     let sheet = generate::isotropic_square(0, 1.0).unwrap();
-    let mut elastic = ElasticSheet::new(&sheet, 1e-9, 0.0).unwrap();
-    elastic.set_barrier(1.0);
+    let elastic = ElasticSheet::new(&sheet, 1e-9, 0.0).unwrap();
     let energy = |stretch: f64| {
         // `|E| = e` for a stretch in one direction.
         let f = Matrix2::new((1.0 + 2.0 * stretch).sqrt(), 0.0, 0.0, 1.0);
-        elastic.energy(At::new(0.0, &deformed(&sheet, f)))
+        elastic.energy(At::new(0.0, &deformed(&sheet, f)).with_memory(&[1.0]))
     };
     assert!(energy(0.4999e-2) < 1e-12 && energy(0.501e-2) > 1e-12);
     // To third order: with `p` = 8 d / 3 the energy is `p^3`.
@@ -196,7 +194,7 @@ proptest! {
         prop_assume!(elastic.beyond_limit(&x).is_none());
         let scale = 10f64.powf(size);
         let dx: Vec<f64> = displaced(&sheet, scale, seed + 1).iter().zip(sheet.positions()).map(|(a, b)| a - b).collect();
-        let part = elastic.safe_fraction(&x, &dx);
+        let part = elastic.safe_part(At::new(0.0, &x), &dx);
         prop_assert!(part > 0.0 && part <= 1.0);
         let at = |s: f64| -> Vec<f64> { x.iter().zip(&dx).map(|(x, d)| x + s * d).collect() };
         let left = |s: f64| {
@@ -267,7 +265,8 @@ fn faces_bend_by_their_size_over_the_radius() {
         .iter()
         .flat_map(rolled)
         .collect();
-    let deformation = model.elastic_deformation(&x).unwrap();
+    let memories = model.memories();
+    let deformation = model.elastic_deformation(&x, &memories).unwrap();
     let squared = (1.0_f64 / 16.0).powi(2) * 4.0 / 3.0;
     let (_, sharpest) = deformation.sharpest().unwrap();
     assert!(
@@ -275,14 +274,16 @@ fn faces_bend_by_their_size_over_the_radius() {
         "{sharpest}"
     );
     let total: f64 = deformation.bending.iter().sum();
-    let plate = model.potentials().next().unwrap().energy(0.0, &x);
+    let plate = model.potentials().next().unwrap().energy(At::new(0.0, &x));
     assert!((total / plate - 1.0).abs() < 1e-12);
     assert!(
         deformation.total_share() < 0.05,
         "{}",
         deformation.total_share()
     );
-    let flat = model.elastic_deformation(sheet.positions()).unwrap();
+    let flat = model
+        .elastic_deformation(sheet.positions(), &memories)
+        .unwrap();
     assert!(flat.angle.iter().all(|a| *a < 1e-6) && flat.strain.iter().all(|s| *s < 1e-12));
 }
 
@@ -471,8 +472,8 @@ fn a_run_resumes_to_the_bit() {
         run.step(1.0 / 60.0).unwrap();
     }
     let mut resumed = Simulation::resume(model(), None, run.checkpoint()).unwrap();
-    let barrier = |run: &Simulation| run.model().elastic_sheet().unwrap().barrier();
-    assert!(barrier(&run) > 0.0 && barrier(&run) == barrier(&resumed));
+    assert!(run.memories().lists().last().unwrap()[0] > 0.0);
+    assert_eq!(run.memories(), resumed.memories());
     for _ in 0..10 {
         let (a, b) = (
             run.step(1.0 / 60.0).unwrap(),
@@ -511,7 +512,6 @@ fn what_makes_no_sense_is_refused() {
             .unwrap()
     };
     for method in [
-        Method::Projection(Default::default()),
         Method::EnergyMomentum(Default::default()),
         Method::Rattle(Default::default()),
     ] {

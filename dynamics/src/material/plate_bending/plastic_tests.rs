@@ -1,7 +1,10 @@
 //! Plates that yield.
 
 use super::*;
+use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;
+use crate::linear::primal::testing::add_potentials_with;
+use crate::potential::Memories;
 use crate::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::generate;
 use isosheet_mesh::{MassKind, Sheet};
@@ -56,10 +59,17 @@ fn interior(sheet: &Sheet) -> impl Iterator<Item = usize> {
     t.face_ids().filter(inside).map(|f| f.index())
 }
 
-fn gradient(plate: &PlateBending, x: &[f64]) -> Vec<f64> {
+fn gradient(plate: &PlateBending, x: &[f64], memory: &[f64]) -> Vec<f64> {
     let mut g = vec![0.0; x.len()];
-    plate.add_gradient(At::new(0.0, x), &mut g);
+    plate.add_gradient(At::new(0.0, x).with_memory(memory), &mut g);
     g
+}
+
+/// What a plate remembers that was at rest at positions `x`; the energy that was dissipated.
+fn settled(plate: &PlateBending, x: &[f64], mut memory: Vec<f64>) -> (Vec<f64>, f64) {
+    let state = Reached { t: 0.0, x, v: &[] };
+    let dissipated = plate.settle(state, &mut memory).dissipated;
+    (memory, dissipated)
 }
 
 fn norm(x: &[f64]) -> f64 {
@@ -67,13 +77,20 @@ fn norm(x: &[f64]) -> f64 {
 }
 
 /// The product of the Hessian with a displacement.
-fn product(sheet: &Sheet, plate: PlateBending, x: &[f64], d: &[f64]) -> Vec<f64> {
+fn product(
+    sheet: &Sheet,
+    (plate, memory): (PlateBending, Vec<f64>),
+    x: &[f64],
+    d: &[f64],
+) -> Vec<f64> {
     let model = SheetModel::new(sheet, 1e-12, MassKind::Lumped).expect("valid");
     let model = model.with_potential(plate);
     let mut matrix = PrimalMatrix::new(&model).expect("pattern");
     let none = vec![0.0; model.rods().len()];
     matrix.assemble(&model, x, &none, &none);
-    add_potentials(&mut matrix, &model, 0.0, x, 1.0);
+    let memories = Memories::of([memory].into_iter());
+    let at = (0.0, x, &memories);
+    add_potentials_with(&mut matrix, &model, at, HessianPart::Full, 1.0);
     matrix.product(&model, d)
 }
 
@@ -92,33 +109,26 @@ fn check_gradient(layers: usize) {
         .iter()
         .map(|x| x + rng.random_range(-0.001..0.001))
         .collect();
-    let mut plate = plate_in_layers(&sheet, layers);
+    let plate = plate_in_layers(&sheet, layers);
     let memory: Vec<f64> = plate
         .memory()
         .iter()
         .map(|_| rng.random_range(-0.2..0.2))
         .collect();
-    plate.set_memory(&memory);
-    plate.settle(0.0, &x);
-    let yielded = plate
-        .memory()
-        .iter()
-        .zip(&memory)
-        .filter(|(p, q)| p != q)
-        .count();
+    let (after, _) = settled(&plate, &x, memory.clone());
+    let yielded = after.iter().zip(&memory).filter(|(p, q)| p != q).count();
     assert!(
         yielded > 30 && yielded + 30 < memory.len(),
         "{yielded} of {}",
         memory.len()
     );
-    plate.set_memory(&memory);
-    let g = gradient(&plate, &x);
+    let g = gradient(&plate, &x, &memory);
     let largest = g.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
     for i in 0..x.len() {
         let at = |s: f64| {
             let mut moved = x.clone();
             moved[i] += s * 1e-6;
-            plate.energy(At::new(0.0, &moved))
+            plate.energy(At::new(0.0, &moved).with_memory(&memory))
         };
         let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 12e-6;
         assert!(
@@ -140,13 +150,13 @@ fn the_hessian_matches_differences_of_the_gradient() {
         .map(|_| rng.random_range(-1.0..1.0))
         .collect();
     for (layers, curvature, bound) in [(1, 0.4, 0.04), (1, 0.8, 0.08), (4, 0.4, 0.04)] {
-        let mut bent = plate_in_layers(&sheet, layers);
-        bent.settle(0.0, &rolled(&sheet, curvature));
+        let bent = plate_in_layers(&sheet, layers);
+        let (memory, _) = settled(&bent, &rolled(&sheet, curvature), bent.memory());
         let x = rolled(&sheet, 1.1 * curvature);
         let h = 1e-7;
         let at = |s: f64| {
             let moved: Vec<f64> = x.iter().zip(&d).map(|(x, d)| x + s * h * d).collect();
-            gradient(&bent, &moved)
+            gradient(&bent, &moved, &memory)
         };
         let (up, down) = (at(1.0), at(-1.0));
         let expected: Vec<f64> = up
@@ -154,7 +164,7 @@ fn the_hessian_matches_differences_of_the_gradient() {
             .zip(&down)
             .map(|(u, d)| (u - d) / (2.0 * h))
             .collect();
-        let found = product(&sheet, bent, &x, &d);
+        let found = product(&sheet, (bent, memory), &x, &d);
         let difference: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
         let error = norm(&difference) / norm(&expected);
         assert!(
@@ -180,20 +190,22 @@ fn a_sheet_at_its_plastic_curvature_is_at_rest_and_turns_freely() {
                 .expect("valid")
         };
         // Of a plate that hardly resists all curvature is plastic.
-        let (mut soft, mut plate) = (with_yield(1e-9), with_yield(YIELD.moment));
-        soft.settle(0.0, &x);
-        plate.set_memory(soft.memory());
-        plate
+        let soft = with_yield(1e-9);
+        let (memory, _) = settled(&soft, &x, soft.memory());
+        (with_yield(YIELD.moment), memory)
     };
-    let ratio = bent().energy(At::new(0.0, &x)) / elastic.energy(At::new(0.0, &x));
+    let (plate, memory) = bent();
+    let energy = plate.energy(At::new(0.0, &x).with_memory(&memory));
+    let ratio = energy / elastic.energy(At::new(0.0, &x));
     assert!(ratio < 1e-2, "{ratio}");
-    let forces = norm(&gradient(&bent(), &x)) / norm(&gradient(&elastic, &x));
+    let forces = norm(&gradient(&plate, &x, &memory)) / norm(&gradient(&elastic, &x, &[]));
     assert!(forces < 0.1, "{forces}");
     for axis in [Vector3::x(), Vector3::y()] {
         let turn = |p: &[f64; 3]| axis.cross(&Vector3::from(*p)).data.0[0];
         let d: Vec<f64> = x.as_chunks::<3>().0.iter().flat_map(turn).collect();
         let plain = PlateBending::new(&sheet, RIGIDITY).expect("rigidity");
-        let part = norm(&product(&sheet, bent(), &x, &d)) / norm(&product(&sheet, plain, &x, &d));
+        let plain = norm(&product(&sheet, (plain, Vec::new()), &x, &d));
+        let part = norm(&product(&sheet, bent(), &x, &d)) / plain;
         assert!(part < 0.1, "{axis}: {part}");
     }
 }
@@ -203,17 +215,19 @@ fn a_sheet_at_its_plastic_curvature_is_at_rest_and_turns_freely() {
 fn a_rolled_sheet_keeps_the_curvature_beyond_the_yield() {
     let sheet = sheet();
     let curvature = 0.9;
-    let mut plate = plate(&sheet);
+    let plate = plate(&sheet);
     let expected = (RIGIDITY * curvature - YIELD.moment) / (RIGIDITY + YIELD.hardening);
     let x = rolled(&sheet, curvature);
-    let before = plate.energy(At::new(0.0, &x));
-    let dissipated = plate.settle(0.0, &x);
-    let fall = before - plate.energy(At::new(0.0, &x));
+    let energy = |memory: &[f64]| plate.energy(At::new(0.0, &x).with_memory(memory));
+    let flat = plate.memory();
+    let before = energy(&flat);
+    let (memory, dissipated) = settled(&plate, &x, flat);
+    let fall = before - energy(&memory);
     assert!(
         (fall - dissipated).abs() < 1e-12 * before,
         "{fall} {dissipated}"
     );
-    let curvatures = plate.plastic_curvatures();
+    let curvatures = plate.plastic_curvatures(&memory);
     for face in interior(&sheet) {
         let principal = curvatures[face].1.symmetric_eigenvalues();
         let (large, small) = (principal.max(), principal.min());
@@ -225,9 +239,9 @@ fn a_rolled_sheet_keeps_the_curvature_beyond_the_yield() {
     }
     // Rolled to the other side it yields sooner.
     let back = -0.5 * curvature;
-    plate.settle(0.0, &rolled(&sheet, back));
+    let (memory, _) = settled(&plate, &rolled(&sheet, back), memory);
     let expected = (RIGIDITY * back + YIELD.moment) / (RIGIDITY + YIELD.hardening);
-    let curvatures = plate.plastic_curvatures();
+    let curvatures = plate.plastic_curvatures(&memory);
     for face in interior(&sheet) {
         let least = curvatures[face].1.symmetric_eigenvalues().min();
         assert!(

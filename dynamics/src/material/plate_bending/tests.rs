@@ -1,5 +1,6 @@
 use super::*;
 use crate::linear::primal::PrimalMatrix;
+use crate::linear::primal::testing::add_potentials;
 use crate::{CreaseSpring, CreaseSprings, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{MassKind, Sheet};

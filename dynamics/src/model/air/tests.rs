@@ -1,7 +1,7 @@
 //! The law of drag against its definition and against finite differences.
 
 use super::*;
-use crate::{Interpolation, ModelError, SheetModel, State};
+use crate::{Interpolation, SheetModel, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
 
 const FACTORS: [f64; 2] = [0.7, 0.3];
@@ -195,7 +195,7 @@ fn what_cannot_be_used_is_named() {
         ..still()
     };
     let error = model.with_air(air).expect_err("refused");
-    assert!(matches!(error, ModelError::Air(_)), "{error:?}");
+    assert!(matches!(error, AirError::Number { .. }), "{error:?}");
 }
 
 /// A wind that is not finite ends the step with the time and a vertex, whenever it becomes so.

@@ -68,11 +68,11 @@ impl Integrator for Scripted {
             },
         });
         effort.iterations += 1;
-        let solver = &mut proposal.solver;
+        let motion = &mut proposal.motion;
         // A refusal leaves its marks on the whole proposal.
-        solver.state.x.fill(f64::NAN);
-        solver.history.multipliers.rods.clear();
-        solver.balance.pins.fill(f64::NAN);
+        motion.state.x.fill(f64::NAN);
+        motion.history.multipliers.rods.clear();
+        motion.balance.pins.fill(f64::NAN);
         let factor = match answer.unwrap_or(Answer::Accept) {
             Answer::Diverge => {
                 return Err(not_converged(
@@ -87,17 +87,17 @@ impl Integrator for Scripted {
             Answer::Gain => 2.0,
             Answer::Accept => 1.0,
         };
-        let State { t, x, v } = &mut solver.state;
+        let State { t, x, v } = &mut motion.state;
         *t = start.t + h;
         for i in 0..x.len() {
             v[i] = factor * start.v[i];
             x[i] = start.x[i] + h * v[i];
         }
-        solver.history.set_previous(Some(start));
-        let multipliers = &mut solver.history.multipliers;
+        motion.history.set_previous(Some(start));
+        let multipliers = &mut motion.history.multipliers;
         (multipliers.step, multipliers.rods) = (h, vec![h]);
-        solver.balance.pins.fill(h);
-        proposal.account = StepAccount::without_contact(h, 0.0, StepOutcome::Newton);
+        motion.balance.pins.fill(h);
+        proposal.account = StepAccount::of_forces(h, 0.0, StepOutcome::Newton);
         Ok(())
     }
 
@@ -243,7 +243,7 @@ fn a_step_that_fails_altogether_changes_nothing() {
             ..StepControl::default()
         };
         let (mut engine, seen) = scripted(&[answer; 20], control);
-        let before = bits(&engine.motion());
+        let before = bits(&engine.motion.compact());
         let mut totals = StepTotals::default();
         let error = engine.advance(H, &mut totals).unwrap_err();
         let StepError::StepTooSmall {
@@ -264,7 +264,10 @@ fn a_step_that_fails_altogether_changes_nothing() {
             (totals.work, totals.dissipated, totals.friction),
             (0.0, 0.0, 0.0)
         );
-        assert!(bits(&engine.motion()) == before, "{answer:?} left a trace");
+        assert!(
+            bits(&engine.motion.compact()) == before,
+            "{answer:?} left a trace"
+        );
     }
 }
 
@@ -281,9 +284,9 @@ fn a_step_that_fails_half_way_keeps_what_was_committed() {
     let (mut engine, _) = scripted(&script, control.clone());
     assert!(engine.advance(H, &mut StepTotals::default()).is_err());
     let (mut half, _) = scripted(&[], control);
-    half.solver.history.multipliers.clear();
+    half.motion.history.multipliers.clear();
     half.advance(0.5 * H, &mut StepTotals::default()).unwrap();
-    assert!(bits(&engine.motion()) == bits(&half.motion()));
+    assert!(bits(&engine.motion.compact()) == bits(&half.motion.compact()));
 }
 
 /// The fallback is used after the smallest sub-step was refused. It takes the longest sub-step that fits
@@ -298,12 +301,12 @@ fn the_fallback_starts_without_a_history() {
         };
         let (mut engine, seen) = scripted(&refusals, control);
         // Tumbling, so that multipliers matter; with multipliers that are wrong.
-        let State { x, v, .. } = &mut engine.solver.state;
+        let State { x, v, .. } = &mut engine.motion.state;
         for (p, v) in x.chunks(3).zip(v.chunks_mut(3)) {
             v.copy_from_slice(&[-2.0 * p[1], 2.0 * p[0], 0.3]);
         }
         let rods = engine.model.rods().len();
-        engine.solver.history.multipliers.rods = vec![1.0; rods];
+        engine.motion.history.multipliers.rods = vec![1.0; rods];
         let expected = |engine: &mut Engine, memory| {
             let traits = engine.integrator.traits();
             let mut proposal = Proposal::new(&engine.model, traits);
@@ -316,13 +319,13 @@ fn the_fallback_starts_without_a_history() {
             .unwrap();
             let scene = Scene {
                 model: &engine.model,
-                contact: None,
+                objective: &mut engine.objective,
             };
-            let attempt = Attempt::new(&engine.solver, H, memory);
+            let attempt = Attempt::new(&engine.motion, H, memory);
             method
                 .propose(scene, attempt, &mut proposal, &mut SolverEffort::default())
                 .unwrap();
-            bits(&(&proposal.solver.state.x, &proposal.solver.state.v))
+            bits(&(&proposal.motion.state.x, &proposal.motion.state.v))
         };
         let without = expected(&mut engine, Memory::Restart);
         let with = expected(&mut engine, Memory::All);
@@ -337,7 +340,7 @@ fn the_fallback_starts_without_a_history() {
         assert_eq!(smallest, Some(0.25 * H));
         let State { x, v, .. } = engine.state();
         assert!(bits(&(x, v)) == without);
-        let history = &engine.solver.history;
+        let history = &engine.motion.history;
         assert!(history.previous.is_none() && history.multipliers.rods.is_empty());
     }
 }
@@ -399,7 +402,7 @@ fn sheets_that_may_lock_have_a_limit() {
             let model = model.with_pins(pins).unwrap();
             let state = State::at_rest(sheet.positions().to_vec());
             let mut engine = Engine::new(model, method.clone(), state).unwrap();
-            let may_lock = k < 3 && pins.len() > 1;
+            let may_lock = k < 2 && pins.len() > 1;
             assert_eq!(
                 engine.work_limit(H).is_some(),
                 may_lock,
@@ -410,59 +413,54 @@ fn sheets_that_may_lock_have_a_limit() {
 }
 
 /// The chart-free methods.
-fn methods() -> [Method; 6] {
+fn methods() -> [Method; 5] {
     [
         Method::Bdf2(Default::default()),
         Method::ImplicitEuler(Default::default()),
-        Method::Projection(Default::default()),
         Method::EnergyMomentum(Default::default()),
         Method::Rattle(Default::default()),
         Method::RattleComposition(Default::default()),
     ]
 }
 
-/// A proposal from a solver state: its bits, or the error.
-fn propose(engine: &mut Engine, start: &SolverState, h: f64) -> Result<Vec<u8>, StepError> {
+/// A proposal from a motion: its bits, or the error.
+fn propose(engine: &mut Engine, start: &Motion, h: f64) -> Result<Vec<u8>, StepError> {
     let Engine {
         model,
-        contact,
+        objective,
         integrator,
         proposal,
         ..
     } = engine;
-    let scene = Scene {
-        model,
-        contact: contact.as_mut().map(RunContact::step),
-    };
+    let scene = Scene { model, objective };
     let attempt = Attempt::new(start, h, Memory::All);
     let effort = &mut SolverEffort::default();
     integrator.propose(scene, attempt, proposal, effort)?;
     let StepAccount {
         residual,
-        work,
         outcome,
-        contact,
-        ..
+        exchange,
     } = proposal.account;
-    let contact = [
-        contact.bodies,
-        contact.stored,
-        contact.friction,
-        contact.length_slack,
+    let exchange = [
+        exchange.work,
+        exchange.driven,
+        exchange.stored,
+        exchange.friction,
+        exchange.length_slack,
     ];
-    let account = (residual, work, outcome, contact);
-    Ok(bits(&(&proposal.solver.compact(), account)))
+    let account = (residual, outcome, exchange);
+    Ok(bits(&(&proposal.motion.compact(), account)))
 }
 
 /// Proposals of an integrator do not depend on what it proposed before.
 ///
-/// Returns the solver state from which the proposals start.
-fn check_purity(mut engine: Engine, what: &str) -> SolverState {
+/// Returns the motion from which the proposals start.
+fn check_purity(mut engine: Engine, what: &str) -> Motion {
     let h = 1.0 / 240.0;
-    let mut moments = vec![engine.solver.clone()];
+    let mut moments = vec![engine.motion.clone()];
     for _ in 0..12 {
         engine.advance(h, &mut StepTotals::default()).unwrap();
-        moments.push(engine.solver.clone());
+        moments.push(engine.motion.clone());
     }
     let start = moments.last().unwrap();
     let first = propose(&mut engine, start, h).unwrap_or_else(|e| panic!("{what}: {e}"));
@@ -474,8 +472,8 @@ fn check_purity(mut engine: Engine, what: &str) -> SolverState {
         // A refusal, if anything is one.
         (start, 1e6 * h),
     ];
-    for (solver, length) in others {
-        let other = propose(&mut engine, solver, length);
+    for (motion, length) in others {
+        let other = propose(&mut engine, motion, length);
         assert!(other.as_ref() != Ok(&first), "{what}: not another proposal");
         let again = propose(&mut engine, start, h);
         assert!(again.as_ref() == Ok(&first), "{what}: after {length} s");
