@@ -68,11 +68,6 @@ tuning! {
     /// Relative change of normal forces below which friction counts as settled in rounds. With 1e-3 drapes
     /// need a tenth more factorisations.
     friction_settled = 0.05,
-    /// Altitude of a face, in parts of its longest side, from which rods 1e10 times as stiff as the masses
-    /// hold the face: a length error `d` of the long sides moves the apex of a face of altitude `a l` by `d l
-    /// / a`, so that slimmer faces need less than the 1e-10 that such rods let through for an error of 1e-4
-    /// in the altitude.
-    sliver = 1e-3,
     /// Stiffness of the rods, over that of the masses, in systems that are solved for their multipliers.
     /// These are regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`; `ConstrainedSolver`
     /// takes the regularisation out again. With 1e10 steps keep momentum and symmetries to round-off, with

@@ -187,8 +187,6 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         let problem = &mut *self.problem;
         match self.phase.start {
             Start::Prediction => lagrangian.predict(problem),
-            Start::Beginning if problem.is_bounded() => {}
-            Start::Beginning => lagrangian.place_pins(problem),
             Start::Lower if !problem.has_contact() && problem.model.has_drives() => {
                 lagrangian.set_stiffness(options.stiffness, options.stiffness);
                 lagrangian.place_pins(problem);

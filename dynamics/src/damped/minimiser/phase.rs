@@ -3,34 +3,7 @@
 use super::problem::StepProblem;
 use crate::step::integrator::Phases;
 use crate::step::tuning::Tuning;
-use crate::{ImplicitOptions, Isometry, SheetModel};
-use isosheet_mesh::area_from_lengths;
-
-/// What the slimmest face of a sheet allows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Faces {
-    /// Any phase first.
-    Compact,
-    /// Phases that are exact in the altitudes of slivers first.
-    Slivers,
-}
-
-impl Faces {
-    pub(super) fn of(model: &SheetModel, tuning: &Tuning) -> Self {
-        let lengths = model.rods().lengths();
-        let is_sliver = |f| {
-            let sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
-            let longest = sides.iter().fold(0.0, |longest, side| side.max(longest));
-            // (Rounded lengths of a sliver may make no triangle; its area is zero.)
-            2.0 * area_from_lengths(sides) < tuning.sliver * longest * longest
-        };
-        if model.topology().face_ids().any(is_sliver) {
-            Self::Slivers
-        } else {
-            Self::Compact
-        }
-    }
-}
+use crate::{ImplicitOptions, Isometry};
 
 /// Where a phase starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,8 +13,6 @@ pub(super) enum Start {
     Lower,
     /// Where inertia alone would take the sheet, unless contact or the limit of the strain is in the way.
     Prediction,
-    /// At the positions at the start of the step.
-    Beginning,
 }
 
 /// Where the multipliers of the rods come from.
@@ -104,69 +75,53 @@ impl Phase {
     ///
     /// | phase | start | multipliers | iterates | rounds |
     /// |---|---|---|---|---|
-    /// | programming | start of the step | of the step before (in contact none); solved for | near the lengths | 1 |
-    /// | prediction | prediction | none; by rounds | free | many loose ones in contact |
-    /// | exact rounds | start of the step | none; by rounds | free | many exact ones in contact |
+    /// | SQP | start of the step | of the step before (in contact none); solved for | near the lengths | 1 |
+    /// | augmented Lagrangian | prediction | none; by rounds | free | many loose ones in contact |
     ///
-    /// Elastic sheets have no rods to solve for, and pins that move in contact stall programming: both begin
-    /// with the second row. Slivers begin with it without contact, with its own multipliers of the step
-    /// before. At rest and without contact the last row would repeat the second one.
+    /// Elastic sheets have no rods to solve for, and pins that move in contact stall SQP: both have the second
+    /// row alone.
     ///
-    /// A whole step of rods among bodies and supports at rest tries the first two rows, and is divided where
-    /// both fail: sheets that buckle, or touch while they are exactly flat, take fewer iterations in its
-    /// parts. In contact the second row has the iterations of the first one (sheets of 289 vertices that fall
-    /// onto a table take 2000 to 3000 factorisations in half a second, and 3000 to 12 000 where whole steps
-    /// try all rows); without contact it has the restoration of the first one at its end (a sheet of 4225
-    /// vertices that hangs for a second takes 1535 factorisations instead of 2375).
+    /// A whole step of rods among bodies and supports at rest is divided early where both fail: sheets that
+    /// buckle, or touch while they are exactly flat, take fewer iterations in its parts. In contact the second
+    /// row has the iterations of the first one (sheets of 289 vertices that fall onto a table take 2000 to
+    /// 3000 factorisations in half a second, and 3000 to 12 000 where whole steps go on); without contact it
+    /// has the restoration of the first one at its end (a sheet of 4225 vertices that hangs for a second takes
+    /// 1535 factorisations instead of 2375).
     pub(super) fn table(
         problem: &StepProblem<'_>,
-        faces: Faces,
         options: &ImplicitOptions,
         tuning: &Tuning,
-    ) -> [Option<Self>; 3] {
+    ) -> [Option<Self>; 2] {
         let model = problem.model;
-        let has_slivers = faces == Faces::Slivers;
-        let is_rods = model.isometry() == Isometry::Rods;
         let has_contact = problem.has_contact();
-        let programming = Self::programming(problem, options, tuning);
-        let prediction = Self::rounds(problem, faces, options, tuning);
-        let exact = prediction.exact(options);
-        let repeats = !has_slivers && !has_contact && problem.start.prediction == problem.state().x;
-        let last = (!repeats).then_some(exact);
-        if !is_rods || has_contact && model.has_drives() {
-            [None, Some(prediction), last]
-        } else if has_slivers && !has_contact {
-            // The phase that comes first looks for saddles: others start off them.
-            let saddle = Saddle::Ignored;
-            let programming = Self {
-                saddle,
-                ..programming
-            };
-            [Some(prediction), Some(programming), last]
+        let sqp = Self::sqp(problem, options, tuning);
+        let rounds = Self::rounds(problem, options, tuning);
+        if model.isometry() != Isometry::Rods || has_contact && model.has_drives() {
+            [None, Some(rounds)]
         } else if problem.phases == Phases::Brief {
             let brief = match has_contact {
                 true => Self {
-                    all_iterations: programming.iterations,
-                    ..prediction
+                    all_iterations: sqp.iterations,
+                    ..rounds
                 },
                 false => Self {
-                    last_restoration: programming.last_restoration,
-                    ..prediction
+                    last_restoration: sqp.last_restoration,
+                    ..rounds
                 },
             };
-            [Some(programming), Some(brief), None]
+            [Some(sqp), Some(brief)]
         } else {
-            [Some(programming), Some(prediction), last]
+            [Some(sqp), Some(rounds)]
         }
     }
 
-    fn programming(problem: &StepProblem<'_>, options: &ImplicitOptions, tuning: &Tuning) -> Self {
+    fn sqp(problem: &StepProblem<'_>, options: &ImplicitOptions, tuning: &Tuning) -> Self {
         let has_contact = problem.has_contact();
         // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that
         // mends lengths against the barrier. And the multipliers of nearly dependent rods are arbitrary from
         // step to step.
         Self {
-            name: "programming",
+            name: "SQP",
             start: Start::Lower,
             multipliers: Multipliers::Solved,
             remembers: !has_contact,
@@ -198,20 +153,14 @@ impl Phase {
         }
     }
 
-    fn rounds(
-        problem: &StepProblem<'_>,
-        faces: Faces,
-        options: &ImplicitOptions,
-        tuning: &Tuning,
-    ) -> Self {
+    fn rounds(problem: &StepProblem<'_>, options: &ImplicitOptions, tuning: &Tuning) -> Self {
         let has_contact = problem.has_contact();
-        // The multipliers of programming grow without bound where rods are nearly dependent, and are no start
-        // here; those of this phase, which slivers begin with, are.
+        // The multipliers of SQP grow without bound where rods are nearly dependent, and are no start here.
         Self {
-            name: "prediction",
+            name: "augmented Lagrangian",
             start: Start::Prediction,
             multipliers: Multipliers::Rounds,
-            remembers: faces == Faces::Slivers,
+            remembers: false,
             iterate_strain: f64::INFINITY,
             merit_penalty: options.stiffness,
             iterations: options.max_iterations,
@@ -230,18 +179,6 @@ impl Phase {
             friction_tolerance: options.friction_tolerance.max(tuning.friction_settled),
             friction_updates: options.max_friction_updates,
             saddle: Saddle::Perturbation,
-        }
-    }
-
-    /// All rounds solved exactly, leaving nothing to the restoration: for nearly flat sheets, which fold by
-    /// the root of their length error.
-    fn exact(self, options: &ImplicitOptions) -> Self {
-        Self {
-            name: "exact rounds",
-            start: Start::Beginning,
-            remembers: false,
-            small_strain: self.small_strain.min(options.strain_tolerance),
-            ..self
         }
     }
 }
