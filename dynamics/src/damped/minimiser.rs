@@ -20,7 +20,7 @@ use crate::step::tuning::Tuning;
 use crate::term::Exchange;
 use crate::{ImplicitOptions, SheetModel};
 use isosheet_coords::linalg::LinalgError;
-use lagrangian::Merit;
+use lagrangian::{Merit, OPERATIONS};
 use newton::{Failure, Minimum, Newton};
 use phase::{Multipliers, Phase};
 use problem::StepProblem;
@@ -189,7 +189,7 @@ impl Minimiser {
             Multipliers::Rounds => now.rod_scale.max(bound.rod_scale),
         };
         let slack = problem.h().powi(2) * self.length_slack(problem)
-            + self.work.tuning.round_off_operations
+            + OPERATIONS
                 * (now.round_off
                     + bound.round_off
                     + self.work.options.strain_tolerance * rod_scale);

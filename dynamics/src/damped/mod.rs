@@ -7,3 +7,7 @@ pub(crate) mod minimiser;
 pub(crate) mod options;
 pub(crate) mod restoration;
 pub(crate) mod start;
+
+/// Part of a promised decrease that has to come true in a line search, the usual value of Armijo's condition
+/// (Nocedal and Wright, "Numerical Optimization", 2006, Sec. 3.1).
+const ARMIJO: f64 = 1e-4;

@@ -4,6 +4,7 @@ mod correction;
 
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
+use crate::damped::ARMIJO;
 use crate::linear::constrained::ConstrainedSolver;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
@@ -134,18 +135,14 @@ impl Restoration {
         effort: &mut SolverEffort<'_>,
     ) -> f64 {
         let tolerance = goal.tolerance;
-        let (mut penalty, mut slow) = (self.tuning.restoration_penalty, 0_usize);
+        let (mut penalty, mut slow) = (self.tuning.first_stiffness, 0_usize);
         let mut barriers = barriers.filter(Barriers::are_there);
-        let max_openings = match (goal.may_be_far, &barriers) {
-            (true, _) => 0,
-            (false, Some(_)) => self.tuning.openings_in_contact as i32,
-            (false, None) => i32::MAX,
-        };
+        let has_barriers = barriers.is_some();
         let mut openings = 0;
         self.begin(model, &goal, x);
         if goal.matrix == FirstMatrix::Factorised && model.constraints().is_empty() {
             let target = match barriers {
-                Some(_) => self.tuning.reserve * tolerance,
+                Some(_) => self.tuning.contraction() * tolerance,
                 None => tolerance,
             };
             self.correct(model, matrix, barriers.as_mut(), x, (goal.t, target));
@@ -162,7 +159,7 @@ impl Restoration {
             match self.solve(model, matrix, barriers.as_mut(), x, (goal.t, penalty)) {
                 Solved::Yes => {}
                 Solved::PenaltyTooLarge if penalty > 1.0 => {
-                    penalty = (penalty / self.tuning.penalty_step.powi(2)).max(1.0);
+                    penalty = (penalty / self.tuning.penalty_growth.powi(2)).max(1.0);
                     continue;
                 }
                 Solved::PenaltyTooLarge | Solved::No => break,
@@ -176,7 +173,7 @@ impl Restoration {
             }
             let linear = self.linearised_error(model, x);
             let (length, after) = self.line_search(model, goal.t, x, limit, before);
-            if after > self.tuning.contraction * before && self.worst(model, x) <= tolerance {
+            if after > self.tuning.contraction() * before && self.worst(model, x) <= tolerance {
                 return self.worst(model, x);
             }
             slow = if after > self.tuning.slow * before {
@@ -184,32 +181,33 @@ impl Restoration {
             } else {
                 0
             };
-            let is_stationary = length < self.tuning.shortest_part()
-                || slow >= self.tuning.slow_iterations as usize;
+            let is_stationary =
+                length < self.tuning.shortest_part() || slow >= self.tuning.patience as usize;
             if linear > self.tuning.slow * before
                 && penalty < self.tuning.last_stiffness
-                && slow < self.tuning.slow_iterations as usize
+                && slow < self.tuning.patience as usize
             {
                 // The masses hold the step back.
-                penalty *= self.tuning.penalty_step.powi(2);
-            } else if is_stationary && openings == max_openings {
-                strain = self.worst(model, x);
-                break;
+                penalty *= self.tuning.penalty_growth.powi(2);
             } else if is_stationary {
+                let size = self.tuning.opening_growth.powi(openings) * strain.sqrt();
+                if goal.may_be_far || has_barriers && openings == self.tuning.patience as i32 {
+                    strain = self.worst(model, x);
+                    break;
+                }
                 // Stationary, but not solved: the error lies across the range of G, which happens where a
                 // patch is flat and asks for a fold. A displacement of order sqrt(strain), in any
                 // direction, opens it.
-                penalty = self.tuning.restoration_penalty;
-                let size = self.tuning.opening_growth.powi(openings) * strain.sqrt();
+                penalty = self.tuning.first_stiffness;
                 let size = size.min(self.tuning.iterate_strain);
                 self.unfold(model, barriers.as_mut(), (goal.t, x), size);
                 openings += 1;
                 slow = 0;
                 self.evaluate(model, goal.t, x);
             } else if length < limit {
-                penalty /= self.tuning.penalty_step;
-            } else if limit == 1.0 && after > self.tuning.contraction * before {
-                penalty *= self.tuning.penalty_step;
+                penalty /= self.tuning.penalty_growth;
+            } else if limit == 1.0 && after > self.tuning.contraction() * before {
+                penalty *= self.tuning.penalty_growth;
             }
             penalty = penalty.clamp(1.0, self.tuning.last_stiffness);
             strain = self.worst(model, x);
@@ -288,7 +286,7 @@ impl Restoration {
             }
             self.evaluate(model, t, x);
             let after = self.error();
-            let is_enough = after <= (1.0 - self.tuning.armijo * length) * before;
+            let is_enough = after <= (1.0 - ARMIJO * length) * before;
             if is_enough || length < self.tuning.shortest_part() {
                 return (length, after);
             }

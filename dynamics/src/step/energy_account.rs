@@ -12,6 +12,13 @@ use serde::{Deserialize, Serialize};
 /// than a half, most of the friction is not that of the step.
 const UNSETTLED: f64 = 0.5;
 
+/// Part of the work of bodies, supports and air that the trapezoidal rule may err by: its error is of the size
+/// of the difference between the forces at both ends of a step.
+const DRIVEN: f64 = 0.5;
+/// Relative displacement that the tolerance of the lengths, 1e-12 unless another is asked for, leaves open over
+/// ten rods in a row: over a short step it looks like a velocity, and forces do work over it.
+const LENGTH_NOISE: f64 = 1e-11;
+
 /// Energy gains of the steps of a damped method, without the work of forces, bodies and supports.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnergyAccount {
@@ -54,9 +61,9 @@ impl EnergyAccount {
             });
         }
         let size = norm_inf(&after.x);
-        let noise = tuning.position_noise * size / (after.t - before.t);
+        let noise = LENGTH_NOISE * size / (after.t - before.t);
         let energies = kinetic[0] + potential[0].abs() + potential[1].abs();
-        let mut round_off = tuning.energy_round_off * (energies + exchange.work.abs() + drives)
+        let mut round_off = LENGTH_NOISE * (energies + exchange.work.abs() + drives)
             + model.mass().total() * noise * noise
             + exchange.length_slack;
         let unsettled = (exchange.friction - exchange.settled_friction).abs();
@@ -71,11 +78,10 @@ impl EnergyAccount {
                 settled: exchange.settled_friction,
             });
         }
-        let share = kinetic[0].max(kinetic[1]) + tuning.drive_uncertainty * drives;
+        let share = kinetic[0].max(kinetic[1]) + DRIVEN * drives / tuning.gain;
         let net = self.net + gain;
         let largest = self.kinetic.max(kinetic[0]);
-        let unknown =
-            |round_off| self.unknown + round_off + tuning.gain * tuning.drive_uncertainty * drives;
+        let unknown = |round_off| self.unknown + round_off + DRIVEN * drives;
         let is_too_much = |round_off| {
             gain > tuning.gain * share + round_off
                 || gain > round_off
@@ -84,7 +90,7 @@ impl EnergyAccount {
         if is_too_much(round_off) {
             // Forces far above the weight do work over the noise of positions, which energies near zero do
             // not show.
-            round_off += tuning.position_noise * size * force_sum();
+            round_off += LENGTH_NOISE * size * force_sum();
             if is_too_much(round_off) {
                 return Err(StepError::EnergyGain {
                     t: before.t,

@@ -40,6 +40,9 @@ pub(crate) struct WithoutChart {
     pub(crate) fixed: Vec<u32>,
 }
 
+/// Sub-steps accepted after a refusal before a longer one is tried.
+const PATIENCE: usize = 4;
+
 /// A sheet that a chart-free method moves.
 pub(crate) struct Engine {
     pub(crate) model: Arc<SheetModel>,
@@ -224,7 +227,7 @@ impl Engine {
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
-        let lengths = Subdivision::new(self.state().t, h, self.tuning.patience as usize);
+        let lengths = Subdivision::new(self.state().t, h, PATIENCE);
         let mut run = Substeps {
             limit: self.work_limit(self.state().t + h),
             engine: self,

@@ -20,6 +20,11 @@ use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+/// Bound on the number of operations that a term of the merit function goes through, for its round-off; its
+/// square for the squares of length errors that are themselves round-off of the positions. A minimum may be
+/// above the start of its step by so many times the round-off of both.
+pub(super) const OPERATIONS: f64 = 8.0;
+
 /// The augmented Lagrangian at an iterate,
 ///
 /// ```text
@@ -193,8 +198,7 @@ impl Lagrangian {
             value: potential.value + rods,
             potential: potential.value,
             rod_scale,
-            round_off: self.tuning.round_off_operations * f64::EPSILON * sizes
-                + self.tuning.round_off_operations.powi(2) * squares,
+            round_off: OPERATIONS * f64::EPSILON * sizes + OPERATIONS.powi(2) * squares,
         }
     }
 
@@ -558,7 +562,7 @@ impl Lagrangian {
         }
         model.clear_pinned(&mut self.dx);
         let mut quotient = 0.0;
-        for _ in 0..self.tuning.inner_iterations as usize {
+        for _ in 0..self.tuning.repetitions as usize {
             self.apply_pressure(model);
             self.difference.copy_from_slice(&self.weighted);
             let (b, dx) = (&self.difference, &mut self.dx);

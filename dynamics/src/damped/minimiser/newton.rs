@@ -4,6 +4,7 @@ use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::phase::{Multipliers, Phase, Saddle, Start};
 use super::problem::StepProblem;
 use super::workspace::{LengthGoal, Workspace};
+use crate::damped::ARMIJO;
 use crate::damped::restoration::FirstMatrix;
 use crate::hessian::HessianPart;
 use crate::linear::constrained::MultiplierGoal;
@@ -43,7 +44,7 @@ enum Quality {
     Descends,
     /// No more than the tolerance: the iteration has converged.
     Converged,
-    /// No more than round-off, or than what the tolerance of the lengths leaves open.
+    /// No more than round-off.
     RoundOff,
 }
 
@@ -232,7 +233,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     fn judge(&mut self, direction: &Direction) -> Quality {
         let Direction { before, slope, .. } = direction;
         let tolerance = self.work.options.tolerance;
-        if slope.abs() <= before.round_off + self.noise(before) {
+        if slope.abs() <= before.round_off {
             self.residual = 0.0;
             return Quality::RoundOff;
         }
@@ -297,7 +298,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             }
             lagrangian.keep_multipliers();
             let mut violation = None;
-            for _ in 0..tuning.inner_iterations as usize {
+            for _ in 0..tuning.repetitions as usize {
                 lagrangian.set_gradient(self.problem);
                 if lagrangian.solve(model, self.effort).is_err() {
                     violation = None;
@@ -332,7 +333,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// When the multipliers of a step are good enough: once the linearised lengths are within the tolerance.
     fn multiplier_goal(&self) -> MultiplierGoal {
         MultiplierGoal {
-            max_iterations: self.work.tuning.inner_iterations as usize,
+            max_iterations: self.work.tuning.repetitions as usize,
             violation: self.work.strain_tolerance(self.problem),
             change: self.work.options.tolerance,
             longest: self.work.tuning.longest_iteration,
@@ -428,7 +429,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     fn has_decreased(&mut self, length: f64, direction: &Direction) -> bool {
         let Direction { before, slope, .. } = direction;
         let now = self.work.lagrangian.merit(self.problem);
-        let promised = before.value + self.work.tuning.armijo * length * slope;
+        let promised = before.value + ARMIJO * length * slope;
         now.value <= promised + before.round_off
     }
 
@@ -439,20 +440,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         }
         let to = LengthGoal {
             strain: self.phase.iterate_strain,
-            max_iterations: self.work.tuning.restorations as usize,
             matrix: FirstMatrix::Factorised,
         };
         self.work.restore(self.problem, to, self.effort) <= to.strain
-    }
-
-    /// Size of decreases that are noise of the lengths, besides round-off.
-    fn noise(&self, merit: &Merit) -> f64 {
-        if self.iterations <= (self.work.tuning.noise_patience as usize)
-            || self.phase.multipliers == Multipliers::Rounds
-        {
-            return 0.0;
-        }
-        self.work.tuning.length_noise * self.work.options.strain_tolerance * merit.rod_scale
     }
 
     /// Whether the restoration at the end will be a small displacement, or further rounds see to that.
@@ -590,7 +580,6 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     fn restore_lengths(&mut self) -> bool {
         let to = LengthGoal {
             strain: self.work.strain_tolerance(self.problem),
-            max_iterations: self.phase.last_restoration,
             matrix: match self.phase.multipliers {
                 Multipliers::Solved => FirstMatrix::Factorised,
                 Multipliers::Rounds => FirstMatrix::Assembled,

@@ -63,8 +63,6 @@ pub(super) struct Phase {
     pub(super) stays_semidefinite: bool,
     /// Strain from which the restoration at the end is a small displacement.
     pub(super) small_strain: f64,
-    /// Largest number of iterations of this restoration.
-    pub(super) last_restoration: usize,
     pub(super) friction_tolerance: f64,
     pub(super) friction_updates: usize,
     pub(super) saddle: Saddle,
@@ -81,12 +79,10 @@ impl Phase {
     /// Elastic sheets have no rods to solve for, and pins that move in contact stall SQP: both have the second
     /// row alone.
     ///
-    /// A whole step of rods among bodies and supports at rest is divided early where both fail: sheets that
-    /// buckle, or touch while they are exactly flat, take fewer iterations in its parts. In contact the second
-    /// row has the iterations of the first one (sheets of 289 vertices that fall onto a table take 2000 to
-    /// 3000 factorisations in half a second, and 3000 to 12 000 where whole steps go on); without contact it
-    /// has the restoration of the first one at its end (a sheet of 4225 vertices that hangs for a second takes
-    /// 1535 factorisations instead of 2375).
+    /// A whole step of rods in contact among bodies and supports at rest is divided early where both fail: the
+    /// second row has the iterations of the first one. (Sheets that touch while they are exactly flat take
+    /// fewer iterations in parts of the step: those of 289 vertices that fall onto a table 2000 to 3000
+    /// factorisations in half a second, and 3000 to 12 000 where whole steps go on.)
     pub(super) fn table(
         problem: &StepProblem<'_>,
         options: &ImplicitOptions,
@@ -98,16 +94,10 @@ impl Phase {
         let rounds = Self::rounds(problem, options, tuning);
         if model.isometry() != Isometry::Rods || has_contact && model.has_drives() {
             [None, Some(rounds)]
-        } else if problem.phases == Phases::Brief {
-            let brief = match has_contact {
-                true => Self {
-                    all_iterations: sqp.iterations,
-                    ..rounds
-                },
-                false => Self {
-                    last_restoration: sqp.last_restoration,
-                    ..rounds
-                },
+        } else if has_contact && problem.phases == Phases::Brief {
+            let brief = Self {
+                all_iterations: sqp.iterations,
+                ..rounds
             };
             [Some(sqp), Some(brief)]
         } else {
@@ -135,7 +125,7 @@ impl Phase {
                 false => options.max_iterations,
             },
             all_iterations: usize::MAX,
-            halvings: tuning.halvings as usize,
+            halvings: tuning.repetitions as usize,
             rounds: 1,
             stays_semidefinite: true,
             small_strain: match has_contact {
@@ -143,7 +133,6 @@ impl Phase {
                 true => f64::INFINITY,
                 false => tuning.small_strain,
             },
-            last_restoration: tuning.restorations as usize,
             friction_tolerance: options.friction_tolerance,
             friction_updates: options.max_friction_updates,
             saddle: match has_contact {
@@ -175,8 +164,7 @@ impl Phase {
                 true => tuning.small_strain,
                 false => f64::INFINITY,
             },
-            last_restoration: options.max_projections,
-            friction_tolerance: options.friction_tolerance.max(tuning.friction_settled),
+            friction_tolerance: options.friction_tolerance.sqrt(),
             friction_updates: options.max_friction_updates,
             saddle: Saddle::Perturbation,
         }

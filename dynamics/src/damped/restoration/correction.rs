@@ -59,7 +59,7 @@ impl Restoration {
                 self.evaluate(model, t, x);
                 return;
             }
-            if strain > self.tuning.contraction * before {
+            if strain > self.tuning.contraction() * before {
                 return;
             }
         }
