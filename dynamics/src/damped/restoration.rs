@@ -10,7 +10,7 @@ use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::objective::Objective;
 use crate::potential::Memories;
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
 use crate::step::tuning::Tuning;
 use crate::term::{Barrier, Iterate};
 use nalgebra::Vector3;

@@ -1,6 +1,5 @@
 //! A sheet that stretches as its material does, up to a limit.
 
-mod deformation;
 mod face;
 mod limit;
 mod load;
@@ -9,7 +8,7 @@ mod tests;
 
 use crate::potential::{At, Reached, Settled};
 use crate::{HessianSink, Potential};
-pub use deformation::ElasticDeformation;
+
 use face::Face;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, FaceId, Part, Sheet};
@@ -276,7 +275,7 @@ impl ElasticSheet {
     }
 
     /// The angles by which the faces bend that have the given energies of bending (joules), radians.
-    fn bend_angles(&self, bending: &[f64]) -> Vec<f64> {
+    pub(crate) fn bend_angles(&self, bending: &[f64]) -> Vec<f64> {
         let angle = |(face, energy): (&Face, &f64)| {
             if face.rigidity == 0.0 {
                 return 0.0;

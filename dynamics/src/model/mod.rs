@@ -4,6 +4,7 @@ pub(crate) mod air;
 pub(crate) mod clamps;
 #[cfg(test)]
 mod derivative_tests;
+pub(crate) mod elastic_deformation;
 mod error;
 pub(crate) mod hand;
 pub(crate) mod immobile;

@@ -4,11 +4,10 @@ mod acting;
 mod inertia;
 
 use crate::SheetModel;
-use crate::contact::ContactTerm;
+use crate::contact::{ContactState, ContactTerm};
 use crate::hessian::HessianProduct;
 use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
-use crate::step::motion::Motion;
 use crate::term::{Barrier, Exchange, Iterate, Refusal, StepStart, Term, Value};
 use acting::Acting;
 use inertia::Inertia;
@@ -281,9 +280,9 @@ impl Objective {
         self.acting.force_sum()
     }
 
-    /// Leaves what the terms show of the end of a step.
-    pub(crate) fn leave(&self, motion: &mut Motion) {
-        motion.set_contacts(self.contact.as_ref().and_then(ContactTerm::state));
+    /// The contacts that were evaluated last, with friction.
+    pub(crate) fn contacts(&self) -> Option<&ContactState> {
+        self.contact.as_ref().and_then(ContactTerm::state)
     }
 
     /// What all terms did in a step that ends at an iterate.

@@ -2,7 +2,7 @@
 
 use crate::contact::ContactState;
 use crate::potential::Memories;
-use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
+use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::energy_account::EnergyAccount;
 use crate::step::history::History;
 use crate::step::reaction::Balance;

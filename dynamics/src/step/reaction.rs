@@ -5,7 +5,7 @@ use crate::constraint::rows::VertexRows;
 use crate::linear::shares::shares;
 use crate::model::support::Support;
 use crate::potential::Memories;
-use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
+use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::vectors::{add, point};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,7 @@ use super::lagrangian::Lagrangian;
 use super::problem::StepProblem;
 use crate::damped::restoration::{Barriers, FirstMatrix, Restoration, RestorationGoal};
 use crate::model::round_off::strain_floor;
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel};

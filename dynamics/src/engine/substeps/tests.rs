@@ -3,10 +3,10 @@
 
 use super::*;
 use crate::contact::contact_tests::{Floor, model, sheet};
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
+use crate::report::reason::Reason;
+use crate::report::step_error::not_converged;
 use crate::step::integrator::{MethodTraits, StepAccount};
-use crate::step::reason::Reason;
-use crate::step::report::not_converged;
 use isosheet_mesh::{MassKind, Sheet, generate};
 use serde::Serialize;
 use std::sync::{Arc, Mutex};

@@ -1,12 +1,12 @@
 //! Reports and errors of steps.
 
-use crate::chart::ChartDynamicsError;
 use crate::contact::BodyMotionError;
 use crate::model::support::Support;
-use crate::step::effort::SolverEffort;
-use crate::step::infeasibility::Infeasibility;
-use crate::step::pressing::Pressing;
-use crate::step::reason::Reason;
+use crate::report::chart_error::ChartDynamicsError;
+use crate::report::effort::SolverEffort;
+use crate::report::infeasibility::Infeasibility;
+use crate::report::pressing::Pressing;
+use crate::report::reason::Reason;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::wording::{brief, counted, given, listed};
 use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};

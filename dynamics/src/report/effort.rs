@@ -1,7 +1,7 @@
 //! Counters of a step, with its watch and its trace.
 
-use crate::step::reason::Reason;
-use crate::step::trace::TraceEvent;
+use crate::report::reason::Reason;
+use crate::report::trace::TraceEvent;
 use std::fmt;
 use std::ops::ControlFlow;
 

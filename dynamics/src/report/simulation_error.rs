@@ -1,10 +1,10 @@
 //! Errors of the start of a simulation.
 
-use crate::chart::ChartDynamicsError;
 use crate::contact::ContactError;
 use crate::options::OptionsError;
-use crate::step::checkpoint_error::CheckpointError;
-use crate::step::report::StepError;
+use crate::report::chart_error::ChartDynamicsError;
+use crate::report::checkpoint_error::CheckpointError;
+use crate::report::step_error::StepError;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::Advice;
 

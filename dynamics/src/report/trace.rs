@@ -1,6 +1,6 @@
 //! What a simulation tells about its steps while it takes them.
 
-use crate::step::reason::Reason;
+use crate::report::reason::Reason;
 use crate::term::Barrier;
 use serde::Serialize;
 

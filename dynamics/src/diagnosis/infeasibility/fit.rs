@@ -1,6 +1,6 @@
 //! The least squares of lengths, strains and gaps with supports and bodies where they will be.
 
-use super::driver::{Drive, Driver};
+use super::driver::Drive;
 use super::gaps::Gaps;
 use crate::constraint::rows::VertexRows;
 use crate::hessian::HessianPart;
@@ -8,6 +8,7 @@ use crate::linear::primal::PrimalMatrix;
 use crate::material::elastic_sheet::ElasticSheet;
 use crate::model::support::Support;
 use crate::potential::At;
+use crate::report::infeasibility::Driver;
 use crate::vectors::{add, point};
 use crate::{Potential, SheetModel, State};
 use isosheet_mesh::VertexId;

@@ -2,24 +2,26 @@
 
 use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan};
 use crate::damped::implicit::Implicit;
-use crate::linear::rank::rod_rank;
+use crate::diagnosis::blocked::{blocked_vertices, dependent_vertices};
+use crate::diagnosis::infeasibility::infeasibility;
+use crate::diagnosis::pressing::pressing;
+use crate::diagnosis::rank::rod_rank;
+use crate::engine::rod_forces::rod_forces;
+use crate::engine::subdivision::Subdivision;
 use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
 use crate::potential::Memories;
-use crate::step::blocked::{blocked_vertices, dependent_vertices};
-use crate::step::checkpoint_error::CheckpointError;
+use crate::report::checkpoint_error::CheckpointError;
+use crate::report::infeasibility::Infeasibility;
+use crate::report::pressing::Pressing;
+use crate::report::step_error::{StepError, StepOutcome, StepTotals};
+use crate::report::trace::TraceEvent;
 use crate::step::control::{Decision, Stepping, take_substep};
-use crate::step::infeasibility::{Infeasibility, infeasibility};
 use crate::step::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
 };
 use crate::step::motion::Motion;
-use crate::step::pressing::{Pressing, pressing};
 use crate::step::reaction::Balance;
-use crate::step::report::{StepError, StepOutcome, StepTotals};
-use crate::step::rod_forces::rod_forces;
-use crate::step::subdivision::Subdivision;
-use crate::step::trace::TraceEvent;
 use crate::step::tuning::Tuning;
 use crate::term::{Exchange, Formula};
 use crate::{
