@@ -169,30 +169,80 @@ pub trait Potential: Debug + Send + Sync {
 /// What each of the potentials of a model remembers ([`Potential::memory`]), in the order of
 /// [`SheetModel::potentials`](crate::SheetModel::potentials).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Memories(Vec<Vec<f64>>);
+pub struct Memories {
+    lists: Vec<Vec<f64>>,
+    /// The vertices that hands hold, with the numbers of the potentials of these hands.
+    hands: Vec<(u32, usize)>,
+}
 
 impl Memories {
     pub(crate) fn of(lists: impl Iterator<Item = Vec<f64>>) -> Self {
-        Self(lists.collect())
+        Self {
+            lists: lists.collect(),
+            hands: Vec::new(),
+        }
+    }
+
+    /// With hands at these vertices, given with the numbers of their potentials.
+    pub(crate) fn with_hands(self, hands: impl Iterator<Item = (u32, usize)>) -> Self {
+        Self {
+            hands: hands.collect(),
+            ..self
+        }
     }
 
     pub(crate) fn lists_mut(&mut self) -> &mut [Vec<f64>] {
-        &mut self.0
+        &mut self.lists
     }
 
     /// One list of numbers for each potential, most of them empty.
     pub fn lists(&self) -> &[Vec<f64>] {
-        &self.0
+        &self.lists
     }
 
     /// The memory of the potential of a number.
     pub(crate) fn list_mut(&mut self, number: usize) -> &mut [f64] {
-        &mut self.0[number]
+        &mut self.lists[number]
     }
 
     /// Takes over other memories of the same model, in place.
     pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.0.clone_from(&other.0);
+        self.lists.clone_from(&other.lists);
+        self.hands.clone_from(&other.hands);
+    }
+
+    /// Takes over the memories of another model of the same sheet: of hands by their vertices, which may have
+    /// come and gone, and of other potentials that remember by their order.
+    ///
+    /// # Errors
+    /// The numbers of numbers, found and expected, where they are not those of this model.
+    pub(crate) fn take_over(&mut self, other: &Self) -> Result<(), [usize; 2]> {
+        let hands = self.hands.iter().filter_map(|(vertex, own)| {
+            let (_, theirs) = other.hands.iter().find(|(v, _)| v == vertex)?;
+            Some((*own, *theirs))
+        });
+        let others = self.lasting().zip(other.lasting());
+        let [found, expected] = [other, &*self].map(|m| m.lasting().count());
+        let pairs: Vec<(usize, usize)> = hands.chain(others).collect();
+        if found != expected {
+            return Err([found, expected]);
+        }
+        for (own, theirs) in pairs {
+            let kept = other.lists.get(theirs).map_or(&[][..], Vec::as_slice);
+            let own = &mut self.lists[own];
+            if kept.len() != own.len() {
+                return Err([kept.len(), own.len()]);
+            }
+            own.copy_from_slice(kept);
+        }
+        Ok(())
+    }
+
+    /// The numbers of the potentials that remember, without hands.
+    fn lasting(&self) -> impl Iterator<Item = usize> {
+        let is_hand = |number: &usize| self.hands.iter().any(|(_, n)| n == number);
+        let remembering = (0..self.lists.len()).filter(|n| !self.lists[*n].is_empty());
+        remembering.filter(move |n| !is_hand(n))
     }
 }
 

@@ -87,11 +87,6 @@ fn steps_do_not_allocate() {
             0,
         ),
         (
-            "projection",
-            hanging(Method::Projection(Default::default())),
-            0,
-        ),
-        (
             "energy-momentum",
             hanging(Method::EnergyMomentum(Default::default())),
             PER_LU,

@@ -128,7 +128,15 @@ impl Engine {
         contact: Option<Box<dyn Contact>>,
         kept: WithoutChart,
     ) -> Result<Self, SimulationError> {
-        let motion = kept.motion;
+        let mut motion = kept.motion;
+        let mut memories = model.memories();
+        let taken = memories.take_over(&motion.memories);
+        taken.map_err(|[found, expected]| CheckpointError::Length {
+            what: "what potentials remember",
+            found,
+            expected,
+        })?;
+        motion.memories = memories;
         motion.check(&model, &kept.fixed)?;
         let fixed: Vec<VertexId> = kept.fixed.iter().copied().map(VertexId).collect();
         model.fix(&fixed);

@@ -400,7 +400,7 @@ impl Potential for ElasticSheet {
 
     /// Raises the stiffness of the barrier to what the state asks for, which is work.
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
-        let needed = strain_barrier(self, state);
+        let needed = strain_barrier(self.mass / self.area(), self.acceleration, state);
         if needed <= memory[0] {
             return Settled::default();
         }

@@ -2,6 +2,8 @@
 
 mod acting;
 mod inertia;
+#[cfg(test)]
+mod spring_tests;
 
 use crate::SheetModel;
 use crate::contact::{ContactState, ContactTerm};
