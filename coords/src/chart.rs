@@ -7,7 +7,7 @@
 //! coordinates, and positions from these values.
 
 use crate::assignment::AssignmentError;
-use crate::linalg::LinalgError;
+use isosheet_linalg::LinalgError;
 use crate::linearised::Linearised;
 use crate::placement_error::PlacementError;
 use crate::realise::RealiseError;

@@ -2,7 +2,7 @@
 
 use crate::assignment::{Assignment, AssignmentOptions, Rule, assign};
 use crate::chart::{Chart, ChartError};
-use crate::linalg::{Pattern, SparseLu};
+use isosheet_linalg::{Pattern, SparseLu};
 use crate::linearised::Linearised;
 use crate::newton::newton;
 use crate::placement::{jacobian_f, jacobian_g, jacobian_h};

@@ -1,6 +1,6 @@
 //! The linearised chart `A = [G; S]`, factorised: `J = A^-1 [0; I]` and its transpose, applied or formed.
 
-use crate::linalg::{LinalgError, Pattern, SparseLu};
+use isosheet_linalg::{LinalgError, Pattern, SparseLu};
 use crate::row_pattern::RowPattern;
 use crate::system::RodSystem;
 use nalgebra::DMatrix;

@@ -1,7 +1,7 @@
 //! Newton's method for positions with given coordinates and edge lengths.
 
 use crate::chart::{Chart, ChartError};
-use crate::linalg::norm_inf;
+use isosheet_linalg::norm_inf;
 use crate::linearised::Linearised;
 use crate::realise::check;
 

@@ -1,6 +1,6 @@
 //! The saddle-point matrix `[M G^T; G 0]`, factorised.
 
-use crate::linalg::{LinalgError, Pattern, SparseLu};
+use isosheet_linalg::{LinalgError, Pattern, SparseLu};
 use crate::system::RodSystem;
 use isosheet_mesh::MassMatrix;
 
