@@ -7,12 +7,12 @@
 //! coordinates, and positions from these values.
 
 use crate::assignment::AssignmentError;
-use isosheet_linalg::LinalgError;
 use crate::linearised::Linearised;
 use crate::placement_error::PlacementError;
 use crate::realise::RealiseError;
 use crate::row_pattern::RowPattern;
 use crate::system::{RodSystem, SystemError};
+use isosheet_linalg::LinalgError;
 use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, MeshError, VertexId};
 use nalgebra::DMatrix;
