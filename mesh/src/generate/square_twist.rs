@@ -90,9 +90,9 @@ fn distance2([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::flat_folding::check_flat_folding;
     use super::*;
     use crate::VertexId;
+    use crate::tests::flat_folding::check_flat_folding;
 
     #[test]
     fn counts_lengths_and_flat_folding() {
