@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::error::{GenerateError, check_count, check_faces, check_size};
+use super::error::{GenerateError, check_count, check_faces, check_order, check_size};
 use crate::Sheet;
 
 /// A flat disk about the origin: the triangulation of a hexagon of `rings` rings, with each ring on a circle.
@@ -79,14 +79,8 @@ pub fn fan(triangles: usize, radius: f64, opening: f64) -> Result<Sheet, Generat
     check_size("opening", opening)?;
     check_faces(triangles as u128)?;
     let limit = TAU.min(std::f64::consts::PI * triangles as f64);
-    if opening >= limit {
-        return Err(GenerateError::Order {
-            small: "opening",
-            small_value: opening,
-            large: "the largest angle that this many triangles can fan out",
-            large_value: limit,
-        });
-    }
+    let largest = "the largest angle that this many triangles can fan out";
+    check_order(("opening", opening), (largest, limit))?;
     let mut positions = vec![0.0; 3];
     for k in 0..=triangles {
         let (s, c) = (opening * k as f64 / triangles as f64).sin_cos();
@@ -114,14 +108,7 @@ pub fn annulus(
     check_size("inner", inner)?;
     check_size("outer", outer)?;
     check_faces(2 * segments as u128 * rings as u128)?;
-    if inner >= outer {
-        return Err(GenerateError::Order {
-            small: "inner",
-            small_value: inner,
-            large: "outer",
-            large_value: outer,
-        });
-    }
+    check_order(("inner", inner), ("outer", outer))?;
     let mut positions = Vec::with_capacity(3 * segments * (rings + 1));
     for r in 0..=rings {
         let radius = inner + (outer - inner) * r as f64 / rings as f64;
