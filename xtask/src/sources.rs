@@ -14,12 +14,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The charts: what a bent sheet's coordinates are.
-const CHARTS: &[&str] = &["mesh/src", "coords/src"];
+const CHARTS: &[&str] = &["mesh/src", "coords/src", "coords/linalg/src"];
 
 /// The crates of the solver, how scenes become simulations, and the mechanical problems.
 const SOLVER: &[&str] = &[
     "mesh/src",
     "coords/src",
+    "coords/linalg/src",
     "dynamics/src",
     "collide/src",
     "io/src/scene",

@@ -69,14 +69,13 @@ impl Advice for SimulationError {
         match self {
             Self::Options(error) => error.advice(),
             Self::Start(error) => error.advice(),
-            Self::Linalg(error) => error.advice(),
             Self::Chart(error) => error.advice(),
             Self::Contact(error) => error.advice(),
             Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
             Self::Elastic | Self::Plastic => Some("use BDF2 or implicit Euler"),
             Self::Checkpoint(error) => error.advice(),
             Self::ChartControl => Some("leave `StepControl` out"),
-            Self::StateLength { .. } => None,
+            Self::StateLength { .. } | Self::Linalg(..) => None,
         }
     }
 }

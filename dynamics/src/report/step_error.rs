@@ -400,7 +400,7 @@ impl Advice for StepError {
                 Some("the state is that of the last accepted sub-step: step on from there")
             }
             Self::Chart { source, .. } => source.advice(),
-            Self::Linalg { source, .. } => source.advice(),
+            Self::Linalg { .. } => None,
         }
     }
 }

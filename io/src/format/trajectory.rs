@@ -177,7 +177,18 @@ impl Trajectory {
 
     /// The trajectory of some of the frames, in the order of time.
     pub(super) fn subset(&self, frames: &[usize]) -> Result<Self, TrajectoryError> {
-        let mut subset = Self {
+        let mut subset = self.without_frames();
+        for &k in frames {
+            let data = FrameData::each(|quantity| self.values(quantity, k).unwrap_or_default());
+            let x = &self.x[3 * self.vertex_count * k..3 * self.vertex_count * (k + 1)];
+            subset.push_with(self.t[k], x, &data)?;
+        }
+        Ok(subset)
+    }
+
+    /// The mesh without frames.
+    fn without_frames(&self) -> Self {
+        Self {
             vertex_count: self.vertex_count,
             t: Vec::new(),
             x: Vec::new(),
@@ -185,13 +196,12 @@ impl Trajectory {
             edges: self.edges.clone(),
             rest_lengths: self.rest_lengths.clone(),
             data: Default::default(),
-        };
-        for &k in frames {
-            let data = FrameData::each(|quantity| self.values(quantity, k).unwrap_or_default());
-            let x = &self.x[3 * self.vertex_count * k..3 * self.vertex_count * (k + 1)];
-            subset.push_with(self.t[k], x, &data)?;
         }
-        Ok(subset)
+    }
+
+    /// A quantity in all frames, one after the other; nothing if the trajectory does not have it.
+    pub(super) fn all(&self, quantity: Quantity) -> &[f64] {
+        &self.data[quantity as usize]
     }
 
     /// The numbers of a quantity in one frame.

@@ -157,7 +157,7 @@ impl SparseLu {
     ///
     /// # Errors
     /// As [`SparseLu::solve_refined`].
-    pub(crate) fn solve_transpose_refined(&mut self, rhs: &mut [f64]) -> Result<f64, LinalgError> {
+    pub fn solve_transpose_refined(&mut self, rhs: &mut [f64]) -> Result<f64, LinalgError> {
         self.refined(rhs, Operator::Transpose)
     }
 

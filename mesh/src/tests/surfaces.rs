@@ -1,10 +1,10 @@
-//! Random surfaces for property tests.
+//! Random surfaces for property tests, and parts of sheets.
 
 use proptest::prelude::*;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::Topology;
+use crate::{FaceId, MeshError, Sheet, Topology, VertexId};
 
 /// A face list under construction, with its vertex count.
 pub(crate) type Soup = (usize, Vec<[u32; 3]>);
@@ -168,4 +168,38 @@ pub(crate) fn surfaces() -> impl Strategy<Value = Soup> {
         };
         punch(&mut rng, base, tries)
     })
+}
+
+impl Sheet {
+    /// The sheet of the faces for which `keep` holds; vertices that are then in no face are dropped, the
+    /// others keep their order.
+    pub(crate) fn keep_faces(
+        &self,
+        mut keep: impl FnMut(FaceId) -> bool,
+    ) -> Result<Self, MeshError> {
+        let t = self.topology();
+        let kept: Vec<[VertexId; 3]> = t
+            .face_ids()
+            .filter(|&f| keep(f))
+            .map(|f| t.faces()[f.index()])
+            .collect();
+        let mut renumbered = vec![u32::MAX; t.vertex_count()];
+        for v in kept.iter().flatten() {
+            renumbered[v.index()] = 0;
+        }
+        let mut positions = Vec::new();
+        for v in t
+            .vertex_ids()
+            .filter(|v| renumbered[v.index()] == 0)
+            .collect::<Vec<_>>()
+        {
+            renumbered[v.index()] = (positions.len() / 3) as u32;
+            positions.extend(self.position(v));
+        }
+        let faces: Vec<[u32; 3]> = kept
+            .iter()
+            .map(|f| f.map(|v| renumbered[v.index()]))
+            .collect();
+        Self::new(positions, &faces)
+    }
 }

@@ -8,11 +8,9 @@ impl Topology {
     /// Checks every invariant of the adjacency against the face list, by other means than those that built
     /// it.
     ///
-    /// Slow (it builds ordered maps); meant for tests.
-    ///
     /// # Panics
     /// With a description of the first invariant that does not hold.
-    pub fn check_invariants(&self) {
+    pub(crate) fn check_invariants(&self) {
         self.check_edges();
         self.check_face_edges();
         self.check_fans();

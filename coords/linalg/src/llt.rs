@@ -32,12 +32,12 @@ pub struct SparseLlt {
 }
 
 impl SparseLlt {
-    /// Analyses the lower-triangular `pattern`, with an approximate-minimum-degree ordering.
+    /// Analyses the lower-triangular `pattern`.
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
     pub fn new(pattern: Pattern) -> Result<Self, LinalgError> {
-        Self::analysed(pattern, None)
+        Self::with_blocks(pattern, 1)
     }
 
     /// Analyses the lower-triangular `pattern` of unknowns that come in groups of `block`, as the three
@@ -50,28 +50,16 @@ impl SparseLlt {
     /// If `block` does not divide the order of the matrix.
     pub fn with_blocks(pattern: Pattern, block: usize) -> Result<Self, LinalgError> {
         let order = elimination_order(&pattern, block, Ordering::Best);
-        Self::analysed(pattern, Some(&order))
-    }
-
-    /// As [`SparseLlt::new`] with a given elimination order (`order[k]` is the unknown
-    /// eliminated k-th), or one with the same fill, in place of approximate minimum degree.
-    ///
-    /// # Errors
-    /// [`LinalgError::Symbolic`] if memory runs out.
-    ///
-    /// # Panics
-    /// If `order` is not a permutation of the unknowns.
-    pub fn with_ordering(pattern: Pattern, order: &[usize]) -> Result<Self, LinalgError> {
-        Self::analysed(pattern, Some(order))
+        Self::analysed(pattern, &order)
     }
 
     /// Analyses the pattern, once more if subtrees of the elimination tree are not ranges of the order.
-    fn analysed(pattern: Pattern, order: Option<&[usize]>) -> Result<Self, LinalgError> {
+    fn analysed(pattern: Pattern, order: &[usize]) -> Result<Self, LinalgError> {
         let mut symbolic = analyse(&pattern, order)?;
         let mut fronts = plan(&pattern, &symbolic);
         if let (None, Some(perm)) = (&fronts, symbolic.perm()) {
             let order = postordered(&Graph::of_blocks(&pattern, 1), perm.arrays().0);
-            symbolic = analyse(&pattern, Some(&order))?;
+            symbolic = analyse(&pattern, &order)?;
             fronts = plan(&pattern, &symbolic);
         }
         let par = Par::Seq;
@@ -321,9 +309,7 @@ mod tests {
         hubs.extend((400..800).map(|i| (1201, i)));
         solve(&hubs, 1202, &|p| SparseLlt::new(p).unwrap());
         let order: Vec<usize> = (0..1202).map(|i| i * 5 % 1202).collect();
-        solve(&hubs, 1202, &|p| {
-            SparseLlt::with_ordering(p, &order).unwrap()
-        });
+        solve(&hubs, 1202, &|p| SparseLlt::analysed(p, &order).unwrap());
     }
 
     #[test]

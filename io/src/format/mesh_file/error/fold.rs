@@ -1,7 +1,6 @@
 //! What can be wrong with a FOLD file.
 
-use super::FoldFrame;
-use crate::format::mesh_file::EdgeAssignment;
+use crate::format::mesh_file::{EdgeAssignment, FoldFrame};
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::brief;
 use thiserror::Error;

@@ -32,7 +32,7 @@ impl SparseLdlt {
     /// # Panics
     /// If `order` is not a permutation of the unknowns.
     pub fn new(pattern: Pattern, order: &[usize]) -> Result<Self, LinalgError> {
-        let symbolic = analyse(&pattern, Some(order))?;
+        let symbolic = analyse(&pattern, order)?;
         let par = Par::Seq;
         Ok(Self {
             values: vec![0.0; pattern.len()],

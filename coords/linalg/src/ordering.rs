@@ -51,7 +51,12 @@ fn best(graph: &Graph, block: usize) -> Vec<usize> {
         return degree;
     }
     let dissection = nested_dissection(graph);
-    let operations = |order| Fill::of_graph(graph, order, block).operations;
+    // Multiplications and additions of the numeric factorisation.
+    let operations = |order| {
+        column_counts(graph, order, block)
+            .map(|c| c * c)
+            .sum::<f64>()
+    };
     if operations(&dissection) < operations(&degree) {
         dissection
     } else {
@@ -59,34 +64,11 @@ fn best(graph: &Graph, block: usize) -> Vec<usize> {
     }
 }
 
-/// What a Cholesky factorisation costs in a given order.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fill {
-    /// Entries of the factor, the diagonal among them, without the zeros that supernodes pad in.
-    pub entries: f64,
-    /// Multiplications and additions of the numeric factorisation, the sum of the squared column counts.
-    pub operations: f64,
-}
-
-impl Fill {
-    /// The fill of the matrix with this lower triangle in groups of `block` unknowns, each eliminated
-    /// together, in an order that [`elimination_order`] returned.
-    pub fn new(pattern: &Pattern, block: usize, order: &[usize]) -> Self {
-        let groups: Vec<usize> = order.iter().step_by(block).map(|i| i / block).collect();
-        Self::of_graph(&Graph::of_blocks(pattern, block), &groups, block)
-    }
-
-    fn of_graph(graph: &Graph, order: &[usize], block: usize) -> Self {
-        let tree = EliminationTree::new(graph, order);
-        let columns = tree
-            .below
-            .iter()
-            .flat_map(|rows| (1..=block).map(move |k| (rows * block + k) as f64));
-        Self {
-            entries: columns.clone().sum(),
-            operations: columns.map(|c| c * c).sum(),
-        }
-    }
+/// The number of entries in each column of the Cholesky factor, the diagonal among them, without the zeros that
+/// supernodes pad in, for groups of `block` unknowns that are each eliminated together.
+fn column_counts(graph: &Graph, order: &[usize], block: usize) -> impl Iterator<Item = f64> {
+    let below = EliminationTree::new(graph, order).below.into_iter();
+    below.flat_map(move |rows| (1..=block).map(move |k| (rows * block + k) as f64))
 }
 
 /// The elimination tree of a graph in some order (Liu, "The role of elimination trees in sparse
@@ -172,6 +154,23 @@ pub(super) fn postordered(graph: &Graph, order: &[usize]) -> Vec<usize> {
 mod tests {
     use super::*;
 
+    /// What a Cholesky factorisation costs.
+    #[derive(Debug, PartialEq)]
+    struct Fill {
+        entries: f64,
+        operations: f64,
+    }
+
+    /// That of a matrix in blocks of three, in an order that [`elimination_order`] returned.
+    fn fill_of(pattern: &Pattern, order: &[usize]) -> Fill {
+        let groups: Vec<usize> = order.iter().step_by(3).map(|i| i / 3).collect();
+        let counts: Vec<f64> = column_counts(&Graph::of_blocks(pattern, 3), &groups, 3).collect();
+        Fill {
+            entries: counts.iter().sum(),
+            operations: counts.iter().map(|c| c * c).sum(),
+        }
+    }
+
     /// The lower triangle of a matrix in blocks of three over the edges of a graph.
     fn blocks(vertices: u32, edges: &[(u32, u32)]) -> Pattern {
         let mut entries = Vec::new();
@@ -251,7 +250,7 @@ mod tests {
             let order = elimination_order(&pattern, 3, ordering);
             assert_permutation(&order, 3 * 905);
             // A strip needs no fill but next to separators: at most two rows below each block.
-            let fill = Fill::new(&pattern, 3, &order);
+            let fill = fill_of(&pattern, &order);
             assert!(fill.entries <= 905.0 * 6.0 + 2.0 * 9.0 * 897.0, "{fill:?}");
         }
         assert!(elimination_order(&blocks(0, &[]), 3, Ordering::NestedDissection).is_empty());
@@ -263,7 +262,7 @@ mod tests {
         let pattern = blocks(150, &edges);
         let order = elimination_order(&pattern, 3, Ordering::NestedDissection);
         assert_permutation(&order, 450);
-        let fill = Fill::new(&pattern, 3, &order);
+        let fill = fill_of(&pattern, &order);
         assert_eq!(fill.entries, 450.0 * 451.0 / 2.0);
     }
 
@@ -297,7 +296,7 @@ mod tests {
                     }
                 }
             }
-            let fill = Fill::new(&pattern, 3, &order);
+            let fill = fill_of(&pattern, &order);
             assert_eq!((fill.entries, fill.operations), (entries, operations));
         }
     }
@@ -314,7 +313,7 @@ mod tests {
             (generate::annulus(100, 60, 0.2, 1.0).expect("valid"), 0.9),
         ] {
             let pattern = of_sheet(&sheet);
-            let fill = |o| Fill::new(&pattern, 3, &elimination_order(&pattern, 3, o));
+            let fill = |o| fill_of(&pattern, &elimination_order(&pattern, 3, o));
             let degree = fill(Ordering::MinimumDegree);
             let dissection = fill(Ordering::NestedDissection);
             assert!(
@@ -335,7 +334,7 @@ mod tests {
             let pattern = of_sheet(&sheet);
             let order = elimination_order(&pattern, 3, Ordering::NestedDissection);
             let vertices = sheet.topology().vertex_count() as f64;
-            let fill = Fill::new(&pattern, 3, &order);
+            let fill = fill_of(&pattern, &order);
             (
                 fill.entries / vertices,
                 fill.operations / vertices.powf(1.5),

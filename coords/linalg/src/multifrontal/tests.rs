@@ -13,7 +13,7 @@ struct Analysed {
 impl Analysed {
     fn new(pattern: Pattern, block: u32, ordering: Ordering) -> Self {
         let order = elimination_order(&pattern, block as usize, ordering);
-        let symbolic = analyse(&pattern, Some(&order)).unwrap();
+        let symbolic = analyse(&pattern, &order).unwrap();
         Self { pattern, symbolic }
     }
 

@@ -18,11 +18,10 @@ pub(super) fn view(p: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
     SymbolicSparseColMatRef::new_checked(p.rows(), p.cols(), p.col_ptr(), None, p.row_idx())
 }
 
-/// Symbolic Cholesky analysis of a lower triangle, in the given elimination order or in faer's
-/// approximate-minimum-degree order.
+/// Symbolic Cholesky analysis of a lower triangle in the given elimination order.
 pub(super) fn analyse(
     pattern: &Pattern,
-    order: Option<&[usize]>,
+    order: &[usize],
 ) -> Result<ch::SymbolicCholesky<usize>, LinalgError> {
     let n = pattern.cols();
     let params = ch::CholeskySymbolicParams {
@@ -33,18 +32,11 @@ pub(super) fn analyse(
         },
         ..Default::default()
     };
-    let inverse: Vec<usize>;
-    let ordering = match order {
-        None => ch::SymmetricOrdering::Amd,
-        Some(forward) => {
-            let mut inv = vec![usize::MAX; n];
-            for (k, &i) in forward.iter().enumerate() {
-                inv[i] = k;
-            }
-            inverse = inv;
-            ch::SymmetricOrdering::Custom(PermRef::new_checked(forward, &inverse, n))
-        }
-    };
+    let mut inverse = vec![usize::MAX; n];
+    for (k, &i) in order.iter().enumerate() {
+        inverse[i] = k;
+    }
+    let ordering = ch::SymmetricOrdering::Custom(PermRef::new_checked(order, &inverse, n));
     ch::factorize_symbolic_cholesky(view(pattern), Side::Lower, ordering, params).map_err(|e| {
         LinalgError::Symbolic {
             order: n,

@@ -30,5 +30,10 @@ pub use error::LinalgError;
 pub use ldlt::SparseLdlt;
 pub use llt::SparseLlt;
 pub use lu::SparseLu;
-pub use ordering::{Fill, Ordering, elimination_order};
+pub use ordering::{Ordering, elimination_order};
 pub use pattern::{Pattern, norm_inf};
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,7 +1,7 @@
 //! What every crease pattern that can be folded flat fulfils, for tests of generators.
 
-use super::origami::{FoldAssignment, FoldPattern};
 use crate::VertexId;
+use crate::generate::{FoldAssignment, FoldPattern};
 use std::f64::consts::TAU;
 
 /// Checks that a pattern is a flat disk and that every inner vertex of which `folds_flat` is true fulfils the

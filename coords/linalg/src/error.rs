@@ -1,8 +1,5 @@
 //! Why a sparse direct solver fails.
 
-use isosheet_mesh::Advice;
-use isosheet_mesh::wording::brief;
-
 /// Why a sparse factorisation or solve failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinalgError {
@@ -18,8 +15,7 @@ pub enum LinalgError {
     },
     /// The matrix is singular, structurally or to working precision.
     #[error(
-        "matrix of order {order} is singular to working precision (backward error {backward_error})",
-        backward_error = brief(*backward_error)
+        "matrix of order {order} is singular to working precision (backward error {backward_error:.2e})"
     )]
     Singular {
         /// Order of the matrix.
@@ -35,10 +31,4 @@ pub enum LinalgError {
         /// The reason that faer gives.
         reason: String,
     },
-}
-
-impl Advice for LinalgError {
-    fn advice(&self) -> Option<&'static str> {
-        None
-    }
 }
