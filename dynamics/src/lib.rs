@@ -76,7 +76,7 @@ pub use damped::options::ImplicitOptions;
 pub use damped::projection_step::ProjectionStepOptions;
 pub use damped::start::{leave_flat, leave_flat_in, project_positions};
 pub use linear::rank::{RodRank, rod_rank};
-pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
+pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, FLAT, RestAngle};
 pub use material::elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheetError};
 pub use material::glue::{Glue, GlueError};
 pub use material::plasticity::Yield;

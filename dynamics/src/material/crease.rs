@@ -9,6 +9,7 @@ mod rest_angle;
 #[cfg(test)]
 mod tests;
 
+pub use from_flat::FLAT;
 pub(crate) use from_flat::folding_from_flat;
 pub use rest_angle::RestAngle;
 
