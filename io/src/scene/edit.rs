@@ -1,9 +1,49 @@
 //! Edits of a scene by `key=value`.
 
+use super::Scene;
 use super::key::{Key, KeyError, KeyPart};
 use isosheet_mesh::Advice;
+use std::fmt;
+use std::str::FromStr;
 use thiserror::Error;
 use toml_edit::{DocumentMut, Item, Table, Value};
+
+/// An edit of a scene: a key and its new value. As a text it is `key=value`.
+///
+/// ```
+/// use isosheet_io::scene::Edit;
+///
+/// let edit: Edit = "obstacle[0].friction=0.3".parse()?;
+/// assert_eq!(edit.value.as_float(), Some(0.3));
+/// # Ok::<(), isosheet_io::scene::EditError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edit {
+    /// The key.
+    pub key: Key,
+    /// The new value.
+    pub value: toml::Value,
+}
+
+impl FromStr for Edit {
+    type Err = EditError;
+
+    /// A value that is not TOML is taken as a string, so that names need no quotes.
+    fn from_str(edit: &str) -> Result<Self, EditError> {
+        let (key, value) = split(edit).map_err(|problem| EditError {
+            edit: edit.to_owned(),
+            problem,
+        })?;
+        let value = value.parse().unwrap_or_else(|_| value.into());
+        Ok(Self { key, value })
+    }
+}
+
+impl fmt::Display for Edit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.key, self.value)
+    }
+}
 
 /// An edit that cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -78,11 +118,54 @@ pub(crate) fn apply(document: &mut DocumentMut, edits: &[String]) -> Result<(), 
 }
 
 fn make(document: &mut DocumentMut, edit: &str) -> Result<(), EditProblem> {
-    let (key, value) = edit.split_once('=').ok_or(EditProblem::Form)?;
-    let key: Key = key.trim().parse()?;
-    let value = value.trim();
+    let (key, value) = split(edit)?;
     let value: Value = value.parse().unwrap_or_else(|_| Value::from(value));
     set(document.as_item_mut(), &key, value)
+}
+
+/// Key and value of an edit.
+fn split(edit: &str) -> Result<(Key, &str), EditProblem> {
+    let (key, value) = edit.split_once('=').ok_or(EditProblem::Form)?;
+    Ok((key.trim().parse()?, value.trim()))
+}
+
+/// A scene with edits made in its values. None where its values have no such place, or the result is no scene: what
+/// is wrong with it, or right because of what its text leaves out, the text says.
+pub(super) fn edited(scene: &Scene, edits: &[Edit]) -> Option<Scene> {
+    let mut whole = toml::Value::try_from(scene).ok()?;
+    for Edit { key, value } in edits {
+        let (last, way) = key.parts().split_last()?;
+        let mut place = &mut whole;
+        for part in way {
+            place = match part {
+                KeyPart::Name(name) => place.get_mut(name.as_str()),
+                KeyPart::Entry(number) => place.get_mut(*number),
+            }?;
+        }
+        match last {
+            KeyPart::Name(name) => drop(place.as_table_mut()?.insert(name.clone(), value.clone())),
+            KeyPart::Entry(number) => *place.get_mut(*number)? = value.clone(),
+        }
+    }
+    whole.try_into().ok()
+}
+
+/// The text of a scene whose values at some keys differ from those of the text: each is written at its key, or with
+/// what it is in where the text has no place for it alone.
+pub(super) fn written(text: &str, scene: &Scene, keys: &[Key]) -> Option<String> {
+    let mut document = text.parse::<DocumentMut>().ok()?;
+    let whole = toml::Value::try_from(scene).ok()?;
+    for key in keys {
+        let mut way = key.clone();
+        loop {
+            let value = way.find(&whole)?.to_string().parse().ok()?;
+            if set(document.as_item_mut(), &way, value).is_ok() {
+                break;
+            }
+            way = way.above()?;
+        }
+    }
+    Some(document.to_string())
 }
 
 /// Sets the value at a key; tables on the way are made where they are missing.
