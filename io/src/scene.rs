@@ -136,6 +136,8 @@ pub(crate) use mesh_file::Files;
 #[cfg(feature = "run")]
 pub(crate) use resolution::check_positions;
 #[cfg(feature = "run")]
+pub(crate) use selection::bounds;
+#[cfg(feature = "run")]
 pub(crate) use setup::Facts;
 #[cfg(feature = "run")]
 pub(crate) use size::MEMORY_OF_FACE;

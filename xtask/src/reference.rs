@@ -10,6 +10,7 @@ use isosheet_io::{write_atomically, write_json};
 use isosheet_mesh::wording::given;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
+use std::io::Write;
 use std::path::PathBuf;
 
 /// Arguments of `reference`.

@@ -3,6 +3,7 @@
 use super::RunError;
 use super::frame_field::{FrameField, check_frame};
 use crate::format::{FrameData, Motion, MotionFrame};
+use crate::scene::bounds;
 use crate::view::ViewError;
 use isosheet_mesh::Sheet;
 use std::fs::File;
@@ -40,7 +41,7 @@ impl Spool {
             file: tempfile::tempfile_in(folder).map_err(unwritable)?,
             sizes: Vec::new(),
             times: Vec::new(),
-            corners: [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
+            corners: bounds([]),
         };
         let mut file = BufWriter::new(spool.file.try_clone().map_err(unwritable)?);
         let mut done = Ok(());
@@ -70,11 +71,7 @@ impl Spool {
         }
         self.sizes = sizes;
         self.times.push(frame.t);
-        let [low, high] = &mut self.corners;
-        for (i, &c) in frame.x.iter().enumerate() {
-            low[i % 3] = low[i % 3].min(c);
-            high[i % 3] = high[i % 3].max(c);
-        }
+        self.corners = bounds(self.corners.iter().chain(frame.x.as_chunks::<3>().0));
         Ok(())
     }
 }
