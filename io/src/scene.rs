@@ -30,6 +30,7 @@
 mod air;
 mod build;
 mod bytes;
+mod changed;
 mod chart;
 mod contact;
 mod creases;

@@ -70,8 +70,12 @@ impl Spool {
             sizes.push(write_numbers(file, &field.values(frame))?);
         }
         self.sizes = sizes;
+        let own = bounds(frame.x.as_chunks::<3>().0);
+        self.corners = match self.times.is_empty() {
+            true => own,
+            false => bounds(self.corners.iter().chain(&own)),
+        };
         self.times.push(frame.t);
-        self.corners = bounds(self.corners.iter().chain(frame.x.as_chunks::<3>().0));
         Ok(())
     }
 }

@@ -5,7 +5,8 @@ mod hand;
 pub use hand::HoldError;
 
 use super::build::Kept;
-use super::edit::{Edit, EditError, EditProblem, edited};
+use super::changed::edited;
+use super::edit::{Edit, EditError, EditProblem};
 use super::key::Key;
 use super::profile::{Change, Course};
 use super::setup::Facts;

@@ -1,6 +1,7 @@
 //! Scene files.
 
 use super::build::Kept;
+use super::changed::written;
 use super::edit::{self, EditError};
 use super::error::{SceneError, SceneText};
 use super::form::form_problems;
@@ -186,7 +187,7 @@ impl SceneFile {
             let text = match self.changed.is_empty() {
                 true => text.clone(),
                 false => {
-                    let written = edit::written(text, &self.scene, &self.changed);
+                    let written = written(text, &self.scene, &self.changed);
                     // Without a place for its values in the text that was read.
                     written.unwrap_or_else(|| toml::to_string(&self.scene).unwrap_or_default())
                 }
