@@ -434,7 +434,7 @@ fn read_sheet(file: &MeshFile, key: &Key, files: &mut Files) -> Result<RestMesh,
             ..EdgeRoles::default()
         }),
         sheet,
-        changes: mesh.changes.clone(),
+        changes: mesh.changes,
     })
 }
 
