@@ -84,7 +84,7 @@ pub use damped::start::{leave_flat, leave_flat_in, project_positions};
 pub use diagnosis::rank::{RodRank, rod_rank};
 pub use engine::method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use hessian::HessianSink;
-pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
+pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, FLAT, RestAngle};
 pub use material::elastic_sheet::{ElasticSheet, ElasticSheetError};
 pub use material::glue::{Glue, GlueError};
 pub use material::plasticity::Yield;

@@ -9,6 +9,7 @@ use crate::hard_cases::{self, HardCasesArgs};
 use crate::interrupt;
 use crate::locking::{self, LockingArgs};
 use crate::measured::{self, MeasuredArgs};
+use crate::reference::{self, ReferenceArgs};
 use crate::reproduce::{self, ReproduceArgs};
 use crate::soak::{self, SoakArgs};
 use crate::tuning::{self, TuningArgs};
@@ -88,6 +89,8 @@ pub(crate) enum Command {
     /// that it prints and more cases for each: `PROPTEST_RNG_SEED=SEED ISOSHEET_TIMES=N cargo test NAME`
     /// repeats what failed.
     Soak(SoakArgs),
+    /// Write the pages of the book that are made of the code: scene.md, materials.md and scene.schema.json
+    Reference(ReferenceArgs),
     /// Build the program of the 3D page of a run, io/view/dist, from io/view/src with npm and esbuild
     ///
     /// Only needed after a change of io/view; needs Node.js 20 or newer and the npm registry.
@@ -108,6 +111,7 @@ impl Command {
             Self::Measured(args) => measured::run(args),
             Self::Gallery(args) => gallery::run(args),
             Self::Soak(args) => soak::run(args),
+            Self::Reference(args) => reference::run(args),
             Self::BundleView(args) => bundle_view::run(args),
         }
     }

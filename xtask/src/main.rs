@@ -10,6 +10,7 @@
 //! * `measured`: what the reports measured, as numbers of the book and the README, and what is out of date.
 //! * `gallery`: pictures of sixteen scenes, and a film.
 //! * `soak`: the random tests with new seeds.
+//! * `reference`: the pages of the book that are made of the code.
 //! * `bundle-view`: the program of the 3D page of a run.
 
 mod bundle_view;
@@ -25,6 +26,7 @@ mod interrupt;
 mod locking;
 mod measured;
 mod progress;
+mod reference;
 mod report;
 mod reproduce;
 mod runs;

@@ -69,6 +69,7 @@ impl Motion for Trajectory {
                 t,
                 x: &self.x[n * number..n * (number + 1)],
                 data: FrameData::each(|q: Quantity| self.values(q, number).unwrap_or_default()),
+                fields: &[],
             };
             if show(&frame).is_break() {
                 break;
@@ -118,6 +119,7 @@ impl Trajectory {
             t,
             x,
             data: *data,
+            fields: &[],
         };
         let before = self.t.last().copied().unwrap_or(f64::NEG_INFINITY);
         let has = |quantity: Quantity| !self.data[quantity as usize].is_empty();
@@ -138,7 +140,9 @@ impl Trajectory {
         before: f64,
         has: &dyn Fn(Quantity) -> bool,
     ) -> Result<(), TrajectoryError> {
-        let &MotionFrame { number, t, x, data } = frame;
+        let &MotionFrame {
+            number, t, x, data, ..
+        } = frame;
         if x.len() != 3 * self.vertex_count {
             return Err(TrajectoryError::WrongLength {
                 frame: number,

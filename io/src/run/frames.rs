@@ -286,6 +286,7 @@ impl Motion for StoredFrames {
                 t: frame.t,
                 x: &frame.x,
                 data: frame.data(),
+                fields: &[],
             });
             if shown.is_break() {
                 break;

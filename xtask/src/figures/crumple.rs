@@ -170,7 +170,6 @@ pub(super) fn method_name(integrator: Integrator) -> &'static str {
     match integrator {
         Integrator::ImplicitEuler => "implicit Euler",
         Integrator::Bdf2 => "BDF2",
-        Integrator::Projection => "projection",
         Integrator::EnergyMomentum => "energy-momentum",
         Integrator::Rattle => "RATTLE",
         Integrator::RattleComposition => "fourth-order RATTLE",

@@ -4,7 +4,7 @@ use super::message::{Command, Frame, HandFrame, Notice, NoticeKind};
 use super::slider::Slider;
 use crate::format::HistoryRow;
 use crate::run::HoldingBody;
-use crate::scene::{LiveScene, SceneError, SceneFile};
+use crate::scene::{LiveScene, SceneError, SceneFile, bounds};
 use crate::view::{Pose, Series};
 use isosheet_dynamics::{StepError, StepProgress};
 use isosheet_mesh::wording::brief;
@@ -54,7 +54,7 @@ impl Session {
         let live = LiveScene::start(file)?;
         let scene = live.file().scene();
         let x = &live.simulation().state().x;
-        let holding = HoldingBody::all(scene, std::iter::once(&x[..]));
+        let holding = HoldingBody::all(scene, bounds(x.as_chunks::<3>().0));
         let row = HistoryRow::of_start(live.simulation());
         let mut session = Self {
             sliders: Slider::all(scene),

@@ -76,7 +76,7 @@ impl LiveScene {
         let positions = self.simulation.state().x.as_chunks::<3>().0;
         let at = positions.get(vertex.index()).copied().unwrap_or_default();
         let hand = Hand::new(model.topology(), vertex, self.firmness(), at)?;
-        self.rebuild(self.file.clone(), Some(hand.clone()))?;
+        self.go_on_with_hand(Some(hand.clone()))?;
         Ok(hand)
     }
 
@@ -84,12 +84,18 @@ impl LiveScene {
     /// held.
     ///
     /// # Errors
-    /// [`SceneError`] if the scene cannot be built, such as for a mesh file that has been deleted since.
+    /// [`SceneError`] if the simulation cannot go on without it.
     pub fn let_go(&mut self) -> Result<(), SceneError> {
         match self.hand {
-            Some(_) => self.rebuild(self.file.clone(), None),
+            Some(_) => self.go_on_with_hand(None),
             None => Ok(()),
         }
+    }
+
+    fn go_on_with_hand(&mut self, hand: Option<Hand>) -> Result<(), SceneError> {
+        let scene = self.file.scene().clone();
+        let rebuilt = self.rebuild(&scene, hand);
+        rebuilt.map_err(|e| e.in_text(self.file.text()))
     }
 
     /// The hand that holds a vertex.

@@ -1,47 +1,40 @@
-//! The reference of scene files, made of the structs that read them.
+//! The pages and the schema of the book that are made of the code: `docs/scene.md` and `docs/scene.schema.json` of
+//! the structs that read scenes, `docs/materials.md` of the catalogue of materials.
 
-use super::unit::{Range, Unit};
-use super::{Scene, StartingPoint};
+mod materials;
+
+use anyhow::Result;
+use clap::Args;
+use isosheet_io::scene::{StartingPoint, UnitRange, as_written, documented_schema, schema};
+use isosheet_io::{write_atomically, write_json};
 use isosheet_mesh::wording::given;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
+use std::io::Write;
+use std::path::PathBuf;
 
-/// The JSON schema of scene files, for editors that complete and check TOML.
-pub fn schema() -> Value {
-    let mut schema = documented_schema();
-    remove_examples(&mut schema);
-    schema
+/// Arguments of `reference`.
+#[derive(Debug, Args)]
+pub(crate) struct ReferenceArgs {
+    /// Folder of the book
+    #[arg(long, value_name = "DIR", default_value = "docs")]
+    out: PathBuf,
 }
 
-/// The schema with the examples in TOML that the documentation of the structs has.
-fn documented_schema() -> Value {
-    let mut schema = schemars::schema_for!(Scene).to_value();
-    schema["title"] = "A scene of isosheet".into();
-    schema
+/// Writes the pages and the schema.
+pub(crate) fn run(args: &ReferenceArgs) -> Result<()> {
+    for (name, page) in [("scene.md", page()), ("materials.md", materials::page())] {
+        write_atomically(&args.out.join(name), |w| w.write_all(page.as_bytes()))?;
+    }
+    Ok(write_json(&args.out.join("scene.schema.json"), &schema())?)
 }
 
 /// How an example begins in a description.
 const EXAMPLE: &str = "```toml\n";
 
-/// Removes the examples from all descriptions.
-fn remove_examples(part: &mut Value) {
-    match part {
-        Value::Object(entries) => {
-            if let Some(Value::String(text)) = entries.get_mut("description")
-                && let Some((before, _)) = text.split_once(EXAMPLE)
-            {
-                *text = before.trim_end().to_owned();
-            }
-            entries.values_mut().for_each(remove_examples);
-        }
-        Value::Array(entries) => entries.iter_mut().for_each(remove_examples),
-        _ => {}
-    }
-}
-
 /// The reference page of scene files in Markdown: every key with value, default and meaning, in the order of
 /// a scene file, and an example for each table.
-pub fn reference_page() -> String {
+fn page() -> String {
     let schema = documented_schema();
     let kinds = StartingPoint::ALL.map(StartingPoint::name).join("|");
     let mut page = INTRODUCTION.replace("KINDS", &kinds);
@@ -110,18 +103,19 @@ fn references(part: &Value) -> Vec<String> {
 /// The ranges of numbers by their units.
 fn ranges(page: &mut String) {
     page.push_str(RANGES);
-    for unit in Unit::ALL {
-        let Range {
-            least,
-            most,
-            reason,
-        } = unit.range();
+    for UnitRange {
+        symbol,
+        least,
+        most,
+        reason,
+    } in UnitRange::all()
+    {
         let least = if least > 0.0 {
             given(least).to_string()
         } else {
             String::new()
         };
-        let symbol = match unit.symbol() {
+        let symbol = match symbol {
             "" => "coefficients of friction and drag",
             symbol => symbol,
         };
@@ -297,28 +291,5 @@ fn plural(kind: &str) -> String {
     }
 }
 
-/// A default or an example as one writes it in a scene; the inverse of a whole number as a fraction.
-pub(crate) fn as_written(value: &Value) -> String {
-    match value {
-        Value::Number(number) => number
-            .as_f64()
-            .map_or_else(|| number.to_string(), number_as_written),
-        Value::Array(entries) => {
-            let entries: Vec<String> = entries.iter().map(as_written).collect();
-            format!("[{}]", entries.join(", "))
-        }
-        other => other.to_string(),
-    }
-}
-
-/// Most digits that anybody writes.
-const DIGITS: usize = 8;
-
-fn number_as_written(value: f64) -> String {
-    let text = given(value).to_string();
-    let inverse = (1.0 / value).round();
-    match text.len() > DIGITS && 1.0 / inverse == value {
-        true => format!("1/{inverse}"),
-        false => text,
-    }
-}
+#[cfg(test)]
+mod tests;

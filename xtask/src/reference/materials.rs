@@ -46,7 +46,7 @@ yield_stress thickness^2 / 4`. `M_y` is the moment of a section that has yielded
 ";
 
 /// The page of all materials in Markdown: a table of the numbers, and their sources.
-pub fn materials_page() -> String {
+pub(super) fn page() -> String {
     let mut page = String::from(INTRODUCTION);
     page.push_str(
         "| name | sheet | mass, kg/m2 | `E h`, N/m | `D`, N m | Poisson's ratio | largest strain, % | `M_y`, N m/m | `H`, N m |\n\
