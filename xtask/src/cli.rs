@@ -55,8 +55,8 @@ pub(crate) enum Command {
     /// end is an entry of a table. The exit code is 0 unless a finding is out of bounds that is not declared
     /// to be.
     Locking(LockingArgs),
-    /// Measure what each constant of a damped step is worth: halve and double it over eight starts of nine
-    /// kinds of scene, and count factorisations, CPU seconds and failures
+    /// Measure what each constant of a damped step is worth: halve and double it over eight starts of
+    /// fifteen kinds of scene, and count factorisations, CPU seconds and failures
     ///
     /// Writes DIR/index.html, DIR/kinds.csv and DIR/constants.csv and prints the tables. What was measured is
     /// kept.

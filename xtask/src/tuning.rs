@@ -16,6 +16,20 @@ use serde_json::json;
 pub(crate) struct TuningArgs {
     #[command(flatten)]
     options: Options,
+
+    /// Only these constants, such as `armijo,slow`; without a name only what the kinds cost with the
+    /// constants as they are
+    #[arg(long, value_name = "NAMES", num_args = 0.., value_delimiter = ',', value_parser = constant)]
+    constants: Option<Vec<&'static Constant>>,
+}
+
+/// The constant of a name.
+fn constant(name: &str) -> Result<&'static Constant, String> {
+    let found = Tuning::TABLE.iter().find(|c| c.name == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = Tuning::TABLE.iter().map(|c| c.name).collect();
+        format!("the constants are {}", names.join(", "))
+    })
 }
 
 /// A kind of scene, of which each start has other small displacements.
@@ -30,7 +44,7 @@ struct Kind {
 }
 
 /// All kinds.
-const KINDS: [Kind; 9] = [
+const KINDS: [Kind; 15] = [
     Kind {
         name: "hanging",
         scene: "fig12",
@@ -104,6 +118,75 @@ const KINDS: [Kind; 9] = [
         perturbation: 0.1,
         steps: 60,
     },
+    // Faces whose altitude is 5e-4 of their longest side.
+    Kind {
+        name: "slivers",
+        scene: "fig12",
+        edits: &[
+            "sheet.mesh={rectangle={width=0.21,height=1e-4,columns=8,rows=8}}",
+            "contact={self_contact=false}",
+        ],
+        perturbation: 1e-7,
+        steps: 30,
+    },
+    // A half that is 1e3 times as heavy as the other.
+    Kind {
+        name: "heavy part",
+        scene: "fig12",
+        edits: &[
+            "weight=[{at={half_space={point=[0.105,0,0],normal=[1,0,0]}},mass=1.764}]",
+            "contact={self_contact=false}",
+        ],
+        perturbation: 1e-2,
+        steps: 240,
+    },
+    Kind {
+        name: "tiny steps",
+        scene: "fig12",
+        edits: &[
+            "sheet.mesh.square.level=3",
+            "contact={self_contact=false}",
+            "method.step=1e-4",
+        ],
+        perturbation: 1e-3,
+        steps: 120,
+    },
+    Kind {
+        name: "strip on edge",
+        scene: "fig12",
+        edits: &[
+            "sheet.mesh={rectangle={width=0.21,height=0.02625,columns=16,rows=2}}",
+            "support=[{at={box={min=[-1,-1,-1],max=[0,1,1]}}}]",
+            "forces.gravity=[0,-9.8,0]",
+            "contact={self_contact=false}",
+        ],
+        perturbation: 1e-6,
+        steps: 240,
+    },
+    Kind {
+        name: "flat on a table",
+        scene: "fig12",
+        edits: &[
+            "sheet.mesh.square.level=3",
+            "support=[]",
+            "obstacle=[{shape=\"half_space\",pose={position=[0,0,-1e-4]},friction=0.3}]",
+            "contact={self_contact=false}",
+        ],
+        perturbation: 1e-6,
+        steps: 5,
+    },
+    // Aluminium of 1 mm.
+    Kind {
+        name: "sheet metal",
+        scene: "stamp",
+        edits: &[
+            "sheet.mesh.rectangle.columns=18",
+            "sheet.mesh.rectangle.rows=6",
+            "sheet.material.thickness=1e-3",
+        ],
+        perturbation: 1e-4,
+        steps: 120,
+    },
 ];
 
 /// What all starts of a kind cost.
@@ -127,9 +210,11 @@ pub(crate) fn run(args: &TuningArgs) -> Result<()> {
     let store = args.options.open("tuning")?;
     let starts = store.effort.quick_or(1, 8);
     let base = all_kinds(&store, "as it is", Tuning::default(), starts)?;
-    let constants = match store.effort {
-        Effort::Quick => &Tuning::TABLE[..1],
-        _ => Tuning::TABLE,
+    let all: Vec<_> = Tuning::TABLE.iter().collect();
+    let constants = match (&args.constants, store.effort) {
+        (Some(named), _) => named,
+        (None, Effort::Quick) => &all[..1],
+        (None, _) => &all[..],
     };
     let change = |constant: &'static Constant| {
         let with = |factor: f64| {
@@ -141,8 +226,15 @@ pub(crate) fn run(args: &TuningArgs) -> Result<()> {
         let kinds = [with(0.5)?, with(2.0)?];
         Ok(Changed { constant, kinds })
     };
-    let changed: Vec<Changed> = constants.iter().map(change).collect::<Result<_>>()?;
-    let tables = [base_table(&base, starts), table(&base, &changed)];
+    let changed: Vec<Changed> = constants
+        .iter()
+        .copied()
+        .map(change)
+        .collect::<Result<_>>()?;
+    let mut tables = vec![base_table(&base, starts)];
+    if !changed.is_empty() {
+        tables.push(table(&base, &changed));
+    }
     for table in &tables {
         print!("{}", table.text());
         table.write_to(&store.path(&format!("{}.csv", table.name)))?;
@@ -159,6 +251,9 @@ pub(crate) fn run(args: &TuningArgs) -> Result<()> {
         ..Page::new("isosheet: tuning", body)
     };
     page.write(&store, "index.html")?;
+    if args.constants.is_some() {
+        return Ok(());
+    }
     let parts = vec![
         Part::text("about", &about),
         Part::table("kinds", &tables[0]),
