@@ -30,8 +30,7 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Make the figures and the table of Liu, Tang and Joneja 2007 with this workspace
     ///
-    /// Figures 1-15 are those of the paper; 16, a paper jam, and 17, origami, are applications that it only
-    /// names. Writes DIR/index.html (small pictures are inside and open the files beside it), DIR/figures,
+    /// Writes DIR/index.html (small pictures are inside and open the files beside it), DIR/figures,
     /// DIR/scenes, DIR/runs and DIR/summary.json. What is already there and was made by the same program with
     /// the same options is kept; Ctrl-C stops at the next frame, and the same command continues.
     ReproduceFigures(ReproduceArgs),

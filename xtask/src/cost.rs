@@ -7,10 +7,10 @@ mod accuracy;
 mod works;
 
 use crate::interrupt;
-use crate::report::{Effort, Finding, FullOptions, Page, Part as Excerpt, Section};
+use crate::report::{Finding, FullOptions, Page, Part as Excerpt, Section};
 use crate::report::{demand, excerpt, findings, machine, one_of, write_findings};
 use crate::store::{Kept, Store, Unit};
-use accuracy::{Front, Problem};
+use accuracy::Problem;
 use anyhow::Result;
 use clap::Args;
 use maud::{Markup, html};
@@ -42,8 +42,6 @@ struct Record {
     section: Section,
     /// Tables for the book.
     excerpt: Vec<Excerpt>,
-    /// Of a problem: the cheapest methods by error.
-    fronts: Vec<Front>,
     findings: Vec<Finding>,
 }
 
@@ -54,7 +52,6 @@ impl Record {
             name: name.to_owned(),
             section: html! { section id=(name) { (inside) } }.into(),
             excerpt: Vec::new(),
-            fronts: Vec::new(),
             findings: Vec::new(),
         }
     }
@@ -66,7 +63,6 @@ pub(crate) fn run(args: &CostArgs) -> Result<()> {
     let (mut problems, mut works) = (args.parts.clone(), args.works.clone());
     if problems.is_empty() && works.is_empty() {
         problems.extend(Problem::named().into_iter().map(|(_, problem)| problem));
-        problems.retain(|problem| store.effort != Effort::Quick || !problem.is_costly());
         works.extend(works::named().into_iter().map(|(_, work)| work));
     }
     let made = works::measure(&store, &works).and_then(|()| {
@@ -92,16 +88,9 @@ fn report(store: &Store) -> Result<()> {
         records: problems,
         mut left_out,
     } = store.all_kept::<Record>(units);
-    let fronts = problems.iter().flat_map(|r| &r.fronts);
-    let fronts = accuracy::fronts(fronts)?;
-    let mut parts = Vec::new();
-    if !problems.is_empty() {
-        fronts.write(&mut store.files())?;
-        parts.push(Excerpt::table(&*fronts.name, &fronts));
-    }
     let works = works::records(store, &mut left_out)?;
     let records = || works.iter().chain(&problems);
-    parts.extend(records().flat_map(|r| r.excerpt.clone()));
+    let parts = records().flat_map(|r| r.excerpt.clone()).collect();
     excerpt::write(store, "cost", parts)?;
     let found = || records().flat_map(|r| r.findings.iter().map(|f| (r.name.as_str(), f)));
     write_findings(store, found().collect::<Vec<_>>())?;
@@ -111,7 +100,7 @@ fn report(store: &Store) -> Result<()> {
         section { h2 { "Findings" } (findings(caption, found())) }
         @for record in &works { (record.section) }
         @if !problems.is_empty() {
-            section { h2 { "Error against time" } p { (accuracy::ABOUT) } (fronts) }
+            section { h2 { "Error against time" } p { (accuracy::ABOUT) } }
         }
         @for record in &problems { (record.section) }
     };

@@ -1,10 +1,8 @@
 //! The figures, one module each, and what is kept about them.
 
 mod cloths;
-mod crescent;
 mod crumple;
 mod drape;
-mod feed;
 mod fig01;
 mod fig02;
 mod fig03;
@@ -15,10 +13,7 @@ mod fig07;
 mod fig08;
 mod fig09;
 mod folds;
-mod jam;
 mod lasting;
-mod marks;
-mod origami;
 mod performance;
 mod show;
 mod sketch;
@@ -104,8 +99,6 @@ pub(crate) fn make(figure: u8, store: &Store) -> Result<Made> {
         13 => stamping::make(store),
         14 => drape::fig14(store),
         15 => drape::fig15(store),
-        16 => jam::make(store),
-        17 => origami::make(store),
         _ => anyhow::bail!("figure {figure} cannot be made"),
     }
 }

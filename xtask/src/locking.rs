@@ -6,12 +6,12 @@
 
 mod analysis;
 mod buckling;
-pub(crate) mod clamped;
+mod clamped;
 mod cone;
 mod curved;
 mod disks;
 mod excess;
-pub(crate) mod meshes;
+mod meshes;
 mod model;
 mod nudge;
 mod runs;

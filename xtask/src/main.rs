@@ -28,7 +28,6 @@ mod progress;
 mod report;
 mod reproduce;
 mod runs;
-mod selection;
 mod soak;
 mod sources;
 mod store;

@@ -5,28 +5,29 @@ use crate::interrupt;
 use crate::progress;
 use crate::report::{Options, Page, Part, Section, excerpt};
 use crate::runs::scene_fingerprint;
-use crate::selection::{self, PAPER};
 use crate::store::{Kept, Store, Unit};
 use anyhow::Result;
-use clap::Args;
+use clap::{Args, value_parser};
 use isosheet_io::write_json;
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use std::ops::RangeInclusive;
 use std::time::Instant;
 
 /// Arguments of `reproduce-figures`.
 #[derive(Debug, Args)]
 pub(crate) struct ReproduceArgs {
-    /// Figures to make, such as 3 or 1-9,11; all when left out
-    #[arg(long, value_name = "LIST", default_value = "1-17", value_delimiter = ',', value_parser = selection::parse)]
-    pub(crate) figures: Vec<RangeInclusive<u8>>,
+    /// Figures to make, such as 3,11; all when left out
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = value_parser!(u8).range(1..=LAST))]
+    figures: Vec<u8>,
 
     #[command(flatten)]
-    pub(crate) options: Options,
+    options: Options,
 }
+
+/// The last figure of the paper; Fig. 10 is a table.
+const LAST: i64 = 15;
 
 /// What is kept of a figure: its section of the page, its part of `summary.json` and its tables.
 #[derive(Debug, Serialize, Deserialize)]
@@ -40,12 +41,20 @@ struct Record {
 /// Runs the command.
 pub(crate) fn run(args: &ReproduceArgs) -> Result<()> {
     let store = args.options.open("reproduce-figures")?;
-    let figures: BTreeSet<u8> = args.figures.iter().cloned().flatten().collect();
+    let mut figures: BTreeSet<u8> = args.figures.iter().copied().collect();
+    if figures.is_empty() {
+        figures.extend(all());
+    }
     let scenes = scene_fingerprint()?;
     let made = figures
         .into_iter()
         .try_for_each(|n| make(&store, n, scenes));
     interrupt::afterwards(made, || write(&store, scenes))
+}
+
+/// The numbers of all figures.
+fn all() -> impl Iterator<Item = u8> {
+    1..=LAST as u8
 }
 
 /// What is kept of a figure; `scenes` is the fingerprint of the files of scenes that figures are made of.
@@ -74,7 +83,7 @@ fn make(store: &Store, figure: u8, scenes: u64) -> Result<()> {
 
 /// Writes `index.html` and `summary.json` of all figures made so far.
 fn write(store: &Store, scenes: u64) -> Result<()> {
-    let units = selection::all().map(|figure| unit(store, figure, scenes));
+    let units = all().map(|figure| unit(store, figure, scenes));
     let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
     let figures: Vec<&Value> = records.iter().map(|r| &r.summary).collect();
     let version = env!("CARGO_PKG_VERSION");
@@ -117,14 +126,9 @@ fn tables(figure: u8, made: &Made) -> Vec<Part> {
 }
 
 fn section(n: u8, made: &Made) -> Markup {
-    let kind = if n > PAPER {
-        "Beyond the paper,"
-    } else {
-        "Fig."
-    };
     html! {
         section id={ "fig" (n) } {
-            h2 { (kind) " " (n) ". " (made.title) }
+            h2 { "Fig. " (n) ". " (made.title) }
             p { (made.paper) " " (made.here) }
             div.pictures { @for picture in &made.pictures { (picture.inside) } }
             @if !made.pages.is_empty() {

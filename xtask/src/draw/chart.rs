@@ -88,14 +88,6 @@ impl Chart {
         Self::new(x, y, size, series)
     }
 
-    /// A chart with a linear axis from 0 and a logarithmic one that hold all points; values that are not
-    /// positive are left out.
-    pub(crate) fn semi_log(x: &str, y: &str, size: [f64; 2], series: Vec<Series>) -> Self {
-        let high = values(&series, 0).fold(f64::MIN_POSITIVE, f64::max);
-        let y = Axis::decades(y, values(&series, 1));
-        Self::new(Axis::linear(x, [0.0, high]), y, size, series)
-    }
-
     /// The same with a title.
     pub(crate) fn titled(self, title: impl Into<String>) -> Self {
         let title = title.into();

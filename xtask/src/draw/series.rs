@@ -52,14 +52,6 @@ impl Series {
         }
     }
 
-    /// Points with symbols and without a line.
-    pub(crate) fn dots(name: &str, colour: Colour, marker: Marker, points: Vec<[f64; 2]>) -> Self {
-        Self {
-            line: Line::None,
-            ..Self::line(name, colour, points).marked(marker)
-        }
-    }
-
     /// A line with symbols, the style by its place `k` among the series of a chart.
     pub(crate) fn styled(k: usize, name: &str, points: Vec<[f64; 2]>) -> Self {
         Self::curve(k, name, points).marked(STYLES[k % STYLES.len()].1)

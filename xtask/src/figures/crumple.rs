@@ -1,13 +1,11 @@
 //! Figs. 11 and 12: a sheet of paper held at a corner falls and crumples.
 
-use super::marks::{self, Marks};
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Row, compared, course, rows, through_itself};
 use crate::draw::{Viewpoint, mesh_name};
 use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
 use crate::store::Store;
 use anyhow::{Result, ensure};
-use isosheet_io::scene::Integrator;
 use serde_json::json;
 
 /// What elastic sheets are made of.
@@ -103,36 +101,19 @@ fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
         }
     }
     let part = super::softness::make(store.effort, without_contact)?;
-    let both = [concentration(store, scene)?, concentration(store, elastic)?];
-    let alt = "How much of the fold angles the sharpest edges carry over time, and how many of the final marks are there already";
-    let plot = Picture::svg("fig12-marks", &marks::plot([&both[0], &both[1]]), alt);
-    let all = both.concat();
-    made.pictures.extend([part.picture, plot]);
-    made.tables.extend([part.table, marks::table(&all)]);
+    made.pictures.push(part.picture);
+    made.tables.push(part.table);
     let lasting = super::lasting::make(store)?;
     made.pictures.extend(lasting.pictures);
     made.pages.extend(lasting.pages);
     made.tables.push(lasting.table);
     made.facts["lasting"] = json!(lasting.facts);
     made.facts["softness"] = part.facts;
-    made.facts["marks"] = json!(all);
     Ok(())
 }
 
 /// The scene of each level of the mesh.
 type Scenes = fn(u32, Effort) -> Result<FigureScene>;
-
-/// The concentration of folds in the runs of M^1 to M^3.
-fn concentration(store: &Store, scene: Scenes) -> Result<Vec<Marks>> {
-    let levels = [(1, "M¹"), (2, "M²"), (3, "M³")];
-    let levels = &levels[..store.effort.quick_or(2, 3)];
-    let of = |&(level, name): &(u32, &str)| {
-        let run = Run::of(store, scene(level, store.effort)?)?;
-        let name = format!("{name}, {}", run.scene.sheet_name());
-        Ok(Marks::of(&name, &run.sheet, &run.trajectory))
-    };
-    levels.iter().map(of).collect()
-}
 
 fn end_shape(run: &Run) -> Result<Shape> {
     Shape::of(&Hanging::of(&run.scene)?, run.end())
@@ -148,8 +129,7 @@ fn describe(run: &Run, free: Option<&RunSummary>) -> Result<Vec<Row>> {
             1e3 * mass / hanging.sheet.area(), 1e3 * mass
         ),
         "method" => format!(
-            "{}, damping {:.0}/s, friction with itself {}", method_name(scene.scene().method.integrator),
-            scene.scene().sheet[0].damping, scene.scene().contact.friction
+            "BDF2, damping {:.0}/s, friction with itself {}", scene.scene().sheet[0].damping, scene.scene().contact.friction
         ),
     };
     rows.extend(course(s));
@@ -163,19 +143,6 @@ fn describe(run: &Run, free: Option<&RunSummary>) -> Result<Vec<Row>> {
         "total bending at the end" => format!("{:.2} rad times the side", shape.bending),
     });
     Ok(rows)
-}
-
-/// The integrator in words.
-pub(super) fn method_name(integrator: Integrator) -> &'static str {
-    match integrator {
-        Integrator::ImplicitEuler => "implicit Euler",
-        Integrator::Bdf2 => "BDF2",
-        Integrator::Projection => "projection",
-        Integrator::EnergyMomentum => "energy-momentum",
-        Integrator::Rattle => "RATTLE",
-        Integrator::RattleComposition => "fourth-order RATTLE",
-        Integrator::Chart => "system coordinates",
-    }
 }
 
 /// How a run is shown, and the level of its mesh.

@@ -6,7 +6,7 @@ use crate::runs::{self, ChartSummary, Course, Ending, FigureScene, Run, RunSumma
 use crate::store::Store;
 use anyhow::{Result, ensure};
 use isosheet_coords::condition_table;
-use isosheet_io::scene::{Coordinates, Integrator};
+use isosheet_io::scene::Coordinates;
 use serde_json::{Value, json};
 
 /// A row of the paper's table.
@@ -230,14 +230,13 @@ fn milliseconds(range: [f64; 2]) -> String {
 }
 
 fn default_row(mesh: &str, s: &RunSummary) -> [String; 6] {
-    let method = crumple::method_name(Integrator::default());
     let Course {
         time, strain, cost, ..
     } = &s.course;
     [
         String::new(),
         mesh.into(),
-        format!("isosheet ({method}), from exactly flat, with contact"),
+        "isosheet (BDF2), from exactly flat, with contact".to_owned(),
         format!("{:.0}", s.frames_per_second),
         s.step_range.map_or("–".into(), milliseconds),
         format!(

@@ -108,14 +108,6 @@ pub(crate) enum Shortfall {
 }
 
 impl Shortfall {
-    /// A run that stops between two times, seconds, with an error message that holds the given text.
-    pub(crate) fn stops(at: [f64; 2], saying: &str) -> Self {
-        Self::Stops {
-            at,
-            saying: saying.to_owned(),
-        }
-    }
-
     /// For people.
     pub(crate) fn text(&self) -> String {
         match self {
@@ -375,7 +367,13 @@ mod tests {
     fn a_declared_error_has_to_come_in_its_time() {
         let verdict = |stopped: Option<f64>, value: f64, said: &str| {
             let mut finding = found(value, Bound::AtMost(2.0));
-            finding.limited("x", Shortfall::stops([1.0, 2.0], "step size is 0.5 s"));
+            finding.limited(
+                "x",
+                Shortfall::Stops {
+                    at: [1.0, 2.0],
+                    saying: "step size is 0.5 s".to_owned(),
+                },
+            );
             finding.stopped = stopped;
             finding
                 .remark(stopped.map(|_| format!("the {said}")))

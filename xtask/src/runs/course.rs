@@ -143,11 +143,6 @@ impl Course {
         matches!(self.ending, Ending::Complete | Ending::Rest)
     }
 
-    /// NaN if the run ended early: no number of it is what was asked for.
-    pub(crate) fn if_good(&self, value: f64) -> f64 {
-        if self.is_good() { value } else { f64::NAN }
-    }
-
     /// Why the run did not reach its end, for people.
     pub(crate) fn failure(&self) -> Option<String> {
         match &self.ending {
@@ -421,7 +416,7 @@ mod tests {
         let stopped = plan.run(&mut falling(), &mut stop).unwrap();
         assert_eq!(stopped.ending, Ending::Stopped);
         let wrong = run(Plan::new(f64::NAN, 0.1));
-        assert!(!wrong.ending.message().is_empty() && wrong.if_good(1.0).is_nan());
+        assert!(!wrong.ending.message().is_empty() && !wrong.is_good());
         let mut both = whole.clone();
         both.add_run(late.clone());
         assert_eq!((both.cost.steps, &both.ending), (10, &late.ending));

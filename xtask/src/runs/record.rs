@@ -215,19 +215,6 @@ impl Run {
         let is_of_body = |row: &&LoadRow| row.on == LoadKind::Obstacle && row.number == body;
         self.loads.iter().filter(is_of_body).map(timed).collect()
     }
-
-    /// Time and force of all supports on the sheet: seconds, newtons.
-    pub(crate) fn supports(&self) -> Vec<[f64; 4]> {
-        let mut sums: Vec<[f64; 4]> = Vec::new();
-        for row in self.loads.iter().filter(|row| row.on == LoadKind::Support) {
-            let [t, force @ ..] = timed(row);
-            match sums.last_mut() {
-                Some(last) if last[0] == t => (0..3).for_each(|k| last[k + 1] += force[k]),
-                _ => sums.push(timed(row)),
-            }
-        }
-        sums
-    }
 }
 
 /// Time and force of a load.

@@ -227,11 +227,6 @@ pub(crate) fn scene_fingerprint() -> Result<u64> {
     Ok(hasher.finish())
 }
 
-/// The edit that ends a run after a number of frames of `frame` seconds.
-pub(crate) fn for_frames(frames: usize, frame: f64) -> String {
-    format!("stop.time={:?}", frames as f64 * frame)
-}
-
 /// The edit by which each start of a scene has other random displacements, as a part of the mean edge length.
 pub(crate) fn displaced(perturbation: f64, seed: u64) -> String {
     format!("sheet.start={{perturbation={perturbation:?},seed={seed}}}")

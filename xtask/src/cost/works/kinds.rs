@@ -5,7 +5,7 @@ use crate::cost::DEFAULT;
 use crate::report::Effort;
 use crate::runs::{Bumped, FigureScene, Plan, STEP, displaced};
 use anyhow::Result;
-use isosheet_dynamics::{ImplicitOptions, Method, ProjectionStepOptions, Simulation};
+use isosheet_dynamics::{ImplicitOptions, Method, Simulation};
 use isosheet_io::scene::SupportForces;
 use isosheet_tests::{Named, energy_momentum, implicit_euler};
 use serde::Deserialize;
@@ -111,17 +111,10 @@ impl Work {
             ..Default::default()
         });
         let quick = ("BDF2, lengths to 1e-9, decrement to 1e-3", quick);
-        let loose = Method::Projection(ProjectionStepOptions {
-            strain_tolerance: 1e-9,
-            ..Default::default()
-        });
-        let loose = ("projection, lengths to 1e-9", loose);
         let stepped = [
             (default.clone(), STEP),
             (default, 5e-3),
             (quick, STEP),
-            (loose.clone(), STEP),
-            (loose, 5e-3),
             (("energy-momentum", energy_momentum()), 2e-3),
         ];
         stepped.map(Some).to_vec()

@@ -52,7 +52,7 @@ impl Checker {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::runs::bumped;
+    use isosheet_tests::bumped;
 
     /// A sheet pushed into the table is found by both checks.
     #[test]
