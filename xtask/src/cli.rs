@@ -1,6 +1,5 @@
 //! The command line.
 
-use crate::bundle_view::{self, BundleViewArgs};
 use crate::condition::{self, ConditionArgs};
 use crate::cost::{self, CostArgs};
 use crate::failure::{self, EXIT_CODES, ReportError};
@@ -31,7 +30,7 @@ pub(crate) enum Command {
     /// Make the figures and the table of Liu, Tang and Joneja 2007 with this workspace
     ///
     /// Writes DIR/index.html (small pictures are inside and open the files beside it), DIR/figures,
-    /// DIR/scenes, DIR/runs and DIR/summary.json. What is already there and was made by the same program with
+    /// DIR/scenes, DIR/runs and DIR/tables (CSV). What is already there and was made by the same program with
     /// the same options is kept; Ctrl-C stops at the next frame, and the same command continues.
     ReproduceFigures(ReproduceArgs),
     /// Tabulate and plot the condition numbers of three systems of coordinates, by mesh level
@@ -87,10 +86,6 @@ pub(crate) enum Command {
     /// that it prints and more cases for each: `PROPTEST_RNG_SEED=SEED ISOSHEET_TIMES=N cargo test NAME`
     /// repeats what failed.
     Soak(SoakArgs),
-    /// Build the program of the 3D page of a run, io/view/dist, from io/view/src with npm and esbuild
-    ///
-    /// Only needed after a change of io/view; needs Node.js 20 or newer and the npm registry.
-    BundleView(BundleViewArgs),
 }
 
 impl Command {
@@ -107,7 +102,6 @@ impl Command {
             Self::Measured(args) => measured::run(args),
             Self::Gallery(args) => gallery::run(args),
             Self::Soak(args) => soak::run(args),
-            Self::BundleView(args) => bundle_view::run(args),
         }
     }
 }

@@ -28,7 +28,6 @@ use crate::report::{Effort, Picture, Table, extremes};
 use crate::runs::{FigureScene, RunSummary};
 use crate::store::{Files, Store};
 use anyhow::Result;
-use serde_json::Value;
 
 /// A page that plays a run.
 #[derive(Clone, Debug)]
@@ -59,13 +58,17 @@ pub(crate) struct Made {
     pub(crate) pages: Vec<Play>,
     /// What was measured; all but the first are folded away on the page.
     pub(crate) tables: Vec<Table>,
-    /// The numbers, for programs.
-    pub(crate) facts: Value,
 }
 
 impl Made {
     /// Writes its files.
-    pub(crate) fn write(&self, files: &mut Files<'_>) -> Result<()> {
+    pub(crate) fn write(&self, figure: u8, files: &mut Files<'_>) -> Result<()> {
+        for (k, table) in (1..).zip(&self.tables) {
+            table
+                .clone()
+                .named(&format!("fig{figure:02}-{k}"))
+                .write(files)?;
+        }
         for picture in &self.pictures {
             picture.write(files)?;
         }

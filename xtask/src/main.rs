@@ -10,9 +10,7 @@
 //! * `measured`: what the reports measured, as numbers of the book and the README, and what is out of date.
 //! * `gallery`: pictures of sixteen scenes, and a film.
 //! * `soak`: the random tests with new seeds.
-//! * `bundle-view`: the program of the 3D page of a run.
 
-mod bundle_view;
 mod cli;
 mod condition;
 mod cost;

@@ -1,4 +1,4 @@
-//! `reproduce-figures`: makes what is asked for and not up to date, then writes the page and `summary.json`.
+//! `reproduce-figures`: makes what is asked for and not up to date, then writes the page.
 
 use crate::figures::{self, Made};
 use crate::interrupt;
@@ -8,10 +8,9 @@ use crate::runs::scene_fingerprint;
 use crate::store::{Kept, Store, Unit};
 use anyhow::Result;
 use clap::{Args, value_parser};
-use isosheet_io::write_json;
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeSet;
 use std::time::Instant;
 
@@ -29,11 +28,10 @@ pub(crate) struct ReproduceArgs {
 /// The last figure of the paper; Fig. 10 is a table.
 const LAST: i64 = 15;
 
-/// What is kept of a figure: its section of the page, its part of `summary.json` and its tables.
+/// What is kept of a figure: its section of the page and its tables.
 #[derive(Debug, Serialize, Deserialize)]
 struct Record {
     section: Section,
-    summary: Value,
     /// Its tables for the book.
     excerpt: Vec<Part>,
 }
@@ -69,28 +67,21 @@ fn make(store: &Store, figure: u8, scenes: u64) -> Result<()> {
     store.keep(&unit, |files| {
         let started = Instant::now();
         let made = figures::make(figure, store)?;
-        made.write(files)?;
+        made.write(figure, files)?;
         let wall = started.elapsed().as_secs_f64();
         progress::note(&unit.title, &format!("made ({wall:.1} s)"));
         Ok(Record {
             section: section(figure, &made).into(),
-            summary: summary(figure, &made, store),
             excerpt: tables(figure, &made),
         })
     })?;
     Ok(())
 }
 
-/// Writes `index.html` and `summary.json` of all figures made so far.
+/// Writes `index.html` of all figures made so far.
 fn write(store: &Store, scenes: u64) -> Result<()> {
     let units = all().map(|figure| unit(store, figure, scenes));
     let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
-    let figures: Vec<&Value> = records.iter().map(|r| &r.summary).collect();
-    let version = env!("CARGO_PKG_VERSION");
-    write_json(
-        &store.path("summary.json"),
-        &json!({ "version": version, "effort": store.effort, "figures": figures, "left_out": left_out }),
-    )?;
     let parts: Vec<Part> = records.iter().flat_map(|r| r.excerpt.clone()).collect();
     excerpt::write(store, "reproduce-figures", parts)?;
     let body = html! {
@@ -108,14 +99,6 @@ fn write(store: &Store, scenes: u64) -> Result<()> {
         ..Page::new("Figures of Liu, Tang and Joneja 2007, reproduced", body)
     };
     page.write(store, "index.html")
-}
-
-fn summary(figure: u8, made: &Made, store: &Store) -> Value {
-    json!({
-        "figure": figure, "title": made.title, "effort": store.effort, "paper": made.paper, "here": made.here,
-        "pictures": made.pictures.iter().map(|p| &p.path).collect::<Vec<_>>(),
-        "pages": made.pages.iter().map(|p| &p.path).collect::<Vec<_>>(), "facts": made.facts,
-    })
 }
 
 /// The tables of a figure for the book: `fig10-1`, `fig10-2`.
@@ -177,7 +160,6 @@ mod tests {
                 thumbnail: png("fig10-a-end.png", "Figure 10, M<2>, at the end"),
             }],
             tables: vec![Table::new("t", &["x"]).with_texts([vec!["<1>".into()]])],
-            facts: Value::Null,
         };
         let html = section(10, &made).into_string();
         for part in [

@@ -9,7 +9,7 @@ mod record;
 mod scene;
 mod shape;
 
-pub(crate) use bumped::{Bumped, CLEARANCE, Pairs, STEP, TABLE};
+pub(crate) use bumped::{Bumped, STEP};
 pub(crate) use chart_run::{ChartSummary, chart_run};
 pub(crate) use course::{Course, Ending, Plan, unseen};
 pub(crate) use ensemble::{Member, ensemble};

@@ -10,6 +10,7 @@ use isosheet_dynamics::{Constant, Tuning};
 use maud::html;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::sync::LazyLock;
 
 /// Arguments of `tuning`.
 #[derive(Debug, Args)]
@@ -33,161 +34,32 @@ fn constant(name: &str) -> Result<&'static Constant, String> {
 }
 
 /// A kind of scene, of which each start has other small displacements.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Kind {
-    name: &'static str,
+    name: String,
     /// A file of `xtask/scenes`, or a kind of `isosheet new`.
-    scene: &'static str,
-    edits: &'static [&'static str],
+    scene: String,
+    #[serde(default)]
+    edits: Vec<String>,
     /// Size of the displacements as a part of the mean edge length.
     perturbation: f64,
     steps: usize,
 }
 
-/// All kinds.
-const KINDS: [Kind; 15] = [
-    Kind {
-        name: "hanging",
-        scene: "fig12",
-        edits: &["sheet.mesh.square.level=3", "contact={self_contact=false}"],
-        perturbation: 1e-3,
-        steps: 60,
-    },
-    Kind {
-        name: "bending",
-        scene: "fig12",
-        edits: &[
-            "contact={self_contact=false}",
-            "sheet.bending={hinges={rigidity=5e-4}}",
-        ],
-        perturbation: 1e-3,
-        steps: 60,
-    },
-    Kind {
-        name: "drape",
-        scene: "fig15",
-        edits: &["contact.self_contact=false"],
-        perturbation: 1e-3,
-        steps: 45,
-    },
-    Kind {
-        name: "drape, itself",
-        scene: "fig14",
-        edits: &[
-            "sheet.mesh.rectangle.columns=8",
-            "sheet.mesh.rectangle.rows=8",
-        ],
-        perturbation: 1e-3,
-        steps: 60,
-    },
-    Kind {
-        name: "feed",
-        scene: "fig16",
-        edits: &[],
-        perturbation: 1e-4,
-        steps: 160,
-    },
-    Kind {
-        name: "stamp",
-        scene: "fig13",
-        edits: &["sheet.mesh.square.level=2"],
-        perturbation: 1e-4,
-        steps: 90,
-    },
-    Kind {
-        name: "elastic clamp",
-        scene: "clamp",
-        edits: &[],
-        perturbation: 1e-4,
-        steps: 60,
-    },
-    Kind {
-        name: "crease pattern",
-        scene: "fig17",
-        edits: &["sheet.mesh.miura.columns=6", "sheet.mesh.miura.rows=6"],
-        perturbation: 1e-4,
-        steps: 60,
-    },
-    Kind {
-        name: "conservative",
-        scene: "fig12",
-        edits: &[
-            "contact={self_contact=false}",
-            "sheet.damping=0.0",
-            "method={integrator=\"energy_momentum\",step=0.002,fallback={implicit_euler={}}}",
-        ],
-        perturbation: 0.1,
-        steps: 60,
-    },
-    // Faces whose altitude is 5e-4 of their longest side.
-    Kind {
-        name: "slivers",
-        scene: "fig12",
-        edits: &[
-            "sheet.mesh={rectangle={width=0.21,height=1e-4,columns=8,rows=8}}",
-            "contact={self_contact=false}",
-        ],
-        perturbation: 1e-7,
-        steps: 30,
-    },
-    // A half that is 1e3 times as heavy as the other.
-    Kind {
-        name: "heavy part",
-        scene: "fig12",
-        edits: &[
-            "weight=[{at={half_space={point=[0.105,0,0],normal=[1,0,0]}},mass=1.764}]",
-            "contact={self_contact=false}",
-        ],
-        perturbation: 1e-2,
-        steps: 240,
-    },
-    Kind {
-        name: "tiny steps",
-        scene: "fig12",
-        edits: &[
-            "sheet.mesh.square.level=3",
-            "contact={self_contact=false}",
-            "method.step=1e-4",
-        ],
-        perturbation: 1e-3,
-        steps: 120,
-    },
-    Kind {
-        name: "strip on edge",
-        scene: "fig12",
-        edits: &[
-            "sheet.mesh={rectangle={width=0.21,height=0.02625,columns=16,rows=2}}",
-            "support=[{at={box={min=[-1,-1,-1],max=[0,1,1]}}}]",
-            "forces.gravity=[0,-9.8,0]",
-            "contact={self_contact=false}",
-        ],
-        perturbation: 1e-6,
-        steps: 240,
-    },
-    Kind {
-        name: "flat on a table",
-        scene: "fig12",
-        edits: &[
-            "sheet.mesh.square.level=3",
-            "support=[]",
-            "obstacle=[{shape=\"half_space\",pose={position=[0,0,-1e-4]},friction=0.3}]",
-            "contact={self_contact=false}",
-        ],
-        perturbation: 1e-6,
-        steps: 5,
-    },
-    // Aluminium of 1 mm.
-    Kind {
-        name: "sheet metal",
-        scene: "stamp",
-        edits: &[
-            "sheet.mesh.rectangle.columns=18",
-            "sheet.mesh.rectangle.rows=6",
-            "sheet.material.thickness=1e-3",
-        ],
-        perturbation: 1e-4,
-        steps: 120,
-    },
-];
+/// The file of the kinds.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Contents {
+    kind: Vec<Kind>,
+}
+
+static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
+    let contents: Result<Contents, _> = toml::from_str(include_str!("tuning/kinds.toml"));
+    contents
+        .unwrap_or_else(|error| panic!("kinds.toml: {error}"))
+        .kind
+});
 
 /// What all starts of a kind cost.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -270,11 +142,11 @@ fn all_kinds(store: &Store, name: &str, tuning: Tuning, starts: u64) -> Result<V
     store.keep(&unit, |_| {
         let bar = Progress::start(name, KINDS.len());
         let mut all = Vec::new();
-        for kind in &KINDS {
+        for kind in KINDS.iter() {
             let mut measured = Measured::default();
             for seed in 1..=starts {
                 kind.run(seed, tuning, store.effort, &mut measured)
-                    .with_context(|| kind.name)?;
+                    .with_context(|| kind.name.clone())?;
             }
             all.push(measured);
             bar.step();
@@ -286,9 +158,9 @@ fn all_kinds(store: &Store, name: &str, tuning: Tuning, starts: u64) -> Result<V
 
 impl Kind {
     fn run(&self, seed: u64, tuning: Tuning, effort: Effort, sum: &mut Measured) -> Result<()> {
-        let mut edits: Vec<String> = self.edits.iter().map(|&edit| edit.to_owned()).collect();
+        let mut edits = self.edits.clone();
         edits.push(displaced(self.perturbation, seed));
-        let scene = FigureScene::named(self.scene, self.name, &edits)?;
+        let scene = FigureScene::named(&self.scene, &self.name, &edits)?;
         let mut simulation = scene.setup()?.start()?.with_tuning(tuning)?;
         let time = scene.frame() * effort.quick_or(3, self.steps) as f64;
         let course = Plan::new(scene.frame(), time).run(&mut simulation, &mut unseen)?;
@@ -303,7 +175,7 @@ fn base_table(base: &[Measured], starts: u64) -> Table {
         format!("What {starts} starts of each kind cost with the constants as they are."),
         KINDS.iter().zip(base),
         columns! { row;
-            "kind" => row.0.name,
+            "kind" => row.0.name.as_str(),
             "steps" => row.1.cost.steps,
             "factorisations per step" => row.1.cost.factorisations_per_step(),
             "CPU seconds" => row.1.cost.cpu,
@@ -319,9 +191,9 @@ fn ratios(
     changed: &[Measured],
     of: impl Fn(&Cost) -> f64,
 ) -> (f64, f64, &'static str) {
-    let ratio = |(kind, (b, c)): (&Kind, (&Measured, &Measured))| {
+    let ratio = |(kind, (b, c)): (&'static Kind, (&Measured, &Measured))| {
         let per_step = |m: &Measured| of(&m.cost) / m.cost.steps.max(1) as f64;
-        (per_step(c) / per_step(b), kind.name)
+        (per_step(c) / per_step(b), kind.name.as_str())
     };
     let all: Vec<(f64, &str)> = KINDS
         .iter()

@@ -80,19 +80,17 @@ fn makes_figures_and_skips_them_when_run_again() {
     let (_keep, out) = folder();
     let (code, text) = reproduce(&out, "1,2", &["--quick"]);
     assert_eq!(code, Some(0), "{text}");
-    let files = [
-        "figures/fig01.svg",
-        "figures/fig02.svg",
-        "index.html",
-        "summary.json",
-    ];
+    let files = ["figures/fig01.svg", "figures/fig02.svg", "index.html"];
     assert_written(&out, 500, &files);
     let page = read(out.join("index.html"));
     assert_eq!(page.matches("<section").count(), 2);
     assert_short(&page);
     assert!(page.contains("<svg") && !page.contains("<script") && !page.contains("<link"));
-    let summary = read_json(out.join("summary.json"));
-    assert_eq!(summary["figures"][1]["facts"]["pair"]["total"], 7);
+    let table = read(out.join("tables/fig01-1.csv"));
+    assert!(
+        table.starts_with("split,V,E,F,") && table.lines().count() == 5,
+        "{table}"
+    );
     assert_eq!(leftovers(&out), Vec::<String>::new());
 
     let made = || {

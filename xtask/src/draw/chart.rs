@@ -261,11 +261,6 @@ impl Charts {
         Self(vec![charts.into_iter().collect()])
     }
 
-    /// Charts below each other.
-    pub(crate) fn column(charts: impl IntoIterator<Item = Chart>) -> Self {
-        Self(charts.into_iter().map(|chart| vec![chart]).collect())
-    }
-
     fn draw(&self, svg: &mut String) -> Result<[f64; 2], Box<dyn Error>> {
         let height = |row: &Vec<Chart>| row.iter().map(|c| c.outer()[1]).fold(0.0, f64::max);
         let width = |row: &Vec<Chart>| row.iter().map(|c| c.outer()[0]).sum();

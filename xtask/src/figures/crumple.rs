@@ -6,7 +6,6 @@ use crate::draw::{Viewpoint, mesh_name};
 use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
 use crate::store::Store;
 use anyhow::{Result, ensure};
-use serde_json::json;
 
 /// What elastic sheets are made of.
 pub(super) const PAPER_SHEET: &str = "office paper";
@@ -62,7 +61,6 @@ pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
             page(figure, &elastic, store.effort)?,
         ],
         tables: vec![compared(&["rods", PAPER_SHEET], &columns)],
-        facts: json!({ "run": run.summary, "without_contact": free, "elastic": elastic.summary }),
     };
     if figure == 12 {
         add_softness_and_marks(&mut made, store)?;
@@ -107,8 +105,6 @@ fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
     made.pictures.extend(lasting.pictures);
     made.pages.extend(lasting.pages);
     made.tables.push(lasting.table);
-    made.facts["lasting"] = json!(lasting.facts);
-    made.facts["softness"] = part.facts;
     Ok(())
 }
 

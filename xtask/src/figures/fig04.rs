@@ -5,13 +5,12 @@ use crate::draw::{Drawing, Stroke, TEXT, column, flat_edges, flat_faces, palette
 use anyhow::{Result, ensure};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{Dof, Sheet, VertexId};
-use serde_json::json;
 use std::collections::BTreeSet;
 
 const SIDE: f64 = 104.0;
 
 pub(super) fn make() -> Result<Made> {
-    let (mut upper, mut lower, mut facts) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut upper, mut lower) = (Vec::new(), Vec::new());
     let head = [
         "level",
         "rectangles",
@@ -68,10 +67,6 @@ pub(super) fn make() -> Result<Made> {
         ];
         caption(&mut bottom, [0.5 * SIDE, -7.0], TEXT, &words);
         lower.push(bottom);
-        facts.push(json!({
-            "level": level, "vertices": t.vertex_count(), "edges": t.edge_count(), "faces": t.face_count(),
-            "rectangles": faces, "rectangle_edges": edges, "dof": dof.total, "internal": dof.internal,
-        }));
     }
     let gap = 14.0;
     let all = column(&[row(&upper, gap), row(&lower, gap)], 12.0);
@@ -83,7 +78,6 @@ pub(super) fn make() -> Result<Made> {
         here: "The rectangles are read off the triangle meshes: they are the stars of the vertices with both grid coordinates odd.",
         tables: vec![table],
         pictures: svg(4, &all, alt),
-        facts: json!({ "levels": facts }),
         ..Made::default()
     })
 }

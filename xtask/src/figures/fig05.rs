@@ -8,7 +8,6 @@ use crate::report::columns;
 use anyhow::{Context, Result, ensure};
 use isosheet_coords::EulerParameters;
 use isosheet_mesh::{EdgeAngles, Sheet, VertexId, fold_angle};
-use serde_json::json;
 
 /// Fold of the pair at time t: 70 degrees.
 const FOLD: f64 = 70.0 * std::f64::consts::PI / 180.0;
@@ -85,12 +84,6 @@ pub(super) fn make() -> Result<Made> {
         here: "The angles are measured on the folded pair (right), whose fold follows from the angles at either end.",
         pictures: svg(5, &all, alt),
         tables: vec![table],
-        facts: json!({
-            "fold_degrees": fold.to_degrees(),
-            "ends": triples[1].map(|t| json!({
-                "alpha": t.alpha, "beta": t.beta, "gamma": t.gamma, "flat": t.flat(), "fold": t.fold(),
-            })),
-        }),
         ..Made::default()
     })
 }

@@ -7,7 +7,6 @@ use crate::draw::{Drawing, Stroke, palette};
 use anyhow::{Result, ensure};
 use isosheet_coords::placement::{place_f, place_g, place_h};
 use isosheet_coords::{Branch, EdgeFrame, EulerParameters, SphericalFrame};
-use serde_json::json;
 
 /// Squared height that counts as zero; nothing here is near it.
 const TOLERANCE: f64 = 1e-12;
@@ -32,7 +31,6 @@ pub(super) fn make() -> Result<Made> {
             "f returns the vertex to its first place, to (edge lengths)" => format!("{error:.0e}"),
         })],
         pictures: svg(6, &all, alt),
-        facts: json!({ "f_error": error }),
         ..Made::default()
     })
 }

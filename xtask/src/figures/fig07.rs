@@ -7,7 +7,6 @@ use crate::draw::{Drawing, palette};
 use anyhow::{Result, bail, ensure};
 use isosheet_coords::placement::{COLLINEAR, collinearity, place_f, place_on_line};
 use isosheet_coords::{Branch, EulerParameters, PlacementError};
-use serde_json::json;
 
 const TOLERANCE: f64 = 1e-12;
 
@@ -58,7 +57,6 @@ pub(super) fn make() -> Result<Made> {
             "change of the length of the middle rod, which is not used" => format!("{worst:.0e}"),
         })],
         pictures: svg(7, &all, alt),
-        facts: json!({ "sine": sine, "limit": COLLINEAR, "middle_rod_error": worst }),
         ..Made::default()
     })
 }

@@ -9,7 +9,6 @@ use anyhow::{Result, ensure};
 use isosheet_coords::{Assignment, Rule, Start, sys_coord_assnmt_single};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{Dof, Sheet, VertexId};
-use serde_json::json;
 
 const SIDE: f64 = 168.0;
 
@@ -41,16 +40,6 @@ pub(super) fn make() -> Result<Made> {
     }
     let [fronts, order] = panels;
     let all = row(&[fronts, order, legend(&assignment)], 20.0);
-    let vertices: Vec<_> = assignment
-        .order()
-        .iter()
-        .map(|p| {
-            json!({
-                "vertex": p.vertex.0, "front": p.front, "rule": p.rule.letter().to_string(),
-                "known": p.rule.known().iter().map(|v| v.0).collect::<Vec<_>>(),
-            })
-        })
-        .collect();
     let count = |letter| assignment.rule_count(letter);
     let alt = "Fronts, rules and order of the assignment of system coordinates on M1";
     Ok(Made {
@@ -67,10 +56,6 @@ pub(super) fn make() -> Result<Made> {
             "degrees of freedom" => dof.to_string(),
         })],
         pictures: svg(8, &all, alt),
-        facts: json!({
-            "dof": dof, "fronts": assignment.front_count(), "h": count('h'), "g": count('g'), "f": count('f'),
-            "vertices": vertices,
-        }),
         ..Made::default()
     })
 }

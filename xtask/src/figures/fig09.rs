@@ -7,7 +7,6 @@ use crate::draw::{Stroke, palette};
 use anyhow::{Result, ensure};
 use isosheet_coords::placement::place_g;
 use isosheet_coords::{EdgeFrame, EulerParameters};
-use serde_json::json;
 
 /// The coordinate that is drawn, radians.
 const Q: f64 = 1.0;
@@ -87,7 +86,6 @@ pub(super) fn make() -> Result<Made> {
             "distance of the two places (edge lengths)" => format!("{error:.0e}"),
         })],
         pictures: svg(9, &d.drawing, alt),
-        facts: json!({ "theta": theta, "q": Q, "difference": error }),
         ..Made::default()
     })
 }

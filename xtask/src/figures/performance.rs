@@ -7,7 +7,6 @@ use crate::store::Store;
 use anyhow::{Result, ensure};
 use isosheet_coords::condition_table;
 use isosheet_io::scene::Coordinates;
-use serde_json::{Value, json};
 
 /// A row of the paper's table.
 type Published = (u8, Option<u32>, [&'static str; 3]);
@@ -160,11 +159,6 @@ impl Tried {
             .map(Vec::from)
             .collect()
     }
-
-    fn facts(&self) -> Value {
-        let charts: Vec<&ChartSummary> = self.charts.iter().map(|(_, s)| s).collect();
-        json!({ "figure": self.figure, "default": self.ours, "without_self_contact": self.free, "published_scheme": charts })
-    }
 }
 
 /// Whether a run was refused at its start.
@@ -216,7 +210,6 @@ pub(super) fn make(store: &Store) -> Result<Made> {
             table.with_texts(all.iter().flat_map(Tried::rows)),
             contact_table(&all),
         ],
-        facts: json!({ "machine": machine, "rows": all.iter().map(Tried::facts).collect::<Vec<_>>() }),
     })
 }
 

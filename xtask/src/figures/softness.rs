@@ -7,7 +7,6 @@ use crate::report::{columns, extremes};
 use crate::runs::{self, FigureScene, Member};
 use anyhow::{Result, ensure};
 use isosheet_mesh::Dof;
-use serde_json::{Value, json};
 
 /// Falls of each mesh: they settle in different folds, so one says little.
 const MEMBERS: u64 = 8;
@@ -19,7 +18,6 @@ const BUMP: f64 = 1e-3;
 pub(super) struct Softness {
     pub(super) picture: Picture,
     pub(super) table: Table,
-    pub(super) facts: Value,
 }
 
 /// The falls of one mesh.
@@ -83,11 +81,6 @@ pub(super) fn make(
     Ok(Softness {
         picture: Picture::svg("fig12-softness", &plot(&all), alt),
         table: table(&all),
-        facts: Value::Array(
-            all.iter()
-                .map(|l| json!({ "level": l.level, "sheet": l.sheet, "bump": BUMP, "falls": l.falls }))
-                .collect(),
-        ),
     })
 }
 

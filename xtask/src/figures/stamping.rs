@@ -6,7 +6,6 @@ use crate::draw::{Axis, Chart, Charts, Series, Viewpoint, palette};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
-use serde_json::{Value, json};
 
 /// What the elastic blank is made of.
 const METAL: &str = "steel sheet";
@@ -151,17 +150,6 @@ impl Punched {
         ];
         Chart::new(x, y, [165.0, 118.0], series)
     }
-
-    fn facts(&self) -> Value {
-        let Self {
-            run,
-            peak,
-            weight,
-            curve,
-            ..
-        } = self;
-        json!({ "run": run.summary, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve })
-    }
 }
 
 /// A blank that the die has left.
@@ -260,11 +248,5 @@ pub(super) fn make(store: &Store) -> Result<Made> {
             springs.page(effort)?,
             stays.page(effort)?,
         ],
-        facts: json!({
-            "rods": rods.facts(),
-            "elastic": steel.facts(),
-            "height_mm_after_release": both.map(|r| 1e3 * r.height),
-            "release": both.map(|r| json!(r.run.summary)),
-        }),
     })
 }

@@ -15,10 +15,10 @@ const BUMP: f64 = 1e-3;
 pub(crate) const STEP: f64 = 1.0 / 60.0;
 
 /// Height of the sheet's rim above the table, metres.
-pub(crate) const CLEARANCE: f64 = 1e-3;
+const CLEARANCE: f64 = 1e-3;
 
 /// Half of the table's side, half of its thickness, metres.
-pub(crate) const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
+const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
 
 /// Mass of the sheet, kilograms.
 const MASS: f64 = 0.1;

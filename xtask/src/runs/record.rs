@@ -21,14 +21,11 @@ const STRAIN: f64 = 1e-10;
 const REST: f64 = 1e-6;
 
 /// What a run did.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct RunSummary {
-    /// The scene file.
-    pub(crate) scene: String,
     pub(crate) vertices: usize,
     pub(crate) faces: usize,
     /// Its steps are the frames after the first.
-    #[serde(flatten)]
     pub(crate) course: Course,
     pub(crate) frames_per_second: f64,
     /// Shortest and longest step, seconds; where a frame was subdivided, the mean of its sub-steps counts.
@@ -45,7 +42,7 @@ pub(crate) struct RunSummary {
 }
 
 /// Where the energy went, joules.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Energy {
     /// Potential energy at the start less that at the end.
     pub(crate) released: f64,
@@ -63,7 +60,7 @@ pub(crate) struct Energy {
 
 impl RunSummary {
     /// What the rows of a run and its summary say, and what its steps took.
-    fn new(scene: &FigureScene, summary: &Summary, rows: &[HistoryRow], times: Times) -> Self {
+    fn new(summary: &Summary, rows: &[HistoryRow], times: Times) -> Self {
         let (first, steps) = rows
             .split_first()
             .map_or((None, rows), |(f, s)| (Some(f), s));
@@ -88,7 +85,6 @@ impl RunSummary {
         let quiet = steps.iter().rposition(moves).map_or(0, |last| last + 1);
         let last = steps.last().copied().unwrap_or(start);
         Self {
-            scene: scene.text().to_owned(),
             vertices: summary.vertices,
             faces: summary.faces,
             course: Course {
@@ -187,7 +183,7 @@ impl Run {
         };
         let (summary, times) = store.keep(&unit, |files| record(&scene, files))?;
         let recorded = Recording::read(&store.path(&folder(&scene)))?;
-        let summary = RunSummary::new(&scene, &summary, &recorded.history, times);
+        let summary = RunSummary::new(&summary, &recorded.history, times);
         summary.check()?;
         Ok(Self {
             sheet: recorded.sheet,

@@ -6,7 +6,6 @@ use isosheet_dynamics::{Frames, Observer, Simulation};
 use isosheet_io::scene::{Material, Scene, SceneFile, Setup, StartingPoint};
 use isosheet_mesh::Sheet;
 use serde::de::DeserializeOwned;
-use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -24,12 +23,6 @@ const THROUGH_ITSELF: &str = "contact.self_contact=false";
 pub(crate) struct FigureScene {
     name: String,
     file: SceneFile,
-}
-
-impl Serialize for FigureScene {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.options().serialize(serializer)
-    }
 }
 
 impl FigureScene {

@@ -1,6 +1,5 @@
 //! The kinds of runs.
 
-use super::penetration::Checker;
 use crate::cost::DEFAULT;
 use crate::report::Effort;
 use crate::runs::{Bumped, FigureScene, Plan, STEP, displaced};
@@ -68,8 +67,6 @@ pub(super) struct Start {
     pub(super) plan: Plan,
     /// Whether the scene ends before.
     pub(super) is_over: Box<dyn Fn(&Simulation) -> bool + Send>,
-    /// The check beside the contact code that nothing is penetrated.
-    pub(super) checker: Option<Checker>,
 }
 
 /// The crane's mesh in the folder that `ISOSHEET_DATA` names: a crease pattern of the folder is no part of
@@ -171,13 +168,7 @@ impl Work {
     ) -> Result<Option<Start>> {
         if let (Scene::Bumped(bumped), Some(((_, method), step))) = (&self.scene, method) {
             let simulation = bumped.start(size, method.clone())?;
-            let topology = simulation.model().topology();
-            let checker = match bumped {
-                Bumped::Hanging => None,
-                Bumped::Tablecloth(pairs) => Some(Checker::new(topology, *pairs)?),
-            };
             return Ok(Some(Start {
-                checker,
                 plan: Plan::new(*step, bumped.duration()),
                 is_over: Box::new(|_| false),
                 simulation,
@@ -192,7 +183,6 @@ impl Work {
         let supports = SupportForces::new(origins, &simulation, scene.scene().support.len());
         let stop = scene.scene().stop.clone();
         Ok(Some(Start {
-            checker: None,
             plan: Plan::new(scene.frame(), scene.frames() as f64 * scene.frame()),
             is_over: Box::new(move |s| stop.is_force_reached(|| supports.of(s))),
             simulation,
