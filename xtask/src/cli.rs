@@ -48,8 +48,8 @@ pub(crate) enum Command {
     /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks
     /// with references
     ///
-    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/tables (CSV) and DIR/plots (SVG and PNG)
-    /// and prints the tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not
+    /// Writes DIR/index.html (self-contained), DIR/findings.csv and DIR/tables (CSV) and prints the
+    /// findings. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not
     /// end is an entry of a table. The exit code is 0 unless a finding is out of bounds that is not declared
     /// to be.
     Locking(LockingArgs),
@@ -61,9 +61,9 @@ pub(crate) enum Command {
     Tuning(TuningArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
-    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/findings.json and DIR/figures, and
-    /// prints a table. The exit code is 0 unless a case fails that is not declared an open limitation.
-    /// Finished cases are kept, as in `reproduce-figures`.
+    /// Writes DIR/index.html (self-contained) and DIR/findings.csv, and prints a table. The exit code is 0 unless
+    /// a case fails that is not declared an open limitation. Finished cases are kept, as in
+    /// `reproduce-figures`.
     HardCases(HardCasesArgs),
     /// Make the figures, the table of condition numbers and all reports, one after another
     ///

@@ -25,7 +25,7 @@ pub(crate) use show::shots;
 
 use crate::draw::{Anchor, Drawing, Vertical, palette};
 use crate::report::{Effort, Picture, Table, extremes};
-use crate::runs::{FigureScene, RunSummary};
+use crate::runs::RunSummary;
 use crate::store::{Files, Store};
 use anyhow::Result;
 
@@ -117,15 +117,6 @@ fn caption(drawing: &mut Drawing, at: [f64; 2], size: f64, lines: &[String]) {
         let place = [at[0], at[1] - 1.35 * size * k as f64];
         let (anchor, ink) = (Anchor::Middle, palette::INK);
         drawing.text(place, line, size, anchor, Vertical::Below, ink);
-    }
-}
-
-/// What tells a run in which the sheet may pass through itself from the one of the figure.
-fn through_itself(scene: &FigureScene) -> &'static str {
-    if scene.scene().contact.self_contact {
-        ""
-    } else {
-        ", passing through itself"
     }
 }
 

@@ -6,18 +6,18 @@
 
 mod case;
 mod check;
-mod page;
 mod variants;
 
 use crate::interrupt;
 use crate::progress;
-use crate::report::{Finding, FullOptions, Section, Verdict, demand, excerpt};
+use crate::report::{Finding, FullOptions, Part, Record, Report, Table, Verdict};
+use crate::report::{all_findings, columns, findings};
 use crate::store::{Kept, Store, Unit};
 use anyhow::Result;
 use case::Case;
 use clap::Args;
+use maud::html;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::time::Instant;
 
@@ -30,25 +30,6 @@ pub(crate) struct HardCasesArgs {
 
     #[command(flatten)]
     options: FullOptions,
-}
-
-/// What is kept about a case.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Record {
-    name: String,
-    title: String,
-    section: Section,
-    checks: Vec<Finding>,
-    /// Wall time, seconds.
-    wall: f64,
-}
-
-impl Record {
-    /// The worst verdict of the checks.
-    fn verdict(&self) -> Verdict {
-        let verdicts = self.checks.iter().map(Finding::verdict);
-        verdicts.max().unwrap_or(Verdict::Passed)
-    }
 }
 
 /// Runs the command.
@@ -66,12 +47,87 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
     interrupt::afterwards(made, || {
         let units = cases.iter().map(|case| unit(&store, case));
         let kept: Kept<Record> = store.all_kept(units.collect());
-        let records = &kept.records;
-        print!("{}", page::text(records));
-        page::write(&store, &kept)?;
-        excerpt::write(&store, "hard-cases", page::excerpt(records))?;
-        demand(page::findings(records))
+        let summary = summary(&cases, &kept.records);
+        let counts = counts(&kept.records);
+        print!("{}{counts}\n", summary.text());
+        let report = Report {
+            name: "hard-cases",
+            title: "Hard cases",
+            introduction: html! { p { (ABOUT) } p { (counts) } (summary) },
+            caption: "Every check of every case",
+            excerpt: vec![
+                Part::text("counts", counts),
+                Part::table("cases", &summary),
+                Part::table("limitations", &limitations(&kept.records)),
+            ],
+        };
+        report.write(&store, kept)
     })
+}
+
+const ABOUT: &str = "\
+    Situations that break solvers for thin sheets. Each says what should happen and measures isosheet against bounds. Every number is \
+    computed by the run that made this page: the summaries of all runs of a scene are judged. Largest strains and smallest gaps are of \
+    all accepted steps, those of runs that stop early included.";
+
+/// How many checks of some cases passed, are open limitations and failed.
+fn counts(records: &[Record]) -> String {
+    let verdicts = || all_findings(records).map(|(_, f)| f.verdict());
+    let count = |v: Verdict| verdicts().filter(|other| *other == v).count();
+    let failed = verdicts().filter(|v| v.is_failure()).count();
+    let (cases, all) = (records.len(), verdicts().count());
+    let [passed, open] = [Verdict::Passed, Verdict::Limitation].map(count);
+    format!(
+        "{cases} cases, {all} checks: {passed} passed, {open} open limitations, {failed} failed."
+    )
+}
+
+/// The cases that have been run.
+fn summary(cases: &[Case], records: &[Record]) -> Table {
+    let title = |r: &Record| cases.iter().find(|case| case.name == r.name);
+    let passed = |r: &Record| {
+        let verdicts = r.findings.iter().map(Finding::verdict);
+        verdicts.filter(|v| *v == Verdict::Passed).count()
+    };
+    Table::of(
+        "The cases.",
+        records,
+        columns! { r;
+            "case" => r.name.as_str(),
+            "situation" => title(r).map(|case| case.contents.title.as_str()),
+            "checks" => r.findings.len(),
+            "passed" => passed(r),
+            "verdict" => verdict(&r.findings).text(),
+        },
+    )
+}
+
+/// The checks that did not pass.
+fn limitations(records: &[Record]) -> Table {
+    let open = all_findings(records).filter(|(_, f)| f.verdict() != Verdict::Passed);
+    let why = |f: &Finding| {
+        f.limitation
+            .as_ref()
+            .map_or("not declared", |l| &l.why)
+            .to_owned()
+    };
+    Table::of(
+        "The checks that did not pass.",
+        open,
+        columns! { row;
+            "case" => row.0,
+            "check" => row.1.quantity.as_str(),
+            "measured" => row.1.measured(),
+            "bound" => row.1.bound.text(),
+            "why" => why(row.1),
+        },
+    )
+}
+
+/// The worst verdict of some checks.
+fn verdict(checks: &[Finding]) -> Verdict {
+    let verdicts = checks.iter().map(Finding::verdict);
+    verdicts.max().unwrap_or(Verdict::Passed)
 }
 
 fn unit(store: &Store, case: &Case) -> Unit {
@@ -84,15 +140,19 @@ fn unit(store: &Store, case: &Case) -> Unit {
 fn make(case: &Case, store: &Store) -> Result<Record> {
     let started = Instant::now();
     let (checks, runs) = case.run(store.effort)?;
-    let mut record = Record {
-        name: case.name.clone(),
-        title: case.contents.title.clone(),
-        section: Section::default(),
-        checks,
-        wall: started.elapsed().as_secs_f64(),
-    };
-    let text = format!("{} ({:.1} s)", record.verdict().text(), record.wall);
+    let wall = started.elapsed().as_secs_f64();
+    let text = format!("{} ({wall:.1} s)", verdict(&checks).text());
     progress::note(&case.name, &text);
-    record.section = page::section(&case.contents.expected, &record, &runs).into();
-    Ok(record)
+    let contents = &case.contents;
+    let named = checks.iter().map(|check| (case.name.as_str(), check));
+    let section = html! {
+        h2 { (contents.title) }
+        p { (contents.expected) }
+        (findings("What isosheet does", named))
+        (runs)
+    };
+    Ok(Record {
+        findings: checks,
+        ..Record::new(&case.name, section)
+    })
 }

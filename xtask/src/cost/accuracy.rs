@@ -1,9 +1,11 @@
 //! Error against time: the methods without a chart on problems with exact solutions, with ever finer steps.
 
-use super::{DEFAULT, Record};
+use super::DEFAULT;
 use crate::draw::{Chart, Charts, Legend, Series};
 use crate::progress::Progress;
-use crate::report::{Bound, Effort, Finding, LENGTHS, Part, Table, columns, exponent, plot};
+use crate::report::{
+    Bound, Effort, Finding, LENGTHS, Part, Record, Table, columns, exponent, plot,
+};
 use crate::runs::{Course, Plan, unseen};
 use crate::store::Files;
 use anyhow::Result;

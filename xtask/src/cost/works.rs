@@ -7,9 +7,8 @@ mod run;
 
 pub(super) use kinds::Work;
 
-use super::Record;
 use crate::progress;
-use crate::report::{Part as Excerpt, Table, plot};
+use crate::report::{Part as Excerpt, Record, Table, plot};
 use crate::store::{Store, Unit};
 use anyhow::Result;
 use kinds::Stepped;

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::colour::{Colour, palette};
 use super::marker::Marker;
-use super::series::{Line, Series};
+use super::series::Series;
 use super::svg::{FAMILY, Vector, paper};
 use super::text::{SMALL, TEXT};
 use maud::{Markup, PreEscaped};
@@ -11,7 +11,7 @@ use plotters::backend::SVGBackend;
 use plotters::chart::ChartBuilder;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
-use plotters::element::{EmptyElement, ErrorBar, PathElement, Polygon};
+use plotters::element::{EmptyElement, PathElement, Polygon};
 use plotters::prelude::{DashedLineSeries, LineSeries, SeriesLabelPosition};
 use plotters::style::{Color, IntoFont, RGBAColor, ShapeStyle, TextStyle};
 use std::error::Error;
@@ -158,25 +158,12 @@ impl Chart {
             let holds = |p: &&[f64; 2]| self.x.holds(p[0]) && self.y.holds(p[1]);
             let points = s.points.iter().filter(holds).map(|p| (p[0], p[1]));
             let (look, line) = (s.look(), stroke(s.colour, 1.1));
-            match s.line {
-                Line::None => {}
-                Line::Area => {
-                    let corners = s.points.iter().map(|p| (p[0], self.y.nearest(p[1])));
-                    let area = Polygon::new(corners.collect::<Vec<_>>(), rgba(s.colour));
-                    chart.draw_series([area])?;
-                }
-                Line::Solid => {
-                    chart.draw_series(LineSeries::new(points.clone(), line))?;
-                }
-                Line::Dashed => {
-                    let [on, off] = DASH.map(units);
-                    chart.draw_series(DashedLineSeries::new(points.clone(), on, off, line))?;
-                }
+            if s.is_dashed {
+                let [on, off] = DASH.map(units);
+                chart.draw_series(DashedLineSeries::new(points.clone(), on, off, line))?;
+            } else {
+                chart.draw_series(LineSeries::new(points.clone(), line))?;
             }
-            let bar = |b: &[f64; 4]| {
-                ErrorBar::new_vertical(b[0], b[1], b[2], b[3], line, units(5.0) as u32)
-            };
-            chart.draw_series(s.bars.iter().map(bar))?;
             let marked = points.filter(|_| s.marker.is_some()).map(|p| {
                 let [rim, inside] = look.symbol(2.4);
                 EmptyElement::at(p) + rim + inside
@@ -220,7 +207,7 @@ impl Chart {
 struct Look {
     colour: Colour,
     marker: Option<Marker>,
-    line: Line,
+    is_dashed: bool,
 }
 
 impl Series {
@@ -228,7 +215,7 @@ impl Series {
         Look {
             colour: self.colour,
             marker: self.marker,
-            line: self.line,
+            is_dashed: self.is_dashed,
         }
     }
 }
@@ -247,9 +234,8 @@ impl Look {
 
     /// The two halves of the line in a legend.
     fn sample(self) -> [PathElement<(i32, i32)>; 2] {
-        let gap = if self.line == Line::Dashed { 0.15 } else { 0.0 };
-        let alpha = if self.line == Line::None { 0.0 } else { 1.0 };
-        let line = stroke(self.colour.alpha(alpha), 1.1);
+        let gap = if self.is_dashed { 0.15 } else { 0.0 };
+        let line = stroke(self.colour, 1.1);
         let halves = [[-0.5, -gap], [gap, 0.5]];
         halves.map(|ends| PathElement::new(ends.map(|x| (units(x * SAMPLE), 0)), line))
     }

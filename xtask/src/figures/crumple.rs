@@ -1,9 +1,9 @@
 //! Figs. 11 and 12: a sheet of paper held at a corner falls and crumples.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Row, compared, course, rows, through_itself};
+use super::{Effort, Made, Picture, Play, Row, compared, course, rows};
 use crate::draw::{Viewpoint, mesh_name};
-use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
+use crate::runs::{self, FigureScene, Hanging, Run, Shape};
 use crate::store::Store;
 use anyhow::{Result, ensure};
 
@@ -28,7 +28,7 @@ pub(super) fn scene(level: u32, effort: Effort) -> Result<FigureScene> {
 }
 
 /// The same passing through itself.
-pub(super) fn without_contact(level: u32, effort: Effort) -> Result<FigureScene> {
+fn without_contact(level: u32, effort: Effort) -> Result<FigureScene> {
     scene(level, effort)?.without_self_contact(&format!("crumple-m{level}"))
 }
 
@@ -39,9 +39,8 @@ fn elastic(level: u32, effort: Effort) -> Result<FigureScene> {
 
 pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
     let run = Run::of(store, scene(level, store.effort)?)?;
-    let free = Run::of(store, without_contact(level, store.effort)?)?.summary;
     let elastic = Run::of(store, elastic(level, store.effort)?)?;
-    let columns = [describe(&run, Some(&free))?, describe(&elastic, None)?];
+    let columns = [describe(&run)?, describe(&elastic)?];
     let [rods_bent, paper_bent] = [end_shape(&run)?.bending, end_shape(&elastic)?.bending];
     ensure!(
         store.effort == Effort::Quick || paper_bent < CRUMPLED * rods_bent,
@@ -98,9 +97,8 @@ fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
             made.pages.push(page(12, &finer, store.effort)?);
         }
     }
-    let part = super::softness::make(store.effort, without_contact)?;
-    made.pictures.push(part.picture);
-    made.tables.push(part.table);
+    let softness = super::softness::make(store.effort, without_contact)?;
+    made.tables.push(softness);
     let lasting = super::lasting::make(store)?;
     made.pictures.extend(lasting.pictures);
     made.pages.extend(lasting.pages);
@@ -115,8 +113,8 @@ fn end_shape(run: &Run) -> Result<Shape> {
     Shape::of(&Hanging::of(&run.scene)?, run.end())
 }
 
-/// What was measured of a run; `free` is the sheet that may pass through itself.
-fn describe(run: &Run, free: Option<&RunSummary>) -> Result<Vec<Row>> {
+/// What was measured of a run.
+fn describe(run: &Run) -> Result<Vec<Row>> {
     let (scene, s) = (&run.scene, &run.summary);
     let (hanging, mass) = (Hanging::of(scene)?, runs::mass(scene)?);
     let mut rows = rows! {
@@ -129,10 +127,8 @@ fn describe(run: &Run, free: Option<&RunSummary>) -> Result<Vec<Row>> {
         ),
     };
     rows.extend(course(s));
-    let times = |free: &RunSummary| format!("{:.1}", s.slowness() / free.slowness().max(1e-12));
     let shape = Shape::of(&hanging, run.end())?;
     rows.extend(rows! {
-        "times as long as without self-contact" => free.map_or("–".into(), times),
         "kinetic energy at the end, of the potential energy released" => format!("{:.0e}", s.motion_left),
         "depth of the centre of mass at the end" =>
             format!("{:.3} sides (a rigid plate: {:.3})", shape.centre_depth, runs::PLATE),
@@ -159,10 +155,10 @@ fn view(run: &Run) -> Result<(View, u32)> {
 }
 
 /// The page that plays a run.
-pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
+fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
     let (view, level) = view(run)?;
-    let (level, free) = (mesh_name(level), through_itself(&run.scene));
-    let label = format!("crumpled paper, {level}, {}{free}", run.scene.sheet_name());
+    let level = mesh_name(level);
+    let label = format!("crumpled paper, {level}, {}", run.scene.sheet_name());
     view.play(run, effort, figure, &label)
 }
 

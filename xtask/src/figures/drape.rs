@@ -4,7 +4,7 @@
 use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{CornerFolds, Hem};
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Table, through_itself, whole_percent};
+use super::{Effort, Made, Picture, Play, Table, whole_percent};
 use crate::draw::{Viewpoint, mesh_name};
 use crate::report::columns;
 use crate::runs::{FigureScene, Run};
@@ -114,15 +114,12 @@ const VIEW: View = View {
     bodies: &[0],
 };
 
-/// The page that plays the run of a cloth.
-pub(super) fn page(figure: u8, label: &str, run: &Run, effort: Effort) -> Result<Play> {
-    let (label, free) = (label, through_itself(&run.scene));
-    VIEW.play(run, effort, figure, &format!("draped cloth, {label}{free}"))
-}
-
 /// The pages of some cloths.
 fn pages(figure: u8, all: &[&Draped], effort: Effort) -> Result<Vec<Play>> {
-    let of = |d: &&Draped| page(figure, &d.name(), &d.run, effort);
+    let of = |d: &&Draped| {
+        let label = format!("draped cloth, {}", d.name());
+        VIEW.play(&d.run, effort, figure, &label)
+    };
     all.iter().map(of).collect()
 }
 

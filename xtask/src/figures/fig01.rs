@@ -50,12 +50,12 @@ pub(super) fn make() -> Result<Made> {
         let coarser = k.checked_sub(1).map(|j| &sheets[j]);
         let mut d = panel(sheet, coarser);
         let counts = format!(
-            "~V~ = {}, ~E~ = {}, ~F~ = {}",
+            "V = {}, E = {}, F = {}",
             t.vertex_count(),
             t.edge_count(),
             t.face_count()
         );
-        let freedom = format!("DOF = {dof}, ~B~ = {boundary}");
+        let freedom = format!("DOF = {dof}, B = {boundary}");
         caption(&mut d, [0.5 * SIDE, -7.0], TEXT, &[counts, freedom]);
         panels.push(d);
     }

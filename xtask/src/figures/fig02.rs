@@ -38,12 +38,12 @@ pub(super) fn make() -> Result<Made> {
         let dof = Dof::of(t);
         lines.push(vec![
             format!(
-                "~V~ = {}, ~E~ = {}, ~F~ = {}",
+                "V = {}, E = {}, F = {}",
                 t.vertex_count(),
                 t.edge_count(),
                 t.face_count()
             ),
-            format!("DOF = 3~V~ − ~E~ = {}", dof.total),
+            format!("DOF = 3V − E = {}", dof.total),
             format!("{} external, {} internal", dof.external, dof.internal),
         ]);
     }

@@ -1,7 +1,9 @@
 //! Fig. 4: isotropic refinement.
 
 use super::{Made, Table, caption, style, svg};
-use crate::draw::{Drawing, Stroke, TEXT, column, flat_edges, flat_faces, palette, plan, row};
+use crate::draw::{
+    Drawing, Stroke, TEXT, column, flat_edges, flat_faces, mesh_name, palette, plan, row,
+};
 use anyhow::{Result, ensure};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{Dof, Sheet, VertexId};
@@ -59,7 +61,8 @@ pub(super) fn make() -> Result<Made> {
         flat_edges(&mut bottom, &sheet, SIDE, |_| Some(thin));
         let words = [
             format!(
-                "~M~^{{{level}}}: ~V~/~F~ = {}/{}",
+                "{}: V/F = {}/{}",
+                mesh_name(level),
                 t.vertex_count(),
                 t.face_count()
             ),

@@ -98,7 +98,7 @@ fn degenerate(lengths: [f64; 3]) -> Result<(Drawing, f64)> {
     let (q, o) = (d.view.project(named), d.view.project(&foot));
     let out = (q[0] - o[0]).hypot(q[1] - o[1]) / 9.0;
     let shift = [(q[0] - o[0]) / out, (q[1] - o[1]) / out];
-    d.label(named, shift, "~q~", palette::INK);
+    d.label(named, shift, "q", palette::INK);
     d.known(&LINE);
     Ok((d.drawing, worst))
 }

@@ -109,14 +109,20 @@ fn fronts(sheet: &Sheet, assignment: &Assignment) -> Drawing {
         let (p, fill) = (place(placing.vertex), colour(placing.front));
         marker(&placing.rule).draw(&mut d, p, 4.6, fill, rim);
         let names = match placing.rule {
-            Rule::Start { q } => format!("~q~_{{{}–{}}}", q + 1, q + 3),
-            Rule::H { q, .. } => format!("~q~_{{{},{}}}", q + 1, q + 2),
-            Rule::G { q, .. } => format!("~q~_{{{}}}", q + 1),
+            Rule::Start { q } => format!("q{}–{}", subscript(q + 1), subscript(q + 3)),
+            Rule::H { q, .. } => format!("q{},{}", subscript(q + 1), subscript(q + 2)),
+            Rule::G { q, .. } => format!("q{}", subscript(q + 1)),
             _ => continue,
         };
         label(&mut d, p, &names);
     }
     d
+}
+
+/// A number in subscript digits.
+fn subscript(number: usize) -> String {
+    let lowered = |digit: char| char::from_u32(0x2080 + digit.to_digit(10)?);
+    number.to_string().chars().filter_map(lowered).collect()
 }
 
 /// A small text beside or at a point.
@@ -176,9 +182,9 @@ fn legend(assignment: &Assignment) -> Drawing {
     };
     for (marker, name) in [
         (Marker::Square, "start"),
-        (Marker::Diamond, "rule ~h~"),
-        (Marker::Triangle, "rule ~g~"),
-        (Marker::Disc, "rule ~f~"),
+        (Marker::Diamond, "rule h"),
+        (Marker::Triangle, "rule g"),
+        (Marker::Disc, "rule f"),
     ] {
         line(&mut d, Some((marker, palette::GREY)), name);
     }

@@ -1,8 +1,8 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
 use super::crumple::PAPER_SHEET;
-use super::{Effort, Picture, Table, mean};
-use crate::draw::{Axis, Chart, Charts, Marker, Series, mesh_name, palette};
+use super::{Effort, Table, mean};
+use crate::draw::mesh_name;
 use crate::report::{columns, extremes};
 use crate::runs::{self, FigureScene, Member};
 use anyhow::{Result, ensure};
@@ -13,12 +13,6 @@ const MEMBERS: u64 = 8;
 
 /// Random displacement at the start of a fall, mean edge lengths: two hundredths of a millimetre on M^3.
 const BUMP: f64 = 1e-3;
-
-/// The plot and the table that go with Fig. 12.
-pub(super) struct Softness {
-    pub(super) picture: Picture,
-    pub(super) table: Table,
-}
 
 /// The falls of one mesh.
 struct Level {
@@ -49,10 +43,7 @@ impl Level {
 }
 
 /// Measures the falls of the scenes that `fall` gives for each level.
-pub(super) fn make(
-    effort: Effort,
-    fall: fn(u32, Effort) -> Result<FigureScene>,
-) -> Result<Softness> {
+pub(super) fn make(effort: Effort, fall: fn(u32, Effort) -> Result<FigureScene>) -> Result<Table> {
     let (levels, members) = effort.quick_or((0..2, 2), (0..4, MEMBERS));
     let mut all = Vec::new();
     for (level, material) in SHEETS
@@ -77,41 +68,7 @@ pub(super) fn make(
         effort == Effort::Quick || ends[0] < ends[1],
         "the total bending of rods does not grow with the mesh: {ends:?}"
     );
-    let alt = "The total bending of the falling sheet, by mesh level";
-    Ok(Softness {
-        picture: Picture::svg("fig12-softness", &plot(&all), alt),
-        table: table(&all),
-    })
-}
-
-/// The total bending over the level of the mesh: means, and bars with the range.
-fn plot(all: &[Level]) -> Charts {
-    let looks = [
-        (palette::VERMILION, Marker::Disc, -0.07),
-        (palette::BLUE, Marker::Square, 0.07),
-    ];
-    let sheets = all.chunk_by(|a, b| a.sheet == b.sheet).zip(looks);
-    let series = sheets.map(|(levels, (colour, marker, aside))| {
-        let bar = |l: &Level| {
-            let values = l.values(bending);
-            let [low, high] = extremes(values.iter().copied()).unwrap_or_default();
-            [f64::from(l.level) + aside, low, mean(&values), high]
-        };
-        let bars: Vec<[f64; 4]> = levels.iter().map(bar).collect();
-        let means = bars.iter().map(|b| [b[0], b[2]]).collect();
-        Series {
-            bars,
-            ..Series::line(&levels[0].sheet, colour, means).marked(marker)
-        }
-    });
-    let series: Vec<Series> = series.collect();
-    let top = series.iter().flat_map(|s| &s.bars).map(|b| b[3]);
-    let top = 1.1 * top.fold(0.0, f64::max);
-    let last = all.last().map_or(0, |l| l.level);
-    let ticks = (0..=last).map(|l| (f64::from(l), mesh_name(l)));
-    let x = Axis::named("mesh", [-0.25, f64::from(last) + 0.25], ticks.collect());
-    let y = Axis::linear("total bending (rad · side)", [0.0, top]);
-    Chart::new(x, y, [140.0, 118.0], series).into()
+    Ok(table(&all))
 }
 
 fn bending(fall: &Member) -> f64 {

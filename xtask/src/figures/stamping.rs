@@ -1,7 +1,7 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Row, compared, course, height, rows, through_itself};
+use super::{Effort, Made, Picture, Play, Row, compared, course, height, rows};
 use crate::draw::{Axis, Chart, Charts, Series, Viewpoint, palette};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
@@ -58,9 +58,9 @@ const VIEW: View = View {
 };
 
 /// The page that plays a run.
-pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
-    let (sheet, free) = (run.scene.sheet_name(), through_itself(&run.scene));
-    VIEW.play(run, effort, figure, &format!("stamping, {sheet}{free}"))
+fn page(run: &Run, effort: Effort) -> Result<Play> {
+    let label = format!("stamping, {}", run.scene.sheet_name());
+    VIEW.play(run, effort, 13, &label)
 }
 
 /// A sheet that has been punched.
@@ -243,8 +243,8 @@ pub(super) fn make(store: &Store) -> Result<Made> {
             VIEW.ends(&ends, effort, ["fig13-released.png", left])?,
         ],
         pages: vec![
-            page(13, &rods.run, effort)?,
-            page(13, &steel.run, effort)?,
+            page(&rods.run, effort)?,
+            page(&steel.run, effort)?,
             springs.page(effort)?,
             stays.page(effort)?,
         ],

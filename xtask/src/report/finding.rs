@@ -3,11 +3,8 @@
 
 use super::{Table, number};
 use crate::failure::ReportError;
-use crate::store::Store;
 use anyhow::Result;
-use isosheet_io::write_json;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 
 /// The relative error of lengths that accepted steps of BDF2 and implicit Euler with rods keep, as the
 /// documentation says.
@@ -275,24 +272,6 @@ pub(crate) fn findings<'a>(
         ],
     )
     .named("findings")
-}
-
-/// Writes `findings.csv` and `findings.json` of a report.
-pub(crate) fn write_findings<'a>(
-    store: &Store,
-    all: impl IntoIterator<Item = (&'a str, &'a Finding)> + Clone,
-) -> Result<()> {
-    findings("", all.clone()).write_to(&store.path("findings.csv"))?;
-    let value = |(case, finding): (&str, &Finding)| -> Result<Value> {
-        let mut value = serde_json::to_value(finding)?;
-        value["case"] = json!(case);
-        value["verdict"] = json!(finding.verdict());
-        Ok(value)
-    };
-    let all: Vec<Value> = all.into_iter().map(value).collect::<Result<_>>()?;
-    let version = env!("CARGO_PKG_VERSION");
-    let all = json!({ "version": version, "effort": store.effort, "findings": all });
-    Ok(write_json(&store.path("findings.json"), &all)?)
 }
 
 /// # Errors

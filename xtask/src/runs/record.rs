@@ -97,7 +97,6 @@ impl RunSummary {
                     .unwrap_or(0),
                 strain: summary.largest_strain,
                 gap: summary.smallest_gap,
-                kinetic: last.kinetic,
                 speed: summary.ending.largest_speed,
                 ..Course::default()
             },
@@ -120,11 +119,6 @@ impl RunSummary {
     /// Vertices and faces of the mesh.
     pub(crate) fn mesh(&self) -> String {
         format!("{}/{}", self.vertices, self.faces)
-    }
-
-    /// Wall time over simulated time: below one is faster than real time.
-    pub(crate) fn slowness(&self) -> f64 {
-        self.course.cost.wall / self.course.time.max(1e-12)
     }
 
     /// Largest strain: of an edge of rods, of a face of an elastic sheet.

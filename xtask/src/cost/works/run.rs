@@ -3,7 +3,7 @@
 use super::Task;
 use super::kinds::Start;
 use crate::progress::Progress;
-use crate::report::{Effort, extremes, median, peak_memory, reset_peak_memory, rounded, short};
+use crate::report::{Effort, extremes, median, number, peak_memory, reset_peak_memory, rounded};
 use crate::runs::{Course, Ending, Plan};
 use crate::threads;
 use anyhow::{Context, Result};
@@ -127,7 +127,7 @@ impl Row {
             largest_energy_change: median(&|r| Some(r.part(1))),
             peak_bytes: runs.iter().filter_map(|r| r.peak).reduce(f64::max),
             ended: runs.iter().filter(|r| r.course.is_good()).count(),
-            failure: failure.map(|(t, why)| format!("at {} s: {}", short(t), rounded(&why))),
+            failure: failure.map(|(t, why)| format!("at {} s: {}", number(t), rounded(&why))),
             ..self
         }
     }
@@ -256,7 +256,7 @@ mod tests {
         assert_eq!((row.cpu_s_per_simulated_s, row.rate()), (Some(1.5), None));
         assert_eq!((row.starts, row.ended), (4, 3));
         let failure = row.failure.unwrap();
-        assert_eq!(failure, "at 2.0 s: 4 s of CPU time were over");
+        assert_eq!(failure, "at 2 s: 4 s of CPU time were over");
     }
 
     fn of(work: &Work) -> Run {
