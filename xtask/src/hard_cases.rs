@@ -49,7 +49,7 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
         let kept: Kept<Record> = store.all_kept(units.collect());
         let summary = summary(&cases, &kept.records);
         let counts = counts(&kept.records);
-        print!("{}{counts}\n", summary.text());
+        println!("{}{counts}", summary.text());
         let report = Report {
             name: "hard-cases",
             title: "Hard cases",

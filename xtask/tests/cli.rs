@@ -265,7 +265,9 @@ fn quick_and_full_results_do_not_mix() {
     assert!(out.join("runs/crumple-m1-contact").exists());
     let (code, text) = reproduce(&out, "1", &[]);
     assert_eq!(code, Some(0), "{text}");
-    assert!(!out.join("runs/crumple-m1-contact").exists() && !out.join("figures/fig11.png").exists());
+    assert!(
+        !out.join("runs/crumple-m1-contact").exists() && !out.join("figures/fig11.png").exists()
+    );
     assert!(!out.join("fig11-crumple-m1-contact.html").exists());
     let page = read(out.join("index.html"));
     assert!(page.matches("<section").count() == 1 && !page.contains("quick"));

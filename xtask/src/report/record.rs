@@ -30,10 +30,9 @@ impl Record {
 
 /// Every finding with the name of its part.
 pub(crate) fn all_findings(records: &[Record]) -> impl Iterator<Item = (&str, &Finding)> + Clone {
-    let findings = records
+    records
         .iter()
-        .flat_map(|r| r.findings.iter().map(move |f| (r.name.as_str(), f)));
-    findings
+        .flat_map(|r| r.findings.iter().map(move |f| (r.name.as_str(), f)))
 }
 
 /// What all parts make of a report.
