@@ -14,6 +14,7 @@ mod contact_forces;
 mod elastic;
 mod flat;
 mod forces;
+mod hard;
 mod impacts;
 mod invariance;
 mod locking;

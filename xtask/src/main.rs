@@ -11,9 +11,7 @@
 //! * `gallery`: pictures of sixteen scenes, and a film.
 //! * `soak`: the random tests with new seeds.
 //! * `reference`: the pages of the book that are made of the code.
-//! * `bundle-view`: the program of the 3D page of a run.
 
-mod bundle_view;
 mod cli;
 mod condition;
 mod cost;
@@ -30,7 +28,6 @@ mod reference;
 mod report;
 mod reproduce;
 mod runs;
-mod selection;
 mod soak;
 mod sources;
 mod store;

@@ -1,6 +1,5 @@
 //! The models of a sheet that are compared, and what sheets are made of.
 
-use crate::draw::{Colour, palette};
 use anyhow::Result;
 use isosheet_dynamics::{CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
@@ -77,15 +76,6 @@ impl Model {
     /// The elastic energy in the plane and of bending, without that of creases, joules.
     pub(super) fn energy(self, sheet: &Sheet, plate: Plate<'_>, x: &[f64]) -> Result<f64> {
         Ok(self.sheet(sheet, plate)?.potential_energy(0.0, x))
-    }
-
-    /// The colour in figures.
-    pub(super) fn colour(self) -> Colour {
-        match self {
-            Self::Rods => palette::VERMILION,
-            Self::Material => palette::BLUE,
-            Self::Elastic => palette::GREEN,
-        }
     }
 }
 

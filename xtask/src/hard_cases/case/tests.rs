@@ -1,7 +1,7 @@
 //! Cases of a falling sheet.
 
 use super::*;
-use crate::report::{Finding, Verdict};
+use crate::report::Verdict;
 
 const SCENE: &str = "version = 1
     [sheet]
@@ -11,28 +11,20 @@ const SCENE: &str = "version = 1
     [stop]
     time = 0.1";
 
-/// The case with a scene of a falling sheet.
-fn read(case: &str) -> Result<CaseFile> {
+/// The case with a scene of a falling sheet. Its folder stays as long as the first value lives.
+fn read(case: &str) -> Result<(tempfile::TempDir, Case)> {
     let folder = tempfile::tempdir()?;
-    std::fs::write(folder.path().join("scene.toml"), SCENE)?;
+    fs::write(folder.path().join("scene.toml"), SCENE)?;
     let path = folder.path().join("case.toml");
-    std::fs::write(
-        &path,
-        format!("title = 't'\nexpected = 'e'\nscene = 'scene.toml'\n{case}"),
-    )?;
-    let mut file = CaseFile::read(&path)?;
-    // The folder goes; the scene is wanted once more.
-    let kept = folder.keep().join("scene.toml");
-    file.scene = kept;
-    Ok(file)
+    let head = "title = 't'\nexpected = 'e'\nscene = 'scene.toml'";
+    fs::write(&path, format!("{head}\n{case}"))?;
+    let case = Case::read(&path)?;
+    Ok((folder, case))
 }
 
 fn checks(case: &str) -> Vec<Finding> {
-    let file = read(case).expect("right");
-    let mut found = Findings::default();
-    file.run(&mut found, Effort::Quick).expect("runs");
-    std::fs::remove_dir_all(file.scene.parent().expect("a folder")).expect("a folder");
-    found.checks
+    let (_folder, case) = read(case).expect("right");
+    case.run(Effort::Quick).expect("runs").0
 }
 
 /// A sheet that falls freely has the speed `g t` at the end, and the worst of several runs counts.
@@ -67,7 +59,7 @@ fn the_worst_run_is_judged() {
 /// effort is not checked in quick reports.
 #[test]
 fn entries_of_variants_have_their_own_runs() {
-    let file = read(
+    let (_folder, file) = read(
         "quick = ['method.step=0.01']
         [[variants]]
         'stop.time' = [0.1, 0.2]
@@ -78,8 +70,8 @@ fn entries_of_variants_have_their_own_runs() {
         'stop.time' = [5.0]
         [[check]]
         only = { 'stop.time' = 5.0 }
-        quantity = 'ending.t'
-        at_least = 5.0
+        quantity = 'steps'
+        at_least = 300
         [[check]]
         quantity = 'steps'
         at_most = 20",
@@ -101,9 +93,8 @@ fn entries_of_variants_have_their_own_runs() {
         .map(|run| format!("{run} method.step=0.01"))
         .collect();
     assert_eq!(runs(Effort::Quick), quick);
-    let mut found = Findings::default();
-    file.run(&mut found, Effort::Quick).expect("runs");
-    let values: Vec<_> = found.checks.iter().map(|c| c.value).collect();
+    let found = file.run(Effort::Quick).expect("runs").0;
+    let values: Vec<_> = found.iter().map(|c| c.value).collect();
     assert_eq!(values, [Some(20.0)]);
 }
 
@@ -129,7 +120,7 @@ fn a_limitation_is_judged_on_both_sides() {
 #[test]
 fn runs_that_stop_are_no_good() {
     let found = checks(
-        "quick = ['method.integrator=projection', 'sheet.mesh.square.level=1', 'stop.time=1',
+        "quick = ['method.integrator=bdf2', 'sheet.mesh.square.level=1', 'stop.time=1',
             'support=[{ at = { nearest = [[0, 0, 0], [0.2, 0.2, 0]] } }]']
         [[check]]
         quantity = 'ending.largest_speed'
@@ -151,9 +142,12 @@ fn runs_that_stop_are_no_good() {
 
 #[test]
 fn wrong_files_are_refused() {
-    let said = |case: &str| format!("{:#}", read(case).expect_err("wrong"));
+    let said = |case: &str| format!("{:#}", read(case).map(drop).expect_err("wrong"));
     let text = said("[[check]]\nquantity = 'stopped'");
-    assert!(text.contains("`stopped` has no bound"), "{text}");
+    assert!(
+        text.contains("all runs: number that stop early` has no bound"),
+        "{text}"
+    );
     let text = said("[[check]]\nquantity = 'stopped'\nat_most = 0\nonly = { 'a.b' = 1 }");
     assert!(
         text.contains("`a.b` of `only` is none of the variants"),
@@ -161,53 +155,51 @@ fn wrong_files_are_refused() {
     );
     let text = said("[[check]]\nquantity = 'stopped'\nat_mos = 0");
     assert!(text.contains("unknown field `at_mos`"), "{text}");
-    let file = read("[[check]]\nquantity = 'speed'\nat_most = 0").expect("right");
+    let text = said("[[check]]\nquantity = 'speed'\nat_most = 0");
+    assert!(text.contains("unknown variant `speed`"), "{text}");
+    let (_folder, file) =
+        read("[[check]]\nquantity = { measure = 'tip' }\nat_most = 0").expect("right");
     let error = file
-        .run(&mut Findings::default(), Effort::Quick)
-        .expect_err("wrong");
-    assert!(error.to_string().contains("no number `speed`"), "{error}");
+        .run(Effort::Quick)
+        .map(drop)
+        .expect_err("no such measure");
+    assert!(
+        error
+            .to_string()
+            .contains("no number of `all runs: measure tip"),
+        "{error}"
+    );
     assert!(said("check = []").contains("there is no check"));
     let text = said("[[check]]\nquantity = 'steps'\nat_most = nan");
-    assert!(text.contains("a bound of `steps` is not finite"), "{text}");
+    assert!(
+        text.contains("a bound of `all runs: steps` is not finite"),
+        "{text}"
+    );
     let text = said(
         "[[check]]\nquantity = 'steps'\nat_most = 0\nlimitation = { why = 'w', between = [2, 1] }",
     );
     assert!(text.contains("ends before it begins"), "{text}");
     let check = "[[check]]\nquantity = 'steps'\nat_most = 0\n";
     let text = said(&format!("{check}[[variants]]\n'stop.time' = 0.1"));
-    assert!(text.contains("the values of a key are a list"), "{text}");
-    for (variants, only, problem) in [
-        ("'sheet.start.seed' = '3..1'", "", "`3..1` is no range"),
-        (
-            "'sheet.start.seed' = '1..1000000'",
-            "",
-            "more runs than the 100000",
-        ),
-        (
-            "'stop.time' = [0.1]",
-            "only = { 'stop.time' = 0.2 }",
-            "no run is one of `stop.time = 0.2: steps`",
-        ),
-    ] {
-        let file = read(&format!("{check}{only}\n[[variants]]\n{variants}")).expect("right");
-        let error = file
-            .run(&mut Findings::default(), Effort::Quick)
-            .expect_err("wrong");
-        assert!(error.to_string().contains(problem), "{error}");
-    }
+    assert!(text.contains("invalid type"), "{text}");
+    let case = format!("{check}only = {{ 'stop.time' = 0.2 }}\n[[variants]]\n'stop.time' = [0.1]");
+    let (_folder, file) = read(&case).expect("right");
+    let error = file.run(Effort::Quick).map(drop).expect_err("wrong");
+    let problem = "no run is one of `stop.time = 0.2: steps`";
+    assert!(error.to_string().contains(problem), "{error}");
 }
 
 #[test]
 fn the_files_of_the_folder_are_cases() {
-    let all = all().expect("right files");
-    assert_eq!(names(), all.iter().map(|c| c.name).collect::<Vec<_>>());
-    for case in &all {
+    for case in &all().expect("right files") {
+        assert_eq!(named(&case.name), Ok(case.name.clone()));
+        let contents = &case.contents;
         assert!(
-            !case.title.is_empty() && case.expected.ends_with('.'),
+            !contents.title.is_empty() && contents.expected.ends_with('.'),
             "{case:?}"
         );
+        case.require_runs().expect("runs of all checks");
     }
-    for (name, _) in BESIDE {
-        assert!(all.iter().any(|case| case.name == name), "{name}");
-    }
+    let error = named("flat").expect_err("no case");
+    assert!(error.contains("'flat-start'"), "{error}");
 }
