@@ -5,6 +5,7 @@ use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// Where a potential is evaluated.
 #[derive(Debug, Clone, Copy)]
@@ -243,6 +244,89 @@ impl Memories {
         let is_hand = |number: &usize| self.hands.iter().any(|(_, n)| n == number);
         let remembering = (0..self.lists.len()).filter(|n| !self.lists[*n].is_empty());
         remembering.filter(move |n| !is_hand(n))
+    }
+}
+
+/// A potential that several models share: what it remembers belongs to their simulations.
+impl<P: Potential + ?Sized> Potential for Arc<P> {
+    fn energy(&self, at: At<'_>) -> f64 {
+        (**self).energy(at)
+    }
+
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        (**self).add_gradient(at, gradient);
+    }
+
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        (**self).add_hessian(at, hessian);
+    }
+
+    fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        (**self).add_semidefinite_hessian(at, hessian);
+    }
+
+    fn couplings(&self) -> Vec<[VertexId; 2]> {
+        (**self).couplings()
+    }
+
+    fn coupling_kind(&self) -> CouplingKind {
+        (**self).coupling_kind()
+    }
+
+    fn is_driven(&self) -> bool {
+        (**self).is_driven()
+    }
+
+    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
+        (**self).add_bending_energies(at, faces);
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        (**self).memory()
+    }
+
+    fn can_yield(&self) -> bool {
+        (**self).can_yield()
+    }
+
+    fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
+        (**self).start(state, memory);
+    }
+
+    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
+        (**self).settle(state, memory)
+    }
+
+    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
+        (**self).plastic_angles(memory)
+    }
+
+    fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
+        (**self).plastic_curvatures(memory)
+    }
+
+    fn has_limit(&self) -> bool {
+        (**self).has_limit()
+    }
+
+    fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
+        (**self).safe_part(at, dx)
+    }
+
+    fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
+        (**self).stays_within(at, end)
+    }
+
+    fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, out: &mut [f64]) -> bool {
+        (**self).add_second_order(at, dx, scale, out)
+    }
+
+    fn round_off(&self, size: f64) -> f64 {
+        (**self).round_off(size)
+    }
+
+    fn shape(&self) -> PotentialShape {
+        (**self).shape()
     }
 }
 

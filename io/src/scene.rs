@@ -63,7 +63,6 @@ mod resolution;
 mod schema;
 mod selection;
 mod setup;
-mod shared_plate;
 mod sheet;
 mod sheets;
 mod size;

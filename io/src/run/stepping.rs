@@ -193,9 +193,8 @@ impl<'a> Stepping<'a> {
         let rod_forces = self.simulation.rod_forces().unwrap_or_default();
         let contact_forces = self.simulation.contact_forces().unwrap_or_default();
         let gaps = self.simulation.vertex_gaps().unwrap_or_default();
-        let model = self.simulation.model();
-        let plastic_angles = model.plastic_angles().unwrap_or_default();
-        let plastic_curvatures = model.plastic_curvatures().unwrap_or_default();
+        let plastic_angles = self.simulation.plastic_angles().unwrap_or_default();
+        let plastic_curvatures = self.simulation.plastic_curvatures().unwrap_or_default();
         let data = FrameData {
             rod_forces: &rod_forces,
             contact_forces: &contact_forces,
@@ -354,8 +353,7 @@ impl<'a> Stepping<'a> {
 
     fn observe_elastic(&mut self) {
         if let Some(elastic) = &mut self.progress.elastic {
-            let state = self.simulation.state();
-            elastic.observe(self.simulation.model(), state.t, &state.x);
+            elastic.observe(&self.simulation);
         }
     }
 

@@ -11,7 +11,6 @@ use super::obstacles;
 use super::placed::{Form, PlacedSheet, PlacedSheets};
 use super::pose::Motion;
 use super::problem::Problem;
-use super::shared_plate::SharedPlate;
 use super::sheet::{Bending, Elasticity, Isometry};
 use super::slots::Slots;
 use super::step_path::check_step;
@@ -101,7 +100,7 @@ pub(crate) struct Kept {
     /// Of each sheet, once they have been made.
     forms: Vec<Arc<Form>>,
     /// The plate of each sheet that does not yield, by rigidity, clamped vertices and creases.
-    plates: Slots<(f64, Vec<VertexId>, Vec<EdgeId>), SharedPlate>,
+    plates: Slots<(f64, Vec<VertexId>, Vec<EdgeId>), Arc<PlateBending>>,
     /// Those of the obstacles.
     shapes: Slots<obstacles::Shape, collide::Shape>,
 }
@@ -383,7 +382,7 @@ impl<'a> Builder<'a> {
                         .kept
                         .plates
                         .get(number, made_of, |(_, clamped, creases)| {
-                            plate(clamped, creases).map(SharedPlate::new)
+                            plate(clamped, creases).map(Arc::new)
                         });
                     self.add_potential_of(number, shared?);
                 }

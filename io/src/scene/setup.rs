@@ -99,11 +99,8 @@ impl Setup {
 
     /// Whether the simulation gives the forces of the rods ([`Simulation::rod_forces`]).
     pub fn has_rod_forces(&self) -> bool {
-        let solves = match &self.integration {
-            Integration::Free { method, .. } => method.solves_for_rod_forces(),
-            Integration::InChart(_) => false,
-        };
-        solves && self.model.isometry() == Isometry::Rods
+        matches!(self.integration, Integration::Free { .. })
+            && self.model.isometry() == Isometry::Rods
     }
 
     /// The simulation at the start.

@@ -1,6 +1,7 @@
 //! The models of a sheet that are compared, and what sheets are made of.
 
 use anyhow::Result;
+use isosheet_dynamics::At;
 use isosheet_dynamics::{CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
@@ -68,8 +69,8 @@ impl Model {
     /// The energy of bending of positions `x` (3V, metres), without that of creases, joules.
     pub(super) fn bending_energy(self, sheet: &Sheet, plate: Plate<'_>, x: &[f64]) -> Result<f64> {
         Ok(match self {
-            Self::Rods => plate.springs(sheet)?.energy(0.0, x),
-            _ => plate.bending(sheet)?.energy(0.0, x),
+            Self::Rods => plate.springs(sheet)?.energy(At::new(0.0, x)),
+            _ => plate.bending(sheet)?.energy(At::new(0.0, x)),
         })
     }
 

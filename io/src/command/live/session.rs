@@ -131,8 +131,8 @@ impl Session {
                 self.is_playing = false;
             }
             Command::Grab { vertex } => match self.live.hold(VertexId(*vertex)) {
-                Ok(hand) => {
-                    self.aim = Some(hand.target(self.live.simulation().state().t));
+                Ok(at) => {
+                    self.aim = Some(at);
                     self.notice = None;
                 }
                 Err(error) => self.refuse(&error),
@@ -167,8 +167,8 @@ impl Session {
         };
         let t = self.live.simulation().state().t;
         self.drive(t, h);
-        if let (Some(to), Some(hand)) = (self.aim, self.live.hand())
-            && let Err(error) = hand.lead(to, t, t + h)
+        if let Some(to) = self.aim
+            && let Err(error) = self.live.lead(to, t + h)
         {
             self.refuse(&error);
         }
@@ -250,9 +250,9 @@ impl Session {
             x: &state.x,
             poses: bodies.chain(holding).map(|p| numbers(p.into())).collect(),
             series: self.series.iter().map(value).collect(),
-            hand: self.live.hand().map(|hand| HandFrame {
-                vertex: hand.vertex().0,
-                to: self.aim.unwrap_or_else(|| hand.target(state.t)),
+            hand: self.live.hand().map(|(vertex, at)| HandFrame {
+                vertex: vertex.0,
+                to: self.aim.unwrap_or(at),
             }),
             sliders: self.sliders.iter().enumerate().map(slide).collect(),
             notice: self.notice.as_ref(),

@@ -197,8 +197,7 @@ fn run(start: Start) -> Result<Run> {
     let (mut strain, mut looking, mut ends) = (0.0_f64, Duration::ZERO, false);
     let mut look = |simulation: &Simulation, report: &StepReport| {
         let begun = ThreadTime::now();
-        let x = &simulation.state().x;
-        strain = match simulation.model().elastic_deformation(x) {
+        strain = match simulation.elastic_deformation() {
             Some(faces) => faces.strain.into_iter().fold(strain, f64::max),
             None => strain.max(report.strain),
         };
