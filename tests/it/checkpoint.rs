@@ -291,7 +291,7 @@ fn other_sheets_versions_and_damage_are_refused() {
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
             found: 9,
-            supported: 13
+            supported: 14
         })
     );
     assert!(matches!(
