@@ -11,6 +11,7 @@ mod conservation;
 mod constraints;
 mod contact;
 mod contact_forces;
+mod effort;
 mod elastic;
 mod flat;
 mod forces;
