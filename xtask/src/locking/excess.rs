@@ -202,9 +202,9 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
 
 #[cfg(test)]
 mod tests {
-    use isosheet_dynamics::At;
     use super::super::disks::Disk;
     use super::*;
+    use isosheet_dynamics::At;
     use isosheet_dynamics::{PlateBending, Potential};
 
     /// The angles about the centre are those of the disk and of the wedge, those about all other vertices
