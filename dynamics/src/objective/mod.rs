@@ -189,6 +189,13 @@ impl Objective {
         }
     }
 
+    /// Adds `scale` times the gradient of the barriers.
+    pub(crate) fn add_barrier_gradient(&mut self, at: Iterate<'_>, scale: f64, out: &mut [f64]) {
+        for term in self.barriers() {
+            term.add_gradient(at, scale, out);
+        }
+    }
+
     /// Adds `scale` times the Hessian of the barriers, a semidefinite part of it.
     pub(crate) fn add_barrier_hessian(
         &mut self,

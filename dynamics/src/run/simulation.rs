@@ -341,13 +341,12 @@ impl Simulation {
     /// The conservative methods keep this balance to round-off; the damped methods to the tolerance of
     /// Newton's method, and in contact to the second-order change of contact forces by the final projection.
     ///
-    /// With damped methods a call costs one factorisation.
+    /// With damped methods a call costs one factorisation per iteration of the last projection.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
             Engine::Free(engine) => {
-                let State { t, x, .. } = engine.state();
                 let balance = engine.balance();
-                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, (*t, x)))
+                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, engine.state().t))
             }
             Engine::Chart(chart) => chart.reactions.clone(),
         }

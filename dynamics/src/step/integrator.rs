@@ -198,7 +198,7 @@ impl MethodTraits {
     pub(crate) fn balance(self, model: &SheetModel) -> Balance {
         match self.demand {
             RodDemand::Independent => Balance::new(model, ForceTime::Mean),
-            RodDemand::Nothing => Balance::with_rest(model, ForceTime::End),
+            RodDemand::Nothing => Balance::with_residual(model, ForceTime::End),
         }
     }
 

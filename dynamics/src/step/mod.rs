@@ -7,4 +7,5 @@ pub(crate) mod history;
 pub(crate) mod integrator;
 pub(crate) mod motion;
 pub(crate) mod reaction;
+pub(crate) mod residual_momentum;
 pub(crate) mod tuning;
