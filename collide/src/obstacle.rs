@@ -49,6 +49,7 @@ pub enum Shape {
 
 /// Why a shape cannot be an obstacle.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ObstacleError {
     /// A length is not positive.
     #[error("{shape}: {name} is {value} m", value = given(*value))]

@@ -38,6 +38,7 @@ pub struct ContactOptions {
 
 /// Why contact cannot be set up.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ContactsError {
     /// Activation distance or stiffness make no sense.
     #[error(transparent)]

@@ -5,6 +5,7 @@ use isosheet_mesh::wording::brief;
 
 /// Why a sparse factorisation or solve failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LinalgError {
     /// A pivot of a Cholesky factorisation was not positive.
     #[error(
