@@ -92,9 +92,8 @@ const NEXT_PART: f64 = 4.0;
 /// ```
 ///
 /// # What repels what
-/// Every gap `g` below the activation distance has a potential `phi(g)`, see
-/// [`isosheet_dynamics::contact::BarrierPotential`], where the gap is a distance less the thickness of the
-/// sheet:
+/// Every gap `g`, a distance less the thickness of the sheet, has a potential below the activation distance
+/// `d`: `-kappa (1 - z)^2 ln z` with `z = (g / d)^2` and the stiffness `kappa` ([`ContactOptions`]). Gaps are:
 ///
 /// * half-space: that of every vertex. A flat face is away if its corners are.
 /// * box, ball, cylinder, capsule: the signed distance of every vertex, and the distances of faces

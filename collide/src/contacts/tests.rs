@@ -6,8 +6,9 @@ mod start;
 
 use super::*;
 use crate::{Keyframe, Shape, Stiffness, TriangleSurface};
-use isosheet_dynamics::contact::{
-    BarrierPotential, BodyMotions, ContactSet, ContactTerms, CouplingSink, LaggedFriction,
+use isosheet_dynamics::contact::BodyMotions;
+use isosheet_dynamics::contact::internals::{
+    BarrierPotential, ContactSet, ContactTerms, CouplingSink, LaggedFriction,
 };
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Matrix3};
