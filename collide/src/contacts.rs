@@ -168,6 +168,25 @@ impl Contacts {
         })
     }
 
+    /// Contact of a sheet with obstacles and with itself, with the default options and the same friction
+    /// everywhere. For options or friction of each of them, see [`Contacts::new`], [`Contacts::with_body`] and
+    /// [`Contacts::with_self_contact`].
+    ///
+    /// # Errors
+    /// [`ContactsError`]: friction that makes no sense, or a sheet too small for a barrier.
+    pub fn for_sheet(
+        model: &SheetModel,
+        obstacles: impl IntoIterator<Item = Obstacle>,
+        coefficients: Coefficients,
+    ) -> Result<Self, ContactsError> {
+        let itself =
+            Self::new(model, ContactOptions::for_sheet(model))?.with_self_contact(coefficients)?;
+        let mut obstacles = obstacles.into_iter();
+        obstacles.try_fold(itself, |contacts, obstacle| {
+            contacts.with_body(obstacle, coefficients)
+        })
+    }
+
     /// Adds contact with a body. Bodies are numbered from zero in the order in which they are added.
     ///
     /// # Errors
