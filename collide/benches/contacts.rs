@@ -2,10 +2,10 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
-use isosheet_dynamics::contact::{
-    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactSet, ContactTerms, CouplingSink,
-    JointMotion, LaggedFriction, StepSpan,
+use isosheet_dynamics::contact::internals::{
+    BarrierPotential, ContactSet, ContactTerms, CouplingSink, LaggedFriction,
 };
+use isosheet_dynamics::contact::{ActiveContacts, BodyMotions, Contact, JointMotion, StepSpan};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Matrix3};

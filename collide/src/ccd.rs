@@ -53,6 +53,7 @@ impl Default for CcdOptions {
 
 /// An option of the collision detection that makes no sense.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum CcdOptionsError {
     /// The separation is negative or not a number.
     #[error("the separation is {0} m")]

@@ -52,6 +52,7 @@ impl Owned {
 
 /// A primitive that makes no sense.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum ContactMeshError {
     /// A face names a vertex that does not exist.
     #[error("face {face} names vertex {vertex} of {vertex_count}")]

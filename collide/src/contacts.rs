@@ -92,9 +92,8 @@ const NEXT_PART: f64 = 4.0;
 /// ```
 ///
 /// # What repels what
-/// Every gap `g` below the activation distance has a potential `phi(g)`, see
-/// [`isosheet_dynamics::contact::BarrierPotential`], where the gap is a distance less the thickness of the
-/// sheet:
+/// Every gap `g`, a distance less the thickness of the sheet, has a potential below the activation distance
+/// `d`: `-kappa (1 - z)^2 ln z` with `z = (g / d)^2` and the stiffness `kappa` ([`ContactOptions`]). Gaps are:
 ///
 /// * half-space: that of every vertex. A flat face is away if its corners are.
 /// * box, ball, cylinder, capsule: the signed distance of every vertex, and the distances of faces
@@ -166,6 +165,25 @@ impl Contacts {
             neighbours: None,
             parts: Vec::new(),
             part_of_motion: Vec::new(),
+        })
+    }
+
+    /// Contact of a sheet with obstacles and with itself, with the default options and the same friction
+    /// everywhere. For options or friction of each of them, see [`Contacts::new`], [`Contacts::with_body`] and
+    /// [`Contacts::with_self_contact`].
+    ///
+    /// # Errors
+    /// [`ContactsError`]: friction that makes no sense, or a sheet too small for a barrier.
+    pub fn for_sheet(
+        model: &SheetModel,
+        obstacles: impl IntoIterator<Item = Obstacle>,
+        coefficients: Coefficients,
+    ) -> Result<Self, ContactsError> {
+        let itself =
+            Self::new(model, ContactOptions::for_sheet(model))?.with_self_contact(coefficients)?;
+        let mut obstacles = obstacles.into_iter();
+        obstacles.try_fold(itself, |contacts, obstacle| {
+            contacts.with_body(obstacle, coefficients)
         })
     }
 

@@ -3,7 +3,7 @@
 use crate::contact_mesh::ContactMesh;
 use crate::signed_distance::{self, SignedDistance};
 use crate::surface::TriangleSurface;
-use isosheet_dynamics::{MotionError, RigidMotion, RigidProfile};
+use isosheet_dynamics::{MotionError, RigidDisplacement, RigidMotion, RigidProfile};
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -49,6 +49,7 @@ pub enum Shape {
 
 /// Why a shape cannot be an obstacle.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ObstacleError {
     /// A length is not positive.
     #[error("{shape}: {name} is {value} m", value = given(*value))]
@@ -275,6 +276,15 @@ impl Obstacle {
     /// finite.
     pub fn fixed(shape: Shape, pose: Isometry3<f64>) -> Result<Self, ObstacleError> {
         Self::new(shape, RigidProfile::fixed(pose))
+    }
+
+    /// A body that rests with the origin of its frame at a place (metres), its axes along those of space. For
+    /// one that is turned or moves by profiles, see [`RigidDisplacement`].
+    ///
+    /// # Errors
+    /// [`ObstacleError`] naming the length that is not positive, or the coordinate that is not finite.
+    pub fn at(shape: Shape, place: [f64; 3]) -> Result<Self, ObstacleError> {
+        Self::new(shape, RigidDisplacement::at(place))
     }
 
     /// Its form.

@@ -44,6 +44,7 @@ struct Normals {
 
 /// Why triangles cannot be an obstacle.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// There is no face.
     #[error("the surface has no faces")]

@@ -20,6 +20,7 @@ use thiserror::Error;
 
 /// Why a chart cannot be built or used.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ChartError {
     /// Coordinates or positions are not defined.
     #[error(transparent)]

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// Why a vertex cannot be placed, or a coordinate is not defined.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum PlacementError {
     /// Two points that must differ coincide, or a coordinate is not finite.
     #[error(

@@ -56,6 +56,7 @@ impl RealiseOptions {
 
 /// What happened in [`FrontMap::realise`].
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct RealiseReport {
     /// Vertices whose three known neighbours were on a line (Fig. 7), placed by continuity.
     pub on_line: Vec<VertexId>,

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// Why a [`RodSystem`] cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum SystemError {
     /// A pin names a vertex that the mesh does not have.
     #[error("pinned {vertex} does not exist, the mesh has {count} vertices")]

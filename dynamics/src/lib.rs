@@ -89,6 +89,7 @@ pub use material::elastic_sheet::{ElasticSheet, ElasticSheetError};
 pub use material::glue::{Glue, GlueError};
 pub use material::plasticity::Yield;
 pub use material::plate_bending::{PlateBending, PlateBendingError};
+pub use model::of_material::{SheetOfMaterial, SheetOfMaterialError};
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};
 pub use model::clamps::ClampAcrossMesh;

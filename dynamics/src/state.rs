@@ -19,6 +19,16 @@ impl State {
         self.v.copy_from_slice(&other.v);
     }
 
+    /// Positions of the vertices, metres.
+    pub fn vertex_positions(&self) -> &[[f64; 3]] {
+        self.x.as_chunks().0
+    }
+
+    /// Velocities of the vertices, metres per second.
+    pub fn vertex_velocities(&self) -> &[[f64; 3]] {
+        self.v.as_chunks().0
+    }
+
     /// The given positions at rest, at time zero.
     pub fn at_rest(x: Vec<f64>) -> Self {
         let v = vec![0.0; x.len()];

@@ -212,6 +212,7 @@ fn continued_angle(a: f64, b: f64, c: f64) -> f64 {
 
 /// A state in which the two faces of an edge cannot be where the other edges want them.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum AngleError {
     /// The angles violate the compatibility condition (Eq. 10 with both triangle inequalities).
     #[error(

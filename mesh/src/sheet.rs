@@ -101,6 +101,20 @@ impl Sheet {
         at(&self.positions, v)
     }
 
+    /// The vertices whose rest positions (metres) meet a condition, in the order of their numbers.
+    ///
+    /// ```
+    /// # use isosheet_mesh::generate;
+    /// let sheet = generate::anisotropic_grid(4, 1, 0.4, 0.1)?;
+    /// let left = sheet.vertices_where(|[x, _, _]| x < 0.15);
+    /// assert_eq!(left.len(), 4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn vertices_where(&self, condition: impl Fn([f64; 3]) -> bool) -> Vec<VertexId> {
+        let all = self.topology.vertex_ids();
+        all.filter(|&v| condition(self.position(v))).collect()
+    }
+
     /// The rest length of every edge, in metres.
     #[inline]
     pub fn lengths(&self) -> &[f64] {

@@ -2,10 +2,8 @@
 
 use crate::watch::Watch;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
-use isosheet_dynamics::contact::{
-    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactSet, JointMotion,
-    LaggedFriction, StepSpan,
-};
+use isosheet_dynamics::contact::internals::{BarrierPotential, ContactSet, LaggedFriction};
+use isosheet_dynamics::contact::{ActiveContacts, BodyMotions, Contact, JointMotion, StepSpan};
 use isosheet_dynamics::{ImplicitOptions, Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};

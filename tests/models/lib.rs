@@ -52,6 +52,9 @@ mod book {
     #[doc = include_str!("../README.md")]
     pub struct Readme;
 
+    #[doc = include_str!("../../README.md")]
+    pub struct OfRepository;
+
     #[doc = include_str!("../../docs/start.md")]
     pub struct Start;
 

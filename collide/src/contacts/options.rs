@@ -2,9 +2,8 @@
 
 use crate::{CcdOptions, CcdOptionsError, ObstacleError};
 use isosheet_dynamics::SheetModel;
-use isosheet_dynamics::contact::{
-    BarrierError, BarrierPotential, ContactLaws, FrictionError, Stiffness,
-};
+use isosheet_dynamics::contact::internals::BarrierPotential;
+use isosheet_dynamics::contact::{BarrierError, ContactLaws, FrictionError, Stiffness};
 use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, area_from_lengths};
 use thiserror::Error;
@@ -38,6 +37,7 @@ pub struct ContactOptions {
 
 /// Why contact cannot be set up.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ContactsError {
     /// Activation distance or stiffness make no sense.
     #[error(transparent)]

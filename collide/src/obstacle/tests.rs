@@ -327,3 +327,21 @@ fn bodies_by_profiles_carry_the_sheet_as_bodies_by_keyframes_and_functions() {
         assert!(error < 1e-9, "off by {error:e} m");
     }
 }
+
+#[test]
+fn an_obstacle_is_where_arrays_say() {
+    let ball = Shape::Sphere { radius: 0.5 };
+    let (place, quarter) = ([0.1, -0.2, 0.3], [0.0, 0.0, 0.25 * TAU]);
+    let space = |body: &Obstacle| {
+        let mut out = [0.0; 3];
+        body.place(2.0, &[1.0, 0.0, 0.0], &mut out);
+        Vector3::from(out)
+    };
+    let at = Obstacle::at(ball.clone(), place).unwrap();
+    assert!((space(&at) - Vector3::new(1.1, -0.2, 0.3)).norm() < 1e-15);
+    let turned = RigidDisplacement::turned(place, quarter);
+    let turned = Obstacle::new(ball.clone(), turned).unwrap();
+    assert!((space(&turned) - Vector3::new(0.1, 0.8, 0.3)).norm() < 1e-15);
+    let nowhere = Obstacle::at(ball, [0.0, f64::NAN, 0.0]);
+    assert!(matches!(nowhere, Err(ObstacleError::Motion(_))));
+}

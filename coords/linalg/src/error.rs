@@ -2,6 +2,7 @@
 
 /// Why a sparse factorisation or solve failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LinalgError {
     /// A pivot of a Cholesky factorisation was not positive.
     #[error(

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 /// Why coordinates cannot be assigned.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum AssignmentError {
     /// A pin or start names a vertex that the mesh does not have.
     #[error("{vertex} does not exist, the mesh has {count} vertices")]

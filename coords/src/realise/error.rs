@@ -8,6 +8,7 @@ use thiserror::Error;
 
 /// Why a state cannot be realised, or coordinates cannot be read from it.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RealiseError {
     /// Eq. 10 is violated at an edge: its two triangles cannot be closed.
     #[error(

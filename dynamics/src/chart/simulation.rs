@@ -17,6 +17,7 @@ use isosheet_mesh::VertexId;
 
 /// What one step did.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ChartStepReport {
     /// Time after the step, seconds.
     pub t: f64,

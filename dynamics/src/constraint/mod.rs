@@ -21,6 +21,7 @@ use nalgebra::{Matrix2x3, Matrix3, Vector3};
 
 /// Why a curve or surface cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConstraintError {
     /// A number is not finite, or not positive where it has to be.
     #[error("{what} is {value}", value = given(*value))]

@@ -79,11 +79,13 @@ impl ActiveContact {
     }
 
     /// Size of the barrier force along the normal, newtons.
+    #[doc(hidden)]
     pub fn force(&self, barrier: &BarrierPotential) -> f64 {
         self.factor() * barrier.force(self.gap)
     }
 
     /// The barrier's energy, joules; infinite where the gap is closed.
+    #[doc(hidden)]
     pub fn energy(&self, barrier: &BarrierPotential) -> f64 {
         let value = barrier.value(self.gap);
         if value.is_finite() {
@@ -284,7 +286,7 @@ fn nearest_semidefinite(a: f64, b: f64, c: f64) -> [f64; 3] {
 /// The contacts at given positions with the bodies in given places.
 ///
 /// Energy, gradient and Hessian of the barrier are functions of this value, and so are friction
-/// ([`super::LaggedFriction`]) and the contacts of impulses ([`super::ContactPoint`]).
+/// and the contacts of impulses ([`super::ContactPoint`]).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ActiveContacts {
     list: Vec<ActiveContact>,
@@ -298,6 +300,7 @@ pub struct ActiveContacts {
 impl ActiveContacts {
     /// The contacts of a set at positions `x` (`3V`, metres) and progress `s` of the bodies, which have to be
     /// on the motion of the set.
+    #[doc(hidden)]
     pub fn at(contact: &dyn Contact, set: &ContactSet, s: f64, x: &[f64]) -> Self {
         let mut active = Self {
             list: Vec::new(),
@@ -327,6 +330,7 @@ impl ActiveContacts {
     }
 
     /// Becomes those of a set at other positions; reuses memory.
+    #[doc(hidden)]
     pub fn update(&mut self, contact: &dyn Contact, set: &ContactSet, s: f64, x: &[f64]) {
         self.span = set.bodies().span();
         self.progress = s;
@@ -384,6 +388,7 @@ impl ActiveContacts {
     }
 
     /// The barrier potential `B`, joules; infinite if anything touches or a position is not finite.
+    #[doc(hidden)]
     pub fn barrier_energy(&self, barrier: &BarrierPotential) -> f64 {
         if !self.is_finite {
             return f64::INFINITY;
@@ -392,6 +397,7 @@ impl ActiveContacts {
     }
 
     /// Adds `scale` times the gradient of `B` (newtons) to `out` (`3V`).
+    #[doc(hidden)]
     pub fn add_barrier_gradient(&self, barrier: &BarrierPotential, scale: f64, out: &mut [f64]) {
         for contact in &self.list {
             contact.gradient(barrier, |v, g| add_at(out, v, scale * g));
@@ -399,6 +405,7 @@ impl ActiveContacts {
     }
 
     /// Adds the Hessian of `B` (newtons per metre), each contact's own part made positive semidefinite.
+    #[doc(hidden)]
     pub fn add_barrier_hessian(&self, barrier: &BarrierPotential, sink: &mut dyn CouplingSink) {
         for contact in &self.list {
             contact.hessian(barrier, sink);
@@ -441,6 +448,7 @@ impl ActiveContacts {
     /// Appends the pairs of vertices, lower number first, that the Hessian couples; may append pairs twice and
     /// pairs that are mesh edges. Contact with bodies couples no vertices that are not neighbours already and
     /// is left out.
+    #[doc(hidden)]
     pub fn append_couplings(&self, out: &mut Vec<[u32; 2]>) {
         for c in &self.list {
             couple(c.key, &c.vertices, out);

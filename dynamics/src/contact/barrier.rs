@@ -35,6 +35,7 @@ pub struct BarrierPotential {
 
 /// A barrier that makes no sense.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum BarrierError {
     /// The activation distance is not a positive length.
     #[error("the activation distance is {0} m")]

@@ -59,6 +59,7 @@ impl Advice for BodyMotionError {
 
 /// Why contact cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ContactError {
     /// The prescribed motion of a body is not finite at the start.
     #[error(transparent)]

@@ -70,6 +70,7 @@ const TRANSITION_WIDTH: f64 = 2.0;
 
 /// Coefficients that make no sense.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum FrictionError {
     /// A coefficient is negative or not a number.
     #[error(

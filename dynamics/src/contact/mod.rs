@@ -7,17 +7,22 @@
 //! without a check that nothing is passed through on the way.
 //!
 //! An implementation of [`Contact`] knows the geometry and nothing else. All that happens with it is a chain
-//! of values, each of which can only be made from the one before:
+//! of values, each of which can only be made from the one before; the solver makes those without a link:
 //!
 //! | value | made from | what it says |
 //! |---|---|---|
 //! | [`BodyMotions`] | a span of time | how the bodies move over a step |
-//! | [`ContactSet`] | a motion of sheet and bodies | the pairs within reach on it, the part that is safe |
+//! | `ContactSet` | a motion of sheet and bodies | the pairs within reach on it, the part that is safe |
 //! | [`ActiveContacts`] | a set and a place on its motion | distances, normals and weights there |
-//! | [`BarrierPotential`] | the laws, the model and the state at the start | the barrier and its stiffness |
-//! | [`LaggedFriction`] | the active contacts at which friction is lagged | normals and normal forces |
-//! | [`ContactTerms`] | active contacts, barrier and friction | energy, gradient, Hessian, loads of `B + D` |
+//! | `BarrierPotential` | the laws, the model and the state at the start | the barrier and its stiffness |
+//! | `LaggedFriction` | the active contacts at which friction is lagged | normals and normal forces |
+//! | `ContactTerms` | active contacts, barrier and friction | energy, gradient, Hessian, loads of `B + D` |
 //! | [`ContactPoint`]s | active contacts | contacts for methods that use impulses instead of the barrier |
+//!
+//! The barrier of a gap `g` below the activation distance `d` is `-kappa (1 - z)^2 ln z` with `z = (g / d)^2`
+//! and the stiffness `kappa` of the [laws](ContactLaws), in joules. Its forces are
+//! [`Simulation::contact_forces`](crate::Simulation::contact_forces) and
+//! [`Simulation::body_loads`](crate::Simulation::body_loads).
 //!
 //! Positions `x` and displacements are `3V` coordinates in metres, pinned vertices included.
 
@@ -29,6 +34,8 @@ pub(crate) mod contact_tests;
 mod error;
 mod friction;
 mod impulse;
+#[doc(hidden)]
+pub mod internals;
 mod lagged;
 mod laws;
 mod parallel;
@@ -38,20 +45,23 @@ mod terms;
 mod vertex_data;
 
 pub use active::{ActiveContact, ActiveContacts, Rolling};
-pub use barrier::{BarrierError, BarrierPotential};
+pub use barrier::BarrierError;
+pub(crate) use barrier::BarrierPotential;
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
 pub use error::{BodyMotionError, ContactError, ContactPair};
 pub use friction::{Coefficients, Friction, FrictionError};
 pub use impulse::ContactPoint;
-pub use lagged::{FrictionContact, LaggedFriction};
+pub(crate) use lagged::LaggedFriction;
 pub use laws::{ContactLaws, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;
+pub(crate) use set::ContactSet;
+pub use set::{ContactKey, ContactKind, JointMotion};
 pub(crate) use term::{ContactTerm, check_start};
+pub use terms::BodyLoad;
+pub(crate) use terms::{ContactState, ContactTerms};
 
-pub use crate::hessian::CouplingSink;
-pub use set::{ContactKey, ContactKind, ContactSet, JointMotion};
-pub use terms::{BodyLoad, ContactState, ContactTerms};
+pub(crate) use crate::hessian::CouplingSink;
 
 use crate::{SheetModel, State};
 use nalgebra::{Matrix3, Vector3};
@@ -59,8 +69,7 @@ use nalgebra::{Matrix3, Vector3};
 /// The geometry of contact of a sheet with bodies and with itself.
 ///
 /// Everything that is returned depends on the arguments alone, not on earlier calls: what an implementation
-/// keeps between calls, such as a tree of boxes, saves time and nothing else. [`ContactSet`] and
-/// [`ActiveContacts`] call these functions.
+/// keeps between calls, such as a tree of boxes, saves time and nothing else.
 pub trait Contact: Send + Sync {
     /// Activation distance of the barrier, stiffness, friction.
     fn laws(&self) -> &ContactLaws;

@@ -92,6 +92,7 @@ fn sheet_stiffness(sheet: &Sheet, rigidity: f64, edge: EdgeId) -> Option<f64> {
 
 /// Why springs cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CreaseError {
     /// An edge does not exist or has one face only.
     #[error("{edge} has no fold angle")]

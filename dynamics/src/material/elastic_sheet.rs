@@ -17,6 +17,7 @@ use load::strain_barrier;
 
 /// Why an elastic sheet cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ElasticSheetError {
     /// The stiffness is not positive or not finite.
     #[error("the membrane stiffness is {stiffness} N/m", stiffness = given(*stiffness))]

@@ -14,6 +14,7 @@ mod tests;
 
 /// Why glue cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GlueError {
     /// A vertex does not exist.
     #[error("{vertex} is glued, but the sheet has {count} vertices")]

@@ -22,6 +22,7 @@ use stencil::Stencils;
 
 /// Why the bending stiffness of a plate cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlateBendingError {
     /// The flexural rigidity is negative or not finite.
     #[error("the flexural rigidity is {rigidity} N m", rigidity = given(*rigidity))]

@@ -19,6 +19,7 @@ use std::sync::Arc;
 
 /// Why there cannot be such air.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AirError {
     /// Density or a coefficient is negative or not finite.
     #[error("{name} of the air is {value}", value = given(*value))]

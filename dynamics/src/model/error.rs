@@ -6,6 +6,7 @@ use isosheet_mesh::{Advice, MeshError, VertexId};
 
 /// Why a model cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModelError {
     /// The mass does not fit the sheet.
     #[error(transparent)]

@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Why a hand cannot pull.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum HandError {
     /// The vertex does not exist.
     #[error("{vertex} is pulled at, but the sheet has only {vertex_count} vertices")]

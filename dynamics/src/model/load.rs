@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 /// Why a load cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LoadError {
     /// The profile cannot be used.
     #[error("the size of the load cannot be used: {0}")]

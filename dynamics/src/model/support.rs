@@ -19,6 +19,14 @@ pub enum Support {
     },
 }
 
+impl Support {
+    /// The vertex that it holds.
+    pub fn vertex(&self) -> VertexId {
+        let (Self::Pin(vertex) | Self::Constraint { vertex, .. }) = self;
+        *vertex
+    }
+}
+
 impl Serialize for Support {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)

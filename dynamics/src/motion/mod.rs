@@ -16,6 +16,7 @@ use std::sync::Arc;
 
 /// Why a motion cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MotionError {
     /// A number is not finite.
     #[error("{name} has the component {value}", value = given(*value))]

@@ -95,6 +95,7 @@ pub enum Interpolation {
 
 /// Why a profile cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProfileError {
     /// A parameter is not finite.
     #[error("`{name}` is {value}", value = given(*value))]

@@ -82,6 +82,30 @@ impl Default for RigidDisplacement {
 }
 
 impl RigidDisplacement {
+    /// Rest at a place: the origin of the body's frame, metres, in space.
+    ///
+    /// ```
+    /// use isosheet_dynamics::{Profile, RigidDisplacement};
+    ///
+    /// // It rises by 20 mm in the first second.
+    /// let rises = RigidDisplacement {
+    ///     z: Profile::SmoothStep { from: 0.0, to: 0.02, begin: 0.0, end: 1.0 },
+    ///     ..RigidDisplacement::at([0.1, 0.2, 0.0])
+    /// };
+    /// # let _ = rises;
+    /// ```
+    pub fn at(place: [f64; 3]) -> Self {
+        Self::turned(place, [0.0; 3])
+    }
+
+    /// Rest at a place (metres), turned by a rotation vector: an axis in space times an angle, radians.
+    pub fn turned(place: [f64; 3], turn: [f64; 3]) -> Self {
+        Self {
+            pose: Isometry3::new(place.into(), turn.into()),
+            ..Self::default()
+        }
+    }
+
     fn validate(&self) -> Result<(), MotionError> {
         check_finite(
             "the position of the pose",

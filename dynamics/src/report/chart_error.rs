@@ -9,6 +9,7 @@ use thiserror::Error;
 
 /// Why a step in a chart is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ChartDynamicsError {
     /// The chart is not usable at this state.
     #[error(transparent)]

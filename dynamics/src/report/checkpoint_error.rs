@@ -5,6 +5,7 @@ use isosheet_mesh::wording::given;
 
 /// Errors of a checkpoint.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CheckpointError {
     /// The bytes are not a checkpoint.
     #[error(

@@ -6,6 +6,7 @@ use std::fmt;
 /// Cause of a failed iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Reason {
     /// The line search found no decrease of the merit function.
     NoDescent,

@@ -10,6 +10,7 @@ use isosheet_mesh::Advice;
 
 /// Errors of the start of a simulation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// An option is out of range.
     #[error(transparent)]

@@ -14,6 +14,7 @@ use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
 /// The solver that the hardest sub-step needed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum StepOutcome {
     /// Newton's method with full steps.
     Newton,
@@ -31,6 +32,7 @@ pub enum StepOutcome {
 
 /// Result of one call of [`Simulation::step`](crate::Simulation::step).
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct StepReport {
     /// Time at the end of the step, seconds.
     pub t: f64,
@@ -91,6 +93,7 @@ impl StepReport {
 
 /// Errors of a step; the state is that of the last accepted sub-step.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// The step size is not positive and finite.
     #[error("the step size is {h} s at t = {t} s", h = brief(*h), t = brief(*t))]

@@ -9,6 +9,7 @@ use serde::Serialize;
 /// Times are in seconds, gaps in metres; strains, residuals and parts of displacements are relative.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum TraceEvent {
     /// A phase of the minimisation begins.
     Phase {

@@ -1,5 +1,6 @@
 //! Simulations: a sheet and the method that moves it, from start to end.
 
+mod arrays;
 mod change;
 pub(crate) mod checkpoint;
 pub(crate) mod fold_start;

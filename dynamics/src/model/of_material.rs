@@ -1,0 +1,245 @@
+//! The model of a sheet that is of one material.
+
+use super::Material;
+use super::elastic_sheet::ElasticSheetError;
+use super::plasticity::Yield;
+use super::plate_bending::{PlateBending, PlateBendingError};
+use crate::options::OptionsError;
+use crate::{Isometry, ModelError, SheetModel};
+use isosheet_mesh::{Advice, EdgeId, MassKind, MassMatrix, Sheet, VertexId};
+
+/// Why the model of a sheet of a material cannot be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SheetOfMaterialError {
+    /// A number of the material makes no sense.
+    #[error("the material cannot be used: {0}")]
+    Material(#[source] OptionsError),
+    /// The mass or the clamps do not fit the sheet.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The bending stiffness cannot be made.
+    #[error(transparent)]
+    Bending(#[from] PlateBendingError),
+    /// The elasticity in the plane cannot be made.
+    #[error(transparent)]
+    Elasticity(#[from] ElasticSheetError),
+}
+
+impl Advice for SheetOfMaterialError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Material(error) => error.advice(),
+            Self::Model(error) => error.advice(),
+            Self::Bending(error) => error.advice(),
+            Self::Elasticity(error) => error.advice(),
+        }
+    }
+}
+
+/// The choices of [`SheetModel::of_material`]; [`SheetOfMaterial::build`] makes the model.
+#[derive(Debug, Clone)]
+#[must_use = "the model is made by `build`"]
+pub struct SheetOfMaterial<'a> {
+    sheet: &'a Sheet,
+    material: Material,
+    isometry: Isometry,
+    clamps: Vec<VertexId>,
+    creases: Vec<EdgeId>,
+    yields: Option<Yield>,
+}
+
+impl SheetModel {
+    /// The model of a sheet of one material, which gives it its mass, the bending stiffness of a plate, and
+    /// the elasticity in its plane with a limit of the strain. What else acts on it is added after
+    /// [`SheetOfMaterial::build`].
+    ///
+    /// ```
+    /// use isosheet_dynamics::{Isometry, Material, SheetModel};
+    /// use isosheet_mesh::generate;
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let sheet = generate::anisotropic_grid(12, 8, 0.3, 0.2)?;
+    /// let clamp = sheet.vertices_where(|[x, _, _]| x < 0.03); // two columns of vertices
+    /// let paper = Material::office_paper();
+    /// let model = SheetModel::of_material(&sheet, &paper).clamped(&clamp).build()?.with_gravity();
+    /// assert_eq!(model.isometry(), Isometry::Elastic);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// A sheet of several materials, or one whose mass is known otherwise, is built of the same parts by
+    /// hand: [`SheetModel::with_mass`], [`PlateBending`], [`Material::elastic_sheet`], and
+    /// [`PotentialOfPart`](crate::PotentialOfPart) for one of several sheets.
+    pub fn of_material<'a>(sheet: &'a Sheet, material: &Material) -> SheetOfMaterial<'a> {
+        SheetOfMaterial {
+            sheet,
+            material: *material,
+            isometry: Isometry::Elastic,
+            clamps: Vec::new(),
+            creases: Vec::new(),
+            yields: None,
+        }
+    }
+}
+
+impl SheetOfMaterial<'_> {
+    /// Pins vertices where they are, besides those of earlier calls. Where all corners of a face are among
+    /// them the sheet is clamped: it leaves the clamp with the slope of that face
+    /// ([`PlateBending::clamped`]). Single vertices and single lines of vertices are hinges.
+    pub fn clamped(mut self, vertices: &[VertexId]) -> Self {
+        self.clamps.extend(vertices);
+        self
+    }
+
+    /// Interrupts the bending stiffness at edges, besides those of earlier calls, where the springs of
+    /// creases take its place ([`PlateBending::creased`]).
+    pub fn creased(mut self, edges: &[EdgeId]) -> Self {
+        self.creases.extend(edges);
+        self
+    }
+
+    /// Makes the sheet yield in bending, for instance as its [material](Material::yields) does. By default it
+    /// is elastic.
+    pub fn yielding(mut self, yields: Yield) -> Self {
+        self.yields = Some(yields);
+        self
+    }
+
+    /// What keeps the lengths: the elasticity of the material, which is the default, or rigid rods along the
+    /// edges, of which the material gives mass and bending stiffness alone.
+    pub fn with_isometry(mut self, isometry: Isometry) -> Self {
+        self.isometry = isometry;
+        self
+    }
+
+    /// The model, without gravity.
+    ///
+    /// # Errors
+    /// [`SheetOfMaterialError`] naming the number, the vertex or the edge that cannot be used.
+    pub fn build(self) -> Result<SheetModel, SheetOfMaterialError> {
+        let Self {
+            sheet,
+            material,
+            isometry,
+            clamps,
+            creases,
+            yields,
+        } = self;
+        material
+            .validate()
+            .map_err(SheetOfMaterialError::Material)?;
+        let mass = MassMatrix::from_density(sheet, material.density, MassKind::Lumped);
+        let mass = mass.map_err(ModelError::from)?;
+        let model = SheetModel::with_mass(sheet, mass)?.with_pins(&clamps)?;
+        let mut plate = PlateBending::creased(sheet, material.rigidity, &clamps, &creases)?;
+        if let Some(yields) = yields {
+            plate = plate.with_yield(sheet, yields)?;
+        }
+        let model = model.with_potential(plate);
+        match isometry {
+            Isometry::Rods => Ok(model),
+            Isometry::Elastic => Ok(model.with_elastic_sheet(material.elastic_sheet(sheet)?)?),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Method, Simulation, State};
+    use isosheet_mesh::generate;
+
+    fn strip() -> Sheet {
+        generate::anisotropic_grid(8, 2, 0.2, 0.05).unwrap()
+    }
+
+    /// A state after some steps under gravity.
+    fn moved(sheet: &Sheet, model: SheetModel) -> State {
+        let start = State::at_rest(sheet.positions().to_vec());
+        let model = model.with_gravity();
+        let mut simulation = Simulation::new(model, start, Method::default()).unwrap();
+        for _ in 0..5 {
+            simulation.step(1.0 / 60.0).unwrap();
+        }
+        simulation.state().clone()
+    }
+
+    #[test]
+    fn a_model_of_a_material_moves_as_the_one_that_is_built_of_its_parts() {
+        let sheet = strip();
+        let clamp = sheet.vertices_where(|[x, _, _]| x < 0.03);
+        let steel = Material::aluminium_foil();
+        let yields = steel.yields.unwrap().in_layers(2);
+        let plate = PlateBending::clamped(&sheet, steel.rigidity, &clamp);
+        let plate = plate.and_then(|p| p.with_yield(&sheet, yields)).unwrap();
+        let by_hand = SheetModel::new(&sheet, steel.density * sheet.area(), MassKind::Lumped)
+            .and_then(|m| m.with_pins(&clamp))
+            .map(|m| m.with_potential(plate))
+            .and_then(|m| m.with_elastic_sheet(steel.elastic_sheet(&sheet).unwrap()))
+            .unwrap();
+        let (first, second) = clamp.split_at(2);
+        let model = SheetModel::of_material(&sheet, &steel)
+            .clamped(first)
+            .clamped(second)
+            .yielding(yields)
+            .build()
+            .unwrap();
+        assert_eq!(model.pins(), clamp);
+        let (expected, found) = (moved(&sheet, by_hand), moved(&sheet, model));
+        let lowest = expected.vertex_positions().iter().map(|p| p[2]);
+        assert!(lowest.fold(0.0, f64::min) < -1e-3, "it hangs");
+        for (a, b) in expected.x.iter().zip(&found.x) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn the_same_material_stiffens_rods() {
+        let sheet = strip();
+        let paper = Material::office_paper();
+        let builder = SheetModel::of_material(&sheet, &paper).with_isometry(Isometry::Rods);
+        let model = builder.build().unwrap();
+        assert_eq!(model.isometry(), Isometry::Rods);
+        assert!(model.elastic_sheet().is_none());
+        // A strip of 0.2 m by 0.05 m that is bent to a cylinder of the radius 1 m has the energy D A / 2.
+        let bent = sheet.positions().as_chunks::<3>().0.iter();
+        let bent: Vec<f64> = bent
+            .flat_map(|[x, y, _]| [x.sin(), *y, 1.0 - x.cos()])
+            .collect();
+        let expected = 0.5 * paper.rigidity * sheet.area();
+        let energy = model.potential_energy(0.0, &bent);
+        // Faces at free edges, which no moment bends, are less bent than the others.
+        assert!(
+            energy > 0.5 * expected && energy < 1.05 * expected,
+            "{energy} {expected}"
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_refused() {
+        let sheet = strip();
+        let mut material = Material::office_paper();
+        let nobody = VertexId(1000);
+        let refused = SheetModel::of_material(&sheet, &material)
+            .clamped(&[nobody])
+            .build();
+        let vertex_count = sheet.topology().vertex_count();
+        let expected = ModelError::NoSuchVertex {
+            vertex: nobody,
+            vertex_count,
+        };
+        assert_eq!(refused.unwrap_err(), expected.into());
+        let refused = SheetModel::of_material(&sheet, &material)
+            .creased(&[EdgeId(1000)])
+            .build();
+        assert!(matches!(refused, Err(SheetOfMaterialError::Bending(_))));
+        material.rigidity = f64::NAN;
+        let refused = SheetModel::of_material(&sheet, &material)
+            .build()
+            .unwrap_err();
+        assert!(matches!(refused, SheetOfMaterialError::Material(_)));
+        assert!(refused.to_string().contains("rigidity"), "{refused}");
+        assert!(refused.advice().is_some());
+    }
+}

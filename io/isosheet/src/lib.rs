@@ -1,0 +1,43 @@
+#![doc = include_str!("../README.md")]
+//!
+//! # More than these lines
+//!
+//! - Meshes of files or of one's own triangles: [`io::read_sheet`], [`mesh::Sheet::new`].
+//! - Materials of one's own: [`dynamics::Material`]. Rods in place of an elastic sheet, creases, and bends that
+//!   stay: [`dynamics::SheetOfMaterial`].
+//! - Supports that move, vertices on curves and surfaces: [`dynamics::SheetModel::with_moving_pin`],
+//!   [`dynamics::SheetModel::with_constraint`].
+//! - Obstacles that are turned or move: [`dynamics::RigidDisplacement`], [`collide::Obstacle::new`].
+//! - Friction of each obstacle, thickness of the sheet: [`collide::Contacts::new`], [`collide::ContactOptions`].
+//! - Loads, air, potentials and forces of one's own: [`dynamics::SheetModel`], [`dynamics::Potential`],
+//!   [`dynamics::Force`].
+//! - Energies, strain and gap of each step, frames: [`dynamics::StepReport`], [`dynamics::History`],
+//!   [`dynamics::Frames`].
+//! - Torques on obstacles, forces of contact at vertices: [`dynamics::Simulation::body_loads`],
+//!   [`dynamics::Simulation::contact_forces`].
+//! - Other methods, and the paper's coordinates: [`dynamics::Method`], [`coords`], [`dynamics::chart`].
+//! - Meshes and series of frames as files: [`io::write_mesh`], [`io::write_series`].
+//! - Scene files, runs and the command: the features `scene`, `run` and `cli`, with `io::scene`, `io::run` and
+//!   `io::command`.
+//!
+//! All numbers are in SI units. Functions that take vectors of `nalgebra` exist beside those that take arrays;
+//! its version is re-exported as [`nalgebra`].
+
+pub use isosheet_collide as collide;
+pub use isosheet_coords as coords;
+pub use isosheet_dynamics as dynamics;
+pub use isosheet_dynamics::nalgebra;
+pub use isosheet_io as io;
+pub use isosheet_mesh as mesh;
+
+/// What most programs name: `use isosheet::prelude::*;`.
+pub mod prelude {
+    pub use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+    pub use isosheet_dynamics::{
+        Air, Checkpoint, CreaseSprings, Frames, History, Isotropic, Material, Method, Observer,
+        PointProfile, Profile, RigidDisplacement, SheetModel, Simulation, State, StepError,
+        StepReport, Support, VertexLoad,
+    };
+    pub use isosheet_io::{read_sheet, write_mesh, write_series};
+    pub use isosheet_mesh::{Advice, EdgeId, FaceId, MassKind, Sheet, VertexId, generate};
+}
