@@ -218,10 +218,16 @@ impl Memories {
     /// # Errors
     /// The numbers of numbers, found and expected, where they are not those of this model.
     pub(crate) fn take_over(&mut self, other: &Self) -> Result<(), [usize; 2]> {
-        let hands = self.hands.iter().filter_map(|(vertex, own)| {
-            let (_, theirs) = other.hands.iter().find(|(v, _)| v == vertex)?;
-            Some((*own, *theirs))
-        });
+        let hands = self
+            .hands
+            .iter()
+            .enumerate()
+            .filter_map(|(k, (vertex, own))| {
+                // The second hand at a vertex goes on from the second one.
+                let rank = self.hands[..k].iter().filter(|(v, _)| v == vertex).count();
+                let (_, theirs) = other.hands.iter().filter(|(v, _)| v == vertex).nth(rank)?;
+                Some((*own, *theirs))
+            });
         let others = self.lasting().zip(other.lasting());
         let [found, expected] = [other, &*self].map(|m| m.lasting().count());
         let pairs: Vec<(usize, usize)> = hands.chain(others).collect();

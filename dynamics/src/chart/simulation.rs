@@ -11,7 +11,7 @@ use crate::HandError;
 use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
 use crate::potential::Memories;
 use crate::step::reaction::{Balance, ForceTime, Reaction};
-use crate::{Isometry, SheetModel, State};
+use crate::{SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
 use isosheet_mesh::VertexId;
 
@@ -422,7 +422,7 @@ impl ChartSimulation {
 /// Refuses a state of the wrong length or with values that are not finite, and supports that a chart cannot
 /// have.
 fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsError> {
-    if model.isometry() != Isometry::Rods {
+    if model.potentials().any(|p| p.has_limit()) {
         return Err(ChartDynamicsError::Elastic);
     }
     if model.can_yield() {

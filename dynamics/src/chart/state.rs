@@ -59,6 +59,9 @@ impl ChartState {
         check_finite("positions", &self.state.x)?;
         check_finite("coordinates", &self.state.q)?;
         check_finite("momenta", &self.state.p)?;
+        for memory in self.memories.lists() {
+            check_finite("memories of potentials", memory)?;
+        }
         check_finite(
             "reference positions",
             self.reference.as_deref().unwrap_or_default(),

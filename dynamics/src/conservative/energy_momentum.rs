@@ -215,6 +215,7 @@ impl Integrator for EnergyMomentum {
         self.begin(model, &attempt);
         let (residual, outcome) = self.solve(model, state, h, effort)?;
         let motion = &mut proposal.motion;
+        motion.history.forget_systems();
         // Impulses of dependent rods are not unique, and what a regularised solve makes of round-off in their
         // lengths would buckle the next step: they are found anew there.
         if outcome == StepOutcome::Newton {

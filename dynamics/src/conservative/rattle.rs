@@ -409,6 +409,7 @@ impl Integrator for Rattle {
         let (model, h) = (scene.model, attempt.h);
         self.memories.copy_from(attempt.memories);
         let motion = &mut proposal.motion;
+        motion.history.forget_systems();
         motion.state.copy_from(attempt.state);
         let multipliers = &mut motion.history.multipliers;
         multipliers.copy_from(attempt.multipliers());

@@ -5,6 +5,7 @@ mod correction;
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::damped::ARMIJO;
+use crate::hessian::HessianPart;
 use crate::linear::constrained::ConstrainedSolver;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
@@ -142,7 +143,7 @@ impl Restoration {
         effort: &mut SolverEffort<'_>,
     ) -> f64 {
         let tolerance = goal.tolerance;
-        let (mut penalty, mut slow) = (self.tuning.first_stiffness, 0_usize);
+        let (mut penalty, mut slow) = (self.tuning.restoration_penalty(), 0_usize);
         let mut barriers = barriers.filter(Barriers::are_there);
         let has_barriers = barriers.is_some();
         let mut openings = 0;
@@ -206,7 +207,7 @@ impl Restoration {
                 // Stationary, but not solved: the error lies across the range of G, which happens where a
                 // patch is flat and asks for a fold. A displacement of order sqrt(strain), in any
                 // direction, opens it.
-                penalty = self.tuning.first_stiffness;
+                penalty = self.tuning.restoration_penalty();
                 let size = size.min(self.tuning.iterate_strain);
                 self.unfold(model, barriers.as_mut(), (goal.t, x), size);
                 openings += 1;
@@ -261,17 +262,22 @@ impl Restoration {
                 return Solved::No;
             }
         }
-        matrix.assemble(model, x, &self.axial, &self.transverse);
-        self.rhs.fill(0.0);
-        self.vertex_rows
-            .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
-        if let Some(barriers) = &mut barriers {
-            let scale = barriers.scale;
-            let (objective, at) = barriers.at(t, x);
-            objective.add_barrier_hessian(at, scale, matrix);
-        }
-        self.keep_barrier_forces(barriers, t, x);
-        if matrix.factorize().is_err() {
+        self.keep_barrier_forces(barriers.as_deref_mut(), t, x);
+        // What potentials say is semidefinite may not be so.
+        let mut parts = [HessianPart::PositiveSemidefinite, HessianPart::Certain].into_iter();
+        let is_factorised = parts.any(|part| {
+            matrix.assemble(model, x, &self.axial, &self.transverse);
+            self.rhs.fill(0.0);
+            self.vertex_rows
+                .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
+            if let Some(barriers) = &mut barriers {
+                let scale = barriers.scale;
+                let (objective, at) = barriers.at(t, x);
+                objective.add_barrier_hessian(at, scale, part, matrix);
+            }
+            matrix.factorize().is_ok()
+        });
+        if !is_factorised {
             return Solved::PenaltyTooLarge;
         }
         rods.apply_transpose_add(x, &self.w, &mut self.rhs);

@@ -1,6 +1,7 @@
 //! Dependent rods that block a motion.
 
 use crate::linear::rod_least_squares::RodLeastSquares;
+use crate::potential::Memories;
 use crate::vectors::point;
 use crate::{Isometry, SheetModel, State};
 use isosheet_coords::linalg::norm_inf;
@@ -25,7 +26,12 @@ const COUNTED_PART: f64 = 0.1;
 /// unit rods. The elongations `q_e = |d_a - d_b|^2 / (2 l_e)` need a second-order displacement `A w = -q`;
 /// the part of `q` outside the range of `A` is a self-stress of the blocking rods (Connelly and Whiteley,
 /// SIAM J. Discrete Math. 9, 1996).
-pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec<VertexId> {
+pub(crate) fn blocked_vertices(
+    model: &SheetModel,
+    memories: &Memories,
+    state: &State,
+    h: f64,
+) -> Vec<VertexId> {
     let x = &state.x;
     let Some(mut solver) =
         rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT_BELOW))
@@ -34,7 +40,7 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
     };
     let rods = model.rods();
     let lengths = rods.lengths();
-    let mut d = free_displacement(model, state, h);
+    let mut d = free_displacement(model, memories, state, h);
     let mut rates = vec![0.0; rods.len()];
     rods.apply(x, &d, &mut rates);
     for (r, l) in rates.iter_mut().zip(lengths) {
@@ -108,11 +114,11 @@ fn free_ends(model: &SheetModel, values: &[f64], largest: f64) -> Vec<VertexId> 
 }
 
 /// The displacements within `h` seconds without rods, metres.
-fn free_displacement(model: &SheetModel, state: &State, h: f64) -> Vec<f64> {
+fn free_displacement(model: &SheetModel, memories: &Memories, state: &State, h: f64) -> Vec<f64> {
     let State { t, x, v } = state;
     let mut force = vec![0.0; x.len()];
     let mut applied = vec![0.0; x.len()];
-    model.potential_force(*t, x, &mut force);
+    model.acting_force(memories, *t, x, &mut force);
     model.applied_force(*t, x, v, &mut applied);
     let masses = &model.mass().vertex;
     let free = |i: usize| h * v[i] + h * h * (force[i] + applied[i]) / masses[i / 3];
@@ -144,7 +150,7 @@ mod tests {
             .and_then(|m| m.with_gravity().with_pins(&pins))
             .unwrap();
         let state = State::at_rest(sheet.positions().to_vec());
-        let found = blocked_vertices(&model, &state, STEP);
+        let found = blocked_vertices(&model, &model.memories(), &state, STEP);
         (model, found)
     }
 
@@ -195,6 +201,9 @@ mod tests {
         let elasticity = crate::ElasticSheet::new(&sheet, 1e3, 0.3).unwrap();
         let model = model.with_elastic_sheet(elasticity).unwrap();
         let state = State::at_rest(sheet.positions().to_vec());
-        assert_eq!(blocked_vertices(&model, &state, STEP), []);
+        assert_eq!(
+            blocked_vertices(&model, &model.memories(), &state, STEP),
+            []
+        );
     }
 }

@@ -82,7 +82,7 @@ impl Engine {
         state: State,
         fixed: Vec<VertexId>,
     ) -> Result<Self, SimulationError> {
-        if model.isometry() != Isometry::Rods && !method.is_minimising() {
+        if model.potentials().any(|p| p.has_limit()) && !method.is_minimising() {
             return Err(SimulationError::Elastic);
         }
         if model.can_yield() && !method.is_minimising() {
@@ -385,7 +385,7 @@ impl Substeps<'_, '_> {
         let rests = self.engine.surroundings_rest(self.lengths.end());
         let Engine { model, motion, .. } = &*self.engine;
         let state = &motion.state;
-        let mut vertices = blocked_vertices(model, state, self.lengths.length());
+        let mut vertices = blocked_vertices(model, &motion.memories, state, self.lengths.length());
         if vertices.is_empty() && rests {
             vertices = dependent_vertices(model, &state.x);
         }

@@ -1,6 +1,5 @@
 //! A spring by which somebody pulls at a vertex while the simulation runs.
 
-use crate::SheetModel;
 use crate::hessian::HessianSink;
 use crate::potential::{At, Potential};
 use isosheet_mesh::wording::given;
@@ -31,6 +30,14 @@ pub enum HandError {
         /// The stiffness, N/m.
         stiffness: f64,
     },
+    /// The way of the hand ends now or before, or at no time.
+    #[error("the hand is to arrive at {end} s, and it is {now} s", end = given(*end), now = given(*now))]
+    End {
+        /// The time given, seconds.
+        end: f64,
+        /// The time of the simulation, seconds.
+        now: f64,
+    },
     /// A coordinate of the point that pulls is not finite.
     #[error("the hand is led to [{x}, {y}, {z}] m", x = given(to[0]), y = given(to[1]), z = given(to[2]))]
     Target {
@@ -45,6 +52,7 @@ impl Advice for HandError {
             Self::NoSuchVertex { .. } => None,
             Self::NoHand { .. } => Some("give the model a hand at this vertex"),
             Self::Stiffness { .. } => Some("give a positive number"),
+            Self::End { .. } => Some("give a later time"),
             Self::Target { .. } => Some("give three finite numbers"),
         }
     }
@@ -166,6 +174,9 @@ impl Hand {
         memory: &mut [f64],
     ) -> Result<(), HandError> {
         let to = point(to)?;
+        if !(end.is_finite() && end > begin) {
+            return Err(HandError::End { end, now: begin });
+        }
         let from = self.way(memory).at(begin);
         let way = Way {
             from,
@@ -198,22 +209,6 @@ impl Hand {
     fn stretch(&self, at: At<'_>) -> Vector3<f64> {
         let place = Vector3::from(at.x.as_chunks::<3>().0[self.vertex.index()]);
         place - self.target(at.t, at.memory)
-    }
-}
-
-impl SheetModel {
-    /// Adds a hand.
-    #[must_use]
-    pub fn with_hand(mut self, hand: Hand) -> Self {
-        self.hands.push((self.potentials.len(), hand.clone()));
-        self.with_potential(hand)
-    }
-
-    /// The hand that holds a vertex, with the number of its potential.
-    pub(crate) fn hand(&self, vertex: VertexId) -> Result<(usize, &Hand), HandError> {
-        let hand = self.hands.iter().find(|(_, hand)| hand.vertex == vertex);
-        let (number, hand) = hand.ok_or(HandError::NoHand { vertex })?;
-        Ok((*number, hand))
     }
 }
 
@@ -255,6 +250,7 @@ impl Potential for Hand {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::SheetModel;
     use crate::{Checkpoint, Method, Simulation, State};
     use isosheet_mesh::{EdgeId, MassKind, Sheet, generate};
 

@@ -25,6 +25,18 @@ impl LoadScale {
     }
 }
 
+impl SheetModel {
+    /// Tells an elastic sheet what its barrier has to withstand, for a simulation that starts or goes on at a
+    /// state.
+    pub(crate) fn set_load(&mut self, state: &State) {
+        let acceleration = LoadScale::at(self, state).acceleration;
+        let mass = self.mass.total();
+        if let Some(elastic) = &mut self.elastic {
+            elastic.set_load(mass, acceleration);
+        }
+    }
+}
+
 /// Largest acceleration of a vertex by potentials that are linear, metres per second squared; nothing if they
 /// accelerate none.
 pub(crate) fn constant_acceleration(model: &SheetModel, state: &State) -> Option<f64> {

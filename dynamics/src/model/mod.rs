@@ -7,6 +7,7 @@ mod derivative_tests;
 pub(crate) mod elastic_deformation;
 mod error;
 pub(crate) mod hand;
+mod hands;
 pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;
@@ -17,10 +18,8 @@ pub(crate) mod round_off;
 pub(crate) mod support;
 mod supports;
 
-use crate::State;
 use crate::constraint::VertexConstraint;
 use crate::material::elastic_sheet::ElasticSheet;
-use crate::model::load_scale::LoadScale;
 use crate::potential::{At, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::term::ImplicitForce;
 pub use error::ModelError;
@@ -267,16 +266,6 @@ impl SheetModel {
     /// The number of potentials without that of an elastic sheet, which is the last one.
     pub(crate) fn outer_potential_count(&self) -> usize {
         self.potentials.len()
-    }
-
-    /// Tells an elastic sheet what its barrier has to withstand, for a simulation that starts or goes on at a
-    /// state.
-    pub(crate) fn set_load(&mut self, state: &State) {
-        let acceleration = LoadScale::at(self, state).acceleration;
-        let mass = self.mass.total();
-        if let Some(elastic) = &mut self.elastic {
-            elastic.set_load(mass, acceleration);
-        }
     }
 
     /// The non-conservative forces in the order in which they were added.

@@ -125,6 +125,31 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
             .collect()
     }
 
+    fn has_limit(&self) -> bool {
+        self.potential.has_limit()
+    }
+
+    fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
+        let dx = &dx[self.part.coordinates()];
+        self.potential.safe_part(self.own(at), dx)
+    }
+
+    fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
+        let end = &end[self.part.coordinates()];
+        self.potential.stays_within(self.own(at), end)
+    }
+
+    fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, out: &mut [f64]) -> bool {
+        let own = self.part.coordinates();
+        let (dx, out) = (&dx[own.clone()], &mut out[own]);
+        self.potential
+            .add_second_order(self.own(at), dx, scale, out)
+    }
+
+    fn round_off(&self, size: f64) -> f64 {
+        self.potential.round_off(size)
+    }
+
     fn shape(&self) -> PotentialShape {
         self.potential.shape()
     }

@@ -88,10 +88,11 @@ impl Objective {
 
     /// Whether there is a barrier of this kind.
     pub(crate) fn has(&self, barrier: Barrier) -> bool {
-        match barrier {
-            Barrier::Contact => self.contact.is_some(),
-            Barrier::StrainLimit => self.acting.barrier().is_some(),
-        }
+        let others = self.others.iter().map(|term| term.barrier());
+        let contact = self.contact.as_ref().map(|term| term.barrier());
+        let own = [Some(self.acting.barrier()), contact];
+        let mut all = own.into_iter().flatten().chain(others);
+        all.any(|found| found == Some(barrier))
     }
 
     /// Begins a step, or begins it anew.
@@ -196,15 +197,15 @@ impl Objective {
         }
     }
 
-    /// Adds `scale` times the Hessian of the barriers, a semidefinite part of it.
+    /// Adds `scale` times a part of the Hessian of the barriers.
     pub(crate) fn add_barrier_hessian(
         &mut self,
         at: Iterate<'_>,
         scale: f64,
+        part: HessianPart,
         matrix: &mut PrimalMatrix,
     ) {
         let model = Arc::clone(&self.model);
-        let part = HessianPart::PositiveSemidefinite;
         for term in self.barriers() {
             term.add_hessian(at, part, &mut matrix.scaled_sink(&model, scale));
         }

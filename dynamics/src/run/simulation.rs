@@ -336,7 +336,7 @@ impl Simulation {
     /// |---|---|---|
     /// | BDF2 | `(p1 - (1 + b) p0 + b p_) / (k h)`, see [`Method::Bdf2`] | at the end |
     /// | implicit Euler | `(p1 - p0) / h` | at the end |
-    /// | projection, energy-momentum, RATTLE | `(p1 - p0) / h` | over the step |
+    /// | energy-momentum, RATTLE | `(p1 - p0) / h` | over the step |
     ///
     /// The conservative methods keep this balance to round-off; the damped methods to the tolerance of
     /// Newton's method, and in contact to the second-order change of contact forces by the final projection.

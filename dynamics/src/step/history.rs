@@ -28,6 +28,13 @@ impl History {
         self.previous.is_some()
     }
 
+    /// Forgets what belongs to the linear systems of damped methods and to the state before.
+    pub(crate) fn forget_systems(&mut self) {
+        self.previous = None;
+        self.couplings.clear();
+        self.rod_stiffness = 0.0;
+    }
+
     /// Takes over another history, in place.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.set_previous(other.previous.as_ref());

@@ -59,11 +59,12 @@ tuning! {
     /// Edge strain from which the restoration at the end of a phase is a small displacement. With twice the
     /// value a sheet that is fed into a corner needs 2.5 times the factorisations.
     small_strain = 1e-5,
-    /// Stiffness of the rods, over that of the masses, in systems that are solved for their multipliers, and
-    /// penalty that a restoration starts from. These are regularised saddle-point systems `[H G^T; G -1/r]`
-    /// with penalties `r`; `ConstrainedSolver` takes the regularisation out again. Restorations of crumpled
-    /// sheets find no lengths with 1e10; with 1e11 steps keep momentum and symmetries no longer to round-off.
-    first_stiffness = 1e9,
+    /// Stiffness of the rods, over that of the masses, in systems that are solved for their multipliers. These
+    /// are regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`; `ConstrainedSolver` takes
+    /// the regularisation out again. With 1e9 needles a million times longer than wide lock, with 1e11 steps
+    /// keep momentum and symmetries no longer to round-off. Restorations, which crumpled sheets need softer,
+    /// start from a penalty of one growth less.
+    first_stiffness = 1e10,
     /// The same from then on where the multipliers do not converge, and in contact; also the largest penalty
     /// of a restoration. Beyond it the masses drown in the round-off of the penalty. Strips of rods on edge,
     /// at rest, need 10 to 16 factorisations a step, and 16 to 280 where every step begins with the first
@@ -108,6 +109,11 @@ impl Tuning {
     /// contact that leaves less is in the way.
     pub(crate) fn shortest_part(&self) -> f64 {
         0.5_f64.powi(self.repetitions as i32)
+    }
+
+    /// Penalty, over the masses, that a restoration starts from.
+    pub(crate) fn restoration_penalty(&self) -> f64 {
+        self.first_stiffness / self.penalty_growth
     }
 
     /// Part of the length error that an iteration leaves above which it is slow, and part of the tolerance of

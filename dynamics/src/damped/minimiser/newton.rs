@@ -188,7 +188,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         let problem = &mut *self.problem;
         match self.phase.start {
             Start::Prediction => lagrangian.predict(problem),
-            Start::Lower if !problem.has_contact() && problem.model.has_drives() => {
+            Start::Lower if !problem.is_bounded() && problem.model.has_drives() => {
                 lagrangian.set_stiffness(options.stiffness, options.stiffness);
                 lagrangian.place_pins(problem);
                 let start = lagrangian.merit(problem).value;

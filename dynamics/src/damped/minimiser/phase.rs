@@ -92,7 +92,7 @@ impl Phase {
         let has_contact = problem.has_contact();
         let sqp = Self::sqp(problem, options, tuning);
         let rounds = Self::rounds(problem, options, tuning);
-        if model.isometry() != Isometry::Rods || has_contact && model.has_drives() {
+        if model.isometry() != Isometry::Rods || problem.is_bounded() && model.has_drives() {
             [None, Some(rounds)]
         } else if has_contact && problem.phases == Phases::Brief {
             let brief = Self {

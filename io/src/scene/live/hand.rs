@@ -76,6 +76,10 @@ impl LiveScene {
         let positions = self.simulation.state().x.as_chunks::<3>().0;
         let at = positions.get(vertex.index()).copied().unwrap_or_default();
         let hand = Hand::new(model.topology(), vertex, self.firmness(), at)?;
+        if self.hand().is_some_and(|(held, _)| held == vertex) {
+            // The new hand begins where the vertex is, and not where the old one was led.
+            self.let_go()?;
+        }
         self.go_on_with_hand(Some(hand))?;
         Ok(at)
     }
@@ -86,7 +90,7 @@ impl LiveScene {
     /// [`Simulation::lead_hand`]: isosheet_dynamics::Simulation::lead_hand
     ///
     /// # Errors
-    /// [`HandError::Target`]; then nothing has changed.
+    /// [`HandError::Target`], [`HandError::End`]; then nothing has changed.
     pub fn lead(&mut self, to: [f64; 3], end: f64) -> Result<(), HandError> {
         match &self.hand {
             Some(hand) => self.simulation.lead_hand(hand.vertex(), to, end),
