@@ -23,8 +23,6 @@ use nalgebra::Vector3;
 use thiserror::Error;
 
 #[cfg(test)]
-mod exact;
-#[cfg(test)]
 mod tests;
 
 /// Options of the collision detection.

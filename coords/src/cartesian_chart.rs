@@ -8,7 +8,6 @@ use crate::row_pattern::RowPattern;
 use crate::select::{Selection, eliminate, exchange, pivoted_qr};
 use crate::system::RodSystem;
 use isosheet_mesh::VertexId;
-use nalgebra::DMatrix;
 
 /// How a [`CartesianChart`] chooses its coordinates.
 ///
@@ -168,16 +167,6 @@ impl Chart for CartesianChart {
         x.copy_from_slice(near);
         newton(self, linear, q, x)?;
         Ok(())
-    }
-
-    fn jacobian(
-        &self,
-        system: &RodSystem,
-        linear: &mut Linearised,
-        x: &[f64],
-    ) -> Result<DMatrix<f64>, ChartError> {
-        self.linearise(system, linear, x)?;
-        Ok(linear.jacobian()?)
     }
 
     fn margin(&self, x: &[f64]) -> Result<f64, ChartError> {

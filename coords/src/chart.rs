@@ -7,12 +7,12 @@
 //! coordinates, and positions from these values.
 
 use crate::assignment::AssignmentError;
-use crate::linalg::LinalgError;
 use crate::linearised::Linearised;
 use crate::placement_error::PlacementError;
 use crate::realise::RealiseError;
 use crate::row_pattern::RowPattern;
 use crate::system::{RodSystem, SystemError};
+use isosheet_linalg::LinalgError;
 use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, MeshError, VertexId};
 use nalgebra::DMatrix;
@@ -184,7 +184,10 @@ pub trait Chart: Send {
         system: &RodSystem,
         linear: &mut Linearised,
         x: &[f64],
-    ) -> Result<DMatrix<f64>, ChartError>;
+    ) -> Result<DMatrix<f64>, ChartError> {
+        self.linearise(system, linear, x)?;
+        Ok(linear.jacobian()?)
+    }
 
     /// Distance of the state from a singularity of the coordinates themselves, 1 or more far away
     /// and 0 at it. Below about 0.1 a [`Chart::rebased`] chart is due.

@@ -2,7 +2,6 @@
 
 use crate::assignment::{Assignment, AssignmentOptions, Rule, assign};
 use crate::chart::{Chart, ChartError};
-use crate::linalg::{Pattern, SparseLu};
 use crate::linearised::Linearised;
 use crate::newton::newton;
 use crate::placement::{jacobian_f, jacobian_g, jacobian_h};
@@ -12,6 +11,7 @@ use crate::row_pattern::RowPattern;
 use crate::select::pivot_columns;
 use crate::system::RodSystem;
 use crate::vec3::{Vec3, at};
+use isosheet_linalg::{Pattern, SparseLu};
 use isosheet_mesh::{Sheet, VertexId};
 use nalgebra::DMatrix;
 

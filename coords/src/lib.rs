@@ -16,7 +16,7 @@
 //! solve with the saddle-point matrix ([`SaddlePoint`]).
 //!
 //! States are flat slices of positions, three values per vertex; pinned vertices have no unknowns
-//! ([`RodSystem`]). Sparse direct solvers over fixed patterns are in [`linalg`].
+//! ([`RodSystem`]). Sparse direct solvers over fixed patterns are in [`linalg`], a crate of its own.
 //!
 //! ```
 //! use isosheet_coords::{BentState, CartesianChart, Chart, Choice, Linearised, RodSystem, Start};
@@ -49,7 +49,6 @@ mod chart_tests;
 mod condition;
 mod frames;
 mod front_chart;
-pub mod linalg;
 mod linearised;
 mod newton;
 pub mod placement;
@@ -80,6 +79,8 @@ pub use row_pattern::RowPattern;
 pub use saddle::{SaddlePoint, apply_mass};
 pub use system::{RodSystem, SystemError};
 
+/// Sparse direct solvers.
+pub use isosheet_linalg as linalg;
 /// Dense matrices of the signatures, such as [`Chart::jacobian`]'s.
 pub use nalgebra;
 

@@ -1,8 +1,8 @@
 //! The linearised chart `A = [G; S]`, factorised: `J = A^-1 [0; I]` and its transpose, applied or formed.
 
-use crate::linalg::{LinalgError, Pattern, SparseLu};
 use crate::row_pattern::RowPattern;
 use crate::system::RodSystem;
+use isosheet_linalg::{LinalgError, Pattern, SparseLu};
 use nalgebra::DMatrix;
 
 /// Sparse LU of `A = [G; S]` at a state (symbolic analysis once, numeric refactorisation per state).

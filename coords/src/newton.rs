@@ -1,9 +1,9 @@
 //! Newton's method for positions with given coordinates and edge lengths.
 
 use crate::chart::{Chart, ChartError};
-use crate::linalg::norm_inf;
 use crate::linearised::Linearised;
 use crate::realise::check;
+use isosheet_linalg::norm_inf;
 
 /// Relative change of the unknowns below which Newton's method for positions stops. Convergence is
 /// quadratic, so that the last step taken leaves rounding only.

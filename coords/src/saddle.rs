@@ -1,7 +1,7 @@
 //! The saddle-point matrix `[M G^T; G 0]`, factorised.
 
-use crate::linalg::{LinalgError, Pattern, SparseLu};
 use crate::system::RodSystem;
+use isosheet_linalg::{LinalgError, Pattern, SparseLu};
 use isosheet_mesh::MassMatrix;
 
 /// Sparse LU of the saddle-point matrix of a rod system.

@@ -5,6 +5,7 @@ use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// Where a potential is evaluated.
 #[derive(Debug, Clone, Copy)]
@@ -169,30 +170,163 @@ pub trait Potential: Debug + Send + Sync {
 /// What each of the potentials of a model remembers ([`Potential::memory`]), in the order of
 /// [`SheetModel::potentials`](crate::SheetModel::potentials).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Memories(Vec<Vec<f64>>);
+pub struct Memories {
+    lists: Vec<Vec<f64>>,
+    /// The vertices that hands hold, with the numbers of the potentials of these hands.
+    hands: Vec<(u32, usize)>,
+}
 
 impl Memories {
     pub(crate) fn of(lists: impl Iterator<Item = Vec<f64>>) -> Self {
-        Self(lists.collect())
+        Self {
+            lists: lists.collect(),
+            hands: Vec::new(),
+        }
+    }
+
+    /// With hands at these vertices, given with the numbers of their potentials.
+    pub(crate) fn with_hands(self, hands: impl Iterator<Item = (u32, usize)>) -> Self {
+        Self {
+            hands: hands.collect(),
+            ..self
+        }
     }
 
     pub(crate) fn lists_mut(&mut self) -> &mut [Vec<f64>] {
-        &mut self.0
+        &mut self.lists
     }
 
     /// One list of numbers for each potential, most of them empty.
     pub fn lists(&self) -> &[Vec<f64>] {
-        &self.0
+        &self.lists
     }
 
     /// The memory of the potential of a number.
     pub(crate) fn list_mut(&mut self, number: usize) -> &mut [f64] {
-        &mut self.0[number]
+        &mut self.lists[number]
     }
 
     /// Takes over other memories of the same model, in place.
     pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.0.clone_from(&other.0);
+        self.lists.clone_from(&other.lists);
+        self.hands.clone_from(&other.hands);
+    }
+
+    /// Takes over the memories of another model of the same sheet: of hands by their vertices, which may have
+    /// come and gone, and of other potentials that remember by their order.
+    ///
+    /// # Errors
+    /// The numbers of numbers, found and expected, where they are not those of this model.
+    pub(crate) fn take_over(&mut self, other: &Self) -> Result<(), [usize; 2]> {
+        let hands = self.hands.iter().filter_map(|(vertex, own)| {
+            let (_, theirs) = other.hands.iter().find(|(v, _)| v == vertex)?;
+            Some((*own, *theirs))
+        });
+        let others = self.lasting().zip(other.lasting());
+        let [found, expected] = [other, &*self].map(|m| m.lasting().count());
+        let pairs: Vec<(usize, usize)> = hands.chain(others).collect();
+        if found != expected {
+            return Err([found, expected]);
+        }
+        for (own, theirs) in pairs {
+            let kept = other.lists.get(theirs).map_or(&[][..], Vec::as_slice);
+            let own = &mut self.lists[own];
+            if kept.len() != own.len() {
+                return Err([kept.len(), own.len()]);
+            }
+            own.copy_from_slice(kept);
+        }
+        Ok(())
+    }
+
+    /// The numbers of the potentials that remember, without hands.
+    fn lasting(&self) -> impl Iterator<Item = usize> {
+        let is_hand = |number: &usize| self.hands.iter().any(|(_, n)| n == number);
+        let remembering = (0..self.lists.len()).filter(|n| !self.lists[*n].is_empty());
+        remembering.filter(move |n| !is_hand(n))
+    }
+}
+
+/// A potential that several models share: what it remembers belongs to their simulations.
+impl<P: Potential + ?Sized> Potential for Arc<P> {
+    fn energy(&self, at: At<'_>) -> f64 {
+        (**self).energy(at)
+    }
+
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        (**self).add_gradient(at, gradient);
+    }
+
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        (**self).add_hessian(at, hessian);
+    }
+
+    fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        (**self).add_semidefinite_hessian(at, hessian);
+    }
+
+    fn couplings(&self) -> Vec<[VertexId; 2]> {
+        (**self).couplings()
+    }
+
+    fn coupling_kind(&self) -> CouplingKind {
+        (**self).coupling_kind()
+    }
+
+    fn is_driven(&self) -> bool {
+        (**self).is_driven()
+    }
+
+    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
+        (**self).add_bending_energies(at, faces);
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        (**self).memory()
+    }
+
+    fn can_yield(&self) -> bool {
+        (**self).can_yield()
+    }
+
+    fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
+        (**self).start(state, memory);
+    }
+
+    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
+        (**self).settle(state, memory)
+    }
+
+    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
+        (**self).plastic_angles(memory)
+    }
+
+    fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
+        (**self).plastic_curvatures(memory)
+    }
+
+    fn has_limit(&self) -> bool {
+        (**self).has_limit()
+    }
+
+    fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
+        (**self).safe_part(at, dx)
+    }
+
+    fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
+        (**self).stays_within(at, end)
+    }
+
+    fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, out: &mut [f64]) -> bool {
+        (**self).add_second_order(at, dx, scale, out)
+    }
+
+    fn round_off(&self, size: f64) -> f64 {
+        (**self).round_off(size)
+    }
+
+    fn shape(&self) -> PotentialShape {
+        (**self).shape()
     }
 }
 

@@ -32,7 +32,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use exit::EXIT_CODES;
 use message::Verbosity;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -83,12 +83,6 @@ enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
-    /// Write the reference of scene files: scene.md, materials.md and the JSON schema scene.schema.json
-    #[command(hide = true)]
-    Reference {
-        /// The folder
-        dir: PathBuf,
-    },
 }
 
 /// Does what a command line says, whose first word names the command, and returns the exit code. A sweep
@@ -128,7 +122,6 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
             clap_complete::generate(shell, &mut Cli::command(), "isosheet", &mut script);
             write::to_stdout(&String::from_utf8_lossy(&script))
         }
-        Command::Reference { dir } => write::reference(&dir),
     };
     done.map_or_else(|failure| exit::report(&failure), |()| 0)
 }

@@ -12,7 +12,6 @@ mod loads;
 mod measures;
 pub(crate) mod memory;
 mod mesh_file;
-mod obj_write;
 mod trajectory;
 
 pub use atomic::{FileWriter, WriteError, write_atomically};
@@ -21,9 +20,12 @@ pub(crate) use cell::cell;
 #[cfg(feature = "run")]
 pub(crate) use finite::{Finding, check_finite};
 
+#[cfg(feature = "run")]
+pub(crate) use export::frame_number;
 pub use export::{
     BodyPose, ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series,
-    SeriesBody, SeriesField, SeriesFormat, SeriesOptions, write_frame, write_mesh, write_series,
+    SeriesBody, SeriesField, SeriesFormat, SeriesOptions, frame_path, write_frame, write_mesh,
+    write_obj, write_series,
 };
 pub use history::{HistoryError, HistoryRow, HistoryWriter, Row, RowWriter, Written, read_history};
 pub use json::{JsonError, read_json, write_json};
@@ -34,9 +36,6 @@ pub use mesh_file::{
     MeshFileProblem, MeshFormat, MeshOptions, Place, Polygons, ReadingChanges, Repair,
     SeparateBuffers, parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
-#[cfg(feature = "run")]
-pub(crate) use obj_write::frame_number;
-pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
 pub use trajectory::{FrameData, Trajectory, TrajectoryError};
 #[cfg(feature = "run")]
 pub(crate) use trajectory::{MeshCounts, Motion, MotionError, MotionFrame, Quantity};

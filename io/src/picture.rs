@@ -31,6 +31,7 @@ mod error;
 mod joined;
 mod montage;
 mod occlusion;
+mod order;
 mod pieces;
 mod raster;
 mod sheet;

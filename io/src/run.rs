@@ -75,21 +75,21 @@ pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
 use crate::format::{
-    HistoryRow, HistoryWriter, LoadWriter, MeasureWriter, Motion, MotionError, Row, Trajectory,
-    frame_path, read_json, write_json, write_obj,
+    HistoryRow, Motion, MotionError, Row, Trajectory, frame_path, read_json, write_json, write_obj,
 };
-use crate::scene::{Gauge, Origins, SceneFile, Setup, SupportForces, Targets};
+use crate::scene::{Kept, SceneFile, Setup};
 use crate::view::PageOptions;
 use checkpoint::Progress;
 use folder::{Contents, Existing, Material, RunFolder, stored_scene};
-use frames::{FrameFile, FrameShape, StoredFrames};
+use frames::{FrameShape, StoredFrames};
 use isosheet_dynamics::Simulation;
 use page::write_page_of;
+use recording::RunFrames;
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use stepping::{Stepping, step_count};
+use stepping::{Plan, Stepping, step_count};
 
 /// How a call of [`simulate`] ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,67 +155,86 @@ fn simulate_in(
     if folder.as_os_str().is_empty() {
         return Err(RunError::NoFolder);
     }
-    let material = Material::read(file)?;
+    let mut kept = Kept::in_folder(file.folder());
+    let material = Material::read(file, &mut kept.files)?;
+    let hash = material.hash;
     if existing == Existing::Continue && RunFolder::is_complete(folder, &material)? {
-        return already_complete(folder, material.hash);
+        return already_complete(folder, hash);
     }
-    let setup = file.build()?;
+    let setup = file.build_with(&mut kept)?;
     let estimate = Estimate::of(file.scene(), &setup);
     let warnings = [setup.warnings(), estimate.warnings(folder)].concat();
-    let facts = Facts::of(&setup, material.hash);
+    let plan = Plan {
+        file,
+        hash,
+        facts: setup.facts(),
+        shape: FrameShape::of(&setup),
+    };
+    // A scene that cannot start leaves the folder as it was.
     let continued = existing == Existing::Continue && RunFolder::has_checkpoint(folder);
-    let ready = match continued {
-        true => Ready::Built(Box::new(setup)),
+    let start = match continued {
+        true => None,
         false => {
             estimate.check(file, folder)?;
-            Ready::Started(started(setup)?)
+            Some(started(setup)?)
         }
     };
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
         Contents::Complete(open) => {
             let lost = !open.path(RunFolder::TRAJECTORY).is_file();
             if file.scene().output.trajectory && lost {
-                write_trajectory(&open, &facts.sheet, facts.frame)?;
+                write_trajectory(&open, &plan)?;
             }
-            return already_complete(folder, material.hash);
+            return already_complete(folder, hash);
         }
         Contents::Empty(open) => (open, None),
         Contents::Partial(open) => {
             let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
+            check_origin(&open, &saved.0, hash)?;
             (open, Some(saved))
         }
     };
-    let mut stepping = match saved {
-        None => start(file, &open, &facts, ready.simulation()?, clock)?,
-        Some(saved) => {
-            check_origin(&open, &saved.0, facts.hash)?;
-            resume(file, &open, &facts, ready.setup(file)?, saved, clock)?
+    let (simulation, saved) = match (saved, start) {
+        (Some((progress, checkpoint)), _) => {
+            let setup = file.build_with(&mut kept)?;
+            (setup.resume(checkpoint)?, Some(progress))
         }
+        (None, Some(simulation)) => (simulation, None),
+        (None, None) => (started(file.build_with(&mut kept)?)?, None),
     };
+    let mut stepping = Stepping::begin(&plan, &open, simulation, saved, clock)?;
     watch.begin(&Beginning {
         steps: stepping.progress.steps,
         of: step_count(file.scene()),
-        modelled: facts.modelled.clone(),
-        vertices: facts.sheet.topology().vertex_count(),
+        modelled: plan.facts.modelled.clone(),
+        vertices: plan.facts.sheet.topology().vertex_count(),
         warnings,
     });
     if let Some(sink) = watch.trace() {
         stepping.simulation.set_trace(sink);
     }
-    let advanced = advance(&mut stepping, watch);
+    let interval = file.scene().output.checkpoint_interval;
+    let advanced = advance(&mut stepping, interval, watch);
     if file.scene().output.trajectory {
-        let written = write_trajectory(&open, &facts.sheet, facts.frame);
+        let written = write_trajectory(&open, &plan);
         // The failure of the run is what has to be said.
         advanced.and(written)?;
     } else {
         advanced?;
     }
-    finish(file, &open, &facts, &stepping.progress)
+    let recorded = || -> Result<_, RunError> {
+        let setup = file.build_with(&mut kept)?;
+        Recording::of(folder, material.stored, setup)
+    };
+    finish(&plan, &open, &stepping.progress, recorded)
 }
 
 /// Takes steps until the run ends or the watcher asks for a stop.
-fn advance(stepping: &mut Stepping<'_>, watch: &mut dyn Watch) -> Result<(), RunError> {
-    let interval = stepping.file.scene().output.checkpoint_interval;
+fn advance(
+    stepping: &mut Stepping<'_>,
+    interval: f64,
+    watch: &mut dyn Watch,
+) -> Result<(), RunError> {
     // More seconds than a duration can hold are as good as never.
     let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
     while stepping.progress.ending.is_none() {
@@ -235,18 +254,21 @@ fn advance(stepping: &mut Stepping<'_>, watch: &mut dyn Watch) -> Result<(), Run
 }
 
 /// Writes the frames of a run as a trajectory.
-fn write_trajectory(
-    folder: &RunFolder,
-    sheet: &isosheet_mesh::Sheet,
-    shape: FrameShape,
-) -> Result<(), RunError> {
-    let path = folder.path(RunFolder::FRAMES);
-    let frames = StoredFrames { path, shape };
-    let written = Trajectory::new(sheet).write_motion(&folder.path(RunFolder::TRAJECTORY), &frames);
+fn write_trajectory(folder: &RunFolder, plan: &Plan<'_>) -> Result<(), RunError> {
+    let trajectory = Trajectory::new(&plan.facts.sheet);
+    let path = folder.path(RunFolder::TRAJECTORY);
+    let written = trajectory.write_motion(&path, &stored_frames(folder, plan));
     written.map_err(|error| match error {
         MotionError::Frame(error) => error,
         MotionError::Trajectory(error) => error.into(),
     })
+}
+
+fn stored_frames(folder: &RunFolder, plan: &Plan<'_>) -> StoredFrames {
+    StoredFrames {
+        path: folder.path(RunFolder::FRAMES),
+        shape: plan.shape,
+    }
 }
 
 /// Continues the run in a folder, with the scene that is stored there.
@@ -267,108 +289,11 @@ fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError>
     Ok(Outcome::AlreadyComplete(Box::new(summary)))
 }
 
-/// What is known before the first step.
-struct Facts {
-    hash: SceneHash,
-    modelled: Vec<String>,
-    sheets: Vec<SheetPlace>,
-    sheet: isosheet_mesh::Sheet,
-    frame: FrameShape,
-    /// The positions at the start.
-    start: Vec<f64>,
-    origins: Origins,
-    targets: Targets,
-    gauges: Vec<Gauge>,
-}
-
-impl Facts {
-    fn of(setup: &Setup, hash: SceneHash) -> Self {
-        Self {
-            hash,
-            modelled: setup.modelled.clone(),
-            sheets: setup.parts.iter().map(SheetPlace::new).collect(),
-            sheet: setup.sheet.clone(),
-            frame: FrameShape::of(setup),
-            start: setup.start.x.clone(),
-            origins: setup.origins.clone(),
-            targets: setup.targets.clone(),
-            gauges: setup.measures.clone(),
-        }
-    }
-}
-
-/// What is ready before the folder is made or changed: a scene that cannot start leaves it as it was.
-enum Ready {
-    /// All of which the simulation is continued, where there is a checkpoint.
-    Built(Box<Setup>),
-    /// The simulation at the start.
-    Started(Simulation),
-}
-
-impl Ready {
-    /// The simulation at the start.
-    fn simulation(self) -> Result<Simulation, RunError> {
-        match self {
-            Self::Built(setup) => started(*setup),
-            Self::Started(simulation) => Ok(simulation),
-        }
-    }
-
-    /// All of which the simulation of a scene is continued.
-    fn setup(self, file: &SceneFile) -> Result<Setup, RunError> {
-        match self {
-            Self::Built(setup) => Ok(*setup),
-            Self::Started(_) => Ok(file.build()?),
-        }
-    }
-}
-
 /// The simulation at the start, whose energies can be written.
 fn started(setup: Setup) -> Result<Simulation, RunError> {
     let simulation = setup.start()?;
     HistoryRow::of_start(&simulation).check_finite()?;
     Ok(simulation)
-}
-
-/// Whether there is a support or an obstacle in a scene.
-fn bears_loads(file: &SceneFile) -> bool {
-    !file.scene().support.is_empty() || !file.scene().obstacle.is_empty()
-}
-
-fn start<'a>(
-    file: &'a SceneFile,
-    folder: &'a RunFolder,
-    facts: &Facts,
-    simulation: Simulation,
-    clock: Instant,
-) -> Result<Stepping<'a>, RunError> {
-    let count = file.scene().support.len();
-    let mut stepping = Stepping {
-        file,
-        folder,
-        supports: SupportForces::new(facts.origins.clone(), &simulation, count),
-        targets: facts.targets.clone(),
-        simulation,
-        start: facts.start.clone(),
-        origins: facts.origins.clone(),
-        history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
-        loads: bears_loads(file)
-            .then(|| LoadWriter::create(&folder.path(RunFolder::LOADS)))
-            .transpose()?,
-        measures: (!facts.gauges.is_empty())
-            .then(|| MeasureWriter::create(&folder.path(RunFolder::MEASURES)))
-            .transpose()?,
-        gauges: facts.gauges.clone(),
-        frames: FrameFile::create(&folder.path(RunFolder::FRAMES))?,
-        progress: Progress {
-            scene: facts.hash.to_string(),
-            version: env!("CARGO_PKG_VERSION").into(),
-            ..Progress::default()
-        },
-        clock,
-    };
-    stepping.record_start()?;
-    Ok(stepping)
 }
 
 /// Refuses a checkpoint of another scene, where the one in the folder was changed since, or of another
@@ -387,66 +312,31 @@ fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Res
     Ok(())
 }
 
-fn resume<'a>(
-    file: &'a SceneFile,
-    folder: &'a RunFolder,
-    facts: &Facts,
-    setup: Setup,
-    (progress, checkpoint): (Progress, isosheet_dynamics::Checkpoint),
-    clock: Instant,
-) -> Result<Stepping<'a>, RunError> {
-    let frames = folder.path(RunFolder::FRAMES);
-    let frames = FrameFile::resume(&frames, progress.frames, facts.frame)?;
-    let simulation = setup.resume(checkpoint)?;
-    let count = file.scene().support.len();
-    Ok(Stepping {
-        file,
-        folder,
-        supports: SupportForces::new(facts.origins.clone(), &simulation, count),
-        targets: facts.targets.clone(),
-        simulation,
-        start: facts.start.clone(),
-        origins: facts.origins.clone(),
-        history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,
-        loads: progress
-            .loads
-            .map(|written| LoadWriter::resume(&folder.path(RunFolder::LOADS), written))
-            .transpose()?,
-        gauges: facts.gauges.clone(),
-        measures: progress
-            .measures
-            .map(|written| MeasureWriter::resume(&folder.path(RunFolder::MEASURES), written))
-            .transpose()?,
-        frames,
-        progress,
-        clock,
-    })
-}
-
 /// Writes the files that only a complete run has, the summary last. A run that has not ended was stopped.
 fn finish(
-    file: &SceneFile,
+    plan: &Plan<'_>,
     folder: &RunFolder,
-    facts: &Facts,
     progress: &Progress,
+    recorded: impl FnOnce() -> Result<(Recording, RunFrames), RunError>,
 ) -> Result<Outcome, RunError> {
     let Some(ending) = progress.ending.clone() else {
         return Ok(Outcome::Interrupted);
     };
     let clock = Instant::now();
+    let facts = &plan.facts;
     let topology = facts.sheet.topology();
-    let output = &file.scene().output;
+    let output = &plan.file.scene().output;
     if output.obj {
-        write_obj_files(folder, facts)?;
+        write_obj_files(folder, plan)?;
     }
     let summary = Summary {
         program: "isosheet".into(),
         version: env!("CARGO_PKG_VERSION").into(),
         commit: commit::noted(),
-        scene: facts.hash.to_string(),
+        scene: plan.hash.to_string(),
         wall_time: progress.wall + clock.elapsed().as_secs_f64(),
         modelled: facts.modelled.clone(),
-        sheets: facts.sheets.clone(),
+        sheets: facts.parts.iter().map(SheetPlace::new).collect(),
         vertices: topology.vertex_count(),
         faces: topology.face_count(),
         steps: progress.steps,
@@ -463,21 +353,18 @@ fn finish(
         ending,
     };
     if output.page {
-        write_page_before(folder, &summary)?;
+        let (recording, frames) = recorded()?;
+        write_page_before(folder, recording, &frames, &summary)?;
     }
     write_json(&folder.path(RunFolder::SUMMARY), &summary)?;
     Ok(Outcome::Complete(Box::new(summary)))
 }
 
 /// Writes the frames as OBJ files.
-fn write_obj_files(folder: &RunFolder, facts: &Facts) -> Result<(), RunError> {
-    let (path, obj) = (folder.path(RunFolder::FRAMES), folder.path(RunFolder::OBJ));
-    let (topology, mut done) = (facts.sheet.topology(), Ok(()));
-    let frames = StoredFrames {
-        path,
-        shape: facts.frame,
-    };
-    frames.each(&mut |frame| {
+fn write_obj_files(folder: &RunFolder, plan: &Plan<'_>) -> Result<(), RunError> {
+    let obj = folder.path(RunFolder::OBJ);
+    let (topology, mut done) = (plan.facts.sheet.topology(), Ok(()));
+    stored_frames(folder, plan).each(&mut |frame| {
         done = write_obj(&frame_path(&obj, frame.number), topology, frame.x);
         match done {
             Ok(()) => ControlFlow::Continue(()),
@@ -489,11 +376,15 @@ fn write_obj_files(folder: &RunFolder, facts: &Facts) -> Result<(), RunError> {
 
 /// Writes the page of a run whose summary is not in the folder yet. A run that no page can show is complete
 /// all the same: [`write_page`] says why there is none.
-fn write_page_before(folder: &RunFolder, summary: &Summary) -> Result<(), RunError> {
-    let (mut recording, frames) = Recording::open(folder.root())?;
+fn write_page_before(
+    folder: &RunFolder,
+    mut recording: Recording,
+    frames: &RunFrames,
+    summary: &Summary,
+) -> Result<(), RunError> {
     recording.summary = Some(summary.clone());
     let path = folder.path(RunFolder::PAGE);
-    match write_page_of(&recording, &frames, &path, &PageOptions::default()) {
+    match write_page_of(&recording, frames, &path, &PageOptions::default()) {
         Err(RunError::Page(_)) => match std::fs::remove_file(&path) {
             Err(source) if source.kind() != ErrorKind::NotFound => Err(RunError::Unwritable {
                 folder: folder.root().to_owned(),

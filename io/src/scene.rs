@@ -30,6 +30,7 @@
 mod air;
 mod build;
 mod bytes;
+mod changed;
 mod chart;
 mod contact;
 mod creases;
@@ -39,14 +40,15 @@ mod error;
 mod folding;
 mod forces;
 mod form;
+mod functions;
 mod glue;
 mod in_words;
 mod key;
 mod live;
 mod material;
-mod materials_page;
 mod measure;
 mod mesh;
+mod mesh_file;
 mod method;
 mod obstacles;
 mod outline;
@@ -56,14 +58,15 @@ mod placed;
 mod pose;
 mod problem;
 mod profile;
-mod reference;
 mod refined;
 mod resolution;
+mod schema;
 mod selection;
 mod setup;
 mod sheet;
 mod sheets;
 mod size;
+mod slots;
 mod source;
 mod start;
 mod starting_point;
@@ -86,7 +89,7 @@ pub use chart::{
 };
 pub use contact::{Contact, SheetPair};
 pub use creases::{Crease, CreaseEdges, PatternEdges};
-pub use edit::{EditError, EditProblem};
+pub use edit::{Edit, EditError, EditProblem};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
@@ -95,9 +98,9 @@ pub use glue::{Glue, SeamSide};
 pub use key::{Key, KeyError, KeyPart};
 pub use live::{FailedStep, HoldError, LiveScene};
 pub use material::{Material, Plate};
-pub use materials_page::materials_page;
 pub use measure::{Gauge, Measure, Quantity};
-pub use mesh::{Diagonals, Mesh, MeshFile, PolygonFaces, UpAxis};
+pub use mesh::{Diagonals, Mesh};
+pub use mesh_file::{MeshFile, PolygonFaces, UpAxis};
 pub use method::{Fallback, Integrator, Method, Taut};
 pub use obstacles::{Obstacle, Shape, Wall};
 pub use outline::{Outline, OutlineShape};
@@ -108,7 +111,7 @@ pub use pattern::{
 pub use pose::{Motion, Pose, Rotation, Turn};
 pub use problem::Problem;
 pub use profile::{Change, Course, Interpolation, Profile};
-pub use reference::{reference_page, schema};
+pub use schema::{as_written, documented_schema, schema};
 pub use selection::Selection;
 pub use setup::{Integration, Setup};
 pub use sheet::{Bending, Elasticity, Isometry, Sheet};
@@ -119,14 +122,23 @@ pub use stop::{Rest, Stop};
 pub use support_forces::SupportForces;
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
 pub use targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
+pub use unit::UnitRange;
 pub use warning::SceneWarning;
 pub use weight::Weight;
 pub use yields::{CreaseYield, SheetYield};
 
 #[cfg(feature = "run")]
+pub(crate) use build::Kept;
+#[cfg(feature = "run")]
 pub(crate) use bytes::bytes_in_words;
 #[cfg(feature = "run")]
+pub(crate) use mesh_file::Files;
+#[cfg(feature = "run")]
 pub(crate) use resolution::check_positions;
+#[cfg(feature = "run")]
+pub(crate) use selection::bounds;
+#[cfg(feature = "run")]
+pub(crate) use setup::Facts;
 #[cfg(feature = "run")]
 pub(crate) use size::MEMORY_OF_FACE;
 #[cfg(feature = "run")]
@@ -295,16 +307,6 @@ impl Scene {
         let step = self.method.step;
         self.stop.check(step, &root.name("stop"), &mut checks);
         self.output.check(&root.name("output"), &mut checks);
-        if checks.problems.is_empty()
-            && let Err(error) = toml::Table::try_from(self)
-        {
-            let message = format!("the scene cannot be written as TOML: {error}");
-            let remedy = format!(
-                "whole numbers go up to {}, and paths have to be valid UTF-8",
-                i64::MAX
-            );
-            checks.report(root, message, remedy);
-        }
         SceneError::of(checks.problems)
     }
 

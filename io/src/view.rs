@@ -104,8 +104,6 @@ pub use error::ViewError;
 #[cfg(feature = "run")]
 pub(crate) use field::strains;
 pub use field::{Field, Place, Scale, Series};
-#[cfg(feature = "run")]
-pub(crate) use frames::{Kept, ShownFrame, ShownFrames};
 pub use live::{LivePage, LiveSlider};
 pub use page::PageOptions;
 pub use replay::{Axis, Replay};

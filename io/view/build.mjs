@@ -1,4 +1,4 @@
-// Builds dist/view.js, dist/view.css and dist/LICENSES.txt. Run `cargo xtask bundle-view`, which calls this.
+// Builds dist/view.js, dist/view.css and dist/LICENSES.txt. Run `.ci/bundle-view`, which calls this.
 // With `--outdir DIR` the files are written there.
 
 import { readFileSync, writeFileSync } from "node:fs";

@@ -107,8 +107,8 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::generate::{self, FaceSplit, split_faces};
-    use crate::testing::{disks, octahedron, surfaces, torus};
+    use crate::generate::{self, Diagonals, FaceSplit, split_faces};
+    use crate::tests::surfaces::{disks, octahedron, surfaces, torus};
     use crate::{LengthConstraints, Sheet};
 
     /// Rank of G by the singular values of its transpose.
@@ -186,7 +186,7 @@ mod tests {
         let irregular = generate::delaunay_square(1.0, 0.25, 1).unwrap();
         let holed = irregular.keep_faces(|f| f.index() % 11 != 5);
         let both = Sheet::union(&[&ring, &square]).unwrap();
-        let strip = generate::strip(5, 1.0, 0.2, generate::Diagonals::UnionJack).unwrap();
+        let strip = generate::strip(5, 1.0, 0.2, Diagonals::UnionJack).unwrap();
         for sheet in [&square, &ring, &irregular, &both, &strip]
             .into_iter()
             .chain(holed.as_ref().ok())
@@ -233,7 +233,8 @@ mod tests {
         #[test]
         fn lemma_2_on_any_rectangle(columns in 1..4usize, rows in 1..4usize, level in 0..3u32) {
             let at = |level| {
-                let s = generate::isotropic_rectangle(columns, rows, level, 1.0, 0.7).unwrap();
+                let cells = |n: usize| (2 * n) << level;
+                let s = generate::grid(cells(columns), cells(rows), 1.0, 0.7, Diagonals::UnionJack).unwrap();
                 Dof::of(s.topology()).total
             };
             prop_assert_eq!(at(level + 1), 2 * at(level) - 3);

@@ -1,40 +1,8 @@
-//! Sheets made from sheets: parts, unions, other positions.
+//! Sheets made from sheets: unions, other positions.
 
-use crate::{FaceId, MeshError, Sheet, VertexId};
+use crate::{MeshError, Sheet};
 
 impl Sheet {
-    /// The sheet of the faces for which `keep` holds; vertices that are then in no face are dropped, the
-    /// others keep their order.
-    ///
-    /// # Errors
-    /// [`MeshError`] when no face is left or the rest hangs together at a vertex only.
-    pub fn keep_faces(&self, mut keep: impl FnMut(FaceId) -> bool) -> Result<Self, MeshError> {
-        let t = self.topology();
-        let kept: Vec<[VertexId; 3]> = t
-            .face_ids()
-            .filter(|&f| keep(f))
-            .map(|f| t.faces()[f.index()])
-            .collect();
-        let mut renumbered = vec![u32::MAX; t.vertex_count()];
-        for v in kept.iter().flatten() {
-            renumbered[v.index()] = 0;
-        }
-        let mut positions = Vec::new();
-        for v in t
-            .vertex_ids()
-            .filter(|v| renumbered[v.index()] == 0)
-            .collect::<Vec<_>>()
-        {
-            renumbered[v.index()] = (positions.len() / 3) as u32;
-            positions.extend(self.position(v));
-        }
-        let faces: Vec<[u32; 3]> = kept
-            .iter()
-            .map(|f| f.map(|v| renumbered[v.index()]))
-            .collect();
-        Self::new(positions, &faces)
-    }
-
     /// All the given sheets as one mesh of several components; vertices and faces follow one another in the
     /// order given.
     ///

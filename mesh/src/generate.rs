@@ -18,22 +18,17 @@ mod yoshimura;
 
 pub use delaunay::{delaunay, delaunay_square};
 pub use error::GenerateError;
-pub use grid::{
-    Diagonals, anisotropic_grid, grid, isotropic_rectangle, isotropic_square, ladder, strip,
-};
+pub use grid::{Diagonals, anisotropic_grid, grid, isotropic_square, ladder, strip};
 pub use hypar::hypar;
 pub use kresling::kresling;
 pub use octagon::octagon_244;
 pub use origami::{FoldAssignment, FoldPattern, degree_four, miura, miura_zigzags};
 pub use outline::{polygon_rings, regular_outline};
 pub use refine::{refine_isotropic, split_1_4};
-pub use round::{annulus, disk, fan, regular_polygon};
+pub use round::{annulus, disk, fan};
 pub use square_twist::square_twist;
 pub use waterbomb::waterbomb;
 pub use yoshimura::yoshimura;
-
-#[cfg(test)]
-mod flat_folding;
 
 #[cfg(test)]
 pub(crate) use refine::{FaceSplit, split_faces};

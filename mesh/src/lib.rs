@@ -29,7 +29,6 @@ mod edit;
 mod error;
 pub mod generate;
 mod ids;
-mod invariants;
 mod lengths;
 mod mass;
 pub mod origami;
@@ -37,7 +36,7 @@ mod part;
 mod repair;
 mod sheet;
 #[cfg(test)]
-mod testing;
+mod tests;
 mod topology;
 mod vec3;
 pub mod wording;

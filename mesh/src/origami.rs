@@ -61,7 +61,8 @@ impl DegreeFour {
 }
 
 /// Miura's pattern of [`generate::miura`](crate::generate::miura) with rigid panels, by the angle `theta` of
-/// the panels to the plane of the folded sheet, from 0 (flat) to pi/2 (folded shut). After Wei, Guo, Dudte,
+/// the panels to the plane of the folded sheet, from 0 (flat) to pi/2 (folded shut), half the fold angle of the zigzag
+/// creases. After Wei, Guo, Dudte,
 /// Liang and Mahadevan 2013.
 #[derive(Debug, Clone, Copy)]
 pub struct Miura {
@@ -74,11 +75,6 @@ pub struct Miura {
 }
 
 impl Miura {
-    /// Size of the fold angle of the zigzag creases, `2 theta`, radians.
-    pub fn zigzag_fold(&self, theta: f64) -> f64 {
-        2.0 * theta
-    }
-
     /// Size of the fold angle of the straight creases, `tan(fold/2) = cos(angle) tan(theta)`, radians.
     pub fn straight_fold(&self, theta: f64) -> f64 {
         2.0 * (self.angle.cos() * theta.tan()).atan()
@@ -143,7 +139,7 @@ mod tests {
                 let [a, b] = t.edges()[e.index()];
                 let size = match (p.assignment(e), b.index() - a.index()) {
                     (FoldAssignment::Flat, _) => 0.0,
-                    (_, 1) => m.zigzag_fold(theta),
+                    (_, 1) => 2.0 * theta,
                     _ => m.straight_fold(theta),
                 };
                 let expected = p.assignment(e).sign() * size;

@@ -103,7 +103,7 @@ mod tests {
 
     use super::*;
     use crate::Topology;
-    use crate::testing::{moebius, surfaces};
+    use crate::tests::surfaces::{moebius, surfaces};
 
     #[test]
     fn a_moebius_band_is_refused() {

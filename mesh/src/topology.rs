@@ -304,7 +304,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::testing::{disks, octahedron, surfaces, torus};
+    use crate::tests::surfaces::{disks, octahedron, surfaces, torus};
 
     #[test]
     fn closed_surfaces() {

@@ -229,7 +229,8 @@ fn a_weathervane_turns_into_the_wind() {
             .with_potential(PlateBending::new(&sheet, 1e-2).expect("valid"))
             .with_pins(&hinge)
             .and_then(|m| m.with_damping(2.0))
-            .and_then(|m| m.with_air(wind([4.0, 0.0, 0.0])))
+            .expect("valid")
+            .with_air(wind([4.0, 0.0, 0.0]))
             .expect("valid");
         let mut run = start(model, at_rest(&sheet), Method::default());
         let mut refused = 0;
@@ -278,7 +279,8 @@ fn supports_bear_the_drag() {
         .with_potential(PlateBending::new(&sheet, 1e-3).expect("valid"))
         .with_pins(&[VertexId(20), VertexId(24)])
         .and_then(|m| m.with_damping(8.0))
-        .and_then(|m| m.with_air(wind(breeze)))
+        .expect("valid")
+        .with_air(wind(breeze))
         .expect("valid");
     let mut run = start(model, at_rest(&sheet), Method::default());
     for _ in 0..600 {
@@ -345,7 +347,8 @@ fn the_work_of_gusts_closes_the_energy_balance() {
         let model = SheetModel::new(&sheet, 0.05, MassKind::Lumped)
             .expect("valid")
             .with_pins(&[VertexId(20)])
-            .and_then(|m| m.with_air(air))
+            .expect("valid")
+            .with_air(air)
             .expect("valid");
         let mut run = start(model, at_rest(&sheet), method);
         let (mut report, mut refused) = (None, 0);

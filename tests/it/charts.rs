@@ -7,7 +7,7 @@ use isosheet_coords::{
 use isosheet_dynamics::chart::{
     ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind,
 };
-use isosheet_dynamics::{Air, Method, Potential, Simulation, State, StepControl, StepOutcome};
+use isosheet_dynamics::{Air, At, Method, Potential, Simulation, State, StepControl, StepOutcome};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -2,7 +2,7 @@
 
 use crate::scenes::{bumped, gap, methods, pinned};
 use isosheet_dynamics::{
-    Force, HessianSink, Method, Potential, SheetModel, Simulation, State, StepError,
+    At, Force, HessianSink, Method, Potential, SheetModel, Simulation, State, StepError,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 use isosheet_tests::Pendulum;
@@ -207,7 +207,6 @@ fn consistent_mass_swings_like_a_uniform_plate() {
             2e-2,
         ),
         ("BDF2", Method::Bdf2(Default::default()), 1e-3),
-        ("projection", Method::Projection(Default::default()), 2e-2),
     ] {
         let model = SheetModel::new(&sheet, 0.3, MassKind::Consistent)
             .expect("valid")

@@ -12,7 +12,6 @@ fn methods() -> Vec<(&'static str, Method, f64)> {
     vec![
         ("implicit Euler", Method::ImplicitEuler(tight()), 1.0),
         ("BDF2", Method::Bdf2(tight()), 2.0),
-        ("projection", Method::Projection(Default::default()), 1.0),
         (
             "energy-momentum",
             Method::EnergyMomentum(Default::default()),

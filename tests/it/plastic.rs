@@ -1,8 +1,8 @@
 //! Sheets whose bends stay.
 
 use isosheet_dynamics::{
-    Checkpoint, CheckpointError, CreaseSprings, ElasticSheet, HessianSink, Method, PlateBending,
-    Potential, SheetModel, Simulation, SimulationError, State, StepControl, Yield,
+    At, Checkpoint, CheckpointError, CreaseSprings, ElasticSheet, HessianSink, Method,
+    PlateBending, Potential, SheetModel, Simulation, SimulationError, State, StepControl, Yield,
 };
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
@@ -242,8 +242,7 @@ fn a_refused_step_leaves_what_has_yielded() {
 
 /// What all potentials remember.
 fn remembered(run: &Simulation) -> Vec<f64> {
-    let memories = run.model().potentials().map(|p| p.memory().to_vec());
-    memories.flatten().collect()
+    run.memories().lists().concat()
 }
 
 #[test]

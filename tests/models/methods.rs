@@ -6,11 +6,10 @@ use isosheet_dynamics::Method;
 pub type Named = (&'static str, Method);
 
 /// The damped methods, the default first.
-pub fn damped() -> [Named; 3] {
+pub fn damped() -> [Named; 2] {
     [
         ("BDF2", Method::Bdf2(Default::default())),
         ("implicit Euler", Method::ImplicitEuler(Default::default())),
-        ("projection", Method::Projection(Default::default())),
     ]
 }
 

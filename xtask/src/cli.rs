@@ -1,6 +1,5 @@
 //! The command line.
 
-use crate::bundle_view::{self, BundleViewArgs};
 use crate::condition::{self, ConditionArgs};
 use crate::cost::{self, CostArgs};
 use crate::failure::{self, EXIT_CODES, ReportError};
@@ -9,6 +8,7 @@ use crate::hard_cases::{self, HardCasesArgs};
 use crate::interrupt;
 use crate::locking::{self, LockingArgs};
 use crate::measured::{self, MeasuredArgs};
+use crate::reference::{self, ReferenceArgs};
 use crate::reproduce::{self, ReproduceArgs};
 use crate::soak::{self, SoakArgs};
 use crate::tuning::{self, TuningArgs};
@@ -30,9 +30,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Make the figures and the table of Liu, Tang and Joneja 2007 with this workspace
     ///
-    /// Figures 1-15 are those of the paper; 16, a paper jam, and 17, origami, are applications that it only
-    /// names. Writes DIR/index.html (small pictures are inside and open the files beside it), DIR/figures,
-    /// DIR/scenes, DIR/runs and DIR/summary.json. What is already there and was made by the same program with
+    /// Writes DIR/index.html (small pictures are inside and open the files beside it), DIR/figures,
+    /// DIR/scenes, DIR/runs and DIR/tables (CSV). What is already there and was made by the same program with
     /// the same options is kept; Ctrl-C stops at the next frame, and the same command continues.
     ReproduceFigures(ReproduceArgs),
     /// Tabulate and plot the condition numbers of three systems of coordinates, by mesh level
@@ -50,22 +49,22 @@ pub(crate) enum Command {
     /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks
     /// with references
     ///
-    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/tables (CSV) and DIR/plots (SVG and PNG)
-    /// and prints the tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not
+    /// Writes DIR/index.html (self-contained), DIR/findings.csv and DIR/tables (CSV) and prints the
+    /// findings. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not
     /// end is an entry of a table. The exit code is 0 unless a finding is out of bounds that is not declared
     /// to be.
     Locking(LockingArgs),
-    /// Measure what each constant of a damped step is worth: halve and double it over eight starts of nine
-    /// kinds of scene, and count factorisations, CPU seconds and failures
+    /// Measure what each constant of a damped step is worth: halve and double it over eight starts of
+    /// fifteen kinds of scene, and count factorisations, CPU seconds and failures
     ///
     /// Writes DIR/index.html, DIR/kinds.csv and DIR/constants.csv and prints the tables. What was measured is
     /// kept.
     Tuning(TuningArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
-    /// Writes DIR/index.html (self-contained), DIR/findings.csv, DIR/findings.json and DIR/figures, and
-    /// prints a table. The exit code is 0 unless a case fails that is not declared an open limitation.
-    /// Finished cases are kept, as in `reproduce-figures`.
+    /// Writes DIR/index.html (self-contained) and DIR/findings.csv, and prints a table. The exit code is 0 unless
+    /// a case fails that is not declared an open limitation. Finished cases are kept, as in
+    /// `reproduce-figures`.
     HardCases(HardCasesArgs),
     /// Make the figures, the table of condition numbers and all reports, one after another
     ///
@@ -88,10 +87,8 @@ pub(crate) enum Command {
     /// that it prints and more cases for each: `PROPTEST_RNG_SEED=SEED ISOSHEET_TIMES=N cargo test NAME`
     /// repeats what failed.
     Soak(SoakArgs),
-    /// Build the program of the 3D page of a run, io/view/dist, from io/view/src with npm and esbuild
-    ///
-    /// Only needed after a change of io/view; needs Node.js 20 or newer and the npm registry.
-    BundleView(BundleViewArgs),
+    /// Write the pages of the book that are made of the code: scene.md, materials.md and scene.schema.json
+    Reference(ReferenceArgs),
 }
 
 impl Command {
@@ -108,7 +105,7 @@ impl Command {
             Self::Measured(args) => measured::run(args),
             Self::Gallery(args) => gallery::run(args),
             Self::Soak(args) => soak::run(args),
-            Self::BundleView(args) => bundle_view::run(args),
+            Self::Reference(args) => reference::run(args),
         }
     }
 }

@@ -5,36 +5,30 @@ use crate::draw::{
 };
 use crate::interrupt;
 use crate::progress::Progress;
-use crate::report::{Cell, Effort, Part, Table, excerpt};
+use crate::report::{Bound, Cell, Effort, Finding, Part, Table, columns, demand, excerpt};
 use crate::store::{Remake, Store};
 use anyhow::Result;
 use clap::Args;
 use isosheet_coords::{BentState, ConditionRow, TableChart, condition_table};
 use std::path::PathBuf;
 
-const STATES: [(BentState, &str); 2] = [
-    (BentState::Noise, "noise"),
-    (BentState::Cylinder, "cylinder"),
-];
+const STATES: [BentState; 2] = [BentState::Noise, BentState::Cylinder];
 
-const CHARTS: [(TableChart, &str, &str, Colour, Marker); 3] = [
+const CHARTS: [(TableChart, &str, Colour, Marker); 3] = [
     (
         TableChart::FrontCorner,
-        "front_corner",
         "front, corner",
         palette::VERMILION,
         Marker::Square,
     ),
     (
         TableChart::FrontCentre,
-        "front_centre",
         "front, centre",
         palette::ORANGE,
         Marker::Triangle,
     ),
     (
         TableChart::Cartesian,
-        "cartesian",
         "chosen Cartesian",
         palette::BLUE,
         Marker::Disc,
@@ -64,7 +58,7 @@ pub(crate) fn run(args: &ConditionArgs) -> Result<()> {
         bar.step();
     }
     bar.finish("computed");
-    data(&rows).write_to(&store.path("condition.csv"))?;
+    table(&rows).write_to(&store.path("condition.csv"))?;
     let title = "Condition number of the mass matrix against the mesh level in three charts";
     store.write("condition.svg", plot(&rows).to_svg(title).as_bytes())?;
     excerpt::write(
@@ -76,8 +70,15 @@ pub(crate) fn run(args: &ConditionArgs) -> Result<()> {
     for file in ["condition.csv", "condition.svg"] {
         println!("{}", store.path(file).display());
     }
-    Ok(())
+    let chosen = rows.iter().filter(|r| r.chart == TableChart::Cartesian);
+    let worst = chosen.map(|r| r.condition).fold(0.0, f64::max);
+    let mut finding = Finding::new("condition number", worst, Bound::AtMost(WELL));
+    finding.of = "chosen Cartesian coordinates".to_owned();
+    demand([("condition-table", &finding)])
 }
+
+/// Largest condition number of well-conditioned coordinates: ten digits are left of a solve.
+const WELL: f64 = 1e6;
 
 fn of(
     rows: &[ConditionRow],
@@ -88,34 +89,11 @@ fn of(
         .filter(move |r| r.state == state && r.chart == chart)
 }
 
-/// All numbers, for programs.
-fn data(rows: &[ConditionRow]) -> Table {
-    let all = STATES.iter().flat_map(|(state, name)| {
-        let of_chart = |(chart, file, ..): &(TableChart, &'static str, &str, Colour, Marker)| {
-            let row = |r| (r, *name, *file);
-            of(rows, *state, *chart).map(row).collect::<Vec<_>>()
-        };
-        CHARTS.iter().flat_map(of_chart).collect::<Vec<_>>()
-    });
-    Table::of(
-        "",
-        all,
-        &[
-            ("level", &|(r, ..)| r.level.into()),
-            ("vertices", &|(r, ..)| r.vertices.into()),
-            ("faces", &|(r, ..)| r.faces.into()),
-            ("state", &|(_, state, _)| (*state).into()),
-            ("chart", &|(.., chart)| (*chart).into()),
-            ("condition", &|(r, ..)| r.condition.into()),
-        ],
-    )
-}
-
 /// The table for people: noise / cylinder in each cell.
 fn table(rows: &[ConditionRow]) -> Table {
     let at = |level, state, chart| of(rows, state, chart).find(|r| r.level == level);
     let cell = |level: u32, chart| {
-        let conditions = STATES.map(|(state, _)| {
+        let conditions = STATES.map(|state| {
             let row = at(level, state, chart);
             row.map_or(String::new(), |r| format!("{:.0e}", r.condition))
         });
@@ -125,14 +103,12 @@ fn table(rows: &[ConditionRow]) -> Table {
     Table::of(
         "cond(C) for a bent sheet (out-of-plane noise / cylinder)",
         meshes,
-        &[
-            ("mesh", &|r| {
-                format!("M^{} {}/{}", r.level, r.vertices, r.faces).into()
-            }),
-            (CHARTS[0].2, &|r| cell(r.level, CHARTS[0].0)),
-            (CHARTS[1].2, &|r| cell(r.level, CHARTS[1].0)),
-            (CHARTS[2].2, &|r| cell(r.level, CHARTS[2].0)),
-        ],
+        columns! { r;
+            "mesh" => format!("M^{} {}/{}", r.level, r.vertices, r.faces),
+            CHARTS[0].1 => cell(r.level, CHARTS[0].0),
+            CHARTS[1].1 => cell(r.level, CHARTS[1].0),
+            CHARTS[2].1 => cell(r.level, CHARTS[2].0),
+        },
     )
 }
 
@@ -142,7 +118,7 @@ pub(crate) fn plot(rows: &[ConditionRow]) -> Charts {
     let all = || rows.iter().map(|r| r.condition).chain([1.0]);
     let ends = [-0.2, f64::from(last) + 0.2];
     let panel = |(state, title): (BentState, &str)| {
-        let of_chart = |(chart, _, name, colour, marker): &(_, _, &str, Colour, Marker)| {
+        let of_chart = |(chart, name, colour, marker): &(_, &str, Colour, Marker)| {
             let points = of(rows, state, *chart).map(|r| [f64::from(r.level), r.condition]);
             Series::line(name, *colour, points.collect()).marked(*marker)
         };
@@ -172,9 +148,6 @@ mod tests {
                 .map_or(f64::NAN, |r| r.condition)
         };
         assert!(value(TableChart::FrontCorner) > 100.0 * value(TableChart::Cartesian));
-        let csv = String::from_utf8(data(&rows).csv().unwrap()).unwrap();
-        assert_eq!(csv.lines().count(), 1 + 2 * 3 * 2);
-        assert!(csv.contains("1,25,32,cylinder,cartesian,"));
         assert!(table(&rows).text().contains("M^1 25/32"));
         assert!(plot(&rows).to_svg("t").contains("front, corner"));
     }

@@ -7,14 +7,12 @@ mod accuracy;
 mod works;
 
 use crate::interrupt;
-use crate::report::{Effort, Finding, FullOptions, Page, Part as Excerpt, Section};
-use crate::report::{demand, excerpt, findings, machine, one_of, write_findings};
+use crate::report::{FullOptions, Record, Report, machine, one_of};
 use crate::store::{Kept, Store, Unit};
-use accuracy::{Front, Problem};
+use accuracy::Problem;
 use anyhow::Result;
 use clap::Args;
-use maud::{Markup, html};
-use serde::{Deserialize, Serialize};
+use maud::html;
 use works::Work;
 
 /// Name of the method that isosheet uses when none is asked for.
@@ -35,38 +33,12 @@ pub(crate) struct CostArgs {
     works: Vec<&'static Work>,
 }
 
-/// What is kept of a part.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Record {
-    name: String,
-    section: Section,
-    /// Tables for the book.
-    excerpt: Vec<Excerpt>,
-    /// Of a problem: the cheapest methods by error.
-    fronts: Vec<Front>,
-    findings: Vec<Finding>,
-}
-
-impl Record {
-    /// A part with nothing but its section of the page.
-    fn new(name: &str, inside: Markup) -> Self {
-        Self {
-            name: name.to_owned(),
-            section: html! { section id=(name) { (inside) } }.into(),
-            excerpt: Vec::new(),
-            fronts: Vec::new(),
-            findings: Vec::new(),
-        }
-    }
-}
-
 /// Runs the command.
 pub(crate) fn run(args: &CostArgs) -> Result<()> {
     let store = args.options.open("cost")?;
     let (mut problems, mut works) = (args.parts.clone(), args.works.clone());
     if problems.is_empty() && works.is_empty() {
         problems.extend(Problem::named().into_iter().map(|(_, problem)| problem));
-        problems.retain(|problem| store.effort != Effort::Quick || !problem.is_costly());
         works.extend(works::named().into_iter().map(|(_, work)| work));
     }
     let made = works::measure(&store, &works).and_then(|()| {
@@ -88,34 +60,19 @@ fn unit(store: &Store, problem: Problem) -> Unit {
 fn report(store: &Store) -> Result<()> {
     let all = Problem::named().into_iter();
     let units = all.map(|(_, problem)| unit(store, problem)).collect();
-    let Kept {
-        records: problems,
-        mut left_out,
-    } = store.all_kept::<Record>(units);
-    let fronts = problems.iter().flat_map(|r| &r.fronts);
-    let fronts = accuracy::fronts(fronts)?;
-    let mut parts = Vec::new();
-    if !problems.is_empty() {
-        fronts.write(&mut store.files())?;
-        parts.push(Excerpt::table(&*fronts.name, &fronts));
-    }
-    let works = works::records(store, &mut left_out)?;
-    let records = || works.iter().chain(&problems);
-    parts.extend(records().flat_map(|r| r.excerpt.clone()));
-    excerpt::write(store, "cost", parts)?;
-    let found = || records().flat_map(|r| r.findings.iter().map(|f| (r.name.as_str(), f)));
-    write_findings(store, found().collect::<Vec<_>>())?;
-    let caption = "Orders, lengths and gaps against what the documentation says";
-    let body = html! {
-        p { "Times are CPU seconds where nothing else is said. Machine: " (machine()) "." }
-        section { h2 { "Findings" } (findings(caption, found())) }
-        @for record in &works { (record.section) }
-        @if !problems.is_empty() {
-            section { h2 { "Error against time" } p { (accuracy::ABOUT) } (fronts) }
-        }
-        @for record in &problems { (record.section) }
+    let mut kept: Kept<Record> = store.all_kept(units);
+    let mut works = works::records(store, &mut kept.left_out)?;
+    works.append(&mut kept.records);
+    kept.records = works;
+    let report = Report {
+        name: "cost",
+        title: "Cost and error",
+        introduction: html! {
+            p { "Times are CPU seconds where nothing else is said. Machine: " (machine()) "." }
+            p { (accuracy::ABOUT) }
+        },
+        caption: "Orders, lengths and gaps against what the documentation says",
+        excerpt: Vec::new(),
     };
-    let page = Page::new("Cost and error", body);
-    Page { left_out, ..page }.write(store, "index.html")?;
-    demand(found())
+    report.write(store, kept)
 }

@@ -9,7 +9,7 @@ use isosheet_io::picture::PictureError;
 use isosheet_io::run::RunError;
 use isosheet_io::scene::{SceneError, SceneFileError};
 use isosheet_io::view::ViewError;
-use isosheet_io::{Advice, HistoryError, JsonError, ObjWriteError, TrajectoryError, WriteError};
+use isosheet_io::{Advice, ExportError, HistoryError, JsonError, TrajectoryError, WriteError};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -80,7 +80,7 @@ fn advice(error: &Error) -> Option<&'static str> {
         advice_of::<JsonError>,
         advice_of::<HistoryError>,
         advice_of::<TrajectoryError>,
-        advice_of::<ObjWriteError>,
+        advice_of::<ExportError>,
         advice_of::<PictureError>,
         advice_of::<ViewError>,
         advice_of::<SceneError>,

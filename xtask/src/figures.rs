@@ -1,10 +1,8 @@
 //! The figures, one module each, and what is kept about them.
 
 mod cloths;
-mod crescent;
 mod crumple;
 mod drape;
-mod feed;
 mod fig01;
 mod fig02;
 mod fig03;
@@ -15,10 +13,7 @@ mod fig07;
 mod fig08;
 mod fig09;
 mod folds;
-mod jam;
 mod lasting;
-mod marks;
-mod origami;
 mod performance;
 mod show;
 mod sketch;
@@ -30,10 +25,9 @@ pub(crate) use show::shots;
 
 use crate::draw::{Anchor, Drawing, Vertical, palette};
 use crate::report::{Effort, Picture, Table, extremes};
-use crate::runs::{FigureScene, RunSummary};
+use crate::runs::RunSummary;
 use crate::store::{Files, Store};
 use anyhow::Result;
-use serde_json::Value;
 
 /// A page that plays a run.
 #[derive(Clone, Debug)]
@@ -64,13 +58,17 @@ pub(crate) struct Made {
     pub(crate) pages: Vec<Play>,
     /// What was measured; all but the first are folded away on the page.
     pub(crate) tables: Vec<Table>,
-    /// The numbers, for programs.
-    pub(crate) facts: Value,
 }
 
 impl Made {
     /// Writes its files.
-    pub(crate) fn write(&self, files: &mut Files<'_>) -> Result<()> {
+    pub(crate) fn write(&self, figure: u8, files: &mut Files<'_>) -> Result<()> {
+        for (k, table) in (1..).zip(&self.tables) {
+            table
+                .clone()
+                .named(&format!("fig{figure:02}-{k}"))
+                .write(files)?;
+        }
         for picture in &self.pictures {
             picture.write(files)?;
         }
@@ -104,8 +102,6 @@ pub(crate) fn make(figure: u8, store: &Store) -> Result<Made> {
         13 => stamping::make(store),
         14 => drape::fig14(store),
         15 => drape::fig15(store),
-        16 => jam::make(store),
-        17 => origami::make(store),
         _ => anyhow::bail!("figure {figure} cannot be made"),
     }
 }
@@ -121,15 +117,6 @@ fn caption(drawing: &mut Drawing, at: [f64; 2], size: f64, lines: &[String]) {
         let place = [at[0], at[1] - 1.35 * size * k as f64];
         let (anchor, ink) = (Anchor::Middle, palette::INK);
         drawing.text(place, line, size, anchor, Vertical::Below, ink);
-    }
-}
-
-/// What tells a run in which the sheet may pass through itself from the one of the figure.
-fn through_itself(scene: &FigureScene) -> &'static str {
-    if scene.scene().contact.self_contact {
-        ""
-    } else {
-        ", passing through itself"
     }
 }
 

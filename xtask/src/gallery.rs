@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use crate::report::Options;
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Args;
 use isosheet_io::picture::{Labelled, animated_png, montage};
 
@@ -31,57 +31,53 @@ struct Shown {
     bodies: &'static [usize],
 }
 
-impl Shown {
-    const fn new(
-        [scene, label]: [&'static str; 2],
-        seen_from: [f64; 2],
-        moment: f64,
-        bodies: &'static [usize],
-    ) -> Self {
-        Self {
+/// Scene, label, azimuth and elevation, moment and bodies, as [`Shown`] has them.
+type Row = (&'static str, &'static str, [f64; 2], f64, &'static [usize]);
+
+/// The scenes in the order of the picture.
+const SCENES: [Row; 16] = [
+    ("drape", "new --kind drape", [-62.0, 24.0], 1.0, &[0]),
+    ("stamp", "new --kind stamp", [-65.0, 20.0], 1.0, &[0, 1, 2]),
+    ("feed", "new --kind feed", [-70.0, 18.0], 1.0, &[1]),
+    ("fold", "new --kind fold", [-58.0, 38.0], 0.6, &[]),
+    ("fig12", "fig12: crumpling", [-62.0, 17.0], 0.125, &[]),
+    (
+        "fig12-marks",
+        "fig12-marks: marks stay",
+        [-62.0, 24.0],
+        1.0,
+        &[],
+    ),
+    ("fig13", "fig13: stamping", [-58.0, 30.0], 1.0, &[0, 1]),
+    (
+        "fig15-rings",
+        "fig15-rings: draping",
+        [-62.0, 24.0],
+        1.0,
+        &[0],
+    ),
+    ("fig16", "fig16: a paper jam", [-72.0, 12.0], 1.0, &[0, 2]),
+    ("fig17", "fig17: Miura's folds", [-58.0, 38.0], 0.5, &[]),
+    ("clamp", "new --kind clamp", [-62.0, 17.0], 1.0, &[]),
+    ("flag", "new --kind flag", [-50.0, 17.0], 0.42, &[]),
+    ("leaf", "new --kind leaf", [-62.0, 24.0], 0.4, &[]),
+    ("stack", "new --kind stack", [-60.0, 20.0], 0.9, &[1]),
+    ("moebius", "new --kind moebius", [-62.0, 30.0], 1.0, &[]),
+    ("hypar", "new --kind hypar", [-62.0, 25.0], 1.0, &[]),
+];
+
+/// All of them.
+fn scenes() -> impl Iterator<Item = Shown> {
+    SCENES
+        .into_iter()
+        .map(|(scene, label, seen_from, moment, bodies)| Shown {
             scene,
             label,
             seen_from,
             moment,
             bodies,
-        }
-    }
+        })
 }
-
-/// The scenes in the order of the picture.
-const SCENES: &[Shown] = &[
-    Shown::new(["drape", "new --kind drape"], [-62.0, 24.0], 1.0, &[0]),
-    Shown::new(
-        ["stamp", "new --kind stamp"],
-        [-65.0, 20.0],
-        1.0,
-        &[0, 1, 2],
-    ),
-    Shown::new(["feed", "new --kind feed"], [-70.0, 18.0], 1.0, &[1]),
-    Shown::new(["fold", "new --kind fold"], [-58.0, 38.0], 0.6, &[]),
-    Shown::new(["fig12", "fig12: crumpling"], [-62.0, 17.0], 0.125, &[]),
-    Shown::new(
-        ["fig12-marks", "fig12-marks: marks stay"],
-        [-62.0, 24.0],
-        1.0,
-        &[],
-    ),
-    Shown::new(["fig13", "fig13: stamping"], [-58.0, 30.0], 1.0, &[0, 1]),
-    Shown::new(
-        ["fig15-rings", "fig15-rings: draping"],
-        [-62.0, 24.0],
-        1.0,
-        &[0],
-    ),
-    Shown::new(["fig16", "fig16: a paper jam"], [-72.0, 12.0], 1.0, &[0, 2]),
-    Shown::new(["fig17", "fig17: Miura's folds"], [-58.0, 38.0], 0.5, &[]),
-    Shown::new(["clamp", "new --kind clamp"], [-62.0, 17.0], 1.0, &[]),
-    Shown::new(["flag", "new --kind flag"], [-50.0, 17.0], 0.42, &[]),
-    Shown::new(["leaf", "new --kind leaf"], [-62.0, 24.0], 0.4, &[]),
-    Shown::new(["stack", "new --kind stack"], [-60.0, 20.0], 0.9, &[1]),
-    Shown::new(["moebius", "new --kind moebius"], [-62.0, 30.0], 1.0, &[]),
-    Shown::new(["hypar", "new --kind hypar"], [-62.0, 25.0], 1.0, &[]),
-];
 
 /// Pictures in a row, and the size of one, pixels.
 const COLUMNS: usize = 4;
@@ -102,12 +98,12 @@ const DISTANCE: f64 = 6.0;
 pub(crate) fn run(args: &GalleryArgs) -> Result<()> {
     let store = args.options.open("gallery")?;
     let mut runs = Vec::new();
-    for shown in SCENES {
+    for shown in scenes() {
         runs.push(Run::of(&store, shown.scene(&store)?)?);
     }
     let bar = Progress::start("pictures", SCENES.len() + FRAMES);
     let mut pictures = Vec::new();
-    for (shown, run) in SCENES.iter().zip(&runs) {
+    for (shown, run) in scenes().zip(&runs) {
         let last = run.trajectory.len() - 1;
         let frame = (shown.moment * last as f64).round() as usize;
         let shots = shots(run, &[frame], shown.bodies)?;
@@ -117,7 +113,8 @@ pub(crate) fn run(args: &GalleryArgs) -> Result<()> {
         bar.step();
     }
     store.write("gallery.png", &montage(&pictures, COLUMNS)?.to_png()?)?;
-    let (shown, run) = (&SCENES[FILMED], &runs[FILMED]);
+    let filmed = scenes().zip(&runs).nth(FILMED);
+    let (shown, run) = filmed.context("the scene of the film")?;
     let last = END * (run.trajectory.len() - 1) as f64;
     let frame = |k: usize| (last * k as f64 / (FRAMES - 1) as f64).round() as usize;
     let frames: Vec<usize> = (0..FRAMES).map(frame).collect();
@@ -168,7 +165,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (effort, remake) = (crate::report::Effort::Quick, crate::store::Remake::Never);
         let store = Store::open(folder.path(), "gallery", effort, remake).unwrap();
-        for shown in SCENES {
+        for shown in scenes() {
             let bodies = shown.scene(&store).unwrap().setup().unwrap().obstacles;
             for body in shown.bodies {
                 assert!(Solid::of(&bodies[*body], 0.0).is_ok(), "{}", shown.scene);

@@ -6,12 +6,12 @@
 
 mod analysis;
 mod buckling;
-pub(crate) mod clamped;
+mod clamped;
 mod cone;
 mod curved;
 mod disks;
 mod excess;
-pub(crate) mod meshes;
+mod meshes;
 mod model;
 mod nudge;
 mod runs;
@@ -20,15 +20,15 @@ mod softening;
 mod strips;
 
 use crate::interrupt;
-use crate::report::{Finding, Options, Page, Part, Section, Table, demand, excerpt, findings};
-use crate::report::{machine, one_of, plot, write_findings};
+use crate::report::{Options, Part, Record, Report, Table, all_findings, findings};
+use crate::report::{machine, one_of};
 use crate::store::{Files, Kept, Store, Unit};
-use analysis::{Figure, Required, Summary};
+use analysis::{Required, Summary};
 use anyhow::Result;
 use clap::Args;
 use maud::html;
 use runs::Records;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
@@ -50,12 +50,11 @@ pub(crate) struct Yardstick {
     title: String,
     /// The set-up in words.
     about: String,
-    /// The column with the size of the mesh; empty without powers and figure.
+    /// The column with the size of the mesh; empty without powers.
     #[serde(default)]
     size: String,
     /// Tables of the page and of the book.
     table: Vec<Summary>,
-    figure: Option<Figure>,
     #[serde(default)]
     required: Vec<Required>,
 }
@@ -64,18 +63,6 @@ static CONTENTS: LazyLock<Contents> = LazyLock::new(|| {
     let contents = toml::from_str(include_str!("locking/yardsticks.toml"));
     contents.unwrap_or_else(|error| panic!("yardsticks.toml: {error}"))
 });
-
-/// What is kept of a yardstick.
-#[derive(Debug, Serialize, Deserialize)]
-struct Record {
-    name: String,
-    section: Section,
-    /// Tables for a terminal.
-    text: String,
-    /// Its tables for the book.
-    excerpt: Vec<Part>,
-    findings: Vec<Finding>,
-}
 
 impl Yardstick {
     fn unit(&self, store: &Store) -> Unit {
@@ -106,30 +93,19 @@ impl Yardstick {
         for table in &tables {
             table.write(files)?;
         }
-        let charts = self.figure.as_ref().map(|f| f.of(&runs, &self.size));
-        let figure = charts.map(|charts| plot(files, part, &charts, &self.title));
         let section = html! {
-            section id=(part) {
-                h2 { (self.title) }
-                p { (self.about) }
-                @if let Some(figure) = figure.transpose()? { (figure) p { (BANDS) } }
-                @for table in &tables { (table) }
-                p { "Every run: tables/" (part) "-all.csv." }
-            }
+            h2 { (self.title) }
+            p { (self.about) }
+            @for table in &tables { (table) }
+            p { "Every run: tables/" (part) "-all.csv." }
         };
-        let text: Vec<String> = tables.iter().map(Table::text).collect();
         Ok(Record {
-            name: part.to_owned(),
-            section: section.into(),
-            text: text.join("\n"),
             excerpt: tables.iter().map(|t| Part::table(&t.name, t)).collect(),
             findings: analysis::findings(&self.required, &runs, store.effort, &CONTENTS.reasons),
+            ..Record::new(part, section)
         })
     }
 }
-
-/// What lines and bands of figures are.
-const BANDS: &str = "Lines are medians over the meshes of a size on which the sheet comes to rest, and bands have all of them.";
 
 fn named() -> Vec<(&'static str, &'static Yardstick)> {
     let all = CONTENTS.yardstick.iter();
@@ -158,44 +134,32 @@ pub(crate) fn run(args: &LockingArgs) -> Result<()> {
         let record = store.keep(&yardstick.unit(&store), |files| {
             yardstick.apply(&store, files)
         })?;
-        println!("{}", record.text);
+        let named = record.findings.iter().map(|f| (yardstick.name.as_str(), f));
+        println!("{}", findings(&yardstick.title, named).text());
         Ok(())
     });
     interrupt::afterwards(made, || write(&store))
 }
 
-/// Writes the page, `findings.csv` and `findings.json` of all yardsticks applied so far.
+/// Writes the page and the other files of all yardsticks applied so far.
 fn write(store: &Store) -> Result<()> {
     let units = CONTENTS.yardstick.iter().map(|y| y.unit(store));
-    let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
-    let of = |r: &Record| {
-        let findings = r.findings.iter();
-        findings
-            .map(|f| (r.name.clone(), f.clone()))
-            .collect::<Vec<_>>()
+    let kept: Kept<Record> = store.all_kept(units.collect());
+    let targets = analysis::by_model(all_findings(&kept.records));
+    let report = Report {
+        name: "locking",
+        title: "Yardsticks of locking",
+        introduction: html! {
+            p { (INTRODUCTION) }
+            p {
+                "SI units, z upwards. Times are seconds of the processor, of runs on one core each. Machine: "
+                (machine()) "."
+            }
+        },
+        caption: CAPTION,
+        excerpt: vec![Part::table("targets", &targets)],
     };
-    let all: Vec<(String, Finding)> = records.iter().flat_map(of).collect();
-    let named = all.iter().map(|(name, finding)| (name.as_str(), finding));
-    let summary = findings(CAPTION, named.clone());
-    write_findings(store, named.clone())?;
-    let mut parts = vec![Part::table("targets", &analysis::by_model(&all))];
-    parts.extend(records.iter().flat_map(|r| r.excerpt.clone()));
-    excerpt::write(store, "locking", parts)?;
-    let body = html! {
-        p { (INTRODUCTION) }
-        p {
-            "SI units, z upwards. Times are seconds of the processor, of runs on one core each. Machine: "
-            (machine()) "."
-        }
-        section #targets { h2 { "Measured against target" } (summary) }
-        @for record in &records { (record.section) }
-    };
-    let page = Page {
-        left_out,
-        ..Page::new("Yardsticks of locking", body)
-    };
-    page.write(store, "index.html")?;
-    demand(named)
+    report.write(store, kept)
 }
 
 const CAPTION: &str = "Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs \

@@ -10,9 +10,8 @@
 //! * `measured`: what the reports measured, as numbers of the book and the README, and what is out of date.
 //! * `gallery`: pictures of sixteen scenes, and a film.
 //! * `soak`: the random tests with new seeds.
-//! * `bundle-view`: the program of the 3D page of a run.
+//! * `reference`: the pages of the book that are made of the code.
 
-mod bundle_view;
 mod cli;
 mod condition;
 mod cost;
@@ -25,10 +24,10 @@ mod interrupt;
 mod locking;
 mod measured;
 mod progress;
+mod reference;
 mod report;
 mod reproduce;
 mod runs;
-mod selection;
 mod soak;
 mod sources;
 mod store;

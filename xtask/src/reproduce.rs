@@ -1,38 +1,37 @@
-//! `reproduce-figures`: makes what is asked for and not up to date, then writes the page and `summary.json`.
+//! `reproduce-figures`: makes what is asked for and not up to date, then writes the page.
 
 use crate::figures::{self, Made};
 use crate::interrupt;
 use crate::progress;
 use crate::report::{Options, Page, Part, Section, excerpt};
 use crate::runs::scene_fingerprint;
-use crate::selection::{self, PAPER};
 use crate::store::{Kept, Store, Unit};
 use anyhow::Result;
-use clap::Args;
-use isosheet_io::write_json;
+use clap::{Args, value_parser};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeSet;
-use std::ops::RangeInclusive;
 use std::time::Instant;
 
 /// Arguments of `reproduce-figures`.
 #[derive(Debug, Args)]
 pub(crate) struct ReproduceArgs {
-    /// Figures to make, such as 3 or 1-9,11; all when left out
-    #[arg(long, value_name = "LIST", default_value = "1-17", value_delimiter = ',', value_parser = selection::parse)]
-    pub(crate) figures: Vec<RangeInclusive<u8>>,
+    /// Figures to make, such as 3,11; all when left out
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = value_parser!(u8).range(1..=LAST))]
+    figures: Vec<u8>,
 
     #[command(flatten)]
-    pub(crate) options: Options,
+    options: Options,
 }
 
-/// What is kept of a figure: its section of the page, its part of `summary.json` and its tables.
+/// The last figure of the paper; Fig. 10 is a table.
+const LAST: i64 = 15;
+
+/// What is kept of a figure: its section of the page and its tables.
 #[derive(Debug, Serialize, Deserialize)]
 struct Record {
     section: Section,
-    summary: Value,
     /// Its tables for the book.
     excerpt: Vec<Part>,
 }
@@ -40,12 +39,20 @@ struct Record {
 /// Runs the command.
 pub(crate) fn run(args: &ReproduceArgs) -> Result<()> {
     let store = args.options.open("reproduce-figures")?;
-    let figures: BTreeSet<u8> = args.figures.iter().cloned().flatten().collect();
+    let mut figures: BTreeSet<u8> = args.figures.iter().copied().collect();
+    if figures.is_empty() {
+        figures.extend(all());
+    }
     let scenes = scene_fingerprint()?;
     let made = figures
         .into_iter()
         .try_for_each(|n| make(&store, n, scenes));
     interrupt::afterwards(made, || write(&store, scenes))
+}
+
+/// The numbers of all figures.
+fn all() -> impl Iterator<Item = u8> {
+    1..=LAST as u8
 }
 
 /// What is kept of a figure; `scenes` is the fingerprint of the files of scenes that figures are made of.
@@ -60,28 +67,21 @@ fn make(store: &Store, figure: u8, scenes: u64) -> Result<()> {
     store.keep(&unit, |files| {
         let started = Instant::now();
         let made = figures::make(figure, store)?;
-        made.write(files)?;
+        made.write(figure, files)?;
         let wall = started.elapsed().as_secs_f64();
         progress::note(&unit.title, &format!("made ({wall:.1} s)"));
         Ok(Record {
             section: section(figure, &made).into(),
-            summary: summary(figure, &made, store),
             excerpt: tables(figure, &made),
         })
     })?;
     Ok(())
 }
 
-/// Writes `index.html` and `summary.json` of all figures made so far.
+/// Writes `index.html` of all figures made so far.
 fn write(store: &Store, scenes: u64) -> Result<()> {
-    let units = selection::all().map(|figure| unit(store, figure, scenes));
+    let units = all().map(|figure| unit(store, figure, scenes));
     let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
-    let figures: Vec<&Value> = records.iter().map(|r| &r.summary).collect();
-    let version = env!("CARGO_PKG_VERSION");
-    write_json(
-        &store.path("summary.json"),
-        &json!({ "version": version, "effort": store.effort, "figures": figures, "left_out": left_out }),
-    )?;
     let parts: Vec<Part> = records.iter().flat_map(|r| r.excerpt.clone()).collect();
     excerpt::write(store, "reproduce-figures", parts)?;
     let body = html! {
@@ -101,14 +101,6 @@ fn write(store: &Store, scenes: u64) -> Result<()> {
     page.write(store, "index.html")
 }
 
-fn summary(figure: u8, made: &Made, store: &Store) -> Value {
-    json!({
-        "figure": figure, "title": made.title, "effort": store.effort, "paper": made.paper, "here": made.here,
-        "pictures": made.pictures.iter().map(|p| &p.path).collect::<Vec<_>>(),
-        "pages": made.pages.iter().map(|p| &p.path).collect::<Vec<_>>(), "facts": made.facts,
-    })
-}
-
 /// The tables of a figure for the book: `fig10-1`, `fig10-2`.
 fn tables(figure: u8, made: &Made) -> Vec<Part> {
     let numbered = (1..).zip(&made.tables);
@@ -117,14 +109,9 @@ fn tables(figure: u8, made: &Made) -> Vec<Part> {
 }
 
 fn section(n: u8, made: &Made) -> Markup {
-    let kind = if n > PAPER {
-        "Beyond the paper,"
-    } else {
-        "Fig."
-    };
     html! {
         section id={ "fig" (n) } {
-            h2 { (kind) " " (n) ". " (made.title) }
+            h2 { "Fig. " (n) ". " (made.title) }
             p { (made.paper) " " (made.here) }
             div.pictures { @for picture in &made.pictures { (picture.inside) } }
             @if !made.pages.is_empty() {
@@ -173,7 +160,6 @@ mod tests {
                 thumbnail: png("fig10-a-end.png", "Figure 10, M<2>, at the end"),
             }],
             tables: vec![Table::new("t", &["x"]).with_texts([vec!["<1>".into()]])],
-            facts: Value::Null,
         };
         let html = section(10, &made).into_string();
         for part in [

@@ -4,12 +4,10 @@ use crate::failure::ReportError;
 use crate::{interrupt, progress};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::fs;
 use std::num::{NonZeroU32, NonZeroU64};
 use std::path::Path;
 use std::process::Command;
-use std::str::FromStr;
 
 /// Arguments of `soak`.
 #[derive(Debug, Args)]
@@ -76,56 +74,42 @@ fn random_tests(root: &Path) -> Result<Vec<String>> {
 }
 
 fn add_tests_below(folder: &Path, names: &mut Vec<String>) -> Result<()> {
-    let entries =
-        fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
-    for entry in entries {
+    let name = || format!("cannot read {}", folder.display());
+    for entry in fs::read_dir(folder).with_context(name)? {
         let path = entry?.path();
         if path.is_dir() {
             add_tests_below(&path, names)?;
         } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let text = fs::read_to_string(&path)
-                .with_context(|| format!("cannot read {}", path.display()))?;
-            if text.contains("isosheet_random::") {
-                let tokens = TokenStream::from_str(&text)
-                    .map_err(|error| anyhow::anyhow!("{}: {error}", path.display()))?;
-                add_tests(tokens, false, names);
-            }
+            add_tests(&fs::read_to_string(&path).with_context(name)?, names);
         }
     }
     Ok(())
 }
 
-/// Adds the functions with the attribute `test` that name `isosheet_random` in their bodies, or stand in a
-/// macro that names it.
-fn add_tests(tokens: TokenStream, is_random: bool, names: &mut Vec<String>) {
-    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-    let (mut is_test, mut name) = (false, None);
-    for (k, token) in tokens.iter().enumerate() {
-        match token {
-            TokenTree::Ident(word) if word == "fn" => {
-                name = tokens.get(k + 1).map(TokenTree::to_string);
-            }
-            TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket => {
-                is_test |= group.stream().to_string() == "test";
-            }
-            TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => {
-                let body = group.stream();
-                let is_named = body.to_string().contains("isosheet_random ::");
-                match name.take() {
-                    Some(name) if is_test && (is_random || is_named) => names.push(name),
-                    Some(_) => {}
-                    // A module, or the tests of `proptest!`.
-                    None => {
-                        let is_macro = matches!(
-                            k.checked_sub(1).map(|before| &tokens[before]),
-                            Some(TokenTree::Punct(mark)) if mark.as_char() == '!'
-                        );
-                        add_tests(body, is_macro && is_named, names);
-                    }
-                }
-                is_test = false;
-            }
-            _ => {}
+/// Adds the functions with the attribute `test` that name `isosheet_random` in their bodies, or stand in a block
+/// of `proptest!` that names it: both end where a line begins with a brace that closes a block of the same
+/// indentation.
+fn add_tests(text: &str, names: &mut Vec<String>) {
+    let indentation = |line: &str| line.len() - line.trim_start().len();
+    // The indentation of the block of `proptest!`, and the test with that of its function.
+    let (mut block, mut is_test, mut test) = (None, false, None::<(String, usize)>);
+    for line in text.lines() {
+        let (code, indent) = (line.trim(), indentation(line));
+        if code.starts_with("proptest! {") {
+            block = Some(indent);
+        } else if code == "#[test]" {
+            is_test = true;
+        } else if let Some(rest) = code.strip_prefix("fn ").filter(|_| is_test) {
+            let name = rest.split('(').next().unwrap_or_default();
+            (is_test, test) = (false, Some((name.to_owned(), indent)));
+        }
+        let is_random = block.is_some() || code.contains("isosheet_random::");
+        if let Some((name, _)) = test.take_if(|_| is_random) {
+            names.push(name);
+        }
+        if code == "}" {
+            block = block.filter(|of| *of != indent);
+            test = test.filter(|(_, of)| *of != indent);
         }
     }
 }
@@ -137,19 +121,35 @@ mod tests {
     #[test]
     fn random_tests_are_found_by_what_they_name() {
         let text = "
-            #[test] fn always() { assert!(true); }
-            #[test] fn by_a_runner() { run(isosheet_random::cases(10)); }
-            fn helper() { isosheet_random::seed(); }
-            mod tests {
-                proptest! {
-                    #![proptest_config(isosheet_random::cases(24))]
-                    /// Says something.
-                    #[test]
-                    fn by_proptest(x in 0..1) { prop_assert!(x == 0); }
-                }
-            }";
+#[test]
+fn always() {
+    assert!(true);
+}
+
+#[test]
+fn by_a_runner() {
+    run(isosheet_random::cases(10));
+}
+
+fn helper() {
+    isosheet_random::seed();
+}
+
+mod tests {
+    proptest! {
+        #![proptest_config(isosheet_random::cases(24))]
+        /// Says something.
+        #[test]
+        fn by_proptest(x in 0..1) {
+            prop_assert!(x == 0);
+        }
+    }
+
+    #[test]
+    fn at_last() {}
+}";
         let mut names = Vec::new();
-        add_tests(TokenStream::from_str(text).unwrap(), false, &mut names);
+        add_tests(text, &mut names);
         assert_eq!(names, ["by_a_runner", "by_proptest"]);
     }
 

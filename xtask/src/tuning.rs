@@ -10,101 +10,56 @@ use isosheet_dynamics::{Constant, Tuning};
 use maud::html;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::sync::LazyLock;
 
 /// Arguments of `tuning`.
 #[derive(Debug, Args)]
 pub(crate) struct TuningArgs {
     #[command(flatten)]
     options: Options,
+
+    /// Only these constants, such as `armijo,slow`; without a name only what the kinds cost with the
+    /// constants as they are
+    #[arg(long, value_name = "NAMES", num_args = 0.., value_delimiter = ',', value_parser = constant)]
+    constants: Option<Vec<&'static Constant>>,
+}
+
+/// The constant of a name.
+fn constant(name: &str) -> Result<&'static Constant, String> {
+    let found = Tuning::TABLE.iter().find(|c| c.name == name);
+    found.ok_or_else(|| {
+        let names: Vec<&str> = Tuning::TABLE.iter().map(|c| c.name).collect();
+        format!("the constants are {}", names.join(", "))
+    })
 }
 
 /// A kind of scene, of which each start has other small displacements.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Kind {
-    name: &'static str,
+    name: String,
     /// A file of `xtask/scenes`, or a kind of `isosheet new`.
-    scene: &'static str,
-    edits: &'static [&'static str],
+    scene: String,
+    #[serde(default)]
+    edits: Vec<String>,
     /// Size of the displacements as a part of the mean edge length.
     perturbation: f64,
     steps: usize,
 }
 
-/// All kinds.
-const KINDS: [Kind; 9] = [
-    Kind {
-        name: "hanging",
-        scene: "fig12",
-        edits: &["sheet.mesh.square.level=3", "contact={self_contact=false}"],
-        perturbation: 1e-3,
-        steps: 60,
-    },
-    Kind {
-        name: "bending",
-        scene: "fig12",
-        edits: &[
-            "contact={self_contact=false}",
-            "sheet.bending={hinges={rigidity=5e-4}}",
-        ],
-        perturbation: 1e-3,
-        steps: 60,
-    },
-    Kind {
-        name: "drape",
-        scene: "fig15",
-        edits: &["contact.self_contact=false"],
-        perturbation: 1e-3,
-        steps: 45,
-    },
-    Kind {
-        name: "drape, itself",
-        scene: "fig14",
-        edits: &[
-            "sheet.mesh.rectangle.columns=8",
-            "sheet.mesh.rectangle.rows=8",
-        ],
-        perturbation: 1e-3,
-        steps: 60,
-    },
-    Kind {
-        name: "feed",
-        scene: "fig16",
-        edits: &[],
-        perturbation: 1e-4,
-        steps: 160,
-    },
-    Kind {
-        name: "stamp",
-        scene: "fig13",
-        edits: &["sheet.mesh.square.level=2"],
-        perturbation: 1e-4,
-        steps: 90,
-    },
-    Kind {
-        name: "elastic clamp",
-        scene: "clamp",
-        edits: &[],
-        perturbation: 1e-4,
-        steps: 60,
-    },
-    Kind {
-        name: "crease pattern",
-        scene: "fig17",
-        edits: &["sheet.mesh.miura.columns=6", "sheet.mesh.miura.rows=6"],
-        perturbation: 1e-4,
-        steps: 60,
-    },
-    Kind {
-        name: "conservative",
-        scene: "fig12",
-        edits: &[
-            "contact={self_contact=false}",
-            "sheet.damping=0.0",
-            "method={integrator=\"energy_momentum\",step=0.002,fallback={implicit_euler={}}}",
-        ],
-        perturbation: 0.1,
-        steps: 60,
-    },
-];
+/// The file of the kinds.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Contents {
+    kind: Vec<Kind>,
+}
+
+static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
+    let contents: Result<Contents, _> = toml::from_str(include_str!("tuning/kinds.toml"));
+    contents
+        .unwrap_or_else(|error| panic!("kinds.toml: {error}"))
+        .kind
+});
 
 /// What all starts of a kind cost.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -127,9 +82,11 @@ pub(crate) fn run(args: &TuningArgs) -> Result<()> {
     let store = args.options.open("tuning")?;
     let starts = store.effort.quick_or(1, 8);
     let base = all_kinds(&store, "as it is", Tuning::default(), starts)?;
-    let constants = match store.effort {
-        Effort::Quick => &Tuning::TABLE[..1],
-        _ => Tuning::TABLE,
+    let all: Vec<_> = Tuning::TABLE.iter().collect();
+    let constants = match (&args.constants, store.effort) {
+        (Some(named), _) => named,
+        (None, Effort::Quick) => &all[..1],
+        (None, _) => &all[..],
     };
     let change = |constant: &'static Constant| {
         let with = |factor: f64| {
@@ -141,8 +98,15 @@ pub(crate) fn run(args: &TuningArgs) -> Result<()> {
         let kinds = [with(0.5)?, with(2.0)?];
         Ok(Changed { constant, kinds })
     };
-    let changed: Vec<Changed> = constants.iter().map(change).collect::<Result<_>>()?;
-    let tables = [base_table(&base, starts), table(&base, &changed)];
+    let changed: Vec<Changed> = constants
+        .iter()
+        .copied()
+        .map(change)
+        .collect::<Result<_>>()?;
+    let mut tables = vec![base_table(&base, starts)];
+    if !changed.is_empty() {
+        tables.push(table(&base, &changed));
+    }
     for table in &tables {
         print!("{}", table.text());
         table.write_to(&store.path(&format!("{}.csv", table.name)))?;
@@ -159,6 +123,9 @@ pub(crate) fn run(args: &TuningArgs) -> Result<()> {
         ..Page::new("isosheet: tuning", body)
     };
     page.write(&store, "index.html")?;
+    if args.constants.is_some() {
+        return Ok(());
+    }
     let parts = vec![
         Part::text("about", &about),
         Part::table("kinds", &tables[0]),
@@ -175,11 +142,11 @@ fn all_kinds(store: &Store, name: &str, tuning: Tuning, starts: u64) -> Result<V
     store.keep(&unit, |_| {
         let bar = Progress::start(name, KINDS.len());
         let mut all = Vec::new();
-        for kind in &KINDS {
+        for kind in KINDS.iter() {
             let mut measured = Measured::default();
             for seed in 1..=starts {
                 kind.run(seed, tuning, store.effort, &mut measured)
-                    .with_context(|| kind.name)?;
+                    .with_context(|| kind.name.clone())?;
             }
             all.push(measured);
             bar.step();
@@ -191,9 +158,9 @@ fn all_kinds(store: &Store, name: &str, tuning: Tuning, starts: u64) -> Result<V
 
 impl Kind {
     fn run(&self, seed: u64, tuning: Tuning, effort: Effort, sum: &mut Measured) -> Result<()> {
-        let mut edits: Vec<String> = self.edits.iter().map(|&edit| edit.to_owned()).collect();
+        let mut edits = self.edits.clone();
         edits.push(displaced(self.perturbation, seed));
-        let scene = FigureScene::named(self.scene, self.name, &edits)?;
+        let scene = FigureScene::named(&self.scene, &self.name, &edits)?;
         let mut simulation = scene.setup()?.start()?.with_tuning(tuning)?;
         let time = scene.frame() * effort.quick_or(3, self.steps) as f64;
         let course = Plan::new(scene.frame(), time).run(&mut simulation, &mut unseen)?;
@@ -208,7 +175,7 @@ fn base_table(base: &[Measured], starts: u64) -> Table {
         format!("What {starts} starts of each kind cost with the constants as they are."),
         KINDS.iter().zip(base),
         columns! { row;
-            "kind" => row.0.name,
+            "kind" => row.0.name.as_str(),
             "steps" => row.1.cost.steps,
             "factorisations per step" => row.1.cost.factorisations_per_step(),
             "CPU seconds" => row.1.cost.cpu,
@@ -224,9 +191,9 @@ fn ratios(
     changed: &[Measured],
     of: impl Fn(&Cost) -> f64,
 ) -> (f64, f64, &'static str) {
-    let ratio = |(kind, (b, c)): (&Kind, (&Measured, &Measured))| {
+    let ratio = |(kind, (b, c)): (&'static Kind, (&Measured, &Measured))| {
         let per_step = |m: &Measured| of(&m.cost) / m.cost.steps.max(1) as f64;
-        (per_step(c) / per_step(b), kind.name)
+        (per_step(c) / per_step(b), kind.name.as_str())
     };
     let all: Vec<(f64, &str)> = KINDS
         .iter()

@@ -1,3 +1,5 @@
+mod exact;
+
 use super::*;
 use crate::testing::{place, points, sizes};
 use proptest::prelude::*;

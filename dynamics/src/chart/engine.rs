@@ -1,14 +1,29 @@
 //! A simulation in a chart as an engine of [`Simulation`](crate::Simulation).
 
-use super::{ChartDynamicsError, ChartSimulation};
+use super::{ChartDynamicsError, ChartOptions, ChartSimulation, ChartState};
 use crate::contact::Contact;
-use crate::run::checkpoint::InChart;
-use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
+use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
+use crate::report::simulation_error::SimulationError;
+use crate::report::step_error::{StepError, StepOutcome, StepTotals};
 use crate::step::reaction::{Reaction, supports};
-use crate::step::report::{StepError, StepOutcome, StepTotals};
-use crate::step::simulation_error::SimulationError;
 use crate::{SheetModel, State};
 use isosheet_coords::Chart;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// State of a simulation in a chart.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct InChart {
+    pub(crate) options: ChartOptions,
+    pub(crate) motion: ChartState,
+    /// Velocities of the vertices, `3V`, metres per second.
+    pub(crate) velocities: Vec<f64>,
+    /// Forces of the supports, newtons; empty before the first step.
+    pub(crate) reactions: Vec<Vector3<f64>>,
+    pub(crate) has_contact: bool,
+    /// Mean contact forces of the last step, `3V`, newtons; empty before the first and without contact.
+    pub(crate) contact_forces: Vec<f64>,
+}
 
 /// Sub-steps shorter than this fraction of the time reached are round-off, not time.
 const TIME_ROUND_OFF: f64 = 4.0 * f64::EPSILON;

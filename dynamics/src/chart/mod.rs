@@ -12,7 +12,6 @@
 mod contact;
 mod energy_bound;
 pub(crate) mod engine;
-mod error;
 mod impact;
 mod mechanics;
 mod mobility;
@@ -24,7 +23,7 @@ mod state;
 mod stepping;
 mod substep;
 
-pub use error::ChartDynamicsError;
+pub use crate::report::chart_error::ChartDynamicsError;
 pub use impact::ContactImpulse;
 pub use mechanics::{ChartMechanics, Equations};
 pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};

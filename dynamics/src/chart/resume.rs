@@ -56,15 +56,12 @@ impl ChartSimulation {
             chart = chart.rebased(reference)?;
         }
         let mut mechanics = ChartMechanics::new(model, chart, options.solver)?;
-        let (found, expected) = (motion.memories.lists(), mechanics.memories().lists());
-        if !found.iter().map(Vec::len).eq(expected.iter().map(Vec::len)) {
-            return Err(ChartDynamicsError::WrongLength {
-                what: "the memories of potentials",
-                found: found.len(),
-                expected: expected.len(),
-            });
-        }
-        mechanics.memories_mut().copy_from(&motion.memories);
+        let taken = mechanics.memories_mut().take_over(&motion.memories);
+        taken.map_err(|[found, expected]| ChartDynamicsError::WrongLength {
+            what: "what potentials remember",
+            found,
+            expected,
+        })?;
         let n = mechanics.dimension();
         for (what, found) in [
             ("q", motion.state.q.len()),

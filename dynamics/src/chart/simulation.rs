@@ -220,8 +220,7 @@ impl ChartSimulation {
             Some(balance) => balance.clone(),
             None => self.new_balance(self.motion.next_step)?,
         };
-        let end = (self.motion.t, &self.motion.state.x[..]);
-        Ok(balance.reactions(self.stepper.mechanics.model(), end))
+        Ok(balance.reactions(self.stepper.mechanics.model(), self.motion.t))
     }
 
     /// Time, seconds.

@@ -3,7 +3,7 @@
 use super::ContactImpulse;
 use super::stepping::PhaseState;
 use crate::potential::Memories;
-use crate::step::checkpoint_error::{CheckpointError, check_finite};
+use crate::report::checkpoint_error::{CheckpointError, check_finite};
 use crate::step::reaction::Balance;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

@@ -3,3 +3,4 @@
 pub(crate) mod energy_momentum;
 mod newton;
 pub(crate) mod rattle;
+pub(crate) mod saddle;

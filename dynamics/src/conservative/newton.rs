@@ -1,12 +1,12 @@
 //! Newton's method for the velocity of a step and the impulses that keep the lengths in it.
 
+use crate::conservative::saddle::{SaddleMatrix, System};
 use crate::constraint::conservative::ConservativeRows;
-use crate::linear::saddle::{SaddleMatrix, System};
 use crate::model::round_off::velocity_round_off;
 use crate::potential::Memories;
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
+use crate::report::step_error::{StepError, StepOutcome};
 use crate::step::history::Multipliers;
-use crate::step::report::{StepError, StepOutcome};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 

@@ -2,9 +2,9 @@
 
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
+use crate::report::step_error::StepError;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
-use crate::step::report::StepError;
 use crate::step::tuning::Tuning;
 use crate::term::{Formula, StepStart};
 use crate::{ImplicitOptions, SheetModel, State};
@@ -127,7 +127,7 @@ fn two_step(
     motion.state.x.copy_from_slice(minimiser.x());
     motion.state.t = state.t + h;
     motion.balance.copy_from(minimiser.balance());
-    scene.objective.leave(motion);
+    motion.set_contacts(scene.objective.contacts());
     minimiser.remember(k * h, &mut motion.history);
     proposal.account = StepAccount {
         residual: minimum.residual,

@@ -9,13 +9,13 @@ mod second_order;
 mod tests;
 mod workspace;
 
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
+use crate::report::reason::Reason;
+use crate::report::step_error::{StepError, not_converged};
+use crate::report::trace::TraceEvent;
 use crate::step::history::History;
 use crate::step::integrator::Attempt;
 use crate::step::reaction::Balance;
-use crate::step::reason::Reason;
-use crate::step::report::{self, StepError};
-use crate::step::trace::TraceEvent;
 use crate::step::tuning::Tuning;
 use crate::term::Exchange;
 use crate::{ImplicitOptions, SheetModel};
@@ -162,7 +162,7 @@ impl Minimiser {
         let minimum = found.map_err(|Failure { reason, residual }| {
             let strain = problem.model.constrained_strain(self.x());
             let (t, h) = (problem.state().t, problem.start.span);
-            report::not_converged(t, h, effort, reason, residual, strain)
+            not_converged(t, h, effort, reason, residual, strain)
         })?;
         let start = problem.start;
         let (objective, at) = problem.objective_at(&self.work.lagrangian.x);

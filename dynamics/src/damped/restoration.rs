@@ -10,7 +10,8 @@ use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::objective::Objective;
 use crate::potential::Memories;
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
+use crate::step::residual_momentum::ResidualMomentum;
 use crate::step::tuning::Tuning;
 use crate::term::{Barrier, Iterate};
 use nalgebra::Vector3;
@@ -41,6 +42,10 @@ pub(crate) struct Restoration {
     dx: Vec<f64>,
     start: Vec<f64>,
     solver: ConstrainedSolver,
+    /// Minus the gradient of the barriers at `start`, newtons times the factor of their energies.
+    barrier_start: Vec<f64>,
+    /// Momentum that the iterations of the last projection of positions gave, kilogram metres.
+    pub(crate) residual_momentum: ResidualMomentum,
     /// Vertices on curves and surfaces.
     pub(crate) vertex_rows: VertexRows,
 }
@@ -119,6 +124,8 @@ impl Restoration {
             dx: vec![0.0; n],
             start: vec![0.0; n],
             solver: ConstrainedSolver::new(model),
+            barrier_start: vec![0.0; n],
+            residual_momentum: ResidualMomentum::new(model),
             vertex_rows: VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0),
         }
     }
@@ -173,6 +180,7 @@ impl Restoration {
             }
             let linear = self.linearised_error(model, x);
             let (length, after) = self.line_search(model, goal.t, x, limit, before);
+            self.keep_momentum(model, barriers.as_mut(), (goal.t, x), None);
             if after > self.tuning.contraction() * before && self.worst(model, x) <= tolerance {
                 return self.worst(model, x);
             }
@@ -217,6 +225,7 @@ impl Restoration {
 
     /// Forgets earlier restorations and evaluates the constraints at positions `x`.
     fn begin(&mut self, model: &SheetModel, goal: &RestorationGoal<'_>, x: &[f64]) {
+        self.residual_momentum.clear();
         for (i, c) in model.constraints().iter().enumerate() {
             let is_loaded = goal.loads.get(i).is_some_and(|l| l.x < 0.0);
             self.vertex_rows.equality[i] = is_loaded || !c.is_one_sided();
@@ -261,6 +270,7 @@ impl Restoration {
             let (objective, at) = barriers.at(t, x);
             objective.add_barrier_hessian(at, scale, matrix);
         }
+        self.keep_barrier_forces(barriers, t, x);
         if matrix.factorize().is_err() {
             return Solved::PenaltyTooLarge;
         }
@@ -335,6 +345,52 @@ impl Restoration {
             let (objective, at) = barriers.at(t, x);
             objective.safe_part(at, &self.dx).0
         })
+    }
+
+    /// Keeps the forces of the barriers at positions `x`, where an iteration starts.
+    fn keep_barrier_forces(&mut self, barriers: Option<&mut Barriers<'_>>, t: f64, x: &[f64]) {
+        if let Some(barriers) = barriers
+            && self.residual_momentum.has_room()
+        {
+            self.barrier_start.fill(0.0);
+            let scale = -barriers.scale;
+            let (objective, at) = barriers.at(t, x);
+            objective.add_barrier_gradient(at, scale, &mut self.barrier_start);
+        }
+    }
+
+    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to positions `x`.
+    /// The rods have the directions of the positions `rods_at`, those of `start` if none are given.
+    fn keep_momentum(
+        &mut self,
+        model: &SheetModel,
+        barriers: Option<&mut Barriers<'_>>,
+        (t, x): (f64, &[f64]),
+        rods_at: Option<&[f64]>,
+    ) {
+        if !self.residual_momentum.has_room() {
+            return;
+        }
+        for ((d, x), x0) in self.dx.iter_mut().zip(x).zip(&self.start) {
+            *d = x - x0;
+        }
+        model
+            .mass()
+            .apply(model.topology(), &self.dx, &mut self.rhs);
+        let active = &self.vertex_rows.active;
+        let sum = self.residual_momentum.push(
+            rods_at.unwrap_or(&self.start),
+            active,
+            self.rhs.iter().copied(),
+        );
+        if let Some(barriers) = barriers {
+            for (s, g) in sum.iter_mut().zip(&self.barrier_start) {
+                *s += g;
+            }
+            let scale = barriers.scale;
+            let (objective, at) = barriers.at(t, x);
+            objective.add_barrier_gradient(at, scale, sum);
+        }
     }
 
     /// What the linearised lengths leave of the error after the whole step.

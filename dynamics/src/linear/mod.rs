@@ -4,7 +4,5 @@ pub(crate) mod constrained;
 pub(crate) mod free;
 pub(crate) mod layout;
 pub(crate) mod primal;
-pub(crate) mod rank;
 pub(crate) mod rod_least_squares;
-pub(crate) mod saddle;
 pub(crate) mod shares;

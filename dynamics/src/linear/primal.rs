@@ -9,7 +9,7 @@ use crate::hessian::{BlockSink, CouplingSink};
 use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
 use far::{FarCouplings, stiff_pairs};

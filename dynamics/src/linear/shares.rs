@@ -27,6 +27,24 @@ pub(crate) struct Shares {
 }
 
 impl Shares {
+    /// No forces.
+    pub(crate) fn none(model: &SheetModel) -> Self {
+        Self {
+            pins: vec![0.0; model.coordinate_count()],
+            constraints: vec![Vector3::zeros(); model.constraints().len()],
+        }
+    }
+
+    /// Adds others.
+    pub(crate) fn add(&mut self, other: &Self) {
+        for (a, b) in self.pins.iter_mut().zip(&other.pins) {
+            *a += b;
+        }
+        for (a, b) in self.constraints.iter_mut().zip(&other.constraints) {
+            *a += b;
+        }
+    }
+
     /// At a pin.
     pub(crate) fn pin(&self, v: VertexId) -> Vector3<f64> {
         point(&self.pins, v)

@@ -12,6 +12,7 @@ mod tests;
 use crate::potential::At;
 use crate::potential::Reached;
 use crate::potential::Settled;
+pub use from_flat::FLAT;
 pub(crate) use from_flat::folding_from_flat;
 pub use rest_angle::RestAngle;
 

@@ -1,6 +1,5 @@
 //! A sheet that stretches as its material does, up to a limit.
 
-mod deformation;
 mod face;
 mod limit;
 mod load;
@@ -9,7 +8,7 @@ mod tests;
 
 use crate::potential::{At, Reached, Settled};
 use crate::{HessianSink, Potential};
-pub use deformation::ElasticDeformation;
+
 use face::Face;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, FaceId, Part, Sheet};
@@ -277,7 +276,7 @@ impl ElasticSheet {
     }
 
     /// The angles by which the faces bend that have the given energies of bending (joules), radians.
-    fn bend_angles(&self, bending: &[f64]) -> Vec<f64> {
+    pub(crate) fn bend_angles(&self, bending: &[f64]) -> Vec<f64> {
         let angle = |(face, energy): (&Face, &f64)| {
             if face.rigidity == 0.0 {
                 return 0.0;
@@ -402,7 +401,7 @@ impl Potential for ElasticSheet {
 
     /// Raises the stiffness of the barrier to what the state asks for, which is work.
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
-        let needed = strain_barrier(self, state);
+        let needed = strain_barrier(self.mass / self.area(), self.acceleration, state);
         if needed <= memory[0] {
             return Settled::default();
         }

@@ -1,8 +1,8 @@
 //! The matrices of the implicit methods against finite differences of what they are derivatives of.
 
+use crate::conservative::saddle::{SaddleMatrix, System};
 use crate::linear::primal::PrimalMatrix;
 use crate::linear::primal::testing::add_potentials;
-use crate::linear::saddle::{SaddleMatrix, System};
 use crate::{At, HessianSink, Potential, SheetModel};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId, generate};
 use nalgebra::{Matrix3, Vector3};
@@ -256,7 +256,7 @@ fn saddle_matrix_is_the_jacobian_of_the_momentum_and_length_equations() {
         assert!(error < 1e-8, "{kind:?}: {error:e}");
         // And the solver inverts that matrix.
         let (mut momentum, mut lengths) = (got, got_rods);
-        let mut effort = crate::step::effort::SolverEffort::default();
+        let mut effort = crate::report::effort::SolverEffort::default();
         matrix
             .solve(
                 &model,

@@ -423,6 +423,41 @@ mod tests {
         assert_eq!(resumed.hand_target(CORNER), Ok(to));
     }
 
+    /// Between two steps hands come and go, and potentials with them; those that stay go on where they are.
+    #[test]
+    fn hands_come_and_go_between_steps() {
+        let sheet = sheet();
+        let base = || SheetModel::new(&sheet, 1e-2, MassKind::Lumped).expect("a model");
+        let other = VertexId(0);
+        let second = || {
+            let at = sheet.position(other);
+            Hand::new(sheet.topology(), other, 5.0, at).expect("a hand")
+        };
+        let start = State::at_rest(sheet.positions().to_vec());
+        let model = base().with_hand(hand(&sheet, 2.0));
+        let mut run = Simulation::new(model, start, Method::default()).expect("valid");
+        run.lead_hand(CORNER, [0.3, 0.1, 0.2], 6.0 * STEP)
+            .expect("finite");
+        run.step(STEP).expect("accepted");
+        let on_its_way = run.hand_target(CORNER);
+        let changed = |model: SheetModel, run: &Simulation| {
+            let next = Simulation::resume(model, None, run.checkpoint());
+            next.and_then(|next| next.changed_from(run))
+                .expect("the same sheet")
+        };
+        let both = base().with_hand(second()).with_gravity();
+        let mut run = changed(both.with_hand(hand(&sheet, 2.0)), &run);
+        assert_eq!(run.hand_target(CORNER), on_its_way);
+        assert_eq!(run.hand_target(other), Ok(sheet.position(other)));
+        run.step(STEP).expect("accepted");
+        let still = run.hand_target(other);
+        let mut run = changed(base().with_gravity().with_hand(second()), &run);
+        assert_eq!(run.hand_target(other), still);
+        assert!(run.hand_target(CORNER).is_err());
+        run.step(STEP).expect("accepted");
+        changed(base(), &run).step(STEP).expect("accepted");
+    }
+
     /// The work of the hand that drags a sheet is the energy of the sheet and the spring, up to what the
     /// method damps, which vanishes with the step.
     #[test]

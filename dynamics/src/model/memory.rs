@@ -8,7 +8,11 @@ use nalgebra::Matrix2;
 impl SheetModel {
     /// What the potentials remember before anything has happened.
     pub fn memories(&self) -> Memories {
-        Memories::of(self.potentials().map(Potential::memory))
+        let hands = self
+            .hands
+            .iter()
+            .map(|(number, hand)| (hand.vertex().0, *number));
+        Memories::of(self.potentials().map(Potential::memory)).with_hands(hands)
     }
 
     /// The potentials, each with where it is evaluated.

@@ -4,6 +4,7 @@ pub(crate) mod air;
 pub(crate) mod clamps;
 #[cfg(test)]
 mod derivative_tests;
+pub(crate) mod elastic_deformation;
 mod error;
 pub(crate) mod hand;
 pub(crate) mod immobile;
@@ -378,8 +379,9 @@ impl SheetModel {
         f.iter_mut().for_each(|v| *v = -*v);
     }
 
-    /// Sum of the non-conservative forces, overwriting `f`; zero at pinned vertices.
-    pub(crate) fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+    /// Sum of the non-conservative forces (`3V`, newtons) at time `t` (seconds), positions `x` and velocities
+    /// `v` (`3V`), that of the air included, overwriting `f`; zero at pinned vertices.
+    pub fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
         self.add_applied_force(t, x, v, f);
         self.clear_pinned(f);

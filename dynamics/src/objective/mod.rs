@@ -2,13 +2,14 @@
 
 mod acting;
 mod inertia;
+#[cfg(test)]
+mod spring_tests;
 
 use crate::SheetModel;
-use crate::contact::ContactTerm;
+use crate::contact::{ContactState, ContactTerm};
 use crate::hessian::HessianProduct;
 use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
-use crate::step::motion::Motion;
 use crate::term::{Barrier, Exchange, Iterate, Refusal, StepStart, Term, Value};
 use acting::Acting;
 use inertia::Inertia;
@@ -188,6 +189,13 @@ impl Objective {
         }
     }
 
+    /// Adds `scale` times the gradient of the barriers.
+    pub(crate) fn add_barrier_gradient(&mut self, at: Iterate<'_>, scale: f64, out: &mut [f64]) {
+        for term in self.barriers() {
+            term.add_gradient(at, scale, out);
+        }
+    }
+
     /// Adds `scale` times the Hessian of the barriers, a semidefinite part of it.
     pub(crate) fn add_barrier_hessian(
         &mut self,
@@ -281,9 +289,9 @@ impl Objective {
         self.acting.force_sum()
     }
 
-    /// Leaves what the terms show of the end of a step.
-    pub(crate) fn leave(&self, motion: &mut Motion) {
-        motion.set_contacts(self.contact.as_ref().and_then(ContactTerm::state));
+    /// The contacts that were evaluated last, with friction.
+    pub(crate) fn contacts(&self) -> Option<&ContactState> {
+        self.contact.as_ref().and_then(ContactTerm::state)
     }
 
     /// What all terms did in a step that ends at an iterate.

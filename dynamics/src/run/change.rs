@@ -1,9 +1,9 @@
 //! Changes of what acts on a sheet, between two steps.
 
 use crate::damped::start::{check_motions, check_state};
+use crate::report::checkpoint_error::CheckpointError;
+use crate::report::simulation_error::SimulationError;
 use crate::run::simulation::Simulation;
-use crate::step::checkpoint_error::CheckpointError;
-use crate::step::simulation_error::SimulationError;
 
 impl Simulation {
     /// Completes a change of the model or the contact between two steps. This simulation has been resumed

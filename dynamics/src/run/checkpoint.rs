@@ -1,11 +1,10 @@
 //! Checkpoints.
 
-use crate::chart::{ChartOptions, ChartState};
-use crate::step::checkpoint_error::{CheckpointError, check_finite};
-use crate::step::engine::WithoutChart;
+use crate::chart::engine::InChart;
+use crate::engine::substeps::WithoutChart;
+use crate::report::checkpoint_error::{CheckpointError, check_finite};
 use crate::{Isometry, SheetModel};
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Format version; it grows with every change of the fields.
@@ -57,20 +56,6 @@ pub(crate) enum EngineState {
     Free(Box<WithoutChart>),
     /// A method in a chart.
     Chart(Box<InChart>),
-}
-
-/// State of a simulation in a chart.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct InChart {
-    pub(crate) options: ChartOptions,
-    pub(crate) motion: ChartState,
-    /// Velocities of the vertices, `3V`, metres per second.
-    pub(crate) velocities: Vec<f64>,
-    /// Forces of the supports, newtons; empty before the first step.
-    pub(crate) reactions: Vec<Vector3<f64>>,
-    pub(crate) has_contact: bool,
-    /// Mean contact forces of the last step, `3V`, newtons; empty before the first and without contact.
-    pub(crate) contact_forces: Vec<f64>,
 }
 
 /// Sums of the energy balance since the start.
@@ -283,7 +268,7 @@ mod tests {
     fn what_was_changed_from_outside_is_refused() {
         let good = checkpoint();
         assert!(Simulation::resume(model(), None, good.clone()).is_ok());
-        let changes: [fn(&mut crate::step::engine::WithoutChart); 6] = [
+        let changes: [fn(&mut crate::engine::substeps::WithoutChart); 6] = [
             |m| m.motion.state.t = f64::INFINITY,
             |m| m.motion.state.x[4] = f64::NAN,
             |m| m.motion.state.v[26] = f64::NEG_INFINITY,

@@ -1,7 +1,7 @@
 //! Runs of equal steps with observers.
 
-use crate::step::effort::StepProgress;
-use crate::step::report::{StepError, StepReport};
+use crate::report::effort::StepProgress;
+use crate::report::step_error::{StepError, StepReport};
 use crate::{Simulation, State};
 use std::ops::ControlFlow;
 

@@ -4,15 +4,15 @@ use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
 use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, ContactTerms};
 use crate::damped::start::{check_finite, check_motions, check_state};
+use crate::engine::substeps::Engine as FreeEngine;
 use crate::potential::Memories;
+use crate::report::checkpoint_error::CheckpointError;
+use crate::report::effort::{SolverEffort, StepProgress, TraceSink, Watch};
+use crate::report::simulation_error::SimulationError;
+use crate::report::step_error::{StepError, StepReport, StepTotals};
+use crate::report::trace::TraceEvent;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
-use crate::step::checkpoint_error::CheckpointError;
-use crate::step::effort::{SolverEffort, StepProgress, TraceSink, Watch};
-use crate::step::engine::Engine as FreeEngine;
 use crate::step::reaction::Reaction;
-use crate::step::report::{StepError, StepReport, StepTotals};
-use crate::step::simulation_error::SimulationError;
-use crate::step::trace::TraceEvent;
 use crate::step::tuning::Tuning;
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
@@ -341,13 +341,12 @@ impl Simulation {
     /// The conservative methods keep this balance to round-off; the damped methods to the tolerance of
     /// Newton's method, and in contact to the second-order change of contact forces by the final projection.
     ///
-    /// With damped methods a call costs one factorisation.
+    /// With damped methods a call costs one factorisation per iteration of the last projection.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
             Engine::Free(engine) => {
-                let State { t, x, .. } = engine.state();
                 let balance = engine.balance();
-                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, (*t, x)))
+                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, engine.state().t))
             }
             Engine::Chart(chart) => chart.reactions.clone(),
         }

@@ -9,7 +9,7 @@
 //! | fallback allowed | implicit Euler | |
 //! | otherwise | stop | stop |
 //!
-//! [`Subdivision`]: crate::step::subdivision::Subdivision
+//! [`Subdivision`]: crate::engine::subdivision::Subdivision
 //! [`EnergyBound`]: crate::chart::energy_bound::EnergyBound
 
 /// Decision after a refusal.

@@ -1,6 +1,6 @@
 //! Bound of the energy gained by damped methods.
 
-use crate::step::report::StepError;
+use crate::report::step_error::StepError;
 use crate::step::tuning::Tuning;
 use crate::term::Exchange;
 use crate::{SheetModel, State};

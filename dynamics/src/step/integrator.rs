@@ -2,11 +2,11 @@
 
 use crate::objective::Objective;
 use crate::potential::Memories;
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
+use crate::report::step_error::{StepError, StepOutcome};
 use crate::step::history::{History, Multipliers};
 use crate::step::motion::Motion;
 use crate::step::reaction::{Balance, ForceTime};
-use crate::step::report::{StepError, StepOutcome};
 use crate::term::Exchange;
 use crate::{SheetModel, State};
 
@@ -198,7 +198,7 @@ impl MethodTraits {
     pub(crate) fn balance(self, model: &SheetModel) -> Balance {
         match self.demand {
             RodDemand::Independent => Balance::new(model, ForceTime::Mean),
-            RodDemand::Nothing => Balance::with_rest(model, ForceTime::End),
+            RodDemand::Nothing => Balance::with_residual(model, ForceTime::End),
         }
     }
 

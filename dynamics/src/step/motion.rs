@@ -2,7 +2,7 @@
 
 use crate::contact::ContactState;
 use crate::potential::Memories;
-use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
+use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::energy_account::EnergyAccount;
 use crate::step::history::History;
 use crate::step::reaction::Balance;
@@ -90,15 +90,6 @@ impl Motion {
         let optional = |length: usize, expected: usize| if length == 0 { expected } else { length };
         let vertices = model.topology().vertex_count();
         let largest = history.couplings.iter().flatten().chain(fixed).max();
-        let (found, expected) = (self.memories.lists(), model.memories());
-        check_length(
-            "the list of potentials that remember",
-            found.len(),
-            expected.lists().len(),
-        )?;
-        for (found, expected) in found.iter().zip(expected.lists()) {
-            check_length("the memory of a potential", found.len(), expected.len())?;
-        }
         for (what, found, expected) in [
             ("positions", state.x.len(), n),
             ("velocities", state.v.len(), n),

@@ -2,10 +2,10 @@
 
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
-use crate::linear::shares::shares;
 use crate::model::support::Support;
 use crate::potential::Memories;
-use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
+use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
+use crate::step::residual_momentum::ResidualMomentum;
 use crate::vectors::{add, point};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -56,11 +56,8 @@ pub(crate) struct Balance {
     pub constraints: Vec<Vector3<f64>>,
     /// Time of the forces.
     pub time: ForceTime,
-    /// What is left at free vertices at the end of a damped step, for rods and vertex constraints to balance:
-    /// the restoration of the lengths that ends a step has no multipliers. `3V`, newtons; empty for others.
-    left: Vec<f64>,
-    /// The vertex constraints that take part in that.
-    active: Vec<bool>,
+    /// Newtons not yet distributed to the supports.
+    pub(crate) residual_momentum: ResidualMomentum,
     /// Scratch, `3V`.
     #[serde(skip)]
     work: Vec<f64>,
@@ -79,19 +76,16 @@ impl Balance {
             multipliers: vec![Vector3::zeros(); m],
             constraints: vec![Vector3::zeros(); m],
             time,
-            left: Vec::new(),
-            active: Vec::new(),
+            residual_momentum: ResidualMomentum::default(),
             work: vec![0.0; n],
         }
     }
 
-    /// With room for what is left at free vertices.
-    pub(crate) fn with_rest(model: &SheetModel, time: ForceTime) -> Self {
-        let new = Self::new(model, time);
+    /// With a residual momentum.
+    pub(crate) fn with_residual(model: &SheetModel, time: ForceTime) -> Self {
         Self {
-            left: vec![0.0; new.pins.len()],
-            active: vec![false; model.constraints().len()],
-            ..new
+            residual_momentum: ResidualMomentum::new(model),
+            ..Self::new(model, time)
         }
     }
 
@@ -108,7 +102,7 @@ impl Balance {
             .apply(model.topology(), &self.work, &mut self.pins);
         self.multipliers.fill(Vector3::zeros());
         self.constraints.fill(Vector3::zeros());
-        self.left.fill(0.0);
+        self.residual_momentum.clear();
         true
     }
 
@@ -121,7 +115,7 @@ impl Balance {
         add(&mut self.pins);
         self.multipliers.fill(Vector3::zeros());
         self.constraints.fill(Vector3::zeros());
-        self.left.fill(0.0);
+        self.residual_momentum.clear();
         true
     }
 
@@ -146,8 +140,7 @@ impl Balance {
         self.multipliers.clone_from(&other.multipliers);
         self.constraints.clone_from(&other.constraints);
         self.time = other.time;
-        self.left.clone_from(&other.left);
-        self.active.clone_from(&other.active);
+        self.residual_momentum.copy_from(&other.residual_momentum);
     }
 
     /// Refuses arrays of the wrong length and numbers that are not finite.
@@ -162,11 +155,7 @@ impl Balance {
                 check_finite("forces of vertex constraints", force.as_slice())?;
             }
         }
-        if !self.left.is_empty() {
-            check_length("forces that are left", self.left.len(), pins)?;
-            check_length("constraints of these", self.active.len(), m)?;
-        }
-        check_finite("forces that are left", &self.left)
+        self.residual_momentum.check(n, m)
     }
 
     /// The forces without scratch.
@@ -176,8 +165,7 @@ impl Balance {
             multipliers: self.multipliers.clone(),
             constraints: self.constraints.clone(),
             time: self.time,
-            left: self.left.clone(),
-            active: self.active.clone(),
+            residual_momentum: self.residual_momentum.compact(),
             work: Vec::new(),
         }
     }
@@ -273,15 +261,16 @@ impl Balance {
         }
     }
 
-    /// Keeps the forces at pins; those at free vertices are left for the rods and the `active` vertex
-    /// constraints.
-    pub(crate) fn leave(&mut self, model: &SheetModel, active: &[bool]) {
-        self.left.copy_from_slice(&self.pins);
+    /// Keeps the forces at pins; those at free vertices at positions `x` become residual momentum, for the
+    /// rods and the `active` vertex constraints.
+    pub(crate) fn leave(&mut self, model: &SheetModel, x: &[f64], active: &[bool]) {
+        self.work.copy_from_slice(&self.pins);
         for (c, f) in model.constraints().iter().zip(&self.constraints) {
-            add(&mut self.left, c.vertex(), &-f);
+            add(&mut self.work, c.vertex(), &-f);
         }
-        model.clear_pinned(&mut self.left);
-        self.active.copy_from_slice(active);
+        model.clear_pinned(&mut self.work);
+        self.residual_momentum
+            .push(x, active, self.work.iter().copied());
         self.finish(model);
     }
 
@@ -296,23 +285,21 @@ impl Balance {
         }
     }
 
-    /// The reactions in a step that ended at a time and positions, with the share of what is left.
-    pub(crate) fn reactions(&self, model: &SheetModel, (t, x): (f64, &[f64])) -> Vec<Reaction> {
-        let shares = shares(model, (t, x), &self.left, &self.active);
+    /// The reactions, with the distributed residual momentum of a step that ended at time `t`.
+    pub(crate) fn reactions(&self, model: &SheetModel, t: f64) -> Vec<Reaction> {
+        let shares = self.residual_momentum.shares(model, t);
         let pins = model.pins().into_iter().map(|v| Reaction {
             support: Support::Pin(v),
-            force: point(&self.pins, v) + shares.as_ref().map_or(Vector3::zeros(), |s| s.pin(v)),
+            force: point(&self.pins, v) + shares.pin(v),
         });
-        let constraints = model.constraints().iter().zip(&self.constraints);
-        let constraints = constraints.enumerate().map(|(index, (c, own))| Reaction {
+        let forces = self.constraints.iter().zip(&shares.constraints);
+        let constraints = model.constraints().iter().zip(forces).enumerate();
+        let constraints = constraints.map(|(index, (c, (own, share)))| Reaction {
             support: Support::Constraint {
                 index,
                 vertex: c.vertex(),
             },
-            force: own
-                + shares
-                    .as_ref()
-                    .map_or(Vector3::zeros(), |s| s.constraints[index]),
+            force: own + share,
         });
         pins.chain(constraints).collect()
     }

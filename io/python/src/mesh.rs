@@ -1,8 +1,8 @@
 //! Meshes from arrays, generators and files.
 
-use crate::arrays::{array, rows, vectors};
+use crate::arrays::{array, refuse_array, rows, vectors};
 use crate::error::{of_scene, plain};
-use crate::value::{refuse_array, table};
+use crate::value::table;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene;
 use isosheet_io::write_obj;
@@ -30,8 +30,14 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
+    /// A mesh of Python as a scene has it.
+    pub(crate) fn value_of(object: &Bound<'_, PyAny>) -> Option<Value> {
+        let mesh = object.cast::<Self>().ok()?;
+        Some(mesh.get().as_value())
+    }
+
     /// The mesh as a scene has it.
-    pub(crate) fn as_value(&self) -> Value {
+    fn as_value(&self) -> Value {
         let vertices = self.sheet.positions().as_chunks::<3>().0;
         let vertex = |x: &[f64; 3]| Value::Array(x.iter().map(|&c| Value::Float(c)).collect());
         let face =
@@ -108,7 +114,8 @@ impl Mesh {
         name: &str,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let parameters = parameters.map_or_else(|| Ok(Table::new()), table)?;
+        let parameters =
+            parameters.map_or_else(|| Ok(Table::new()), |given| table(given, |_| None))?;
         let value = Table::from_iter([(name.to_owned(), Value::Table(parameters))]);
         let mesh = value.try_into();
         let mesh: scene::Mesh =

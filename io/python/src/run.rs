@@ -30,12 +30,6 @@ pub(crate) struct Run {
 type Column<T> = (&'static str, fn(&HistoryRow) -> T);
 
 impl Run {
-    pub(crate) fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        let recording = py.detach(|| Recording::read(&folder));
-        let recording = recording.map_err(|e| of_run(py, &e))?;
-        Ok(Self { folder, recording })
-    }
-
     /// The values of all frames one after the other, and how many each frame has; `None` if frames have none.
     fn frames<'a>(
         &'a self,
@@ -87,7 +81,9 @@ impl Run {
 impl Run {
     #[new]
     fn new(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        Self::read(py, folder)
+        let recording = py.detach(|| Recording::read(&folder));
+        let recording = recording.map_err(|e| of_run(py, &e))?;
+        Ok(Self { folder, recording })
     }
 
     /// The folder.

@@ -1,10 +1,10 @@
 //! Scenes.
 
 use crate::error::{of_file, of_run};
-use crate::run::Run;
-use crate::value::{Remade, edits, remade, table, to_python};
+use crate::mesh::Mesh;
+use crate::value::{Remade, edits_as_texts, remade, table, to_python};
 use isosheet_io::run::{self, StepPart, Tick, Watch};
-use isosheet_io::scene::{Key, KeyPart, SceneFile, SceneFileError, StartingPoint};
+use isosheet_io::scene::{Key, SceneFile, SceneFileError, StartingPoint};
 use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -36,6 +36,11 @@ impl Scene {
         let value = Value::try_from(self.file.scene());
         value.map_err(|e| PyValueError::new_err(e.to_string()))
     }
+}
+
+/// The edits of a dictionary as texts.
+fn edits(edits: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
+    edits_as_texts(edits, Mesh::value_of)
 }
 
 /// A scene file in a text.
@@ -75,7 +80,7 @@ impl Scene {
     #[staticmethod]
     #[pyo3(signature = (scene, folder = PathBuf::new()))]
     fn from_dict(py: Python<'_>, scene: &Bound<'_, PyDict>, folder: PathBuf) -> PyResult<Self> {
-        let mut scene = table(scene)?;
+        let mut scene = table(scene, Mesh::value_of)?;
         let version = Value::Integer(isosheet_io::scene::VERSION.into());
         scene.entry("version").or_insert(version);
         let file = parse(scene.to_string(), &folder);
@@ -140,13 +145,7 @@ impl Scene {
         let whole = self.whole()?;
         let missing = || PyKeyError::new_err(key.to_owned());
         let parts: Key = key.parse().map_err(|_| missing())?;
-        let found = parts
-            .parts()
-            .iter()
-            .try_fold(&whole, |value, part| match part {
-                KeyPart::Name(name) => value.get(name.as_str()),
-                KeyPart::Entry(number) => value.get(*number),
-            });
+        let found = parts.find(&whole);
         to_python(py, found.ok_or_else(missing)?)
     }
 
@@ -161,14 +160,14 @@ impl Scene {
     /// one is continued. Returns what the run wrote.
     ///
     /// Raises `StepFailed` or `RunFailed`; `KeyboardInterrupt` after Ctrl-C, when the same call continues.
-    fn simulate(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Run> {
+    fn simulate<'py>(&self, py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyAny>> {
         let mut signals = Signals::default();
         let outcome = py.detach(|| run::simulate(&self.file, &folder, &mut signals));
         match outcome.map_err(|e| of_run(py, &e))? {
             run::Outcome::Interrupted => Err(signals
                 .raised
                 .unwrap_or_else(|| PyKeyboardInterrupt::new_err(()))),
-            _ => Run::read(py, folder),
+            _ => py.import("isosheet")?.getattr("Run")?.call1((folder,)),
         }
     }
 

@@ -2,10 +2,10 @@
 
 use crate::arrays::{array, rows, slices, vectors};
 use crate::error::{of_file, of_scene, of_step, plain};
-use crate::mesh::edges;
+use crate::mesh::{Mesh, edges};
 use crate::report::StepReport;
 use crate::scene::{Scene, Signals};
-use crate::value::{Remade, edits, remade};
+use crate::value::{Remade, edits as edits_of, remade};
 use isosheet_io::dynamics::{self, Checkpoint, Support};
 use isosheet_io::mesh::VertexId;
 use isosheet_io::scene::{Key, KeyError, LiveScene};
@@ -163,7 +163,7 @@ impl Simulation {
     /// supports. What a change does at once counts as work. Raises `SceneError`, and then nothing has
     /// changed.
     fn change(&self, py: Python<'_>, edits: &Bound<'_, PyDict>) -> PyResult<()> {
-        let edits = self::edits(edits)?;
+        let edits = edits_of(edits, Mesh::value_of)?;
         self.with(py, |live| live.change(&edits))
             .map_err(|e| of_file(py, &e))
     }

@@ -1,6 +1,8 @@
 //! Python's values as those of TOML, and back.
 
-use crate::mesh::Mesh;
+use crate::arrays::refuse_array;
+use crate::error::of_file;
+use isosheet_io::scene::{Edit, EditError, EditProblem, SceneFileError};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -10,25 +12,21 @@ use toml::{Table, Value};
 /// Deepest nesting of a value: twice that of the deepest scene.
 const MOST_LEVELS: usize = 64;
 
-/// Most numbers of an array: those of ten times as many vertices as a sheet may have for its runs to end.
-const MOST_NUMBERS: usize = 10_000_000;
+/// The values of further classes: those of meshes, or none.
+pub(crate) type Further = fn(&Bound<'_, PyAny>) -> Option<Value>;
 
 /// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries,
-/// numpy arrays and numbers, and meshes. Entries of dictionaries that are `None` are left out.
-pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
-    nested(value, 0)
-}
-
-/// The same for a value that is so many levels deep in others.
-fn nested(value: &Bound<'_, PyAny>, level: usize) -> PyResult<Value> {
+/// numpy arrays and numbers, and what `further` knows. Entries of dictionaries that are `None` are left out. It is
+/// so many levels deep in others.
+fn nested(value: &Bound<'_, PyAny>, further: Further, level: usize) -> PyResult<Value> {
     let py = value.py();
     if level > MOST_LEVELS {
         return Err(PyValueError::new_err(format!(
             "the value contains itself, or is nested deeper than {MOST_LEVELS} levels"
         )));
     }
-    if let Ok(mesh) = value.cast::<Mesh>() {
-        return Ok(mesh.get().as_value());
+    if let Some(value) = further(value) {
+        return Ok(value);
     }
     if value.is_instance_of::<PyBool>() {
         return Ok(Value::Boolean(value.extract()?));
@@ -48,17 +46,17 @@ fn nested(value: &Bound<'_, PyAny>, level: usize) -> PyResult<Value> {
         return Ok(Value::String(value.extract()?));
     }
     if let Ok(dict) = value.cast::<PyDict>() {
-        return Ok(Value::Table(nested_table(dict, level)?));
+        return Ok(Value::Table(nested_table(dict, further, level)?));
     }
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         let entries = value.try_iter()?;
-        let entries = entries.map(|entry| nested(&entry?, level + 1));
+        let entries = entries.map(|entry| nested(&entry?, further, level + 1));
         return Ok(Value::Array(entries.collect::<PyResult<_>>()?));
     }
     // Arrays and numbers of numpy, and of what else there is.
     if let Some(plain) = value.getattr_opt(intern!(py, "tolist"))? {
         refuse_array(value)?;
-        return nested(&plain.call0()?, level + 1);
+        return nested(&plain.call0()?, further, level + 1);
     }
     if value.hasattr(intern!(py, "__fspath__"))? {
         let path = value.call_method0(intern!(py, "__fspath__"))?;
@@ -72,48 +70,41 @@ fn nested(value: &Bound<'_, PyAny>, level: usize) -> PyResult<Value> {
 }
 
 /// The table of TOML that stands for a dictionary.
-pub(crate) fn table(dict: &Bound<'_, PyDict>) -> PyResult<Table> {
-    nested_table(dict, 0)
+pub(crate) fn table(dict: &Bound<'_, PyDict>, further: Further) -> PyResult<Table> {
+    nested_table(dict, further, 0)
 }
 
-/// Refuses arrays of numpy that have a mask, which a scene has no place for, or more numbers than any scene.
-pub(crate) fn refuse_array(value: &Bound<'_, PyAny>) -> PyResult<()> {
-    let py = value.py();
-    // Of other arrays `mask` is a method.
-    let mask = value.getattr_opt(intern!(py, "mask"))?;
-    if mask.is_some_and(|mask| !mask.is_callable()) {
-        let message = "the array has a mask, and a scene has numbers alone; give those that are meant, by \
-                       `array.compressed()` or `array.filled(value)`";
-        return Err(PyValueError::new_err(message));
-    }
-    let Some(size) = value.getattr_opt(intern!(py, "size"))? else {
-        return Ok(());
-    };
-    match size.extract::<usize>() {
-        Ok(size) if size > MOST_NUMBERS => Err(PyValueError::new_err(format!(
-            "the array has {size} numbers, and at most {MOST_NUMBERS} have a place in a scene"
-        ))),
-        _ => Ok(()),
-    }
-}
-
-fn nested_table(dict: &Bound<'_, PyDict>, level: usize) -> PyResult<Table> {
+fn nested_table(dict: &Bound<'_, PyDict>, further: Further, level: usize) -> PyResult<Table> {
     let mut table = Table::new();
     for (key, value) in dict {
         if !value.is_none() {
-            table.insert(key.extract()?, nested(&value, level + 1)?);
+            table.insert(key.extract()?, nested(&value, further, level + 1)?);
         }
     }
     Ok(table)
 }
 
-/// The edits `key=value` that stand for a dictionary of keys and values.
-pub(crate) fn edits(dict: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
+/// The edits that stand for a dictionary of keys and values.
+pub(crate) fn edits(dict: &Bound<'_, PyDict>, further: Further) -> PyResult<Vec<Edit>> {
     let edit = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
-        let key: String = key.extract()?;
-        Ok(format!("{key}={}", from_python(&value)?))
+        let (text, value): (String, Value) = (key.extract()?, nested(&value, further, 0)?);
+        match text.parse() {
+            Ok(key) => Ok(Edit { key, value }),
+            Err(error) => {
+                let error = EditError {
+                    edit: format!("{text}={value}"),
+                    problem: EditProblem::Key(error),
+                };
+                Err(of_file(dict.py(), &SceneFileError::Edit(error)))
+            }
+        }
     };
     dict.iter().map(edit).collect()
+}
+
+/// The same as texts `key=value`.
+pub(crate) fn edits_as_texts(dict: &Bound<'_, PyDict>, further: Further) -> PyResult<Vec<String>> {
+    Ok(edits(dict, further)?.iter().map(Edit::to_string).collect())
 }
 
 /// How `pickle` and `copy` make an object again: what is called with which class.

@@ -151,7 +151,7 @@ impl Convert {
             return self.write_pictures(&recording, format);
         }
         let mut series = self.series(&recording.trajectory)?;
-        if let Some(assignments) = recording.scene.fold_assignments()? {
+        if let Some(assignments) = recording.fold_assignments.take() {
             series = series
                 .with_assignments(assignments)
                 .map_err(|e| input(&e))?;

@@ -7,7 +7,7 @@ use super::write::to_stdout;
 use crate::dynamics::{SheetModel, rod_rank};
 use crate::mesh::{Dof, MassKind, Sheet};
 use crate::run::Recording;
-use crate::scene::{SceneFile, Setup};
+use crate::scene::{SceneFile, Setup, bounds};
 use crate::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -160,7 +160,7 @@ fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
             .fold(f64::INFINITY, f64::min),
         sheet.lengths().iter().copied().fold(0.0, f64::max),
     ];
-    let [low, high] = bounds(x).map(|corner| corner.map(number));
+    let [low, high] = bounds(x.as_chunks::<3>().0).map(|corner| corner.map(number));
     format!(
         "vertices         {}, of these {} on the boundary\n\
          edges            {}, {} to {} m long, {} m in the mean\n\
@@ -202,16 +202,4 @@ fn number(value: f64) -> String {
         size if size == 0.0 || (1e-2..1e5).contains(&size) => format!("{value:.4}"),
         _ => format!("{value:.4e}"),
     }
-}
-
-/// Smallest and largest coordinates, metres.
-fn bounds(x: &[f64]) -> [[f64; 3]; 2] {
-    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for p in x.as_chunks::<3>().0 {
-        for k in 0..3 {
-            bounds[0][k] = bounds[0][k].min(p[k]);
-            bounds[1][k] = bounds[1][k].max(p[k]);
-        }
-    }
-    bounds
 }

@@ -2,8 +2,6 @@
 
 use super::failure::{Code, Done, Failure};
 use super::printable::printable;
-use crate::scene::{materials_page, reference_page, schema};
-use crate::{write_atomically, write_json};
 use std::io::Write;
 use std::path::Path;
 
@@ -24,18 +22,6 @@ pub(crate) fn bytes_to_stdout(bytes: &[u8]) -> Done {
         }
         Ok(()) => Ok(()),
     }
-}
-
-/// Writes the reference of scene files.
-pub(crate) fn reference(dir: &Path) -> Done {
-    for (name, page) in [
-        ("scene.md", reference_page()),
-        ("materials.md", materials_page()),
-    ] {
-        write_atomically(&dir.join(name), |w| w.write_all(page.as_bytes()))
-            .map_err(|e| Failure::of(Code::Output, &e))?;
-    }
-    write_json(&dir.join("scene.schema.json"), &schema()).map_err(|e| Failure::of(Code::Output, &e))
 }
 
 /// Whether two paths lead to one file or folder, by whatever names and links.

@@ -22,11 +22,14 @@ mod vtk;
 pub use body::{BodyPose, SeriesBody};
 pub use error::ExportError;
 pub use gltf::MOST_KEY_FRAMES;
+#[cfg(feature = "run")]
+pub(crate) use obj::frame_number;
+pub use obj::{frame_path, write_obj};
 pub use series::{FieldSupport, Series, SeriesField, SeriesOptions};
 
 use super::mesh_file::MeshFile;
-use super::obj_write::Extras;
 use moving::Moving;
+use obj::Extras;
 use std::path::{Path, PathBuf};
 
 /// A format in which one mesh is written, as the extension of a file says.

@@ -215,14 +215,14 @@ mod tests {
                 },
             ),
             (
-                "scheme.rate",
+                "scheme.Damped.rate",
                 Summary {
                     scheme: Scheme::Damped { rate: f64::NAN },
                     ..summary()
                 },
             ),
             (
-                "scheme[1]",
+                "scheme.Pair[1]",
                 Summary {
                     scheme: Scheme::Pair(0.0, f64::NAN),
                     ..summary()

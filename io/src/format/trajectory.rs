@@ -69,6 +69,7 @@ impl Motion for Trajectory {
                 t,
                 x: &self.x[n * number..n * (number + 1)],
                 data: FrameData::each(|q: Quantity| self.values(q, number).unwrap_or_default()),
+                fields: &[],
             };
             if show(&frame).is_break() {
                 break;
@@ -118,6 +119,7 @@ impl Trajectory {
             t,
             x,
             data: *data,
+            fields: &[],
         };
         let before = self.t.last().copied().unwrap_or(f64::NEG_INFINITY);
         let has = |quantity: Quantity| !self.data[quantity as usize].is_empty();
@@ -138,7 +140,9 @@ impl Trajectory {
         before: f64,
         has: &dyn Fn(Quantity) -> bool,
     ) -> Result<(), TrajectoryError> {
-        let &MotionFrame { number, t, x, data } = frame;
+        let &MotionFrame {
+            number, t, x, data, ..
+        } = frame;
         if x.len() != 3 * self.vertex_count {
             return Err(TrajectoryError::WrongLength {
                 frame: number,
@@ -177,7 +181,18 @@ impl Trajectory {
 
     /// The trajectory of some of the frames, in the order of time.
     pub(super) fn subset(&self, frames: &[usize]) -> Result<Self, TrajectoryError> {
-        let mut subset = Self {
+        let mut subset = self.without_frames();
+        for &k in frames {
+            let data = FrameData::each(|quantity| self.values(quantity, k).unwrap_or_default());
+            let x = &self.x[3 * self.vertex_count * k..3 * self.vertex_count * (k + 1)];
+            subset.push_with(self.t[k], x, &data)?;
+        }
+        Ok(subset)
+    }
+
+    /// The mesh without frames.
+    fn without_frames(&self) -> Self {
+        Self {
             vertex_count: self.vertex_count,
             t: Vec::new(),
             x: Vec::new(),
@@ -185,13 +200,12 @@ impl Trajectory {
             edges: self.edges.clone(),
             rest_lengths: self.rest_lengths.clone(),
             data: Default::default(),
-        };
-        for &k in frames {
-            let data = FrameData::each(|quantity| self.values(quantity, k).unwrap_or_default());
-            let x = &self.x[3 * self.vertex_count * k..3 * self.vertex_count * (k + 1)];
-            subset.push_with(self.t[k], x, &data)?;
         }
-        Ok(subset)
+    }
+
+    /// A quantity in all frames, one after the other; nothing if the trajectory does not have it.
+    pub(super) fn all(&self, quantity: Quantity) -> &[f64] {
+        &self.data[quantity as usize]
     }
 
     /// The numbers of a quantity in one frame.

@@ -1,12 +1,10 @@
 //! Marks of a vector drawing that are joined: the pieces of a body to areas of one colour, and its edges to
 //! lines.
 
+use super::order::{Part, painted};
 use super::pieces::Piece;
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
-
-/// Side of the squares in which marks are looked for that cover each other, pixels.
-const SQUARE: f64 = 2.0;
 
 /// Steps of colours of bodies, of 255: neighbours that differ by less are hardly told apart, and are one
 /// area.
@@ -17,10 +15,8 @@ type Point = [i64; 2];
 
 /// A part of the drawing.
 pub(super) struct Mark {
-    /// Larger for what is nearer to the viewer.
-    pub(super) nearness: f64,
-    /// The corners of the box around it, pixels.
-    pub(super) bounds: [[f64; 2]; 2],
+    /// Corners in the picture, pixels, and their nearness.
+    pub(super) corners: Vec<[f64; 3]>,
     pub(super) shape: Shape,
 }
 
@@ -31,173 +27,106 @@ pub(super) enum Shape {
     /// A piece of a body, one of a layer whose pieces do not cover each other.
     Area {
         layer: usize,
-        corners: [usize; 3],
-        places: [[f64; 2]; 3],
+        /// The numbers of the corners, counter-clockwise as the viewer sees them.
+        numbers: [usize; 3],
         colour: [u8; 3],
     },
-    /// A part of an edge of a body, which is above the areas of its layer.
-    Line { layer: usize, ends: [[f64; 2]; 2] },
+    /// A part of an edge of a body, which is above the areas of its layer. Beside those of others it counts as nearer
+    /// by the lift.
+    Line { layer: usize, lift: f64 },
 }
 
-/// The elements of marks from the farthest to the nearest one. The pieces and edges of a layer wait for
-/// others of it until something nearer covers them.
-pub(super) fn elements(marks: Vec<Mark>, ink: &str) -> Vec<String> {
-    let mut waiting = Waiting::default();
-    let mut done = Vec::new();
-    for mark in marks {
-        let squares = mark.squares();
-        let own = match mark.shape {
-            Shape::Element(_) => None,
-            Shape::Area { layer, .. } | Shape::Line { layer, .. } => Some(layer),
+impl Part for Mark {
+    /// Elements first, then areas by layer and colour, then lines.
+    type Group = (u8, usize, [u8; 3]);
+
+    fn corners(&self) -> &[[f64; 3]] {
+        &self.corners
+    }
+
+    fn group(&self) -> Self::Group {
+        match self.shape {
+            Shape::Element(_) => (0, 0, [0; 3]),
+            Shape::Area { layer, colour, .. } => (1, layer, colour),
+            Shape::Line { layer, .. } => (2, layer, [0; 3]),
+        }
+    }
+
+    fn lead(&self, other: &Self) -> Option<f64> {
+        let over = |line: usize, lift: f64, area: usize| match line == area {
+            true => f64::INFINITY,
+            false => lift,
         };
-        let below = waiting.below(&squares, own);
-        // Nothing of its own layer that something below the mark has to come after may wait for it.
-        let ready = match own {
-            None => below.clone(),
-            Some(own) if below.iter().any(|&b| waiting.needed(b).contains(&own)) => vec![own],
-            Some(_) => Vec::new(),
-        };
-        for number in ready {
-            for layer in waiting.take(number) {
-                layer.draw(ink, &mut done);
+        match (&self.shape, &other.shape) {
+            (Shape::Area { layer: a, .. }, Shape::Area { layer: b, .. }) if a == b => None,
+            (Shape::Line { layer, lift }, Shape::Area { layer: area, .. }) => {
+                Some(over(*layer, *lift, *area))
             }
-        }
-        match (mark.shape, own) {
-            (Shape::Element(element), _) => done.push(element),
-            (shape, Some(number)) => {
-                let layer = waiting.layers.entry(number).or_default();
-                layer.after.extend(below);
-                layer.add(shape, squares);
+            (Shape::Area { layer: area, .. }, Shape::Line { layer, lift }) => {
+                Some(-over(*layer, *lift, *area))
             }
-            _ => {}
+            _ => Some(0.0),
         }
     }
-    while let Some((&number, _)) = waiting.layers.first_key_value() {
-        for layer in waiting.take(number) {
-            layer.draw(ink, &mut done);
-        }
-    }
-    done
 }
 
-impl Mark {
-    /// The squares with their middle in the mark.
-    fn squares(&self) -> Vec<[i32; 2]> {
-        let [low, high] = &self.bounds;
-        let [x, y] = [0, 1].map(|k| {
-            let at = |c: f64| (c / SQUARE).floor() as i32;
-            at(low[k])..=at(high[k])
-        });
-        let all = x.flat_map(|x| y.clone().map(move |y| [x, y]));
-        let Shape::Area { places, .. } = &self.shape else {
-            return all.collect();
-        };
-        let is_inside = |square: &[i32; 2]| {
-            let p = square.map(|c| SQUARE * (f64::from(c) + 0.5));
-            let side = |k: usize| {
-                let (a, b) = (places[k], places[(k + 1) % 3]);
-                (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
-            };
-            let sides = [side(0), side(1), side(2)];
-            sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0)
-        };
-        all.filter(is_inside).collect()
-    }
+/// The elements of marks in the order of painting: those of areas and lines that follow each other in one group are
+/// joined.
+pub(super) fn elements(marks: &[Mark], ink: &str) -> Vec<String> {
+    let order = painted(marks);
+    let groups = order.chunk_by(|a, b| marks[*a].group() == marks[*b].group());
+    groups.flat_map(|group| drawn(marks, group, ink)).collect()
 }
 
-/// The layers that are not drawn yet.
-#[derive(Default)]
-struct Waiting {
-    layers: BTreeMap<usize, Layer>,
-}
-
-impl Waiting {
-    /// The layers besides its own that a mark which is nearer covers.
-    fn below(&self, squares: &[[i32; 2]], own: Option<usize>) -> Vec<usize> {
-        let is_below = |(number, layer): &(&usize, &Layer)| {
-            own != Some(**number) && squares.iter().any(|square| layer.covered.contains(square))
-        };
-        let below = self.layers.iter().filter(is_below);
-        below.map(|(number, _)| *number).collect()
-    }
-
-    /// The layers that have to be drawn before one, and it itself at the end.
-    fn needed(&self, number: usize) -> Vec<usize> {
-        let (mut order, mut seen, mut open) = (Vec::new(), HashSet::new(), vec![(number, false)]);
-        while let Some((number, is_left)) = open.pop() {
-            if is_left {
-                order.push(number);
-            } else if let Some(layer) = self.layers.get(&number)
-                && seen.insert(number)
-            {
-                open.push((number, true));
-                open.extend(layer.after.iter().map(|&before| (before, false)));
-            }
-        }
-        order
-    }
-
-    /// Takes out a layer with those before it.
-    fn take(&mut self, number: usize) -> Vec<Layer> {
-        let order = self.needed(number).into_iter();
-        order
-            .filter_map(|number| self.layers.remove(&number))
-            .collect()
-    }
-}
-
-/// What waits of one layer.
-#[derive(Default)]
-struct Layer {
-    covered: HashSet<[i32; 2]>,
-    /// The layers that have to be drawn before.
-    after: BTreeSet<usize>,
-    /// The sides of pieces by the colour of these: which corner follows on which, with the place of the
-    /// first. Sides that two pieces have in common are left out.
-    areas: BTreeMap<[u8; 3], HashMap<[usize; 2], Point>>,
-    lines: Vec<[Point; 2]>,
-}
-
-impl Layer {
-    fn add(&mut self, shape: Shape, squares: Vec<[i32; 2]>) {
-        self.covered.extend(squares);
-        match shape {
-            Shape::Element(_) => {}
+/// The elements of marks of one group.
+fn drawn(marks: &[Mark], group: &[usize], ink: &str) -> Vec<String> {
+    // The sides of pieces: which corner follows on which, with the place of the first. Sides that two pieces have in
+    // common are left out.
+    let mut sides = HashMap::new();
+    let mut lines = Vec::new();
+    let (mut elements, mut fill) = (Vec::new(), None);
+    for mark in group.iter().map(|k| &marks[*k]) {
+        let place = |k: usize| point([mark.corners[k][0], mark.corners[k][1]]);
+        match &mark.shape {
+            Shape::Element(element) => elements.push(element.clone()),
+            Shape::Line { .. } => lines.push([place(0), place(1)]),
             Shape::Area {
-                corners,
-                places,
-                colour,
-                ..
+                numbers, colour, ..
             } => {
-                let colour = colour.map(|c| c / COLOUR_STEP * COLOUR_STEP + COLOUR_STEP / 2);
-                let sides = self.areas.entry(colour).or_default();
+                fill = Some(*colour);
                 for k in 0..3 {
-                    let (from, to) = (corners[k], corners[(k + 1) % 3]);
+                    let (from, to) = (numbers[k], numbers[(k + 1) % 3]);
                     if sides.remove(&[to, from]).is_none() {
-                        sides.insert([from, to], point(places[k]));
+                        sides.insert([from, to], place(k));
                     }
                 }
             }
-            Shape::Line { ends, .. } => self.lines.push(ends.map(point)),
         }
     }
+    if let Some(colour) = fill {
+        // Areas have a line of their own colour, so that no gaps are seen between them.
+        let (path, colour) = (outlines(sides), hex(colour));
+        elements.push(format!(
+            "<path d=\"{path}\" fill=\"{colour}\" stroke=\"{colour}\"/>"
+        ));
+    }
+    if !lines.is_empty() {
+        let path = polylines(lines);
+        elements.push(format!(
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{ink}\"/>"
+        ));
+    }
+    elements
+}
 
-    fn draw(self, ink: &str, done: &mut Vec<String>) {
-        for ([r, g, b], sides) in self.areas {
-            let path = outlines(sides);
-            // Areas have a line of their own colour, so that no gaps are seen between them.
-            let colour = format!("#{r:02x}{g:02x}{b:02x}");
-            done.push(format!(
-                "<path d=\"{path}\" fill=\"{colour}\" stroke=\"{colour}\"/>"
-            ));
-        }
-        if !self.lines.is_empty() {
-            let path = polylines(self.lines);
-            done.push(format!(
-                "<path d=\"{path}\" fill=\"none\" stroke=\"{ink}\"/>"
-            ));
-        }
-    }
+/// The colour of areas that are joined with those of a colour.
+pub(super) fn step(colour: [u8; 3]) -> [u8; 3] {
+    colour.map(|c| c / COLOUR_STEP * COLOUR_STEP + COLOUR_STEP / 2)
+}
+
+/// A colour as SVG has it.
+pub(super) fn hex([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// The closed lines of some sides, each of which ends where others begin.
@@ -273,17 +202,6 @@ fn add_line(path: &mut String, places: &[Point]) {
 
 fn point(place: [f64; 2]) -> Point {
     place.map(|c| (100.0 * c).round() as i64)
-}
-
-/// The box around some places.
-pub(super) fn bounds(places: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let pick = |take: fn(f64, f64) -> f64, start: f64| {
-        [0, 1].map(|k| places.iter().map(|p| p[k]).fold(start, take))
-    };
-    [
-        pick(f64::min, f64::INFINITY),
-        pick(f64::max, f64::NEG_INFINITY),
-    ]
 }
 
 /// The corners of a piece counter-clockwise as the viewer sees it.

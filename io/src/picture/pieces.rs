@@ -140,7 +140,7 @@ impl Cutter<'_> {
             };
             let (side, length) = longest(&points, in_space);
             if length > limit {
-                let middle = halves.in_space(piece.corners, side, |a, b| {
+                let middle = middle(&mut halves.in_space, piece.corners, side, |a, b| {
                     x.push(skin.middle(&x[a], &x[b], 0.5));
                     x.len() - 1
                 });
@@ -152,7 +152,7 @@ impl Cutter<'_> {
             }
             let (side, length) = longest(&points, |a, b| self.pixels(a, b));
             if length > self.pixels {
-                let middle = halves.in_picture(piece.corners, side, |a, b| {
+                let middle = middle(&mut halves.in_picture, piece.corners, side, |a, b| {
                     let part = self.camera.middle(&x[a], &x[b]);
                     x.push(skin.middle(&x[a], &x[b], part));
                     x.len() - 1
@@ -225,32 +225,23 @@ impl Piece {
 }
 
 /// The middles of edges that were halved, so that pieces that share an edge share its middle.
+type Middles = HashMap<[usize; 2], usize>;
+
 #[derive(Default)]
 struct Halves {
-    in_space: HashMap<[usize; 2], usize>,
-    in_picture: HashMap<[usize; 2], usize>,
+    in_space: Middles,
+    in_picture: Middles,
 }
 
-impl Halves {
-    fn in_space(
-        &mut self,
-        corners: [usize; 3],
-        side: usize,
-        new: impl FnOnce(usize, usize) -> usize,
-    ) -> usize {
-        let [a, b] = ends(corners, side);
-        *self.in_space.entry([a, b]).or_insert_with(|| new(a, b))
-    }
-
-    fn in_picture(
-        &mut self,
-        corners: [usize; 3],
-        side: usize,
-        new: impl FnOnce(usize, usize) -> usize,
-    ) -> usize {
-        let [a, b] = ends(corners, side);
-        *self.in_picture.entry([a, b]).or_insert_with(|| new(a, b))
-    }
+/// The middle of a side, a new one if it was not halved yet.
+fn middle(
+    of: &mut Middles,
+    corners: [usize; 3],
+    side: usize,
+    new: impl FnOnce(usize, usize) -> usize,
+) -> usize {
+    let [a, b] = ends(corners, side);
+    *of.entry([a, b]).or_insert_with(|| new(a, b))
 }
 
 /// The ends of a side, the smaller number first.

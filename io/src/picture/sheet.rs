@@ -18,7 +18,7 @@ const REACH: f64 = 0.3;
 pub(super) const GROUND: f64 = 0.8;
 
 /// Largest edge over which the light on a body is interpolated, as part of the height of the picture.
-const GRAIN: f64 = 0.035;
+pub(super) const GRAIN: f64 = 0.035;
 
 /// The same at the rim of a shadow, where the openness would change by more than [`CONTRAST`] within a piece.
 const FINE_GRAIN: f64 = 0.007;

@@ -376,14 +376,6 @@ impl Triangles {
         }
     }
 
-    /// Whether everything is above the plane of a face, up to a tolerance.
-    pub(super) fn is_floor(&self, face: usize, tolerance: f64) -> bool {
-        let corners = self.faces[face].map(|v| self.x[v]);
-        let up = normal(&corners);
-        let mut heights = self.x.iter().map(|p| dot(&sub(p, &corners[0]), &up));
-        heights.all(|height| height >= -tolerance)
-    }
-
     /// Whether a viewer may see an edge of a body: one of the faces beside it, where these hide their backs.
     pub(super) fn shows(&self, number: usize, eye: &[f64; 3]) -> bool {
         let ([a, b], skin) = self.ridges[number];

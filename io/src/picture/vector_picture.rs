@@ -3,31 +3,21 @@
 use super::camera::{Camera, centre, normal};
 use super::canvas::srgb;
 use super::error::PictureError;
-use super::joined::{Mark, Shape, bounds, elements, seen};
+use super::joined::{Mark, Shape, elements, hex, seen, step};
 use super::pieces::Piece;
-use super::sheet::{INK, LIFT, Look, Painter, SheetPicture, light_on};
-use super::solid::{Skin, Triangles};
+use super::sheet::{GRAIN, INK, LIFT, Look, Painter, SheetPicture, light_on};
+use super::solid::Triangles;
 use super::vector::axpy;
-use std::collections::HashSet;
-
-/// Largest edge of a piece of a body, as a part of the height of the picture: pieces smaller than the faces
-/// of a usual sheet are in the right order before and behind these.
-const GRAIN: f64 = 0.025;
-
-/// How much farther away bodies count than they are, as a part of what the picture shows: most of what
-/// touches the sheet is behind it, and the faces of the sheet, whose mean depth counts, are larger than
-/// pieces of bodies.
-const BEHIND: f64 = 0.04;
 
 /// Radius of the dot of a pin, pixels.
 const DOT: f64 = 3.0;
 
 /// Draws a sheet on white as an SVG document of the size that `look` says.
 ///
-/// Faces are painted from the farthest to the nearest one (the painter's algorithm), by the mean depth of
-/// their corners; faces of bodies are cut into pieces for this. Where faces penetrate or overlap in a circle,
-/// no order is right. Pieces of a body of about the same colour, and the parts of its edges, are joined again
-/// as far as nothing lies between them. Light falls as in [`render`](super::render()), without the shadows of
+/// Of two faces that overlap in the picture the farther one is painted first, as seen where they overlap. Where
+/// faces penetrate or overlap in a circle, no order is right. Faces of bodies are cut into pieces of one colour each;
+/// pieces of a body of about the same colour, and the parts of its edges, are joined again as far as nothing lies
+/// between them. Light falls as in [`render`](super::render()), without the shadows of
 /// faces on each other.
 ///
 /// # Errors
@@ -43,10 +33,18 @@ pub fn render_svg(
     let painter = Painter::new(camera, look);
     let mut scene = painter.scene(picture);
     let mut marks = faces(&painter, &mut scene);
+    let cutter = painter.cutter(GRAIN);
     for (number, (ridge, skin)) in scene.ridges.iter().enumerate() {
-        let ends = ridge.map(|v| scene.x[v]);
         if scene.shows(number, &camera.eye()) {
-            marks.extend(edge(&painter, ends, skin, scene.layer_of_ridge(number)));
+            let shape = || Shape::Line {
+                layer: scene.layer_of_ridge(number),
+                lift: LIFT * painter.scale,
+            };
+            let parts = cutter.parts(ridge.map(|v| scene.x[v]), skin).into_iter();
+            marks.extend(parts.map(|ends| Mark {
+                corners: ends.map(|p| painter.place(&p)).to_vec(),
+                shape: shape(),
+            }));
         }
     }
     for (v, colour) in picture.dots() {
@@ -55,8 +53,6 @@ pub fn render_svg(
             marks.push(dot(&painter, p, colour));
         }
     }
-    // The sort is stable: marks of equal depth stay in the order of the sheet.
-    marks.sort_by(|a, b| a.nearness.total_cmp(&b.nearness));
     let [width, height] = look.size;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
@@ -64,7 +60,7 @@ pub fn render_svg(
          <g stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke-width=\"{}\">\n",
         look.wire
     );
-    for element in elements(marks, &hex(INK)) {
+    for element in elements(&marks, &hex(INK)) {
         svg.push_str(&element);
         svg.push('\n');
     }
@@ -76,58 +72,37 @@ pub fn render_svg(
 fn faces(painter: &Painter<'_>, scene: &mut Triangles) -> Vec<Mark> {
     let cutter = painter.cutter(GRAIN);
     let pieces = cutter.pieces(scene);
-    let is_floor = |face: &usize| {
-        matches!(scene.skin(*face), Some(Skin::Ground { .. }))
-            && scene.is_floor(*face, LIFT * painter.scale)
-    };
-    let floors: HashSet<usize> = (scene.own..scene.faces.len()).filter(is_floor).collect();
     let mark = |piece: &Piece| {
-        let points = piece.corners.map(|v| scene.x[v]);
+        let numbers = seen(piece);
+        let points = numbers.map(|v| scene.x[v]);
         let skin = scene.skin(piece.face);
         let places = points.map(|p| painter.place(&p));
         if points.iter().any(|p| painter.camera.is_behind(p)) || !shows(painter, &places) {
             return None;
         }
         let flat = normal(&points);
-        let flat = if piece.back { flat.map(|c| -c) } else { flat };
         let centre = centre(&points);
         let n = skin
             .as_ref()
             .map_or(flat, |skin| skin.normal(&flat, &centre));
         let [sky, sun] = light_on(painter.camera, &n, &centre);
         let colour = painter.colour(piece, scene, &centre, sky + sun).map(srgb);
-        let behind = match &skin {
-            None => 0.0,
-            // What is above a floor is before it as seen from above.
-            Some(_) if floors.contains(&piece.face) => f64::INFINITY,
-            Some(_) => BEHIND * painter.scale,
-        };
-        let nearness = places.iter().map(|c| c[2]).sum::<f64>() / 3.0 - behind;
-        let flat = places.map(|[x, y, _]| [x, y]);
         let shape = match skin {
             None => {
-                let [[a, b], [c, d], [e, f]] = flat;
+                let [[a, b, _], [c, d, _], [e, f, _]] = places;
                 let (fill, ink) = (hex(colour), hex(INK));
                 Shape::Element(format!(
                     "<path d=\"M{a:.2} {b:.2} {c:.2} {d:.2} {e:.2} {f:.2}Z\" fill=\"{fill}\" stroke=\"{ink}\"/>"
                 ))
             }
-            Some(_) => {
-                let corners = seen(piece);
-                Shape::Area {
-                    layer: scene.layer_of_face(piece.face),
-                    corners,
-                    places: corners.map(|v| {
-                        let [x, y, _] = painter.place(&scene.x[v]);
-                        [x, y]
-                    }),
-                    colour,
-                }
-            }
+            Some(_) => Shape::Area {
+                layer: scene.layer_of_face(piece.face),
+                numbers,
+                colour: step(colour),
+            },
         };
         Some(Mark {
-            nearness,
-            bounds: bounds(&flat),
+            corners: places.to_vec(),
             shape,
         })
     };
@@ -141,30 +116,14 @@ fn shows(painter: &Painter<'_>, places: &[[f64; 3]]) -> bool {
     })
 }
 
-/// An edge of a body in pieces, a little nearer than the faces that it bounds.
-fn edge(painter: &Painter<'_>, ends: [[f64; 3]; 2], skin: &Skin, layer: usize) -> Vec<Mark> {
-    let cutter = painter.cutter(GRAIN);
-    let lift = LIFT * painter.scale;
-    let raised = |p: &[f64; 3]| axpy(p, lift, &painter.camera.viewer(p));
-    let mark = |ends: [[f64; 3]; 2]| {
-        let [p, q] = ends.map(|p| painter.place(&raised(&p)));
-        let ends = [p, q].map(|[x, y, _]| [x, y]);
-        Mark {
-            nearness: 0.5 * (p[2] + q[2]) - BEHIND * painter.scale,
-            bounds: bounds(&ends),
-            shape: Shape::Line { layer, ends },
-        }
-    };
-    cutter.parts(ends, skin).into_iter().map(mark).collect()
-}
-
 /// A dot with a rim.
 fn dot(painter: &Painter<'_>, p: &[f64; 3], colour: [u8; 3]) -> Mark {
     let raised = axpy(p, 3.0 * LIFT * painter.scale, &painter.camera.viewer(p));
     let [x, y, nearness] = painter.place(&raised);
     Mark {
-        nearness,
-        bounds: [[x - DOT, y - DOT], [x + DOT, y + DOT]],
+        corners: [[-DOT, -DOT], [DOT, -DOT], [DOT, DOT], [-DOT, DOT]]
+            .map(|[dx, dy]| [x + dx, y + dy, nearness])
+            .to_vec(),
         shape: Shape::Element(format!(
             "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{DOT}\" fill=\"{}\" stroke=\"{}\"/>",
             hex(colour),
@@ -173,16 +132,13 @@ fn dot(painter: &Painter<'_>, p: &[f64; 3], colour: [u8; 3]) -> Mark {
     }
 }
 
-fn hex([r, g, b]: [u8; 3]) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::vector_drawing::image;
     use super::*;
     use crate::picture::{Image, Solid, render};
     use isosheet_mesh::Sheet;
+    use isosheet_mesh::generate::Diagonals;
 
     /// Two triangles that lie over each other as seen from above, the first one higher.
     fn stacked(heights: [f64; 2]) -> Sheet {
@@ -230,6 +186,50 @@ mod tests {
                 (vector / pixels - 1.0).abs() < 0.05,
                 "{vector} and {pixels} pixels"
             );
+        }
+    }
+
+    /// A sheet of two large faces that lies closely on one of many small ones: these are all hidden, although half of
+    /// them are nearer to the viewer than the middle of the face above them. With a box below, which is hidden too.
+    #[test]
+    fn closely_stacked_sheets_hide_each_other() {
+        let small = isosheet_mesh::generate::isotropic_square(3, 1.0).unwrap();
+        let large = isosheet_mesh::generate::grid(1, 1, 1.0, 1.0, Diagonals::Rising).unwrap();
+        let large = large.map_positions(|[x, y, _]| [x, y, 0.002]).unwrap();
+        let sheet = Sheet::union(&[&small, &large]).unwrap();
+        let shape = isosheet_collide::Shape::Cuboid {
+            half: [0.3, 0.2, 0.1],
+        };
+        let pose = nalgebra::Isometry3::translation(0.5, 0.5, -0.102);
+        let body = isosheet_collide::Obstacle::fixed(shape, pose).unwrap();
+        let picture = SheetPicture {
+            topology: sheet.topology(),
+            positions: sheet.positions(),
+            pins: &[],
+            immobile: &[],
+            solids: &[Solid::of(&body, 0.0).unwrap()],
+            parts: &isosheet_mesh::Part::of_union(&[&small, &large]),
+        };
+        let sides = [[[255, 0, 0]; 2], [[0, 0, 255]; 2]].repeat(3);
+        let look = Look {
+            size: [200, 200],
+            wire: 0.0,
+            sides: sides.try_into().unwrap(),
+            ..Look::default()
+        };
+        let red = |image: &Image| image.pixels.iter().filter(|p| p[0] > 2.0 * p[2]).count();
+        let blue = |image: &Image| image.pixels.iter().filter(|p| p[2] > 2.0 * p[0]).count();
+        for elevation in [20.0, 50.0, -35.0] {
+            let camera = Camera::new([0.5, 0.5, 0.0], -60.0, elevation, 1.6, 3.0);
+            let vector = image(&render_svg(&picture, &camera, &look).unwrap()).unwrap();
+            let pixels = render(&picture, &camera, &look).unwrap();
+            for (count, name) in [(red as fn(&Image) -> usize, "red"), (blue, "blue")] {
+                let [vector, pixels] = [&vector, &pixels].map(count);
+                assert!(
+                    vector.abs_diff(pixels) < 400,
+                    "{vector} and {pixels} {name} pixels from {elevation} degrees"
+                );
+            }
         }
     }
 

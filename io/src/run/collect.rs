@@ -1,9 +1,10 @@
 //! The summaries of many runs as one table.
 
+use super::Summary;
 use super::folder::RunFolder;
 use super::sweep::{Sweep, SweepError};
-use super::{Ending, EnergySummary, Measured, Summary};
 use crate::format::{Finding, JsonError, cell, check_finite, read_json, write_atomically};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// The summaries of many runs as one table: a row for each complete run.
@@ -102,15 +103,22 @@ impl Collection {
             return Ok(());
         }
         let summary: Summary = read_json(&path)?;
+        let form = |problem| JsonError::Form {
+            path: path.clone(),
+            problem,
+        };
         check_finite(&summary).map_err(|finding| match finding {
-            Finding::NotFinite { path: field, value } => {
-                JsonError::NotFinite { path, field, value }
-            }
-            Finding::Other(problem) => JsonError::Form { path, problem },
+            Finding::NotFinite { path: field, value } => JsonError::NotFinite {
+                path: path.clone(),
+                field,
+                value,
+            },
+            Finding::Other(problem) => form(problem),
         })?;
+        let fields = serde_json::to_value(&summary).map_err(|e| form(e.to_string()))?;
         let mut row = vec![("folder".to_owned(), folder.display().to_string())];
         row.extend(keys);
-        add_summary(&mut row, &summary);
+        add_fields(&mut row, "", &fields);
         self.rows.push(row);
         Ok(())
     }
@@ -123,159 +131,34 @@ fn note(names: &mut Vec<String>, name: &str) {
     }
 }
 
-/// All fields, in their order.
-fn add_summary(row: &mut Row, summary: &Summary) {
-    let Summary {
-        program,
-        version,
-        commit,
-        scene,
-        wall_time,
-        modelled,
-        sheets,
-        vertices,
-        faces,
-        steps,
-        frames,
-        largest_strain,
-        largest_displacement,
-        energy,
-        smallest_gap,
-        iterations,
-        factorisations,
-        rejected,
-        elastic,
-        measures,
-        ending,
-    } = summary;
-    let mut cell = |name: &str, value: String| row.push((name.to_owned(), value));
-    cell("program", program.clone());
-    cell("version", version.clone());
-    cell("commit", commit.clone().unwrap_or_default());
-    cell("scene", scene.clone());
-    cell("wall_time", number(*wall_time));
-    cell("modelled", modelled.join("; "));
-    for place in sheets {
-        let [first, end] = place.vertices.map(|v| v.to_string());
-        cell(&format!("sheets.{}.first_vertex", place.name), first);
-        cell(&format!("sheets.{}.end_vertex", place.name), end);
-    }
-    cell("vertices", vertices.to_string());
-    cell("faces", faces.to_string());
-    cell("steps", steps.to_string());
-    cell("frames", frames.to_string());
-    cell("largest_strain", number(*largest_strain));
-    if let Some(elastic) = elastic {
-        cell("softest_face", number(elastic.used[0]));
-        cell("largest_face_strain", number(elastic.strain));
-        cell("stretching_share", number(elastic.share));
-        cell(
-            "sharpest_bend",
-            number(elastic.sharpest.map_or(0.0, |b| b.angle)),
-        );
-    }
-    cell("largest_displacement", number(*largest_displacement));
-    let EnergySummary {
-        largest_kinetic,
-        largest_exchange,
-        start_potential,
-        round_off,
-        least_potential,
-        largest_error,
-        largest_gain,
-        relative_error,
-        relative_gain,
-    } = *energy;
-    for (name, value) in [
-        ("largest_kinetic", Some(largest_kinetic)),
-        ("largest_exchange", Some(largest_exchange)),
-        ("start_potential", Some(start_potential)),
-        ("round_off", Some(round_off)),
-        ("least_potential", Some(least_potential)),
-        ("largest_error", Some(largest_error)),
-        ("largest_gain", Some(largest_gain)),
-        ("relative_error", relative_error),
-        ("relative_gain", relative_gain),
-    ] {
-        cell(
-            &format!("energy.{name}"),
-            value.map(number).unwrap_or_default(),
-        );
-    }
-    cell("smallest_gap", smallest_gap.map(number).unwrap_or_default());
-    cell("iterations", iterations.to_string());
-    cell("factorisations", factorisations.to_string());
-    cell("rejected", rejected.to_string());
-    for (name, measured) in measures {
-        let Measured {
-            last,
-            least,
-            largest,
-        } = *measured;
-        for (kind, value) in [("last", last), ("least", least), ("largest", largest)] {
-            cell(&format!("measures.{name}.{kind}"), number(value));
+/// Adds the fields of a value by their names.
+fn add_fields(row: &mut Row, name: &str, value: &Value) {
+    match value {
+        Value::Null => row.push((name.to_owned(), String::new())),
+        Value::String(text) => row.push((name.to_owned(), text.clone())),
+        // The shortest text from which the same bits are read, with an exponent where that is shorter.
+        Value::Bool(_) | Value::Number(_) => row.push((name.to_owned(), value.to_string())),
+        Value::Object(fields) => {
+            for (field, value) in fields {
+                let dot = if name.is_empty() { "" } else { "." };
+                add_fields(row, &format!("{name}{dot}{field}"), value);
+            }
         }
-    }
-    add_ending(row, ending);
-}
-
-fn add_ending(row: &mut Row, ending: &Ending) {
-    let Ending {
-        reason,
-        t,
-        kinetic,
-        potential,
-        plastic,
-        energy_drift,
-        largest_speed,
-        supports,
-        obstacles,
-        taut,
-        residuals,
-    } = ending;
-    let mut cell = |name: &str, value: String| row.push((format!("ending.{name}"), value));
-    cell("reason", reason.name().to_owned());
-    cell("t", number(*t));
-    cell("kinetic", number(*kinetic));
-    cell("potential", number(*potential));
-    if let Some(plastic) = plastic {
-        cell("plastic", number(*plastic));
-    }
-    cell("energy_drift", number(*energy_drift));
-    cell("largest_speed", number(*largest_speed));
-    if let Some(taut) = taut {
-        cell("taut", taut.clone());
-    }
-    if let Some(folding) = &residuals.folding {
-        cell("folding.creases", folding.creases.to_string());
-        cell("folding.largest", number(folding.largest));
-        cell("folding.rms", number(folding.rms));
-        cell("folding.largest_flat", number(folding.largest_flat));
-        cell("folding.wrong_side", folding.wrong_side.to_string());
-    }
-    for crease in &residuals.creases {
-        cell(
-            &format!("creases[{}].largest", crease.number),
-            number(crease.largest),
-        );
-        cell(
-            &format!("creases[{}].rms", crease.number),
-            number(crease.rms),
-        );
-    }
-    for (k, opening) in residuals.seams.iter().enumerate() {
-        cell(&format!("seams[{k}]"), number(*opening));
-    }
-    for (list, forces) in [("supports", supports), ("obstacles", obstacles)] {
-        for (k, force) in forces.iter().enumerate() {
-            for (axis, component) in ["x", "y", "z"].into_iter().zip(force) {
-                cell(&format!("{list}[{k}].{axis}"), number(*component));
+        Value::Array(entries) => {
+            let words: Option<Vec<&str>> = entries.iter().map(Value::as_str).collect();
+            if let Some(words) = words.filter(|words| !words.is_empty()) {
+                return row.push((name.to_owned(), words.join("; ")));
+            }
+            for (k, entry) in entries.iter().enumerate() {
+                let name = format!("{name}[{k}]");
+                let Some(components) = entry.as_array() else {
+                    add_fields(row, &name, entry);
+                    continue;
+                };
+                for (axis, component) in ["x", "y", "z"].iter().zip(components) {
+                    add_fields(row, &format!("{name}.{axis}"), component);
+                }
             }
         }
     }
-}
-
-/// The shortest text from which the same bits are read, with an exponent where that is shorter.
-fn number(value: f64) -> String {
-    serde_json::Value::from(value).to_string()
 }

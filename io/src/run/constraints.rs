@@ -21,7 +21,7 @@ const PART_POINTS: usize = 24;
 /// The curves and surfaces of a scene at the times of the frames, whose positions lie in the box between two
 /// corners.
 pub(super) fn bodies(scene: &Scene, times: &[f64], corners: [[f64; 3]; 2]) -> Vec<Body> {
-    let held = HoldingBody::all(scene, std::iter::once(corners.as_flattened()));
+    let held = HoldingBody::all(scene, corners);
     let body = |held: HoldingBody| {
         let HoldingBody { name, shape, .. } = &held;
         let (name, shape) = (name.as_str(), shape.clone());
@@ -44,9 +44,9 @@ pub(crate) struct HoldingBody {
 }
 
 impl HoldingBody {
-    /// Those of a scene, whose sheet comes to the positions (length 3V) of some frames.
-    pub(crate) fn all<'a>(scene: &Scene, frames: impl Iterator<Item = &'a [f64]>) -> Vec<Self> {
-        let space = Space::of(frames);
+    /// Those of a scene, whose sheet stays in the box between two corners.
+    pub(crate) fn all(scene: &Scene, corners: [[f64; 3]; 2]) -> Vec<Self> {
+        let space = Space::of(corners);
         let body = |(support, entry): (usize, &Support)| {
             let (local, shape) = match &entry.hold {
                 Hold::Pin | Hold::MovingPin(_) => return None,
@@ -89,16 +89,8 @@ struct Space {
 }
 
 impl Space {
-    fn of<'a>(frames: impl Iterator<Item = &'a [f64]>) -> Self {
-        let points = frames.flat_map(|x| x.as_chunks::<3>().0);
-        let (mut low, mut high) = (
-            Vector3::repeat(f64::INFINITY),
-            Vector3::repeat(f64::NEG_INFINITY),
-        );
-        for p in points {
-            let p = Vector3::from(*p);
-            (low, high) = (low.inf(&p), high.sup(&p));
-        }
+    fn of(corners: [[f64; 3]; 2]) -> Self {
+        let [low, high] = corners.map(Vector3::from);
         Self {
             centre: 0.5 * (low + high),
             radius: 0.5 * (high - low).norm(),

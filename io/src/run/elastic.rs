@@ -1,6 +1,6 @@
 //! What a run says of an elastic sheet.
 
-use isosheet_dynamics::{ElasticSheet, SheetModel};
+use isosheet_dynamics::{ElasticSheet, SheetModel, Simulation, State};
 use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -73,9 +73,10 @@ impl ElasticSummary {
         })
     }
 
-    /// Takes in the positions `x` (`3V`, metres) at a time (seconds).
-    pub fn observe(&mut self, model: &SheetModel, t: f64, x: &[f64]) {
-        let Some(deformation) = model.elastic_deformation(x) else {
+    /// Takes in where a simulation is.
+    pub fn observe(&mut self, simulation: &Simulation) {
+        let State { t, x, .. } = simulation.state();
+        let Some(deformation) = simulation.elastic_deformation() else {
             return;
         };
         self.strain = deformation
@@ -88,10 +89,10 @@ impl ElasticSummary {
         if let Some((face, angle)) = deformation.sharpest()
             && angle > before
         {
-            let corners = model.topology().faces()[face];
+            let corners = simulation.model().topology().faces()[face];
             let mean = |k: usize| corners.iter().map(|v| x[3 * v.index() + k]).sum::<f64>() / 3.0;
             let at = [mean(0), mean(1), mean(2)];
-            self.sharpest = Some(Bend { angle, t, at });
+            self.sharpest = Some(Bend { angle, t: *t, at });
         }
     }
 

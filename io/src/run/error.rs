@@ -1,6 +1,6 @@
 //! Why a run cannot go on.
 
-use crate::format::{HistoryError, JsonError, ObjWriteError, TrajectoryError, WriteError};
+use crate::format::{ExportError, HistoryError, JsonError, TrajectoryError, WriteError};
 use crate::scene::{SceneError, SceneFileError};
 use crate::view::ViewError;
 use isosheet_mesh::Advice;
@@ -134,7 +134,7 @@ pub enum RunError {
     Page(#[from] ViewError),
     /// An OBJ file cannot be written.
     #[error(transparent)]
-    Obj(#[from] ObjWriteError),
+    Obj(#[from] ExportError),
 }
 
 impl Advice for RunError {

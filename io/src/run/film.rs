@@ -4,6 +4,7 @@ use super::{Recording, Viewpoint};
 use crate::picture::{
     Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render, render_svg,
 };
+use crate::scene::bounds;
 use isosheet_mesh::Part;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -108,7 +109,7 @@ impl<'a> Film<'a> {
             .iter()
             .flat_map(|x| x.as_chunks::<3>().0.iter().copied())
             .collect();
-        let (low, high) = bounds(&points);
+        let [low, high] = bounds(&points);
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         for frame in &frames {
             for solid in placed(&solids, recording, trajectory.times()[*frame]) {
@@ -118,7 +119,7 @@ impl<'a> Film<'a> {
                 }));
             }
         }
-        let (low, high) = bounds(&points);
+        let [low, high] = bounds(&points);
         let middle = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         let FilmOptions {
@@ -230,13 +231,4 @@ fn placed<'a>(
 ) -> impl Iterator<Item = Solid> + 'a {
     let bodies = solids.iter().zip(&recording.obstacles);
     bodies.map(move |(solid, body)| solid.moved_to(body.motion().pose(t)))
-}
-
-/// The corners of the box around some points.
-fn bounds(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
-    let none = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    points.iter().fold(none, |(low, high), p| {
-        let pick = |a: &[f64; 3], take: fn(f64, f64) -> f64| [0, 1, 2].map(|k| take(a[k], p[k]));
-        (pick(&low, f64::min), pick(&high, f64::max))
-    })
 }

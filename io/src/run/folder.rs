@@ -3,13 +3,14 @@
 use super::{RunError, Summary};
 use crate::format::atomic::is_unfinished;
 use crate::format::{frame_number, input, read_json, write_atomically};
-use crate::scene::{Problem, Scene, SceneError, SceneFile};
+use crate::scene::{Files, Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use std::ffi::OsString;
 use std::fmt;
 use std::fs::{self, File, Metadata, TryLockError};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Locked while a process works in the folder; also marks a folder as that of a run.
 const LOCK: &str = "run.lock";
@@ -31,39 +32,43 @@ impl fmt::Display for SceneHash {
 /// A scene with the bytes of the mesh files that it names.
 pub(crate) struct Material<'a> {
     pub(crate) file: &'a SceneFile,
-    meshes: Vec<(PathBuf, Vec<u8>)>,
+    meshes: Vec<Arc<[u8]>>,
+    /// The scene as the folder of a run has it, which names copies of the mesh files.
+    pub(crate) stored: SceneFile,
     pub(crate) hash: SceneHash,
 }
 
 impl<'a> Material<'a> {
     /// Reads the mesh files of a scene.
-    pub(crate) fn read(file: &'a SceneFile) -> Result<Self, RunError> {
-        let mut meshes = Vec::new();
-        for (key, path) in file.scene().files() {
-            let path = file.folder().join(path);
-            let bytes = input::read(&path).map_err(|e| {
+    pub(crate) fn read(file: &'a SceneFile, files: &mut Files) -> Result<Self, RunError> {
+        let (mut meshes, mut names) = (Vec::new(), Vec::new());
+        for (k, (key, path)) in file.scene().files().into_iter().enumerate() {
+            let bytes = files.contents(&path).map_err(|e| {
+                let path = file.folder().join(&path);
                 let message = format!("cannot read {}: {e}", path.display());
                 let remedy = "check the path, which is relative to the scene";
                 let problem = Problem::new(key.name("path"), message, remedy);
                 SceneError::from(problem).in_text(file.text())
             })?;
-            meshes.push((path, bytes));
+            meshes.push(bytes);
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            names.push(Path::new(MESHES).join(format!("{k}-{name}")));
         }
-        let hash = hash(file.scene(), &meshes);
-        Ok(Self { file, meshes, hash })
+        Ok(Self {
+            hash: hash(file.scene(), &meshes),
+            stored: file.with_files(&names)?,
+            file,
+            meshes,
+        })
     }
 
     /// Copies the mesh files and writes the scene that names the copies.
     fn store(&self, folder: &Path) -> Result<(), RunError> {
-        let mut names = Vec::new();
-        for (k, (path, bytes)) in self.meshes.iter().enumerate() {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let name = Path::new(MESHES).join(format!("{k}-{name}"));
+        let names = self.stored.scene().files().into_iter();
+        for ((_, name), bytes) in names.zip(&self.meshes) {
             write_atomically(&folder.join(&name), |w| w.write_all(bytes))?;
-            names.push(name);
         }
-        let stored = self.file.with_files(&names)?;
-        let text = &stored.text().text;
+        let text = &self.stored.text().text;
         write_atomically(&folder.join(RunFolder::SCENE), |w| {
             w.write_all(text.as_bytes())
         })?;
@@ -71,7 +76,7 @@ impl<'a> Material<'a> {
     }
 }
 
-fn hash(scene: &Scene, meshes: &[(PathBuf, Vec<u8>)]) -> SceneHash {
+fn hash(scene: &Scene, meshes: &[Arc<[u8]>]) -> SceneHash {
     const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
     let mut scene = scene.clone();
     for (_, file) in scene.files_mut() {
@@ -80,7 +85,7 @@ fn hash(scene: &Scene, meshes: &[(PathBuf, Vec<u8>)]) -> SceneHash {
     let mut sum = SUM.digest();
     let canonical = serde_json::to_vec(&scene);
     sum.update(&canonical.expect("numbers, names and lists have a form in JSON"));
-    for (_, bytes) in meshes {
+    for bytes in meshes {
         sum.update(&(bytes.len() as u64).to_le_bytes());
         sum.update(bytes);
     }
@@ -369,8 +374,8 @@ pub(crate) fn stored_scene(root: &Path) -> Result<SceneFile, RunError> {
 /// Refuses a folder with a run of another scene.
 fn check_scene(root: &Path, material: &Material<'_>) -> Result<(), RunError> {
     let stored = stored_scene(root)?;
-    let stored = Material::read(&stored)?.hash;
-    if stored == material.hash {
+    let stored = Material::read(&stored, &mut Files::in_folder(root))?;
+    if stored.hash == material.hash {
         return Ok(());
     }
     Err(RunError::OtherScene {

@@ -170,13 +170,17 @@ impl<'a> FrameField<'a> {
              enough, a sheet that carries no load in its plane has little of it.",
         );
         let shares = |d: ElasticDeformation| (0..d.strain.len()).map(|f| d.share(f)).collect();
+        // What is plastic, and the barrier at the limit, are not in the frames.
+        let memories = model.memories();
+        let deformed = move |x: &[f64]| model.elastic_deformation(x, &memories);
+        let strains = deformed.clone();
         vec![
-            Self::new(strain, |frame| {
-                let deformation = model.elastic_deformation(frame.x);
+            Self::new(strain, move |frame| {
+                let deformation = strains(frame.x);
                 deformation.map(|d| d.strain).unwrap_or_default()
             }),
             Self::new(share, move |frame| {
-                let deformation = model.elastic_deformation(frame.x);
+                let deformation = deformed(frame.x);
                 deformation.map(shares).unwrap_or_default()
             }),
         ]

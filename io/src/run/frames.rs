@@ -79,8 +79,8 @@ impl FrameShape {
         let is_there = |quantity| match quantity {
             Quantity::RodForces => setup.has_rod_forces(),
             Quantity::ContactForces | Quantity::Gaps => setup.contacts.is_some(),
-            Quantity::PlasticAngles => model.plastic_angles().is_some(),
-            Quantity::PlasticCurvatures => model.plastic_curvatures().is_some(),
+            Quantity::PlasticAngles => model.plastic_angles(&model.memories()).is_some(),
+            Quantity::PlasticCurvatures => model.plastic_curvatures(&model.memories()).is_some(),
         };
         let size = |q: Quantity| if is_there(q) { q.size(counts) } else { 0 };
         Self {
@@ -286,6 +286,7 @@ impl Motion for StoredFrames {
                 t: frame.t,
                 x: &frame.x,
                 data: frame.data(),
+                fields: &[],
             });
             if shown.is_break() {
                 break;

@@ -7,6 +7,7 @@ use super::spool::Spool;
 use super::{EndReason, RunError, SheetPlace, Summary, constraints};
 use crate::format::atomic::prepare_folder;
 use crate::format::{Quantity, write_atomically};
+use crate::scene::bounds;
 use crate::view::{PageOptions, Replay, Series, ViewError};
 use std::io::Write;
 use std::path::Path;
@@ -22,14 +23,8 @@ impl Recording {
         if self.trajectory.is_empty() {
             return Err(ViewError::NoFrames);
         }
-        let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         let frames = (0..self.trajectory.len()).filter_map(|k| self.trajectory.frame(k));
-        for p in frames.flat_map(|x| x.as_chunks::<3>().0) {
-            let [low, high] = &mut corners;
-            for k in 0..3 {
-                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
-            }
-        }
+        let corners = bounds(frames.flat_map(|x| x.as_chunks::<3>().0));
         let still = self.still(self.trajectory.times().to_vec(), corners);
         still.with_frames(&self.trajectory, &self.sheet, &self.fields())
     }

@@ -7,9 +7,10 @@ use crate::format::{
     HistoryError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, SeriesBody, Trajectory,
     read_history, read_json, read_loads, read_measures,
 };
-use crate::scene::SceneFile;
+use crate::scene::{SceneFile, Setup};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
+use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Part, Sheet, VertexId};
 use nalgebra::{Isometry3, Vector3};
 use std::ops::ControlFlow;
@@ -28,6 +29,8 @@ pub struct Recording {
     pub parts: Vec<(String, Part)>,
     /// What is modelled, in words.
     pub modelled: Vec<String>,
+    /// What each edge of the sheet is meant to do, see [`Setup::fold_assignments`].
+    pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
     /// Vertices that are pinned, at rest or in motion.
     pub pins: Vec<VertexId>,
     /// Vertices that rods to pins keep in place ([`immobile_vertices`]).
@@ -79,6 +82,15 @@ impl Recording {
     pub(crate) fn open(folder: &Path) -> Result<(Self, RunFrames), RunError> {
         let scene = stored_scene(folder)?;
         let setup = scene.build()?;
+        Self::of(folder, scene, setup)
+    }
+
+    /// The same for the scene in the folder and what it was built to.
+    pub(crate) fn of(
+        folder: &Path,
+        scene: SceneFile,
+        setup: Setup,
+    ) -> Result<(Self, RunFrames), RunError> {
         let summary = folder.join(RunFolder::SUMMARY);
         let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
         let shape = FrameShape::of(&setup);
@@ -94,6 +106,7 @@ impl Recording {
             model: setup.model,
             parts: setup.parts,
             modelled: setup.modelled,
+            fold_assignments: setup.fold_assignments,
             trajectory: Trajectory::new(&setup.sheet),
             shape,
             sheet: setup.sheet,

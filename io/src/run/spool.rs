@@ -2,11 +2,12 @@
 
 use super::RunError;
 use super::frame_field::{FrameField, check_frame};
-use crate::format::{Motion, MotionFrame};
-use crate::view::{Kept, ShownFrame, ShownFrames, ViewError};
+use crate::format::{FrameData, Motion, MotionFrame};
+use crate::scene::bounds;
+use crate::view::ViewError;
 use isosheet_mesh::Sheet;
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +41,7 @@ impl Spool {
             file: tempfile::tempfile_in(folder).map_err(unwritable)?,
             sizes: Vec::new(),
             times: Vec::new(),
-            corners: [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
+            corners: bounds([]),
         };
         let mut file = BufWriter::new(spool.file.try_clone().map_err(unwritable)?);
         let mut done = Ok(());
@@ -69,22 +70,13 @@ impl Spool {
             sizes.push(write_numbers(file, &field.values(frame))?);
         }
         self.sizes = sizes;
+        let own = bounds(frame.x.as_chunks::<3>().0);
+        self.corners = match self.times.is_empty() {
+            true => own,
+            false => bounds(self.corners.iter().chain(&own)),
+        };
         self.times.push(frame.t);
-        let [low, high] = &mut self.corners;
-        for (i, &c) in frame.x.iter().enumerate() {
-            low[i % 3] = low[i % 3].min(c);
-            high[i % 3] = high[i % 3].max(c);
-        }
         Ok(())
-    }
-
-    /// The numbers of a frame.
-    fn read(&self, number: usize, file: &mut BufReader<&File>) -> io::Result<Vec<f64>> {
-        let mut bytes = vec![0; 8 * self.sizes.iter().sum::<usize>()];
-        file.seek(SeekFrom::Start(bytes.len() as u64 * number as u64))?;
-        file.read_exact(&mut bytes)?;
-        let numbers = bytes.as_chunks::<8>().0.iter();
-        Ok(numbers.map(|bytes| f64::from_le_bytes(*bytes)).collect())
     }
 }
 
@@ -96,21 +88,24 @@ fn write_numbers(file: &mut impl Write, numbers: &[f64]) -> io::Result<usize> {
     Ok(numbers.len())
 }
 
-impl ShownFrames for Spool {
+impl Motion for Spool {
     type Error = RunError;
 
     fn each(
         &self,
-        kept: Kept,
-        show: &mut dyn FnMut(&ShownFrame<'_>) -> ControlFlow<()>,
+        show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
     ) -> Result<(), RunError> {
+        let unreadable = |source| RunError::Read {
+            path: self.folder.clone(),
+            source,
+        };
         let mut file = BufReader::new(&self.file);
-        for number in kept.numbers() {
-            let numbers = self.read(number, &mut file);
-            let numbers = numbers.map_err(|source| RunError::Read {
-                path: self.folder.clone(),
-                source,
-            })?;
+        file.rewind().map_err(unreadable)?;
+        let mut bytes = vec![0; 8 * self.sizes.iter().sum::<usize>()];
+        for (number, &t) in self.times.iter().enumerate() {
+            file.read_exact(&mut bytes).map_err(unreadable)?;
+            let numbers = bytes.as_chunks::<8>().0.iter();
+            let numbers: Vec<f64> = numbers.map(|bytes| f64::from_le_bytes(*bytes)).collect();
             let mut rest = &numbers[..];
             let lists = self.sizes.iter().map(|&size| {
                 let (list, further) = rest.split_at(size);
@@ -118,10 +113,16 @@ impl ShownFrames for Spool {
                 list
             });
             let lists: Vec<&[f64]> = lists.collect();
-            let Some((x, values)) = lists.split_first() else {
+            let Some((x, fields)) = lists.split_first() else {
                 return Err(ViewError::NoFrames.into());
             };
-            let frame = ShownFrame { number, x, values };
+            let frame = MotionFrame {
+                number,
+                t,
+                x,
+                data: FrameData::default(),
+                fields,
+            };
             if show(&frame).is_break() {
                 break;
             }

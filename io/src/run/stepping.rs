@@ -3,15 +3,13 @@
 use super::checkpoint::{self, Progress};
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
-use super::folder::RunFolder;
-use super::frames::FrameFile;
+use super::folder::{RunFolder, SceneHash};
+use super::frames::{FrameFile, FrameShape};
 use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::format::{MeasureRow, MeasureWriter};
-use crate::scene::{
-    Gauge, Origins, Scene, SceneError, SceneFile, SupportForces, Targets, check_positions,
-};
+use crate::scene::{Facts, Scene, SceneError, SceneFile, SupportForces, check_positions};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::contact::ActiveContacts;
 use isosheet_dynamics::{
@@ -20,23 +18,26 @@ use isosheet_dynamics::{
 use nalgebra::Vector3;
 use std::time::Instant;
 
+/// What is known of a run before its first step.
+pub(crate) struct Plan<'a> {
+    pub(crate) file: &'a SceneFile,
+    pub(crate) hash: SceneHash,
+    pub(crate) facts: Facts,
+    pub(crate) shape: FrameShape,
+}
+
 /// A run between two steps.
 pub(crate) struct Stepping<'a> {
-    pub(crate) file: &'a SceneFile,
-    pub(crate) folder: &'a RunFolder,
+    plan: &'a Plan<'a>,
+    folder: &'a RunFolder,
     pub(crate) simulation: Simulation,
-    /// The positions at the start.
-    pub(crate) start: Vec<f64>,
-    pub(crate) origins: Origins,
-    pub(crate) supports: SupportForces,
-    pub(crate) targets: Targets,
-    pub(crate) history: HistoryWriter,
+    supports: SupportForces,
+    history: HistoryWriter,
     /// The loads of supports and obstacles, if there are any.
-    pub(crate) loads: Option<LoadWriter>,
-    pub(crate) gauges: Vec<Gauge>,
-    /// What the gauges show, if there are any.
-    pub(crate) measures: Option<MeasureWriter>,
-    pub(crate) frames: FrameFile,
+    loads: Option<LoadWriter>,
+    /// What the measures of the scene show, if there are any.
+    measures: Option<MeasureWriter>,
+    frames: FrameFile,
     pub(crate) progress: Progress,
     /// Since when the wall time in the progress counts.
     pub(crate) clock: Instant,
@@ -114,9 +115,66 @@ fn dissipated(model: &SheetModel, plastic: f64) -> Option<f64> {
     model.can_yield().then_some(plastic)
 }
 
-impl Stepping<'_> {
+impl<'a> Stepping<'a> {
+    /// A run at its start, or after `saved` steps, of which its folder has the files.
+    pub(crate) fn begin(
+        plan: &'a Plan<'a>,
+        folder: &'a RunFolder,
+        simulation: Simulation,
+        saved: Option<Progress>,
+        clock: Instant,
+    ) -> Result<Self, RunError> {
+        let (scene, facts) = (plan.file.scene(), &plan.facts);
+        let bears_loads = !scene.support.is_empty() || !scene.obstacle.is_empty();
+        let path = |name| folder.path(name);
+        let [history, loads, measures, frames] = [
+            RunFolder::HISTORY,
+            RunFolder::LOADS,
+            RunFolder::MEASURES,
+            RunFolder::FRAMES,
+        ]
+        .map(path);
+        let is_new = saved.is_none();
+        let (history, loads, measures, frames) = match &saved {
+            None => (
+                HistoryWriter::create(&history)?,
+                bears_loads.then(|| LoadWriter::create(&loads)),
+                (!facts.measures.is_empty()).then(|| MeasureWriter::create(&measures)),
+                FrameFile::create(&frames)?,
+            ),
+            Some(saved) => (
+                HistoryWriter::resume(&history, saved.history)?,
+                saved.loads.map(|of| LoadWriter::resume(&loads, of)),
+                saved
+                    .measures
+                    .map(|of| MeasureWriter::resume(&measures, of)),
+                FrameFile::resume(&frames, saved.frames, plan.shape)?,
+            ),
+        };
+        let mut stepping = Self {
+            supports: SupportForces::new(facts.origins.clone(), &simulation, scene.support.len()),
+            history,
+            loads: loads.transpose()?,
+            measures: measures.transpose()?,
+            frames,
+            progress: saved.unwrap_or_else(|| Progress {
+                scene: plan.hash.to_string(),
+                version: env!("CARGO_PKG_VERSION").into(),
+                ..Progress::default()
+            }),
+            plan,
+            folder,
+            simulation,
+            clock,
+        };
+        if is_new {
+            stepping.record_start()?;
+        }
+        Ok(stepping)
+    }
+
     /// Records the state at the start.
-    pub(crate) fn record_start(&mut self) -> Result<(), RunError> {
+    fn record_start(&mut self) -> Result<(), RunError> {
         self.progress.elastic = ElasticSummary::of(self.simulation.model());
         self.observe_elastic();
         self.progress.start_energy = self.simulation.energy();
@@ -135,9 +193,8 @@ impl Stepping<'_> {
         let rod_forces = self.simulation.rod_forces().unwrap_or_default();
         let contact_forces = self.simulation.contact_forces().unwrap_or_default();
         let gaps = self.simulation.vertex_gaps().unwrap_or_default();
-        let model = self.simulation.model();
-        let plastic_angles = model.plastic_angles().unwrap_or_default();
-        let plastic_curvatures = model.plastic_curvatures().unwrap_or_default();
+        let plastic_angles = self.simulation.plastic_angles().unwrap_or_default();
+        let plastic_curvatures = self.simulation.plastic_curvatures().unwrap_or_default();
         let data = FrameData {
             rod_forces: &rod_forces,
             contact_forces: &contact_forces,
@@ -182,7 +239,7 @@ impl Stepping<'_> {
             return Ok(());
         };
         let state = self.simulation.state();
-        for gauge in &self.gauges {
+        for gauge in &self.plan.facts.measures {
             let row = MeasureRow {
                 t: state.t,
                 name: gauge.name.clone(),
@@ -205,7 +262,7 @@ impl Stepping<'_> {
     /// Takes and records a step. Says what has been reached, or nothing if the watch gave the step up: then a
     /// checkpoint of the state before it is written.
     pub(crate) fn step(&mut self, watch: &mut dyn Watch) -> Result<Option<Tick>, RunError> {
-        let scene = self.file.scene();
+        let scene = self.plan.file.scene();
         let number = self.progress.steps + 1;
         let h = step_length(scene, number);
         let before = self.simulation.checkpoint();
@@ -237,14 +294,18 @@ impl Stepping<'_> {
                 return Ok(None);
             }
             Err(error) => {
-                let problem =
-                    SceneError::from(self.origins.of_failed_step(&error, &self.simulation));
-                return Err(RunError::Step(problem.in_text(self.file.text())));
+                let problem = SceneError::from(
+                    self.plan
+                        .facts
+                        .origins
+                        .of_failed_step(&error, &self.simulation),
+                );
+                return Err(RunError::Step(problem.in_text(self.plan.file.text())));
             }
         };
         let (model, x) = (self.simulation.model(), &self.simulation.state().x);
         if let Err(problem) = check_positions(model, x) {
-            let problem = SceneError::from(problem).in_text(self.file.text());
+            let problem = SceneError::from(problem).in_text(self.plan.file.text());
             return Err(RunError::Step(problem));
         }
         self.progress.steps = number;
@@ -292,8 +353,7 @@ impl Stepping<'_> {
 
     fn observe_elastic(&mut self) {
         if let Some(elastic) = &mut self.progress.elastic {
-            let state = self.simulation.state();
-            elastic.observe(self.simulation.model(), state.t, &state.x);
+            elastic.observe(&self.simulation);
         }
     }
 
@@ -304,7 +364,7 @@ impl Stepping<'_> {
 
     /// Whether a condition to stop holds after a step.
     fn end_reason(&mut self, report: &StepReport) -> Option<EndReason> {
-        let scene = self.file.scene();
+        let scene = self.plan.file.scene();
         if report.taut.is_some() {
             return Some(EndReason::Taut);
         }
@@ -327,7 +387,7 @@ impl Stepping<'_> {
     /// Largest distance of a vertex from its place at the start, metres.
     fn displacement(&self) -> f64 {
         let now = self.simulation.state().x.as_chunks::<3>().0;
-        let pairs = now.iter().zip(self.start.as_chunks::<3>().0);
+        let pairs = now.iter().zip(self.plan.facts.start.as_chunks::<3>().0);
         let distances = pairs.map(|(p, q)| (Vector3::from(*p) - Vector3::from(*q)).norm());
         distances.fold(0.0, f64::max)
     }
@@ -358,7 +418,9 @@ impl Stepping<'_> {
             taut: report.taut.as_ref().map(|demand| demand.to_string()),
             residuals: {
                 let State { t, x, .. } = self.simulation.state();
-                self.targets
+                self.plan
+                    .facts
+                    .targets
                     .residuals(self.simulation.model().topology(), *t, x)
             },
         }

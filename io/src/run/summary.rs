@@ -134,15 +134,3 @@ pub enum EndReason {
     /// The supports ask for more than the lengths allow (`method.taut`).
     Taut,
 }
-
-impl EndReason {
-    /// The name, as files have it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Rest => "rest",
-            Self::SupportForce => "support_force",
-            Self::Taut => "taut",
-        }
-    }
-}

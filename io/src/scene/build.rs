@@ -6,14 +6,18 @@ use super::folding::{FLAT_STIFFNESS, FoldTargets};
 use super::in_words::{elastic_in_words, materials_in_words};
 use super::key::Key;
 use super::mesh::Mesh;
-use super::placed::{PlacedSheet, PlacedSheets};
+use super::mesh_file::Files;
+use super::obstacles;
+use super::placed::{Form, PlacedSheet, PlacedSheets};
 use super::pose::Motion;
 use super::problem::Problem;
 use super::sheet::{Bending, Elasticity, Isometry};
+use super::slots::Slots;
 use super::step_path::check_step;
 use super::supports::{Hold, frame_motion};
 use super::targets::{DrivenCrease, Targets};
 use super::{Air, Measure, Origins, Scene, Setup};
+use isosheet_collide as collide;
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
     AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, PAPER_GRAVITY,
@@ -26,6 +30,7 @@ use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
+use std::sync::Arc;
 
 impl Scene {
     /// Makes everything that a simulation needs. Masses are lumped: a third of that of each face at each of
@@ -35,15 +40,20 @@ impl Scene {
     /// [`SceneError`], with all problems of the values or the first one of what is made of them.
     pub fn build(&self, folder: &Path) -> Result<Setup, SceneError> {
         self.validate()?;
-        let mut builder = Builder::new(self, folder)?;
+        self.build_with(&mut Kept::in_folder(folder))
+    }
+
+    /// The same for a scene that has been checked, with what is kept of it.
+    pub(super) fn build_with(&self, kept: &mut Kept) -> Result<Setup, SceneError> {
+        let mut builder = Builder::new(self, kept)?;
         builder.add_forces()?;
         builder.add_supports()?;
         builder.mend_lengths();
-        builder.add_folds(folder)?;
+        builder.add_folds()?;
         builder.add_isometry()?;
         builder.perturb()?;
         builder.add_glue()?;
-        let (contacts, obstacles) = builder.contacts(folder)?;
+        let (contacts, obstacles) = builder.contacts()?;
         let gauge = |(k, measure): (usize, &Measure)| {
             let key = Key::root().name("measure").entry(k);
             measure.gauge(&key, &builder.sheets)
@@ -72,7 +82,7 @@ fn off_flat(
     let driven = targets.creases.iter().map(|(e, angle)| (*e, *angle, 1.0));
     let flat = targets.flat.iter().map(|e| (*e, 0.0, FLAT_STIFFNESS));
     let edges: Vec<_> = driven.chain(flat).collect();
-    start_of_folding(&own.placed, &mass, &pins, x, &edges)
+    start_of_folding(&own.form.placed, &mass, &pins, x, &edges)
 }
 
 /// Relative error of edge lengths to which positions are projected: that of accepted steps.
@@ -82,9 +92,33 @@ const EXACT: f64 = 1e-12;
 /// coordinates of a sheet of size 1 by 5e-7, and edges of a hundredth of the sheet by 1e-4 of their length.
 const ROUNDING: f64 = 1e-4;
 
+/// What is kept of a scene, so that it need not be made again when the scene is built again: while it is the
+/// same, or after changes between which the sheets have the same forms.
+#[derive(Debug, Default)]
+pub(crate) struct Kept {
+    pub(crate) files: Files,
+    /// Of each sheet, once they have been made.
+    forms: Vec<Arc<Form>>,
+    /// The plate of each sheet that does not yield, by rigidity, clamped vertices and creases.
+    plates: Slots<(f64, Vec<VertexId>, Vec<EdgeId>), Arc<PlateBending>>,
+    /// Those of the obstacles.
+    shapes: Slots<obstacles::Shape, collide::Shape>,
+}
+
+impl Kept {
+    /// Nothing yet; paths of files are relative to `folder`.
+    pub(crate) fn in_folder(folder: &Path) -> Self {
+        Self {
+            files: Files::in_folder(folder),
+            ..Self::default()
+        }
+    }
+}
+
 /// A model on its way.
 struct Builder<'a> {
     scene: &'a Scene,
+    kept: &'a mut Kept,
     sheets: PlacedSheets<'a>,
     /// Positions at the start, `3V`.
     x: Vec<f64>,
@@ -102,9 +136,9 @@ fn at<E: Advice>(key: &Key) -> impl Fn(E) -> SceneError {
 }
 
 impl<'a> Builder<'a> {
-    fn new(scene: &'a Scene, folder: &Path) -> Result<Self, SceneError> {
+    fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Self, SceneError> {
         let key = Key::root().name("sheet");
-        let sheets = PlacedSheets::new(&scene.sheet, folder)?;
+        let sheets = PlacedSheets::new(&scene.sheet, &mut kept.forms, &mut kept.files)?;
         let damping = scene.sheet[0].damping;
         let mass = sheets.mass(&scene.weight)?;
         let model = SheetModel::with_mass(&sheets.union, mass)
@@ -119,6 +153,7 @@ impl<'a> Builder<'a> {
         }
         Ok(Self {
             scene,
+            kept,
             x: sheets.start.clone(),
             sheets,
             model: Some(model),
@@ -279,10 +314,10 @@ impl<'a> Builder<'a> {
     }
 
     /// Bending stiffness and the springs of folds, sheet by sheet.
-    fn add_folds(&mut self, folder: &Path) -> Result<(), SceneError> {
+    fn add_folds(&mut self) -> Result<(), SceneError> {
         let mut modelled = BTreeSet::new();
         for number in 0..self.sheets.list.len() {
-            let springs = self.fold_springs(number, folder)?;
+            let springs = self.fold_springs(number)?;
             modelled.extend(self.add_bending(number, &springs.creases())?);
             self.add_springs(number, springs)?;
         }
@@ -317,10 +352,11 @@ impl<'a> Builder<'a> {
         let PlacedSheet {
             of,
             key,
-            placed,
+            form,
             part,
             ..
         } = &self.sheets.list[number];
+        let placed = &form.placed;
         let yields = of.yields();
         let [key, yield_key] = ["bending", "yield"].map(|name| key.name(name));
         let mut modelled = Vec::new();
@@ -333,14 +369,23 @@ impl<'a> Builder<'a> {
                 let pins = self.model().pins().into_iter();
                 let own = pins.filter(|v| part.vertices.contains(&v.index()));
                 let clamped: Vec<VertexId> = own.map(|v| part.local_vertex(v)).collect();
-                let plate = PlateBending::creased(placed, rigidity, &clamped, creases);
-                let mut plate = plate.map_err(at(&key))?;
-                if let Some(yields) = yields {
-                    let yielding = plate.with_yield(placed, yields);
-                    plate = yielding.map_err(at(&yield_key))?;
-                }
+                let plate = |clamped: &[VertexId], creases: &[EdgeId]| {
+                    PlateBending::creased(placed, rigidity, clamped, creases).map_err(at(&key))
+                };
                 modelled.push("bending stiffness of a plate");
-                self.add_potential_of(number, plate);
+                if let Some(yields) = yields {
+                    let yielding = plate(&clamped, creases)?.with_yield(placed, yields);
+                    self.add_potential_of(number, yielding.map_err(at(&yield_key))?);
+                } else {
+                    let made_of = (rigidity, clamped, creases.to_vec());
+                    let shared = self
+                        .kept
+                        .plates
+                        .get(number, made_of, |(_, clamped, creases)| {
+                            plate(clamped, creases).map(Arc::new)
+                        });
+                    self.add_potential_of(number, shared?);
+                }
             }
             Bending::Hinges { rigidity } => {
                 let springs = CreaseSprings::bending_beside(placed, rigidity, creases);
@@ -357,7 +402,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The springs of the creases and of `[folding]` in one of the sheets, by its own edges.
-    fn fold_springs(&mut self, number: usize, folder: &Path) -> Result<FoldSprings, SceneError> {
+    fn fold_springs(&mut self, number: usize) -> Result<FoldSprings, SceneError> {
         let mut springs = FoldSprings::default();
         let own = &self.sheets.list[number];
         let is_own = |name: Option<&str>, key: &Key, what| {
@@ -368,7 +413,7 @@ impl<'a> Builder<'a> {
         for (k, crease) in self.scene.crease.iter().enumerate() {
             let key = Key::root().name("crease").entry(k);
             if is_own(crease.sheet.as_deref(), &key, "the edges")? {
-                let found = crease.springs(&key, &own.unplaced, own.roles.as_ref())?;
+                let found = crease.springs(&key, &own.form.unplaced, own.form.roles.as_ref())?;
                 let driven = DrivenCrease::of(k, &found, |e| own.part.edge(e));
                 self.targets.creases.extend(driven);
                 springs.add(key, crease.folds(), found);
@@ -377,7 +422,8 @@ impl<'a> Builder<'a> {
         if let (Some(folding), Mesh::File(file)) = (&self.scene.folding, &own.of.mesh) {
             let key = Key::root().name("folding");
             if is_own(folding.sheet.as_deref(), &key, "the creases")? {
-                let mut targets = folding.targets(&key, file, &own.unplaced, folder)?;
+                let mut targets =
+                    folding.targets(&key, file, &own.form.unplaced, &mut self.kept.files)?;
                 let model = self.model.as_ref().expect("it is there between changes");
                 let x = &mut self.x[own.part.coordinates()];
                 if own.of.isometry() == Isometry::Rods
@@ -387,20 +433,20 @@ impl<'a> Builder<'a> {
                     self.modelled
                         .push("a start off the flat state, towards the angles".into());
                 }
-                let [driven, flat] = folding.springs(&targets, own.of, &own.placed, x);
+                let [driven, flat] = folding.springs(&targets, own.of, &own.form.placed, x);
                 springs.add(key.clone(), EdgeFolds::Yes, driven);
                 springs.add(key, EdgeFolds::No, flat);
                 targets.renumber(|e| own.part.edge(e));
                 self.targets.folding = Some(targets);
             }
         }
-        springs.put_in_sheet(&own.placed, own.of.bending().rigidity());
+        springs.put_in_sheet(&own.form.placed, own.of.bending().rigidity());
         Ok(springs)
     }
 
     fn add_springs(&mut self, number: usize, springs: FoldSprings) -> Result<(), SceneError> {
         for (key, springs) in springs.into_groups() {
-            let topology = self.sheets.list[number].placed.topology();
+            let topology = self.sheets.list[number].form.placed.topology();
             let springs = CreaseSprings::new(topology, springs);
             self.add_potential_of(number, springs.map_err(at(&key))?);
         }
@@ -412,7 +458,7 @@ impl<'a> Builder<'a> {
         for PlacedSheet {
             of,
             key,
-            placed,
+            form,
             part,
             ..
         } in &self.sheets.list
@@ -424,7 +470,7 @@ impl<'a> Builder<'a> {
                 Some(_) => "isometry",
                 None => "material",
             });
-            let sheet = elastic_sheet(placed, elasticity, of.bending().rigidity());
+            let sheet = elastic_sheet(&form.placed, elasticity, of.bending().rigidity());
             let sheet = sheet.map_err(at(&key))?;
             let words = elastic_in_words(&sheet);
             if !self.modelled.contains(&words) {
@@ -538,6 +584,7 @@ impl<'a> Builder<'a> {
             several => several.iter().filter_map(part).collect(),
         };
         let of_sheets = self.sheets.warnings(self.scene);
+        let fold_assignments = self.sheets.fold_assignments();
         Setup {
             start,
             parts,
@@ -550,6 +597,7 @@ impl<'a> Builder<'a> {
             modelled: self.modelled,
             targets: self.targets,
             measures: Vec::new(),
+            fold_assignments,
             of_sheets,
             origins: self.origins,
             text: None,
@@ -560,7 +608,8 @@ impl<'a> Builder<'a> {
     /// one place at rest and at the start. What has them in common may stay together, and part.
     fn cuts(&self) -> Vec<[VertexId; 2]> {
         let mut pairs = Vec::new();
-        for PlacedSheet { placed, part, .. } in &self.sheets.list {
+        for PlacedSheet { form, part, .. } in &self.sheets.list {
+            let placed = &form.placed;
             let start = self.x[part.coordinates()].as_chunks::<3>().0;
             let rest = placed.positions().as_chunks::<3>().0;
             let mut first_there = HashMap::new();
@@ -579,7 +628,7 @@ impl<'a> Builder<'a> {
         pairs
     }
 
-    fn contacts(&mut self, folder: &Path) -> Result<(Option<Contacts>, Vec<Obstacle>), SceneError> {
+    fn contacts(&mut self) -> Result<(Option<Contacts>, Vec<Obstacle>), SceneError> {
         let (scene, key) = (self.scene, Key::root());
         if !scene.has_contact() {
             return Ok((None, Vec::new()));
@@ -593,7 +642,11 @@ impl<'a> Builder<'a> {
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);
-            let body = obstacle.build(&key, folder)?;
+            let Kept { files, shapes, .. } = &mut *self.kept;
+            let shape = shapes.get(k, obstacle.shape.clone(), |shape| {
+                shape.build(&key.name("shape"), files)
+            });
+            let body = obstacle.body(shape?, &key)?;
             obstacles.push(body.clone());
             let coefficients = Coefficients::equal(obstacle.friction);
             contacts = contacts.with_body(body, coefficients).map_err(at(&key))?;

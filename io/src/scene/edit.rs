@@ -2,8 +2,47 @@
 
 use super::key::{Key, KeyError, KeyPart};
 use isosheet_mesh::Advice;
+use std::fmt;
+use std::str::FromStr;
 use thiserror::Error;
 use toml_edit::{DocumentMut, Item, Table, Value};
+
+/// An edit of a scene: a key and its new value. As a text it is `key=value`.
+///
+/// ```
+/// use isosheet_io::scene::Edit;
+///
+/// let edit: Edit = "obstacle[0].friction=0.3".parse()?;
+/// assert_eq!(edit.value.as_float(), Some(0.3));
+/// # Ok::<(), isosheet_io::scene::EditError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edit {
+    /// The key.
+    pub key: Key,
+    /// The new value.
+    pub value: toml::Value,
+}
+
+impl FromStr for Edit {
+    type Err = EditError;
+
+    /// A value that is not TOML is taken as a string, so that names need no quotes.
+    fn from_str(edit: &str) -> Result<Self, EditError> {
+        let (key, value) = split(edit).map_err(|problem| EditError {
+            edit: edit.to_owned(),
+            problem,
+        })?;
+        let value = value.parse().unwrap_or_else(|_| value.into());
+        Ok(Self { key, value })
+    }
+}
+
+impl fmt::Display for Edit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.key, self.value)
+    }
+}
 
 /// An edit that cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -78,15 +117,19 @@ pub(crate) fn apply(document: &mut DocumentMut, edits: &[String]) -> Result<(), 
 }
 
 fn make(document: &mut DocumentMut, edit: &str) -> Result<(), EditProblem> {
-    let (key, value) = edit.split_once('=').ok_or(EditProblem::Form)?;
-    let key: Key = key.trim().parse()?;
-    let value = value.trim();
+    let (key, value) = split(edit)?;
     let value: Value = value.parse().unwrap_or_else(|_| Value::from(value));
     set(document.as_item_mut(), &key, value)
 }
 
+/// Key and value of an edit.
+fn split(edit: &str) -> Result<(Key, &str), EditProblem> {
+    let (key, value) = edit.split_once('=').ok_or(EditProblem::Form)?;
+    Ok((key.trim().parse()?, value.trim()))
+}
+
 /// Sets the value at a key; tables on the way are made where they are missing.
-fn set(mut item: &mut Item, key: &Key, value: Value) -> Result<(), EditProblem> {
+pub(super) fn set(mut item: &mut Item, key: &Key, value: Value) -> Result<(), EditProblem> {
     let mut place = Key::root();
     for part in key.parts() {
         let list = place.clone();

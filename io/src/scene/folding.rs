@@ -2,19 +2,19 @@
 
 use super::Mesh;
 use super::key::Key;
-use super::mesh::MeshFile;
+use super::mesh_file::{Files, MeshFile};
 use super::problem::{Checks, Problem};
 use super::profile::{Change, Course, Profile};
 use super::refined::Refined;
 use super::sheet::{Isometry, Sheet as SheetOfScene};
 use super::unit::Unit;
 use crate::format::{EdgeAssignment, FoldFrame};
-use isosheet_dynamics::{CreaseSpring, RestAngle};
+use isosheet_dynamics::{CreaseSpring, FLAT, RestAngle};
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, fold_angle};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
+use std::sync::Arc;
 
 /// Folding to the angles of the FOLD file that is the mesh of the sheet.
 ///
@@ -71,10 +71,6 @@ fn whole() -> f64 {
 /// creases of a panel together turn one of its flat edges by a few degrees at most.
 pub(super) const FLAT_STIFFNESS: f64 = 50.0;
 
-/// Sine of the fold angles up to which a frame is in a plane: above the round-off of coordinates of seven
-/// digits in faces that are a hundredth of the sheet, below any fold that is seen.
-const IN_PLANE: f64 = 1e-4;
-
 /// Where the edges of a sheet are driven.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FoldTargets {
@@ -122,7 +118,7 @@ impl FoldTargets {
             residual.largest = residual.largest.max(d);
             squares += d * d;
             let angle = fold_angle(t, x, e).unwrap_or(0.0);
-            residual.wrong_side += usize::from(angle.sin() * target < -IN_PLANE * target.abs());
+            residual.wrong_side += usize::from(angle.sin() * target < -FLAT * target.abs());
         }
         residual.rms = (squares / self.creases.len().max(1) as f64).sqrt();
         for &e in &self.flat {
@@ -153,23 +149,26 @@ impl Folding {
         key: &Key,
         file: &MeshFile,
         refined: &Refined,
-        folder: &Path,
+        files: &mut Files,
     ) -> Result<FoldTargets, Problem> {
         let t = refined.mesh().topology();
-        let (mut frame, name) = match &self.frame {
+        let (frame, name) = match &self.frame {
             None => {
                 let key = Key::root().name("sheet.mesh.file");
-                (
-                    file.read(&key, folder)?,
-                    "the frame of the sheet".to_owned(),
-                )
+                (files.read(file, &key)?, "the frame of the sheet".to_owned())
             }
-            Some(frame) => {
-                let read = file.read_frame(Some(frame), folder);
+            Some(number) => {
+                let frame = Some(number.clone());
+                let file = MeshFile {
+                    frame,
+                    ..file.clone()
+                };
+                let read = files.mesh(&file);
                 let read = read.map_err(|e| Problem::from_error(key.name("frame"), &e))?;
-                (read, format!("frame {frame}"))
+                (read, format!("frame {number}"))
             }
         };
+        let mut frame = Arc::unwrap_or_clone(frame);
         if frame.vertex_count() != t.vertex_count() {
             let message = format!(
                 "{name} has {} vertices, and the sheet has {}",
@@ -277,5 +276,5 @@ pub(super) fn off_target(topology: &Topology, x: &[f64], edge: EdgeId, target: f
 /// Whether the sheet is in a plane at positions `x`: every edge is flat or folded shut.
 fn is_plane(t: &Topology, x: &[f64]) -> bool {
     let mut angles = t.edge_ids().filter_map(|e| fold_angle(t, x, e));
-    angles.all(|angle| angle.sin().abs() < IN_PLANE)
+    angles.all(|angle| angle.sin().abs() < FLAT)
 }

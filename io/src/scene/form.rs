@@ -3,7 +3,7 @@
 
 use super::key::{Key, KeyPart};
 use super::problem::Problem;
-use super::reference::{as_written, schema};
+use super::schema::{as_written, schema};
 use super::toml_problem::suggestion;
 use serde_json::Value as Schema;
 use std::collections::BTreeMap;

@@ -109,7 +109,7 @@ impl Glue {
         let names = |i: usize| self.sheets.as_ref().map(|names| names[i].as_str());
         let side = |i: usize, name: &str, side: &SeamSide| {
             let sheet = all.one(names(i), key, "the sides of the seam")?;
-            let found = side.vertices(sheet.unplaced.sheet(), &key.name(name))?;
+            let found = side.vertices(sheet.form.unplaced.sheet(), &key.name(name))?;
             let found = found.into_iter().map(|v| sheet.part.vertex(v));
             Ok::<_, Problem>(found.collect::<Vec<_>>())
         };

@@ -66,6 +66,20 @@ impl Key {
         Self(parts)
     }
 
+    /// The value at the place in a scene, if there is one.
+    pub fn find<'a>(&self, scene: &'a toml::Value) -> Option<&'a toml::Value> {
+        self.0.iter().try_fold(scene, |value, part| match part {
+            KeyPart::Name(name) => value.get(name.as_str()),
+            KeyPart::Entry(number) => value.get(*number),
+        })
+    }
+
+    /// The place that this one is in, unless it is the scene as a whole.
+    pub(crate) fn above(&self) -> Option<Self> {
+        let (_, above) = self.0.split_last()?;
+        (!above.is_empty()).then(|| Self(above.to_vec()))
+    }
+
     /// The way from the root.
     pub fn parts(&self) -> &[KeyPart] {
         &self.0

@@ -4,17 +4,19 @@ mod hand;
 
 pub use hand::HoldError;
 
-use super::edit::{EditError, EditProblem};
-use super::key::{Key, KeyPart};
+use super::build::Kept;
+use super::changed::edited;
+use super::edit::{Edit, EditError, EditProblem};
+use super::key::Key;
+use super::profile::{Change, Course};
+use super::setup::Facts;
 use super::sheets::sheet_key;
 use super::{
-    Method, Origins, Problem, Profile, Scene, SceneError, SceneFile, SceneFileError, Setup,
-    SupportForces,
+    Method, Problem, Profile, Scene, SceneError, SceneFile, SceneFileError, Setup, SupportForces,
 };
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
 use isosheet_mesh::{Advice, Part, Sheet};
-use serde::Deserialize;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -39,7 +41,7 @@ use thiserror::Error;
 /// let mut live = LiveScene::start(SceneFile::parse(text.into(), Path::new("cloth.toml"), &[])?)?;
 /// live.step(0.01)?;
 /// // The corner rises by 1 mm until t = 0.02 s, and weight has gone.
-/// live.change(&["forces.gravity=[0, 0, 0]".into()])?;
+/// live.change(&["forces.gravity=[0, 0, 0]".parse()?])?;
 /// live.drive(&[("support[0].hold.moving_pin.z".parse()?, 0.001)], 0.02)?;
 /// live.step(0.01)?;
 /// assert!((live.simulation().state().x[62] - 0.001).abs() < 1e-15);
@@ -48,6 +50,7 @@ use thiserror::Error;
 /// ```
 pub struct LiveScene {
     file: SceneFile,
+    kept: Kept,
     facts: Facts,
     supports: SupportForces,
     simulation: Simulation,
@@ -76,36 +79,13 @@ impl Advice for FailedStep {
     }
 }
 
-/// The facts of a setup that outlive it.
-struct Facts {
-    sheet: Sheet,
-    parts: Vec<(String, Part)>,
-    obstacles: Vec<Obstacle>,
-    modelled: Vec<String>,
-    origins: Origins,
-}
-
-impl Facts {
-    fn of(setup: &Setup) -> Self {
-        Self {
-            sheet: setup.sheet.clone(),
-            parts: setup.parts.clone(),
-            obstacles: setup.obstacles.clone(),
-            modelled: setup.modelled.clone(),
-            origins: setup.origins.clone(),
-        }
-    }
-}
-
 impl LiveScene {
     /// The scene at its start.
     ///
     /// # Errors
     /// [`SceneError`], shown at its place in the text.
     pub fn start(file: SceneFile) -> Result<Self, SceneError> {
-        let setup = file.build()?;
-        let facts = Facts::of(&setup);
-        Ok(Self::new(file, facts, setup.start()?))
+        Self::begin(file, Setup::start)
     }
 
     /// The scene at a checkpoint of its simulation, bit for bit. A scene that was changed is resumed with the
@@ -114,20 +94,25 @@ impl LiveScene {
     /// # Errors
     /// [`SceneError`] if the checkpoint belongs to another scene.
     pub fn resume(file: SceneFile, checkpoint: Checkpoint) -> Result<Self, SceneError> {
-        let setup = file.build()?;
-        let facts = Facts::of(&setup);
-        Ok(Self::new(file, facts, setup.resume(checkpoint)?))
+        Self::begin(file, |setup| setup.resume(checkpoint))
     }
 
-    fn new(file: SceneFile, facts: Facts, simulation: Simulation) -> Self {
-        let count = file.scene().support.len();
-        Self {
-            supports: SupportForces::new(facts.origins.clone(), &simulation, count),
+    fn begin(
+        file: SceneFile,
+        begin: impl FnOnce(Setup) -> Result<Simulation, SceneError>,
+    ) -> Result<Self, SceneError> {
+        let mut kept = Kept::in_folder(file.folder());
+        let setup = file.build_with(&mut kept)?;
+        let facts = setup.facts();
+        let simulation = begin(setup)?;
+        Ok(Self {
+            supports: supports(file.scene(), &facts, &simulation),
             file,
+            kept,
             facts,
             simulation,
             hand: None,
-        }
+        })
     }
 
     /// The scene with all changes.
@@ -200,39 +185,26 @@ impl LiveScene {
         })
     }
 
-    /// Changes the scene between two steps by edits of the form `key=value`, in force from now on. What acts
-    /// on the sheet may change: forces, stiffnesses and angles of creases, damping, air, bodies, friction,
-    /// the motions of supports; what it is may not. Where supports are is no matter of a change, they do not
-    /// jump: see [`LiveScene::drive`]. What a change does at once counts as work
-    /// ([`Simulation::changed_from`]). A change costs what building the scene costs.
+    /// Changes the scene between two steps by edits, in force from now on. What acts on the sheet may change:
+    /// forces, stiffnesses and angles of creases, damping, air, bodies, friction, the motions of supports; what
+    /// it is may not. Where supports are is no matter of a change, they do not jump: see [`LiveScene::drive`].
+    /// What a change does at once counts as work ([`Simulation::changed_from`]). Meshes, plates and bodies that
+    /// it does not touch are not made again.
     ///
     /// # Errors
     /// [`SceneFileError`]; then nothing has changed.
-    pub fn change(&mut self, edits: &[String]) -> Result<(), SceneFileError> {
-        let text = self.file.text();
-        let file = SceneFile::parse(text.text.clone(), &text.path, edits)?;
-        SceneError::of(lasting(self.file.scene(), file.scene()))
-            .map_err(|e| e.in_text(file.text()))?;
-        Ok(self.rebuild(file, self.hand.clone())?)
-    }
-
-    /// Goes on with another scene and another hand from the present state.
-    fn rebuild(&mut self, file: SceneFile, hand: Option<Hand>) -> Result<(), SceneError> {
-        let mut setup = file.build()?;
-        let facts = Facts::of(&setup);
-        if let Some(hand) = &hand {
-            setup.model = setup.model.with_potential(hand.clone());
-        }
-        let resumed = setup.resume_changed(self.simulation.checkpoint())?;
-        let changed = resumed.changed_from(&self.simulation).map_err(|e| {
-            let problem = facts.origins.of_change(&e);
-            SceneError::from(problem).in_text(file.text())
-        })?;
-        *self = Self {
-            hand,
-            ..Self::new(file, facts, changed)
+    pub fn change(&mut self, edits: &[Edit]) -> Result<(), SceneFileError> {
+        let file = match edited(self.file.scene(), edits) {
+            Some(scene) => {
+                let keys = edits.iter().map(|edit| edit.key.clone());
+                self.file.changed(scene, keys)?
+            }
+            None => {
+                let (text, edits) = (self.file.text(), edits.iter().map(Edit::to_string));
+                SceneFile::parse(text.text.clone(), &text.path, &edits.collect::<Vec<_>>())?
+            }
         };
-        Ok(())
+        Ok(self.go_on_with(file)?)
     }
 
     /// Lets functions of time in the scene go from their present values to others until time `until`
@@ -243,22 +215,54 @@ impl LiveScene {
     /// As [`LiveScene::change`]; [`EditProblem::NoProfile`] at a key that is no function of time.
     pub fn drive(&mut self, targets: &[(Key, f64)], until: f64) -> Result<(), SceneFileError> {
         let begin = self.simulation.state().t;
-        let scene = self.file.scene();
-        let edit = |(key, to): &(Key, f64)| {
-            let from = profile(scene, key)?.value(begin);
-            let numbers = [
-                ("from", from),
-                ("to", *to),
-                ("begin", begin),
-                ("end", until),
-            ];
-            let numbers =
-                numbers.map(|(name, value)| format!("{name} = {}", toml::Value::from(value)));
-            Ok(format!("{key}={{ ramp = {{ {} }} }}", numbers.join(", ")))
-        };
-        let edits = targets.iter().map(edit);
-        self.change(&edits.collect::<Result<Vec<_>, EditError>>()?)
+        let mut scene = self.file.scene().clone();
+        let mut functions = scene.functions_mut();
+        for (key, to) in targets {
+            let found = functions.iter_mut().find(|(place, _)| place == key);
+            let (_, function) = found.ok_or_else(|| EditError {
+                edit: key.to_string(),
+                problem: EditProblem::NoProfile { place: key.clone() },
+            })?;
+            **function = Profile::Course(Course::Ramp(Change {
+                from: function.value(begin),
+                to: *to,
+                begin,
+                end: until,
+            }));
+        }
+        let keys = targets.iter().map(|(key, _)| key.clone());
+        let file = self.file.changed(scene, keys)?;
+        Ok(self.go_on_with(file)?)
     }
+
+    /// Goes on with a changed scene.
+    fn go_on_with(&mut self, file: SceneFile) -> Result<(), SceneError> {
+        SceneError::of(lasting(self.file.scene(), file.scene()))
+            .and_then(|()| self.rebuild(file.scene(), self.hand.clone()))
+            .map_err(|e| e.in_text(file.text()))?;
+        self.file = file;
+        Ok(())
+    }
+
+    /// Goes on with the simulation of a scene and with a hand from the present state.
+    fn rebuild(&mut self, scene: &Scene, hand: Option<Hand>) -> Result<(), SceneError> {
+        let mut setup = scene.build_with(&mut self.kept)?;
+        let facts = setup.facts();
+        if let Some(hand) = &hand {
+            setup.model = setup.model.with_potential(hand.clone());
+        }
+        let resumed = setup.resume_changed(self.simulation.checkpoint())?;
+        let changed = resumed.changed_from(&self.simulation);
+        let changed = changed.map_err(|e| SceneError::from(facts.origins.of_change(&e)))?;
+        self.supports = supports(scene, &facts, &changed);
+        (self.facts, self.simulation, self.hand) = (facts, changed, hand);
+        Ok(())
+    }
+}
+
+/// How the forces of a simulation are those of the supports of its scene.
+fn supports(scene: &Scene, facts: &Facts, simulation: &Simulation) -> SupportForces {
+    SupportForces::new(facts.origins.clone(), simulation, scene.support.len())
 }
 
 /// What a change must not change: where the sheet starts and how the motion is computed.
@@ -287,22 +291,4 @@ fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
         Problem::new(key, message, "begin a new simulation")
     };
     changed.map(problem).collect()
-}
-
-/// The function of time at a key, in the units of the scene.
-fn profile(scene: &Scene, key: &Key) -> Result<Profile, EditError> {
-    let error = || EditError {
-        edit: key.to_string(),
-        problem: EditProblem::NoProfile { place: key.clone() },
-    };
-    let whole = toml::Value::try_from(scene).map_err(|_| error())?;
-    let found = key
-        .parts()
-        .iter()
-        .try_fold(&whole, |value, part| match part {
-            KeyPart::Name(name) => value.get(name.as_str()),
-            KeyPart::Entry(number) => value.get(*number),
-        });
-    let found = found.cloned().ok_or_else(error)?;
-    Profile::deserialize(found).map_err(|_| error())
 }

@@ -7,17 +7,25 @@ use super::unit::Unit;
 use isosheet_dynamics as engine;
 use isosheet_dynamics::OptionsError;
 use isosheet_mesh::wording::{brief, given};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// What the sheet is made of: the name of a material, or a [`Plate`].
-#[derive(Clone, Debug, PartialEq)]
+/// What the sheet is made of: the name of a material (materials.md lists all of them, with numbers and sources),
+/// or a `Plate`. A material gives the sheet its mass and bending stiffness, and makes it elastic; `density`, `mass`,
+/// `bending` and `isometry` beside it replace what it gives.
+///
+/// ```toml
+/// [sheet]
+/// material = "office paper"
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum Material {
-    /// One of the materials that have a name ([`isosheet_dynamics::Material::names`]).
+    /// One of the materials that have a name.
+    #[schemars(extend("examples" = engine::Material::names().collect::<Vec<_>>()))]
     Named(String),
     /// A plate of one isotropic material.
     Plate(Plate),
@@ -147,15 +155,6 @@ impl Material {
     }
 }
 
-impl Serialize for Material {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Named(name) => serializer.serialize_str(name),
-            Self::Plate(plate) => plate.serialize(serializer),
-        }
-    }
-}
-
 impl<'de> Deserialize<'de> for Material {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(MaterialVisitor)
@@ -179,23 +178,5 @@ impl<'de> Visitor<'de> for MaterialVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Material, A::Error> {
         Plate::deserialize(MapAccessDeserializer::new(map)).map(Material::Plate)
-    }
-}
-
-impl JsonSchema for Material {
-    fn schema_name() -> Cow<'static, str> {
-        "Material".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let plate = generator.subschema_for::<Plate>();
-        let names: Vec<&str> = engine::Material::names().collect();
-        json_schema!({
-            "description": "What the sheet is made of: the name of a material (materials.md lists all of them, with \
-                numbers and sources), or a `Plate`. A material gives the sheet its mass and bending stiffness, and \
-                makes it elastic; `density`, `mass`, `bending` and `isometry` beside it replace what it gives.\n\n\
-                ```toml\n[sheet]\nmaterial = \"office paper\"\n```",
-            "anyOf": [{ "type": "string", "examples": names }, plate],
-        })
     }
 }

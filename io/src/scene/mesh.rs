@@ -2,22 +2,19 @@
 
 use super::error::SceneError;
 use super::key::Key;
+use super::mesh_file::{Files, MeshFile};
 use super::outline::Outline;
 use super::pattern::{
-    DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura, check_angle,
+    DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
 };
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use crate::format::{
-    self, FoldFrame, FoldProblem, GltfProblem, MeshFileError, MeshFileProblem, MeshOptions,
-    Polygons, ReadingChanges, SeparateBuffers, read_mesh_with,
-};
-use isosheet_mesh::Advice;
+use crate::format::ReadingChanges;
 use isosheet_mesh::Sheet;
 use isosheet_mesh::generate::{self, FoldPattern, GenerateError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Where a mesh comes from. Generated ones are flat in the plane z = 0.
 ///
@@ -126,41 +123,6 @@ pub enum Mesh {
     File(MeshFile),
 }
 
-/// A mesh in a file.
-///
-/// ```toml
-/// [sheet]
-/// mesh = { file = { path = "crane.fold", scale = 0.001, frame = 0 } }
-/// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MeshFile {
-    /// Path of the mesh file, relative to the scene file.
-    pub path: PathBuf,
-    /// Length of one unit of the file, metres: 0.001 for a file in millimetres.
-    #[serde(default = "one")]
-    pub scale: f64,
-    /// The axis of the file that points upwards; it becomes z.
-    #[serde(default)]
-    pub up: UpAxis,
-    /// What to do with faces of more than three corners.
-    #[serde(default)]
-    pub polygons: PolygonFaces,
-    /// Of a FOLD file: the frame whose vertices are taken, by its number from 0 or by its title; if left out,
-    /// the first one with vertices. Frame 0 is the key frame of the file. One file can give the flat crease
-    /// pattern to `sheet.mesh` and a folded form of it to `sheet.start.file`.
-    #[serde(default)]
-    pub frame: Option<FoldFrame>,
-    /// Of a glTF file: the name of the mesh that is taken; if left out, all meshes that its scene shows, each
-    /// where its nodes place it.
-    #[serde(default)]
-    pub mesh: Option<String>,
-}
-
-fn one() -> f64 {
-    1.0
-}
-
 /// How the cells of a rectangle are cut into triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -174,88 +136,28 @@ pub enum Diagonals {
     Rising,
 }
 
-/// The axis of a file that points upwards.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum UpAxis {
-    /// z: coordinates are used as they are.
-    #[default]
-    Z,
-    /// y: (x, y, z) becomes (x, -z, y).
-    Y,
+/// An argument of a generator.
+enum Argument {
+    /// In metres.
+    Length(f64),
+    /// Of at least so many.
+    Count(usize, i64),
+    /// In degrees, between 0 and a largest one, both excluded.
+    Angle(f64, f64),
 }
 
-/// What to do with faces of more than three corners.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PolygonFaces {
-    /// Refuse the file: new diagonals are new lines along which the sheet can fold.
-    #[default]
-    Refuse,
-    /// Cut them into triangles.
-    Triangulate,
-}
-
-impl MeshFile {
-    /// A file in metres with z upwards.
-    pub fn new(path: impl Into<PathBuf>) -> Self {
-        Self {
-            path: path.into(),
-            scale: 1.0,
-            ..Self::default()
+impl Argument {
+    fn check(self, key: Key, checks: &mut Checks) {
+        match self {
+            Self::Length(length) => checks.positive(key, length, Unit::Metre),
+            Self::Count(count, least) => checks.count(key, count, least),
+            Self::Angle(angle, most) if !(angle > 0.0 && angle < most) => {
+                let message = format!("`{key}` is {angle} degrees");
+                let remedy = format!("give more than 0 and less than {most}");
+                checks.report(key, message, remedy);
+            }
+            Self::Angle(..) => {}
         }
-    }
-
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("scale"), self.scale, Unit::Metre);
-        if self.path.as_os_str().is_empty() {
-            checks.report(key.name("path"), "the path is empty", "name a mesh file");
-        }
-    }
-
-    /// Reads the file, in metres and with z upwards; relative paths are relative to `folder`.
-    pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<format::MeshFile, Problem> {
-        self.read_frame(self.frame.as_ref(), folder).map_err(|e| {
-            let name = match &e.problem {
-                problem if is_about_frame(problem) => "frame",
-                MeshFileProblem::NoNames | MeshFileProblem::Gltf(GltfProblem::NoMesh { .. })
-                    if self.mesh.is_some() =>
-                {
-                    "mesh"
-                }
-                _ => "path",
-            };
-            Problem::new(key.name(name), e.to_string(), file_remedy(&e))
-        })
-    }
-
-    /// Reads another frame in the same way.
-    pub(crate) fn read_frame(
-        &self,
-        frame: Option<&FoldFrame>,
-        folder: &Path,
-    ) -> Result<format::MeshFile, MeshFileError> {
-        let options = MeshOptions {
-            polygons: match self.polygons {
-                PolygonFaces::Refuse => Polygons::Refuse,
-                PolygonFaces::Triangulate => Polygons::Triangulate,
-            },
-            // The folder of a run keeps a copy of one file for each mesh.
-            buffers: SeparateBuffers::Refuse,
-            frame: frame.cloned(),
-            mesh: self.mesh.clone(),
-            ..MeshOptions::default()
-        };
-        let path = folder.join(&self.path);
-        let mut mesh = read_mesh_with(&path, &options)?;
-        for p in mesh.positions.as_chunks_mut::<3>().0 {
-            let [x, y, z] = p.map(|c| self.scale * c);
-            *p = match self.up {
-                UpAxis::Z => [x, y, z],
-                UpAxis::Y => [x, -z, y],
-            };
-        }
-        Ok(mesh)
     }
 }
 
@@ -309,73 +211,115 @@ impl Mesh {
         }
     }
 
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        let key = key.name(self.name());
-        let mut length =
-            |name: &str, value: f64| checks.positive(key.name(name), value, Unit::Metre);
+    /// The arguments of its generator that are lengths, counts and angles, by their keys.
+    fn arguments(&self) -> Vec<(&'static str, Argument)> {
+        use Argument::{Angle, Count, Length};
         match self {
-            Self::Square { side, .. } => length("side", *side),
+            Self::Square { side, .. } => vec![("side", Length(*side))],
             Self::Rectangle {
                 width,
                 height,
                 columns,
                 rows,
                 ..
-            } => {
-                length("width", *width);
-                length("height", *height);
-                checks.count(key.name("columns"), *columns, 1);
-                checks.count(key.name("rows"), *rows, 1);
-            }
+            } => vec![
+                ("width", Length(*width)),
+                ("height", Length(*height)),
+                ("columns", Count(*columns, 1)),
+                ("rows", Count(*rows, 1)),
+            ],
             Self::Disk { radius, rings } => {
-                length("radius", *radius);
-                checks.count(key.name("rings"), *rings, 1);
+                vec![("radius", Length(*radius)), ("rings", Count(*rings, 1))]
             }
             Self::Annulus {
                 inner,
                 outer,
                 segments,
                 rings,
-            } => {
-                length("inner", *inner);
-                length("outer", *outer);
-                checks.count(key.name("segments"), *segments, 3);
-                checks.count(key.name("rings"), *rings, 1);
-            }
+            } => vec![
+                ("inner", Length(*inner)),
+                ("outer", Length(*outer)),
+                ("segments", Count(*segments, 3)),
+                ("rings", Count(*rings, 1)),
+            ],
             Self::Fan {
                 radius,
                 opening,
                 triangles,
             } => {
-                length("radius", *radius);
                 let most = 360_f64.min(180.0 * (*triangles).max(1) as f64);
-                check_angle(key.name("opening"), *opening, most, checks);
-                checks.count(key.name("triangles"), *triangles, 1);
+                vec![
+                    ("radius", Length(*radius)),
+                    ("opening", Angle(*opening, most)),
+                    ("triangles", Count(*triangles, 1)),
+                ]
             }
-            Self::Polygon {
-                outline, spacing, ..
-            } => {
-                length("spacing", *spacing);
+            Self::Polygon { spacing, .. } => vec![("spacing", Length(*spacing))],
+            Self::PolygonRings { rings, .. } => vec![("rings", Count(*rings, 1))],
+            Self::Octagon { radius } => vec![("radius", Length(*radius))],
+            Self::Miura(miura) => vec![
+                ("straight", Length(miura.straight)),
+                ("zigzag", Length(miura.zigzag)),
+                ("columns", Count(miura.columns, 1)),
+                ("rows", Count(miura.rows, 1)),
+                ("angle", Angle(miura.angle, 90.0)),
+            ],
+            Self::DegreeFour(vertex) => vec![("radius", Length(vertex.radius))],
+            Self::Waterbomb(pattern) => vec![
+                ("columns", Count(pattern.columns, 1)),
+                ("rows", Count(pattern.rows, 1)),
+                ("side", Length(pattern.side)),
+            ],
+            Self::Yoshimura(pattern) => vec![
+                ("columns", Count(pattern.columns, 1)),
+                ("rows", Count(pattern.rows, 1)),
+                ("base", Length(pattern.base)),
+                ("height", Length(pattern.height)),
+            ],
+            Self::Kresling(pattern) => vec![
+                ("columns", Count(pattern.columns, 1)),
+                ("rows", Count(pattern.rows, 1)),
+                ("base", Length(pattern.base)),
+                ("side", Length(pattern.side)),
+                ("angle", Angle(pattern.angle, 90.0)),
+            ],
+            Self::Hypar(pattern) => vec![
+                ("rings", Count(pattern.rings, 1)),
+                ("side", Length(pattern.side)),
+            ],
+            Self::SquareTwist(twist) => vec![
+                ("side", Length(twist.side)),
+                ("square", Length(twist.square)),
+                ("angle", Angle(twist.angle, 90.0)),
+            ],
+            Self::Triangles { .. } | Self::File(_) => Vec::new(),
+        }
+    }
+
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        let key = key.name(self.name());
+        for (name, argument) in self.arguments() {
+            argument.check(key.name(name), checks);
+        }
+        match self {
+            Self::Polygon { outline, seed, .. } => {
+                checks.count(key.name("seed"), *seed, 0);
                 outline.check(&key.name("outline"), checks);
             }
-            Self::PolygonRings { outline, rings } => {
-                outline.check(&key.name("outline"), checks);
-                checks.count(key.name("rings"), *rings, 1);
+            Self::PolygonRings { outline, .. } => outline.check(&key.name("outline"), checks),
+            Self::DegreeFour(vertex) => {
+                for (k, sector) in vertex.sectors.iter().enumerate() {
+                    let sector = Argument::Angle(*sector, 180.0);
+                    sector.check(key.name("sectors").entry(k), checks);
+                }
             }
-            Self::Octagon { radius } => length("radius", *radius),
-            Self::Miura(miura) => miura.check(&key, checks),
-            Self::DegreeFour(vertex) => vertex.check(&key, checks),
-            Self::Waterbomb(pattern) => pattern.check(&key, checks),
-            Self::Yoshimura(pattern) => pattern.check(&key, checks),
-            Self::Kresling(pattern) => pattern.check(&key, checks),
-            Self::Hypar(pattern) => pattern.check(&key, checks),
-            Self::SquareTwist(twist) => twist.check(&key, checks),
             Self::Triangles { vertices, .. } => {
                 for (k, vertex) in vertices.iter().enumerate() {
                     checks.finite(key.name("vertices").entry(k), vertex, Unit::Metre);
                 }
             }
             Self::File(file) => file.check(&key, checks),
+            _ => {}
         }
     }
 
@@ -387,11 +331,11 @@ impl Mesh {
         let (key, mut checks) = (Key::root().name("mesh"), Checks::default());
         self.check(&key, &mut checks);
         SceneError::of(checks.problems)?;
-        Ok(self.build(&key, folder)?.sheet)
+        Ok(self.build(&key, &mut Files::in_folder(folder))?.sheet)
     }
 
-    /// Makes the mesh; files are relative to `folder`.
-    pub(crate) fn build(&self, key: &Key, folder: &Path) -> Result<RestMesh, Problem> {
+    /// Makes the mesh.
+    pub(crate) fn build(&self, key: &Key, files: &mut Files) -> Result<RestMesh, Problem> {
         let key = key.name(self.name());
         let made = match self {
             Self::Square { side, level } => generate::isotropic_square(*level, *side),
@@ -436,17 +380,34 @@ impl Mesh {
                 return Ok(RestMesh::of(pattern, roles));
             }
             Self::DegreeFour(vertex) => return of_pattern(&key, vertex.pattern()),
-            Self::Waterbomb(pattern) => return of_pattern(&key, pattern.pattern()),
-            Self::Yoshimura(pattern) => return of_pattern(&key, pattern.pattern()),
-            Self::Kresling(pattern) => return of_pattern(&key, pattern.pattern()),
-            Self::Hypar(pattern) => return of_pattern(&key, pattern.pattern()),
-            Self::SquareTwist(twist) => return of_pattern(&key, twist.pattern()),
+            Self::Waterbomb(p) => {
+                return of_pattern(&key, generate::waterbomb(p.columns, p.rows, p.side));
+            }
+            Self::Yoshimura(p) => {
+                return of_pattern(
+                    &key,
+                    generate::yoshimura(p.columns, p.rows, p.base, p.height),
+                );
+            }
+            Self::Kresling(p) => {
+                return of_pattern(
+                    &key,
+                    generate::kresling(p.columns, p.rows, p.base, p.side, p.angle.to_radians()),
+                );
+            }
+            Self::Hypar(p) => return of_pattern(&key, generate::hypar(p.rings, p.side)),
+            Self::SquareTwist(p) => {
+                return of_pattern(
+                    &key,
+                    generate::square_twist(p.side, p.square, p.angle.to_radians()),
+                );
+            }
             Self::Triangles { vertices, faces } => {
                 let sheet = Sheet::new(vertices.as_flattened().to_vec(), faces);
                 let sheet = sheet.map_err(|e| Problem::from_error(key.name("faces"), &e))?;
                 return Ok(RestMesh::plain(sheet));
             }
-            Self::File(file) => return read_sheet(file, &key, folder),
+            Self::File(file) => return read_sheet(file, &key, files),
         };
         let sheet = made.map_err(|e| generator_problem(&key, &e))?;
         Ok(RestMesh::plain(sheet))
@@ -459,8 +420,8 @@ fn of_pattern(key: &Key, pattern: Result<FoldPattern, GenerateError>) -> Result<
     Ok(RestMesh::of(pattern, roles))
 }
 
-fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Problem> {
-    let mesh = file.read(key, folder)?;
+fn read_sheet(file: &MeshFile, key: &Key, files: &mut Files) -> Result<RestMesh, Problem> {
+    let mesh = files.read(file, key)?;
     let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces).map_err(|error| {
         let path = file.path.display();
         let remedy = format!("`isosheet check {path} --fix -o FILE` repairs what can be repaired");
@@ -475,34 +436,6 @@ fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Pro
         sheet,
         changes: mesh.changes,
     })
-}
-
-/// Whether a file is refused because of the frame that is asked for.
-fn is_about_frame(problem: &MeshFileProblem) -> bool {
-    matches!(
-        problem,
-        MeshFileProblem::NoFrames | MeshFileProblem::Fold(FoldProblem::Choice { .. })
-    )
-}
-
-/// What to do about a mesh file that cannot be read, in words of scenes.
-fn file_remedy(error: &MeshFileError) -> String {
-    match &error.problem {
-        MeshFileProblem::Polygon { .. } => {
-            "triangulate the file as the sheet is meant to fold, or write `polygons = \"triangulate\"` beside \
-             `path`"
-                .to_owned()
-        }
-        MeshFileProblem::Read(_) => {
-            "check the path, which is relative to the scene, and the permissions".to_owned()
-        }
-        problem if is_about_frame(problem) => problem.advice().unwrap_or_default().to_owned(),
-        problem => {
-            let advice = problem.advice().map(|advice| format!("{advice}; "));
-            let advice = advice.unwrap_or_default();
-            format!("{advice}`isosheet check` says more about a mesh file")
-        }
-    }
 }
 
 /// The problem at the argument that a generator names.

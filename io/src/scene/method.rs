@@ -6,9 +6,7 @@ use super::problem::Checks;
 use super::setup::Integration;
 use super::unit::Unit;
 use isosheet_dynamics as engine;
-use isosheet_dynamics::{
-    EnergyMomentumOptions, ImplicitOptions, ProjectionStepOptions, RattleOptions,
-};
+use isosheet_dynamics::{EnergyMomentumOptions, ImplicitOptions, RattleOptions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -59,8 +57,6 @@ pub enum Integrator {
     Bdf2,
     /// First order, strongly damped, takes any state, contact and isometry.
     ImplicitEuler,
-    /// First order, strongly damped, takes any state; rods without contact.
-    Projection,
     /// Second order, conserves energy and momenta; rods without contact.
     EnergyMomentum,
     /// Second order, symplectic; rods without contact.
@@ -203,13 +199,6 @@ impl Method {
             }
             Integrator::Bdf2 => engine::Method::Bdf2(self.implicit()),
             Integrator::ImplicitEuler => engine::Method::ImplicitEuler(self.implicit()),
-            Integrator::Projection => {
-                let usual = ProjectionStepOptions::default();
-                engine::Method::Projection(ProjectionStepOptions {
-                    strain_tolerance: self.strain_tolerance.unwrap_or(usual.strain_tolerance),
-                    max_projections: self.max_iterations.unwrap_or(usual.max_projections),
-                })
-            }
             Integrator::EnergyMomentum => {
                 let usual = EnergyMomentumOptions::default();
                 engine::Method::EnergyMomentum(EnergyMomentumOptions {

@@ -1,7 +1,7 @@
 //! Bodies that the sheet meets.
 
 use super::key::Key;
-use super::mesh::MeshFile;
+use super::mesh_file::{Files, MeshFile};
 use super::outline::Outline;
 use super::pose::{Motion, Pose};
 use super::problem::{Checks, Problem};
@@ -10,7 +10,6 @@ use isosheet_collide as collide;
 use isosheet_collide::{SurfaceError, TriangleSurface, rounded_line};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 use std::sync::Arc;
 
 /// A body at rest or in prescribed motion.
@@ -195,9 +194,12 @@ impl Obstacle {
         checks.not_negative(key.name("friction"), self.friction, Unit::One);
     }
 
-    /// The body; files are relative to `folder`.
-    pub(crate) fn build(&self, key: &Key, folder: &Path) -> Result<collide::Obstacle, Problem> {
-        let shape = self.shape.build(&key.name("shape"), folder)?;
+    /// The body of a shape that has been made.
+    pub(crate) fn body(
+        &self,
+        shape: collide::Shape,
+        key: &Key,
+    ) -> Result<collide::Obstacle, Problem> {
         let motion = self.motion.of_body(self.pose.isometry());
         let motion = isosheet_dynamics::RigidProfile::from(motion);
         collide::Obstacle::new(shape, motion).map_err(|e| Problem::from_error(key.clone(), &e))
@@ -219,7 +221,8 @@ impl Shape {
         }
     }
 
-    fn build(&self, key: &Key, folder: &Path) -> Result<collide::Shape, Problem> {
+    /// Makes the shape; `key` is its place.
+    pub(crate) fn build(&self, key: &Key, files: &mut Files) -> Result<collide::Shape, Problem> {
         let solid = |surface: Result<TriangleSurface, SurfaceError>| {
             let surface = surface.map_err(|e| form_problem(&key.name(self.name()), &e))?;
             Ok(collide::Shape::Surface(Arc::new(surface)))
@@ -250,7 +253,7 @@ impl Shape {
             Self::Wall(wall) => return solid(wall.surface()),
             Self::File(file) => {
                 let key = key.name("file");
-                let mesh = file.read(&key, folder)?;
+                let mesh = files.read(file, &key)?;
                 let surface =
                     TriangleSurface::new(&mesh.positions, &mesh.faces).map_err(|error| {
                         let message = format!("{}: {error}", file.path.display());

@@ -4,15 +4,21 @@ use super::key::Key;
 use super::problem::Checks;
 use super::unit::Unit;
 use isosheet_mesh::generate::regular_outline;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// A polygon in the xy plane: its corners in order, x and y in metres, or a [`OutlineShape`].
-#[derive(Clone, Debug, PartialEq)]
+/// A polygon in the xy plane: the list of its corners in order, x and y in metres, or an `OutlineShape`.
+///
+/// ```toml
+/// [sheet.mesh.polygon]
+/// outline = [[0, 0], [0.3, 0], [0.2, 0.2]]
+/// spacing = 0.02
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum Outline {
     /// The corners.
     Corners(Vec<[f64; 2]>),
@@ -76,15 +82,6 @@ impl Outline {
     }
 }
 
-impl Serialize for Outline {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Corners(corners) => corners.serialize(serializer),
-            Self::Shape(shape) => shape.serialize(serializer),
-        }
-    }
-}
-
 impl<'de> Deserialize<'de> for Outline {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(OutlineVisitor)
@@ -106,22 +103,5 @@ impl<'de> Visitor<'de> for OutlineVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Outline, A::Error> {
         OutlineShape::deserialize(MapAccessDeserializer::new(map)).map(Outline::Shape)
-    }
-}
-
-impl JsonSchema for Outline {
-    fn schema_name() -> Cow<'static, str> {
-        "Outline".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let corners = generator.subschema_for::<Vec<[f64; 2]>>();
-        let shape = generator.subschema_for::<OutlineShape>();
-        json_schema!({
-            "description": "A polygon in the xy plane: the list of its corners in order, x and y in metres, or an \
-                `OutlineShape`.\n\n```toml\n[sheet.mesh.polygon]\noutline = [[0, 0], [0.3, 0], [0.2, 0.2]]\n\
-                spacing = 0.02\n```",
-            "anyOf": [corners, shape],
-        })
     }
 }

@@ -1,12 +1,8 @@
 //! Crease patterns by formula.
 
-use super::key::Key;
-use super::problem::Checks;
-use super::unit::Unit;
 use isosheet_mesh::EdgeId;
 use isosheet_mesh::generate::{
-    FoldAssignment, FoldPattern, GenerateError, degree_four, hypar, kresling, miura, miura_zigzags,
-    square_twist, waterbomb, yoshimura,
+    FoldAssignment, FoldPattern, GenerateError, degree_four, miura, miura_zigzags,
 };
 use isosheet_mesh::origami;
 use schemars::JsonSchema;
@@ -196,14 +192,6 @@ impl From<&FoldPattern> for EdgeRoles {
 }
 
 impl Miura {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("straight"), self.straight, Unit::Metre);
-        checks.positive(key.name("zigzag"), self.zigzag, Unit::Metre);
-        checks.count(key.name("columns"), self.columns, 1);
-        checks.count(key.name("rows"), self.rows, 1);
-        check_angle(key.name("angle"), self.angle, 90.0, checks);
-    }
-
     /// The flat sheet with its mountains and valleys.
     ///
     /// # Errors
@@ -232,18 +220,8 @@ impl Miura {
 }
 
 impl DegreeFour {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("radius"), self.radius, Unit::Metre);
-        for (k, sector) in self.sectors.iter().enumerate() {
-            check_angle(key.name("sectors").entry(k), *sector, 180.0, checks);
-        }
-    }
-
     /// The flat sheet with its mountains and valleys.
-    ///
-    /// # Errors
-    /// [`GenerateError`] naming the value that cannot be used.
-    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
+    pub(crate) fn pattern(&self) -> Result<FoldPattern, GenerateError> {
         let kinematics = self.kinematics();
         let assignment = kinematics.assignment(self.mode());
         degree_four(kinematics.sectors, self.radius, assignment)
@@ -262,100 +240,5 @@ impl DegreeFour {
             AlikeCreases::Odd => origami::FoldingMode::OddAlike,
             AlikeCreases::Even => origami::FoldingMode::EvenAlike,
         }
-    }
-}
-
-impl Waterbomb {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.count(key.name("columns"), self.columns, 1);
-        checks.count(key.name("rows"), self.rows, 1);
-        checks.positive(key.name("side"), self.side, Unit::Metre);
-    }
-
-    /// The flat sheet with its mountains and valleys.
-    ///
-    /// # Errors
-    /// [`GenerateError`] naming the value that cannot be used.
-    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
-        waterbomb(self.columns, self.rows, self.side)
-    }
-}
-
-impl Yoshimura {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.count(key.name("columns"), self.columns, 1);
-        checks.count(key.name("rows"), self.rows, 1);
-        checks.positive(key.name("base"), self.base, Unit::Metre);
-        checks.positive(key.name("height"), self.height, Unit::Metre);
-    }
-
-    /// The flat sheet with its mountains and valleys.
-    ///
-    /// # Errors
-    /// [`GenerateError`] naming the value that cannot be used.
-    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
-        yoshimura(self.columns, self.rows, self.base, self.height)
-    }
-}
-
-impl Kresling {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.count(key.name("columns"), self.columns, 1);
-        checks.count(key.name("rows"), self.rows, 1);
-        checks.positive(key.name("base"), self.base, Unit::Metre);
-        checks.positive(key.name("side"), self.side, Unit::Metre);
-        check_angle(key.name("angle"), self.angle, 90.0, checks);
-    }
-
-    /// The flat sheet with its mountains and valleys.
-    ///
-    /// # Errors
-    /// [`GenerateError`] naming the value that cannot be used.
-    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
-        let angle = self.angle.to_radians();
-        kresling(self.columns, self.rows, self.base, self.side, angle)
-    }
-}
-
-impl Hypar {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.count(key.name("rings"), self.rings, 1);
-        checks.positive(key.name("side"), self.side, Unit::Metre);
-    }
-
-    /// The flat sheet with its mountains and valleys.
-    ///
-    /// # Errors
-    /// [`GenerateError`] naming the value that cannot be used.
-    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
-        hypar(self.rings, self.side)
-    }
-}
-
-impl SquareTwist {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("side"), self.side, Unit::Metre);
-        checks.positive(key.name("square"), self.square, Unit::Metre);
-        check_angle(key.name("angle"), self.angle, 90.0, checks);
-    }
-
-    /// The flat sheet with its mountains and valleys.
-    ///
-    /// # Errors
-    /// [`GenerateError`] naming the value that cannot be used.
-    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
-        square_twist(self.side, self.square, self.angle.to_radians())
-    }
-}
-
-/// An angle in degrees between 0 and `most`, both excluded.
-pub(super) fn check_angle(key: Key, angle: f64, most: f64, checks: &mut Checks) {
-    if !(angle > 0.0 && angle < most) {
-        let message = format!("`{key}` is {angle} degrees");
-        checks.report(
-            key,
-            message,
-            format!("give more than 0 and less than {most}"),
-        );
     }
 }

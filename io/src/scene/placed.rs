@@ -2,6 +2,7 @@
 
 use super::error::SceneError;
 use super::mesh::RestMesh;
+use super::mesh_file::Files;
 use super::pattern::EdgeRoles;
 use super::problem::Problem;
 use super::refined::Refined;
@@ -9,33 +10,23 @@ use super::resolution::check_shape;
 use super::sheets::sheet_key;
 use super::{Key, Selection, Sheet as SheetOfScene, Weight, sheets};
 use crate::format::ReadingChanges;
+use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
-use std::path::Path;
+use std::sync::Arc;
 
-/// The mesh of a sheet as it is simulated, not placed yet.
-pub(super) struct RefinedMesh {
-    pub(super) refined: Refined,
+/// What is made of the mesh of a sheet, its division, its place and its start.
+#[derive(Debug)]
+pub(crate) struct Form {
+    /// The rest shape, placed in space.
+    pub(super) placed: Sheet,
+    /// The rest shape as its mesh has it.
+    pub(super) unplaced: Refined,
     /// What the edges of the refined mesh are meant to do.
     pub(super) roles: Option<EdgeRoles>,
     /// What reading its file changed.
     pub(super) changes: ReadingChanges,
-}
-
-impl SheetOfScene {
-    /// Makes the mesh and divides its faces; files are relative to `folder`.
-    pub(super) fn refined(&self, key: &Key, folder: &Path) -> Result<RefinedMesh, Problem> {
-        let RestMesh {
-            sheet,
-            roles,
-            changes,
-        } = self.mesh.build(&key.name("mesh"), folder)?;
-        let refined = Refined::new(sheet, self.refine, &key.name("refine"))?;
-        Ok(RefinedMesh {
-            roles: roles.map(|roles| refined.roles(roles)),
-            refined,
-            changes,
-        })
-    }
+    /// Positions at the start, `3V`.
+    start: Vec<f64>,
 }
 
 /// A sheet in its place.
@@ -43,16 +34,10 @@ pub(super) struct PlacedSheet<'a> {
     /// What the scene says of it.
     pub(super) of: &'a SheetOfScene,
     pub(super) key: Key,
-    /// The rest shape, placed in space.
-    pub(super) placed: Sheet,
-    /// The rest shape as its mesh has it.
-    pub(super) unplaced: Refined,
-    pub(super) roles: Option<EdgeRoles>,
+    pub(super) form: Arc<Form>,
     /// Where it is in the union.
     pub(super) part: Part,
-    pub(super) mass: MassMatrix,
-    /// What reading its file changed.
-    pub(super) changes: ReadingChanges,
+    mass: MassMatrix,
 }
 
 /// All sheets.
@@ -64,24 +49,59 @@ pub(super) struct PlacedSheets<'a> {
 }
 
 impl<'a> PlacedSheets<'a> {
-    pub(super) fn new(sheets: &'a [SheetOfScene], folder: &Path) -> Result<Self, SceneError> {
-        let (mut list, mut start) = (Vec::new(), Vec::new());
-        for (k, of) in sheets.iter().enumerate() {
-            let (placed, x) = PlacedSheet::new(of, sheet_key(sheets.len(), k), folder)?;
-            list.push(placed);
-            start.extend(x);
+    /// Puts sheets in their places. Their forms are made where `forms` has none yet.
+    pub(super) fn new(
+        sheets: &'a [SheetOfScene],
+        forms: &mut Vec<Arc<Form>>,
+        files: &mut Files,
+    ) -> Result<Self, SceneError> {
+        if forms.is_empty() {
+            let numbered = sheets.iter().enumerate();
+            let made = numbered.map(|(k, of)| {
+                let form = Form::new(of, &sheet_key(sheets.len(), k), files)?;
+                Ok(Arc::new(form))
+            });
+            *forms = made.collect::<Result<_, Problem>>()?;
         }
-        let placed: Vec<&Sheet> = list.iter().map(|sheet| &sheet.placed).collect();
-        let union = match placed[..] {
+        let shapes: Vec<&Sheet> = forms.iter().map(|form| &form.placed).collect();
+        let union = match shapes[..] {
             [sheet] => sheet.clone(),
-            _ => Sheet::union(&placed)
+            _ => Sheet::union(&shapes)
                 .map_err(|e| Problem::from_error(Key::root().name("sheet"), &e))?,
         };
-        let parts = Part::of_union(&placed);
-        for (sheet, part) in list.iter_mut().zip(parts) {
-            sheet.part = part;
-        }
-        Ok(Self { list, union, start })
+        let parts = Part::of_union(&shapes);
+        let numbered = sheets.iter().zip(&*forms).zip(parts).enumerate();
+        let list = numbered.map(|(k, ((of, form), part))| {
+            let key = sheet_key(sheets.len(), k);
+            let by_area = of.areal_density() * form.placed.area();
+            let mass = of.mass.unwrap_or(by_area);
+            let mass = MassMatrix::from_total(&form.placed, mass, MassKind::Lumped)
+                .map_err(|e| Problem::from_error(key.clone(), &e))?;
+            Ok(PlacedSheet {
+                of,
+                key,
+                form: form.clone(),
+                part,
+                mass,
+            })
+        });
+        let starts: Vec<&[f64]> = forms.iter().map(|form| &form.start[..]).collect();
+        Ok(Self {
+            list: list.collect::<Result<_, Problem>>()?,
+            union,
+            start: starts.concat(),
+        })
+    }
+
+    /// What each edge of the union is meant to do, if there is a crease pattern among the meshes; `None` for an
+    /// edge of which the pattern does not say it.
+    pub(super) fn fold_assignments(&self) -> Option<Vec<Option<FoldAssignment>>> {
+        let of_sheet = |sheet: &PlacedSheet<'_>| match &sheet.form.roles {
+            Some(roles) => roles.assignments.clone(),
+            None => vec![None; sheet.form.placed.topology().edge_count()],
+        };
+        let all: Vec<_> = self.list.iter().flat_map(of_sheet).collect();
+        all.iter().any(Option::is_some).then_some(all)
     }
 
     /// The masses of the sheets with weights.
@@ -114,9 +134,9 @@ impl<'a> PlacedSheets<'a> {
         let Some(number) = number else {
             return selection.resolve(&at, self.union.topology(), &self.start);
         };
-        let PlacedSheet { placed, part, .. } = &self.list[number];
+        let PlacedSheet { form, part, .. } = &self.list[number];
         let own = &self.start[part.coordinates()];
-        let found = selection.resolve(&at, placed.topology(), own)?;
+        let found = selection.resolve(&at, form.placed.topology(), own)?;
         Ok(found.into_iter().map(|v| part.vertex(v)).collect())
     }
 
@@ -132,51 +152,43 @@ impl<'a> PlacedSheets<'a> {
     }
 }
 
-impl<'a> PlacedSheet<'a> {
-    /// With its positions at the start. Its part is not known yet.
-    fn new(of: &'a SheetOfScene, key: Key, folder: &Path) -> Result<(Self, Vec<f64>), SceneError> {
-        let RefinedMesh {
-            refined: unplaced,
+impl Form {
+    fn new(of: &SheetOfScene, key: &Key, files: &mut Files) -> Result<Self, Problem> {
+        let mesh_key = key.name("mesh");
+        let RestMesh {
+            sheet,
             roles,
             changes,
-        } = of.refined(&key, folder)?;
-        let mesh_key = key.name("mesh");
+        } = of.mesh.build(&mesh_key, files)?;
+        let unplaced = Refined::new(sheet, of.refine, &key.name("refine"))?;
         let pose = &of.placement;
         let placed = unplaced
             .sheet()
             .map_positions(|p| pose.place(p))
             .map_err(|e| Problem::from_error(mesh_key.clone(), &e))?;
         check_shape(&placed, &mesh_key.name(of.mesh.name()))?;
-        let x = match &of.start.file {
+        let start = match &of.start.file {
             None => placed.positions().to_vec(),
             Some(file) => {
                 let key = key.name("start.file");
-                let start = file.read(&key, folder)?;
+                let start = files.read(file, &key)?;
                 if triangles(&start.faces) != triangles(&unplaced.mesh().face_indices()) {
                     let message = "the file does not have the vertices and faces of `sheet.mesh`";
                     let remedy = "export both shapes from the same mesh, without reordering";
-                    return Err(Problem::new(key.name("path"), message, remedy).into());
+                    return Err(Problem::new(key.name("path"), message, remedy));
                 }
-                let x = unplaced.positions(start.positions);
+                let x = unplaced.positions(start.positions.clone());
                 let points = x.as_chunks::<3>().0.iter();
                 points.flat_map(|&p| pose.place(p)).collect()
             }
         };
-        let by_area = of.areal_density() * placed.area();
-        let mass = of.mass.unwrap_or(by_area);
-        let mass = MassMatrix::from_total(&placed, mass, MassKind::Lumped)
-            .map_err(|e| Problem::from_error(key.clone(), &e))?;
-        let sheet = Self {
-            of,
-            key,
+        Ok(Self {
+            roles: roles.map(|roles| unplaced.roles(roles)),
             placed,
-            roles,
             unplaced,
-            part: Part::default(),
-            mass,
             changes,
-        };
-        Ok((sheet, x))
+            start,
+        })
     }
 }
 

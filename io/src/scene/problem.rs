@@ -131,14 +131,17 @@ impl Checks {
         }
     }
 
-    /// A count of at least `least`, and not above the largest whole number of TOML.
-    pub(crate) fn count(&mut self, key: Key, value: usize, least: usize) {
-        let remedy = if value < least {
-            format!("give at least {least}")
-        } else if i64::try_from(value).is_err() {
-            format!("give at most {}", i64::MAX)
-        } else {
-            return;
+    /// A whole number of at least `least`, and not above the largest one of TOML.
+    pub(crate) fn count(
+        &mut self,
+        key: Key,
+        value: impl TryInto<i64> + Copy + fmt::Display,
+        least: i64,
+    ) {
+        let remedy = match value.try_into() {
+            Ok(whole) if whole >= least => return,
+            Ok(_) => format!("give at least {least}"),
+            Err(_) => format!("give at most {}", i64::MAX),
         };
         self.report(key.clone(), format!("`{key}` is {value}"), remedy);
     }

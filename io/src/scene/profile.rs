@@ -6,16 +6,23 @@ use super::unit::Unit;
 use isosheet_dynamics as engine;
 use isosheet_dynamics::ProfileError;
 use isosheet_mesh::Advice;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::borrow::Cow;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// A function of time: a number, which stands for the same value at all times, or a [`Course`]. Its unit is
-/// that of what it drives: metres for a displacement, degrees for an angle, newtons for a load.
-#[derive(Clone, Debug, PartialEq)]
+/// A function of time: a number, which stands for the same value at all times, or a `Course`. Its unit is that of
+/// what it drives: metres for a displacement, degrees for an angle, newtons for a load.
+///
+/// ```toml
+/// [[forces.load]]
+/// at = { vertices = [0] }
+/// direction = [0, 0, 1]
+/// size = { ramp = { to = 0.05, end = 0.5 } }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum Profile {
     /// The same value at all times.
     Constant(f64),
@@ -277,15 +284,6 @@ impl Profile {
     }
 }
 
-impl Serialize for Profile {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Constant(value) => serializer.serialize_f64(*value),
-            Self::Course(course) => course.serialize(serializer),
-        }
-    }
-}
-
 impl<'de> Deserialize<'de> for Profile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(ProfileVisitor)
@@ -317,22 +315,5 @@ impl<'de> Visitor<'de> for ProfileVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Profile, A::Error> {
         Course::deserialize(MapAccessDeserializer::new(map)).map(Profile::Course)
-    }
-}
-
-impl JsonSchema for Profile {
-    fn schema_name() -> Cow<'static, str> {
-        "Profile".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let course = generator.subschema_for::<Course>();
-        json_schema!({
-            "description": "A function of time: a number, which stands for the same value at all times, or a \
-                `Course`. Its unit is that of what it drives: metres for a displacement, degrees for an angle, \
-                newtons for a load.\n\n```toml\n[[forces.load]]\nat = { vertices = [0] }\ndirection = [0, 0, 1]\n\
-                size = { ramp = { to = 0.05, end = 0.5 } }\n```",
-            "anyOf": [{ "type": "number" }, course],
-        })
     }
 }

@@ -9,6 +9,7 @@ use isosheet_mesh::{EdgeId, Sheet, VertexId};
 
 /// A mesh and its refinement by [`refine_isotropic`], as often as `sheet.refine` says. Vertices of the mesh
 /// keep their numbers, and an edge of it becomes a row of edges.
+#[derive(Debug)]
 pub(super) struct Refined {
     /// The mesh, and what each division of all faces makes of it.
     levels: Vec<Sheet>,

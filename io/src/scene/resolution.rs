@@ -2,6 +2,7 @@
 
 use super::key::Key;
 use super::problem::Problem;
+#[cfg(feature = "run")]
 use isosheet_dynamics::SheetModel;
 use isosheet_mesh::Sheet;
 use isosheet_mesh::wording::brief;

@@ -185,12 +185,13 @@ pub(crate) fn size(points: &[[f64; 3]]) -> f64 {
 }
 
 /// Smallest and largest coordinates of some points, metres.
-pub(crate) fn bounds(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
-    let fold = |start: f64, choose: fn(f64, f64) -> f64| {
-        std::array::from_fn(|k| points.iter().map(|p| p[k]).fold(start, choose))
-    };
-    [
-        fold(f64::INFINITY, f64::min),
-        fold(f64::NEG_INFINITY, f64::max),
-    ]
+pub(crate) fn bounds<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>) -> [[f64; 3]; 2] {
+    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for p in points {
+        for k in 0..3 {
+            bounds[0][k] = bounds[0][k].min(p[k]);
+            bounds[1][k] = bounds[1][k].max(p[k]);
+        }
+    }
+    bounds
 }

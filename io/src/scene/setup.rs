@@ -13,6 +13,7 @@ use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{
     Checkpoint, Isometry, Method, SheetModel, Simulation, SimulationError, State, StepControl,
 };
+use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Part, Sheet};
 
 /// How the motion is computed.
@@ -27,6 +28,22 @@ pub enum Integration {
     },
     /// In the chart that exists at the start.
     InChart(Chart),
+}
+
+/// What is known of a scene besides its simulation.
+#[derive(Clone, Debug)]
+pub(crate) struct Facts {
+    /// The sheet in its rest shape, placed in space; the union of several.
+    pub(crate) sheet: Sheet,
+    /// Of several sheets the name of each, and where it is in the union.
+    pub(crate) parts: Vec<(String, Part)>,
+    /// The positions at the start.
+    pub(crate) start: Vec<f64>,
+    pub(crate) obstacles: Vec<Obstacle>,
+    pub(crate) modelled: Vec<String>,
+    pub(crate) targets: Targets,
+    pub(crate) measures: Vec<Gauge>,
+    pub(crate) origins: Origins,
 }
 
 /// Everything that a simulation is made of.
@@ -54,6 +71,9 @@ pub struct Setup {
     pub targets: Targets,
     /// What is read off the sheet at each step.
     pub measures: Vec<Gauge>,
+    /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a crease
+    /// pattern among the meshes; `None` for an edge of which the pattern does not say it.
+    pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
     /// What to know of the sheets before the scene is run.
     pub(crate) of_sheets: Vec<SceneWarning>,
     /// Which entry of the scene made what.
@@ -63,13 +83,24 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// What is known of the scene besides the simulation.
+    pub(crate) fn facts(&self) -> Facts {
+        Facts {
+            sheet: self.sheet.clone(),
+            parts: self.parts.clone(),
+            start: self.start.x.clone(),
+            obstacles: self.obstacles.clone(),
+            modelled: self.modelled.clone(),
+            targets: self.targets.clone(),
+            measures: self.measures.clone(),
+            origins: self.origins.clone(),
+        }
+    }
+
     /// Whether the simulation gives the forces of the rods ([`Simulation::rod_forces`]).
     pub fn has_rod_forces(&self) -> bool {
-        let solves = match &self.integration {
-            Integration::Free { method, .. } => method.solves_for_rod_forces(),
-            Integration::InChart(_) => false,
-        };
-        solves && self.model.isometry() == Isometry::Rods
+        matches!(self.integration, Integration::Free { .. })
+            && self.model.isometry() == Isometry::Rods
     }
 
     /// The simulation at the start.

@@ -1,27 +1,42 @@
 //! Scene files.
 
+use super::build::Kept;
+use super::changed::written;
 use super::edit::{self, EditError};
 use super::error::{SceneError, SceneText};
 use super::form::form_problems;
 use super::key::Key;
 use super::problem::Problem;
-use super::sheets::sheet_key;
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
 use crate::format::{MeshFormat, input};
-use isosheet_mesh::{Advice, generate::FoldAssignment};
+use isosheet_mesh::Advice;
+use serde::Deserialize;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use thiserror::Error;
 use toml::de::DeTable;
-use toml_edit::{DocumentMut, Value};
+use toml_edit::DocumentMut;
 
 /// A scene with its text, and the folder that its paths are relative to.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct SceneFile {
     scene: Scene,
-    text: SceneText,
+    /// The text that was read.
+    read: SceneText,
+    /// The keys whose values have been changed since.
+    changed: Vec<Key>,
+    /// The text of the scene as it is, once somebody has asked for it.
+    text: OnceLock<SceneText>,
     folder: PathBuf,
+}
+
+impl PartialEq for SceneFile {
+    fn eq(&self, other: &Self) -> bool {
+        let same = self.scene == other.scene && self.folder == other.folder;
+        same && self.text() == other.text()
+    }
 }
 
 /// A scene file that cannot be used.
@@ -103,18 +118,19 @@ impl SceneFile {
             edit::apply(&mut document, edits)?;
             text.text = document.to_string();
         }
-        if let Ok(table) = DeTable::parse(&text.text) {
-            SceneError::of(form_problems(table.get_ref())).map_err(|e| e.in_text(&text))?;
-        }
-        let scene: Scene = toml::from_str(&text.text)
-            .map_err(|e| SceneError::from(toml_problem(&e)).in_text(&text))?;
-        scene.validate().map_err(|e| e.in_text(&text))?;
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        Ok(Self {
+        let scene = scene_of(&text.text).map_err(|e| e.in_text(&text))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Ok(Self::new(scene, text, folder))
+    }
+
+    fn new(scene: Scene, read: SceneText, folder: &Path) -> Self {
+        Self {
             scene,
-            text,
-            folder,
-        })
+            read,
+            changed: Vec::new(),
+            text: OnceLock::new(),
+            folder: folder.to_owned(),
+        }
     }
 
     /// A scene that was made in a program; its paths are relative to `folder`.
@@ -124,21 +140,39 @@ impl SceneFile {
     pub fn of(scene: Scene, folder: &Path) -> Result<Self, SceneError> {
         scene.validate()?;
         let text = toml::to_string(&scene).map_err(|e| {
-            let remedy = "paths of mesh files have to be valid UTF-8";
-            Problem::new(
-                Key::root(),
-                format!("the scene cannot be written: {e}"),
-                remedy,
-            )
+            let message = format!("the scene cannot be written as TOML: {e}");
+            let remedy = format!(
+                "whole numbers go up to {}, and paths have to be valid UTF-8",
+                i64::MAX
+            );
+            Problem::new(Key::root(), message, remedy)
         })?;
-        Ok(Self {
+        let path = folder.join("scene.toml");
+        Ok(Self::new(scene, SceneText { path, text }, folder))
+    }
+
+    /// The same with other values at some keys.
+    ///
+    /// # Errors
+    /// [`SceneError`], shown at its place in the text of the changed scene.
+    pub(super) fn changed(
+        &self,
+        scene: Scene,
+        keys: impl IntoIterator<Item = Key>,
+    ) -> Result<Self, SceneError> {
+        let mut file = Self {
             scene,
-            text: SceneText {
-                path: folder.join("scene.toml"),
-                text,
-            },
-            folder: folder.to_owned(),
-        })
+            text: OnceLock::new(),
+            ..self.clone()
+        };
+        for key in keys {
+            if !file.changed.contains(&key) {
+                file.changed.push(key);
+            }
+        }
+        let valid = file.scene.validate();
+        valid.map_err(|e| e.in_text(file.text()))?;
+        Ok(file)
     }
 
     /// The scene.
@@ -148,7 +182,19 @@ impl SceneFile {
 
     /// Its text, edits included.
     pub fn text(&self) -> &SceneText {
-        &self.text
+        self.text.get_or_init(|| {
+            let SceneText { path, text } = &self.read;
+            let text = match self.changed.is_empty() {
+                true => text.clone(),
+                false => {
+                    let written = written(text, &self.scene, &self.changed);
+                    // Without a place for its values in the text that was read.
+                    written.unwrap_or_else(|| toml::to_string(&self.scene).unwrap_or_default())
+                }
+            };
+            let path = path.clone();
+            SceneText { path, text }
+        })
     }
 
     /// The folder that its paths are relative to.
@@ -161,46 +207,38 @@ impl SceneFile {
     /// # Errors
     /// [`SceneError`], shown at its place in the text.
     pub fn build(&self) -> Result<Setup, SceneError> {
-        let setup = self.scene.build(&self.folder);
-        let mut setup = setup.map_err(|e| e.in_text(&self.text))?;
-        setup.text = Some(self.text.clone());
-        Ok(setup)
+        self.build_with(&mut Kept::in_folder(&self.folder))
     }
 
-    /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a
-    /// crease pattern among the meshes; `None` for an edge of which the pattern does not say it.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the mesh cannot be made.
-    pub fn fold_assignments(&self) -> Result<Option<Vec<Option<FoldAssignment>>>, SceneError> {
-        let sheets = &self.scene.sheet;
-        let mut all = Vec::new();
-        for (k, sheet) in sheets.iter().enumerate() {
-            let key = sheet_key(sheets.len(), k);
-            let mesh = sheet.refined(&key, &self.folder);
-            let mesh = mesh.map_err(|e| SceneError::from(e).in_text(&self.text))?;
-            let edges = mesh.refined.sheet().topology().edge_count();
-            all.push(mesh.roles.map_or(vec![None; edges], |r| r.assignments));
-        }
-        let all = all.concat();
-        Ok(all.iter().any(Option::is_some).then_some(all))
+    /// The same with what is kept of it.
+    pub(crate) fn build_with(&self, kept: &mut Kept) -> Result<Setup, SceneError> {
+        let setup = self.scene.build_with(kept);
+        let mut setup = setup.map_err(|e| e.in_text(self.text()))?;
+        setup.text = Some(self.text().clone());
+        Ok(setup)
     }
 
     /// The same scene with other paths of mesh files, one for each of [`Scene::files`].
     ///
     /// # Errors
-    /// [`SceneFileError`] if the text does not take the paths.
-    pub fn with_files(&self, names: &[PathBuf]) -> Result<Self, SceneFileError> {
-        let edits: Vec<String> = self
-            .scene
-            .files()
-            .iter()
-            .zip(names)
-            .map(|((key, _), name)| {
-                let name = Value::from(name.to_string_lossy().as_ref());
-                format!("{key}.path={name}")
-            })
-            .collect();
-        Self::parse(self.text.text.clone(), &self.text.path, &edits)
+    /// [`SceneError`] if a path is empty.
+    pub fn with_files(&self, names: &[PathBuf]) -> Result<Self, SceneError> {
+        let mut scene = self.scene.clone();
+        let mut keys = Vec::new();
+        for ((key, file), name) in scene.files_mut().into_iter().zip(names) {
+            file.path = name.clone();
+            keys.push(key.name("path"));
+        }
+        self.changed(scene, keys)
     }
+}
+
+/// The scene of a text that is read once: for its form and for its values.
+fn scene_of(text: &str) -> Result<Scene, SceneError> {
+    let in_words = |e: &toml::de::Error| SceneError::from(toml_problem(e));
+    let table = DeTable::parse(text).map_err(|e| in_words(&e))?;
+    SceneError::of(form_problems(table.get_ref()))?;
+    let scene = Scene::deserialize(toml::Deserializer::from(table)).map_err(|e| in_words(&e))?;
+    scene.validate()?;
+    Ok(scene)
 }

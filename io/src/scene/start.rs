@@ -1,7 +1,7 @@
 //! How a sheet starts.
 
 use super::key::Key;
-use super::mesh::MeshFile;
+use super::mesh_file::MeshFile;
 use super::problem::Checks;
 use super::unit::Unit;
 use nalgebra::Vector3;
@@ -58,6 +58,7 @@ impl Start {
         if let Some(file) = &self.file {
             file.check(&key.name("file"), checks);
         }
+        checks.count(key.name("seed"), self.seed, 0);
         checks.finite(key.name("velocity"), &self.velocity, Unit::MetrePerSecond);
         if let Some(spin) = &self.spin {
             let key = key.name("spin");

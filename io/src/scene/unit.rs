@@ -24,13 +24,22 @@ pub(crate) enum Unit {
 /// The sizes of the numbers of a unit: far beyond those of any sheet, and near enough for the squares, cubes
 /// and quotients of a step neither to overflow nor to vanish.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Range {
+pub struct UnitRange {
+    /// The unit as it is written behind a number; nothing for coefficients of friction and drag.
+    pub symbol: &'static str,
     /// The smallest size besides zero, where zero is allowed.
-    pub(crate) least: f64,
+    pub least: f64,
     /// The largest size.
-    pub(crate) most: f64,
+    pub most: f64,
     /// What the bounds are far beyond.
-    pub(crate) reason: &'static str,
+    pub reason: &'static str,
+}
+
+impl UnitRange {
+    /// Those of all units of scenes.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Unit::ALL.into_iter().map(Unit::range)
+    }
 }
 
 impl Unit {
@@ -54,98 +63,99 @@ impl Unit {
 
     /// As it is written behind a number.
     pub(crate) fn symbol(self) -> &'static str {
-        match self {
-            Self::Metre => "m",
-            Self::Second => "s",
-            Self::Kilogram => "kg",
-            Self::KilogramPerSquareMetre => "kg/m2",
-            Self::KilogramPerCubicMetre => "kg/m3",
-            Self::Newton => "N",
-            Self::NewtonPerMetre => "N/m",
-            Self::NewtonMetre => "N m",
-            Self::Pascal => "Pa",
-            Self::Joule => "J",
-            Self::MetrePerSecond => "m/s",
-            Self::MetrePerSquareSecond => "m/s2",
-            Self::PerSecond => "1/s",
-            Self::Degree => "degrees",
-            Self::One => "",
-        }
+        self.range().symbol
     }
 
-    pub(crate) fn range(self) -> Range {
-        let (least, most, reason) = match self {
+    pub(crate) fn range(self) -> UnitRange {
+        let (symbol, least, most, reason) = match self {
             Self::Metre => (
+                "m",
                 1e-12,
                 1e12,
                 "an atom measures 1e-10 m, the orbit of the earth 1e11 m",
             ),
             Self::Second => (
+                "s",
                 1e-15,
                 1e15,
                 "atoms in a molecule vibrate in 1e-14 s, a million years are 3e13 s",
             ),
             Self::Kilogram => (
+                "kg",
                 1e-24,
                 1e24,
                 "a square micrometre of graphene has 8e-19 kg, the sea has 1e21 kg",
             ),
             Self::KilogramPerSquareMetre => (
+                "kg/m2",
                 1e-9,
                 1e9,
                 "graphene, the lightest sheet, has 8e-7 kg/m2, a metre of steel has 8e3 kg/m2",
             ),
-            Self::KilogramPerCubicMetre => {
-                (1e-3, 1e6, "an aerogel has 1 kg/m3, osmium has 2e4 kg/m3")
-            }
+            Self::KilogramPerCubicMetre => (
+                "kg/m3",
+                1e-3,
+                1e6,
+                "an aerogel has 1 kg/m3, osmium has 2e4 kg/m3",
+            ),
             Self::Newton => (
+                "N",
                 1e-24,
                 1e18,
                 "bonds of atoms break at 1e-9 N, ropes of bridges hold 1e9 N",
             ),
             Self::NewtonPerMetre => (
+                "N/m",
                 1e-9,
                 1e18,
                 "a film of soap pulls with 0.05 N/m, a metre of steel has a stiffness of 2e11 N/m",
             ),
             Self::NewtonMetre => (
+                "N m",
                 1e-24,
                 1e18,
                 "graphene has a rigidity of 2e-19 N m, a metre of steel 2e10 N m",
             ),
             Self::Pascal => (
+                "Pa",
                 1.0,
                 1e15,
                 "a soft gel has a Young's modulus of 1e2 Pa, diamond of 1e12 Pa",
             ),
             Self::Joule => (
+                "J",
                 1e-30,
                 1e18,
                 "the heat of one atom is 6e-21 J, a ton of explosive has 4e9 J",
             ),
             Self::MetrePerSecond => (
+                "m/s",
                 1e-15,
                 1e9,
                 "continents drift at 1e-9 m/s, light travels at 3e8 m/s",
             ),
             Self::MetrePerSquareSecond => (
+                "m/s2",
                 1e-15,
                 1e15,
                 "the attraction of a person at a metre is 5e-9 m/s2, that of a neutron star 1e12 m/s2",
             ),
-            Self::PerSecond => (1e-15, 1e15, "as for times, whose inverses these are"),
+            Self::PerSecond => ("1/s", 1e-15, 1e15, "as for times, whose inverses these are"),
             Self::Degree => (
+                "degrees",
                 0.0,
                 1e9,
                 "a larger angle has fewer than seven digits behind the point",
             ),
             Self::One => (
+                "",
                 0.0,
                 1e3,
                 "rubber on rubber has a coefficient of friction of about 1",
             ),
         };
-        Range {
+        UnitRange {
+            symbol,
             least,
             most,
             reason,

@@ -39,14 +39,14 @@ impl PlacedSheets<'_> {
             let wide = match &sheet.of.mesh {
                 // A scale says that the unit was thought of.
                 Mesh::File(file) if file.scale != 1.0 => None,
-                Mesh::File(_) => SceneWarning::wide_file(&sheet.placed),
+                Mesh::File(_) => SceneWarning::wide_file(&sheet.form.placed),
                 _ => {
-                    let width = selection::size(sheet.placed.positions().as_chunks::<3>().0);
+                    let width = selection::size(sheet.form.placed.positions().as_chunks::<3>().0);
                     let key = sheet.key.clone();
                     (width > WIDE).then_some(SceneWarning::Wide { key, width })
                 }
             };
-            let reversed = match (&sheet.of.mesh, sheet.changes.reversed_faces) {
+            let reversed = match (&sheet.of.mesh, sheet.form.changes.reversed_faces) {
                 (Mesh::File(file), faces @ 1..) => Some(SceneWarning::ReversedFaces {
                     path: file.path.clone(),
                     faces,

@@ -4,12 +4,14 @@ use serde::Serialize;
 use std::ops::ControlFlow;
 
 use super::body::{Body, BodyShape};
+use super::error::ViewError;
 use super::field::{Field, Place, Scale, Series};
-use super::frames::{Kept, ShownFrames};
+use super::frames::Kept;
 use super::live::LivePage;
 use super::pack::{Packed, RowPacker, pack_doubles, pack_indices};
 use super::quantise::{FieldScale, PositionScale};
 use super::replay::{Axis, Replay};
+use crate::format::Motion;
 
 /// A replay with every `stride`-th frame and the last one. The field names are those in the JSON text.
 #[derive(Serialize)]
@@ -74,12 +76,12 @@ struct SeriesData<'a> {
 impl<'a> Document<'a> {
     /// The document of the frames of a replay, which were validated; none where it is longer than `most` bytes
     /// for sure. Positions and values of fields come from `frames`, everything else from the replay.
-    pub(super) fn new<F: ShownFrames>(
+    pub(super) fn new<M: Motion<Error: From<ViewError>>>(
         replay: &'a Replay,
-        frames: &F,
+        frames: &M,
         kept: Kept,
         most: usize,
-    ) -> Result<Option<Self>, F::Error> {
+    ) -> Result<Option<Self>, M::Error> {
         let (scales, positions) = scales(replay, frames, kept)?;
         let Some((packed, fields)) = pack(&scales, positions, frames, kept, most)? else {
             return Ok(None);
@@ -144,22 +146,22 @@ impl<'a> Document<'a> {
 }
 
 /// How positions and the values of each field become integers.
-fn scales<F: ShownFrames>(
+fn scales<M: Motion<Error: From<ViewError>>>(
     replay: &Replay,
-    frames: &F,
+    frames: &M,
     kept: Kept,
-) -> Result<(Vec<FieldScale>, PositionScale), F::Error> {
+) -> Result<(Vec<FieldScale>, PositionScale), M::Error> {
     let mut positions = PositionScale::new();
     let new = |field: &Field| FieldScale::new(field.scale);
     let mut scales: Vec<FieldScale> = replay.fields.iter().map(new).collect();
-    frames.try_each(kept, |frame| {
+    kept.try_each(frames, |frame| {
         positions.observe(frame.x);
-        let of_fields = scales.iter_mut().zip(frame.values);
+        let of_fields = scales.iter_mut().zip(frame.fields);
         of_fields.for_each(|(scale, values)| scale.observe_sizes(values));
         Ok(())
     })?;
-    frames.try_each(kept, |frame| {
-        let of_fields = scales.iter_mut().zip(frame.values);
+    kept.try_each(frames, |frame| {
+        let of_fields = scales.iter_mut().zip(frame.fields);
         of_fields.for_each(|(scale, values)| scale.observe(values));
         Ok(())
     })?;
@@ -167,13 +169,13 @@ fn scales<F: ShownFrames>(
 }
 
 /// Positions and the values of each field, packed; none where they are longer than `most` bytes for sure.
-fn pack<F: ShownFrames>(
+fn pack<M: Motion<Error: From<ViewError>>>(
     scales: &[FieldScale],
     positions: PositionScale,
-    frames: &F,
+    frames: &M,
     kept: Kept,
     most: usize,
-) -> Result<Option<(Packed, Vec<Packed>)>, F::Error> {
+) -> Result<Option<(Packed, Vec<Packed>)>, M::Error> {
     let mut packed = RowPacker::new(2);
     let new = |scale: &FieldScale| RowPacker::new(scale.bytes());
     let mut fields: Vec<RowPacker> = scales.iter().map(new).collect();
@@ -181,10 +183,10 @@ fn pack<F: ShownFrames>(
     for plane in 0..2 {
         packed.begin_plane(plane);
         let has_plane: Vec<bool> = fields.iter_mut().map(|f| f.begin_plane(plane)).collect();
-        frames.each(kept, &mut |frame| {
+        kept.each(frames, &mut |frame| {
             positions.integers(frame.x, &mut integers);
             packed.push(&integers);
-            let of_fields = fields.iter_mut().zip(scales).zip(frame.values);
+            let of_fields = fields.iter_mut().zip(scales).zip(frame.fields);
             let of_plane = of_fields.zip(&has_plane).filter(|(_, has)| **has);
             for (((field, scale), values), _) in of_plane {
                 scale.integers(values, &mut integers);

@@ -4,10 +4,11 @@ use std::sync::LazyLock;
 
 use super::document::Document;
 use super::error::ViewError;
-use super::frames::{Kept, ShownFrames};
+use super::frames::Kept;
 use super::live::LivePage;
 use super::pack::pack_text;
 use super::replay::Replay;
+use crate::format::Motion;
 
 /// The page without title, style, licences, data and program, which belong at the markers, in this order.
 const TEMPLATE: &str = include_str!("../../view/page.html");
@@ -76,11 +77,11 @@ impl Replay {
 
     /// The page of some frames, which have as many positions as the rest shape and values of all fields; what
     /// this replay has of them is not used. One frame is in memory at a time.
-    pub(crate) fn page_of<F: ShownFrames>(
+    pub(crate) fn page_of<M: Motion<Error: From<ViewError>>>(
         &self,
-        frames: &F,
+        frames: &M,
         options: &PageOptions,
-    ) -> Result<String, F::Error> {
+    ) -> Result<String, M::Error> {
         options.validate()?;
         self.check_frames(frames)?;
         let mut stride = 1;
@@ -101,7 +102,7 @@ impl Replay {
             match page {
                 Some(page) if page.len() <= options.budget => return Ok(page),
                 Some(page) if count <= 2 => {
-                    return Err(F::Error::from(ViewError::TooLarge {
+                    return Err(M::Error::from(ViewError::TooLarge {
                         bytes: page.len(),
                         frames: count,
                         budget: options.budget,

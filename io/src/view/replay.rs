@@ -6,7 +6,8 @@ use super::body::Body;
 use super::check;
 use super::error::ViewError;
 use super::field::{Field, Series};
-use super::frames::{Kept, ShownFrame, ShownFrames};
+use super::frames::Kept;
+use crate::format::{FrameData, Motion, MotionFrame};
 use serde::Serialize;
 use std::ops::ControlFlow;
 
@@ -85,17 +86,20 @@ impl Replay {
     }
 
     /// Checks everything, with the positions and the values of fields of some frames.
-    pub(super) fn check_frames<F: ShownFrames>(&self, frames: &F) -> Result<(), F::Error> {
+    pub(super) fn check_frames<M: Motion<Error: From<ViewError>>>(
+        &self,
+        frames: &M,
+    ) -> Result<(), M::Error> {
         let topology = self.check_still()?;
         let kept = Kept {
             frames: self.times.len(),
             stride: 1,
         };
-        frames.try_each(kept, |frame| {
+        kept.try_each(frames, |frame| {
             let positions = || positions_of(frame.number, self.times[frame.number]);
             check::length_of(frame.x.len(), self.rest.len(), positions)?;
             check::finite_of(frame.x, positions)?;
-            let fields = self.fields.iter().zip(frame.values).enumerate();
+            let fields = self.fields.iter().zip(frame.fields).enumerate();
             for (index, (field, values)) in fields {
                 field.check_values(values, index, frame.number, &topology)?;
             }
@@ -136,20 +140,21 @@ fn positions_of(frame: usize, time: f64) -> String {
     format!("the positions of frame {frame} at {time} s")
 }
 
-impl ShownFrames for Replay {
+impl Motion for Replay {
     type Error = ViewError;
 
     fn each(
         &self,
-        kept: Kept,
-        show: &mut dyn FnMut(&ShownFrame<'_>) -> ControlFlow<()>,
+        show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
     ) -> Result<(), ViewError> {
-        for number in kept.numbers() {
-            let values: Vec<&[f64]> = self.fields.iter().map(|f| &f.values[number][..]).collect();
-            let frame = ShownFrame {
+        for (number, x) in self.positions.iter().enumerate() {
+            let fields: Vec<&[f64]> = self.fields.iter().map(|f| &f.values[number][..]).collect();
+            let frame = MotionFrame {
                 number,
-                x: &self.positions[number],
-                values: &values,
+                t: self.times[number],
+                x,
+                data: FrameData::default(),
+                fields: &fields,
             };
             if show(&frame).is_break() {
                 break;

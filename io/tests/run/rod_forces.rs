@@ -86,7 +86,6 @@ fn runs_without_rods_or_their_multipliers_have_no_forces() {
             "elastic",
             vec!["sheet.isometry={ elastic = { stiffness = 1e4 } }"],
         ),
-        ("projection", vec!["method.integrator=projection"]),
         ("chart", vec!["method.integrator=chart", "stop.time=0.02"]),
     ] {
         let recording = simulated(dir.path(), out, &edits);

@@ -94,8 +94,9 @@ fn crease_patterns_fold_to_their_sides() {
         );
         let scene = parse(&text).unwrap_or_else(|e| panic!("{e}"));
         let expected: Vec<_> = pattern.assignments.iter().copied().map(Some).collect();
-        assert_eq!(scene.fold_assignments().unwrap(), Some(expected), "{mesh}");
-        same(&scene.build().unwrap().sheet, &pattern.sheet);
+        let setup = scene.build().unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(setup.fold_assignments, Some(expected), "{mesh}");
+        same(&setup.sheet, &pattern.sheet);
         let mut run = simulation(&text);
         for _ in 0..90 {
             run.step(1.0 / 60.0).unwrap();

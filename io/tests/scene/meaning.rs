@@ -157,17 +157,26 @@ fn air_is_the_air_that_it_says() {
         );
         simulation(&scene)
     };
-    assert!(of("").model().air().is_none());
-    let (still, engine) = (of("[air]"), Air::default());
-    let still = still.model().air().unwrap();
-    for (found, want) in [
-        (still.density, engine.density),
-        (still.normal, engine.normal),
-        (still.tangential, engine.tangential),
-    ] {
-        assert_eq!(found, want);
-    }
-    assert_eq!(still.wind.velocity([0.0; 3], 0.7), [0.0; 3]);
+    // Forces at two times on a sheet that turns, of the model of a scene, and of one that is made by hand.
+    let sheet = generate::isotropic_square(0, 0.2).expect("a mesh");
+    let x = sheet.positions();
+    let v: Vec<f64> = (0..x.len()).map(|i| (1.7 * i as f64).sin()).collect();
+    let forces = |model: &SheetModel| {
+        [0.0, 1.0].map(|t| {
+            let mut force = vec![0.0; x.len()];
+            model.applied_force(t, x, &v, &mut force);
+            force
+        })
+    };
+    let in_air = |air: Air| {
+        let model = SheetModel::new(&sheet, 0.08 * 0.2 * 0.2, MassKind::Lumped).expect("a mass");
+        forces(&model.with_air(air).expect("in range"))
+    };
+    assert_eq!(
+        forces(of("").model()),
+        [vec![0.0; x.len()], vec![0.0; x.len()]]
+    );
+    assert_eq!(forces(of("[air]").model()), in_air(Air::default()));
     let gusts = "[air]
         density = 1000
         normal = 2
@@ -177,16 +186,20 @@ fn air_is_the_air_that_it_says() {
             -1,
             { ramp = { to = 3, end = 2 } },
         ]";
-    let gusts = of(gusts);
-    let gusts = gusts.model().air().unwrap();
-    assert_eq!(
-        [gusts.density, gusts.normal, gusts.tangential],
-        [1000.0, 2.0, 0.0]
-    );
-    for (t, want) in [(0.0, [6.0, -1.0, 0.0]), (1.0, [2.0, -1.0, 1.5])] {
-        let found = gusts.wind.velocity([0.0; 3], t);
-        let error = (0..3).map(|k| (found[k] - want[k]).abs());
-        assert!(error.fold(0.0, f64::max) < 1e-12, "{found:?}");
+    let found = forces(of(gusts).model());
+    for (k, wind) in [[6.0, -1.0, 0.0], [2.0, -1.0, 1.5]].into_iter().enumerate() {
+        let want = in_air(Air {
+            density: 1000.0,
+            normal: 2.0,
+            tangential: 0.0,
+            wind: wind.into(),
+        });
+        for (found, want) in found[k].iter().zip(&want[k]) {
+            assert!(
+                (found - want).abs() < 1e-12 * want.abs().max(1.0),
+                "{found} {want}"
+            );
+        }
     }
 }
 

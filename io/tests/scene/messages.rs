@@ -431,10 +431,8 @@ fn edits_reach_every_place_and_keep_the_rest() {
 fn whole_numbers_beyond_those_of_toml_are_refused() {
     let mesh = "rectangle = { width = 1, height = 1, columns = 18446744073709551615, rows = 1 }";
     let seed = "polygon = { outline = [[0, 0], [1, 0], [0, 1]], spacing = 0.5, seed = 9223372036854775808 }";
-    for (mesh, part) in [
-        (mesh, "give at most 9223372036854775807"),
-        (seed, "whole numbers go up to"),
-    ] {
+    for mesh in [mesh, seed] {
+        let part = "give at most 9223372036854775807";
         let error = parse(&format!("version = 1\n[sheet]\nmesh = {{ {mesh} }}\n")).unwrap_err();
         assert!(error.to_string().contains(part), "{error}");
     }

@@ -138,7 +138,7 @@ fn flatness_from_lengths() {
         })
     ));
     // Gauss-Bonnet on a closed surface: the defects add up to 2 pi chi.
-    let (n, faces) = crate::testing::octahedron();
+    let (n, faces) = crate::tests::surfaces::octahedron();
     let x = (0..3 * n).map(|k| (7.3 * (k * k) as f64).sin()).collect();
     let s = Sheet::new(x, &faces).unwrap();
     let total: f64 = s

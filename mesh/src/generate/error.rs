@@ -130,6 +130,22 @@ pub(crate) fn check_size(name: &'static str, value: f64) -> Result<(), GenerateE
     }
 }
 
+/// Checks that one value is below another.
+pub(crate) fn check_order(
+    (small, small_value): (&'static str, f64),
+    (large, large_value): (&'static str, f64),
+) -> Result<(), GenerateError> {
+    match small_value < large_value {
+        true => Ok(()),
+        false => Err(GenerateError::Order {
+            small,
+            small_value,
+            large,
+            large_value,
+        }),
+    }
+}
+
 pub(crate) fn check_angle(
     name: &'static str,
     value: f64,

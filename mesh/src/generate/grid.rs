@@ -103,33 +103,6 @@ pub fn isotropic_square(level: u32, side: f64) -> Result<Sheet, GenerateError> {
     grid(n, n, side, side, Diagonals::UnionJack)
 }
 
-/// The isotropic rectangle of `columns` x `rows` coarse rectangles at refinement `level`: each coarse
-/// rectangle is cut into 2^level x 2^level smaller ones and each of those into eight triangles about its
-/// centre (Fig. 4).
-///
-/// With one column and one row of equal sides this is [`isotropic_square`]. Numbering is that of [`grid`].
-///
-/// # Errors
-/// As [`grid`]; the level may be at most 10.
-pub fn isotropic_rectangle(
-    columns: usize,
-    rows: usize,
-    level: u32,
-    width: f64,
-    height: f64,
-) -> Result<Sheet, GenerateError> {
-    check_level(level)?;
-    check_count("columns", columns, 1)?;
-    check_count("rows", rows, 1)?;
-    grid(
-        columns << (level + 1),
-        rows << (level + 1),
-        width,
-        height,
-        Diagonals::UnionJack,
-    )
-}
-
 /// The one-way grid of Liu, Tang and Joneja 2007, Figs. 1 and 3: all diagonals run from lower right to upper
 /// left.
 ///
@@ -237,14 +210,14 @@ mod tests {
 
     #[test]
     fn rectangles_and_strips() {
-        let s = isotropic_rectangle(3, 2, 1, 0.6, 0.4).unwrap();
+        let s = grid(12, 8, 0.6, 0.4, Diagonals::UnionJack).unwrap();
         s.topology().check_invariants();
         assert_eq!(
             (s.topology().vertex_count(), s.topology().face_count()),
             (13 * 9, 2 * 12 * 8)
         );
         assert_eq!(
-            isotropic_rectangle(1, 1, 2, 0.3, 0.3).unwrap(),
+            grid(8, 8, 0.3, 0.3, Diagonals::UnionJack).unwrap(),
             isotropic_square(2, 0.3).unwrap()
         );
         let s = anisotropic_grid(3, 4, 0.6, 0.4).unwrap();

@@ -57,9 +57,9 @@ pub fn hypar(rings: usize, side: f64) -> Result<FoldPattern, GenerateError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::flat_folding::check_flat_folding;
     use super::*;
     use crate::VertexId;
+    use crate::tests::flat_folding::check_flat_folding;
 
     #[test]
     fn counts_lengths_and_flat_folding() {

@@ -1,6 +1,7 @@
 //! Regular outlines, and polygons in rings within any outline that is seen from the origin.
 
-use super::error::{GenerateError, check_count, check_faces, check_size};
+use super::error::{GenerateError, check_count, check_size};
+use super::round::rings_about_centre;
 use crate::Sheet;
 use std::f64::consts::TAU;
 
@@ -40,33 +41,12 @@ pub fn regular_outline(sides: usize, radius: f64) -> Result<Vec<[f64; 2]>, Gener
 /// round the origin once, with every side less than half a turn wide; [`GenerateError::Count`] for no ring.
 pub fn polygon_rings(outline: &[[f64; 2]], rings: usize) -> Result<Sheet, GenerateError> {
     check_seen_from_origin(outline)?;
-    check_count("rings", rings, 1)?;
     let n = outline.len();
-    check_faces(n as u128 * (rings as u128).pow(2))?;
-    // Point j of side k of ring r; the last of a side is the first of the next one.
-    let vertex = |r: usize, k: usize, j: usize| match r {
-        0 => 0,
-        _ => (1 + n * (r * (r - 1) / 2) + (k * r + j) % (n * r)) as u32,
-    };
-    let mut positions = vec![0.0; 3];
-    let mut faces = Vec::with_capacity(n * rings * rings);
-    for r in 1..=rings {
-        let size = r as f64 / rings as f64;
-        for k in 0..n {
-            let (a, b) = (outline[k], outline[(k + 1) % n]);
-            for j in 0..r {
-                let s = j as f64 / r as f64;
-                let [x, y] = [0, 1].map(|axis| size * (a[axis] + s * (b[axis] - a[axis])));
-                positions.extend([x, y, 0.0]);
-                let (inner, outer) = (vertex(r - 1, k, j), vertex(r, k, j));
-                faces.push([inner, outer, vertex(r, k, j + 1)]);
-                if j > 0 {
-                    faces.push([vertex(r - 1, k, j - 1), outer, inner]);
-                }
-            }
-        }
-    }
-    Ok(Sheet::new(positions, &faces)?)
+    rings_about_centre(n, rings, |r, side, k| {
+        let (a, b) = (outline[side], outline[(side + 1) % n]);
+        let (size, s) = (r as f64 / rings as f64, k as f64 / r as f64);
+        [0, 1].map(|axis| size * (a[axis] + s * (b[axis] - a[axis])))
+    })
 }
 
 /// Whether the corners run counter-clockwise round the origin once.
@@ -98,7 +78,6 @@ fn check_seen_from_origin(outline: &[[f64; 2]]) -> Result<(), GenerateError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generate::regular_polygon;
 
     #[test]
     fn corners_are_on_the_circle_and_sides_upright() {
@@ -134,27 +113,6 @@ mod tests {
         let radial = lines
             .filter(|[p, q]| along(*p) && along(*q) && (p[0] * q[1] - p[1] * q[0]).abs() < 1e-12);
         assert_eq!(radial.count(), 40);
-    }
-
-    /// The same polygon by [`regular_polygon`], whose first corner is on the x axis.
-    #[test]
-    fn rings_are_those_of_the_regular_polygon_turned_by_half_a_side() {
-        let (sides, rings, radius) = (6, 4, 0.3);
-        let mine = polygon_rings(&regular_outline(sides, radius).unwrap(), rings).unwrap();
-        let other = regular_polygon(sides, rings, radius).unwrap();
-        let (s, c) = (0.5 * TAU / sides as f64).sin_cos();
-        for v in other.topology().vertex_ids() {
-            let ([x, y, _], q) = (other.position(v), mine.position(v));
-            let turned = [c * x - s * y, s * x + c * y];
-            assert!((turned[0] - q[0]).hypot(turned[1] - q[1]) < 1e-15);
-        }
-        let sorted = |sheet: &Sheet| {
-            let mut faces: Vec<[u32; 3]> = sheet.face_indices().to_vec();
-            faces.iter_mut().for_each(|f| f.sort_unstable());
-            faces.sort_unstable();
-            faces
-        };
-        assert_eq!(sorted(&mine), sorted(&other));
     }
 
     #[test]

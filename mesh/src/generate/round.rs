@@ -1,31 +1,9 @@
-//! Sheets with a centre: polygons, disks, fans, annuli.
+//! Sheets with a centre: disks, fans, annuli.
 
 use std::f64::consts::TAU;
 
-use super::error::{GenerateError, check_count, check_faces, check_size};
+use super::error::{GenerateError, check_count, check_faces, check_order, check_size};
 use crate::Sheet;
-
-/// A flat regular polygon about the origin, its first corner on the x axis.
-///
-/// Ring r of 1 ..= `rings` is the polygon scaled by r / rings with r edges per side, so that each of the
-/// `sides` sectors is cut into rings^2 similar triangles. V = 1 + sides rings (rings + 1) / 2, F = sides
-/// rings^2. With one ring it is a wheel: one interior vertex of degree `sides`. `radius` (metres) is that of
-/// the circumscribed circle.
-///
-/// # Errors
-/// [`GenerateError`] for fewer than three sides, no ring, or a radius that is not positive.
-pub fn regular_polygon(sides: usize, rings: usize, radius: f64) -> Result<Sheet, GenerateError> {
-    rings_about_centre(sides, rings, radius, |r, side, k| {
-        let corner = |s: usize| (TAU * s as f64 / sides as f64).sin_cos();
-        let ((s0, c0), (s1, c1)) = (corner(side), corner(side + 1));
-        let w = k as f64 / r as f64;
-        let scale = radius * r as f64 / rings as f64;
-        [
-            scale * ((1.0 - w) * c0 + w * c1),
-            scale * ((1.0 - w) * s0 + w * s1),
-        ]
-    })
-}
 
 /// A flat disk about the origin: the triangulation of a hexagon of `rings` rings, with each ring on a circle.
 ///
@@ -35,23 +13,21 @@ pub fn regular_polygon(sides: usize, rings: usize, radius: f64) -> Result<Sheet,
 /// # Errors
 /// [`GenerateError`] for no ring or a radius that is not positive.
 pub fn disk(rings: usize, radius: f64) -> Result<Sheet, GenerateError> {
-    rings_about_centre(6, rings, radius, |r, side, k| {
+    check_size("radius", radius)?;
+    rings_about_centre(6, rings, |r, side, k| {
         let (s, c) = (TAU * (side as f64 + k as f64 / r as f64) / 6.0).sin_cos();
         let scale = radius * r as f64 / rings as f64;
         [scale * c, scale * s]
     })
 }
 
-/// Vertex k of `side` on ring r is at `place(r, side, k)`, 0 <= k < r.
-fn rings_about_centre(
+/// Triangles in rings about vertex 0, the origin. Vertex k of `side` on ring r is at `place(r, side, k)`, 0 <= k < r.
+pub(super) fn rings_about_centre(
     sides: usize,
     rings: usize,
-    radius: f64,
     place: impl Fn(usize, usize, usize) -> [f64; 2],
 ) -> Result<Sheet, GenerateError> {
-    check_count("sides", sides, 3)?;
     check_count("rings", rings, 1)?;
-    check_size("radius", radius)?;
     check_faces(sides as u128 * (rings as u128).pow(2))?;
     let mut positions = vec![0.0; 3];
     for r in 1..=rings {
@@ -91,7 +67,8 @@ fn rings_about_centre(
 /// A flat fan: `triangles` equal isosceles triangles with legs `radius` (metres) about a common apex at the
 /// origin, together `opening` radians wide, starting on the x axis.
 ///
-/// The apex is vertex 0 and lies on the boundary; use [`regular_polygon`] with one ring for a closed wheel.
+/// The apex is vertex 0 and lies on the boundary; use [`polygon_rings`](super::polygon_rings) with one ring for a
+/// closed wheel.
 ///
 /// # Errors
 /// [`GenerateError`] for no triangle, a size that is not positive, an opening of 2 pi or more (the ends would
@@ -102,14 +79,8 @@ pub fn fan(triangles: usize, radius: f64, opening: f64) -> Result<Sheet, Generat
     check_size("opening", opening)?;
     check_faces(triangles as u128)?;
     let limit = TAU.min(std::f64::consts::PI * triangles as f64);
-    if opening >= limit {
-        return Err(GenerateError::Order {
-            small: "opening",
-            small_value: opening,
-            large: "the largest angle that this many triangles can fan out",
-            large_value: limit,
-        });
-    }
+    let largest = "the largest angle that this many triangles can fan out";
+    check_order(("opening", opening), (largest, limit))?;
     let mut positions = vec![0.0; 3];
     for k in 0..=triangles {
         let (s, c) = (opening * k as f64 / triangles as f64).sin_cos();
@@ -137,14 +108,7 @@ pub fn annulus(
     check_size("inner", inner)?;
     check_size("outer", outer)?;
     check_faces(2 * segments as u128 * rings as u128)?;
-    if inner >= outer {
-        return Err(GenerateError::Order {
-            small: "inner",
-            small_value: inner,
-            large: "outer",
-            large_value: outer,
-        });
-    }
+    check_order(("inner", inner), ("outer", outer))?;
     let mut positions = Vec::with_capacity(3 * segments * (rings + 1));
     for r in 0..=rings {
         let radius = inner + (outer - inner) * r as f64 / rings as f64;
@@ -174,6 +138,7 @@ pub fn annulus(
 mod tests {
     use super::*;
     use crate::VertexId;
+    use crate::generate::{polygon_rings, regular_outline};
 
     /// Every face turned counter-clockwise, and the areas add up to `area`.
     fn check_flat(s: &Sheet, area: f64) {
@@ -192,7 +157,8 @@ mod tests {
     #[test]
     fn polygons_and_disks() {
         for (sides, rings) in [(3, 1), (3, 4), (4, 2), (5, 3), (6, 4), (8, 5)] {
-            let s = regular_polygon(sides, rings, 2.0).unwrap();
+            let outline = regular_outline(sides, 2.0).unwrap();
+            let s = polygon_rings(&outline, rings).unwrap();
             check_flat(&s, 2.0 * sides as f64 * (TAU / sides as f64).sin());
             let t = s.topology();
             assert_eq!(t.vertex_count(), 1 + sides * rings * (rings + 1) / 2);
@@ -227,10 +193,6 @@ mod tests {
 
     #[test]
     fn misuse_is_refused() {
-        assert!(matches!(
-            regular_polygon(2, 1, 1.0),
-            Err(GenerateError::Count { name: "sides", .. })
-        ));
         assert!(matches!(
             disk(0, 1.0),
             Err(GenerateError::Count { name: "rings", .. })

@@ -1,6 +1,6 @@
 //! The square twist.
 
-use super::error::{GenerateError, check_angle, check_size};
+use super::error::{GenerateError, check_angle, check_order, check_size};
 use super::origami::{FoldAssignment, FoldPattern};
 use crate::Sheet;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
@@ -29,15 +29,7 @@ pub fn square_twist(side: f64, square: f64, angle: f64) -> Result<FoldPattern, G
     check_size("side", side)?;
     check_size("square", square)?;
     check_angle("angle", angle, [0.0, FRAC_PI_2])?;
-    let largest = side / SQRT_2;
-    if square >= largest {
-        return Err(GenerateError::Order {
-            small: "square",
-            small_value: square,
-            large: "side / sqrt(2)",
-            large_value: largest,
-        });
-    }
+    check_order(("square", square), ("side / sqrt(2)", side / SQRT_2))?;
     let (half, radius) = (0.5 * side, square / SQRT_2);
     // The lower left corner, and quarter turns of it.
     let (sine, cosine) = (angle - 3.0 * FRAC_PI_4).sin_cos();
@@ -90,9 +82,9 @@ fn distance2([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::flat_folding::check_flat_folding;
     use super::*;
     use crate::VertexId;
+    use crate::tests::flat_folding::check_flat_folding;
 
     #[test]
     fn counts_lengths_and_flat_folding() {

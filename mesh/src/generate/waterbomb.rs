@@ -70,8 +70,8 @@ pub fn waterbomb(columns: usize, rows: usize, side: f64) -> Result<FoldPattern, 
 
 #[cfg(test)]
 mod tests {
-    use super::super::flat_folding::check_flat_folding;
     use super::*;
+    use crate::tests::flat_folding::check_flat_folding;
 
     #[test]
     fn counts_lengths_and_flat_folding() {

@@ -55,8 +55,8 @@ pub fn yoshimura(
 
 #[cfg(test)]
 mod tests {
-    use super::super::flat_folding::check_flat_folding;
     use super::*;
+    use crate::tests::flat_folding::check_flat_folding;
 
     #[test]
     fn counts_lengths_and_flat_folding() {

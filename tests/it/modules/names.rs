@@ -4,7 +4,7 @@ use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use syn::{Attribute, Item, ItemUse, UseTree};
+use syn::{Attribute, Expr, ExprLit, Item, ItemUse, Lit, UseTree};
 
 /// What a `use` makes known.
 pub(super) struct Import {
@@ -116,10 +116,12 @@ impl Names {
                     match child.content {
                         Some((_, items)) => self.add(path, module.file.clone(), &folder, items),
                         None => {
+                            let named = named_path(&child.attrs);
+                            let named = named.map(|path| module.file.with_file_name(path));
                             let (beside, within) =
                                 (folder.with_extension("rs"), folder.join("mod.rs"));
-                            let file = if beside.is_file() { beside } else { within };
-                            self.add_file(path, file, &folder);
+                            let usual = if beside.is_file() { beside } else { within };
+                            self.add_file(path, named.unwrap_or(usual), &folder);
                         }
                     }
                     continue;
@@ -226,6 +228,19 @@ impl Names {
                 }
             })
     }
+}
+
+/// The file that an attribute `#[path = "..."]` of a module names.
+fn named_path(attributes: &[Attribute]) -> Option<String> {
+    let path = attributes.iter().find(|a| a.path().is_ident("path"))?;
+    let Expr::Lit(ExprLit {
+        lit: Lit::Str(text),
+        ..
+    }) = &path.meta.require_name_value().ok()?.value
+    else {
+        return None;
+    };
+    Some(text.value())
 }
 
 /// Whether an item is compiled for tests only.

@@ -3,6 +3,7 @@
 use super::names::{Import, Names, has_test_attribute, is_for_tests};
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use syn::visit::{self, Visit};
 use syn::{Attribute, ImplItemFn, Item, ItemUse, LitStr, Macro, Meta, VisRestricted, Visibility};
@@ -22,6 +23,26 @@ impl Uses {
             };
             for item in &module.items {
                 visitor.visit_item(item);
+            }
+        }
+        uses
+    }
+
+    /// The same between folders: a file or a folder, with the file of its name, uses those beside it that files
+    /// in it use.
+    pub(super) fn of_folders(&self, root: &Path) -> Self {
+        let mut uses = Self(BTreeMap::new());
+        for ((file, used), names) in &self.0 {
+            let places = [file, used].map(|file| place(root, file));
+            let [file, used] = &places;
+            let common = file.iter().zip(used).take_while(|(a, b)| a == b).count();
+            if file.len().min(used.len()) > common {
+                let beside = places.map(|place| place[..=common].iter().collect());
+                let [file, used]: [PathBuf; 2] = beside.map(|path: PathBuf| root.join(path));
+                uses.0
+                    .entry((file, used))
+                    .or_default()
+                    .extend(names.clone());
             }
         }
         uses
@@ -48,6 +69,13 @@ impl Uses {
             both.then_some((file.as_path(), used.as_path(), names))
         })
     }
+}
+
+/// The way to a file in its crate: `[a, b]` for `a/b.rs` and `a/b/mod.rs`, and nothing for `lib.rs`.
+fn place(root: &Path, file: &Path) -> Vec<OsString> {
+    let file = file.strip_prefix(root).unwrap_or(file).with_extension("");
+    let names = file.iter().filter(|name| *name != "mod" && *name != "lib");
+    names.map(OsStr::to_owned).collect()
 }
 
 /// Follows all paths in the items of a module.

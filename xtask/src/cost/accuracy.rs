@@ -1,60 +1,324 @@
-//! Error against time: every method on problems with known motions, with ever finer steps.
+//! Error against time: the methods without a chart on problems with exact solutions, with ever finer steps.
 
-mod barrier;
-mod motion;
-mod point;
-mod problem;
-mod reference;
-mod scheme;
-mod study;
-
-pub(super) use problem::Problem;
-pub(super) use study::Front;
-
-use super::Record;
-use crate::report::{Effort, Table, plot};
+use super::DEFAULT;
+use crate::draw::{Chart, Charts, Legend, Series};
+use crate::progress::Progress;
+use crate::report::{
+    Bound, Effort, Finding, LENGTHS, Part, Record, Table, columns, exponent, plot,
+};
+use crate::runs::{Course, Plan, unseen};
 use crate::store::Files;
 use anyhow::Result;
+use isosheet_dynamics::{Method, SheetModel, Simulation, State};
+use isosheet_tests::{Flap, FreeTriangle, Pendulum, conservative, implicit_euler, max_difference};
 use maud::html;
-use study::Study;
+use serde::Serialize;
+
+/// What moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Problem {
+    Pendulum,
+    Triangle,
+    Flap,
+}
 
 /// What is measured, in words.
 pub(super) const ABOUT: &str = "\
-    Every method is run on every problem with ever finer steps. Times are CPU seconds for a simulated \
-    second on one core, set-up left out; short runs are repeated up to five times and the minimum is \
-    taken. Position errors are the largest distance of a vertex from the reference at eight points of \
-    time, energy errors the largest change of T + V as part of the largest kinetic energy, strains the \
-    largest relative edge length error. Differences in time below 10 % are noise.";
+    Methods without a chart are run with ever finer steps. Times are CPU seconds for a simulated second on one core, set-up left out; \
+    short runs are repeated up to five times and the minimum is taken. Position errors are the largest distance of a vertex from its \
+    exact place at the end, energy errors the largest change of T + V as part of the largest kinetic energy, strains the largest \
+    relative edge length error. Differences in time below 10 % are noise.";
 
-/// What the table of the fronts shows.
-const FRONTS: &str = "The cheapest method for an error of positions or of energy: of all, and of those that take flat states, beside \
-    the default; CPU seconds for a simulated second (s/s)";
+/// The methods with the orders that docs/methods.md says.
+fn methods() -> impl Iterator<Item = (&'static str, Method, f64)> {
+    let damped = [
+        (DEFAULT, Method::default(), 2.0),
+        ("implicit Euler", implicit_euler(), 1.0),
+    ];
+    let orders = [2.0, 2.0, 4.0];
+    let conservative = conservative().into_iter().zip(orders);
+    let conservative = conservative.map(|((name, method), order)| (name, method, order));
+    damped.into_iter().chain(conservative)
+}
 
-/// The table of the fronts of all problems.
-pub(super) fn fronts<'a>(rows: impl Iterator<Item = &'a Front>) -> Result<Table> {
-    Ok(Table::of_fields(FRONTS, rows)?.named("fronts"))
+/// A run of a method. The fields are columns of a table, by their names.
+#[derive(Clone, Debug, Serialize)]
+struct Point {
+    method: &'static str,
+    step_s: f64,
+    cpu_s_per_simulated_s: f64,
+    /// These three of runs that came to the end with steps as asked for.
+    position_error_m: Option<f64>,
+    relative_energy_error: Option<f64>,
+    strain: Option<f64>,
+    factorisations: usize,
+    /// Why the run did not come to the end.
+    failure: Option<String>,
+}
+
+/// An error of a run.
+type Error = fn(&Point) -> Option<f64>;
+
+/// Steps of the coarsest run; each has twice as many as the one before.
+const COARSEST: usize = 16;
+
+/// Runs that are made however long they take: orders are fitted to the finest of them, and must not depend on
+/// how fast the machine is. And most runs.
+const RUNS: [u32; 2] = [8, 14];
+
+/// Most repetitions of short runs.
+const REPETITIONS: usize = 5;
+
+/// An order that is fitted to a few runs with finite steps may be smaller by this much.
+const FIT: f64 = 0.3;
+
+/// Points that a fitted order rests on, and the error from which they count: ten times the round-off of exact
+/// solutions.
+const FITTED: usize = 4;
+const FLOOR: f64 = 1e-11;
+
+impl Problem {
+    /// All of them with their names.
+    pub(super) fn named() -> Vec<(&'static str, Self)> {
+        let all = [Self::Pendulum, Self::Triangle, Self::Flap].into_iter();
+        all.map(|problem| (problem.name(), problem)).collect()
+    }
+
+    /// Name on the command line and in tables.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Pendulum => "pendulum",
+            Self::Triangle => "triangle",
+            Self::Flap => "flap",
+        }
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Pendulum => {
+                "A triangle pinned along an edge: a pendulum of 0.7 m released at 2 rad, one period; exact by Jacobi functions."
+            }
+            Self::Triangle => {
+                "A tumbling triangle without gravity, one period of its spin; exact by Jacobi functions and a quadrature."
+            }
+            Self::Flap => {
+                "Two triangles that open about their hinge, 0.6 s; exact by a quadrature."
+            }
+        }
+    }
+
+    fn start(self) -> (SheetModel, State) {
+        match self {
+            Self::Pendulum => (Pendulum::default().model(), Pendulum::default().start()),
+            Self::Triangle => {
+                let triangle = FreeTriangle::default();
+                (triangle.model(), triangle.start())
+            }
+            Self::Flap => (Flap::default().model(), Flap::default().start()),
+        }
+    }
+
+    /// The time that is simulated, seconds.
+    fn duration(self) -> f64 {
+        match self {
+            Self::Pendulum => Pendulum::default().period(),
+            Self::Triangle => FreeTriangle::default().period(),
+            Self::Flap => 0.6,
+        }
+    }
+
+    /// The exact positions at the end.
+    fn exact(self) -> Vec<f64> {
+        let end = self.duration();
+        match self {
+            Self::Pendulum => Pendulum::default().exact(end),
+            Self::Triangle => FreeTriangle::default().positions(&[end]).remove(0),
+            Self::Flap => Flap::default().exact(end),
+        }
+    }
+
+    /// Runs a method with so many steps, and again while it takes less than `again` CPU seconds.
+    fn point(
+        self,
+        (name, method): (&'static str, &Method),
+        steps: usize,
+        again: f64,
+    ) -> Result<Point> {
+        let step = self.duration() / steps as f64;
+        let plan = Plan::new(step, self.duration());
+        let (mut fastest, mut end, mut spent) = (None::<Course>, Vec::new(), 0.0);
+        for _ in 0..REPETITIONS {
+            let (model, state) = self.start();
+            let mut run = Simulation::new(model, state, method.clone())?;
+            let course = plan.run(&mut run, &mut unseen)?;
+            end.clone_from(&run.state().x);
+            spent += course.cost.cpu;
+            if fastest
+                .as_ref()
+                .is_none_or(|f| course.cost.cpu < f.cost.cpu)
+            {
+                fastest = Some(course);
+            }
+            if spent > again {
+                break;
+            }
+        }
+        let course = fastest.unwrap_or_default();
+        let is_as_asked = course.is_good() && course.cost.substeps == steps;
+        let if_good = |value: f64| is_as_asked.then_some(value);
+        Ok(Point {
+            method: name,
+            step_s: step,
+            cpu_s_per_simulated_s: course.cpu_rate().unwrap_or(0.0),
+            position_error_m: if_good(max_difference(&end, &self.exact())),
+            relative_energy_error: if_good(course.drift / course.most_kinetic),
+            strain: if_good(course.strain),
+            factorisations: course.cost.factorisations,
+            failure: course.failure(),
+        })
+    }
+}
+
+/// Measures all methods on a problem, coarse to fine, until a run takes longer than so many CPU seconds.
+fn measure(problem: Problem, limit: f64) -> Result<Vec<Point>> {
+    let bar = Progress::start(problem.name(), methods().count());
+    let mut points = Vec::new();
+    for (name, method, _) in methods() {
+        for k in 0..RUNS[1] {
+            let point = problem.point((name, &method), COARSEST << k, 0.2 * limit)?;
+            let spent = point.cpu_s_per_simulated_s * problem.duration();
+            let is_exact = point.position_error_m.is_some_and(|e| e < 0.1 * FLOOR);
+            points.push(point);
+            if is_exact || k + 1 >= RUNS[0] && spent > limit {
+                break;
+            }
+        }
+        bar.step();
+    }
+    bar.finish(&format!("{} runs", points.len()));
+    Ok(points)
+}
+
+/// The points of a method.
+fn of<'a>(points: &'a [Point], method: &'a str) -> impl Iterator<Item = &'a Point> {
+    points.iter().filter(move |p| p.method == method)
+}
+
+/// Order of a method: the slope of its error over its step in the finest runs above the floor; nothing from fewer
+/// than three.
+fn order(points: &[Point], method: &str) -> Option<f64> {
+    let errors = of(points, method).filter_map(|p| Some([p.step_s, p.position_error_m?]));
+    let usable: Vec<[f64; 2]> = errors.filter(|[_, error]| *error > FLOOR).collect();
+    let finest = &usable[usable.len().saturating_sub(FITTED)..];
+    exponent(finest).filter(|_| finest.len() > 2)
+}
+
+/// Methods, their fitted orders, and the time they take for given errors.
+fn table(problem: Problem, points: &[Point]) -> Table {
+    let cost = |name: &str, level: f64| {
+        let good = of(points, name).filter(|p| p.position_error_m.is_some_and(|e| e <= level));
+        good.map(|p| p.cpu_s_per_simulated_s).reduce(f64::min)
+    };
+    let least = |name: &str, error: Error| of(points, name).filter_map(error).reduce(f64::min);
+    Table::of(
+        format!(
+            "Error against time, {}: orders fitted to the finest steps, CPU seconds for a simulated second to get below a position error",
+            problem.name()
+        ),
+        methods(),
+        columns! { row;
+            "method" => row.0,
+            "order" => order(points, row.0),
+            "s/s for 1e-2 m" => cost(row.0, 1e-2),
+            "s/s for 1e-4 m" => cost(row.0, 1e-4),
+            "s/s for 1e-6 m" => cost(row.0, 1e-6),
+            "s/s for 1e-8 m" => cost(row.0, 1e-8),
+            "best position error, m" => least(row.0, |p| p.position_error_m),
+            "best energy error" => least(row.0, |p| p.relative_energy_error),
+            "not finished" => of(points, row.0).filter(|p| p.failure.is_some()).count(),
+        },
+    )
+}
+
+/// Time against each error.
+fn charts(points: &[Point]) -> Charts {
+    let panel = |(label, error, legend): (&str, Error, Legend)| {
+        let series = methods().enumerate().map(|(k, (name, ..))| {
+            let place = |p: &Point| Some([p.cpu_s_per_simulated_s, error(p)?]);
+            Series::styled(k, name, of(points, name).filter_map(place).collect())
+        });
+        let x = "CPU time / simulated time";
+        Chart::log_log(x, label, [200.0, 160.0], series.collect()).with_legend(legend)
+    };
+    let energy: Error = |p| p.relative_energy_error;
+    Charts::row([
+        panel(("position error (m)", |p| p.position_error_m, Legend::None)),
+        panel(("energy error", energy, Legend::Right)),
+    ])
+}
+
+/// The orders and the lengths that docs/methods.md and README.md claim.
+fn findings(points: &[Point]) -> Vec<Finding> {
+    let mut all = Vec::new();
+    for (name, _, theory) in methods() {
+        let order = order(points, name).map(Some);
+        let bound = Bound::AtLeast(theory - FIT);
+        let quantity = "order of the position error";
+        all.extend(order.map(|order| Finding::worst(name, quantity, bound, &[order])));
+    }
+    for name in [DEFAULT, "implicit Euler"] {
+        let strains: Vec<_> = of(points, name).map(|p| p.strain).collect();
+        let (quantity, bound) = ("largest strain of an edge", Bound::AtMost(LENGTHS));
+        all.push(Finding::worst(name, quantity, bound, &strains));
+    }
+    all
 }
 
 /// Makes the part of a problem.
 pub(super) fn make(problem: Problem, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
-    let (name, title) = (problem.name(), problem.title());
-    let study = Study::of(problem, effort)?;
-    study.data()?.named(name).write(files)?;
-    let alt = format!("{title}: errors against CPU time, by method");
-    let figure = plot(files, name, &study.plot(), &alt)?;
-    let inside = html! {
-        h2 { (title) }
-        p { (problem.about()) }
-        (figure)
-        (study.reference.table())
-        details {
-            summary { "All methods" }
-            (study.table())
-        }
-    };
+    let name = problem.name();
+    let points = measure(problem, effort.pick(0.01, 1.0, 8.0))?;
+    Table::of_fields("", &points)?.named(name).write(files)?;
+    let alt = format!("{name}: errors against CPU time, by method");
+    let figure = plot(files, name, &charts(&points), &alt)?;
+    let table = table(problem, &points);
+    let inside = html! { h2 { (name) } p { (problem.about()) } (figure) (table) };
     Ok(Record {
-        findings: study.findings(),
-        fronts: study.fronts(),
+        findings: findings(&points),
+        excerpt: vec![Part::table(format!("accuracy-{name}"), &table)],
         ..Record::new(name, inside)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_are_slopes_above_the_floor() {
+        let point = |k: i32| Point {
+            method: "four",
+            step_s: 0.5_f64.powi(k),
+            cpu_s_per_simulated_s: 1.0,
+            position_error_m: Some(0.1 * 0.5_f64.powi(4 * k)),
+            relative_energy_error: None,
+            strain: None,
+            factorisations: 0,
+            failure: None,
+        };
+        let points: Vec<Point> = (0..14).map(point).collect();
+        let found = order(&points, "four").expect("enough points");
+        assert!((found - 4.0).abs() < 1e-12, "{found}");
+        assert_eq!(order(&points[..2], "four"), None, "too few points");
+        assert_eq!(order(&points, "none"), None);
+    }
+
+    #[test]
+    fn a_quick_study_shows_orders_and_lengths() {
+        for (_, problem) in Problem::named() {
+            let all = findings(&measure(problem, 0.0).expect("runs"));
+            assert_eq!(all.len(), methods().count() + 2, "{all:?}");
+            assert!(all.iter().all(|f| !f.verdict().is_failure()), "{all:?}");
+        }
+    }
 }

@@ -2,15 +2,13 @@
 //! programs have been measured as well, by several methods.
 
 mod kinds;
-mod penetration;
 mod report;
 mod run;
 
 pub(super) use kinds::Work;
 
-use super::Record;
 use crate::progress;
-use crate::report::{Part as Excerpt, Table, plot};
+use crate::report::{Part as Excerpt, Record, Table, plot};
 use crate::store::{Store, Unit};
 use anyhow::Result;
 use kinds::Stepped;
@@ -129,10 +127,9 @@ impl Part {
         let more: Markup = match self.name.as_str() {
             "works" => {
                 let alt = "CPU seconds for a simulated second against the number of vertices, by kind of run";
-                let figure = plot(&mut files, &self.name, &report::chart(rows)?, alt)?;
+                let figure = plot(&mut files, &self.name, &report::chart(rows), alt)?;
                 let powers = add("works-powers", report::powers(rows));
-                let threads = add("works-threads", report::threads(rows));
-                html! { (figure) (powers) (threads) }
+                html! { (figure) (powers) }
             }
             "hanging" => {
                 add("default", report::default(rows));
@@ -189,7 +186,7 @@ mod tests {
         let passed = |f: &Finding| f.verdict() == Verdict::Passed;
         let all = made.iter().map(|record| &record.findings);
         assert!(all.clone().all(|all| all.iter().all(passed)), "{made:?}");
-        assert_eq!(all.map(Vec::len).collect::<Vec<_>>(), [2, 3]);
+        assert_eq!(all.map(Vec::len).collect::<Vec<_>>(), [2, 1]);
         let csv = std::fs::read_to_string(store.path("tables/works.csv")).unwrap();
         assert!(
             csv.contains("w1,") && csv.contains("w2e,") && !csv.contains("NaN"),

@@ -59,29 +59,6 @@ impl Axis {
         }
     }
 
-    /// A logarithmic axis with ticks at some values, and room beside the first and the last.
-    pub(crate) fn at(label: &str, ticks: Vec<(f64, String)>) -> Self {
-        let low = ticks.iter().map(|t| t.0).fold(f64::INFINITY, f64::min);
-        let high = ticks.iter().map(|t| t.0).fold(0.0, f64::max);
-        Self {
-            is_logarithmic: true,
-            ..Self::named(label, [low / 1.5, high * 1.5], ticks)
-        }
-    }
-
-    /// The same without its label.
-    pub(crate) fn unlabelled(self) -> Self {
-        Self {
-            label: String::new(),
-            ..self
-        }
-    }
-
-    /// The nearest value on the axis.
-    pub(super) fn nearest(&self, value: f64) -> f64 {
-        value.clamp(self.range[0], self.range[1])
-    }
-
     /// Whether a value is on the axis.
     pub(super) fn holds(&self, value: f64) -> bool {
         let [low, high] = self.range;
@@ -182,8 +159,5 @@ mod tests {
         assert_eq!(log.map(&0.1, (0, 3000)), 1000);
         assert!(log.holds(10.0) && !log.holds(11.0) && !log.holds(0.0) && !log.holds(f64::NAN));
         assert_eq!(texts(&Axis::decades("e", [])), ["1", "10"]);
-        let at = Axis::at("h", vec![(1.0, "one".into()), (4.0, "four".into())]);
-        assert_eq!(texts(&at), ["one", "four"]);
-        assert_eq!(at.map(&2.0, (0, 1000)), 500);
     }
 }

@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::colour::{Colour, palette};
 use super::marker::Marker;
-use super::series::{Line, Series};
+use super::series::Series;
 use super::svg::{FAMILY, Vector, paper};
 use super::text::{SMALL, TEXT};
 use maud::{Markup, PreEscaped};
@@ -11,7 +11,7 @@ use plotters::backend::SVGBackend;
 use plotters::chart::ChartBuilder;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
-use plotters::element::{EmptyElement, ErrorBar, PathElement, Polygon};
+use plotters::element::{EmptyElement, PathElement, Polygon};
 use plotters::prelude::{DashedLineSeries, LineSeries, SeriesLabelPosition};
 use plotters::style::{Color, IntoFont, RGBAColor, ShapeStyle, TextStyle};
 use std::error::Error;
@@ -88,14 +88,6 @@ impl Chart {
         Self::new(x, y, size, series)
     }
 
-    /// A chart with a linear axis from 0 and a logarithmic one that hold all points; values that are not
-    /// positive are left out.
-    pub(crate) fn semi_log(x: &str, y: &str, size: [f64; 2], series: Vec<Series>) -> Self {
-        let high = values(&series, 0).fold(f64::MIN_POSITIVE, f64::max);
-        let y = Axis::decades(y, values(&series, 1));
-        Self::new(Axis::linear(x, [0.0, high]), y, size, series)
-    }
-
     /// The same with a title.
     pub(crate) fn titled(self, title: impl Into<String>) -> Self {
         let title = title.into();
@@ -166,25 +158,12 @@ impl Chart {
             let holds = |p: &&[f64; 2]| self.x.holds(p[0]) && self.y.holds(p[1]);
             let points = s.points.iter().filter(holds).map(|p| (p[0], p[1]));
             let (look, line) = (s.look(), stroke(s.colour, 1.1));
-            match s.line {
-                Line::None => {}
-                Line::Area => {
-                    let corners = s.points.iter().map(|p| (p[0], self.y.nearest(p[1])));
-                    let area = Polygon::new(corners.collect::<Vec<_>>(), rgba(s.colour));
-                    chart.draw_series([area])?;
-                }
-                Line::Solid => {
-                    chart.draw_series(LineSeries::new(points.clone(), line))?;
-                }
-                Line::Dashed => {
-                    let [on, off] = DASH.map(units);
-                    chart.draw_series(DashedLineSeries::new(points.clone(), on, off, line))?;
-                }
+            if s.is_dashed {
+                let [on, off] = DASH.map(units);
+                chart.draw_series(DashedLineSeries::new(points.clone(), on, off, line))?;
+            } else {
+                chart.draw_series(LineSeries::new(points.clone(), line))?;
             }
-            let bar = |b: &[f64; 4]| {
-                ErrorBar::new_vertical(b[0], b[1], b[2], b[3], line, units(5.0) as u32)
-            };
-            chart.draw_series(s.bars.iter().map(bar))?;
             let marked = points.filter(|_| s.marker.is_some()).map(|p| {
                 let [rim, inside] = look.symbol(2.4);
                 EmptyElement::at(p) + rim + inside
@@ -228,7 +207,7 @@ impl Chart {
 struct Look {
     colour: Colour,
     marker: Option<Marker>,
-    line: Line,
+    is_dashed: bool,
 }
 
 impl Series {
@@ -236,7 +215,7 @@ impl Series {
         Look {
             colour: self.colour,
             marker: self.marker,
-            line: self.line,
+            is_dashed: self.is_dashed,
         }
     }
 }
@@ -255,9 +234,8 @@ impl Look {
 
     /// The two halves of the line in a legend.
     fn sample(self) -> [PathElement<(i32, i32)>; 2] {
-        let gap = if self.line == Line::Dashed { 0.15 } else { 0.0 };
-        let alpha = if self.line == Line::None { 0.0 } else { 1.0 };
-        let line = stroke(self.colour.alpha(alpha), 1.1);
+        let gap = if self.is_dashed { 0.15 } else { 0.0 };
+        let line = stroke(self.colour, 1.1);
         let halves = [[-0.5, -gap], [gap, 0.5]];
         halves.map(|ends| PathElement::new(ends.map(|x| (units(x * SAMPLE), 0)), line))
     }
@@ -267,11 +245,6 @@ impl Charts {
     /// Charts side by side.
     pub(crate) fn row(charts: impl IntoIterator<Item = Chart>) -> Self {
         Self(vec![charts.into_iter().collect()])
-    }
-
-    /// Charts below each other.
-    pub(crate) fn column(charts: impl IntoIterator<Item = Chart>) -> Self {
-        Self(charts.into_iter().map(|chart| vec![chart]).collect())
     }
 
     fn draw(&self, svg: &mut String) -> Result<[f64; 2], Box<dyn Error>> {

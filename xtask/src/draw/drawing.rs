@@ -177,7 +177,7 @@ impl Drawing {
         self.polygon(&head, stroke.colour);
     }
 
-    /// A text. `_{..}`, `^{..}` lower and raise, `~..~` slants.
+    /// A text.
     pub(crate) fn text(
         &mut self,
         at: [f64; 2],
@@ -245,9 +245,8 @@ impl Drawing {
                         Anchor::Middle => (0.5, 0.5),
                     };
                     let w = text::width(text, *size);
-                    let (low, high) = text::extent(text, *size);
-                    r.add([at[0] - before * w, at[1] - low], 0.0);
-                    r.add([at[0] + after * w, at[1] + high], 0.0);
+                    r.add([at[0] - before * w, at[1] - 0.22 * size], 0.0);
+                    r.add([at[0] + after * w, at[1] + 0.74 * size], 0.0);
                 }
             }
         }

@@ -11,19 +11,8 @@ pub(crate) struct Series {
     pub(crate) points: Vec<[f64; 2]>,
     pub(crate) colour: Colour,
     pub(crate) marker: Option<Marker>,
-    pub(crate) line: Line,
-    /// Error bars: place, lower end, mean, upper end.
-    pub(crate) bars: Vec<[f64; 4]>,
-}
-
-/// The line through the points of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Line {
-    None,
-    Solid,
-    Dashed,
-    /// The points are corners of an area, which is cut off at the ends of the vertical axis.
-    Area,
+    /// Whether its line is dashed.
+    pub(crate) is_dashed: bool,
 }
 
 /// Colours and symbols of the series of a plot, in order.
@@ -36,9 +25,6 @@ const STYLES: [(Colour, Marker); 6] = [
     (palette::SKY, Marker::Square),
 ];
 
-/// Opacity of areas: three of them over one another can be told apart.
-const OPACITY: f64 = 0.2;
-
 impl Series {
     /// A named sequence of points with a solid line and without symbols.
     pub(crate) fn line(name: &str, colour: Colour, points: Vec<[f64; 2]>) -> Self {
@@ -47,16 +33,7 @@ impl Series {
             points,
             colour,
             marker: None,
-            line: Line::Solid,
-            bars: Vec::new(),
-        }
-    }
-
-    /// Points with symbols and without a line.
-    pub(crate) fn dots(name: &str, colour: Colour, marker: Marker, points: Vec<[f64; 2]>) -> Self {
-        Self {
-            line: Line::None,
-            ..Self::line(name, colour, points).marked(marker)
+            is_dashed: false,
         }
     }
 
@@ -75,16 +52,6 @@ impl Series {
         Self::line(name, palette::GREY, points).dashed()
     }
 
-    /// The area between two curves over the same places: place, lower and upper value.
-    pub(crate) fn band(colour: Colour, curves: &[[f64; 3]]) -> Self {
-        let lower = curves.iter().map(|c| [c[0], c[1]]);
-        let upper = curves.iter().rev().map(|c| [c[0], c[2]]);
-        Self {
-            line: Line::Area,
-            ..Self::line("", colour.alpha(OPACITY), lower.chain(upper).collect())
-        }
-    }
-
     /// The same with symbols.
     pub(crate) fn marked(self, marker: Marker) -> Self {
         let marker = Some(marker);
@@ -93,7 +60,7 @@ impl Series {
 
     /// The same with a dashed line.
     pub(crate) fn dashed(self) -> Self {
-        let line = Line::Dashed;
-        Self { line, ..self }
+        let is_dashed = true;
+        Self { is_dashed, ..self }
     }
 }

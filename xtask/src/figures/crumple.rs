@@ -1,14 +1,11 @@
 //! Figs. 11 and 12: a sheet of paper held at a corner falls and crumples.
 
-use super::marks::{self, Marks};
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Row, compared, course, rows, through_itself};
+use super::{Effort, Made, Picture, Play, Row, compared, course, rows};
 use crate::draw::{Viewpoint, mesh_name};
-use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
+use crate::runs::{self, FigureScene, Hanging, Run, Shape};
 use crate::store::Store;
 use anyhow::{Result, ensure};
-use isosheet_io::scene::Integrator;
-use serde_json::json;
 
 /// What elastic sheets are made of.
 pub(super) const PAPER_SHEET: &str = "office paper";
@@ -31,7 +28,7 @@ pub(super) fn scene(level: u32, effort: Effort) -> Result<FigureScene> {
 }
 
 /// The same passing through itself.
-pub(super) fn without_contact(level: u32, effort: Effort) -> Result<FigureScene> {
+fn without_contact(level: u32, effort: Effort) -> Result<FigureScene> {
     scene(level, effort)?.without_self_contact(&format!("crumple-m{level}"))
 }
 
@@ -42,9 +39,8 @@ fn elastic(level: u32, effort: Effort) -> Result<FigureScene> {
 
 pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
     let run = Run::of(store, scene(level, store.effort)?)?;
-    let free = Run::of(store, without_contact(level, store.effort)?)?.summary;
     let elastic = Run::of(store, elastic(level, store.effort)?)?;
-    let columns = [describe(&run, Some(&free))?, describe(&elastic, None)?];
+    let columns = [describe(&run)?, describe(&elastic)?];
     let [rods_bent, paper_bent] = [end_shape(&run)?.bending, end_shape(&elastic)?.bending];
     ensure!(
         store.effort == Effort::Quick || paper_bent < CRUMPLED * rods_bent,
@@ -64,7 +60,6 @@ pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
             page(figure, &elastic, store.effort)?,
         ],
         tables: vec![compared(&["rods", PAPER_SHEET], &columns)],
-        facts: json!({ "run": run.summary, "without_contact": free, "elastic": elastic.summary }),
     };
     if figure == 12 {
         add_softness_and_marks(&mut made, store)?;
@@ -102,44 +97,24 @@ fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
             made.pages.push(page(12, &finer, store.effort)?);
         }
     }
-    let part = super::softness::make(store.effort, without_contact)?;
-    let both = [concentration(store, scene)?, concentration(store, elastic)?];
-    let alt = "How much of the fold angles the sharpest edges carry over time, and how many of the final marks are there already";
-    let plot = Picture::svg("fig12-marks", &marks::plot([&both[0], &both[1]]), alt);
-    let all = both.concat();
-    made.pictures.extend([part.picture, plot]);
-    made.tables.extend([part.table, marks::table(&all)]);
+    let softness = super::softness::make(store.effort, without_contact)?;
+    made.tables.push(softness);
     let lasting = super::lasting::make(store)?;
     made.pictures.extend(lasting.pictures);
     made.pages.extend(lasting.pages);
     made.tables.push(lasting.table);
-    made.facts["lasting"] = json!(lasting.facts);
-    made.facts["softness"] = part.facts;
-    made.facts["marks"] = json!(all);
     Ok(())
 }
 
 /// The scene of each level of the mesh.
 type Scenes = fn(u32, Effort) -> Result<FigureScene>;
 
-/// The concentration of folds in the runs of M^1 to M^3.
-fn concentration(store: &Store, scene: Scenes) -> Result<Vec<Marks>> {
-    let levels = [(1, "M¹"), (2, "M²"), (3, "M³")];
-    let levels = &levels[..store.effort.quick_or(2, 3)];
-    let of = |&(level, name): &(u32, &str)| {
-        let run = Run::of(store, scene(level, store.effort)?)?;
-        let name = format!("{name}, {}", run.scene.sheet_name());
-        Ok(Marks::of(&name, &run.sheet, &run.trajectory))
-    };
-    levels.iter().map(of).collect()
-}
-
 fn end_shape(run: &Run) -> Result<Shape> {
     Shape::of(&Hanging::of(&run.scene)?, run.end())
 }
 
-/// What was measured of a run; `free` is the sheet that may pass through itself.
-fn describe(run: &Run, free: Option<&RunSummary>) -> Result<Vec<Row>> {
+/// What was measured of a run.
+fn describe(run: &Run) -> Result<Vec<Row>> {
     let (scene, s) = (&run.scene, &run.summary);
     let (hanging, mass) = (Hanging::of(scene)?, runs::mass(scene)?);
     let mut rows = rows! {
@@ -148,34 +123,18 @@ fn describe(run: &Run, free: Option<&RunSummary>) -> Result<Vec<Row>> {
             1e3 * mass / hanging.sheet.area(), 1e3 * mass
         ),
         "method" => format!(
-            "{}, damping {:.0}/s, friction with itself {}", method_name(scene.scene().method.integrator),
-            scene.scene().sheet[0].damping, scene.scene().contact.friction
+            "BDF2, damping {:.0}/s, friction with itself {}", scene.scene().sheet[0].damping, scene.scene().contact.friction
         ),
     };
     rows.extend(course(s));
-    let times = |free: &RunSummary| format!("{:.1}", s.slowness() / free.slowness().max(1e-12));
     let shape = Shape::of(&hanging, run.end())?;
     rows.extend(rows! {
-        "times as long as without self-contact" => free.map_or("–".into(), times),
         "kinetic energy at the end, of the potential energy released" => format!("{:.0e}", s.motion_left),
         "depth of the centre of mass at the end" =>
             format!("{:.3} sides (a rigid plate: {:.3})", shape.centre_depth, runs::PLATE),
         "total bending at the end" => format!("{:.2} rad times the side", shape.bending),
     });
     Ok(rows)
-}
-
-/// The integrator in words.
-pub(super) fn method_name(integrator: Integrator) -> &'static str {
-    match integrator {
-        Integrator::ImplicitEuler => "implicit Euler",
-        Integrator::Bdf2 => "BDF2",
-        Integrator::Projection => "projection",
-        Integrator::EnergyMomentum => "energy-momentum",
-        Integrator::Rattle => "RATTLE",
-        Integrator::RattleComposition => "fourth-order RATTLE",
-        Integrator::Chart => "system coordinates",
-    }
 }
 
 /// How a run is shown, and the level of its mesh.
@@ -196,10 +155,10 @@ fn view(run: &Run) -> Result<(View, u32)> {
 }
 
 /// The page that plays a run.
-pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
+fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
     let (view, level) = view(run)?;
-    let (level, free) = (mesh_name(level), through_itself(&run.scene));
-    let label = format!("crumpled paper, {level}, {}{free}", run.scene.sheet_name());
+    let level = mesh_name(level);
+    let label = format!("crumpled paper, {level}, {}", run.scene.sheet_name());
     view.play(run, effort, figure, &label)
 }
 

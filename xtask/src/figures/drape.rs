@@ -2,16 +2,15 @@
 //! on towards the round.
 
 use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
-use super::folds::{Folds, Hem};
+use super::folds::{CornerFolds, Hem};
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Table, through_itself, whole_percent};
-use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series, Viewpoint, mesh_name, palette};
+use super::{Effort, Made, Picture, Play, Table, whole_percent};
+use crate::draw::{Viewpoint, mesh_name};
 use crate::report::columns;
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, bail, ensure};
 use isosheet_mesh::{Dof, Sheet};
-use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// What elastic tablecloths are made of. The bending length of this film, the third root of its rigidity over
@@ -29,7 +28,7 @@ const TIMES: [f64; 6] = [0.0, 0.15, 0.3, 0.6, 1.2, 8.0];
 struct Draped {
     label: String,
     run: Run,
-    folds: Folds,
+    folds: CornerFolds,
     hem: Hem,
     /// How far the hem hangs below the table, as part of its distance from the table in the flat cloth (means
     /// over the vertices of the hem): 1 for a cloth that hangs straight down.
@@ -42,7 +41,7 @@ fn drape(label: &str, scene: FigureScene, store: &Store) -> Result<Draped> {
     let layout = Layout::of(run.scene.scene())?;
     Ok(Draped {
         label: label.into(),
-        folds: Folds::of(sheet, x, &layout.table, &layout.cloth),
+        folds: CornerFolds::of(sheet, x, &layout.table, &layout.cloth),
         hem: Hem::of(sheet, x),
         drop: drop(sheet, x, &layout),
         run,
@@ -100,17 +99,6 @@ impl Draped {
         let dof = Dof::of(self.run.sheet.topology()).internal;
         self.is_of_rods().then(|| dof.to_string())
     }
-
-    fn facts(&self) -> Value {
-        json!({ "run": self.run.summary, "folds": self.folds, "drop": self.drop, "internal_dof": self.internal(), "hem": {
-            "folds": self.hem.folds, "spacing_spread": self.hem.spacing_spread, "size_spread": self.hem.size_spread, "wave": self.hem.wave,
-        } })
-    }
-}
-
-/// The numbers of some cloths.
-fn facts(all: &[Draped]) -> Value {
-    all.iter().map(Draped::facts).collect()
 }
 
 /// How a cloth is shown.
@@ -126,15 +114,12 @@ const VIEW: View = View {
     bodies: &[0],
 };
 
-/// The page that plays the run of a cloth.
-pub(super) fn page(figure: u8, label: &str, run: &Run, effort: Effort) -> Result<Play> {
-    let (label, free) = (label, through_itself(&run.scene));
-    VIEW.play(run, effort, figure, &format!("draped cloth, {label}{free}"))
-}
-
 /// The pages of some cloths.
 fn pages(figure: u8, all: &[&Draped], effort: Effort) -> Result<Vec<Play>> {
-    let of = |d: &&Draped| page(figure, &d.name(), &d.run, effort);
+    let of = |d: &&Draped| {
+        let label = format!("draped cloth, {}", d.name());
+        VIEW.play(&d.run, effort, figure, &label)
+    };
     all.iter().map(of).collect()
 }
 
@@ -155,56 +140,24 @@ fn ends(file: &str, all: &[&Draped], effort: Effort) -> Result<Picture> {
 
 fn fold_table(all: &[Draped]) -> Table {
     Table::of(
-        "Principal folds at rest, in the part of the cloth that hangs beyond the first row of cells at the table's edge. Bending is edge length \
-                  times size of the fold angle. A fold runs along a corner line, from a table corner to its cloth corner, if the cloth is in the \
-                  outer half of a bulge there at all of three distances from the table (in brackets: the part of all directions from the \
-                  axis in which it is, which is what chance gives). At the corners: within one mean edge of a line from a table corner to its cloth \
-                  corner. Strongest edges: the fewest that carry half of the bending. Angle with the nearest of these \
-                  lines: weighted by bending (in brackets: of all edges, what the mesh alone gives). Drop: how far the hem hangs below the table, of its distance \
-                  from the table in the flat cloth. Triangles whose edges keep their lengths leave a cloth only as many internal degrees of freedom as it has \
-                  boundary edges less three: it cannot shear as woven cloth does.",
+        "Principal folds at rest. A fold runs along a corner line, from a table corner to its cloth corner, if the cloth is in the outer \
+         half of a bulge there at all of three distances from the table (in brackets: the part of all directions from the axis in which it \
+         is, which is what chance gives). Drop: how far the hem hangs below the table, of its distance from the table in the flat cloth. \
+         Triangles whose edges keep their lengths leave a cloth only as many internal degrees of freedom as it has boundary edges less three: \
+         it cannot shear as woven cloth does.",
         all,
         columns! { d;
             "cloth" => d.label.as_str(),
             "sheet" => d.sheet(),
             "V/F" => d.run.summary.mesh(),
             "folds along corner lines" => {
-                let (along, all, part) = d.folds.along;
-                format!("{along} of {all} ({})", whole_percent(part))
+                let CornerFolds { along, lines, part } = d.folds;
+                format!("{along} of {lines} ({})", whole_percent(part))
             },
-            "bending at the corners" => whole_percent(d.folds.share_at_corners),
-            "edges there" => whole_percent(d.folds.length_at_corners),
-            "density, all = 1" => format!("{:.1}", d.folds.density_at_corners),
-            "strongest edges there" => { let [all, there] = d.folds.strongest; format!("{there} of {all}") },
-            "angle" => format!("{:.0}° ({:.0}°)", d.folds.angle[0], d.folds.angle[1]),
             "internal DOF" => d.internal(),
             "drop" => whole_percent(d.drop),
         },
     )
-}
-
-/// Bending density by distance from the corner lines: cloths of rods, and of plastic.
-fn profiles(all: &[Draped]) -> Charts {
-    let looks = [
-        (palette::VERMILION, Marker::Square),
-        (palette::BLUE, Marker::Disc),
-        (palette::GREEN, Marker::Triangle),
-        (palette::ORANGE, Marker::Diamond),
-    ];
-    let all_points = || all.iter().flat_map(|d| &d.folds.profile);
-    let far = all_points().map(|p| p[0] + 0.5).fold(1.0, f64::max);
-    let top = 1.1 * all_points().map(|p| p[1]).fold(1.0, f64::max);
-    let of = |(d, (colour, marker)): (&Draped, _)| {
-        Series::line(&d.label, colour, d.folds.profile.clone()).marked(marker)
-    };
-    Charts::row([true, false].map(|rods| {
-        let of_one = all.iter().filter(|d| d.is_of_rods() == rods);
-        let series = of_one.zip(looks).map(of).collect();
-        let kind = if rods { "rods" } else { PLASTIC };
-        let label = format!("mean edges from a corner line, {kind}");
-        let y = Axis::linear("bending (mean = 1)", [0.0, top]);
-        Chart::new(Axis::linear(&label, [0.0, far]), y, [165.0, 118.0], series)
-    }))
 }
 
 /// What holds for each run.
@@ -240,7 +193,6 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
     scenes.push(("irregular".to_owned(), irregular(effort)?));
     let all = of_both(scenes, store)?;
     let each: Vec<&Draped> = all.iter().collect();
-    let alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
     if effort != Effort::Quick {
         check_corners(&each[2 * levels.len() - 2..2 * levels.len()])?;
     }
@@ -255,11 +207,9 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
             all[0].picture("fig14.png", effort)?,
             all[2 * levels.len() - 1].picture("fig14-elastic.png", effort)?,
             ends("fig14-ends.png", &each, effort)?,
-            Picture::svg("fig14-folds", &profiles(&all), alt),
         ],
         pages: pages(14, &each, effort)?,
         tables: vec![fold_table(&all), runs_table(&each)],
-        facts: facts(&all),
     })
 }
 
@@ -267,10 +217,10 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
 /// rectangle, and on the finer octagons.
 fn check_corners(fine: &[&Draped]) -> Result<()> {
     for d in fine.iter().filter(|d| !d.is_of_rods()) {
-        let (along, corners, _) = d.folds.along;
+        let CornerFolds { along, lines, .. } = d.folds;
         ensure!(
-            along == corners,
-            "folds of {} run along {along} of {corners} corner lines",
+            along == lines,
+            "folds of {} run along {along} of {lines} corner lines",
             d.name()
         );
     }
@@ -358,8 +308,6 @@ fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
 pub(super) fn fig15(store: &Store) -> Result<Made> {
     let effort = store.effort;
     let [octagons, polygons, films] = fig15_cloths(store)?;
-    let alt = "Distance of the hem from the axis, that of the flat cloth = 1, by angle, for polygons with more and more corners";
-    let folds_alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
     // Some cloths belong to more than one group.
     let mut seen = BTreeSet::new();
     let mut all: Vec<&Draped> = octagons.iter().chain(&polygons).chain(&films).collect();
@@ -390,9 +338,7 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
                 &octagons.iter().collect::<Vec<_>>(),
                 effort,
             )?,
-            Picture::svg("fig15-folds", &profiles(&octagons), folds_alt),
             ends("fig15-polygons.png", &shown, effort)?,
-            Picture::svg("fig15-hems", &hems(&polygons), alt),
         ],
         pages: pages(15, &all, effort)?,
         tables: vec![
@@ -401,48 +347,24 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
             hem_table(&films),
             runs_table(&all),
         ],
-        facts: json!({
-            "octagons": facts(&octagons),
-            "polygons": facts(&polygons),
-            "films": facts(&films),
-        }),
     })
-}
-
-/// The hems of the polygons, one small plot each.
-fn hems(all: &[Draped]) -> Charts {
-    let plot = |d: &Draped| {
-        let ticks = [0.0, 180.0, 360.0].map(|a| (a, format!("{a:.0}")));
-        let label = format!("angle (°), {}", d.name());
-        let x = Axis::named(&label, [0.0, 360.0], ticks.to_vec());
-        let y = Axis::linear("distance", [0.5, 1.0]);
-        let hem = Series::line("", palette::BLUE, d.hem.curve.clone());
-        Chart::new(x, y, [120.0, 60.0], vec![hem]).with_legend(Legend::None)
-    };
-    let charts: Vec<Chart> = all.iter().map(plot).collect();
-    Charts(charts.chunks(4).map(<[Chart]>::to_vec).collect())
 }
 
 fn hem_table(all: &[Draped]) -> Table {
     Table::of(
-        "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are standard deviations over means, of \
-                  the angles between neighbouring folds and of how far the folds stand out: both are 0 for a uniform pattern. Wave: the wave number with the \
-                  largest part of the variance of the hem's relative distance from the axis, and that part. Folds are outward bulges of the hem's distance from \
-                  the axis, divided by that of the flat cloth, that stand out by more than 0.02; a pattern is uniform where both spreads are below 20 %.",
+        "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are \
+         standard deviations over means, of the angles between neighbouring folds and of how far the folds stand out: both are 0 for a \
+         uniform pattern. Folds are outward bulges of the hem's distance from the axis, divided by that of the flat cloth, that stand out by \
+         more than 0.02.",
         all,
         columns! { d;
             "cloth" => d.label.as_str(),
             "sheet" => d.sheet(),
             "V/F" => d.run.summary.mesh(),
             "folds" => d.hem.folds.to_string(),
-            "along corner lines" => {
-                let (along, _, part) = d.folds.along;
-                format!("{along} ({})", whole_percent(part))
-            },
+            "along corner lines" => format!("{} ({})", d.folds.along, whole_percent(d.folds.part)),
             "spread of spacing" => whole_percent(d.hem.spacing_spread),
             "spread of size" => whole_percent(d.hem.size_spread),
-            "uniform" => if d.hem.is_uniform() { "yes" } else { "no" },
-            "wave" => { let (wave, share) = d.hem.wave; format!("{wave} ({})", whole_percent(share)) },
             "internal DOF" => d.internal(),
             "drop" => whole_percent(d.drop),
             "at rest from" => d.run.summary.at_rest_from.map(|t| format!("{t:.1} s")),

@@ -5,7 +5,6 @@ use crate::draw::{Drawing, Stroke, TEXT, flat_edges, flat_faces, palette, row};
 use anyhow::{Result, ensure};
 use isosheet_mesh::generate::{anisotropic_grid, split_1_4};
 use isosheet_mesh::{Dof, EdgeId, Sheet};
-use serde_json::json;
 
 const SIDE: f64 = 104.0;
 
@@ -15,7 +14,6 @@ pub(super) fn make() -> Result<Made> {
         sheets.push(split_1_4(&sheets[k])?);
     }
     let mut panels = Vec::new();
-    let mut facts = Vec::new();
     let head = [
         "split",
         "V",
@@ -52,18 +50,14 @@ pub(super) fn make() -> Result<Made> {
         let coarser = k.checked_sub(1).map(|j| &sheets[j]);
         let mut d = panel(sheet, coarser);
         let counts = format!(
-            "~V~ = {}, ~E~ = {}, ~F~ = {}",
+            "V = {}, E = {}, F = {}",
             t.vertex_count(),
             t.edge_count(),
             t.face_count()
         );
-        let freedom = format!("DOF = {dof}, ~B~ = {boundary}");
+        let freedom = format!("DOF = {dof}, B = {boundary}");
         caption(&mut d, [0.5 * SIDE, -7.0], TEXT, &[counts, freedom]);
         panels.push(d);
-        facts.push(json!({
-            "vertices": t.vertex_count(), "edges": t.edge_count(), "faces": t.face_count(),
-            "dof": dof, "boundary_edges": boundary,
-        }));
     }
     let all = row(&panels, 14.0);
     let alt = "A square of two triangles and three successive 1-4 splits of it";
@@ -74,7 +68,6 @@ pub(super) fn make() -> Result<Made> {
         here: "The split is applied three times to two triangles; new edges are blue.",
         pictures: svg(1, &all, alt),
         tables: vec![table],
-        facts: json!({ "levels": facts }),
         ..Made::default()
     })
 }

@@ -7,7 +7,6 @@ use crate::draw::{Stroke, palette};
 use anyhow::Result;
 use isosheet_coords::EulerParameters;
 use isosheet_mesh::{Dof, Sheet};
-use serde_json::json;
 
 /// Fold of the pair that is drawn.
 const FOLD: f64 = 0.9;
@@ -33,24 +32,20 @@ pub(super) fn make() -> Result<Made> {
     pair.line(&[a, b], Stroke::new(PLACED, 1.4));
     let path = arc(&foot, &[0.0, left[1], 0.0], &[0.0, 0.0, left[1]], FOLD);
     pair.arrow(&path, PLACED);
-    let mut facts = Vec::new();
     let mut lines = Vec::new();
     for sheet in [&one, &two] {
         let t = sheet.topology();
         let dof = Dof::of(t);
         lines.push(vec![
             format!(
-                "~V~ = {}, ~E~ = {}, ~F~ = {}",
+                "V = {}, E = {}, F = {}",
                 t.vertex_count(),
                 t.edge_count(),
                 t.face_count()
             ),
-            format!("DOF = 3~V~ − ~E~ = {}", dof.total),
+            format!("DOF = 3V − E = {}", dof.total),
             format!("{} external, {} internal", dof.external, dof.internal),
         ]);
-        facts.push(
-            json!({ "total": dof.total, "external": dof.external, "internal": dof.internal }),
-        );
     }
     let all = captioned(vec![single.drawing, pair.drawing], &lines, 60.0);
     let alt = "One triangle, and two triangles folding about their common edge";
@@ -63,7 +58,6 @@ pub(super) fn make() -> Result<Made> {
             "fold that is drawn" => degrees(FOLD),
         })],
         pictures: svg(2, &all, alt),
-        facts: json!({ "triangle": facts[0], "pair": facts[1], "fold": FOLD }),
         ..Made::default()
     })
 }

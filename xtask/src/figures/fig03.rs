@@ -4,18 +4,17 @@ use super::{Made, Table, caption, style, svg};
 use crate::draw::{
     Colour, Drawing, SMALL, Stroke, TEXT, flat_edges, flat_faces, palette, plan, row,
 };
+use crate::report::columns;
 use anyhow::Result;
 use isosheet_mesh::generate::{anisotropic_grid, isotropic_square};
 use isosheet_mesh::{CreasePattern, Sheet};
-use serde_json::{Value, json};
 
 const SIDE: f64 = 118.0;
 
 pub(super) fn make() -> Result<Made> {
     let one_way = anisotropic_grid(4, 4, 1.0, 1.0)?;
     let jack = isotropic_square(1, 1.0)?;
-    let mut panels = Vec::new();
-    let mut facts = Vec::new();
+    let (mut panels, mut anisotropies) = (Vec::new(), Vec::new());
     for (sheet, name) in [
         (&one_way, "one-way grid (Fig. 1)"),
         (&jack, "union jack (Fig. 4)"),
@@ -38,20 +37,18 @@ pub(super) fn make() -> Result<Made> {
         let words = ["crease length", "(circles: 2 and 4 sides)"].map(str::to_owned);
         caption(&mut rose, [0.0, 0.5 * SIDE - 46.0], SMALL, &words);
         panels.push(rose);
-        facts.push(describe(&pattern));
+        anisotropies.push(pattern.anisotropy());
     }
     let gaps = [16.0, 34.0];
     let pairs: Vec<Drawing> = panels.chunks(2).map(|pair| row(pair, gaps[0])).collect();
     let all = row(&pairs, gaps[1]);
     let anisotropy = Table::of(
         "Anisotropy |Σ l exp(2iφ)| / Σ l of the crease lines (length l, direction φ)",
-        ["one-way grid", "union jack"].into_iter().zip(&facts),
-        &[
-            ("mesh", &|(name, _)| (*name).into()),
-            ("anisotropy", &|(_, facts)| {
-                facts["anisotropy"].as_f64().into()
-            }),
-        ],
+        ["one-way grid", "union jack"].into_iter().zip(anisotropies),
+        columns! { row;
+            "mesh" => row.0,
+            "anisotropy" => row.1,
+        },
     );
     let alt = "Crease lines of the one-way grid and of the union-jack grid with their directions";
     Ok(Made {
@@ -62,18 +59,8 @@ pub(super) fn make() -> Result<Made> {
                their total lengths by direction.",
         tables: vec![anisotropy],
         pictures: svg(3, &all, alt),
-        facts: json!({ "one_way": facts[0], "union_jack": facts[1] }),
         ..Made::default()
     })
-}
-
-fn describe(pattern: &CreasePattern) -> Value {
-    let directions: Vec<Value> = pattern
-        .folding_directions()
-        .iter()
-        .map(|d| json!({ "degrees": d.angle.to_degrees(), "lines": d.lines, "length": d.length }))
-        .collect();
-    json!({ "directions": directions, "anisotropy": pattern.anisotropy() })
 }
 
 /// Colour of a direction; the four of the square patterns have their own.

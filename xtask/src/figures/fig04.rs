@@ -1,17 +1,18 @@
 //! Fig. 4: isotropic refinement.
 
 use super::{Made, Table, caption, style, svg};
-use crate::draw::{Drawing, Stroke, TEXT, column, flat_edges, flat_faces, palette, plan, row};
+use crate::draw::{
+    Drawing, Stroke, TEXT, column, flat_edges, flat_faces, mesh_name, palette, plan, row,
+};
 use anyhow::{Result, ensure};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{Dof, Sheet, VertexId};
-use serde_json::json;
 use std::collections::BTreeSet;
 
 const SIDE: f64 = 104.0;
 
 pub(super) fn make() -> Result<Made> {
-    let (mut upper, mut lower, mut facts) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut upper, mut lower) = (Vec::new(), Vec::new());
     let head = [
         "level",
         "rectangles",
@@ -60,7 +61,8 @@ pub(super) fn make() -> Result<Made> {
         flat_edges(&mut bottom, &sheet, SIDE, |_| Some(thin));
         let words = [
             format!(
-                "~M~^{{{level}}}: ~V~/~F~ = {}/{}",
+                "{}: V/F = {}/{}",
+                mesh_name(level),
                 t.vertex_count(),
                 t.face_count()
             ),
@@ -68,10 +70,6 @@ pub(super) fn make() -> Result<Made> {
         ];
         caption(&mut bottom, [0.5 * SIDE, -7.0], TEXT, &words);
         lower.push(bottom);
-        facts.push(json!({
-            "level": level, "vertices": t.vertex_count(), "edges": t.edge_count(), "faces": t.face_count(),
-            "rectangles": faces, "rectangle_edges": edges, "dof": dof.total, "internal": dof.internal,
-        }));
     }
     let gap = 14.0;
     let all = column(&[row(&upper, gap), row(&lower, gap)], 12.0);
@@ -83,7 +81,6 @@ pub(super) fn make() -> Result<Made> {
         here: "The rectangles are read off the triangle meshes: they are the stars of the vertices with both grid coordinates odd.",
         tables: vec![table],
         pictures: svg(4, &all, alt),
-        facts: json!({ "levels": facts }),
         ..Made::default()
     })
 }

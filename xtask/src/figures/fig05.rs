@@ -8,7 +8,6 @@ use crate::report::columns;
 use anyhow::{Context, Result, ensure};
 use isosheet_coords::EulerParameters;
 use isosheet_mesh::{EdgeAngles, Sheet, VertexId, fold_angle};
-use serde_json::json;
 
 /// Fold of the pair at time t: 70 degrees.
 const FOLD: f64 = 70.0 * std::f64::consts::PI / 180.0;
@@ -35,7 +34,7 @@ pub(super) fn make() -> Result<Made> {
     folded[3] = EulerParameters::about(&[1.0, 0.0, 0.0], -0.5 * FOLD).rotate(&rest[3]);
     let mut panels = Vec::new();
     let mut triples = Vec::new();
-    for (x, time) in [(&rest, "0"), (&folded, "~t~")] {
+    for (x, time) in [(&rest, "⁰"), (&folded, "ᵗ")] {
         let angles =
             EdgeAngles::at(&sheet, &x.concat(), edge).context("the common edge is interior")?;
         let ends = angles.ends;
@@ -55,7 +54,7 @@ pub(super) fn make() -> Result<Made> {
         "the angles of an end give another fold: {:?}",
         triples[1]
     );
-    let folded_by = format!("at time ~t~, folded by {}", degrees(fold.abs()));
+    let folded_by = format!("at time t, folded by {}", degrees(fold.abs()));
     let names = [vec!["at rest".into()], vec![folded_by]];
     let all = captioned(panels, &names, 44.0);
     let ends = ["first (α, β, γ)", "second (α′, β′, γ′)"];
@@ -85,12 +84,6 @@ pub(super) fn make() -> Result<Made> {
         here: "The angles are measured on the folded pair (right), whose fold follows from the angles at either end.",
         pictures: svg(5, &all, alt),
         tables: vec![table],
-        facts: json!({
-            "fold_degrees": fold.to_degrees(),
-            "ends": triples[1].map(|t| json!({
-                "alpha": t.alpha, "beta": t.beta, "gamma": t.gamma, "flat": t.flat(), "fold": t.fold(),
-            })),
-        }),
         ..Made::default()
     })
 }
@@ -105,7 +98,7 @@ fn panel(x: &[[f64; 3]; 4], time: &str) -> Drawing {
     for (k, (apex, other, prime)) in [(a, b, ""), (b, a, "′")].into_iter().enumerate() {
         // Where along the arc the name stands, how far outside of it and how much higher, points. At the far
         // end of the folded pair gamma's arc runs over the others, whose names stand outside then.
-        let crowded = k == 0 && time != "0";
+        let crowded = k == 0 && time != "⁰";
         let inside = [0.5, if crowded { 8.0 } else { -11.0 }, 0.0];
         let gamma = match (crowded, k) {
             (true, _) => [0.0, 4.0, 8.0],
@@ -116,14 +109,7 @@ fn panel(x: &[[f64; 3]; 4], time: &str) -> Drawing {
         for (from, to, radius, colour, name, [part, distance, lift]) in [
             (other, left, 0.21, ALPHA, alpha, inside),
             (other, right, 0.21, BETA, beta, inside),
-            (
-                left,
-                right,
-                0.29,
-                GAMMA,
-                format!("γ{prime}^{{{time}}}"),
-                gamma,
-            ),
+            (left, right, 0.29, GAMMA, format!("γ{prime}{time}"), gamma),
         ] {
             let arc = angle_arc(&apex, &from, &to, radius);
             d.line(&arc, Stroke::new(colour, 1.0));
@@ -135,6 +121,6 @@ fn panel(x: &[[f64; 3]; 4], time: &str) -> Drawing {
         }
     }
     let middle = [0, 1, 2].map(|i| 0.64 * a[i] + 0.36 * b[i]);
-    d.label(&middle, [-7.0, 0.0], "~e~", palette::INK);
+    d.label(&middle, [-7.0, 0.0], "e", palette::INK);
     d.drawing
 }

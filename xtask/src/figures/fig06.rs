@@ -7,7 +7,6 @@ use crate::draw::{Drawing, Stroke, palette};
 use anyhow::{Result, ensure};
 use isosheet_coords::placement::{place_f, place_g, place_h};
 use isosheet_coords::{Branch, EdgeFrame, EulerParameters, SphericalFrame};
-use serde_json::json;
 
 /// Squared height that counts as zero; nothing here is near it.
 const TOLERANCE: f64 = 1e-12;
@@ -15,9 +14,9 @@ const TOLERANCE: f64 = 1e-12;
 pub(super) fn make() -> Result<Made> {
     let (f, error) = rule_f()?;
     let names = [
-        ["(a) function ~h~", "two coordinates"],
-        ["(b) function ~g~", "one coordinate"],
-        ["(c) function ~f~", "no coordinate"],
+        ["(a) function h", "two coordinates"],
+        ["(b) function g", "one coordinate"],
+        ["(c) function f", "no coordinate"],
     ];
     let names = names.map(|lines| lines.map(str::to_owned).to_vec());
     let all = captioned(vec![rule_h()?, rule_g()?, f], &names, 30.0);
@@ -32,7 +31,6 @@ pub(super) fn make() -> Result<Made> {
             "f returns the vertex to its first place, to (edge lengths)" => format!("{error:.0e}"),
         })],
         pictures: svg(6, &all, alt),
-        facts: json!({ "f_error": error }),
         ..Made::default()
     })
 }
@@ -67,9 +65,9 @@ fn rule_h() -> Result<Drawing> {
     d.line(&[v, at(q)], Stroke::new(palette::INK, 1.2));
     d.known([&v]);
     d.placed(&at(q));
-    d.label(&v, [-8.0, 2.0], "~v~", palette::INK);
-    d.label(&first[12], [3.0, -8.0], "~q~_{1}", palette::INK);
-    d.label(&second[12], [9.0, -1.0], "~q~_{2}", palette::INK);
+    d.label(&v, [-8.0, 2.0], "v", palette::INK);
+    d.label(&first[12], [3.0, -8.0], "q₁", palette::INK);
+    d.label(&second[12], [9.0, -1.0], "q₂", palette::INK);
     Ok(d.drawing)
 }
 
@@ -100,7 +98,7 @@ fn rule_g() -> Result<Drawing> {
     d.arrow(&path[..path.len() - 1], PLACED);
     d.known([&a, &b]);
     d.placed(&p);
-    d.label(&path[path.len() / 3], [7.0, 4.0], "~q~", palette::INK);
+    d.label(&path[path.len() / 3], [7.0, 4.0], "q", palette::INK);
     Ok(d.drawing)
 }
 

@@ -7,7 +7,6 @@ use crate::draw::{Drawing, palette};
 use anyhow::{Result, bail, ensure};
 use isosheet_coords::placement::{COLLINEAR, collinearity, place_f, place_on_line};
 use isosheet_coords::{Branch, EulerParameters, PlacementError};
-use serde_json::json;
 
 const TOLERANCE: f64 = 1e-12;
 
@@ -58,7 +57,6 @@ pub(super) fn make() -> Result<Made> {
             "change of the length of the middle rod, which is not used" => format!("{worst:.0e}"),
         })],
         pictures: svg(7, &all, alt),
-        facts: json!({ "sine": sine, "limit": COLLINEAR, "middle_rod_error": worst }),
         ..Made::default()
     })
 }
@@ -100,7 +98,7 @@ fn degenerate(lengths: [f64; 3]) -> Result<(Drawing, f64)> {
     let (q, o) = (d.view.project(named), d.view.project(&foot));
     let out = (q[0] - o[0]).hypot(q[1] - o[1]) / 9.0;
     let shift = [(q[0] - o[0]) / out, (q[1] - o[1]) / out];
-    d.label(named, shift, "~q~", palette::INK);
+    d.label(named, shift, "q", palette::INK);
     d.known(&LINE);
     Ok((d.drawing, worst))
 }

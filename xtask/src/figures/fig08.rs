@@ -9,7 +9,6 @@ use anyhow::{Result, ensure};
 use isosheet_coords::{Assignment, Rule, Start, sys_coord_assnmt_single};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{Dof, Sheet, VertexId};
-use serde_json::json;
 
 const SIDE: f64 = 168.0;
 
@@ -41,16 +40,6 @@ pub(super) fn make() -> Result<Made> {
     }
     let [fronts, order] = panels;
     let all = row(&[fronts, order, legend(&assignment)], 20.0);
-    let vertices: Vec<_> = assignment
-        .order()
-        .iter()
-        .map(|p| {
-            json!({
-                "vertex": p.vertex.0, "front": p.front, "rule": p.rule.letter().to_string(),
-                "known": p.rule.known().iter().map(|v| v.0).collect::<Vec<_>>(),
-            })
-        })
-        .collect();
     let count = |letter| assignment.rule_count(letter);
     let alt = "Fronts, rules and order of the assignment of system coordinates on M1";
     Ok(Made {
@@ -67,10 +56,6 @@ pub(super) fn make() -> Result<Made> {
             "degrees of freedom" => dof.to_string(),
         })],
         pictures: svg(8, &all, alt),
-        facts: json!({
-            "dof": dof, "fronts": assignment.front_count(), "h": count('h'), "g": count('g'), "f": count('f'),
-            "vertices": vertices,
-        }),
         ..Made::default()
     })
 }
@@ -124,14 +109,20 @@ fn fronts(sheet: &Sheet, assignment: &Assignment) -> Drawing {
         let (p, fill) = (place(placing.vertex), colour(placing.front));
         marker(&placing.rule).draw(&mut d, p, 4.6, fill, rim);
         let names = match placing.rule {
-            Rule::Start { q } => format!("~q~_{{{}–{}}}", q + 1, q + 3),
-            Rule::H { q, .. } => format!("~q~_{{{},{}}}", q + 1, q + 2),
-            Rule::G { q, .. } => format!("~q~_{{{}}}", q + 1),
+            Rule::Start { q } => format!("q{}–{}", subscript(q + 1), subscript(q + 3)),
+            Rule::H { q, .. } => format!("q{},{}", subscript(q + 1), subscript(q + 2)),
+            Rule::G { q, .. } => format!("q{}", subscript(q + 1)),
             _ => continue,
         };
         label(&mut d, p, &names);
     }
     d
+}
+
+/// A number in subscript digits.
+fn subscript(number: usize) -> String {
+    let lowered = |digit: char| char::from_u32(0x2080 + digit.to_digit(10)?);
+    number.to_string().chars().filter_map(lowered).collect()
 }
 
 /// A small text beside or at a point.
@@ -191,9 +182,9 @@ fn legend(assignment: &Assignment) -> Drawing {
     };
     for (marker, name) in [
         (Marker::Square, "start"),
-        (Marker::Diamond, "rule ~h~"),
-        (Marker::Triangle, "rule ~g~"),
-        (Marker::Disc, "rule ~f~"),
+        (Marker::Diamond, "rule h"),
+        (Marker::Triangle, "rule g"),
+        (Marker::Disc, "rule f"),
     ] {
         line(&mut d, Some((marker, palette::GREY)), name);
     }

@@ -7,7 +7,6 @@ use crate::draw::{Stroke, palette};
 use anyhow::{Result, ensure};
 use isosheet_coords::placement::place_g;
 use isosheet_coords::{EdgeFrame, EulerParameters};
-use serde_json::json;
 
 /// The coordinate that is drawn, radians.
 const Q: f64 = 1.0;
@@ -61,19 +60,19 @@ pub(super) fn make() -> Result<Made> {
     d.known(rest.iter().chain([&first, &second]));
     d.placed(&turned);
     for (p, shift, name) in [
-        (&rest[0], [-9.0, -7.0], "~v~_{I}^{0}"),
-        (&rest[1], [8.0, -8.0], "~v~_{II}^{0}"),
-        (&rest[2], [0.0, 11.0], "~v~_{III}^{0}"),
-        (&first, [-10.0, -7.0], "~v~_{I}^{~t~}"),
-        (&second, [12.0, 1.0], "~v~_{II}^{~t~}"),
-        (&turned, [-4.0, 11.0], "~v~_{III}^{~t~}"),
+        (&rest[0], [-9.0, -7.0], "v₁⁰"),
+        (&rest[1], [8.0, -8.0], "v₂⁰"),
+        (&rest[2], [0.0, 11.0], "v₃⁰"),
+        (&first, [-10.0, -7.0], "v₁ᵗ"),
+        (&second, [12.0, 1.0], "v₂ᵗ"),
+        (&turned, [-4.0, 11.0], "v₃ᵗ"),
     ] {
         d.label(p, shift, name, palette::INK);
     }
     let middle = |points: &[[f64; 3]]| points[points.len() / 2];
-    d.label(&axis, [-6.0, 4.0], "~r~", palette::BLUE);
+    d.label(&axis, [-6.0, 4.0], "r", palette::BLUE);
     d.label(&middle(&theta_arc), [8.0, -2.0], "θ", palette::BLUE);
-    d.label(&middle(&q_arc), [6.0, 6.0], "~q~", PLACED);
+    d.label(&middle(&q_arc), [6.0, 6.0], "q", PLACED);
     let alt = "A triangle at rest, aligned with the known edge, and turned about it";
     Ok(Made {
         title: "Construction of function g",
@@ -87,7 +86,6 @@ pub(super) fn make() -> Result<Made> {
             "distance of the two places (edge lengths)" => format!("{error:.0e}"),
         })],
         pictures: svg(9, &d.drawing, alt),
-        facts: json!({ "theta": theta, "q": Q, "difference": error }),
         ..Made::default()
     })
 }

@@ -1,7 +1,6 @@
 //! Where the folds of a draped cloth are, and how many.
 
-use isosheet_mesh::{EdgeId, Sheet, VertexId, fold_angle};
-use serde::Serialize;
+use isosheet_mesh::{Sheet, VertexId};
 use std::f64::consts::TAU;
 
 /// A convex outline, counter-clockwise.
@@ -45,133 +44,51 @@ impl Outline {
     }
 }
 
-/// The folds of the part of a cloth that hangs over the edge of its table.
-///
-/// Bending is edge length times size of the fold angle: it does not depend on how many edges share a fold.
-/// The first row of cells along the table's edge is left out, where every cloth bends over that edge.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct Folds {
-    /// Bending per edge length within one mean edge of a line from a table corner to its cloth corner, over
-    /// that of the whole overhang: 1 if folds do not care for corners.
-    pub(super) density_at_corners: f64,
-    /// Part of the overhang's bending that lies there.
-    pub(super) share_at_corners: f64,
-    /// Part of the overhang's edge length that lies there.
-    pub(super) length_at_corners: f64,
-    /// Mean angle between an edge and the line of its nearest corner, degrees, weighted by bending and by
-    /// length alone.
-    pub(super) angle: [f64; 2],
-    /// Of the edges with the largest bending that together carry half of it: how many, and how many of them
-    /// at corners.
-    pub(super) strongest: [usize; 2],
-    /// Distance from the nearest corner line (in mean edges) and bending density over the mean, in bins.
-    pub(super) profile: Vec<[f64; 2]>,
-    /// Corner lines along which a fold runs, their number, and the part of all directions in which one runs.
-    pub(super) along: (usize, usize, f64),
-}
-
-/// Width of a bin of the profile, mean edges.
-const BIN: f64 = 1.0;
-
-struct Crease {
-    length: f64,
-    bending: f64,
-    /// From the nearest corner line, metres.
-    distance: f64,
-    /// Angle with that line, degrees from 0 to 90.
-    angle: f64,
-}
-
-impl Folds {
-    /// Measures the positions `x`; corners of table and cloth belong together by number.
-    pub(super) fn of(sheet: &Sheet, x: &[f64], table: &Outline, cloth: &Outline) -> Self {
-        let creases = creases(sheet, x, table, cloth);
-        let width = sheet.mean_length();
-        let sum = |near: f64, f: fn(&Crease) -> f64| {
-            let inside = creases.iter().filter(|c| c.distance <= near);
-            inside.map(f).sum::<f64>()
-        };
-        let length = |near| sum(near, |c| c.length);
-        let bending = |near| sum(near, |c| c.bending);
-        let all = f64::INFINITY;
-        let share = bending(width) / bending(all);
-        let part = length(width) / length(all);
-        let angle = [
-            sum(all, |c| c.angle * c.bending) / bending(all),
-            sum(all, |c| c.angle * c.length) / length(all),
-        ];
-        let mut order: Vec<&Crease> = creases.iter().collect();
-        order.sort_by(|a, b| b.bending.total_cmp(&a.bending));
-        let (mut strongest, mut carried) = ([0, 0], 0.0);
-        for c in order {
-            if carried >= 0.5 * bending(all) {
-                break;
-            }
-            carried += c.bending;
-            strongest[0] += 1;
-            strongest[1] += usize::from(c.distance <= width);
-        }
-        let farthest = creases.iter().map(|c| c.distance).fold(0.0, f64::max);
-        let bins = (farthest / (BIN * width)).ceil() as usize;
-        let profile = (0..bins)
-            .filter_map(|k| {
-                let [low, high] = [k, k + 1].map(|j| j as f64 * BIN * width);
-                // The first bin holds the lines themselves.
-                let from = if k == 0 { -1.0 } else { low };
-                let [b, l] = [bending(high) - bending(from), length(high) - length(from)];
-                (l > 0.0).then(|| [(k as f64 + 0.5) * BIN, b / l * length(all) / bending(all)])
-            })
-            .collect();
-        Self {
-            density_at_corners: share / part,
-            share_at_corners: share,
-            length_at_corners: part,
-            angle,
-            strongest,
-            profile,
-            along: along_corner_lines(sheet, x, table, cloth),
-        }
-    }
+/// Along which lines from corners of the table to corners of the cloth folds run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CornerFolds {
+    /// Corner lines along which a fold runs, and their number.
+    pub(super) along: usize,
+    pub(super) lines: usize,
+    /// The part of all directions in which a fold runs, which is what chance would give the corners.
+    pub(super) part: f64,
 }
 
 /// Parts of the way from the edge of the table to the hem at which a fold has to be seen.
 const STATIONS: [f64; 3] = [0.35, 0.65, 0.95];
 
-/// A fold runs in a direction, seen from the axis, if the cloth is in the outer half of an outward bulge
-/// there at all of
-/// [`STATIONS`]: to how many corner lines that applies, how many there are, and to which part of all directions it
-/// applies, which is what chance would give the corners.
-fn along_corner_lines(
-    sheet: &Sheet,
-    x: &[f64],
-    table: &Outline,
-    cloth: &Outline,
-) -> (usize, usize, f64) {
-    let inner = cloth.gauge(table.corners[0]);
-    let mut runs = [true; SAMPLES];
-    for s in STATIONS {
-        let ring = ring(sheet, x, cloth, inner + s * (1.0 - inner));
-        let mut outer = [false; SAMPLES];
-        for (top, height) in peaks(&ring, s * PROMINENCE) {
-            for step in [1, SAMPLES - 1] {
-                let mut k = top;
-                while ring[k] >= ring[top] - 0.5 * height {
-                    outer[k] = true;
-                    k = (k + step) % SAMPLES;
+impl CornerFolds {
+    /// Measures the positions `x`; corners of table and cloth belong together by number. A fold runs in a
+    /// direction, seen from the axis, if the cloth is in the outer half of an outward bulge there at all of
+    /// [`STATIONS`].
+    pub(super) fn of(sheet: &Sheet, x: &[f64], table: &Outline, cloth: &Outline) -> Self {
+        let inner = cloth.gauge(table.corners[0]);
+        let mut runs = [true; SAMPLES];
+        for s in STATIONS {
+            let ring = ring(sheet, x, cloth, inner + s * (1.0 - inner));
+            let mut outer = [false; SAMPLES];
+            for (top, height) in peaks(&ring, s * PROMINENCE) {
+                for step in [1, SAMPLES - 1] {
+                    let mut k = top;
+                    while ring[k] >= ring[top] - 0.5 * height {
+                        outer[k] = true;
+                        k = (k + step) % SAMPLES;
+                    }
                 }
             }
+            let both = runs.iter_mut().zip(outer);
+            both.for_each(|(all, one)| *all &= one);
         }
-        runs.iter_mut()
-            .zip(outer)
-            .for_each(|(all, one)| *all &= one);
+        let at = |[a, b]: &[f64; 2]| {
+            let place = b.atan2(*a).rem_euclid(TAU) / TAU * SAMPLES as f64;
+            runs[place.round() as usize % SAMPLES]
+        };
+        Self {
+            along: cloth.corners.iter().filter(|c| at(c)).count(),
+            lines: cloth.corners.len(),
+            part: runs.iter().filter(|r| **r).count() as f64 / SAMPLES as f64,
+        }
     }
-    let at = |[a, b]: &[f64; 2]| {
-        let place = b.atan2(*a).rem_euclid(TAU) / TAU * SAMPLES as f64;
-        runs[place.round() as usize % SAMPLES]
-    };
-    let along = cloth.corners.iter().filter(|c| at(c)).count();
-    let part = runs.iter().filter(|r| **r).count() as f64 / SAMPLES as f64;
-    (along, cloth.corners.len(), part)
 }
 
 /// The curve of the cloth that was `level` times its outline in the flat cloth: the distance from the axis,
@@ -198,45 +115,9 @@ fn ring(sheet: &Sheet, x: &[f64], cloth: &Outline, level: f64) -> Vec<f64> {
     resample(&points)
 }
 
-fn creases(sheet: &Sheet, x: &[f64], table: &Outline, cloth: &Outline) -> Vec<Crease> {
-    let t = sheet.topology();
-    let lines: Vec<_> = table.corners.iter().zip(&cloth.corners).collect();
-    let crease = |e: EdgeId| {
-        let [p, q] = t.edges()[e.index()].map(|v| sheet.position(v));
-        let middle = [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
-        let fold = fold_angle(t, x, e)?;
-        if table.outside(middle) < sheet.mean_length() {
-            return None;
-        }
-        let length = sheet.lengths()[e.index()];
-        let (distance, angle) = lines
-            .iter()
-            .map(|(a, b)| {
-                let along = [b[0] - a[0], b[1] - a[1]];
-                let size = along[0].hypot(along[1]);
-                let from = [middle[0] - a[0], middle[1] - a[1]];
-                let s = (from[0] * along[0] + from[1] * along[1]) / (size * size);
-                let s = s.clamp(0.0, 1.0);
-                let distance = (from[0] - s * along[0]).hypot(from[1] - s * along[1]);
-                let edge = [q[0] - p[0], q[1] - p[1]];
-                let dot = edge[0] * along[0] + edge[1] * along[1];
-                let cross = edge[0] * along[1] - edge[1] * along[0];
-                (distance, cross.abs().atan2(dot.abs()).to_degrees())
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some(Crease {
-            length,
-            bending: length * fold.abs(),
-            distance,
-            angle,
-        })
-    };
-    t.edge_ids().filter_map(crease).collect()
-}
-
 /// The hem of a cloth at rest, by angle about the middle of the table: its distance from the axis, divided by
 /// that of the flat cloth, so that corners of the outline do not count as folds.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub(super) struct Hem {
     /// Number of folds: outward bulges of the hem that stand out by [`PROMINENCE`].
     pub(super) folds: usize,
@@ -245,11 +126,6 @@ pub(super) struct Hem {
     pub(super) spacing_spread: f64,
     /// Spread of how far the folds stand out.
     pub(super) size_spread: f64,
-    /// The wave number with the largest part of the variance of the hem's distance from the axis, and that
-    /// part: 1 for a single wave all round.
-    pub(super) wave: (usize, f64),
-    /// Angle (degrees) and relative distance from the axis.
-    pub(super) curve: Vec<[f64; 2]>,
 }
 
 /// A bulge of the hem counts from this part of its flat distance: a twentieth of a typical overhang.
@@ -258,15 +134,7 @@ const PROMINENCE: f64 = 0.02;
 /// Points at which the hem is sampled.
 const SAMPLES: usize = 720;
 
-/// Spacing and size of folds that spread by less than this part of their means make a uniform pattern.
-const UNIFORM: f64 = 0.2;
-
 impl Hem {
-    /// Whether its folds are evenly spaced and of one size.
-    pub(super) fn is_uniform(&self) -> bool {
-        self.folds > 1 && self.spacing_spread.max(self.size_spread) < UNIFORM
-    }
-
     /// Measures the hem of positions `x` of a cloth around the z axis.
     pub(super) fn of(sheet: &Sheet, x: &[f64]) -> Self {
         let t = sheet.topology();
@@ -296,31 +164,10 @@ impl Hem {
             })
             .collect();
         let sizes: Vec<f64> = peaks.iter().map(|p| p.1).collect();
-        let mean = curve.iter().sum::<f64>() / n as f64;
-        let variance = curve.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / n as f64;
-        let power = |m: usize| {
-            let (mut re, mut im) = (0.0, 0.0);
-            for (k, r) in curve.iter().enumerate() {
-                let (sin, cos) = (TAU * (m * k % n) as f64 / n as f64).sin_cos();
-                re += (r - mean) * cos;
-                im += (r - mean) * sin;
-            }
-            2.0 * (re * re + im * im) / (n * n) as f64
-        };
-        let wave = (1..=40)
-            .map(|m| (m, power(m) / variance.max(f64::MIN_POSITIVE)))
-            .max_by(|a, b| a.1.total_cmp(&b.1))
-            .unwrap_or((0, 0.0));
         Self {
             folds: peaks.len(),
             spacing_spread: spread(&gaps),
             size_spread: spread(&sizes),
-            wave,
-            curve: curve
-                .iter()
-                .enumerate()
-                .map(|(k, r)| [360.0 * k as f64 / n as f64, *r])
-                .collect(),
         }
     }
 }
@@ -377,7 +224,6 @@ fn spread(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isosheet_mesh::generate::isotropic_square;
     use isosheet_mesh::generate::{polygon_rings, regular_outline};
 
     #[test]
@@ -403,52 +249,15 @@ mod tests {
         let even = Hem::of_curve(&curve(&|a| {
             0.4 + 0.03 * (9.0 * a + 0.3).cos() + 1e-3 * (31.0 * a).cos()
         }));
-        assert_eq!((even.folds, even.wave.0), (9, 9));
-        assert!(even.wave.1 > 0.99 && even.spacing_spread < 0.05, "{even:?}");
+        assert_eq!(even.folds, 9);
+        assert!(even.spacing_spread < 0.05, "{even:?}");
         // Two families of different size: uneven.
         let uneven = Hem::of_curve(&curve(&|a| {
             0.4 + 0.03 * (4.0 * a).cos() + 0.03 * (5.0 * a).cos()
         }));
-        assert!(
-            uneven.size_spread > 0.3 && uneven.wave.1 < 0.6,
-            "{uneven:?}"
-        );
+        assert!(uneven.size_spread > 0.3, "{uneven:?}");
         let round = Hem::of_curve(&curve(&|_| 0.4));
         assert_eq!(round.folds, 0);
-    }
-
-    #[test]
-    fn a_sheet_folded_along_its_diagonals_has_its_folds_at_the_corners() {
-        let sheet = isotropic_square(3, 2.0)
-            .unwrap()
-            .map_positions(|[x, y, z]| [x - 1.0, y - 1.0, z])
-            .unwrap();
-        let [table, cloth] = [0.25, 1.0].map(|h| Outline::rectangle(h, h));
-        // A pyramid: flat faces, creased along the diagonals alone. It is not isometric, which does not
-        // matter here.
-        let pyramid: Vec<f64> = sheet
-            .positions()
-            .as_chunks::<3>()
-            .0
-            .iter()
-            .flat_map(|p| [p[0], p[1], -0.5 * p[0].abs().max(p[1].abs())])
-            .collect();
-        let f = Folds::of(&sheet, &pyramid, &table, &cloth);
-        assert!(
-            (f.share_at_corners - 1.0).abs() < 1e-9 && f.angle[0] < 1e-6,
-            "{f:?}"
-        );
-        assert_eq!(f.strongest[0], f.strongest[1]);
-        // A wave along x folds across all directions, corners or not.
-        let wave: Vec<f64> = sheet
-            .positions()
-            .as_chunks::<3>()
-            .0
-            .iter()
-            .flat_map(|p| [p[0], p[1], 0.1 * (20.0 * p[0]).sin()])
-            .collect();
-        let f = Folds::of(&sheet, &wave, &table, &cloth);
-        assert!(f.density_at_corners < 1.5 && f.angle[0] > 20.0, "{f:?}");
     }
 
     #[test]
@@ -471,12 +280,13 @@ mod tests {
             });
             moved.collect()
         };
-        let along = |turn: f64| Folds::of(&sheet, &draped(turn), &table, &cloth).along;
-        let (all, of, part) = along(0.0);
-        assert!((all, of) == (8, 8) && (part - 0.5).abs() < 0.1, "{part}");
-        assert_eq!(along(TAU / 16.0).0, 0);
+        let along = |turn: f64| CornerFolds::of(&sheet, &draped(turn), &table, &cloth);
+        let found = along(0.0);
+        assert_eq!((found.along, found.lines), (8, 8));
+        assert!((found.part - 0.5).abs() < 0.1, "{found:?}");
+        assert_eq!(along(TAU / 16.0).along, 0);
         // A flat cloth has folds nowhere.
-        let flat = Folds::of(&sheet, sheet.positions(), &table, &cloth);
-        assert_eq!(flat.along, (0, 8, 0.0));
+        let flat = CornerFolds::of(&sheet, sheet.positions(), &table, &cloth);
+        assert_eq!((flat.along, flat.part), (0, 0.0));
     }
 }

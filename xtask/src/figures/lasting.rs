@@ -7,7 +7,6 @@ use crate::draw::{Drawing, Stroke, TEXT, Viewpoint, flat_edges, flat_faces, pale
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
-use serde::Serialize;
 use std::slice;
 
 /// Times of the pictures, seconds: before, between six plates, freed, pressed flat, and at the end.
@@ -31,12 +30,11 @@ pub(super) struct Lasting {
     pub(super) pictures: Vec<Picture>,
     pub(super) pages: Vec<Play>,
     pub(super) table: Table,
-    pub(super) facts: Vec<Facts>,
 }
 
 /// The numbers of a sheet that was crumpled and pressed flat.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct Facts {
+#[derive(Clone, Debug)]
+struct Facts {
     label: String,
     /// Its height above its lowest point when it is pressed, and at the end, metres.
     pressed: f64,
@@ -47,7 +45,7 @@ pub(super) struct Facts {
 }
 
 /// Where the plastic curvature of a sheet lies.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug)]
 struct PlasticMarks {
     /// The largest one, 1/m.
     largest: f64,
@@ -226,6 +224,5 @@ pub(super) fn make(store: &Store) -> Result<Lasting> {
             )?,
         ],
         table: compared(&all.map(|c| &c.facts.label[..]), &all.map(Crumpled::rows)),
-        facts: all.map(|c| c.facts.clone()).to_vec(),
     })
 }

@@ -1,13 +1,12 @@
 //! Fig. 10: the paper's table of performance, with ours beside it.
 
-use super::{Effort, Made, Picture, Play, Table, cloths, crumple, drape, stamping};
-use crate::report::{Cell, columns, machine, rounded};
+use super::{Effort, Made, Picture, Table, cloths, crumple, stamping};
+use crate::report::{machine, rounded};
 use crate::runs::{self, ChartSummary, Course, Ending, FigureScene, Run, RunSummary};
 use crate::store::Store;
 use anyhow::{Result, ensure};
 use isosheet_coords::condition_table;
-use isosheet_io::scene::{Coordinates, Integrator};
-use serde_json::{Value, json};
+use isosheet_io::scene::Coordinates;
 
 /// A row of the paper's table.
 type Published = (u8, Option<u32>, [&'static str; 3]);
@@ -29,28 +28,6 @@ fn ours(figure: u8, effort: Effort) -> Result<FigureScene> {
         13 => stamping::scene(effort),
         14 => cloths::rectangle(2, effort),
         _ => cloths::octagon(effort),
-    }
-}
-
-/// The scene of a figure without contact of the sheet with itself.
-fn free(figure: u8, effort: Effort) -> Result<FigureScene> {
-    let name = match figure {
-        11 => "crumple-m1",
-        12 => "crumple-m2",
-        13 => "stamping-free",
-        14 => "drape-m2-free",
-        _ => "drape-octagon-free",
-    };
-    ours(figure, effort)?.without_self_contact(name)
-}
-
-/// The page of the run without contact of the sheet with itself; Figs. 11 to 15 have those of the others.
-fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
-    match figure {
-        11 | 12 => crumple::page(10, run, effort),
-        13 => stamping::page(10, run, effort),
-        14 => drape::page(10, "M²", run, effort),
-        _ => drape::page(10, "244/440", run, effort),
     }
 }
 
@@ -108,10 +85,6 @@ struct Tried {
     /// The paper's mesh, frames per second and steps.
     published: [&'static str; 3],
     ours: RunSummary,
-    /// Without contact of the sheet with itself.
-    free: RunSummary,
-    /// The page of the run without it.
-    page: Play,
     /// The paper's scheme with ever more help.
     charts: Vec<(&'static str, ChartSummary)>,
 }
@@ -119,7 +92,6 @@ struct Tried {
 impl Tried {
     fn of(&(figure, level, published): &Published, store: &Store) -> Result<Self> {
         let effort = store.effort;
-        let free = Run::of(store, free(figure, effort)?)?;
         let patience = effort.quick_or(0.5, 60.0);
         let mut charts = Vec::new();
         if let Some(level) = level {
@@ -132,8 +104,6 @@ impl Tried {
             figure,
             published,
             ours: Run::of(store, ours(figure, effort)?)?.summary,
-            page: page(figure, &free, effort)?,
-            free: free.summary,
             charts,
         })
     }
@@ -159,11 +129,6 @@ impl Tried {
             .chain(charts.map(|(name, s)| chart_row(&mesh, name, s)))
             .map(Vec::from)
             .collect()
-    }
-
-    fn facts(&self) -> Value {
-        let charts: Vec<&ChartSummary> = self.charts.iter().map(|(_, s)| s).collect();
-        json!({ "figure": self.figure, "default": self.ours, "without_self_contact": self.free, "published_scheme": charts })
     }
 }
 
@@ -211,12 +176,8 @@ pub(super) fn make(store: &Store) -> Result<Made> {
                published, the scheme cannot start on either mesh: in the union jack every inner vertex of degree 4 keeps one of its creases \
                straight, which is the degenerate case of Fig. 7.",
         pictures: vec![Picture::svg("fig10-condition", &condition, alt)],
-        pages: all.iter().map(|tried| tried.page.clone()).collect(),
-        tables: vec![
-            table.with_texts(all.iter().flat_map(Tried::rows)),
-            contact_table(&all),
-        ],
-        facts: json!({ "machine": machine, "rows": all.iter().map(Tried::facts).collect::<Vec<_>>() }),
+        tables: vec![table.with_texts(all.iter().flat_map(Tried::rows))],
+        ..Made::default()
     })
 }
 
@@ -230,14 +191,13 @@ fn milliseconds(range: [f64; 2]) -> String {
 }
 
 fn default_row(mesh: &str, s: &RunSummary) -> [String; 6] {
-    let method = crumple::method_name(Integrator::default());
     let Course {
         time, strain, cost, ..
     } = &s.course;
     [
         String::new(),
         mesh.into(),
-        format!("isosheet ({method}), from exactly flat, with contact"),
+        "isosheet (BDF2), from exactly flat, with contact".to_owned(),
         format!("{:.0}", s.frames_per_second),
         s.step_range.map_or("–".into(), milliseconds),
         format!(
@@ -245,51 +205,6 @@ fn default_row(mesh: &str, s: &RunSummary) -> [String; 6] {
             cost.rejected
         ),
     ]
-}
-
-/// What the paper does not report of its runs.
-fn contact_table(all: &[Tried]) -> Table {
-    let joules = |v: f64| -> Cell {
-        if v == 0.0 {
-            return "0".into();
-        }
-        format!("{v:.2e}").replace('-', "−").into()
-    };
-    let frames = |s: &RunSummary| s.course.cost.steps.max(1) as f64;
-    Table::of(
-        "What the paper did not report. Slowness: seconds of wall time per simulated second, on one core, with and without contact of the sheet with \
-                  itself (two different motions where it touches itself), and their ratio; a frame is 1/60 s; solves are Newton steps, each with a factorisation. \
-                  Energies (J) at the end: potential energy released, work of the die, losses to damping and friction, and what the balance lacks: what \
-                  the implicit steps take out of fast motion.",
-        all,
-        columns! { r;
-            "Fig." => r.figure.to_string(),
-            "V/F" => r.ours.mesh(),
-            "slowness" => format!("{:.2}", r.ours.slowness()),
-            "without self-contact" => format!("{:.2}", r.free.slowness()),
-            "ratio" => {
-                let ratio = r.ours.slowness() / r.free.slowness().max(1e-12);
-                format!("{ratio:.1}")
-            },
-            "frame, solves in it" => {
-                let (step, solves) = (1e3 * r.ours.course.cost.wall, r.ours.course.cost.iterations as f64);
-                let [step, solves] = [step, solves].map(|all| all / frames(&r.ours));
-                format!("{step:.1} ms, {solves:.0}")
-            },
-            "CPU s per simulated s" => r.ours.course.cpu_rate(),
-            "solves/s" => {
-                let cost = &r.ours.course.cost;
-                format!("{:.0}", cost.iterations as f64 / cost.wall.max(1e-9))
-            },
-            "largest strain" => format!("{:.0e}", r.ours.course.strain).replace('-', "−"),
-            "smallest gap" => super::gap(r.ours.course.gap),
-            "released" => joules(r.ours.energy.released),
-            "work" => joules(r.ours.energy.work),
-            "damping" => joules(r.ours.energy.damped),
-            "friction" => joules(r.ours.energy.friction),
-            "drift" => joules(r.ours.energy.drift),
-        },
-    )
 }
 
 fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> [String; 6] {

@@ -1,12 +1,11 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Row, compared, course, height, rows, through_itself};
+use super::{Effort, Made, Picture, Play, Row, compared, course, height, rows};
 use crate::draw::{Axis, Chart, Charts, Series, Viewpoint, palette};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
-use serde_json::{Value, json};
 
 /// What the elastic blank is made of.
 const METAL: &str = "steel sheet";
@@ -59,9 +58,9 @@ const VIEW: View = View {
 };
 
 /// The page that plays a run.
-pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
-    let (sheet, free) = (run.scene.sheet_name(), through_itself(&run.scene));
-    VIEW.play(run, effort, figure, &format!("stamping, {sheet}{free}"))
+fn page(run: &Run, effort: Effort) -> Result<Play> {
+    let label = format!("stamping, {}", run.scene.sheet_name());
+    VIEW.play(run, effort, 13, &label)
 }
 
 /// A sheet that has been punched.
@@ -150,17 +149,6 @@ impl Punched {
             Series::guide("weight", vec![[0.0, self.weight], [stroke, self.weight]]),
         ];
         Chart::new(x, y, [165.0, 118.0], series)
-    }
-
-    fn facts(&self) -> Value {
-        let Self {
-            run,
-            peak,
-            weight,
-            curve,
-            ..
-        } = self;
-        json!({ "run": run.summary, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve })
     }
 }
 
@@ -255,16 +243,10 @@ pub(super) fn make(store: &Store) -> Result<Made> {
             VIEW.ends(&ends, effort, ["fig13-released.png", left])?,
         ],
         pages: vec![
-            page(13, &rods.run, effort)?,
-            page(13, &steel.run, effort)?,
+            page(&rods.run, effort)?,
+            page(&steel.run, effort)?,
             springs.page(effort)?,
             stays.page(effort)?,
         ],
-        facts: json!({
-            "rods": rods.facts(),
-            "elastic": steel.facts(),
-            "height_mm_after_release": both.map(|r| 1e3 * r.height),
-            "release": both.map(|r| json!(r.run.summary)),
-        }),
     })
 }

@@ -1,206 +1,240 @@
-//! What a hard case is, and what is found in it.
+//! A case: a scene, variations of it, and bounds for what its runs say of themselves.
 
-use super::file::CaseFile;
-use super::scenes::STRAIN;
-use crate::draw::Charts;
-use crate::report::{Bound, Effort, Finding, Picture, Section, Table, Verdict};
-use crate::runs::Course;
-use anyhow::Result;
-use serde::{Deserialize, Serialize};
+use super::check::Check;
+use super::variants::Variants;
+use crate::interrupt;
+use crate::report::{Effort, Finding, Table, columns};
+use anyhow::{Context, Result, ensure};
+use isosheet_io::read_history;
+use isosheet_io::run::{RunError, Summary};
+use isosheet_io::scene::SceneFile;
+use rayon::prelude::*;
+use serde::Deserialize;
+use std::fs;
+use std::path::{Path, PathBuf};
 
-/// A hard case.
-pub(crate) struct Case {
-    /// Name on the command line.
-    pub(crate) name: &'static str,
-    pub(crate) title: &'static str,
+/// The folder of the files.
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/cases");
+
+/// The contents of a file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Contents {
+    pub(super) title: String,
     /// What should happen.
-    pub(crate) expected: &'static str,
-    /// What is done.
-    pub(crate) run: Work,
+    pub(super) expected: String,
+    /// The scene, relative to the file.
+    scene: PathBuf,
+    /// Edits of the scene in quick reports, after those of the variants.
+    #[serde(default)]
+    quick: Vec<String>,
+    /// The same in full reports.
+    #[serde(default)]
+    full: Vec<String>,
+    /// The runs are those of all entries; without entries there is one, of the scene as it is.
+    #[serde(default)]
+    variants: Vec<Variants>,
+    check: Vec<Check>,
 }
 
-/// Finds what there is to be found in a case, or a part of it.
-pub(crate) type Code = fn(&mut Findings, Effort) -> Result<()>;
+/// A case with the name of its file.
+#[derive(Clone, Debug)]
+pub(super) struct Case {
+    pub(super) name: String,
+    pub(super) contents: Contents,
+    scene: PathBuf,
+    /// The texts of case and scene and of all meshes beside the scene, which decide what is found.
+    pub(super) texts: Vec<String>,
+}
 
-/// What is done in a case.
-#[derive(Clone, Copy)]
-pub(crate) enum Work {
-    /// Whatever the function does.
-    Code(Code),
-    /// What a file says, and what a function adds to it: naive methods, closed forms, pictures.
-    File(&'static CaseFile, Option<Code>),
+/// A run of a case, and what came of it.
+#[derive(Debug)]
+pub(super) struct Ran {
+    pub(super) edits: Vec<String>,
+    pub(super) outcome: Result<Summary, Stopped>,
+}
+
+/// A run that stopped early, by what its accepted steps say.
+#[derive(Debug)]
+pub(super) struct Stopped {
+    pub(super) time: f64,
+    pub(super) why: String,
+    pub(super) largest_strain: f64,
+    pub(super) smallest_gap: Option<f64>,
+}
+
+/// The name of a case, if there is one of that name.
+pub(super) fn named(name: &str) -> Result<String, String> {
+    let paths = of_kind(Path::new(FOLDER), "toml").map_err(|error| error.to_string())?;
+    let names: Vec<String> = paths.iter().map(|path| stem(path)).collect();
+    match names.iter().any(|known| known == name) {
+        true => Ok(name.to_owned()),
+        false => Err(format!("the cases are '{}'", names.join("', '"))),
+    }
+}
+
+/// The cases in the folder, by name.
+///
+/// # Errors
+/// What is wrong with a file of the folder.
+pub(super) fn all() -> Result<Vec<Case>> {
+    let paths = of_kind(Path::new(FOLDER), "toml").context(FOLDER)?;
+    let read = |path: &PathBuf| Case::read(path).with_context(|| path.display().to_string());
+    paths.iter().map(read).collect()
+}
+
+/// The name of a file without its extension.
+fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+/// The files of a folder whose names have an extension, in order.
+fn of_kind(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        paths.push(entry?.path());
+    }
+    paths.retain(|path| path.extension().is_some_and(|e| e == extension));
+    paths.sort();
+    Ok(paths)
 }
 
 impl Case {
-    /// Runs it.
-    pub(super) fn find(&self, found: &mut Findings, effort: Effort) -> Result<()> {
-        match self.run {
-            Work::Code(work) => work(found, effort),
-            Work::File(file, beside) => {
-                file.run(found, effort)?;
-                beside.map_or(Ok(()), |code| code(found, effort))
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// What is wrong with it, or with its scene.
+    fn read(path: &Path) -> Result<Self> {
+        let text = fs::read_to_string(path)?;
+        let contents: Contents = toml::from_str(&text)?;
+        let folder = path.parent().unwrap_or(Path::new("."));
+        let scene = folder.join(&contents.scene);
+        let mut texts = vec![text];
+        let meshes = of_kind(scene.parent().unwrap_or(Path::new(".")), "obj")?;
+        for path in [&scene].into_iter().chain(&meshes) {
+            texts.push(fs::read_to_string(path).with_context(|| path.display().to_string())?);
+        }
+        ensure!(!contents.check.is_empty(), "there is no check");
+        for check in &contents.check {
+            check.validate(&contents.variants)?;
+        }
+        Ok(Self {
+            name: stem(path),
+            contents,
+            scene,
+            texts,
+        })
+    }
+
+    /// The edits of each run.
+    fn runs(&self, effort: Effort) -> Result<Vec<Vec<String>>> {
+        let last = effort.pick(&self.contents.quick[..], &[], &self.contents.full);
+        let mut runs = Vec::new();
+        for variants in &self.contents.variants {
+            runs.extend(variants.edits(&self.scene, effort)?);
+        }
+        if self.contents.variants.is_empty() {
+            runs.push(Vec::new());
+        }
+        for edits in &mut runs {
+            edits.extend_from_slice(last);
+        }
+        Ok(runs)
+    }
+
+    /// Whether each check is for a run of full reports, which have the runs of all others.
+    fn require_runs(&self) -> Result<()> {
+        let runs = self.runs(Effort::Full)?;
+        for check in &self.contents.check {
+            let any = runs.iter().any(|edits| check.is_for(edits));
+            ensure!(any, "no run is one of `{}`", check.words());
+        }
+        Ok(())
+    }
+
+    /// Runs all variants, judges what they say, and tabulates them. A check may be for variants that reports of
+    /// less effort do not have.
+    pub(super) fn run(&self, effort: Effort) -> Result<(Vec<Finding>, Table)> {
+        self.require_runs()?;
+        let runs = self.runs(effort)?.into_par_iter().with_max_len(1);
+        let runs: Result<Vec<Ran>> = runs.map(|edits| ran(&self.scene, edits)).collect();
+        let runs = runs?;
+        let mut findings = Vec::new();
+        for check in &self.contents.check {
+            let of: Vec<&Ran> = runs.iter().filter(|r| check.is_for(&r.edits)).collect();
+            if !of.is_empty() {
+                findings.extend(check.judge(&of)?);
             }
         }
+        Ok((findings, self.table(&runs)))
+    }
+
+    fn table(&self, runs: &[Ran]) -> Table {
+        let scene = self.scene.file_name().unwrap_or_default().to_string_lossy();
+        let command = |run: &Ran| {
+            let edits = run.edits.iter().map(|e| format!(" --set '{e}'"));
+            format!("isosheet simulate {scene}{}", edits.collect::<String>())
+        };
+        let complete = |run: &Ran, of: fn(&Summary) -> f64| run.outcome.as_ref().ok().map(of);
+        Table::of(
+            "The runs",
+            runs,
+            columns! { run;
+                "command" => command(run),
+                "steps" => complete(run, |s| s.steps as f64),
+                "rejected" => complete(run, |s| s.rejected as f64),
+                "edge strain" => run.largest_strain(),
+                "smallest gap, m" => run.smallest_gap(),
+                "energy drift at the end, J" => complete(run, |s| s.ending.energy_drift),
+                "stops early at, s" => run.outcome.as_ref().err().map(|stopped| stopped.time),
+            },
+        )
     }
 }
 
-impl std::fmt::Debug for Case {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name)
-    }
-}
-
-/// What a naive method did.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Naive {
-    pub(crate) method: String,
-    /// What was measured, and the bound beyond which the method has failed.
-    pub(crate) finding: Finding,
-}
-
-impl Naive {
-    pub(super) fn failed(&self) -> bool {
-        self.finding.verdict() != Verdict::Passed
-    }
-}
-
-/// What was found in a case.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Findings {
-    pub(crate) naive: Vec<Naive>,
-    pub(crate) here: &'static str,
-    pub(crate) checks: Vec<Finding>,
-    pub(crate) pictures: Vec<Picture>,
-    pub(crate) tables: Vec<Table>,
-}
-
-impl Findings {
-    /// What a naive method did: a number, and the bound beyond which the method has failed.
-    pub(super) fn naive(
-        &mut self,
-        method: &str,
-        quantity: impl Into<String>,
-        value: f64,
-        bound: Bound,
-    ) -> &mut Finding {
-        let at = self.naive.len();
-        self.naive.push(Naive {
-            method: method.to_owned(),
-            finding: Finding::new(quantity, value, bound),
-        });
-        &mut self.naive[at].finding
-    }
-
-    /// What a naive method did that may break down, which is a failure.
-    pub(super) fn naive_run(
-        &mut self,
-        method: &str,
-        quantity: impl Into<String>,
-        outcome: Result<f64, String>,
-        bound: Bound,
-    ) {
-        let value = outcome.as_ref().copied().unwrap_or(f64::NAN);
-        let finding = self.naive(method, quantity, value, bound);
-        finding.remark(outcome.err());
-    }
-
-    /// A number with an upper bound.
-    pub(super) fn at_most(
-        &mut self,
-        what: impl Into<String>,
-        value: f64,
-        bound: f64,
-    ) -> &mut Finding {
-        self.check(what.into(), value, Bound::AtMost(bound))
-    }
-
-    /// A number with a lower bound.
-    pub(super) fn at_least(
-        &mut self,
-        what: impl Into<String>,
-        value: f64,
-        bound: f64,
-    ) -> &mut Finding {
-        self.check(what.into(), value, Bound::AtLeast(bound))
-    }
-
-    pub(super) fn check(&mut self, what: String, value: f64, bound: Bound) -> &mut Finding {
-        let at = self.checks.len();
-        self.checks.push(Finding::new(what, value, bound));
-        &mut self.checks[at]
-    }
-
-    /// Numbers of a run, which are none if it ended early; `what` says which run.
-    pub(super) fn of<'a>(&'a mut self, course: &'a Course, what: impl Into<String>) -> Judge<'a> {
-        Judge {
-            findings: self,
-            course,
-            what: what.into(),
+impl Ran {
+    /// Of all accepted steps, also where the run stopped early.
+    pub(super) fn largest_strain(&self) -> f64 {
+        match &self.outcome {
+            Ok(summary) => summary.largest_strain,
+            Err(stopped) => stopped.largest_strain,
         }
     }
 
-    /// Charts.
-    pub(super) fn drawing(&mut self, file: &str, drawing: &Charts, alt: &str) {
-        self.pictures.push(Picture::svg(file, drawing, alt));
+    /// As [`Ran::largest_strain`].
+    pub(super) fn smallest_gap(&self) -> Option<f64> {
+        match &self.outcome {
+            Ok(summary) => summary.smallest_gap,
+            Err(stopped) => stopped.smallest_gap,
+        }
     }
 }
 
-/// Judges the numbers of a run.
-pub(super) struct Judge<'a> {
-    findings: &'a mut Findings,
-    course: &'a Course,
-    what: String,
+/// Runs a scene with edits.
+fn ran(scene: &Path, edits: Vec<String>) -> Result<Ran> {
+    interrupt::check()?;
+    // Summaries alone are judged.
+    let unseen = ["output.page=false", "output.trajectory=false"].map(str::to_owned);
+    let file = SceneFile::read(scene, &[&edits[..], &unseen].concat())?;
+    let folder = tempfile::tempdir()?;
+    let folder = folder.path().join("run");
+    let outcome = match interrupt::simulate(&file, &folder, &mut |_| ())? {
+        Ok(summary) => Ok(summary),
+        Err(error @ (RunError::Step(_) | RunError::Scene(_))) => {
+            let rows = read_history(&folder.join("history.csv")).unwrap_or_default();
+            let message = error.to_string();
+            Err(Stopped {
+                time: rows.last().map_or(0.0, |row| row.t),
+                why: message.lines().next().unwrap_or_default().to_owned(),
+                largest_strain: rows.iter().fold(0.0, |most, row| row.strain.max(most)),
+                smallest_gap: rows.iter().filter_map(|row| row.gap).reduce(f64::min),
+            })
+        }
+        Err(error) => return Err(error.into()),
+    };
+    Ok(Ran { edits, outcome })
 }
 
-impl Judge<'_> {
-    /// A number with an upper bound.
-    pub(super) fn at_most(&mut self, quantity: &str, value: f64, bound: f64) -> &mut Finding {
-        self.check(quantity, value, Bound::AtMost(bound))
-    }
-
-    /// A number with a lower bound.
-    pub(super) fn at_least(&mut self, quantity: &str, value: f64, bound: f64) -> &mut Finding {
-        self.check(quantity, value, Bound::AtLeast(bound))
-    }
-
-    /// The largest edge strain of the run, bounded by [`STRAIN`].
-    pub(super) fn strain(&mut self, quantity: &str) -> &mut Finding {
-        self.at_most(quantity, self.course.strain, STRAIN)
-    }
-
-    fn check(&mut self, quantity: &str, value: f64, bound: Bound) -> &mut Finding {
-        let (what, value) = (
-            format!("{}: {quantity}", self.what),
-            self.course.if_good(value),
-        );
-        self.findings.check(what, value, bound).ended(self.course)
-    }
-}
-
-impl Finding {
-    /// Notes when and why the run ended, if it did so early.
-    pub(super) fn ended(&mut self, course: &Course) -> &mut Self {
-        self.stopped = course.failure().map(|_| course.time);
-        self.remark(course.failure())
-    }
-}
-
-/// What is kept about a case.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Record {
-    pub(crate) name: String,
-    pub(crate) title: String,
-    pub(crate) section: Section,
-    pub(crate) naive: Vec<Naive>,
-    pub(crate) checks: Vec<Finding>,
-    /// Wall time, seconds.
-    pub(crate) wall: f64,
-}
-
-impl Record {
-    /// The worst verdict of the checks.
-    pub(super) fn verdict(&self) -> Verdict {
-        let verdicts = self.checks.iter().map(Finding::verdict);
-        verdicts.max().unwrap_or(Verdict::Passed)
-    }
-}
+#[cfg(test)]
+mod tests;

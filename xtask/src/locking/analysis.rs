@@ -2,9 +2,8 @@
 //! runs, requirements, figures.
 
 use super::model::Model;
-use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series};
 use crate::report::{Bound, Cell, Effort, Finding, Shortfall, Table, Verdict};
-use crate::report::{exponent, extremes, median, number};
+use crate::report::{exponent, median, number};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -35,18 +34,6 @@ pub(super) struct Required {
     /// Models that may miss it, and the word for why.
     #[serde(default)]
     open: BTreeMap<String, String>,
-}
-
-/// Errors against the size of the mesh: a row of panels for each error, and in each panel a line for each
-/// model with the medians over the meshes on which the sheet comes to rest, and a band with all of them.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Figure {
-    /// A panel for each entry of this column; one panel without it.
-    panels: Option<String>,
-    errors: Vec<String>,
-    /// A line for comparison.
-    bound: f64,
 }
 
 /// An entry as text.
@@ -252,69 +239,8 @@ pub(super) fn findings(
     all
 }
 
-/// Symbols of the models, in order.
-const MARKERS: [Marker; 3] = [Marker::Disc, Marker::Square, Marker::Triangle];
-
-/// Size of the area inside the axes, points.
-const AREA: [f64; 2] = [125.0, 130.0];
-
-impl Figure {
-    /// The panels, with the names of the models to the right of the first row.
-    pub(super) fn of(&self, runs: &Table, size: &str) -> Charts {
-        let mut panels = vec![(String::new(), runs.clone())];
-        if let Some(name) = &self.panels {
-            let entries = distinct(column(runs, name)).into_iter().map(word);
-            panels = entries.map(|e| (e.clone(), with(runs, name, &e))).collect();
-        }
-        let mut sizes: Vec<f64> = column(runs, size).filter_map(value).collect();
-        sizes.sort_by(f64::total_cmp);
-        sizes.dedup();
-        let ticks = sizes.iter().map(|n| (*n, number(*n))).collect();
-        let x = Axis::at(size, ticks);
-        let row = |(k, error): (usize, &String)| {
-            let y = Axis::decades(error, column(runs, error).filter_map(value));
-            let chart = |(i, (title, runs)): (usize, &(String, Table))| {
-                let is_last = k == 0 && i + 1 == panels.len();
-                let legend = if is_last { Legend::Right } else { Legend::None };
-                let y = if i == 0 {
-                    y.clone()
-                } else {
-                    y.clone().unlabelled()
-                };
-                let series = self.series(runs, error, (size, &sizes));
-                let chart = Chart::new(x.clone(), y, AREA, series);
-                chart.titled(title.clone()).with_legend(legend)
-            };
-            panels.iter().enumerate().map(chart).collect()
-        };
-        Charts(self.errors.iter().enumerate().map(row).collect())
-    }
-
-    fn series(&self, runs: &Table, error: &str, (size, sizes): (&str, &[f64])) -> Vec<Series> {
-        let bound = sizes.iter().map(|n| [*n, self.bound]).collect();
-        let mut series = vec![Series::guide(&format!("{} %", 100.0 * self.bound), bound)];
-        let mut lines = Vec::new();
-        for (model, marker) in Model::ALL.into_iter().zip(MARKERS) {
-            let of = with(runs, "model", &model.to_string());
-            let at = |n: &f64| -> Option<[f64; 4]> {
-                let at = with(&of, size, &n.to_string());
-                let values: Vec<f64> = column(&at, error).filter_map(value).collect();
-                let [low, high] = extremes(values.iter().copied())?;
-                Some([*n, low, median(values)?, high])
-            };
-            let curve: Vec<[f64; 4]> = sizes.iter().filter_map(at).collect();
-            let band: Vec<[f64; 3]> = curve.iter().map(|c| [c[0], c[1], c[3]]).collect();
-            series.push(Series::band(model.colour(), &band));
-            let middle = curve.iter().map(|c| [c[0], c[2]]).collect();
-            lines.push(Series::line(&model.to_string(), model.colour(), middle).marked(marker));
-        }
-        series.extend(lines);
-        series
-    }
-}
-
 /// All findings with a column for each model; values within their bounds are bold.
-pub(super) fn by_model(all: &[(String, Finding)]) -> Table {
+pub(super) fn by_model<'a>(all: impl IntoIterator<Item = (&'a str, &'a Finding)>) -> Table {
     let models = Model::ALL.map(|model| model.to_string());
     let mut head = vec!["yardstick", "quantity", "required"];
     head.extend(models.iter().map(String::as_str));
@@ -323,10 +249,11 @@ pub(super) fn by_model(all: &[(String, Finding)]) -> Table {
          one of these runs did not end, or the model is not asked.",
         &head,
     );
-    let key = |(yardstick, f): &(String, Finding)| {
-        [yardstick.as_str(), &f.quantity, &f.bound.text()].map(Cell::from)
+    let all: Vec<(&str, &Finding)> = all.into_iter().collect();
+    let key = |(yardstick, f): &(&str, &Finding)| {
+        [yardstick, f.quantity.as_str(), &f.bound.text()].map(Cell::from)
     };
-    for row in all {
+    for row in &all {
         let mut cells = key(row).to_vec();
         if table.rows.iter().any(|known| known.starts_with(&cells)) {
             continue;
@@ -412,17 +339,9 @@ mod tests {
             (Some(0.0625), Verdict::Passed)
         );
         assert_eq!(on(Model::Material).verdict(), Verdict::Failed);
-        let table = by_model(&[("y".into(), rods), ("y".into(), elastic)]);
+        let table = by_model([("y", &rods), ("y", &elastic)]);
         let cells = ["y", "q", "≤ 0.1"].map(Cell::from);
         let values = [Cell::Missing, Cell::Missing, "**0.0625**".into()];
         assert_eq!(table.rows, [[cells, values].concat()]);
-    }
-
-    #[test]
-    fn lines_are_medians_and_bands_have_all() {
-        let figure: Figure = toml::from_str("errors = ['error']\nbound = 0.02").unwrap();
-        let series = figure.series(&runs(), "error", ("n", &[2.0, 4.0]));
-        let middle = &series.last().expect("a line").points;
-        assert_eq!(middle, &[[2.0, 0.25], [4.0, 0.0625]]);
     }
 }

@@ -1,15 +1,15 @@
 //! Flat sheets that are clamped along lines of any direction.
 
 use super::model::{Model, PAPER, Plate};
-use super::runs::{Ran, Records, Sample, samples};
+use super::runs::{Ran, Records, samples};
 use super::scene::run;
 use crate::report::{Effort, Table};
 use crate::runs::Plan;
 use anyhow::Result;
-use isosheet_dynamics::SheetModel;
+use isosheet_dynamics::{Method, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
-use isosheet_tests::damped;
+use isosheet_tests::implicit_euler;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -24,8 +24,8 @@ const HARDLY: f64 = 0.1;
 const KINDS: [&str; 5] = ["union jack", "one-way", "Delaunay", "disk", "rectangle"];
 
 /// Mass of a sheet, kilograms, and rate of its damping, 1/s.
-pub(crate) const MASS: f64 = 0.1;
-pub(crate) const DAMPING: f64 = 2.0;
+const MASS: f64 = 0.1;
+const DAMPING: f64 = 2.0;
 
 /// Numbers of vertices of the family.
 const VERTICES: std::ops::RangeInclusive<usize> = 25..=127;
@@ -35,16 +35,16 @@ const SEED: u64 = 20;
 
 /// A sheet of the family.
 #[derive(Debug)]
-pub(crate) struct Clamped {
-    pub(crate) sheet: Sheet,
-    pub(crate) pins: Vec<VertexId>,
+struct Clamped {
+    sheet: Sheet,
+    pins: Vec<VertexId>,
     /// Flexural rigidity, N m.
-    pub(crate) rigidity: f64,
+    rigidity: f64,
 }
 
 impl Clamped {
     /// The sheet of the given number in the family.
-    pub(crate) fn new(number: usize) -> Result<Self> {
+    fn new(number: usize) -> Result<Self> {
         let mut rng = ChaCha8Rng::seed_from_u64(SEED + number as u64);
         let kind = KINDS[number % KINDS.len()];
         let sheet = loop {
@@ -131,7 +131,7 @@ fn measure(model: Model, job: &Job, plan: &Plan) -> Result<(Ran, Fallen)> {
         .with_damping(DAMPING)?
         .with_pins(&pins)?;
     let named = |(name, method)| (name == job.method).then_some(method);
-    let method = damped().into_iter().find_map(named).unwrap_or_default();
+    let method = methods().into_iter().find_map(named).unwrap_or_default();
     let (course, end) = run(model, moved, &sheet, method, plan)?;
     let ran = Ran::of(model, &sheet, &course);
     let lowest = end.x.iter().skip(2).step_by(3).copied().fold(0.0, f64::min);
@@ -149,17 +149,25 @@ fn measure(model: Model, job: &Job, plan: &Plan) -> Result<(Ran, Fallen)> {
     Ok((ran, fallen))
 }
 
+/// The methods, the default first.
+fn methods() -> [(&'static str, Method); 2] {
+    [
+        ("BDF2", Method::default()),
+        ("implicit Euler", implicit_euler()),
+    ]
+}
+
 /// The sheets and methods.
 fn jobs(effort: Effort) -> Vec<Job> {
-    let counts = effort.quick_or([10, 0, 0], [200, 25, 25]);
-    let of = |((method, _), count): (isosheet_tests::Named, usize)| {
+    let counts = effort.quick_or([10, 0], [200, 25]);
+    let of = |((method, _), count): ((&str, Method), usize)| {
         let method = method.to_owned();
         (0..count).map(move |number| Job {
             number,
             method: method.clone(),
         })
     };
-    damped().into_iter().zip(counts).flat_map(of).collect()
+    methods().into_iter().zip(counts).flat_map(of).collect()
 }
 
 /// The runs of the yardstick.
@@ -168,12 +176,9 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let duration = effort.quick_or(0.5, 2.0);
     let plan = Plan::new(1.0 / 60.0, duration);
     let mut all = records.of_models(&jobs(effort), |model, job| measure(model, job, &plan))?;
-    // The projection is one onto the lengths of rods: elastic sheets refuse it at once.
-    let is_projected = |s: &Sample<Job, Fallen>| s.job.method == damped()[2].0;
-    all.retain(|s| s.ran.model == Model::Rods || !is_projected(s));
     let papers = all
         .iter()
-        .filter(|s| s.ran.model == Model::Material && s.job.method == damped()[0].0);
+        .filter(|s| s.ran.model == Model::Material && s.job.method == methods()[0].0);
     let papers: Vec<Option<f64>> = papers.map(|s| s.measured.drop).collect();
     for s in &mut all {
         let share = s

@@ -105,7 +105,8 @@ fn measure(model: Model, job: Job, plan: &Plan) -> Result<(Ran, Saddle)> {
 /// The elastic energy of each face, joules; that of a spring belongs to both faces of its edge in equal
 /// parts.
 fn face_energies(model: Model, sheet: &Sheet, x: &[f64]) -> Result<Vec<f64>> {
-    if let Some(faces) = model.sheet(sheet, PAPER)?.elastic_deformation(x) {
+    let built = model.sheet(sheet, PAPER)?;
+    if let Some(faces) = built.elastic_deformation(x, &built.memories()) {
         let sums = faces.stretching.iter().zip(&faces.bending);
         return Ok(sums.map(|(s, b)| s + b).collect());
     }
@@ -203,6 +204,7 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
 mod tests {
     use super::super::disks::Disk;
     use super::*;
+    use isosheet_dynamics::At;
     use isosheet_dynamics::{PlateBending, Potential};
 
     /// The angles about the centre are those of the disk and of the wedge, those about all other vertices
@@ -251,7 +253,7 @@ mod tests {
         assert!(super::distance(&places, sheet.positions()) > 0.05);
         let bending = PlateBending::new(&sheet, PAPER.rigidity).unwrap();
         let mut faces = vec![0.0; sheet.topology().face_count()];
-        bending.add_bending_energies(&x, &mut faces);
+        bending.add_bending_energies(At::new(0.0, &x), &mut faces);
         let counted = sheet
             .topology()
             .faces()
@@ -263,7 +265,7 @@ mod tests {
             });
         let part = counted.sum::<f64>() / (PAPER.rigidity * cone.energy());
         assert!((part - 1.0).abs() < 0.02, "{part}");
-        assert!(bending.energy(0.0, &x) > 0.0);
+        assert!(bending.energy(At::new(0.0, &x)) > 0.0);
     }
 
     #[test]

@@ -112,7 +112,7 @@ pub(super) fn vertices(sheet: &Sheet, test: impl Fn([f64; 3]) -> bool) -> Vec<Ve
 }
 
 /// The vertex nearest to a point of a flat sheet.
-pub(crate) fn nearest(sheet: &Sheet, target: [f64; 2]) -> VertexId {
+pub(super) fn nearest(sheet: &Sheet, target: [f64; 2]) -> VertexId {
     let distance = |v: VertexId| {
         let p = sheet.position(v);
         (p[0] - target[0]).hypot(p[1] - target[1])

@@ -1,7 +1,7 @@
 //! The models of a sheet that are compared, and what sheets are made of.
 
-use crate::draw::{Colour, palette};
 use anyhow::Result;
+use isosheet_dynamics::At;
 use isosheet_dynamics::{CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
@@ -69,23 +69,14 @@ impl Model {
     /// The energy of bending of positions `x` (3V, metres), without that of creases, joules.
     pub(super) fn bending_energy(self, sheet: &Sheet, plate: Plate<'_>, x: &[f64]) -> Result<f64> {
         Ok(match self {
-            Self::Rods => plate.springs(sheet)?.energy(0.0, x),
-            _ => plate.bending(sheet)?.energy(0.0, x),
+            Self::Rods => plate.springs(sheet)?.energy(At::new(0.0, x)),
+            _ => plate.bending(sheet)?.energy(At::new(0.0, x)),
         })
     }
 
     /// The elastic energy in the plane and of bending, without that of creases, joules.
     pub(super) fn energy(self, sheet: &Sheet, plate: Plate<'_>, x: &[f64]) -> Result<f64> {
         Ok(self.sheet(sheet, plate)?.potential_energy(0.0, x))
-    }
-
-    /// The colour in figures.
-    pub(super) fn colour(self) -> Colour {
-        match self {
-            Self::Rods => palette::VERMILION,
-            Self::Material => palette::BLUE,
-            Self::Elastic => palette::GREEN,
-        }
     }
 }
 

@@ -1,4 +1,5 @@
 //! Forces that choose among states of rest, and supports that hold from one side.
+use isosheet_dynamics::At;
 
 use isosheet_dynamics::{HessianSink, Potential};
 use isosheet_mesh::VertexId;
@@ -21,12 +22,14 @@ impl Nudge {
 }
 
 impl Potential for Nudge {
-    fn energy(&self, t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { t, x, .. } = at;
         let work = self.forces.iter().map(|(v, f)| f * x[3 * v.index() + 2]);
         -self.factor(t) * work.sum::<f64>()
     }
 
-    fn add_gradient(&self, t: f64, _x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { t, .. } = at;
         for (v, f) in &self.forces {
             gradient[3 * v.index() + 2] -= self.factor(t) * f;
         }
@@ -54,18 +57,21 @@ impl Ring {
 }
 
 impl Potential for Ring {
-    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+    fn energy(&self, at: At<'_>) -> f64 {
+        let At { x, .. } = at;
         let squares = self.depths(x).map(|(_, depth)| depth * depth);
         0.5 * self.stiffness * squares.sum::<f64>()
     }
 
-    fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
+    fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
+        let At { x, .. } = at;
         for (v, depth) in self.depths(x) {
             gradient[3 * v.index() + 2] -= self.stiffness * depth;
         }
     }
 
-    fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+    fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        let At { x, .. } = at;
         let mut block = Matrix3::zeros();
         block[(2, 2)] = self.stiffness;
         for (v, _) in self.depths(x) {

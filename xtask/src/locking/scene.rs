@@ -64,7 +64,7 @@ pub(super) fn run(
     match Simulation::new(model, State::at_rest(end.x.clone()), method) {
         Err(error) => course.ending = Ending::of(&error, &error),
         Ok(mut simulation) => {
-            plan.go_on(&mut simulation, &mut course, &mut unseen)?;
+            course = plan.run(&mut simulation, &mut unseen)?;
             end.x.copy_from_slice(&simulation.state().x);
             if course.is_good() {
                 end.reactions = simulation.reactions();

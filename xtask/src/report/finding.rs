@@ -3,11 +3,8 @@
 
 use super::{Table, number};
 use crate::failure::ReportError;
-use crate::store::Store;
 use anyhow::Result;
-use isosheet_io::write_json;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 
 /// The relative error of lengths that accepted steps of BDF2 and implicit Euler with rods keep, as the
 /// documentation says.
@@ -108,14 +105,6 @@ pub(crate) enum Shortfall {
 }
 
 impl Shortfall {
-    /// A run that stops between two times, seconds, with an error message that holds the given text.
-    pub(crate) fn stops(at: [f64; 2], saying: &str) -> Self {
-        Self::Stops {
-            at,
-            saying: saying.to_owned(),
-        }
-    }
-
     /// For people.
     pub(crate) fn text(&self) -> String {
         match self {
@@ -285,24 +274,6 @@ pub(crate) fn findings<'a>(
     .named("findings")
 }
 
-/// Writes `findings.csv` and `findings.json` of a report.
-pub(crate) fn write_findings<'a>(
-    store: &Store,
-    all: impl IntoIterator<Item = (&'a str, &'a Finding)> + Clone,
-) -> Result<()> {
-    findings("", all.clone()).write_to(&store.path("findings.csv"))?;
-    let value = |(case, finding): (&str, &Finding)| -> Result<Value> {
-        let mut value = serde_json::to_value(finding)?;
-        value["case"] = json!(case);
-        value["verdict"] = json!(finding.verdict());
-        Ok(value)
-    };
-    let all: Vec<Value> = all.into_iter().map(value).collect::<Result<_>>()?;
-    let version = env!("CARGO_PKG_VERSION");
-    let all = json!({ "version": version, "effort": store.effort, "findings": all });
-    Ok(write_json(&store.path("findings.json"), &all)?)
-}
-
 /// # Errors
 /// [`ReportError::Findings`] if there is a finding by which the report fails.
 pub(crate) fn demand<'a>(all: impl IntoIterator<Item = (&'a str, &'a Finding)>) -> Result<()> {
@@ -375,7 +346,13 @@ mod tests {
     fn a_declared_error_has_to_come_in_its_time() {
         let verdict = |stopped: Option<f64>, value: f64, said: &str| {
             let mut finding = found(value, Bound::AtMost(2.0));
-            finding.limited("x", Shortfall::stops([1.0, 2.0], "step size is 0.5 s"));
+            finding.limited(
+                "x",
+                Shortfall::Stops {
+                    at: [1.0, 2.0],
+                    saying: "step size is 0.5 s".to_owned(),
+                },
+            );
             finding.stopped = stopped;
             finding
                 .remark(stopped.map(|_| format!("the {said}")))

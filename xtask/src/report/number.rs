@@ -48,24 +48,6 @@ pub(crate) fn exponent(points: &[[f64; 2]]) -> Option<f64> {
     (below > 0.0 && slope.is_finite()).then_some(slope)
 }
 
-/// A number with two digits.
-pub(crate) fn short(value: f64) -> String {
-    if value < 0.0 {
-        format!("−{}", short(-value))
-    } else if !value.is_finite() {
-        "–".into()
-    } else if (0.01..100.0).contains(&value) {
-        let digits = (1 - value.log10().floor() as i32).max(0) as usize;
-        format!("{value:.digits$}")
-    } else if (100.0..9999.5).contains(&value) {
-        format!("{value:.0}")
-    } else if value == 0.0 {
-        "0".into()
-    } else {
-        format!("{value:.1e}")
-    }
-}
-
 /// A message with its long numbers rounded to three digits.
 pub(crate) fn rounded(text: &str) -> String {
     let word = |w: &str| {
@@ -106,21 +88,6 @@ mod tests {
             (-0.5, "-0.5"),
         ] {
             assert_eq!(number(value), text);
-        }
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        for (value, text) in [
-            (0.012_34, "0.012"),
-            (1.26, "1.3"),
-            (55.0, "55"),
-            (1234.0, "1234"),
-            (12_345.0, "1.2e4"),
-            (f64::INFINITY, "–"),
-            (-1.26, "−1.3"),
-        ] {
-            assert_eq!(short(value), text);
         }
     }
 

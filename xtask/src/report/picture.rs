@@ -19,8 +19,6 @@ const THUMBNAIL: usize = 640;
 pub(crate) struct Picture {
     /// Path relative to the output folder.
     pub(crate) path: String,
-    /// What it shows, in words.
-    pub(crate) alt: String,
     /// The file.
     pub(crate) bytes: Vec<u8>,
     /// The picture inside a page.
@@ -32,7 +30,6 @@ impl Picture {
     pub(crate) fn svg(name: &str, drawing: &impl Vector, alt: &str) -> Self {
         Self {
             path: format!("figures/{name}.svg"),
-            alt: alt.to_owned(),
             bytes: drawing.to_svg(alt).into_bytes(),
             inside: html! { a href={ "figures/" (name) ".svg" } { (drawing.document(alt, ENLARGED)) } },
         }
@@ -57,7 +54,6 @@ impl Picture {
         let data = format!("data:image/png;base64,{}", STANDARD.encode(&bytes));
         Self {
             path: format!("figures/{file}"),
-            alt: alt.to_owned(),
             bytes,
             inside: html! { img alt=(alt) src=(data); },
         }

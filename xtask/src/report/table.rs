@@ -199,19 +199,6 @@ impl Table {
         self.rows.push(row);
     }
 
-    /// Adds a row that has a name in the first column and entries in some others, by their number.
-    ///
-    /// # Panics
-    /// If there is no such column.
-    pub(crate) fn push_some(&mut self, name: &str, entries: &[(usize, String)]) {
-        let mut row = vec![Cell::Missing; self.head.len()];
-        row[0] = name.into();
-        for (column, text) in entries {
-            row[*column] = text.as_str().into();
-        }
-        self.push(row);
-    }
-
     /// The table as comma-separated values (RFC 4180) with all digits of its numbers.
     ///
     /// # Errors

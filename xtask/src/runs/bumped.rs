@@ -15,10 +15,10 @@ const BUMP: f64 = 1e-3;
 pub(crate) const STEP: f64 = 1.0 / 60.0;
 
 /// Height of the sheet's rim above the table, metres.
-pub(crate) const CLEARANCE: f64 = 1e-3;
+const CLEARANCE: f64 = 1e-3;
 
 /// Half of the table's side, half of its thickness, metres.
-pub(crate) const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
+const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
 
 /// Mass of the sheet, kilograms.
 const MASS: f64 = 0.1;
@@ -62,7 +62,7 @@ impl Bumped {
 }
 
 /// The sheet `M^level` with a bump of the given height (metres), held at its corner.
-pub(crate) fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulation> {
+fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulation> {
     let sheet = bumped(level, bump);
     let model = SheetModel::new(&sheet, MASS, MassKind::Lumped)?
         .with_gravity()
@@ -82,7 +82,7 @@ fn tablecloth(sheet: &Sheet, pairs: Pairs, method: Method) -> Result<Simulation>
 
 /// Frictionless contact of a sheet with a box under the middle of the square `[0, 1]^2`: half of its
 /// sides, and the height of its top, metres.
-pub(crate) fn on_table(
+fn on_table(
     model: &SheetModel,
     options: ContactOptions,
     (half, top): ([f64; 3], f64),

@@ -7,15 +7,13 @@ use crate::progress::Progress;
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::chart::{ChartDynamicsError, ChartSimulation};
-use serde::Serialize;
 use std::time::Instant;
 
 /// What a run of the paper's scheme did.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct ChartSummary {
     pub(crate) run: FigureScene,
     /// Without a step of a run that was refused at the start.
-    #[serde(flatten)]
     pub(crate) course: Course,
     /// Shortest and longest step, seconds; `None` without a step.
     pub(crate) step_range: Option<[f64; 2]>,

@@ -4,13 +4,12 @@ use crate::interrupt::{self, Interrupted};
 use crate::report::Cost;
 use cpu_time::ThreadTime;
 use isosheet_dynamics::{Observer, RunEnd, Simulation, StepError, StepProgress, StepReport};
-use serde::{Deserialize, Serialize};
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// How a run ended.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) enum Ending {
     /// The whole time was simulated, or as much of it as supports that pull a sheet taut leave.
     #[default]
@@ -72,16 +71,12 @@ impl Ending {
 }
 
 /// What happened in a run, up to its last complete step.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Course {
     pub(crate) ending: Ending,
-    /// The error behind the ending, if there was one; not part of records.
-    #[serde(skip)]
-    pub(crate) error: Option<StepError>,
     /// Time at the end, seconds.
     pub(crate) time: f64,
     /// What the steps cost; looking at them does not count.
-    #[serde(flatten)]
     pub(crate) cost: Cost,
     /// Most factorisations in one step.
     pub(crate) worst: usize,
@@ -94,12 +89,10 @@ pub(crate) struct Course {
     pub(crate) violation: f64,
     /// Smallest gap, metres; nothing without contact, or if nothing ever came within reach.
     pub(crate) gap: Option<f64>,
-    /// Largest absolute energy error, and the largest one of the sign of a gain, joules.
+    /// Largest absolute energy error, joules.
     pub(crate) drift: f64,
-    pub(crate) gain: f64,
-    /// Largest kinetic energy, and that after the last step, joules.
+    /// Largest kinetic energy, joules.
     pub(crate) most_kinetic: f64,
-    pub(crate) kinetic: f64,
     /// Largest speed of a vertex after the last step, metres per second.
     pub(crate) speed: f64,
 }
@@ -116,9 +109,7 @@ impl Course {
         let gap = report.gap.filter(|gap| gap.is_finite());
         self.gap = [self.gap, gap].into_iter().flatten().reduce(f64::min);
         self.drift = self.drift.max(report.energy_drift.abs());
-        self.gain = self.gain.max(report.energy_drift);
         self.most_kinetic = self.most_kinetic.max(report.kinetic);
-        self.kinetic = report.kinetic;
     }
 
     /// Takes another run into account: the worst of both, and the first ending that is none as planned.
@@ -130,22 +121,15 @@ impl Course {
         self.violation = self.violation.max(other.violation);
         self.gap = [self.gap, other.gap].into_iter().flatten().reduce(f64::min);
         self.drift = self.drift.max(other.drift);
-        self.gain = self.gain.max(other.gain);
         self.most_kinetic = self.most_kinetic.max(other.most_kinetic);
         if self.is_good() {
-            (self.ending, self.error, self.time) = (other.ending, other.error, other.time);
-            (self.kinetic, self.speed) = (other.kinetic, other.speed);
+            (self.ending, self.time, self.speed) = (other.ending, other.time, other.speed);
         }
     }
 
     /// Whether the run reached its end.
     pub(crate) fn is_good(&self) -> bool {
         matches!(self.ending, Ending::Complete | Ending::Rest)
-    }
-
-    /// NaN if the run ended early: no number of it is what was asked for.
-    pub(crate) fn if_good(&self, value: f64) -> f64 {
-        if self.is_good() { value } else { f64::NAN }
     }
 
     /// Why the run did not reach its end, for people.
@@ -198,12 +182,11 @@ impl Clocks {
         }
     }
 
-    /// Sets the times of a run that had taken `before` seconds when the clocks started, without the time that
-    /// looking at it has taken.
-    fn cost(&self, looking: &Spent, before: (f64, f64), cost: &mut Cost) {
+    /// Sets the times of a run without the time that looking at it has taken.
+    fn cost(&self, looking: &Spent, cost: &mut Cost) {
         let spent = self.spent();
-        cost.wall = before.0 + spent.wall.saturating_sub(looking.wall).as_secs_f64();
-        cost.cpu = before.1 + spent.cpu.saturating_sub(looking.cpu).as_secs_f64();
+        cost.wall = spent.wall.saturating_sub(looking.wall).as_secs_f64();
+        cost.cpu = spent.cpu.saturating_sub(looking.cpu).as_secs_f64();
     }
 }
 
@@ -295,27 +278,12 @@ impl Plan {
         look: &mut dyn FnMut(&Simulation, &StepReport) -> ControlFlow<()>,
     ) -> Result<Course, Interrupted> {
         let mut course = Course::default();
-        self.go_on(simulation, &mut course, look)?;
-        Ok(course)
-    }
-
-    /// The same for a course that has begun, to which the steps are added as they are taken.
-    ///
-    /// # Errors
-    /// [`Interrupted`].
-    pub(crate) fn go_on(
-        &self,
-        simulation: &mut Simulation,
-        course: &mut Course,
-        look: &mut dyn FnMut(&Simulation, &StepReport) -> ControlFlow<()>,
-    ) -> Result<(), Interrupted> {
         let end = simulation.state().t + self.duration - 0.5 * self.step;
-        let before = (course.cost.wall, course.cost.cpu);
         let clocks = Clocks::start();
         let (mut looking, mut quiet, mut stopped) = (Spent::default(), 0, Ending::Stopped);
         let mut limit = Limit {
             begun: clocks.cpu,
-            patience: self.patience - before.1,
+            patience: self.patience,
             seen: &Cell::default(),
         };
         let seen_until_now = limit.seen;
@@ -330,7 +298,7 @@ impl Plan {
             looking.wall += seen.wall;
             looking.cpu += seen.cpu;
             seen_until_now.set(looking.cpu);
-            clocks.cost(&looking, before, &mut course.cost);
+            clocks.cost(&looking, &mut course.cost);
             if enough.is_continue() {
                 if quiet >= QUIET {
                     stopped = Ending::Rest;
@@ -348,22 +316,20 @@ impl Plan {
             &mut [&mut watch, &mut interrupt::observe, &mut limit],
         );
         interrupt::check()?;
-        clocks.cost(&looking, before, &mut course.cost);
+        clocks.cost(&looking, &mut course.cost);
         course.time = simulation.state().t;
         course.ending = match end {
             Ok(RunEnd::Complete | RunEnd::Taut) => Ending::Complete,
             Ok(RunEnd::Stopped) => stopped,
             Err(StepError::Interrupted { .. }) => Ending::CpuTime(self.patience),
             Err(error) => {
-                let ending = Ending::of_step(&error);
                 if let StepError::Locked { factorisations, .. } = error {
                     course.in_vain = Some(factorisations);
                 }
-                course.error = Some(error);
-                ending
+                Ending::of_step(&error)
             }
         };
-        Ok(())
+        Ok(course)
     }
 }
 
@@ -421,7 +387,7 @@ mod tests {
         let stopped = plan.run(&mut falling(), &mut stop).unwrap();
         assert_eq!(stopped.ending, Ending::Stopped);
         let wrong = run(Plan::new(f64::NAN, 0.1));
-        assert!(!wrong.ending.message().is_empty() && wrong.if_good(1.0).is_nan());
+        assert!(!wrong.ending.message().is_empty() && !wrong.is_good());
         let mut both = whole.clone();
         both.add_run(late.clone());
         assert_eq!((both.cost.steps, &both.ending), (10, &late.ending));

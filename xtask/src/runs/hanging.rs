@@ -2,7 +2,7 @@
 
 use super::FigureScene;
 use anyhow::{Result, bail};
-use isosheet_io::scene::{Mesh, Scene};
+use isosheet_io::scene::Mesh;
 use isosheet_mesh::{Sheet, VertexId};
 
 /// A square sheet that is held at one vertex, as Figs. 11 and 12 have it.
@@ -38,12 +38,6 @@ impl Hanging {
             sheet: setup.sheet,
         })
     }
-}
-
-/// Size of the acceleration of gravity of a scene, m/s2.
-pub(crate) fn gravity(scene: &Scene) -> f64 {
-    let [x, y, z] = scene.forces.gravity.unwrap_or_default();
-    x.hypot(y).hypot(z)
 }
 
 /// Mass of the sheet of a scene, kilograms.

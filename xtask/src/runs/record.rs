@@ -21,14 +21,11 @@ const STRAIN: f64 = 1e-10;
 const REST: f64 = 1e-6;
 
 /// What a run did.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct RunSummary {
-    /// The scene file.
-    pub(crate) scene: String,
     pub(crate) vertices: usize,
     pub(crate) faces: usize,
     /// Its steps are the frames after the first.
-    #[serde(flatten)]
     pub(crate) course: Course,
     pub(crate) frames_per_second: f64,
     /// Shortest and longest step, seconds; where a frame was subdivided, the mean of its sub-steps counts.
@@ -45,7 +42,7 @@ pub(crate) struct RunSummary {
 }
 
 /// Where the energy went, joules.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Energy {
     /// Potential energy at the start less that at the end.
     pub(crate) released: f64,
@@ -63,7 +60,7 @@ pub(crate) struct Energy {
 
 impl RunSummary {
     /// What the rows of a run and its summary say, and what its steps took.
-    fn new(scene: &FigureScene, summary: &Summary, rows: &[HistoryRow], times: Times) -> Self {
+    fn new(summary: &Summary, rows: &[HistoryRow], times: Times) -> Self {
         let (first, steps) = rows
             .split_first()
             .map_or((None, rows), |(f, s)| (Some(f), s));
@@ -88,7 +85,6 @@ impl RunSummary {
         let quiet = steps.iter().rposition(moves).map_or(0, |last| last + 1);
         let last = steps.last().copied().unwrap_or(start);
         Self {
-            scene: scene.text().to_owned(),
             vertices: summary.vertices,
             faces: summary.faces,
             course: Course {
@@ -101,7 +97,6 @@ impl RunSummary {
                     .unwrap_or(0),
                 strain: summary.largest_strain,
                 gap: summary.smallest_gap,
-                kinetic: last.kinetic,
                 speed: summary.ending.largest_speed,
                 ..Course::default()
             },
@@ -124,11 +119,6 @@ impl RunSummary {
     /// Vertices and faces of the mesh.
     pub(crate) fn mesh(&self) -> String {
         format!("{}/{}", self.vertices, self.faces)
-    }
-
-    /// Wall time over simulated time: below one is faster than real time.
-    pub(crate) fn slowness(&self) -> f64 {
-        self.course.cost.wall / self.course.time.max(1e-12)
     }
 
     /// Largest strain: of an edge of rods, of a face of an elastic sheet.
@@ -187,7 +177,7 @@ impl Run {
         };
         let (summary, times) = store.keep(&unit, |files| record(&scene, files))?;
         let recorded = Recording::read(&store.path(&folder(&scene)))?;
-        let summary = RunSummary::new(&scene, &summary, &recorded.history, times);
+        let summary = RunSummary::new(&summary, &recorded.history, times);
         summary.check()?;
         Ok(Self {
             sheet: recorded.sheet,
@@ -214,19 +204,6 @@ impl Run {
     pub(crate) fn forces(&self, body: usize) -> Vec<[f64; 4]> {
         let is_of_body = |row: &&LoadRow| row.on == LoadKind::Obstacle && row.number == body;
         self.loads.iter().filter(is_of_body).map(timed).collect()
-    }
-
-    /// Time and force of all supports on the sheet: seconds, newtons.
-    pub(crate) fn supports(&self) -> Vec<[f64; 4]> {
-        let mut sums: Vec<[f64; 4]> = Vec::new();
-        for row in self.loads.iter().filter(|row| row.on == LoadKind::Support) {
-            let [t, force @ ..] = timed(row);
-            match sums.last_mut() {
-                Some(last) if last[0] == t => (0..3).for_each(|k| last[k + 1] += force[k]),
-                _ => sums.push(timed(row)),
-            }
-        }
-        sums
     }
 }
 

@@ -6,7 +6,6 @@ use isosheet_dynamics::{Frames, Observer, Simulation};
 use isosheet_io::scene::{Material, Scene, SceneFile, Setup, StartingPoint};
 use isosheet_mesh::Sheet;
 use serde::de::DeserializeOwned;
-use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -24,12 +23,6 @@ const THROUGH_ITSELF: &str = "contact.self_contact=false";
 pub(crate) struct FigureScene {
     name: String,
     file: SceneFile,
-}
-
-impl Serialize for FigureScene {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.options().serialize(serializer)
-    }
 }
 
 impl FigureScene {
@@ -225,11 +218,6 @@ pub(crate) fn scene_fingerprint() -> Result<u64> {
         (file.file_name(), fs::read(file)?).hash(&mut hasher);
     }
     Ok(hasher.finish())
-}
-
-/// The edit that ends a run after a number of frames of `frame` seconds.
-pub(crate) fn for_frames(frames: usize, frame: f64) -> String {
-    format!("stop.time={:?}", frames as f64 * frame)
 }
 
 /// The edit by which each start of a scene has other random displacements, as a part of the mean edge length.

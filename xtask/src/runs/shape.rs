@@ -3,15 +3,12 @@
 use super::Hanging;
 use anyhow::Result;
 use isosheet_mesh::{EdgeId, MassKind, MassMatrix, VertexId, fold_angle};
-use serde::{Deserialize, Serialize};
 
 /// Measures of a state of a sheet that is held at a corner. Lengths in sides of the sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shape {
     /// Depth of the centre of mass below the pin.
     pub(crate) centre_depth: f64,
-    /// Depth of the corner opposite to the pin.
-    pub(crate) corner_depth: f64,
     /// Largest horizontal distance between two vertices.
     pub(crate) extent: f64,
     /// Total bending: the sum of edge length times size of the fold angle, radians times sides. Unlike the
@@ -22,11 +19,6 @@ pub(crate) struct Shape {
 /// Depth of the centre of mass of a rigid square plate that hangs from a corner, sides: half a diagonal.
 pub(crate) const PLATE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Depth of the centre of mass that no unstretchable square sheet can exceed, sides: no point hangs deeper
-/// than its distance from the pin on the sheet, and the mean distance from a corner is
-/// `(sqrt 2 + ln(1 + sqrt 2)) / 3`.
-pub(crate) const LIMIT: f64 = 0.765_195_716_464_212_7;
-
 impl Shape {
     /// Measures the positions `x`.
     pub(crate) fn of(hanging: &Hanging, x: &[f64]) -> Result<Self> {
@@ -35,18 +27,10 @@ impl Shape {
         let at = |v: VertexId| [x[3 * v.index()], x[3 * v.index() + 1], x[3 * v.index() + 2]];
         let pin = hanging.pin;
         let mass = MassMatrix::from_total(sheet, 1.0, MassKind::Lumped)?.vertex;
-        let distance = |v: VertexId| {
-            let (p, q) = (sheet.position(pin), sheet.position(v));
-            (p[0] - q[0]).hypot(p[1] - q[1])
-        };
         let depth = |v: VertexId| at(pin)[2] - at(v)[2];
         let mean = |f: &dyn Fn(VertexId) -> f64| {
             t.vertex_ids().map(|v| mass[v.index()] * f(v)).sum::<f64>()
         };
-        let far = t
-            .vertex_ids()
-            .max_by(|a, b| distance(*a).total_cmp(&distance(*b)))
-            .unwrap_or(pin);
         let mut extent: f64 = 0.0;
         for a in t.vertex_ids() {
             for b in t.vertex_ids() {
@@ -59,7 +43,6 @@ impl Shape {
         };
         Ok(Self {
             centre_depth: mean(&depth) / side,
-            corner_depth: depth(far) / side,
             extent: extent / side,
             bending: t.edge_ids().map(bend).sum::<f64>() / side,
         })
@@ -107,21 +90,8 @@ mod tests {
             .collect();
         let shape = Shape::of(&hanging, &x).unwrap();
         assert!((shape.centre_depth - PLATE).abs() < 1e-12);
-        assert!((shape.corner_depth - 2f64.sqrt()).abs() < 1e-12);
         assert!((shape.extent - 2f64.sqrt()).abs() < 1e-12);
         assert!(shape.bending < 1e-5);
-    }
-
-    #[test]
-    fn the_limit_is_the_mean_distance_from_a_corner() {
-        let exact = (2f64.sqrt() + (1.0 + 2f64.sqrt()).ln()) / 3.0;
-        assert!((LIMIT - exact).abs() < 1e-15);
-        let n = 200;
-        let at = |k: usize| (k as f64 + 0.5) / n as f64;
-        let sum: f64 = (0..n)
-            .flat_map(|i| (0..n).map(move |j| at(i).hypot(at(j))))
-            .sum();
-        assert!((sum / (n * n) as f64 - LIMIT).abs() < 1e-5);
     }
 
     #[test]

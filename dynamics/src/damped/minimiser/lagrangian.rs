@@ -10,9 +10,9 @@ use crate::linear::constrained::{
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
-use crate::step::effort::SolverEffort;
-use crate::step::report::StepError;
-use crate::step::trace::Cut;
+use crate::report::effort::SolverEffort;
+use crate::report::step_error::StepError;
+use crate::report::trace::Cut;
 use crate::step::tuning::Tuning;
 use crate::vectors::dot;
 use isosheet_coords::linalg::{LinalgError, norm_inf};

@@ -8,10 +8,10 @@ use crate::damped::ARMIJO;
 use crate::damped::restoration::FirstMatrix;
 use crate::hessian::HessianPart;
 use crate::linear::constrained::MultiplierGoal;
-use crate::step::effort::SolverEffort;
-use crate::step::reason::Reason;
-use crate::step::report::StepOutcome;
-use crate::step::trace::{Continuation, Cut, TraceEvent};
+use crate::report::effort::SolverEffort;
+use crate::report::reason::Reason;
+use crate::report::step_error::StepOutcome;
+use crate::report::trace::{Continuation, Cut, TraceEvent};
 
 /// How a minimisation ended.
 #[derive(Debug, Clone, Copy)]

@@ -2,8 +2,8 @@
 
 use crate::objective::Objective;
 use crate::potential::Memories;
+use crate::report::step_error::StepError;
 use crate::step::integrator::Phases;
-use crate::step::report::StepError;
 use crate::term::{Barrier, Iterate, Refusal, StepStart};
 use crate::{SheetModel, State};
 

@@ -2,8 +2,8 @@
 
 use super::lagrangian::Lagrangian;
 use super::problem::StepProblem;
-use crate::step::effort::SolverEffort;
-use crate::step::trace::Cut;
+use crate::report::effort::SolverEffort;
+use crate::report::trace::Cut;
 
 impl Lagrangian {
     /// Corrects the step `-dx`, of which only the part `limit` is safe, for gaps that close faster than to

@@ -8,7 +8,7 @@ use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;
 use crate::objective::Objective;
 use crate::potential::Memories;
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
 use crate::step::integrator::Phases;
 use crate::step::tuning::Tuning;
 use crate::term::{Formula, StepStart};

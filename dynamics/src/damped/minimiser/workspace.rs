@@ -4,7 +4,7 @@ use super::lagrangian::Lagrangian;
 use super::problem::StepProblem;
 use crate::damped::restoration::{Barriers, FirstMatrix, Restoration, RestorationGoal};
 use crate::model::round_off::strain_floor;
-use crate::step::effort::SolverEffort;
+use crate::report::effort::SolverEffort;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel};
@@ -42,7 +42,7 @@ impl Workspace {
         Ok(Self {
             lagrangian: Lagrangian::new(model, tuning)?,
             restoration: Restoration::new(model, tuning),
-            balance: Balance::with_rest(model, ForceTime::End),
+            balance: Balance::with_residual(model, ForceTime::End),
             remembered: vec![0.0; model.rods().len()],
             rod_stiffness: 0.0,
             options,
@@ -51,8 +51,8 @@ impl Workspace {
     }
 
     /// Restores the lengths at the iterate against the given loads of the supports and the contact forces.
-    /// Returns the strain reached. After the last restoration of a step the forces of the supports are those at
-    /// its end.
+    /// Returns the strain reached. The forces of the supports are those before, with their share in the
+    /// restoration.
     pub(super) fn restore(
         &mut self,
         problem: &mut StepProblem<'_>,
@@ -61,6 +61,9 @@ impl Workspace {
     ) -> f64 {
         let per = 1.0 / problem.h().powi(2);
         let is_last = to.strain <= self.strain_tolerance(problem);
+        if is_last {
+            self.set_balance(problem);
+        }
         let (model, t) = (problem.model, problem.t());
         let lagrangian = &mut self.lagrangian;
         let goal = RestorationGoal {
@@ -81,7 +84,9 @@ impl Workspace {
             .restoration
             .positions(model, matrix, Some(barriers), x, goal, effort);
         if is_last {
-            self.set_balance(problem);
+            self.balance
+                .residual_momentum
+                .append(&self.restoration.residual_momentum, per);
         }
         strain
     }
@@ -96,11 +101,7 @@ impl Workspace {
     fn set_balance(&mut self, problem: &mut StepProblem<'_>) {
         let (model, h) = (problem.model, problem.h());
         let per = 1.0 / (h * h);
-        let t = problem.t();
         let lagrangian = &mut self.lagrangian;
-        lagrangian
-            .vertex_rows
-            .evaluate(model.constraints(), t, &lagrangian.x);
         let (objective, at) = problem.objective_at(&lagrangian.x);
         let add = |out: &mut [f64]| objective.add_unbalanced(at, h, out);
         if !self.balance.begin_with(add) {
@@ -110,6 +111,6 @@ impl Workspace {
         self.balance
             .add_rods(model, x, &lagrangian.multipliers, per);
         self.balance.add_constraints(rows, &rows.multipliers, per);
-        self.balance.leave(model, &rows.active);
+        self.balance.leave(model, x, &rows.active);
     }
 }

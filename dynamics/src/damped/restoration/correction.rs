@@ -45,6 +45,7 @@ impl Restoration {
             self.dx.fill(0.0);
             self.solver.pass(&mut system, &mut self.dx);
             self.start.copy_from_slice(x);
+            self.keep_barrier_forces(barriers.as_deref_mut(), t, x);
             if self.safe_part(barriers.as_deref_mut(), t, x) < 1.0 {
                 return;
             }
@@ -59,6 +60,8 @@ impl Restoration {
                 self.evaluate(model, t, x);
                 return;
             }
+            let rods_at = matrix.linearisation().map(|l| l.x);
+            self.keep_momentum(model, barriers.as_deref_mut(), (t, x), rods_at);
             if strain > self.tuning.contraction() * before {
                 return;
             }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 /// Sine of the fold angles up to which a sheet is flat: above the round-off of coordinates of seven digits in
 /// faces that are a hundredth of the sheet, below any fold that is seen.
-const FLAT: f64 = 1e-4;
+pub const FLAT: f64 = 1e-4;
 
 /// Stiffness, beside that of the edges, of what brings vertices back that no edge holds: those of a rigid
 /// motion, and of parts beyond hinges that may turn.

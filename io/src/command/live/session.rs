@@ -4,7 +4,7 @@ use super::message::{Command, Frame, HandFrame, Notice, NoticeKind};
 use super::slider::Slider;
 use crate::format::HistoryRow;
 use crate::run::HoldingBody;
-use crate::scene::{LiveScene, SceneError, SceneFile};
+use crate::scene::{LiveScene, SceneError, SceneFile, bounds};
 use crate::view::{Pose, Series};
 use isosheet_dynamics::{StepError, StepProgress};
 use isosheet_mesh::wording::brief;
@@ -54,7 +54,7 @@ impl Session {
         let live = LiveScene::start(file)?;
         let scene = live.file().scene();
         let x = &live.simulation().state().x;
-        let holding = HoldingBody::all(scene, std::iter::once(&x[..]));
+        let holding = HoldingBody::all(scene, bounds(x.as_chunks::<3>().0));
         let row = HistoryRow::of_start(live.simulation());
         let mut session = Self {
             sliders: Slider::all(scene),
@@ -131,8 +131,8 @@ impl Session {
                 self.is_playing = false;
             }
             Command::Grab { vertex } => match self.live.hold(VertexId(*vertex)) {
-                Ok(hand) => {
-                    self.aim = Some(hand.target(self.live.simulation().state().t));
+                Ok(at) => {
+                    self.aim = Some(at);
                     self.notice = None;
                 }
                 Err(error) => self.refuse(&error),
@@ -167,8 +167,8 @@ impl Session {
         };
         let t = self.live.simulation().state().t;
         self.drive(t, h);
-        if let (Some(to), Some(hand)) = (self.aim, self.live.hand())
-            && let Err(error) = hand.lead(to, t, t + h)
+        if let Some(to) = self.aim
+            && let Err(error) = self.live.lead(to, t + h)
         {
             self.refuse(&error);
         }
@@ -250,9 +250,9 @@ impl Session {
             x: &state.x,
             poses: bodies.chain(holding).map(|p| numbers(p.into())).collect(),
             series: self.series.iter().map(value).collect(),
-            hand: self.live.hand().map(|hand| HandFrame {
-                vertex: hand.vertex().0,
-                to: self.aim.unwrap_or_else(|| hand.target(state.t)),
+            hand: self.live.hand().map(|(vertex, at)| HandFrame {
+                vertex: vertex.0,
+                to: self.aim.unwrap_or(at),
             }),
             sliders: self.sliders.iter().enumerate().map(slide).collect(),
             notice: self.notice.as_ref(),

@@ -1,10 +1,13 @@
 //! What of a scene can be changed while it is played: its functions of time.
 
-use crate::scene::{Change, Course, Hold, Key, Motion, Profile, Scene};
+use crate::scene::{Change, Course, Key, Profile, Scene};
 use crate::view::LiveSlider;
 
 /// By how much the wind can be stronger than the scene has it.
 const STRONGER: f64 = 2.0;
+
+/// The unit of the wind.
+const WIND: &str = "m/s";
 
 /// A function of time of a scene that a slider takes over.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,76 +21,43 @@ pub(super) struct Slider {
 impl Slider {
     /// Those of a scene. What is zero at all times is not named, and has none.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
-        let until = scene.stop.time;
-        let mut found = Vec::new();
-        let mut add = |name: String, unit: &str, key: Key, profile: &Profile, reach: f64| {
-            let [least, most] = profile.range(until).map(|end| reach * end);
+        let mut functions = scene.clone();
+        let functions = functions.functions_mut().into_iter();
+        let slider = |(key, profile): (Key, &mut Profile)| {
+            let (name, unit) = Self::called(&key)?;
+            let reach = if unit == WIND { STRONGER } else { 1.0 };
+            let [least, most] = profile.range(scene.stop.time).map(|end| reach * end);
             let [low, high] = [least.min(0.0), most.max(0.0)];
-            if high > low {
-                found.push(Self {
-                    key,
-                    shown: LiveSlider {
-                        name,
-                        unit: unit.into(),
-                        low,
-                        high,
-                    },
-                    profile: profile.clone(),
-                });
-            }
-        };
-        let root = Key::root();
-        if let Some(air) = &scene.air {
-            for (k, (axis, component)) in ["x", "y", "z"].iter().zip(&air.wind).enumerate() {
-                let key = root.name("air.wind").entry(k);
-                add(
-                    format!("wind along {axis}"),
-                    "m/s",
-                    key,
-                    component,
-                    STRONGER,
-                );
-            }
-        }
-        for (k, crease) in scene.crease.iter().enumerate() {
-            let key = root.name("crease").entry(k);
-            let name = format!("angle of {key}");
-            add(name, "°", key.name("angle"), &crease.angle, 1.0);
-        }
-        let mut moving = |what: &Key, key: &Key, motion: &Motion| {
-            let Motion { x, y, z, rotation } = motion;
-            for (axis, profile) in [("x", x), ("y", y), ("z", z)] {
-                let name = format!("{what} along {axis}");
-                add(name, "m", key.name(axis), profile, 1.0);
-            }
-            if let Some(rotation) = rotation {
-                let key = key.name("rotation.angle");
-                add(format!("angle of {what}"), "°", key, &rotation.angle, 1.0);
-            }
-        };
-        for (k, support) in scene.support.iter().enumerate() {
-            let what = root.name("support").entry(k);
-            let (place, motion) = match &support.hold {
-                Hold::Pin => continue,
-                Hold::MovingPin(motion) => ("hold.moving_pin", motion),
-                Hold::Curve { motion, .. } => ("hold.curve.motion", motion),
-                Hold::Surface { motion, .. } => ("hold.surface.motion", motion),
+            let shown = LiveSlider {
+                name,
+                unit: unit.into(),
+                low,
+                high,
             };
-            moving(&what, &what.name(place), motion);
-        }
-        for (k, obstacle) in scene.obstacle.iter().enumerate() {
-            let what = root.name("obstacle").entry(k);
-            moving(&what, &what.name("motion"), &obstacle.motion);
-        }
-        for (k, load) in scene.forces.load.iter().enumerate() {
-            let key = root.name("forces.load").entry(k);
-            add(key.to_string(), "N", key.name("size"), &load.size, 1.0);
-        }
-        for (k, field) in scene.forces.acceleration.iter().enumerate() {
-            let key = root.name("forces.acceleration").entry(k);
-            add(key.to_string(), "m/s²", key.name("size"), &field.size, 1.0);
-        }
-        found
+            (high > low).then(|| Self {
+                key,
+                shown,
+                profile: profile.clone(),
+            })
+        };
+        functions.filter_map(slider).collect()
+    }
+
+    /// The name and the unit of the function of time at a key; none of one that has no slider.
+    fn called(key: &Key) -> Option<(String, &'static str)> {
+        let text = key.to_string();
+        let owner = text.find(']').map_or("", |end| &text[..=end]);
+        let (above, last) = text.rsplit_once('.')?;
+        Some(match last {
+            "angle" => (format!("angle of {owner}"), "°"),
+            "x" | "y" | "z" => (format!("{owner} along {last}"), "m"),
+            "size" if owner.starts_with("forces.load") => (above.to_owned(), "N"),
+            "size" => (above.to_owned(), "m/s²"),
+            "wind[0]" => ("wind along x".to_owned(), WIND),
+            "wind[1]" => ("wind along y".to_owned(), WIND),
+            "wind[2]" => ("wind along z".to_owned(), WIND),
+            _ => return None,
+        })
     }
 
     /// The value at time `t`, seconds.

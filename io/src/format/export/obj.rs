@@ -1,10 +1,45 @@
 //! Wavefront OBJ files.
 
+use super::error::check_mesh;
 use super::{ExportError, Series};
-use crate::format::atomic::write_atomically;
-use crate::format::obj_write::{Extras, frame_path, write_lines};
-use std::io::Write;
+use crate::format::atomic::{FileWriter, write_atomically};
+use isosheet_mesh::Topology;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+/// Writes the mesh at positions `x` (length 3V, metres) as an OBJ file, atomically.
+///
+/// Vertices and faces keep their order; numbers have as many digits as are needed to read them back exactly.
+///
+/// # Errors
+/// [`ExportError::Count`] for another number of coordinates, [`ExportError::NotFinite`], [`ExportError::File`];
+/// nothing is written then.
+pub fn write_obj(path: &Path, topology: &Topology, x: &[f64]) -> Result<(), ExportError> {
+    let expected = 3 * topology.vertex_count();
+    if x.len() != expected {
+        return Err(ExportError::Count {
+            what: "coordinates of a mesh".to_owned(),
+            got: x.len(),
+            expected,
+        });
+    }
+    let faces: Vec<[u32; 3]> = topology.faces().iter().map(|f| f.map(|v| v.0)).collect();
+    check_mesh(x, &faces)?;
+    write(path, &faces, x, &Extras::default())
+}
+
+/// The file of frame `frame` in `folder`: `frame_00000.obj` and so on, so that names sort as frames do.
+pub fn frame_path(folder: &Path, frame: usize) -> PathBuf {
+    folder.join(format!("frame_{frame:05}.obj"))
+}
+
+/// The frame whose file has a name, of names that [`frame_path`] gives.
+#[cfg(feature = "run")]
+pub(crate) fn frame_number(name: &Path) -> Option<usize> {
+    let digits = name.to_str()?.strip_prefix("frame_")?;
+    let frame = digits.strip_suffix(".obj")?.parse().ok()?;
+    (frame_path(Path::new(""), frame) == name).then_some(frame)
+}
 
 /// Writes one mesh.
 pub(super) fn write(
@@ -14,7 +49,7 @@ pub(super) fn write(
     extras: &Extras<'_>,
 ) -> Result<(), ExportError> {
     Ok(write_atomically(path, |w| {
-        write_lines(w, faces.iter().copied(), x, extras)
+        write_lines(w, faces, x, extras)
     })?)
 }
 
@@ -67,4 +102,43 @@ fn write_bodies(path: &Path, series: &Series<'_>, frame: usize) -> Result<(), Ex
         }
         Ok(())
     })?)
+}
+
+/// What a file may have beside positions and faces.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Extras<'a> {
+    /// Texture coordinates of the vertices.
+    pub(super) uv: Option<&'a [[f64; 2]]>,
+    /// Groups of faces that follow one another: the name of each, and the number of its first face,
+    /// ascending.
+    pub(super) groups: Vec<(&'a str, usize)>,
+}
+
+/// The lines of a file; the positions are finite and the corners exist.
+fn write_lines(
+    w: &mut FileWriter<'_>,
+    faces: &[[u32; 3]],
+    x: &[f64],
+    extras: &Extras<'_>,
+) -> io::Result<()> {
+    let (vertices, uv) = (x.len() / 3, extras.uv);
+    writeln!(w, "# isosheet: {vertices} vertices, {} faces", faces.len())?;
+    for p in x.chunks_exact(3) {
+        writeln!(w, "v {} {} {}", p[0], p[1], p[2])?;
+    }
+    for [u, v] in uv.into_iter().flatten() {
+        writeln!(w, "vt {u} {v}")?;
+    }
+    let mut groups = extras.groups.iter().peekable();
+    for (k, corners) in faces.iter().enumerate() {
+        while let Some((name, _)) = groups.next_if(|(_, first)| *first <= k) {
+            writeln!(w, "g {name}")?;
+        }
+        let [a, b, c] = corners.map(|v| v + 1);
+        match uv {
+            Some(_) => writeln!(w, "f {a}/{a} {b}/{b} {c}/{c}")?,
+            None => writeln!(w, "f {a} {b} {c}")?,
+        }
+    }
+    Ok(())
 }

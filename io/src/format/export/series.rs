@@ -5,6 +5,7 @@ use super::moving::{Moving, MovingSheet};
 use super::sheets::NamedPart;
 use super::{ExportError, SeriesBody};
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
+use crate::format::trajectory::Quantity;
 use crate::format::{Trajectory, TrajectoryError};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, Part, Topology, VertexId, fold_angle};
@@ -139,19 +140,7 @@ impl<'a> Series<'a> {
         }
         let mut frames: Vec<usize> = (options.first..=last).step_by(options.every).collect();
         frames.dedup_by(|later, first| times[*later] == times[*first]);
-        let on_edges = [
-            ("rod_force", Trajectory::rod_forces as Values, 1.0),
-            (
-                "plastic_angle",
-                Trajectory::plastic_angles,
-                1_f64.to_degrees(),
-            ),
-        ];
-        let on_edges = on_edges.into_iter();
-        let on_edges = on_edges.filter_map(|named| edge_field(trajectory, &topology, named));
-        let contact = contact_fields(trajectory);
-        let plastic = plastic_curvatures(trajectory);
-        let fields = on_edges.chain(contact).chain(plastic).collect();
+        let fields = recorded_fields(trajectory, &topology);
         let start = trajectory.frame(0).unwrap_or_default();
         Ok(Self {
             uv: flat_coordinates(&topology, &rest_lengths, start),
@@ -413,72 +402,64 @@ fn edge_between(topology: &Topology, ends: [u32; 2]) -> Option<EdgeId> {
     (a != b).then(|| topology.find_edge(a, b)).flatten()
 }
 
-/// The values of a frame of a trajectory.
-type Values = fn(&Trajectory, usize) -> Option<&[f64]>;
+/// What a trajectory has besides positions as fields.
+fn recorded_fields(trajectory: &Trajectory, topology: &Topology) -> Vec<SeriesField> {
+    let field = |name: &str, support, values| SeriesField {
+        name: name.to_owned(),
+        support,
+        values,
+    };
+    let mut fields = Vec::new();
+    for quantity in Quantity::ALL {
+        let values = trajectory.all(quantity);
+        if values.is_empty() {
+            continue;
+        }
+        fields.extend(match quantity {
+            Quantity::RodForces => {
+                let values = on_edges(trajectory, topology, values);
+                vec![field("rod_force", FieldSupport::Edges, values)]
+            }
+            Quantity::ContactForces => {
+                let support = FieldSupport::VertexVectors;
+                vec![field("contact_force", support, values.to_vec())]
+            }
+            Quantity::Gaps => vec![field("gap", FieldSupport::Vertices, values.to_vec())],
+            Quantity::PlasticAngles => {
+                let mut values = on_edges(trajectory, topology, values);
+                values
+                    .iter_mut()
+                    .for_each(|angle| *angle = angle.to_degrees());
+                vec![field("plastic_angle", FieldSupport::Edges, values)]
+            }
+            Quantity::PlasticCurvatures => {
+                let of = |k: usize| values.iter().copied().skip(k).step_by(2).collect();
+                let support = FieldSupport::Faces;
+                vec![
+                    field("plastic_curvature_1", support, of(0)),
+                    field("plastic_curvature_2", support, of(1)),
+                ]
+            }
+        });
+    }
+    fields
+}
 
-/// A field of edges, in the order of the edges of the topology: its name, and its values with the unit in
-/// which they are written.
-fn edge_field(
-    trajectory: &Trajectory,
-    topology: &Topology,
-    (name, of, unit): (&str, Values, f64),
-) -> Option<SeriesField> {
-    of(trajectory, 0)?;
-    let edges = trajectory.edges().iter();
-    let order: Vec<Option<EdgeId>> = edges.map(|ends| edge_between(topology, *ends)).collect();
+/// Values of the edges of a trajectory in the order of the edges of the topology.
+fn on_edges(trajectory: &Trajectory, topology: &Topology, values: &[f64]) -> Vec<f64> {
+    let edges = trajectory.edges();
+    let order: Vec<Option<EdgeId>> = edges.iter().map(|e| edge_between(topology, *e)).collect();
     let count = topology.edge_count();
-    let mut values = vec![0.0; count * trajectory.len()];
-    for (frame, values) in values.chunks_exact_mut(count).enumerate() {
-        for (edge, value) in order.iter().zip(of(trajectory, frame)?) {
+    let mut sorted = vec![0.0; count * trajectory.len()];
+    let frames = sorted
+        .chunks_exact_mut(count)
+        .zip(values.chunks_exact(edges.len()));
+    for (sorted, values) in frames {
+        for (edge, value) in order.iter().zip(values) {
             if let Some(edge) = edge {
-                values[edge.index()] = unit * value;
+                sorted[edge.index()] = *value;
             }
         }
     }
-    Some(SeriesField {
-        name: name.to_owned(),
-        support: FieldSupport::Edges,
-        values,
-    })
-}
-
-/// What the trajectory has of contact as fields.
-fn contact_fields(trajectory: &Trajectory) -> Vec<SeriesField> {
-    let all = |of: Values| -> Option<Vec<f64>> {
-        let frames = (0..trajectory.len()).map(|k| of(trajectory, k));
-        frames.collect::<Option<Vec<_>>>().map(|f| f.concat())
-    };
-    let forces = (
-        "contact_force",
-        FieldSupport::VertexVectors,
-        all(Trajectory::contact_forces),
-    );
-    let gaps = ("gap", FieldSupport::Vertices, all(Trajectory::gaps));
-    let field = |(name, support, values): (&str, FieldSupport, Option<Vec<f64>>)| {
-        Some(SeriesField {
-            name: name.to_owned(),
-            support,
-            values: values?,
-        })
-    };
-    [forces, gaps].into_iter().filter_map(field).collect()
-}
-
-/// The principal values of the plastic curvatures as two fields, if the trajectory has them.
-fn plastic_curvatures(trajectory: &Trajectory) -> Vec<SeriesField> {
-    let frames = (0..trajectory.len()).map(|k| trajectory.plastic_curvatures(k));
-    let Some(all) = frames.collect::<Option<Vec<_>>>() else {
-        return Vec::new();
-    };
-    let field = |(k, name): (usize, &str)| SeriesField {
-        name: name.to_owned(),
-        support: FieldSupport::Faces,
-        values: all
-            .iter()
-            .flat_map(|values| values.as_chunks::<2>().0)
-            .map(|p| p[k])
-            .collect(),
-    };
-    let names = ["plastic_curvature_1", "plastic_curvature_2"];
-    names.into_iter().enumerate().map(field).collect()
+    sorted
 }

@@ -1,5 +1,11 @@
 //! What can be wrong with a mesh file.
 
+mod fold;
+mod gltf;
+
+pub use fold::FoldProblem;
+pub use gltf::GltfProblem;
+
 use isosheet_mesh::wording::given;
 use std::fmt;
 use std::path::PathBuf;
@@ -8,8 +14,6 @@ use isosheet_mesh::{Advice, MeshError};
 use thiserror::Error;
 
 use super::MeshFormat;
-use super::fold::FoldProblem;
-use super::gltf::GltfProblem;
 
 /// Where in a file something is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

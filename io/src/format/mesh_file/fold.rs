@@ -1,22 +1,17 @@
 //! Reading FOLD files (Flexible Origami List Datastructure, versions 1.0 to 1.2,
 //! <https://github.com/edemaine/fold>).
 
-mod choice;
 mod cuts;
 mod frames;
 mod pattern;
-mod problem;
 mod sides;
 #[cfg(test)]
 mod tests;
 
-pub use choice::FoldFrame;
-pub use problem::FoldProblem;
-
 use super::error::{Located, MeshFileProblem, Place};
 use super::faces::Polyhedron;
 use super::plane;
-use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
+use super::{EdgeAssignment, FileCrease, FoldProblem, MeshFile, MeshOptions};
 use frames::Frame;
 use std::collections::HashMap;
 

@@ -1,12 +1,8 @@
 //! Reading glTF 2.0 files, as text or binary.
 
-mod problem;
-
-pub use problem::GltfProblem;
-
 use super::error::{Located, MeshFileProblem, Place};
 use super::faces::Polyhedron;
-use super::{MeshOptions, SeparateBuffers};
+use super::{GltfProblem, MeshOptions, SeparateBuffers};
 use crate::format::input;
 use base64::Engine;
 use gltf::accessor::{DataType, Dimensions};

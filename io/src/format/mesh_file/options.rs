@@ -1,7 +1,7 @@
 //! How a mesh file is read.
 
 use super::error::MeshFileProblem;
-use super::fold::FoldFrame;
+use super::fold_frame::FoldFrame;
 
 /// What to do with faces of more than three corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -16,6 +16,8 @@ pub(crate) struct MotionFrame<'a> {
     pub(crate) x: &'a [f64],
     /// What it has besides.
     pub(crate) data: FrameData<'a>,
+    /// The values of the fields of a page, where it is shown on one.
+    pub(crate) fields: &'a [&'a [f64]],
 }
 
 /// Frames that are shown one after the other, as often as they are asked for.

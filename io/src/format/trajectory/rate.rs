@@ -32,12 +32,7 @@ impl Trajectory {
         if !(rate > 0.0 && count < MOST_FRAMES) {
             return Err(wrong);
         }
-        let mut resampled = Self {
-            t: Vec::new(),
-            x: Vec::new(),
-            data: Default::default(),
-            ..self.clone()
-        };
+        let mut resampled = self.without_frames();
         for k in 0..=count as usize {
             let t = start + k as f64 / rate;
             let after = times.partition_point(|s| *s <= t);

@@ -43,9 +43,10 @@ impl Advice for HoldError {
 
 impl LiveScene {
     /// Holds a vertex by a spring from now on, in place of any held before. It pulls at nothing until
-    /// [`Hand::lead`] moves its other end, which costs nothing. Its stiffness is `M g / (d / 100)` with the
+    /// [`LiveScene::lead`] moves its other end, which costs nothing. Its stiffness is `M g / (d / 100)` with the
     /// mass `M` of the sheet, standard gravity `g` and the diagonal `d` of the box around the rest shape: the
-    /// weight of the whole sheet stretches it by a hundredth of that. What it does is work.
+    /// weight of the whole sheet stretches it by a hundredth of that. What it does is work. Returns where it
+    /// is, metres.
     ///
     /// ```
     /// use isosheet_io::scene::{LiveScene, SceneFile, StartingPoint};
@@ -55,10 +56,9 @@ impl LiveScene {
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let text = StartingPoint::Hanging.text().into();
     /// let mut live = LiveScene::start(SceneFile::parse(text, Path::new("sheet.toml"), &[])?)?;
-    /// let hand = live.hold(VertexId(0))?;
-    /// let mut to = hand.target(0.0);
+    /// let mut to = live.hold(VertexId(0))?;
     /// to[2] += 0.001;
-    /// hand.lead(to, 0.0, 0.01)?;
+    /// live.lead(to, 0.01)?;
     /// live.step(0.01)?;
     /// live.let_go()?;
     /// # Ok(())
@@ -67,7 +67,7 @@ impl LiveScene {
     ///
     /// # Errors
     /// [`HoldError`]; then nothing has changed.
-    pub fn hold(&mut self, vertex: VertexId) -> Result<Hand, HoldError> {
+    pub fn hold(&mut self, vertex: VertexId) -> Result<[f64; 3], HoldError> {
         let model = self.simulation.model();
         let immobile = self.simulation.immobile_vertices();
         if model.pins().contains(&vertex) || immobile.contains(&vertex) {
@@ -76,25 +76,47 @@ impl LiveScene {
         let positions = self.simulation.state().x.as_chunks::<3>().0;
         let at = positions.get(vertex.index()).copied().unwrap_or_default();
         let hand = Hand::new(model.topology(), vertex, self.firmness(), at)?;
-        self.rebuild(self.file.clone(), Some(hand.clone()))?;
-        Ok(hand)
+        self.go_on_with_hand(Some(hand))?;
+        Ok(at)
+    }
+
+    /// Leads the hand from where it is to a point (metres) until time `end` (seconds), see
+    /// [`Simulation::lead_hand`]. Nothing if none is held.
+    ///
+    /// [`Simulation::lead_hand`]: isosheet_dynamics::Simulation::lead_hand
+    ///
+    /// # Errors
+    /// [`HandError::Target`]; then nothing has changed.
+    pub fn lead(&mut self, to: [f64; 3], end: f64) -> Result<(), HandError> {
+        match &self.hand {
+            Some(hand) => self.simulation.lead_hand(hand.vertex(), to, end),
+            None => Ok(()),
+        }
     }
 
     /// Lets go of the vertex that is held; the energy of the spring is gone, as work. Nothing if none is
     /// held.
     ///
     /// # Errors
-    /// [`SceneError`] if the scene cannot be built, such as for a mesh file that has been deleted since.
+    /// [`SceneError`] if the simulation cannot go on without it.
     pub fn let_go(&mut self) -> Result<(), SceneError> {
         match self.hand {
-            Some(_) => self.rebuild(self.file.clone(), None),
+            Some(_) => self.go_on_with_hand(None),
             None => Ok(()),
         }
     }
 
-    /// The hand that holds a vertex.
-    pub fn hand(&self) -> Option<&Hand> {
-        self.hand.as_ref()
+    fn go_on_with_hand(&mut self, hand: Option<Hand>) -> Result<(), SceneError> {
+        let scene = self.file.scene().clone();
+        let rebuilt = self.rebuild(&scene, hand);
+        rebuilt.map_err(|e| e.in_text(self.file.text()))
+    }
+
+    /// The vertex that a hand holds, and where the hand is, metres.
+    pub fn hand(&self) -> Option<(VertexId, [f64; 3])> {
+        let vertex = self.hand.as_ref()?.vertex();
+        let at = self.simulation.hand_target(vertex).ok()?;
+        Some((vertex, at))
     }
 
     /// The stiffness of the spring of a hand, N/m.

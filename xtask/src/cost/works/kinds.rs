@@ -1,11 +1,10 @@
 //! The kinds of runs.
 
-use super::penetration::Checker;
 use crate::cost::DEFAULT;
 use crate::report::Effort;
 use crate::runs::{Bumped, FigureScene, Plan, STEP, displaced};
 use anyhow::Result;
-use isosheet_dynamics::{ImplicitOptions, Method, ProjectionStepOptions, Simulation};
+use isosheet_dynamics::{ImplicitOptions, Method, Simulation};
 use isosheet_io::scene::SupportForces;
 use isosheet_tests::{Named, energy_momentum, implicit_euler};
 use serde::Deserialize;
@@ -68,8 +67,6 @@ pub(super) struct Start {
     pub(super) plan: Plan,
     /// Whether the scene ends before.
     pub(super) is_over: Box<dyn Fn(&Simulation) -> bool + Send>,
-    /// The check beside the contact code that nothing is penetrated.
-    pub(super) checker: Option<Checker>,
 }
 
 /// The crane's mesh in the folder that `ISOSHEET_DATA` names: a crease pattern of the folder is no part of
@@ -111,17 +108,10 @@ impl Work {
             ..Default::default()
         });
         let quick = ("BDF2, lengths to 1e-9, decrement to 1e-3", quick);
-        let loose = Method::Projection(ProjectionStepOptions {
-            strain_tolerance: 1e-9,
-            ..Default::default()
-        });
-        let loose = ("projection, lengths to 1e-9", loose);
         let stepped = [
             (default.clone(), STEP),
             (default, 5e-3),
             (quick, STEP),
-            (loose.clone(), STEP),
-            (loose, 5e-3),
             (("energy-momentum", energy_momentum()), 2e-3),
         ];
         stepped.map(Some).to_vec()
@@ -178,13 +168,7 @@ impl Work {
     ) -> Result<Option<Start>> {
         if let (Scene::Bumped(bumped), Some(((_, method), step))) = (&self.scene, method) {
             let simulation = bumped.start(size, method.clone())?;
-            let topology = simulation.model().topology();
-            let checker = match bumped {
-                Bumped::Hanging => None,
-                Bumped::Tablecloth(pairs) => Some(Checker::new(topology, *pairs)?),
-            };
             return Ok(Some(Start {
-                checker,
                 plan: Plan::new(*step, bumped.duration()),
                 is_over: Box::new(|_| false),
                 simulation,
@@ -199,7 +183,6 @@ impl Work {
         let supports = SupportForces::new(origins, &simulation, scene.scene().support.len());
         let stop = scene.scene().stop.clone();
         Ok(Some(Start {
-            checker: None,
             plan: Plan::new(scene.frame(), scene.frames() as f64 * scene.frame()),
             is_over: Box::new(move |s| stop.is_force_reached(|| supports.of(s))),
             simulation,

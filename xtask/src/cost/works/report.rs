@@ -5,8 +5,7 @@ use crate::cost::DEFAULT;
 use crate::draw::{Chart, Charts, Series};
 use crate::report::{Bound, Finding, LENGTHS, Table, columns, exponent};
 use crate::runs::STEP;
-use anyhow::{Context, Result};
-use std::path::Path;
+use anyhow::Result;
 
 /// The kinds whose times are fitted and drawn over their sizes, with their names in the chart.
 const OVER_SIZES: [(&str, &str); 4] = [
@@ -77,60 +76,16 @@ pub(super) fn powers(rows: &[Row]) -> Table {
     )
 }
 
-/// Wall times on two threads over those on one.
-pub(super) fn threads(rows: &[Row]) -> Table {
-    let wall = |r: &Row| r.wall_s_per_simulated_s.filter(|_| r.is_good());
-    let pairs = rows.windows(2).filter_map(|pair| {
-        let [one, two] = pair else { return None };
-        let alike = (&one.work, &one.size) == (&two.work, &two.size) && one.threads < two.threads;
-        alike.then_some((two, wall(two)? / wall(one)?))
-    });
-    Table::of(
-        "Wall time of several threads over that of one",
-        pairs,
-        columns! { row;
-            "run" => row.0.what_happens.as_str(),
-            "vertices" => row.0.vertices,
-            "threads" => row.0.threads,
-            "part_of_the_time" => row.1,
-        },
-    )
-}
-
-/// CPU seconds for a simulated second against the number of vertices, by kind, and beside them the fastest
-/// program of docs/measured-elsewhere.md that stretches edges, on the hanging square.
-pub(super) fn chart(rows: &[Row]) -> Result<Charts> {
+/// CPU seconds for a simulated second against the number of vertices, by kind.
+pub(super) fn chart(rows: &[Row]) -> Charts {
     let mut series = Vec::new();
     for (k, (work, name)) in OVER_SIZES.into_iter().enumerate() {
         series.push(Series::styled(k, name, points(rows, work, Row::rate)));
     }
-    series.push(Series::guide("hanging, XPBD (elsewhere)", elsewhere()?));
     series.retain(|s| !s.points.is_empty());
     let (x, y) = ("vertices", "CPU seconds / simulated second");
     let chart = Chart::log_log(x, y, [260.0, 170.0], series);
-    Ok(Charts::column([chart]))
-}
-
-/// The page, and the row of its table of the hanging square, with which the chart compares.
-const PAGE: &str = "docs/measured-elsewhere.md";
-const FASTEST: &str = "| PositionBasedDynamics 2.2 (XPBD) | fastest |";
-
-/// Vertices of the meshes M^2 to M^5, and the seconds for a simulated second that the page has of them.
-///
-/// # Errors
-/// A page that is not there or has no such row.
-fn elsewhere() -> Result<Vec<[f64; 2]>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(PAGE);
-    let text = std::fs::read_to_string(path).context(PAGE)?;
-    let row = text.lines().find_map(|line| line.strip_prefix(FASTEST));
-    let row = row.with_context(|| format!("{PAGE} has no row {FASTEST}"))?;
-    let cells = row.trim_end_matches('|').split('|').map(str::trim);
-    let seconds = |cell: &str| cell.split(',').next()?.parse().ok();
-    let levels = cells.zip(2..).filter_map(|(cell, level): (&str, u32)| {
-        let side = f64::from((2_u32 << level) + 1);
-        Some([side * side, seconds(cell)?])
-    });
-    Ok(levels.collect())
+    chart.into()
 }
 
 /// Lengths of rods by the methods of scene files, gaps, and what is checked beside the contact code.
@@ -141,21 +96,13 @@ pub(super) fn required(rows: &[Row]) -> Vec<Finding> {
         .map(|r| r.strain)
         .collect();
     let of = |value: fn(&Row) -> Option<f64>| rows.iter().filter_map(value).collect::<Vec<_>>();
-    let (none, gap) = (Bound::AtMost(0.0), Bound::Above(0.0));
-    let crossings = of(|r| r.crossings.map(|count| count as f64));
+    let gap = Bound::Above(0.0);
     let all = [
         (
             "rods",
             "largest strain of an edge",
             Bound::AtMost(LENGTHS),
             rods,
-        ),
-        ("contact", "edges that cross faces", none, crossings),
-        (
-            "contact",
-            "depth of a vertex in the table, m",
-            none,
-            of(|r| r.depth_m),
         ),
         ("contact", "smallest gap, m", gap, of(|r| r.smallest_gap_m)),
     ];
@@ -193,14 +140,8 @@ mod tests {
     fn powers_and_ratios_are_those_of_runs_that_ended() {
         let cost = |level: u32| f64::from((2_u32 << level) + 1).powf(3.0);
         let mut rows: Vec<Row> = (2..=4).map(|k| row("w1", k, 1, cost(k))).collect();
-        rows.extend([row("ball", 2, 1, 4.0), row("ball", 2, 2, 3.0)]);
         let text = powers(&rows).text();
         assert!(text.contains("hanging, rods  81 to 1089  1.5 "), "{text}");
-        let text = threads(&rows).text();
-        assert!(
-            text.ends_with("a sheet  81        2        0.75\n"),
-            "{text}"
-        );
         rows[2].failure = Some("late".to_owned());
         let text = powers(&rows).text();
         assert!(text.contains("81 to 289"), "{text}");
@@ -209,9 +150,8 @@ mod tests {
             required(rows).iter().map(Finding::verdict).collect()
         };
         assert_eq!(verdicts(&rows), [Verdict::Passed; 2]);
-        (rows[0].strain, rows[1].crossings) = (1e-9, Some(1));
-        let failed = [Verdict::Failed, Verdict::Failed, Verdict::Passed];
-        assert_eq!(verdicts(&rows), failed);
+        rows[0].strain = 1e-9;
+        assert_eq!(verdicts(&rows), [Verdict::Failed, Verdict::Passed]);
     }
 
     /// A run is compared with the fastest that ended on its mesh with its lengths kept.
@@ -231,14 +171,5 @@ mod tests {
         };
         let numbers: Vec<Option<f64>> = times.rows.iter().map(number).collect();
         assert_eq!(numbers, [Some(1.0), Some(3.0), Some(0.5), None, Some(1.0)]);
-    }
-
-    /// The chart compares with numbers that stand in the book alone.
-    #[test]
-    fn the_book_has_the_fastest_program() {
-        let points = elsewhere().unwrap();
-        let vertices: Vec<f64> = points.iter().map(|p| p[0]).collect();
-        assert_eq!(vertices, [81.0, 289.0, 1089.0, 4225.0]);
-        assert!(points.iter().all(|p| p[1] > 0.0));
     }
 }

@@ -2,9 +2,8 @@
 
 use super::Task;
 use super::kinds::Start;
-use super::penetration::depth;
 use crate::progress::Progress;
-use crate::report::{Effort, extremes, median, peak_memory, reset_peak_memory, rounded, short};
+use crate::report::{Effort, extremes, median, number, peak_memory, reset_peak_memory, rounded};
 use crate::runs::{Course, Ending, Plan};
 use crate::threads;
 use anyhow::{Context, Result};
@@ -24,9 +23,6 @@ struct Run {
     changes: [f64; 2],
     /// Potential energy at the start less that at the end, joules.
     released: f64,
-    /// Depth of the deepest vertex in the table, metres, and pairs of an edge and a face that cross, over all
-    /// steps; of works that are checked.
-    penetration: Option<(f64, usize)>,
     /// Peak of the memory, bytes, where the system tells.
     peak: Option<f64>,
 }
@@ -75,9 +71,6 @@ pub(super) struct Row {
     /// At the end, and the largest on the way, as part of the potential energy released.
     pub(super) energy_balance: Option<f64>,
     pub(super) largest_energy_change: Option<f64>,
-    /// The largest, and the sum.
-    pub(super) depth_m: Option<f64>,
-    pub(super) crossings: Option<usize>,
     /// The largest.
     pub(super) peak_bytes: Option<f64>,
     /// Starts whose runs came to their ends.
@@ -116,7 +109,6 @@ impl Row {
         let failed = runs.iter().rfind(|r| !r.course.is_good());
         let failure = failed.and_then(|r| Some((r.course.time, r.course.failure()?)));
         let gaps = runs.iter().filter_map(|r| r.course.gap);
-        let penetrations = || runs.iter().filter_map(|r| r.penetration);
         Self {
             starts: runs.len(),
             simulated_s: median(&|r| Some(r.course.time)),
@@ -133,11 +125,9 @@ impl Row {
             smallest_gap_m: gaps.reduce(f64::min),
             energy_balance: median(&|r| Some(r.part(0))),
             largest_energy_change: median(&|r| Some(r.part(1))),
-            depth_m: penetrations().map(|(depth, _)| depth).reduce(f64::max),
-            crossings: penetrations().map(|(_, count)| count).reduce(|a, b| a + b),
             peak_bytes: runs.iter().filter_map(|r| r.peak).reduce(f64::max),
             ended: runs.iter().filter(|r| r.course.is_good()).count(),
-            failure: failure.map(|(t, why)| format!("at {} s: {}", short(t), rounded(&why))),
+            failure: failure.map(|(t, why)| format!("at {} s: {}", number(t), rounded(&why))),
             ..self
         }
     }
@@ -201,23 +191,16 @@ fn run(start: Start) -> Result<Run> {
         mut simulation,
         plan,
         is_over,
-        checker,
     } = start;
     let potential = |s: &Simulation| s.model().potential_energy(s.state().t, &s.state().x);
     let (energy, height) = (simulation.energy(), potential(&simulation));
     let (mut strain, mut looking, mut ends) = (0.0_f64, Duration::ZERO, false);
-    let mut penetration = checker.is_some().then_some((0.0_f64, 0));
     let mut look = |simulation: &Simulation, report: &StepReport| {
         let begun = ThreadTime::now();
-        let x = &simulation.state().x;
-        strain = match simulation.model().elastic_deformation(x) {
+        strain = match simulation.elastic_deformation() {
             Some(faces) => faces.strain.into_iter().fold(strain, f64::max),
             None => strain.max(report.strain),
         };
-        if let (Some(checker), Some((deepest, crossings))) = (&checker, &mut penetration) {
-            *deepest = deepest.max(depth(x));
-            *crossings += checker.crossings(x);
-        }
         ends = is_over(simulation);
         looking += begun.elapsed();
         match ends {
@@ -237,7 +220,6 @@ fn run(start: Start) -> Result<Run> {
         changes: [simulation.energy() - energy, course.drift],
         released: height - potential(&simulation),
         course,
-        penetration,
         peak: peak_memory(),
     })
 }
@@ -267,13 +249,13 @@ mod tests {
         let row = Row::default().with(&runs);
         let found = (row.rate(), row.largest_over_smallest, row.strain);
         assert_eq!(found, (Some(1.0), Some(1.5), 5e-12));
-        assert!(row.smallest_gap_m.is_none() && row.crossings.is_none());
+        assert!(row.smallest_gap_m.is_none());
         runs.push(run(4.0, 10, Ending::CpuTime(4.0)));
         let row = Row::default().with(&runs);
         assert_eq!((row.cpu_s_per_simulated_s, row.rate()), (Some(1.5), None));
         assert_eq!((row.starts, row.ended), (4, 3));
         let failure = row.failure.unwrap();
-        assert_eq!(failure, "at 2.0 s: 4 s of CPU time were over");
+        assert_eq!(failure, "at 2 s: 4 s of CPU time were over");
     }
 
     fn of(work: &Work) -> Run {
@@ -298,12 +280,11 @@ mod tests {
     fn the_sheets_of_other_programs_come_to_their_ends() {
         let work = |name| named().into_iter().find(|(n, _)| *n == name).unwrap().1;
         let hanging = of(work("hanging"));
-        assert_eq!((hanging.course.cost.steps, hanging.penetration), (60, None));
+        assert_eq!(hanging.course.cost.steps, 60);
         assert!((-0.9..0.01).contains(&hanging.part(0)), "{hanging:?}");
         let cloth = of(work("tablecloth-itself"));
         let course = &cloth.course;
         assert!(course.is_good() && (course.time - 1.5).abs() < 1e-9);
         assert!(course.strain < 1e-10 && course.gap.is_some_and(|gap| gap > 0.0));
-        assert_eq!(cloth.penetration, Some((0.0, 0)));
     }
 }

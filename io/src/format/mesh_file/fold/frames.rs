@@ -1,8 +1,7 @@
 //! Frames of FOLD files and what they inherit.
 
-use super::{FoldFrame, FoldProblem};
-use crate::format::mesh_file::MeshFileProblem;
 use crate::format::mesh_file::error::excerpt;
+use crate::format::mesh_file::{FoldFrame, FoldProblem, MeshFileProblem};
 use serde::Deserialize;
 
 /// What is used of a frame. All keys of the format are optional.

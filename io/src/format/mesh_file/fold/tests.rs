@@ -1,9 +1,9 @@
 //! Defects, frames, faces of drawings, cuts and angles.
 
-use super::{FoldFrame, FoldProblem};
 use crate::format::mesh_file::tests::{FOLD, cross, parse, problem};
 use crate::format::mesh_file::{
-    EdgeAssignment, MeshFileProblem, MeshFormat, MeshOptions, Place, parse_mesh,
+    EdgeAssignment, FoldFrame, FoldProblem, MeshFileProblem, MeshFormat, MeshOptions, Place,
+    parse_mesh,
 };
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, VertexId, fold_angle};

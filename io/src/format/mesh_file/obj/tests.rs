@@ -1,9 +1,9 @@
-use isosheet_mesh::{MeshError, TopologyError, generate};
+use isosheet_mesh::{MeshError, Topology, TopologyError, generate};
 use proptest::prelude::*;
 
 use crate::{
-    MeshFile, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, ObjWriteError, Place,
-    Polygons, frame_path, parse_mesh, read_sheet, write_obj, write_obj_to,
+    ExportError, MeshFile, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, Place,
+    Polygons, frame_path, parse_mesh, read_sheet, write_obj,
 };
 use std::path::Path;
 
@@ -229,30 +229,34 @@ fn frames_are_written_and_read_back_exactly() {
     assert_eq!(back.topology(), sheet.topology());
     assert_eq!(back.positions(), x);
 
-    let mut memory = Vec::new();
-    write_obj_to(&mut memory, sheet.topology(), &x).unwrap();
-    assert_eq!(memory, std::fs::read(&path).unwrap());
-
+    let written = std::fs::read(&path).unwrap();
     let mut bad = x.clone();
     bad[7] = f64::INFINITY;
     let error = write_obj(&path, sheet.topology(), &bad).unwrap_err();
     assert!(
-        matches!(error, ObjWriteError::NotFinite { axis: 1, .. }),
+        matches!(error, ExportError::NotFinite { axis: 1, .. }),
         "{error}"
     );
     assert!(matches!(
         write_obj(&path, sheet.topology(), &x[3..]),
-        Err(ObjWriteError::WrongLength { .. })
+        Err(ExportError::Count { .. })
     ));
-    assert_eq!(std::fs::read(&path).unwrap(), memory, "left as it was");
+    assert_eq!(std::fs::read(&path).unwrap(), written, "left as it was");
+}
+
+/// The file of a mesh.
+fn written(t: &Topology, x: &[f64]) -> Vec<u8> {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("mesh.obj");
+    write_obj(&path, t, x).unwrap();
+    std::fs::read(path).unwrap()
 }
 
 /// Another reader finds the same triangles in space.
 #[test]
 fn agrees_with_another_reader() {
     let sheet = generate::octagon_244(0.5).unwrap();
-    let mut text = Vec::new();
-    write_obj_to(&mut text, sheet.topology(), sheet.positions()).unwrap();
+    let text = written(sheet.topology(), sheet.positions());
     let ours = parse_obj(&text, Polygons::Refuse).unwrap();
     let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
     let (models, _) =
@@ -287,9 +291,8 @@ proptest! {
     #[test]
     fn coordinates_survive(c in prop::collection::vec(-1e30..1e30f64, 3), e in -60..30i32) {
         let x: Vec<f64> = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().zip(c.iter().cycle()).map(|(b, c)| b + c * 10f64.powi(e)).collect();
-        let t = isosheet_mesh::Topology::from_faces(3, &[[0, 1, 2]]).unwrap();
-        let mut text = Vec::new();
-        write_obj_to(&mut text, &t, &x).unwrap();
+        let t = Topology::from_faces(3, &[[0, 1, 2]]).unwrap();
+        let text = written(&t, &x);
         prop_assert_eq!(parse_obj(&text, Polygons::Refuse).unwrap().positions, x);
     }
 

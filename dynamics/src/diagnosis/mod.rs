@@ -1,0 +1,6 @@
+//! Why no step is found: rods that block or depend on each other, supports and bodies that ask for too much.
+
+pub(crate) mod blocked;
+pub(crate) mod infeasibility;
+pub(crate) mod pressing;
+pub(crate) mod rank;

@@ -1,0 +1,6 @@
+//! Steps of a chart-free simulation: who proposes, who decides, who commits.
+
+pub(crate) mod method;
+pub(crate) mod rod_forces;
+pub(crate) mod subdivision;
+pub(crate) mod substeps;

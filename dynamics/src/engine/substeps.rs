@@ -1,0 +1,654 @@
+//! The chart-free engine: proposals of an integrator, judged and committed.
+
+use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan};
+use crate::damped::implicit::Implicit;
+use crate::diagnosis::blocked::{blocked_vertices, dependent_vertices};
+use crate::diagnosis::infeasibility::infeasibility;
+use crate::diagnosis::pressing::pressing;
+use crate::diagnosis::rank::rod_rank;
+use crate::engine::rod_forces::rod_forces;
+use crate::engine::subdivision::Subdivision;
+use crate::model::immobile::immobile_vertices;
+use crate::objective::Objective;
+use crate::potential::Memories;
+use crate::report::checkpoint_error::CheckpointError;
+use crate::report::infeasibility::Infeasibility;
+use crate::report::pressing::Pressing;
+use crate::report::step_error::{StepError, StepOutcome, StepTotals};
+use crate::report::trace::TraceEvent;
+use crate::step::control::{Decision, Stepping, take_substep};
+use crate::step::integrator::{
+    Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
+};
+use crate::step::motion::Motion;
+use crate::step::reaction::Balance;
+use crate::step::tuning::Tuning;
+use crate::term::{Exchange, Formula};
+use crate::{
+    Fallback, HandError, Isometry, Method, SheetModel, SimulationError, State, StepControl,
+    Unsatisfiable,
+};
+use isosheet_mesh::VertexId;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// What a checkpoint keeps of a simulation without a chart.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct WithoutChart {
+    pub(crate) method: Method,
+    pub(crate) control: StepControl,
+    pub(crate) motion: Motion,
+    /// Vertices that were pinned at the start because they cannot move.
+    pub(crate) fixed: Vec<u32>,
+}
+
+/// Sub-steps accepted after a refusal before a longer one is tried.
+const PATIENCE: usize = 4;
+
+/// A sheet that a chart-free method moves.
+pub(crate) struct Engine {
+    pub(crate) model: Arc<SheetModel>,
+    /// What damped steps minimise, with the geometry of contact.
+    objective: Objective,
+    method: Method,
+    /// Vertices that became pins at the start because they cannot move.
+    fixed: Vec<VertexId>,
+    integrator: Box<dyn Integrator>,
+    control: StepControl,
+    tuning: Tuning,
+    fallback: Option<Box<dyn Integrator>>,
+    /// Where the sheet is. Nothing but [`Substeps::commit`] changes it in a step.
+    motion: Motion,
+    proposal: Proposal,
+}
+
+impl Engine {
+    /// Vertices that rods to pins at rest hold in place become pins.
+    pub(crate) fn new(
+        mut model: SheetModel,
+        method: Method,
+        mut state: State,
+    ) -> Result<Self, SimulationError> {
+        let fixed = immobile_vertices(&model, &state.x);
+        model.fix(&fixed);
+        model.clear_velocities(&fixed, &mut state.v);
+        model.set_load(&state);
+        Self::with_fixed(model, method, state, fixed)
+    }
+
+    fn with_fixed(
+        model: SheetModel,
+        method: Method,
+        state: State,
+        fixed: Vec<VertexId>,
+    ) -> Result<Self, SimulationError> {
+        if model.isometry() != Isometry::Rods && !method.is_minimising() {
+            return Err(SimulationError::Elastic);
+        }
+        if model.can_yield() && !method.is_minimising() {
+            return Err(SimulationError::Plastic);
+        }
+        let model = Arc::new(model);
+        let tuning = Tuning::default();
+        let integrator = method.build(&model, &tuning)?;
+        let control = StepControl::default();
+        let traits = integrator.traits();
+        if traits.demand == RodDemand::Independent
+            && let Some(index) = model.constraints().iter().position(|c| c.is_one_sided())
+        {
+            return Err(SimulationError::OneSided { index });
+        }
+        Ok(Self {
+            motion: Motion::at(state, &model, traits.balance(&model)),
+            proposal: Proposal::new(&model, traits),
+            fallback: fallback(&model, &control, &tuning)?,
+            integrator,
+            control,
+            tuning,
+            objective: Objective::new(&model),
+            method,
+            fixed,
+            model,
+        })
+    }
+
+    /// What a checkpoint keeps.
+    pub(crate) fn kept(&self) -> WithoutChart {
+        WithoutChart {
+            method: self.method.clone(),
+            control: self.control.clone(),
+            motion: self.motion.compact(),
+            fixed: self.fixed.iter().map(|v| v.0).collect(),
+        }
+    }
+
+    /// Goes on from a checkpoint.
+    pub(crate) fn resume(
+        mut model: SheetModel,
+        contact: Option<Box<dyn Contact>>,
+        kept: WithoutChart,
+    ) -> Result<Self, SimulationError> {
+        let mut motion = kept.motion;
+        let mut memories = model.memories();
+        let taken = memories.take_over(&motion.memories);
+        taken.map_err(|[found, expected]| CheckpointError::Length {
+            what: "what potentials remember",
+            found,
+            expected,
+        })?;
+        motion.memories = memories;
+        motion.check(&model, &kept.fixed)?;
+        let fixed: Vec<VertexId> = kept.fixed.iter().copied().map(VertexId).collect();
+        model.fix(&fixed);
+        model.set_load(&motion.state);
+        motion.balance.check(&model)?;
+        check_energy(&model, &motion.memories, &motion.state)?;
+        let mut engine = Self::with_fixed(model, kept.method, motion.state.clone(), fixed)?;
+        engine.set_control(kept.control)?;
+        engine.motion.copy_from(&motion);
+        let barrier = motion.contacts.map(|contacts| contacts.barrier);
+        engine.objective.contact = match (contact, barrier) {
+            (None, None) => None,
+            (Some(contact), Some(barrier)) => {
+                let state = &engine.motion.state;
+                let term = ContactTerm::resume(contact, barrier, &engine.model, state)?;
+                Some(term)
+            }
+            (_, barrier) => {
+                let expected = barrier.is_some();
+                return Err(CheckpointError::Contact { expected }.into());
+            }
+        };
+        Ok(engine)
+    }
+
+    /// The contacts, if the scene has any.
+    pub(crate) fn contacts(&self) -> Option<&ContactState> {
+        self.motion.contacts.as_ref()
+    }
+
+    /// Forces of the rods in the last accepted sub-step; `None` where the method does not solve for them.
+    pub(crate) fn rod_forces(&self) -> Option<Vec<f64>> {
+        let Motion { state, history, .. } = &self.motion;
+        rod_forces(&self.model, &self.method, &history.multipliers, &state.x)
+    }
+
+    /// Vertices that became pins at the start because they cannot move.
+    pub(crate) fn immobile(&self) -> &[VertexId] {
+        &self.fixed
+    }
+
+    pub(crate) fn state(&self) -> &State {
+        &self.motion.state
+    }
+
+    /// What the potentials remember.
+    pub(crate) fn memories(&self) -> &Memories {
+        &self.motion.memories
+    }
+
+    /// Leads the hand that holds a vertex to a point (metres) until time `end`, seconds.
+    pub(crate) fn lead_hand(
+        &mut self,
+        vertex: VertexId,
+        to: [f64; 3],
+        end: f64,
+    ) -> Result<(), HandError> {
+        let (number, hand) = self.model.hand(vertex)?;
+        let Motion {
+            state, memories, ..
+        } = &mut self.motion;
+        hand.lead(to, [state.t, end], memories.list_mut(number))
+    }
+
+    /// Forces of the supports in the last sub-step.
+    pub(crate) fn balance(&self) -> Option<&Balance> {
+        let Motion {
+            balance, has_moved, ..
+        } = &self.motion;
+        has_moved.then_some(balance)
+    }
+
+    /// Adds contact.
+    pub(crate) fn set_contact(&mut self, contact: Box<dyn Contact>) -> Result<(), SimulationError> {
+        if self.integrator.traits().contact == ContactSupport::None {
+            return Err(ContactError::Method.into());
+        }
+        let (term, contacts) = ContactTerm::new(contact, &self.model, &self.motion.state)?;
+        self.objective.contact = Some(term);
+        self.motion.contacts = Some(contacts);
+        Ok(())
+    }
+
+    pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
+        control.validate()?;
+        self.fallback = fallback(&self.model, &control, &self.tuning)?;
+        self.control = control;
+        Ok(())
+    }
+
+    /// Replaces the constants of the damped methods.
+    pub(crate) fn set_tuning(&mut self, tuning: Tuning) -> Result<(), SimulationError> {
+        self.tuning = tuning;
+        self.integrator = self.method.build(&self.model, &tuning)?;
+        self.fallback = fallback(&self.model, &self.control, &tuning)?;
+        Ok(())
+    }
+
+    /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
+    pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
+        let lengths = Subdivision::new(self.state().t, h, PATIENCE);
+        let mut run = Substeps {
+            limit: self.work_limit(self.state().t + h),
+            engine: self,
+            lengths,
+            memory: Memory::All,
+            proposer: Proposer::Method,
+            exchange: Exchange::default(),
+            totals,
+        };
+        run.totals.effort.begin(run.limit);
+        while !run.lengths.is_finished() {
+            let h = run.lengths.length();
+            match take_substep(&mut run, h) {
+                Ok(()) => (),
+                Err(Stop::Taut(infeasibility)) => {
+                    run.totals.taut = Some(infeasibility);
+                    return Ok(());
+                }
+                Err(Stop::Error(error)) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Largest number of factorisations from an accepted state to the next until time `end`, for sheets that
+    /// may lock, or be moved where they cannot go, by methods that take dependent rods.
+    fn work_limit(&mut self, end: f64) -> Option<usize> {
+        let is_limited = self.integrator.traits().demand == RodDemand::Nothing
+            && (self.may_lock() || !self.surroundings_rest(end));
+        is_limited.then_some(self.control.max_factorisations)
+    }
+
+    /// Whether the sheet has rods, and supports at two vertices or more.
+    fn may_lock(&self) -> bool {
+        self.model.isometry() == Isometry::Rods && self.model.supported_vertex_count() > 1
+    }
+
+    /// By how much moving supports and bodies ask for more than the lengths or the limit of the strain allow
+    /// until time `t`, if they do.
+    fn infeasibility(&mut self, t: f64) -> Option<Infeasibility> {
+        if self.surroundings_rest(t) {
+            return None;
+        }
+        let Motion {
+            state, contacts, ..
+        } = &self.motion;
+        let contact = self.objective.contact.as_mut().zip(contacts.as_ref());
+        infeasibility(&self.model, contact, state, t)
+    }
+
+    /// The body that presses the sheet most while it moves on until time `end`, seconds, if one does.
+    fn pressing(&mut self, end: f64) -> Option<Pressing> {
+        let t0 = self.state().t;
+        let contact = self.objective.contact.as_mut();
+        let (contact, contacts) = contact.zip(self.motion.contacts.as_ref())?;
+        pressing(contact, contacts, StepSpan { t0, h: end - t0 })
+    }
+
+    /// Whether supports and bodies rest until time `end`, seconds.
+    fn surroundings_rest(&mut self, end: f64) -> bool {
+        let t0 = self.state().t;
+        let span = StepSpan { t0, h: end - t0 };
+        let contact = self.objective.contact.as_mut();
+        !self.model.has_drives() && contact.is_none_or(|contact| !contact.motions(span).any_moves())
+    }
+
+    /// The error of dependent rods, if there are any and the method needs independent ones.
+    fn rank_deficient(&self) -> Option<StepError> {
+        if self.integrator.traits().demand != RodDemand::Independent {
+            return None;
+        }
+        let State { t, x, .. } = self.state();
+        let rank = rod_rank(&self.model, x).filter(|rank| rank.nearly_dependent > 0)?;
+        Some(StepError::RankDeficient {
+            t: *t,
+            rank_deficiency: rank.deficiency,
+            smallest_singular_value: rank.smallest,
+        })
+    }
+}
+
+/// The sub-steps of one step.
+struct Substeps<'a, 'w> {
+    engine: &'a mut Engine,
+    lengths: Subdivision,
+    /// Largest number of factorisations from an accepted state to the next, if there is one.
+    limit: Option<usize>,
+    /// What of the history the next proposal begins with.
+    memory: Memory,
+    proposer: Proposer,
+    /// The energy exchanged in the proposed sub-step.
+    exchange: Exchange,
+    totals: &'a mut StepTotals<'w>,
+}
+
+/// Who proposes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Proposer {
+    /// The method that was asked for.
+    Method,
+    /// The fallback of the step control.
+    Fallback,
+}
+
+/// Why a step ends early.
+enum Stop {
+    /// At a taut state, as the step control allows.
+    Taut(Infeasibility),
+    Error(StepError),
+}
+
+impl Substeps<'_, '_> {
+    /// Why no sub-step was found: supports or bodies that ask for too much, rods that lock or depend on each other, or
+    /// as the integrator said.
+    fn stop(&mut self, cause: StepError) -> Stop {
+        let t = self.engine.state().t;
+        let ends = [self.lengths.end(), t + self.lengths.length()];
+        let mut infeasible = ends
+            .into_iter()
+            .filter_map(|end| self.engine.infeasibility(end));
+        if let Some(infeasibility) = infeasible.next() {
+            return match self.engine.control.unsatisfiable {
+                Unsatisfiable::StopTaut => Stop::Taut(infeasibility),
+                Unsatisfiable::Refuse => Stop::Error(StepError::Unsatisfiable {
+                    t,
+                    infeasibility: Box::new(infeasibility),
+                }),
+            };
+        }
+        let known = self.locked().or_else(|| self.engine.rank_deficient());
+        Stop::Error(known.unwrap_or_else(|| StepError::StepTooSmall {
+            t,
+            min_step: self.lengths.part(self.engine.control.min_fraction),
+            pressing: self.engine.pressing(self.lengths.end()).map(Box::new),
+            cause: Box::new(cause),
+        }))
+    }
+
+    /// The error of a sheet that may lock, if rods block its motion, or depend on each other while supports
+    /// and bodies rest. (A sheet has to follow what moves: many steps are divided before it buckles.)
+    fn locked(&mut self) -> Option<StepError> {
+        if !self.engine.may_lock() {
+            return None;
+        }
+        let rests = self.engine.surroundings_rest(self.lengths.end());
+        let Engine { model, motion, .. } = &*self.engine;
+        let state = &motion.state;
+        let mut vertices = blocked_vertices(model, state, self.lengths.length());
+        if vertices.is_empty() && rests {
+            vertices = dependent_vertices(model, &state.x);
+        }
+        (!vertices.is_empty()).then(|| StepError::Locked {
+            t: state.t,
+            factorisations: self.totals.effort.spent(),
+            vertices,
+        })
+    }
+
+    /// Proposes a sub-step of `h` seconds within the limit of the effort.
+    fn attempt(&mut self, h: f64) -> Result<(), StepError> {
+        // A sheet has to follow bodies and supports that move, and buckles under them in shorter steps too.
+        let can_be_divided = self.lengths.can_halve(self.engine.control.min_fraction);
+        let phases = match self.lengths.is_whole() && can_be_divided {
+            true if self.engine.surroundings_rest(self.lengths.end()) => Phases::Brief,
+            _ => Phases::All,
+        };
+        let Engine {
+            model,
+            objective,
+            integrator,
+            fallback,
+            motion,
+            proposal,
+            tuning,
+            ..
+        } = &mut *self.engine;
+        let t = motion.state.t + h;
+        if let Some((support, value)) = model.find_bad_motion(t) {
+            return Err(StepError::NonFiniteMotion { support, value, t });
+        }
+        if let Some(contact) = &mut objective.contact {
+            contact.check_bodies(StepSpan {
+                t0: motion.state.t,
+                h,
+            })?;
+        }
+        let scene = Scene { model, objective };
+        let attempt = Attempt::new(motion, h, self.memory).with(phases);
+        let effort = &mut self.totals.effort;
+        let is_fallback = self.proposer == Proposer::Fallback;
+        effort.t = motion.state.t;
+        let proposed = match fallback {
+            Some(fallback) if is_fallback => fallback.propose(scene, attempt, proposal, effort),
+            _ => integrator.propose(scene, attempt, proposal, effort),
+        };
+        if effort.is_interrupted() {
+            return Err(StepError::Interrupted { t: motion.state.t });
+        }
+        proposed?;
+        let (before, after) = (&motion.state, &proposal.motion.state);
+        let mut exchange = proposal.account.exchange;
+        if model.has_drives() {
+            let kept = motion.has_moved.then_some(&motion.balance);
+            let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
+            let balance = &proposal.motion.balance;
+            let supports = balance.drive_work(model, kept, ends.0, ends.1);
+            exchange.add(Exchange::driven(supports));
+            exchange.work += model.applied_work_at_pins(before, after);
+        }
+        self.exchange = exchange;
+        // The conservative methods keep the energy by themselves.
+        let damps = integrator.traits().demand == RodDemand::Nothing || is_fallback;
+        let account = match damps {
+            true => {
+                let potential =
+                    [before, after].map(|s| model.energy_with(&motion.memories, after.t, &s.x));
+                let force = || force_sum(model, &motion.memories, after);
+                motion
+                    .account
+                    .after(model, [before, after], potential, force, &exchange, tuning)?
+            }
+            false => {
+                check_energy(model, &motion.memories, after)?;
+                motion.account
+            }
+        };
+        proposal.motion.account = account;
+        Ok(())
+    }
+
+    /// What follows from a refusal that another sub-step may mend:
+    ///
+    /// | refused | with a history | without | by the fallback |
+    /// |---|---|---|---|
+    /// | since it would create energy | restart as a one-step method | halve | stop |
+    /// | for any other reason | halve | halve | stop |
+    ///
+    /// Where the step is not to be halved any more, the fallback takes it if there is one.
+    fn follow(&mut self, refusal: StepError) -> Decision<Stop> {
+        let looks_back = self.memory > Memory::Restart && self.engine.motion.history.looks_back();
+        let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
+        if self.proposer == Proposer::Fallback {
+            Decision::Stop(self.stop(refusal))
+        } else if gains_energy && looks_back {
+            // Contact came or went, or rods snapped through: the history of the motion does not continue.
+            Decision::Restart
+        } else if let Some(shorter) = self.lengths.halve(self.engine.control.min_fraction) {
+            self.memory = self.memory.min(Memory::State);
+            Decision::Shorten(shorter)
+        } else if self.engine.fallback.is_some() {
+            Decision::FallBack(self.lengths.lengthen())
+        } else {
+            Decision::Stop(self.stop(refusal))
+        }
+    }
+}
+
+impl Stepping for Substeps<'_, '_> {
+    type Refusal = StepError;
+    type Error = Stop;
+    type Report = ();
+
+    /// An attempt that the limit ends is made again without a limit, unless the sheet locks, or has nowhere to
+    /// go: what is accepted does not depend on the effort.
+    fn propose(&mut self, h: f64) -> Result<(), StepError> {
+        let proposed = self.attempt(h);
+        if !self.totals.effort.is_spent() {
+            return proposed;
+        }
+        if self
+            .engine
+            .infeasibility(self.engine.state().t + h)
+            .is_some()
+        {
+            self.totals.effort.begin(self.limit);
+            return proposed;
+        }
+        if self.engine.infeasibility(self.lengths.end()).is_none()
+            && let Some(error) = self.locked()
+        {
+            return Err(error);
+        }
+        self.totals.effort.lift_limit();
+        self.attempt(h)
+    }
+
+    fn decide(&mut self, refusal: StepError, h: f64) -> Decision<Stop> {
+        if matches!(
+            refusal,
+            StepError::NonFiniteMotion { .. }
+                | StepError::Body(_)
+                | StepError::Interrupted { .. }
+                | StepError::Locked { .. }
+        ) {
+            return Decision::Stop(Stop::Error(refusal));
+        }
+        self.totals.rejected += 1;
+        let error = self.totals.effort.is_traced().then(|| refusal.to_string());
+        let decision = self.follow(refusal);
+        if let Some(error) = error {
+            let (t, decision) = (self.engine.state().t, decision.name());
+            let event = || TraceEvent::Refused {
+                t,
+                h,
+                error,
+                decision,
+            };
+            self.totals.effort.trace(event);
+        }
+        decision
+    }
+
+    fn restart(&mut self) -> Result<(), Stop> {
+        self.memory = Memory::Restart;
+        Ok(())
+    }
+
+    fn fall_back(&mut self) {
+        self.memory = Memory::Restart;
+        self.proposer = Proposer::Fallback;
+    }
+
+    fn commit(&mut self, h: f64) -> Result<(), Stop> {
+        let engine = &mut *self.engine;
+        let (step, exchange) = (engine.proposal.account, self.exchange);
+        std::mem::swap(&mut engine.motion, &mut engine.proposal.motion);
+        let (model, before, motion) = (&engine.model, &engine.proposal.motion, &mut engine.motion);
+        motion.memories.copy_from(&before.memories);
+        motion.has_moved = true;
+        // Free of accumulated round-off, for the pins in motion too.
+        motion.state.t = self.lengths.advance();
+        model.place_pins(motion.state.t, &mut motion.state.x);
+        let totals = &mut *self.totals;
+        if model.has_driven_potentials() {
+            let ends = [&before.state, &motion.state].map(|s| (s.t, &s.x[..]));
+            totals.work += model.potential_work(&motion.memories, ends[0], ends[1]);
+        }
+        totals.substeps += 1;
+        totals.residual = totals.residual.max(step.residual);
+        totals.outcome = totals.outcome.max(step.outcome);
+        totals.work += exchange.work + exchange.driven;
+        totals.friction += exchange.friction;
+        let dissipated = damp(model, &mut motion.state, h);
+        totals.dissipated += dissipated;
+        motion.account.spend(dissipated);
+        let settled = model.settle(&motion.state, &mut motion.memories);
+        totals.plastic += settled.dissipated;
+        totals.work += settled.work;
+        if self.proposer == Proposer::Fallback {
+            // What the fallback remembers means nothing to the method that was asked for.
+            motion.history.previous = None;
+            motion.history.multipliers.clear();
+            totals.outcome = totals.outcome.max(StepOutcome::Fallback);
+        }
+        let (t, factorisations) = (motion.state.t, totals.effort.spent());
+        totals.effort.trace(|| TraceEvent::Accepted {
+            t,
+            h,
+            factorisations,
+        });
+        totals.effort.begin(self.limit);
+        (self.memory, self.proposer) = (Memory::All, Proposer::Method);
+        Ok(())
+    }
+}
+
+/// The fallback of a step control.
+fn fallback(
+    model: &SheetModel,
+    control: &StepControl,
+    tuning: &Tuning,
+) -> Result<Option<Box<dyn Integrator>>, SimulationError> {
+    Ok(match &control.fallback {
+        Fallback::ImplicitEuler(o) => {
+            let formula = Formula::OneStep;
+            Some(Box::new(Implicit::new(formula, model, o.clone(), tuning)?))
+        }
+        Fallback::Refuse => None,
+    })
+}
+
+/// Refuses a state whose energy is not finite.
+fn check_energy(model: &SheetModel, memories: &Memories, state: &State) -> Result<(), StepError> {
+    let value = model.kinetic_energy(&state.v) + model.energy_with(memories, state.t, &state.x);
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(StepError::NonFiniteEnergy {
+        quantity: "the energy",
+        value,
+        t: state.t,
+    })
+}
+
+/// Sum of the magnitudes of the components of the conservative forces, newtons.
+fn force_sum(model: &SheetModel, memories: &Memories, state: &State) -> f64 {
+    let mut force = vec![0.0; state.x.len()];
+    model.acting_force(memories, state.t, &state.x, &mut force);
+    force.iter().map(|f| f.abs()).sum()
+}
+
+/// Applies velocity damping over a step; returns the energy taken out.
+fn damp(model: &SheetModel, state: &mut State, h: f64) -> f64 {
+    if model.damping() == 0.0 {
+        return 0.0;
+    }
+    let before = model.kinetic_energy(&state.v);
+    let factor = (-model.damping() * h).exp();
+    state.v.iter_mut().for_each(|v| *v *= factor);
+    before * (1.0 - factor * factor)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,11 @@
+//! What steps tell: reports, errors, traces, and the effort that they took.
+
+pub(crate) mod chart_error;
+pub(crate) mod checkpoint_error;
+pub(crate) mod effort;
+pub(crate) mod infeasibility;
+pub(crate) mod pressing;
+pub(crate) mod reason;
+pub(crate) mod simulation_error;
+pub(crate) mod step_error;
+pub(crate) mod trace;

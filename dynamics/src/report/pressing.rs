@@ -1,0 +1,31 @@
+//! What presses the sheet where no step is found.
+
+use isosheet_mesh::VertexId;
+use isosheet_mesh::wording::{brief, listed};
+use std::fmt;
+
+/// A body that moves against the resistance of the sheet.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Pressing {
+    /// Its number.
+    pub body: usize,
+    /// The sum of its normal forces on the sheet at the last accepted state, newtons.
+    pub force: f64,
+    /// The vertices that it touches, those with the largest forces first.
+    pub vertices: Vec<VertexId>,
+    /// The other bodies that the sheet touches.
+    pub against: Vec<usize>,
+}
+
+impl fmt::Display for Pressing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let force = brief(self.force);
+        write!(f, "body {} presses the sheet with {force} N", self.body)?;
+        for (k, other) in self.against.iter().enumerate() {
+            let link = if k == 0 { "against body" } else { "and body" };
+            write!(f, " {link} {other}")?;
+        }
+        write!(f, " at {}", listed(&self.vertices))
+    }
+}

@@ -1,0 +1,82 @@
+//! Errors of the start of a simulation.
+
+use crate::contact::ContactError;
+use crate::options::OptionsError;
+use crate::report::chart_error::ChartDynamicsError;
+use crate::report::checkpoint_error::CheckpointError;
+use crate::report::step_error::StepError;
+use isosheet_coords::linalg::LinalgError;
+use isosheet_mesh::Advice;
+
+/// Errors of the start of a simulation.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// An option is out of range.
+    #[error(transparent)]
+    Options(#[from] OptionsError),
+    /// The state does not have three values per vertex of the model.
+    #[error(
+        "the state has {positions} position and {velocities} velocity values, the sheet needs \
+         {expected} of each"
+    )]
+    StateLength {
+        /// Number of position values.
+        positions: usize,
+        /// Number of velocity values.
+        velocities: usize,
+        /// Three per vertex.
+        expected: usize,
+    },
+    /// The start state is invalid.
+    #[error(transparent)]
+    Start(#[from] StepError),
+    /// Linear algebra failed.
+    #[error(transparent)]
+    Linalg(#[from] LinalgError),
+    /// The chart is invalid.
+    #[error(transparent)]
+    Chart(#[from] ChartDynamicsError),
+    /// The start state is in contact, or the method does not support contact.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// Conservative methods do not support one-sided constraints.
+    #[error(
+        "vertex constraint {index} is one-sided, which the conservative methods have no place for \
+         (an impact loses energy)"
+    )]
+    OneSided {
+        /// Index in the order of addition.
+        index: usize,
+    },
+    /// The method does not support elastic sheets.
+    #[error("the sheet has no rigid rods (it is elastic), and the method needs them")]
+    Elastic,
+    /// The method does not support plastic deformations.
+    #[error(
+        "the sheet yields (its bends or creases stay), and the method has no place for what yielding loses"
+    )]
+    Plastic,
+    /// The checkpoint is invalid or of another model.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// Charts do not use [`StepControl`](crate::StepControl).
+    #[error("a simulation in a chart controls its steps by `ChartOptions::control`")]
+    ChartControl,
+}
+
+impl Advice for SimulationError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Options(error) => error.advice(),
+            Self::Start(error) => error.advice(),
+            Self::Chart(error) => error.advice(),
+            Self::Contact(error) => error.advice(),
+            Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
+            Self::Elastic | Self::Plastic => Some("use BDF2 or implicit Euler"),
+            Self::Checkpoint(error) => error.advice(),
+            Self::ChartControl => Some("leave `StepControl` out"),
+            Self::StateLength { .. } | Self::Linalg(..) => None,
+        }
+    }
+}

@@ -1,0 +1,466 @@
+//! Reports and errors of steps.
+
+use crate::contact::BodyMotionError;
+use crate::model::support::Support;
+use crate::report::chart_error::ChartDynamicsError;
+use crate::report::effort::SolverEffort;
+use crate::report::infeasibility::Infeasibility;
+use crate::report::pressing::Pressing;
+use crate::report::reason::Reason;
+use isosheet_coords::linalg::LinalgError;
+use isosheet_mesh::wording::{brief, counted, given, listed};
+use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
+
+/// The solver that the hardest sub-step needed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum StepOutcome {
+    /// Newton's method with full steps.
+    Newton,
+    /// Newton's method with a line search or a modified, positive definite Hessian.
+    Globalised,
+    /// As `Globalised`, after a seeded perturbation at a saddle point.
+    BranchSeeded,
+    /// Implicit Euler, after the chosen integrator had rejected every sub-step.
+    Fallback,
+    /// An explicit step in a chart.
+    Chart,
+    /// As `Chart`, with a change of the reference state of the chart.
+    Rebased,
+}
+
+/// Result of one call of [`Simulation::step`](crate::Simulation::step).
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct StepReport {
+    /// Time at the end of the step, seconds.
+    pub t: f64,
+    /// Length of the step, seconds.
+    pub h: f64,
+    /// Accepted sub-steps.
+    pub substeps: usize,
+    /// Rejected sub-steps.
+    pub rejected: usize,
+    /// Newton iterations, with those of rejected sub-steps.
+    pub iterations: usize,
+    /// Matrix factorisations, with those of rejected sub-steps.
+    pub factorisations: usize,
+    /// Largest relative residual over the sub-steps: for conservative methods the largest unbalanced
+    /// acceleration over the largest acceleration; for BDF2 and implicit Euler the Newton decrement before
+    /// the last iteration, as the root of its energy over the inertia term; for projection the length rates
+    /// over the speed.
+    pub residual: f64,
+    /// Kinetic energy at the end, joules.
+    pub kinetic: f64,
+    /// Potential energy at the end, contact included, joules.
+    pub potential: f64,
+    /// Work since the start, joules, of non-conservative forces, air, moving bodies and supports, and
+    /// [driven](crate::Potential::is_driven) potentials.
+    pub work: f64,
+    /// Energy dissipated by velocity damping since the start, joules.
+    pub dissipated: f64,
+    /// Energy lost to friction, in charts to impacts, since the start, joules.
+    pub friction: f64,
+    /// Energy dissipated by plastic bending ([`Yield`](crate::Yield)) since the start, joules.
+    pub plastic: f64,
+    /// Energy error `T + V - work + dissipated + friction + plastic` relative to its value at the start,
+    /// joules.
+    pub energy_drift: f64,
+    /// Largest relative edge length error at the end.
+    pub strain: f64,
+    /// Largest violation of the constraints of isometry at the end
+    /// ([`SheetModel::constrained_strain`](crate::SheetModel::constrained_strain)): the edge strain of rods,
+    /// zero for elastic sheets.
+    pub constrained_strain: f64,
+    /// Smallest gap at the end, metres; `None` without contact.
+    pub gap: Option<f64>,
+    /// Largest distance of a vertex from its constraint at the end, metres; `None` without constraints.
+    pub violation: Option<f64>,
+    /// What asks for too much where the step stopped at a taut state
+    /// ([`Unsatisfiable`](crate::Unsatisfiable)).
+    pub taut: Option<Infeasibility>,
+    /// The solver that the hardest sub-step needed.
+    pub outcome: StepOutcome,
+}
+
+impl StepReport {
+    /// Total energy `T + V` (Liu, Tang and Joneja 2007, Eq. 17), joules.
+    pub fn hamiltonian(&self) -> f64 {
+        self.kinetic + self.potential
+    }
+}
+
+/// Errors of a step; the state is that of the last accepted sub-step.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StepError {
+    /// The step size is not positive and finite.
+    #[error("the step size is {h} s at t = {t} s", h = brief(*h), t = brief(*t))]
+    StepSize {
+        /// The step size given, seconds.
+        h: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The time of the state is not finite.
+    #[error("the time of the state is {t} s", t = brief(*t))]
+    Time {
+        /// The time given, seconds.
+        t: f64,
+    },
+    /// An energy or work is not finite.
+    #[error("{quantity} is {value} J at t = {t} s", value = brief(*value), t = brief(*t))]
+    NonFiniteEnergy {
+        /// Which one.
+        quantity: &'static str,
+        /// Its value, joules.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The projection onto the rest lengths did not converge.
+    #[error(
+        "no positions with the rest lengths were found near the ones given: the best have edge \
+         strain {strain} after {iterations} iterations, {tolerance} was asked for",
+        strain = brief(*strain), tolerance = given(*tolerance)
+    )]
+    Projection {
+        /// Relative edge length error reached.
+        strain: f64,
+        /// The tolerance.
+        tolerance: f64,
+        /// Iterations done.
+        iterations: usize,
+    },
+    /// A position or velocity is not finite.
+    #[error(
+        "{vertex} has position or velocity {value} at t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
+    NonFiniteState {
+        /// The vertex.
+        vertex: VertexId,
+        /// The value found.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// A prescribed motion is not finite.
+    #[error(
+        "the prescribed motion of {support} gives {value} at t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
+    NonFiniteMotion {
+        /// What moves.
+        support: Support,
+        /// A coordinate, metres.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The prescribed motion of a body is not finite.
+    #[error(transparent)]
+    Body(#[from] BodyMotionError),
+    /// A vertex of the start state is off its support.
+    #[error(
+        "{support} is {distance} m away from its vertex at t = {t} s",
+        distance = brief(*distance), t = brief(*t)
+    )]
+    OffSupport {
+        /// The support.
+        support: Support,
+        /// The distance, metres.
+        distance: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// A potential or force is not finite.
+    #[error(
+        "a potential or force is {value} at {vertex}, t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
+    NonFiniteForce {
+        /// The vertex.
+        vertex: VertexId,
+        /// The value found.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// An edge of the start state is off its rest length.
+    #[error(
+        "{edge} of {rest} m is {} at t = {t} s",
+        off_by(length - rest), rest = brief(*rest), t = brief(*t)
+    )]
+    OffConstraints {
+        /// The worst edge.
+        edge: EdgeId,
+        /// Its length, metres.
+        length: f64,
+        /// Its rest length, metres.
+        rest: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The start state exceeds the strain limit of the elastic sheet.
+    #[error(
+        "{face} has the strain {strain} at t = {t} s, and the limit of the elastic sheet is {limit}",
+        strain = brief(*strain), limit = given(*limit), t = brief(*t)
+    )]
+    BeyondStrainLimit {
+        /// The face with the largest strain.
+        face: FaceId,
+        /// The norm of its strain ([`ElasticSheet`](crate::ElasticSheet)).
+        strain: f64,
+        /// The limit.
+        limit: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// Newton's method did not converge.
+    #[error(
+        "Newton's method stopped at residual {residual}, edge strain {strain} after {iterations} \
+         iterations at t = {t} s, h = {h} s: {reason}",
+        residual = brief(*residual), strain = brief(*strain), t = brief(*t), h = brief(*h)
+    )]
+    NotConverged {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// Iterations done.
+        iterations: usize,
+        /// Relative residual of the momentum balance.
+        residual: f64,
+        /// Relative edge length error reached.
+        strain: f64,
+        /// Why.
+        reason: Reason,
+    },
+    /// A step of a damped method gains energy.
+    #[error(
+        "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
+         compression snap through faster than the step resolves",
+        h = brief(*h), t = brief(*t), gain = brief(*gain), kinetic = brief(*kinetic)
+    )]
+    EnergyGain {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// Energy created, joules.
+        gain: f64,
+        /// Kinetic energy at the end of the step, joules.
+        kinetic: f64,
+    },
+    /// Friction in a step belongs to other normal forces than those at its end.
+    #[error(
+        "friction takes {lost} J in a step of {h} s at t = {t} s, and {settled} J by the normal forces at its \
+         end: the two do not settle, as in a jam",
+        h = brief(*h), t = brief(*t), lost = brief(*lost), settled = brief(*settled)
+    )]
+    Friction {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// Energy lost to friction, joules.
+        lost: f64,
+        /// The same by the normal forces at the end, joules.
+        settled: f64,
+    },
+    /// A step ends in contact.
+    #[error(
+        "a step of {h} s at t = {t} s would close the smallest gap to {gap} m",
+        h = brief(*h), t = brief(*t), gap = brief(*gap)
+    )]
+    Contact {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// The gap, metres.
+        gap: f64,
+    },
+    /// The length constraints are linearly dependent, or nearly so.
+    #[error(
+        "the length constraints are dependent or nearly so at t = {t} s ({rank_deficiency} \
+         redundant, smallest singular value of the rigidity matrix with unit rods \
+         {smallest_singular_value}): this integrator has no unique rod forces there",
+        t = brief(*t), smallest_singular_value = brief(*smallest_singular_value)
+    )]
+    RankDeficient {
+        /// Time, seconds.
+        t: f64,
+        /// Number of dependent constraints.
+        rank_deficiency: usize,
+        /// Smallest singular value of the rigidity matrix of unit rods; zero if it has more rows than
+        /// columns.
+        smallest_singular_value: f64,
+    },
+    /// Moving supports or bodies ask for more than the lengths or the limit of the strain allow.
+    #[error("{infeasibility} (the state at t = {t} s is kept)", t = brief(*t))]
+    Unsatisfiable {
+        /// Time of the last state, seconds.
+        t: f64,
+        /// What asks, for how much and when.
+        infeasibility: Box<Infeasibility>,
+    },
+    /// The smallest sub-step was rejected.
+    #[error(
+        "no step of at least {min_step} s was accepted at t = {t} s{}; last reason: {cause}",
+        pressing.as_ref().map(|pressing| format!(", where {pressing}")).unwrap_or_default(),
+        min_step = brief(*min_step), t = brief(*t)
+    )]
+    StepTooSmall {
+        /// Time, seconds.
+        t: f64,
+        /// Smallest step allowed, seconds.
+        min_step: f64,
+        /// The body that presses the sheet there, if one does.
+        pressing: Option<Box<Pressing>>,
+        /// Why the last step was rejected.
+        cause: Box<StepError>,
+    },
+    /// The rods block the motion, or are dependent while supports and bodies rest.
+    #[error(
+        "the sheet locks at t = {t} s: no motion was found with {}, and the rods at {} depend on each other \
+         (a sheet of rods folds along lines of edges only)",
+        counted(*.factorisations, "factorisation", "factorisations"), listed(.vertices),
+        t = brief(*t)
+    )]
+    Locked {
+        /// Time of the last accepted sub-step, seconds.
+        t: f64,
+        /// Factorisations since then.
+        factorisations: usize,
+        /// Free vertices at the dependent rods.
+        vertices: Vec<VertexId>,
+    },
+    /// The watch of [`Simulation::step_watched`](crate::Simulation::step_watched) ended the step.
+    #[error("the step was interrupted after t = {t} s", t = brief(*t))]
+    Interrupted {
+        /// Time of the last accepted sub-step, seconds.
+        t: f64,
+    },
+    /// Motion in a chart failed.
+    #[error("at t = {t} s: {source}", t = brief(*t))]
+    Chart {
+        /// Time, seconds.
+        t: f64,
+        /// The reason.
+        source: Box<ChartDynamicsError>,
+    },
+    /// The linear algebra failed.
+    #[error("linear solve failed at t = {t} s: {source}", t = brief(*t))]
+    Linalg {
+        /// Time, seconds.
+        t: f64,
+        /// The reason.
+        source: LinalgError,
+    },
+}
+
+impl Advice for StepError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::StepSize { .. } => Some("give a positive finite step"),
+            Self::Time { .. } => Some("start at a finite time"),
+            Self::NonFiniteEnergy { .. } => Some("check the user-supplied potentials and forces"),
+            Self::Projection { .. } => {
+                Some("start closer to the rest lengths or raise the tolerance")
+            }
+            Self::NonFiniteState { .. } => Some("set finite positions and velocities"),
+            Self::NonFiniteMotion { .. } => Some("check the function"),
+            Self::Body(error) => error.advice(),
+            Self::OffSupport { .. } => Some("start with the vertex in place"),
+            Self::NonFiniteForce { .. } => Some("check the user-supplied functions"),
+            Self::OffConstraints { .. } => {
+                Some("start from a state on the constraints (see `project_positions`)")
+            }
+            Self::BeyondStrainLimit { .. } => {
+                Some("start from a shape that is stretched less, or raise the limit of the strain")
+            }
+            Self::NotConverged { .. }
+            | Self::EnergyGain { .. }
+            | Self::Friction { .. }
+            | Self::Contact { .. } => Some("take a smaller step"),
+            Self::RankDeficient { .. } => Some(
+                "start from a folded state, displace the sheet with `leave_flat`, allow a `Fallback`, or use \
+                 BDF2",
+            ),
+            Self::Unsatisfiable { .. } => {
+                Some("stop the motion before that, or allow `Unsatisfiable::StopTaut`")
+            }
+            Self::StepTooSmall { cause, .. } => cause.advice(),
+            Self::Locked { .. } => Some(
+                "give the sheet the stiffness of its material (`SheetModel::with_elastic_sheet`), make a mesh \
+                 with a line of edges along each clamp, or allow more \
+                 `StepControl::max_factorisations`",
+            ),
+            Self::Interrupted { .. } => {
+                Some("the state is that of the last accepted sub-step: step on from there")
+            }
+            Self::Chart { source, .. } => source.advice(),
+            Self::Linalg { .. } => None,
+        }
+    }
+}
+
+/// What was done on the way to the end of a step, kept also if the step fails half-way.
+#[derive(Debug)]
+pub(crate) struct StepTotals<'w> {
+    pub(crate) substeps: usize,
+    pub(crate) rejected: usize,
+    pub(crate) effort: SolverEffort<'w>,
+    pub(crate) residual: f64,
+    pub(crate) outcome: StepOutcome,
+    pub(crate) work: f64,
+    pub(crate) dissipated: f64,
+    pub(crate) friction: f64,
+    pub(crate) plastic: f64,
+    pub(crate) taut: Option<Infeasibility>,
+}
+
+impl Default for StepTotals<'_> {
+    fn default() -> Self {
+        Self {
+            substeps: 0,
+            rejected: 0,
+            effort: SolverEffort::default(),
+            residual: 0.0,
+            outcome: StepOutcome::Newton,
+            work: 0.0,
+            dissipated: 0.0,
+            friction: 0.0,
+            plastic: 0.0,
+            taut: None,
+        }
+    }
+}
+
+/// The error of an iteration of a step of `h` seconds at time `t` that did not converge.
+pub(crate) fn not_converged(
+    t: f64,
+    h: f64,
+    effort: &SolverEffort<'_>,
+    reason: Reason,
+    residual: f64,
+    strain: f64,
+) -> StepError {
+    StepError::NotConverged {
+        t,
+        h,
+        iterations: effort.iterations,
+        residual,
+        strain,
+        reason,
+    }
+}
+
+/// By how much a length is off, in words.
+fn off_by(by: f64) -> String {
+    let side = if by < 0.0 { "short" } else { "long" };
+    format!("{} m too {side}", brief(by.abs()))
+}

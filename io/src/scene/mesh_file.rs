@@ -1,0 +1,210 @@
+//! The mesh files of a scene.
+
+use super::key::Key;
+use super::problem::{Checks, Problem};
+use super::unit::Unit;
+use crate::format::{
+    self, FoldFrame, FoldProblem, GltfProblem, MeshFileError, MeshFileProblem, MeshFormat,
+    MeshOptions, Polygons, SeparateBuffers, input, parse_mesh, read_mesh_with,
+};
+use isosheet_mesh::Advice;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A mesh in a file.
+///
+/// ```toml
+/// [sheet]
+/// mesh = { file = { path = "crane.fold", scale = 0.001, frame = 0 } }
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshFile {
+    /// Path of the mesh file, relative to the scene file.
+    pub path: PathBuf,
+    /// Length of one unit of the file, metres: 0.001 for a file in millimetres.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// The axis of the file that points upwards; it becomes z.
+    #[serde(default)]
+    pub up: UpAxis,
+    /// What to do with faces of more than three corners.
+    #[serde(default)]
+    pub polygons: PolygonFaces,
+    /// Of a FOLD file: the frame whose vertices are taken, by its number from 0 or by its title; if left out,
+    /// the first one with vertices. Frame 0 is the key frame of the file. One file can give the flat crease
+    /// pattern to `sheet.mesh` and a folded form of it to `sheet.start.file`.
+    #[serde(default)]
+    pub frame: Option<FoldFrame>,
+    /// Of a glTF file: the name of the mesh that is taken; if left out, all meshes that its scene shows, each
+    /// where its nodes place it.
+    #[serde(default)]
+    pub mesh: Option<String>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// The axis of a file that points upwards.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum UpAxis {
+    /// z: coordinates are used as they are.
+    #[default]
+    Z,
+    /// y: (x, y, z) becomes (x, -z, y).
+    Y,
+}
+
+/// What to do with faces of more than three corners.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PolygonFaces {
+    /// Refuse the file: new diagonals are new lines along which the sheet can fold.
+    #[default]
+    Refuse,
+    /// Cut them into triangles.
+    Triangulate,
+}
+
+impl MeshFile {
+    /// A file in metres with z upwards.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self {
+            path: path.into(),
+            scale: 1.0,
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.positive(key.name("scale"), self.scale, Unit::Metre);
+        if self.path.as_os_str().is_empty() {
+            checks.report(key.name("path"), "the path is empty", "name a mesh file");
+        }
+    }
+
+    fn options(&self) -> MeshOptions {
+        MeshOptions {
+            polygons: match self.polygons {
+                PolygonFaces::Refuse => Polygons::Refuse,
+                PolygonFaces::Triangulate => Polygons::Triangulate,
+            },
+            // The folder of a run keeps a copy of one file for each mesh.
+            buffers: SeparateBuffers::Refuse,
+            frame: self.frame.clone(),
+            mesh: self.mesh.clone(),
+            ..MeshOptions::default()
+        }
+    }
+
+    /// Puts a mesh as the file has it in metres and with z upwards.
+    fn place(&self, mesh: &mut format::MeshFile) {
+        for p in mesh.positions.as_chunks_mut::<3>().0 {
+            let [x, y, z] = p.map(|c| self.scale * c);
+            *p = match self.up {
+                UpAxis::Z => [x, y, z],
+                UpAxis::Y => [x, -z, y],
+            };
+        }
+    }
+}
+
+/// The mesh files of a scene. Each is read once and each mesh in it parsed once, however often the scene is
+/// built.
+#[derive(Debug, Default)]
+pub(crate) struct Files {
+    /// The folder that their paths are relative to.
+    folder: PathBuf,
+    contents: BTreeMap<PathBuf, Arc<[u8]>>,
+    meshes: Vec<(MeshFile, Arc<format::MeshFile>)>,
+}
+
+impl Files {
+    pub(crate) fn in_folder(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            ..Self::default()
+        }
+    }
+
+    /// The bytes of a file.
+    pub(crate) fn contents(&mut self, path: &Path) -> io::Result<Arc<[u8]>> {
+        if let Some(contents) = self.contents.get(path) {
+            return Ok(contents.clone());
+        }
+        let contents: Arc<[u8]> = input::read(&self.folder.join(path))?.into();
+        self.contents.insert(path.to_owned(), contents.clone());
+        Ok(contents)
+    }
+
+    /// The mesh of a file, in metres and with z upwards; `key` is the place of the file in the scene.
+    pub(crate) fn read(
+        &mut self,
+        file: &MeshFile,
+        key: &Key,
+    ) -> Result<Arc<format::MeshFile>, Problem> {
+        self.mesh(file).map_err(|e| {
+            let name = match &e.problem {
+                problem if is_about_frame(problem) => "frame",
+                MeshFileProblem::NoNames | MeshFileProblem::Gltf(GltfProblem::NoMesh { .. })
+                    if file.mesh.is_some() =>
+                {
+                    "mesh"
+                }
+                _ => "path",
+            };
+            Problem::new(key.name(name), e.to_string(), file_remedy(&e))
+        })
+    }
+
+    /// The same with the error of the reader.
+    pub(crate) fn mesh(&mut self, file: &MeshFile) -> Result<Arc<format::MeshFile>, MeshFileError> {
+        if let Some((_, mesh)) = self.meshes.iter().find(|(known, _)| known == file) {
+            return Ok(mesh.clone());
+        }
+        let (path, options) = (self.folder.join(&file.path), file.options());
+        let mut mesh = match (MeshFormat::of(&path), self.contents(&file.path)) {
+            (Some(format), Ok(contents)) => parse_mesh(&contents, format, &path, &options)?,
+            // It says what is wrong.
+            _ => read_mesh_with(&path, &options)?,
+        };
+        file.place(&mut mesh);
+        let mesh = Arc::new(mesh);
+        self.meshes.push((file.clone(), mesh.clone()));
+        Ok(mesh)
+    }
+}
+
+/// Whether a file is refused because of the frame that is asked for.
+fn is_about_frame(problem: &MeshFileProblem) -> bool {
+    matches!(
+        problem,
+        MeshFileProblem::NoFrames | MeshFileProblem::Fold(FoldProblem::Choice { .. })
+    )
+}
+
+/// What to do about a mesh file that cannot be read, in words of scenes.
+fn file_remedy(error: &MeshFileError) -> String {
+    match &error.problem {
+        MeshFileProblem::Polygon { .. } => {
+            "triangulate the file as the sheet is meant to fold, or write `polygons = \"triangulate\"` beside \
+             `path`"
+                .to_owned()
+        }
+        MeshFileProblem::Read(_) => {
+            "check the path, which is relative to the scene, and the permissions".to_owned()
+        }
+        problem if is_about_frame(problem) => problem.advice().unwrap_or_default().to_owned(),
+        problem => {
+            let advice = problem.advice().map(|advice| format!("{advice}; "));
+            let advice = advice.unwrap_or_default();
+            format!("{advice}`isosheet check` says more about a mesh file")
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The page of all materials with their sources, made of the catalogue.
+
+use isosheet_dynamics::Material;
+use isosheet_mesh::wording::brief;
+
+const INTRODUCTION: &str = "\
+# Materials
+
+A scene names what its sheet is made of:
+
+```toml
+version = 1
+
+[sheet]
+mesh = { rectangle = { width = 0.21, height = 0.03, columns = 28, rows = 4 } }
+material = \"office paper\"
+```
+
+The name gives mass, membrane stiffness, flexural rigidity, Poisson's ratio and the largest strain, and
+makes the sheet elastic; keys beside it, such as `density` or `bending`, replace what it gives. `isometry =
+\"rods\"` beside it makes the sheet one of rigid rods with mass and bending stiffness of the material.
+`isosheet check` prints the numbers. For a metal or film that is not in the table, `material = { youngs =
+2.1e11, thickness = 5e-4, density = 7850, poisson = 0.3 }` computes them: mass `density thickness`, membrane
+stiffness `E h = youngs thickness` and rigidity `D = youngs thickness^3 / (12 (1 - poisson^2))`.
+
+In Rust, `Material::named(\"office paper\")` and `Material::office_paper()` are the same numbers, and
+`Material::isotropic` computes those of a plate.
+
+**Know before use.** The numbers of metals and films are good to a few per cent for the thickness given,
+which is a common one. Those of paper, cloth and leather are typical: sorts differ by a factor of two, paper
+is about twice as stiff along the direction in which it was made as across, and its stiffness falls with
+moisture. All materials are modelled as isotropic; woven cloth, which is many times softer in shear than
+along its yarns, wraps round bodies more easily than its model. The rigidity of office paper, card, cloth
+and leather is that of bending tests and no function of thickness, as their fibres move against one another;
+that of the other papers is eight to nine tenths of a plate's. The sources say what is typical or assumed.
+The strain limit is not where a material yields or tears. It is a bound that keeps strain invisible where a
+mesh is too coarse for its bends.
+
+Materials with a moment `M_y` yield in bending where a scene asks for it by `sheet.yield = {}`: bends beyond the
+curvature `M_y / D` stay, and spring back by that curvature. `H` is the hardening. (The page \"The theory\" has the
+formulas.) The yield differs more than all other numbers: that of a metal by its alloy and temper. `yield = { moment =
+..., hardening = ... }` replaces it, and `yield_stress` among the numbers of a material computes it, `M_y =
+yield_stress thickness^2 / 4`. `M_y` is the moment of a section that has yielded in the whole of its thickness; with
+`yield = { layers = 4 }` bends stay from two thirds of it on, as in a section that yields from its faces inwards.
+
+";
+
+/// The page of all materials in Markdown: a table of the numbers, and their sources.
+pub(super) fn page() -> String {
+    let mut page = String::from(INTRODUCTION);
+    page.push_str(
+        "| name | sheet | mass, kg/m2 | `E h`, N/m | `D`, N m | Poisson's ratio | largest strain, % | `M_y`, N m/m | `H`, N m |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    for named in Material::catalogue() {
+        let m = named.material;
+        let [moment, hardening] = match m.yields {
+            Some(yields) => [yields.moment, yields.hardening].map(|value| brief(value).to_string()),
+            None => [String::new(), String::new()],
+        };
+        page.push_str(&format!(
+            "| `{}` | {} | {} | {} | {} | {} | {} | {moment} | {hardening} |\n",
+            named.name,
+            named.form,
+            brief(m.density),
+            brief(m.stiffness),
+            brief(m.rigidity),
+            brief(m.poisson),
+            brief(100.0 * m.strain_limit)
+        ));
+    }
+    page.push_str("\n## Sources\n\n");
+    for named in Material::catalogue() {
+        page.push_str(&format!("- **{}**: {}\n", named.name, named.source));
+    }
+    page.push_str(
+        "\nOne gf cm2/cm, the unit of bending rigidity of the instruments of Kawabata, is 9.8e-5 N m; 500 gf/cm are \
+         490 N/m. This page is made of the catalogue in `dynamics/src/material/`.\n",
+    );
+    page
+}
