@@ -6,7 +6,6 @@ pub(crate) mod elastic_sheet;
 pub(crate) mod glue;
 pub(crate) mod plasticity;
 pub(crate) mod plate_bending;
-pub(crate) mod sheet_of_material;
 #[cfg(test)]
 mod tests;
 

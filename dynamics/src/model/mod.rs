@@ -11,6 +11,7 @@ pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;
 mod memory;
+pub(crate) mod of_material;
 pub(crate) mod part;
 pub(crate) mod round_off;
 pub(crate) mod support;

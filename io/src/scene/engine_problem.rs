@@ -289,7 +289,8 @@ fn remedy_of(reason: Reason) -> (Key, &'static str) {
             root.name("sheet"),
             "sizes differ too much for the arithmetic: check masses, stiffnesses and lengths for their units",
         ),
-        Reason::Iterations | Reason::AboveStart | Reason::Ended => (
+        // Iterations, a minimum above the start, an attempt that was ended.
+        _ => (
             root.name("method"),
             "take a smaller `method.step` or more `sheet.damping`; where the sheet starts exactly flat, \
              `sheet.start.perturbation` says to which side it goes",
@@ -332,8 +333,8 @@ fn of_contact(error: &ContactError) -> Problem {
             ),
             "open the sheet there, give it less `sheet.thickness`, or leave out self-contact",
         ),
-        ContactError::Barrier(_) => Problem::from_error(root.name("contact"), error),
         ContactError::Method => Problem::from_error(root.name("method.integrator"), error),
-        ContactError::Sheet { .. } => Problem::from_error(root.name("contact"), error),
+        // The barrier, or another sheet.
+        _ => Problem::from_error(root.name("contact"), error),
     }
 }

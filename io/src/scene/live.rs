@@ -249,7 +249,7 @@ impl LiveScene {
         let mut setup = scene.build_with(&mut self.kept)?;
         let facts = setup.facts();
         if let Some(hand) = &hand {
-            setup.model = setup.model.with_potential(hand.clone());
+            setup.model = setup.model.with_hand(hand.clone());
         }
         let resumed = setup.resume_changed(self.simulation.checkpoint())?;
         let changed = resumed.changed_from(&self.simulation);

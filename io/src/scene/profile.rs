@@ -272,7 +272,7 @@ impl Profile {
             ProfileError::Keyframe { index, .. } | ProfileError::Order { index, .. } => {
                 place = place.name("keys").entry(index);
             }
-            ProfileError::NotFinite { .. } => {}
+            _ => {}
         }
         let message = format!("the profile `{key}` cannot be used: {error}");
         checks.problems.push(super::Problem {

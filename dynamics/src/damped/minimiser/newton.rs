@@ -461,7 +461,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// Lags friction anew at the iterate, unless it has settled or been renewed too often; whether it was
     /// renewed.
     ///
-    /// In programming friction follows after every full step, not only where the minimisation with lagged
+    /// In SQP friction follows after every full step, not only where the minimisation with lagged
     /// friction has converged: sheets of 289 vertices on a table need three quarters of the factorisations.
     /// In rounds, which begin far from the minimum, a flat sheet between closing plates would use all
     /// iterations.

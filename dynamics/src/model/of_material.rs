@@ -1,9 +1,9 @@
 //! The model of a sheet that is of one material.
 
-use super::Material;
-use super::elastic_sheet::ElasticSheetError;
-use super::plasticity::Yield;
-use super::plate_bending::{PlateBending, PlateBendingError};
+use crate::material::Material;
+use crate::material::elastic_sheet::ElasticSheetError;
+use crate::material::plasticity::Yield;
+use crate::material::plate_bending::{PlateBending, PlateBendingError};
 use crate::options::OptionsError;
 use crate::{Isometry, ModelError, SheetModel};
 use isosheet_mesh::{Advice, EdgeId, MassKind, MassMatrix, Sheet, VertexId};
