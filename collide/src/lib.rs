@@ -13,19 +13,15 @@
 //! A sheet falls on a table and rests with every gap open:
 //!
 //! ```
-//! use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+//! use isosheet_collide::{Coefficients, Contacts, Obstacle, Shape};
 //! use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 //! use isosheet_mesh::{MassKind, generate};
-//! use nalgebra::Isometry3;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let sheet = generate::isotropic_square(1, 1.0)?;
 //! let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)?.with_gravity();
-//! let table = Shape::Cuboid { half: [0.25, 0.25, 0.1] };
-//! let pose = Isometry3::translation(0.5, 0.5, -0.101);
-//! let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?
-//!     .with_body(Obstacle::fixed(table, pose)?, Coefficients::equal(0.3))?
-//!     .with_self_contact(Coefficients::FRICTIONLESS)?;
+//! let table = Obstacle::at(Shape::Cuboid { half: [0.25, 0.25, 0.1] }, [0.5, 0.5, -0.101])?;
+//! let contacts = Contacts::for_sheet(&model, [table], Coefficients::equal(0.3))?;
 //! let start = State::at_rest(sheet.positions().to_vec());
 //! let mut simulation = Simulation::new(model, start, Method::default())?.with_contact(contacts)?;
 //! for _ in 0..30 {
@@ -33,7 +29,7 @@
 //!     assert!(report.gap.is_some_and(|gap| gap > 0.0));
 //! }
 //! // It hangs over the edges; the table carries part of its weight.
-//! assert!(simulation.body_loads()[0].force.z < 0.0);
+//! assert!(simulation.obstacle_forces()[0][2] < 0.0);
 //! # Ok(())
 //! # }
 //! ```

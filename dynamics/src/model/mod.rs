@@ -152,7 +152,8 @@ impl SheetModel {
     /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see
     /// [`ElasticSheet`].
     ///
-    /// For BDF2 and implicit Euler; other methods and charts are refused.
+    /// For BDF2 and implicit Euler; other methods and charts are refused. [`SheetModel::of_material`] does this
+    /// and all else that a material needs; by hand:
     ///
     /// ```
     /// use isosheet_dynamics::{ElasticSheet, Method, PlateBending, SheetModel, Simulation, State};
