@@ -159,9 +159,11 @@ impl Term for Acting {
         out: &mut [f64],
     ) -> bool {
         let potentials = self.model.potentials_at(at.t, at.x, at.memories);
-        potentials.fold(false, |any, (p, here)| {
-            p.add_second_order(here, dx, scale, out) || any
-        })
+        let mut any = false;
+        for (p, here) in potentials {
+            any |= p.add_second_order(here, dx, scale, out);
+        }
+        any
     }
 
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {

@@ -245,9 +245,11 @@ impl Objective {
         scale: f64,
         out: &mut [f64],
     ) -> bool {
-        self.barriers().fold(false, |any, term| {
-            term.add_correction(at, dx, scale, out) || any
-        })
+        let mut any = false;
+        for term in self.barriers() {
+            any |= term.add_correction(at, dx, scale, out);
+        }
+        any
     }
 
     /// Adds what displacements of second order take back; whether there is any.
@@ -258,9 +260,11 @@ impl Objective {
         scale: f64,
         out: &mut [f64],
     ) -> bool {
-        self.terms().fold(false, |any, term| {
-            term.add_second_order(at, dx, scale, out) || any
-        })
+        let mut any = false;
+        for term in self.terms() {
+            any |= term.add_second_order(at, dx, scale, out);
+        }
+        any
     }
 
     /// How far prescribed motions of terms have gone on, from 0 to 1.
@@ -275,8 +279,11 @@ impl Objective {
 
     /// Brings what lags to the iterate; whether it had changed by more than `settled`.
     pub(crate) fn renew(&mut self, at: Iterate<'_>, settled: f64) -> bool {
-        self.terms()
-            .fold(false, |any, term| term.renew(at, settled) || any)
+        let mut any = false;
+        for term in self.terms() {
+            any |= term.renew(at, settled);
+        }
+        any
     }
 
     /// Number of contacts that are active.

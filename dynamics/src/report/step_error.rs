@@ -14,7 +14,6 @@ use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
 /// The solver that the hardest sub-step needed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-#[non_exhaustive]
 pub enum StepOutcome {
     /// Newton's method with full steps.
     Newton,
