@@ -22,7 +22,7 @@ use crate::{ImplicitOptions, SheetModel};
 use isosheet_coords::linalg::LinalgError;
 use lagrangian::{Merit, OPERATIONS};
 use newton::{Failure, Minimum, Newton};
-use phase::{Multipliers, Phase};
+use phase::{Faces, Multipliers, Phase};
 use problem::StepProblem;
 use workspace::Workspace;
 
@@ -36,6 +36,7 @@ use workspace::Workspace;
 /// bodies in motion start where they were and advance with the iterates.
 pub(crate) struct Minimiser {
     work: Workspace,
+    faces: Faces,
     /// The arrays of [`StepStart`]: `y`, the prediction, and where the velocities lead.
     ///
     /// [`StepStart`]: crate::term::StepStart
@@ -51,6 +52,7 @@ impl Minimiser {
         let n = model.coordinate_count();
         Ok(Self {
             work: Workspace::new(model, options, *tuning)?,
+            faces: Faces::of(model, tuning),
             start: [(); 3].map(|()| vec![0.0; n]),
         })
     }
@@ -129,7 +131,7 @@ impl Minimiser {
         self.work.lagrangian.begin(problem)?;
         let is_driven = self.work.lagrangian.is_driven(problem) || problem.model.has_drives();
         let bound = (!is_driven).then(|| self.work.lagrangian.merit(problem));
-        let phases = Phase::table(problem, &self.work.options, &self.work.tuning);
+        let phases = Phase::table(problem, self.faces, &self.work.options, &self.work.tuning);
         let mut found = Err(Failure {
             reason: Reason::Iterations,
             residual: f64::INFINITY,

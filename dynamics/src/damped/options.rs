@@ -20,10 +20,11 @@ pub struct ImplicitOptions {
     /// Largest number of Newton iterations per solver phase, a quarter of it in the first phase with contact;
     /// counted anew in each round of the augmented Lagrangian and of lagged friction. Default 80.
     pub max_iterations: usize,
-    /// Largest number of iterations per projection onto the lengths. Default 400.
+    /// Largest number of iterations per projection onto the lengths, in SQP a quarter of `max_iterations` at most.
+    /// Default 400.
     pub max_projections: usize,
     /// Largest change of a normal force between the last two updates of lagged friction, relative to the
-    /// largest normal force. Default 1e-3; its root in the augmented Lagrangian.
+    /// largest normal force. Default 1e-3; at least 0.05 in the augmented Lagrangian.
     pub friction_tolerance: f64,
     /// Largest number of updates of lagged friction per sub-step. Default 5.
     pub max_friction_updates: usize,

@@ -411,7 +411,6 @@ impl Substeps<'_, '_> {
             fallback,
             motion,
             proposal,
-            tuning,
             ..
         } = &mut *self.engine;
         let t = motion.state.t + h;
@@ -457,7 +456,7 @@ impl Substeps<'_, '_> {
                 let force = || force_sum(model, &motion.memories, after);
                 motion
                     .account
-                    .after(model, [before, after], potential, force, &exchange, tuning)?
+                    .after(model, [before, after], potential, force, &exchange)?
             }
             false => {
                 check_energy(model, &motion.memories, after)?;

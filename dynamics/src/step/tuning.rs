@@ -45,10 +45,11 @@ pub struct Constant {
 }
 
 tuning! {
-    /// `max_iterations` over this is the largest number of iterations of SQP in contact, 20 by default: a
-    /// draping sheet needs three to six, an impact more where contact cuts them. With 2 and 8 a stamped sheet
-    /// needs 1.2 and 2.3 times the factorisations.
-    contact_iteration_share = 4.0,
+    /// `max_iterations` over this is the largest number of iterations of SQP in contact and of a restoration in
+    /// SQP, 20 by default: a draping sheet needs three to six, an impact more where contact cuts them. With 2
+    /// and 8 a stamped sheet needs 1.2 and 2.3 times the factorisations; with whole restorations heavy parts
+    /// need 1.1 times.
+    iteration_share = 4.0,
     /// Edge strain that iterates of SQP may have, and largest displacement, in rod lengths, that opens a flat
     /// patch in a restoration. With 0.1 and 0.2 hanging sheets need 1.1 and 1.2 times the factorisations.
     iterate_strain = 0.03,
@@ -96,12 +97,9 @@ tuning! {
     /// tenth of it is tried as well. Strains grow with its square: with 1e-2 a sheet of 8192 triangles takes
     /// three times as many factorisations in steps of 0.25 ms; up to 512 triangles there is no difference.
     perturbation = 1e-4,
-    /// Part of the kinetic energy that a damped method may gain in one step. Compressed rods that snap
-    /// through can feed implicit methods; shorter steps do not let them.
-    gain = 0.1,
-    /// Part of the largest kinetic energy so far that all steps together may gain: second-order methods err
-    /// to either side by about that at the longest steps that resolve a motion.
-    net_gain = 0.02,
+    /// Relative change of normal forces below which friction counts as settled in the augmented Lagrangian. With
+    /// 1e-3 sheets that are stamped or fed into a corner need 1.2 times the factorisations.
+    friction_settled = 0.05,
 }
 
 impl Tuning {
@@ -109,6 +107,13 @@ impl Tuning {
     /// contact that leaves less is in the way.
     pub(crate) fn shortest_part(&self) -> f64 {
         0.5_f64.powi(self.repetitions as i32)
+    }
+
+    /// Altitude of a face, in parts `a` of its longest side, from which rods of the first stiffness `r` hold
+    /// the face. These let a length error of `l / r` through; one of the long sides moves the apex by `l / (r
+    /// a)`, which is to be less than `1e-4` of the altitude `a l`.
+    pub(crate) fn sliver(&self) -> f64 {
+        (1e4 / self.first_stiffness).sqrt()
     }
 
     /// Penalty, over the masses, that a restoration starts from.

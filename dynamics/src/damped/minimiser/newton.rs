@@ -440,6 +440,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         }
         let to = LengthGoal {
             strain: self.phase.iterate_strain,
+            max_iterations: self.phase.restorations,
             matrix: FirstMatrix::Factorised,
         };
         self.work.restore(self.problem, to, self.effort) <= to.strain
@@ -580,6 +581,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     fn restore_lengths(&mut self) -> bool {
         let to = LengthGoal {
             strain: self.work.strain_tolerance(self.problem),
+            max_iterations: self.phase.restorations,
             matrix: match self.phase.multipliers {
                 Multipliers::Solved => FirstMatrix::Factorised,
                 Multipliers::Rounds => FirstMatrix::Assembled,

@@ -3,7 +3,34 @@
 use super::problem::StepProblem;
 use crate::step::integrator::Phases;
 use crate::step::tuning::Tuning;
-use crate::{ImplicitOptions, Isometry};
+use crate::{ImplicitOptions, Isometry, SheetModel};
+use isosheet_mesh::area_from_lengths;
+
+/// What the slimmest face of a sheet allows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Faces {
+    /// Any phase first.
+    Compact,
+    /// The phase that is exact in the altitudes of slivers first. (With SQP first a triangle a million times
+    /// longer than wide errs by 4 % of its swing.)
+    Slivers,
+}
+
+impl Faces {
+    pub(super) fn of(model: &SheetModel, tuning: &Tuning) -> Self {
+        let lengths = model.rods().lengths();
+        let is_sliver = |f| {
+            let sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
+            let longest = sides.iter().fold(0.0, |longest, side| side.max(longest));
+            // (Rounded lengths of a sliver may make no triangle; its area is zero.)
+            2.0 * area_from_lengths(sides) < tuning.sliver() * longest * longest
+        };
+        match model.topology().face_ids().any(is_sliver) {
+            true => Self::Slivers,
+            false => Self::Compact,
+        }
+    }
+}
 
 /// Where a phase starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,6 +90,8 @@ pub(super) struct Phase {
     pub(super) stays_semidefinite: bool,
     /// Strain from which the restoration at the end is a small displacement.
     pub(super) small_strain: f64,
+    /// Largest number of iterations of a restoration.
+    pub(super) restorations: usize,
     pub(super) friction_tolerance: f64,
     pub(super) friction_updates: usize,
     pub(super) saddle: Saddle,
@@ -77,14 +106,17 @@ impl Phase {
     /// | augmented Lagrangian | prediction | none; by rounds | free | many loose ones in contact |
     ///
     /// Elastic sheets have no rods to solve for, and pins that move in contact stall SQP: both have the second
-    /// row alone.
+    /// row alone. Slivers begin with it without contact, with its own multipliers of the step before.
     ///
-    /// A whole step of rods in contact among bodies and supports at rest is divided early where both fail: the
-    /// second row has the iterations of the first one. (Sheets that touch while they are exactly flat take
-    /// fewer iterations in parts of the step: those of 289 vertices that fall onto a table 2000 to 3000
-    /// factorisations in half a second, and 3000 to 12 000 where whole steps go on.)
+    /// A whole step of rods among bodies and supports at rest is divided early where both fail: sheets that
+    /// buckle, or touch while they are exactly flat, take fewer iterations in its parts. In contact the second
+    /// row has the iterations of the first one (sheets of 289 vertices that fall onto a table take 2000 to
+    /// 3000 factorisations in half a second, and 3000 to 12 000 where whole steps go on); without contact it
+    /// has the restorations of the first one (a sheet of 4225 vertices that hangs for a second takes 1535
+    /// factorisations instead of 2375).
     pub(super) fn table(
         problem: &StepProblem<'_>,
+        faces: Faces,
         options: &ImplicitOptions,
         tuning: &Tuning,
     ) -> [Option<Self>; 2] {
@@ -94,10 +126,27 @@ impl Phase {
         let rounds = Self::rounds(problem, options, tuning);
         if model.isometry() != Isometry::Rods || problem.is_bounded() && model.has_drives() {
             [None, Some(rounds)]
-        } else if has_contact && problem.phases == Phases::Brief {
-            let brief = Self {
-                all_iterations: sqp.iterations,
-                ..rounds
+        } else if faces == Faces::Slivers && !has_contact {
+            // The multipliers of rounds are a start for rounds; the phase that comes first looks for saddles.
+            let remembers = true;
+            let saddle = Saddle::Ignored;
+            [
+                Some(Self {
+                    remembers,
+                    ..rounds
+                }),
+                Some(Self { saddle, ..sqp }),
+            ]
+        } else if problem.phases == Phases::Brief {
+            let brief = match has_contact {
+                true => Self {
+                    all_iterations: sqp.iterations,
+                    ..rounds
+                },
+                false => Self {
+                    restorations: sqp.restorations,
+                    ..rounds
+                },
             };
             [Some(sqp), Some(brief)]
         } else {
@@ -107,6 +156,7 @@ impl Phase {
 
     fn sqp(problem: &StepProblem<'_>, options: &ImplicitOptions, tuning: &Tuning) -> Self {
         let has_contact = problem.has_contact();
+        let share = (options.max_iterations / tuning.iteration_share as usize).max(1);
         // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that
         // mends lengths against the barrier. And the multipliers of nearly dependent rods are arbitrary from
         // step to step.
@@ -121,9 +171,10 @@ impl Phase {
                 false => options.stiffness,
             },
             iterations: match has_contact {
-                true => (options.max_iterations / tuning.contact_iteration_share as usize).max(1),
+                true => share,
                 false => options.max_iterations,
             },
+            restorations: share,
             all_iterations: usize::MAX,
             halvings: tuning.repetitions as usize,
             rounds: 1,
@@ -153,6 +204,7 @@ impl Phase {
             iterate_strain: f64::INFINITY,
             merit_penalty: options.stiffness,
             iterations: options.max_iterations,
+            restorations: options.max_projections,
             all_iterations: usize::MAX,
             halvings: f64::MANTISSA_DIGITS as usize,
             rounds: match has_contact {
@@ -164,7 +216,7 @@ impl Phase {
                 true => tuning.small_strain,
                 false => f64::INFINITY,
             },
-            friction_tolerance: options.friction_tolerance.sqrt(),
+            friction_tolerance: options.friction_tolerance.max(tuning.friction_settled),
             friction_updates: options.max_friction_updates,
             saddle: Saddle::Perturbation,
         }

@@ -30,6 +30,7 @@ pub(crate) struct Workspace {
 pub(super) struct LengthGoal {
     /// Largest strain of the isometry.
     pub(super) strain: f64,
+    pub(super) max_iterations: usize,
     pub(super) matrix: FirstMatrix,
 }
 
@@ -68,7 +69,7 @@ impl Workspace {
         let lagrangian = &mut self.lagrangian;
         let goal = RestorationGoal {
             tolerance: to.strain,
-            max_iterations: self.options.max_projections,
+            max_iterations: to.max_iterations.min(self.options.max_projections),
             may_be_far: !is_last,
             t,
             loads: &lagrangian.vertex_rows.multipliers,
