@@ -38,4 +38,6 @@ pub use mesh_file::{
 };
 pub use trajectory::{FrameData, Trajectory, TrajectoryError};
 #[cfg(feature = "run")]
-pub(crate) use trajectory::{MeshCounts, Motion, MotionError, MotionFrame, Quantity};
+pub(crate) use trajectory::{MeshCounts, MotionError, Quantity};
+#[cfg(feature = "view")]
+pub(crate) use trajectory::{Motion, MotionFrame};

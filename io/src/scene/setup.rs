@@ -32,6 +32,10 @@ pub enum Integration {
 
 /// What is known of a scene besides its simulation.
 #[derive(Clone, Debug)]
+#[cfg_attr(
+    not(feature = "run"),
+    expect(dead_code, reason = "runs read what a simulation does not need")
+)]
 pub(crate) struct Facts {
     /// The sheet in its rest shape, placed in space; the union of several.
     pub(crate) sheet: Sheet,

@@ -17,6 +17,10 @@ pub(crate) struct MotionFrame<'a> {
     /// What it has besides.
     pub(crate) data: FrameData<'a>,
     /// The values of the fields of a page, where it is shown on one.
+    #[cfg_attr(
+        not(feature = "view"),
+        expect(dead_code, reason = "pages alone read it")
+    )]
     pub(crate) fields: &'a [&'a [f64]],
 }
 
