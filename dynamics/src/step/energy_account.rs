@@ -23,6 +23,9 @@ const DRIVEN: f64 = 0.5;
 /// Relative displacement that the tolerance of the lengths, 1e-12 unless another is asked for, leaves open over
 /// ten rods in a row: over a short step it looks like a velocity, and forces do work over it.
 const LENGTH_NOISE: f64 = 1e-11;
+/// What forces of rods up to a thousand times the weight do over the tolerance of the lengths, relative to the
+/// energies and the work.
+const ENERGY_NOISE: f64 = 1e-9;
 
 /// Energy gains of the steps of a damped method, without the work of forces, bodies and supports.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -67,7 +70,7 @@ impl EnergyAccount {
         let size = norm_inf(&after.x);
         let noise = LENGTH_NOISE * size / (after.t - before.t);
         let energies = kinetic[0] + potential[0].abs() + potential[1].abs();
-        let mut round_off = LENGTH_NOISE * (energies + exchange.work.abs() + drives)
+        let mut round_off = ENERGY_NOISE * (energies + exchange.work.abs() + drives)
             + model.mass().total() * noise * noise
             + exchange.length_slack;
         let unsettled = (exchange.friction - exchange.settled_friction).abs();

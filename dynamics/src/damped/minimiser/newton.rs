@@ -44,7 +44,7 @@ enum Quality {
     Descends,
     /// No more than the tolerance: the iteration has converged.
     Converged,
-    /// No more than round-off.
+    /// No more than round-off, or than what the tolerance of the lengths leaves open.
     RoundOff,
 }
 
@@ -233,7 +233,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     fn judge(&mut self, direction: &Direction) -> Quality {
         let Direction { before, slope, .. } = direction;
         let tolerance = self.work.options.tolerance;
-        if slope.abs() <= before.round_off {
+        if slope.abs() <= before.round_off + self.noise(before) {
             self.residual = 0.0;
             return Quality::RoundOff;
         }
@@ -444,6 +444,22 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             matrix: FirstMatrix::Factorised,
         };
         self.work.restore(self.problem, to, self.effort) <= to.strain
+    }
+
+    /// Size of decreases that are noise of the lengths, besides round-off: a part of the energy `tolerance * sum
+    /// |L| l^2` that the tolerance of the lengths leaves open, whose errors have different signs. Where there
+    /// are finite multipliers the iteration has converged after some iterations, and small motions of taut
+    /// sheets are below that size; where there are none, the last decreases fall as the inverse of the number
+    /// of iterations.
+    fn noise(&self, merit: &Merit) -> f64 {
+        let tuning = &self.work.tuning;
+        let is_early = self.iterations <= tuning.repetitions as usize;
+        match self.phase.multipliers {
+            Multipliers::Solved if !is_early => {
+                tuning.contraction() * self.work.options.strain_tolerance * merit.rod_scale
+            }
+            _ => 0.0,
+        }
     }
 
     /// Whether the restoration at the end will be a small displacement, or further rounds see to that.
