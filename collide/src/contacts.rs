@@ -157,7 +157,7 @@ impl Contacts {
             laws: options.laws(),
             ccd: options.ccd(),
             mesh: ContactMesh::from_topology(model.topology()),
-            lengths2: model.rods().lengths().iter().map(|l| l * l).collect(),
+            lengths2: model.edges().lengths().iter().map(|l| l * l).collect(),
             smallest_height: smallest_height(model),
             bodies: Vec::new(),
             has_self_contact: false,

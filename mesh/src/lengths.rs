@@ -1,8 +1,8 @@
 //! The edge-length constraints and their Jacobian.
 
-use crate::Sheet;
+use crate::{EdgeId, Sheet};
 
-/// The length constraints of a sheet (Liu, Tang and Joneja 2007, Eq. 3), one per edge,
+/// The length constraints of a sheet (Liu, Tang and Joneja 2007, Eq. 3), one for each edge or for some of them,
 ///
 /// `c_e(x) = (|x_a - x_b|^2 - l_e^2) / 2,`
 ///
@@ -35,13 +35,26 @@ impl LengthConstraints {
         }
     }
 
+    /// Those of some of the edges, in this order.
+    ///
+    /// # Panics
+    /// If an edge does not exist.
+    #[must_use]
+    pub fn of_edges(&self, edges: &[EdgeId]) -> Self {
+        Self {
+            edges: edges.iter().map(|e| self.edges[e.index()]).collect(),
+            lengths: edges.iter().map(|e| self.lengths[e.index()]).collect(),
+            vertex_count: self.vertex_count,
+        }
+    }
+
     /// The number of constraints E.
     #[inline]
     pub fn len(&self) -> usize {
         self.edges.len()
     }
 
-    /// Whether there is no constraint; never so for a sheet.
+    /// Whether there is no constraint; never so for all edges of a sheet.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.edges.is_empty()

@@ -183,7 +183,7 @@ impl ContactOptions {
 /// than this to an edge or face that it does not belong to, nor are two edges without a common end,
 /// except across slits and at re-entrant corners of the outline.
 pub(super) fn smallest_height(model: &SheetModel) -> (u32, f64) {
-    let lengths = model.rods().lengths();
+    let lengths = model.edges().lengths();
     let topology = model.topology();
     let mut best = (0, f64::INFINITY);
     for (number, face) in (0..).zip(topology.face_ids()) {

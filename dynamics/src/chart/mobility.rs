@@ -147,7 +147,7 @@ impl Mobility {
                     unknown: system.unknown(vertex),
                     gradient: Vector3::ith(k, 1.0),
                     value: off[k],
-                    length: model.shortest_rod(vertex.index()),
+                    length: model.shortest_edge(vertex.index()),
                 });
             }
         }
@@ -163,7 +163,7 @@ impl Mobility {
                     unknown: system.unknown(vertex),
                     gradient: gradients.row(k).transpose(),
                     value: values[k],
-                    length: model.shortest_rod(vertex.index()),
+                    length: model.shortest_edge(vertex.index()),
                 });
             }
             self.frames.push(frame);

@@ -335,7 +335,7 @@ impl Restoration {
     ) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed_of(x));
         for (i, d) in self.dx.iter_mut().enumerate() {
-            let size = relative * model.shortest_rod(i / 3);
+            let size = relative * model.shortest_edge(i / 3);
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);

@@ -9,7 +9,7 @@ use crate::report::step_error::StepError;
 use crate::step::tuning::Tuning;
 use crate::vectors::point;
 use crate::{SheetModel, SimulationError, State};
-use isosheet_mesh::{EdgeId, VertexId};
+use isosheet_mesh::VertexId;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::ops::Range;
@@ -161,7 +161,7 @@ pub(crate) fn check_motions(model: &SheetModel, state: &State) -> Result<(), Ste
         (Support::Constraint { index, vertex }, distance, vertex)
     });
     for (support, distance, v) in pins.chain(constraints) {
-        let allowed = START_STRAIN * model.shortest_rod(v.index());
+        let allowed = START_STRAIN * model.shortest_edge(v.index());
         if distance.is_nan() || distance > allowed {
             return Err(StepError::OffSupport {
                 support,
@@ -202,7 +202,7 @@ pub(crate) fn check_state(model: &SheetModel, state: &State) -> Result<(), StepE
         .max_by(|&a, &b| strain(a).total_cmp(&strain(b)))
         .unwrap_or(0);
     Err(StepError::OffConstraints {
-        edge: EdgeId(worst as u32),
+        edge: model.rod_edges()[worst],
         length: length(worst),
         rest: rods.lengths()[worst],
         t: state.t,

@@ -3,7 +3,7 @@
 use crate::linear::rod_least_squares::RodLeastSquares;
 use crate::potential::Memories;
 use crate::vectors::point;
-use crate::{Isometry, SheetModel, State};
+use crate::{SheetModel, State};
 use isosheet_coords::linalg::norm_inf;
 use isosheet_mesh::VertexId;
 use rand::{RngExt, SeedableRng};
@@ -99,7 +99,7 @@ pub(crate) fn dependent_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId>
 
 /// The model, if it has rods.
 fn rods_of(model: &SheetModel) -> Option<&SheetModel> {
-    (model.isometry() == Isometry::Rods).then_some(model)
+    (!model.rods().is_empty()).then_some(model)
 }
 
 /// The free vertices at rods with values above [`COUNTED_PART`] of the largest.

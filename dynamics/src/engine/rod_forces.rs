@@ -2,7 +2,8 @@
 
 use crate::linear::rod_least_squares::RodLeastSquares;
 use crate::step::history::Multipliers;
-use crate::{Isometry, Method, SheetModel};
+use crate::model::PINNED;
+use crate::{Method, SheetModel};
 
 impl Method {
     /// Force density (tension over length, N/m) of a unit multiplier: BDF2 and implicit Euler have
@@ -30,7 +31,7 @@ pub(crate) fn rod_forces(
     multipliers: &Multipliers,
     x: &[f64],
 ) -> Option<Vec<f64>> {
-    if model.isometry() != Isometry::Rods {
+    if model.rods().is_empty() {
         return None;
     }
     let rods = model.rods();
@@ -38,10 +39,10 @@ pub(crate) fn rod_forces(
         return Some(vec![0.0; rods.len()]);
     }
     let density = method.density_of_multipliers(multipliers.step);
-    let edges = model.topology().edges().iter();
+    let edges = rods.edges().iter();
     let known = edges.zip(rods.lengths()).zip(&multipliers.rods);
-    let force = |((ends, length), multiplier): ((&[_; 2], &f64), &f64)| {
-        if ends.iter().all(|&v| model.is_pinned(v)) {
+    let force = |((ends, length), multiplier): ((&[usize; 2], &f64), &f64)| {
+        if ends.iter().all(|&v| model.free_index()[v] == PINNED) {
             return 0.0;
         }
         density * multiplier * length

@@ -25,7 +25,7 @@ use crate::step::reaction::Balance;
 use crate::step::tuning::Tuning;
 use crate::term::{Exchange, Formula};
 use crate::{
-    Fallback, HandError, Isometry, Method, SheetModel, SimulationError, State, StepControl,
+    Fallback, HandError, Method, SheetModel, SimulationError, State, StepControl,
     Unsatisfiable,
 };
 use isosheet_mesh::VertexId;
@@ -272,7 +272,7 @@ impl Engine {
 
     /// Whether the sheet has rods, and supports at two vertices or more.
     fn may_lock(&self) -> bool {
-        self.model.isometry() == Isometry::Rods && self.model.supported_vertex_count() > 1
+        !self.model.rods().is_empty() && self.model.supported_vertex_count() > 1
     }
 
     /// By how much moving supports and bodies ask for more than the lengths or the limit of the strain allow

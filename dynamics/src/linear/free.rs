@@ -1,7 +1,7 @@
 //! Free coordinates, and the penalties of rods between them.
 
 use crate::model::PINNED;
-use crate::{Isometry, SheetModel};
+use crate::SheetModel;
 
 /// Copies the free entries of `full` (`3V`) into `packed`.
 pub(crate) fn gather(model: &SheetModel, full: &[f64], packed: &mut [f64]) {
@@ -38,9 +38,6 @@ pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
             1.0 / model.mass().vertex[v]
         }
     };
-    if model.isometry() == Isometry::Elastic {
-        return vec![0.0; rods.len()];
-    }
     rods.edges()
         .iter()
         .zip(rods.lengths())

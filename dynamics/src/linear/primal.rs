@@ -124,7 +124,7 @@ impl PrimalMatrix {
             .map(|&i| (i != PINNED).then(|| layout.block([i, i], LOWER)))
             .collect();
         let mut edge_slots: Vec<_> = model
-            .rods()
+            .edges()
             .edges()
             .iter()
             .map(|&[a, b]| {
@@ -219,7 +219,7 @@ impl PrimalMatrix {
         {
             let mut extra = pairs.clone();
             // What was in contact before is likely to be again.
-            if self.extra.len() <= EXTRA_LIMIT * (pairs.len() + model.rods().len()) {
+            if self.extra.len() <= EXTRA_LIMIT * (pairs.len() + model.edges().len()) {
                 extra.extend_from_slice(&self.extra);
             }
             extra.sort_unstable();
@@ -301,7 +301,7 @@ impl PrimalMatrix {
                     }
                 }
             }
-            if let Some((slots, _)) = &self.edge_slots[e] {
+            if let Some((slots, _)) = &self.edge_slots[model.rod_edges()[e].index()] {
                 /// Of each entry of the whole block its place in the lower triangle.
                 const SYMMETRIC: [usize; 9] = [0, 1, 3, 1, 2, 4, 3, 4, 5];
                 for k in 0..9 {

@@ -111,6 +111,8 @@ impl Advice for ElasticSheetError {
 #[derive(Debug, Clone)]
 pub struct ElasticSheet {
     faces: Vec<Face>,
+    /// Number of faces of the sheet that these are of.
+    face_count: usize,
     poisson: f64,
     /// Young's modulus times thickness of the material, N/m.
     stiffness: f64,
@@ -168,6 +170,7 @@ impl ElasticSheet {
         let faces = sheet.topology().face_ids().map(face);
         let mut new = Self {
             faces: faces.collect::<Result<_, _>>()?,
+            face_count: sheet.topology().face_count(),
             poisson,
             stiffness,
             unsoftened_size: f64::INFINITY,
@@ -215,16 +218,20 @@ impl ElasticSheet {
         Ok(self)
     }
 
-    /// The elasticity of the [union](Sheet::union) of several sheets, each with its own stiffness.
+    /// The elasticity of some sheets of a [union](Sheet::union) with so many faces, each with its own
+    /// stiffness. Sheets that are not among them remain rigid.
     ///
     /// # Errors
     /// [`ElasticSheetError::Limits`] if the limits of their strains differ.
     ///
     /// # Panics
     /// If there is no sheet.
-    pub fn union(sheets: Vec<(Self, Part)>) -> Result<Self, ElasticSheetError> {
+    pub fn union(sheets: Vec<(Self, Part)>, face_count: usize) -> Result<Self, ElasticSheetError> {
         let mut sheets = sheets.into_iter();
-        let (mut union, _) = sheets.next().expect("at least one sheet");
+        let (mut union, part) = sheets.next().expect("at least one sheet");
+        let own = std::mem::take(&mut union.faces).into_iter();
+        union.faces.extend(own.map(|face| face.in_union(&part)));
+        union.face_count = face_count;
         for (sheet, part) in sheets {
             let (first, other) = (union.limit(), sheet.limit());
             if first != other {
@@ -246,6 +253,11 @@ impl ElasticSheet {
     /// The stiffness of the material, `E h`, newtons per metre; of several sheets the largest.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
+    }
+
+    /// The faces that are elastic, in the order in which the other functions tell of them.
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = FaceId> + '_ {
+        self.faces.iter().map(|face| face.id)
     }
 
     /// The stiffness `k_T` of each face, newtons per metre: that of the material, or less
@@ -275,16 +287,17 @@ impl ElasticSheet {
         }
     }
 
-    /// The angles by which the faces bend that have the given energies of bending (joules), radians.
-    pub(crate) fn bend_angles(&self, bending: &[f64]) -> Vec<f64> {
-        let angle = |(face, energy): (&Face, &f64)| {
+    /// The angles by which the faces bend, radians, from the energies of bending of all faces of the sheet,
+    /// joules.
+    pub(crate) fn bend_angles(&self, bending: &[f64]) -> impl Iterator<Item = f64> {
+        self.faces.iter().map(|face| {
             if face.rigidity == 0.0 {
                 return 0.0;
             }
+            let energy = bending[face.id.index()];
             let curvature = (2.0 * energy / (face.rigidity * face.area())).sqrt();
             curvature * face.mean_squared_length().sqrt()
-        };
-        self.faces.iter().zip(bending).map(angle).collect()
+        })
     }
 
     /// Edge length (root mean square of a face, metres) up to which faces of a sheet with this rigidity have
@@ -295,11 +308,11 @@ impl ElasticSheet {
 
     /// The face with the largest strain, and that strain, where it is not below the limit.
     pub fn beyond_limit(&self, x: &[f64]) -> Option<(FaceId, f64)> {
-        let strains = self.strains(x).enumerate();
+        let strains = self.faces().zip(self.strains(x));
         // (Strains that are not numbers are beyond it, too.)
         let worst = strains.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let is_within = worst.1 < self.limit();
-        (!is_within).then_some((FaceId(worst.0 as u32), worst.1))
+        (!is_within).then_some(worst)
     }
 
     /// What measures strains beyond the limit in place of elasticity: the energy
@@ -325,9 +338,9 @@ impl ElasticSheet {
         self.faces.iter().map(Face::area).sum()
     }
 
-    /// Number of faces that the sheet was built for.
+    /// Number of faces of the sheet that it was built for.
     pub(crate) fn face_count(&self) -> usize {
-        self.faces.len()
+        self.face_count
     }
 }
 

@@ -203,7 +203,7 @@ impl SheetModel {
     /// [`AirError`] if density, a coefficient or a profile makes no sense.
     pub fn with_air(self, air: Air) -> Result<Self, AirError> {
         air.validate()?;
-        let faces = on_faces(&air, self.topology(), self.rods().lengths());
+        let faces = on_faces(&air, self.topology(), self.edges().lengths());
         let wind = air.wind;
         Ok(self.with_implicit_force(Drag(Arc::new(OnFaces { wind, faces }))))
     }

@@ -65,10 +65,18 @@ impl SheetModel {
             // That of the elastic sheet is the last one.
             own = at;
         }
+        let of_faces = |values: &mut dyn Iterator<Item = f64>| {
+            let mut all = vec![0.0; elastic.face_count()];
+            for (face, value) in elastic.faces().zip(values) {
+                all[face.index()] = value;
+            }
+            all
+        };
+        let angle = of_faces(&mut elastic.bend_angles(&bending));
         Some(ElasticDeformation {
-            strain: elastic.strains(x).collect(),
-            stretching: elastic.face_energies(own).collect(),
-            angle: elastic.bend_angles(&bending),
+            strain: of_faces(&mut elastic.strains(x)),
+            stretching: of_faces(&mut elastic.face_energies(own)),
+            angle,
             bending,
         })
     }

@@ -23,7 +23,7 @@ use crate::material::elastic_sheet::ElasticSheet;
 use crate::potential::{At, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::term::ImplicitForce;
 pub use error::ModelError;
-use isosheet_mesh::{LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
+use isosheet_mesh::{EdgeId, LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
 use support::MovingPin;
 
 /// What keeps the lengths of a sheet.
@@ -49,7 +49,11 @@ pub struct SheetModel {
     isometry: Isometry,
     /// The elasticity in the plane, where [`SheetModel::isometry`] is that.
     elastic: Option<ElasticSheet>,
+    /// All edges with their rest lengths.
+    edges: LengthConstraints,
+    /// Those that are rods.
     rods: LengthConstraints,
+    rod_edges: Vec<EdgeId>,
     mass: MassMatrix,
     potentials: Vec<Box<dyn Potential>>,
     /// The hands among the potentials, with their numbers.
@@ -64,7 +68,7 @@ pub struct SheetModel {
     constraints: Vec<VertexConstraint>,
     mean_length: f64,
     mean_mass: f64,
-    shortest_rods: Vec<f64>,
+    shortest_edges: Vec<f64>,
 }
 
 impl SheetModel {
@@ -84,8 +88,8 @@ impl SheetModel {
     pub fn with_mass(sheet: &Sheet, mass: MassMatrix) -> Result<Self, ModelError> {
         let topology = sheet.topology().clone();
         let n = topology.vertex_count();
-        let edges = topology.edge_count();
-        if mass.vertex.len() != n || mass.edge.as_ref().is_some_and(|e| e.len() != edges) {
+        let edge_count = topology.edge_count();
+        if mass.vertex.len() != n || mass.edge.as_ref().is_some_and(|e| e.len() != edge_count) {
             return Err(ModelError::MassLength {
                 masses: mass.vertex.len(),
                 vertex_count: n,
@@ -101,18 +105,20 @@ impl SheetModel {
                 mass: mass.vertex[i],
             });
         }
-        let rods = LengthConstraints::new(sheet);
-        let mut shortest_rods = vec![f64::INFINITY; n];
-        for (e, l) in rods.edges().iter().zip(rods.lengths()) {
+        let edges = LengthConstraints::new(sheet);
+        let mut shortest_edges = vec![f64::INFINITY; n];
+        for (e, l) in edges.edges().iter().zip(edges.lengths()) {
             for &v in e {
-                shortest_rods[v] = l.min(shortest_rods[v]);
+                shortest_edges[v] = l.min(shortest_edges[v]);
             }
         }
         Ok(Self {
             isometry: Isometry::Rods,
             elastic: None,
-            rods,
-            shortest_rods,
+            rods: edges.clone(),
+            rod_edges: topology.edge_ids().collect(),
+            edges,
+            shortest_edges,
             mean_length: sheet.mean_length(),
             mean_mass: mass.total() / n as f64,
             mass,
@@ -184,6 +190,15 @@ impl SheetModel {
             return Err(ModelError::ElasticSheet { found, face_count });
         }
         self.isometry = Isometry::Elastic;
+        let mut is_rod = vec![true; self.edges.len()];
+        for face in elastic.faces() {
+            for edge in self.topology.face_edges(face) {
+                is_rod[edge.index()] = false;
+            }
+        }
+        let all = self.topology.edge_ids();
+        self.rod_edges = all.filter(|e| is_rod[e.index()]).collect();
+        self.rods = self.edges.of_edges(&self.rod_edges);
         self.elastic = Some(elastic);
         Ok(self)
     }
@@ -229,22 +244,29 @@ impl SheetModel {
         self.isometry
     }
 
-    /// The rods; where the sheet is elastic, its edges, which keep no lengths.
+    /// All edges with their rest lengths, rods or not.
+    pub fn edges(&self) -> &LengthConstraints {
+        &self.edges
+    }
+
+    /// The rods: the edges that no elastic face has.
     pub fn rods(&self) -> &LengthConstraints {
         &self.rods
     }
 
+    /// Which edges the rods are.
+    pub fn rod_edges(&self) -> &[EdgeId] {
+        &self.rod_edges
+    }
+
     /// Largest violation of the equations of isometry at positions `x` (`3V`, metres), which an accepted step
-    /// keeps below its tolerance: of rods the largest edge strain, zero for elastic sheets. Not a number if a
+    /// keeps below its tolerance: the largest strain of a rod, zero without rods. Not a number if a
     /// position is not.
     ///
     /// # Panics
     /// If `x` is not of length `3V`.
     pub fn constrained_strain(&self, x: &[f64]) -> f64 {
-        match self.isometry {
-            Isometry::Rods => self.rods.max_strain(x),
-            Isometry::Elastic => 0.0,
-        }
+        self.rods.max_strain(x)
     }
 
     /// The mass matrix.
@@ -294,15 +316,15 @@ impl SheetModel {
         3 * self.free_index.len()
     }
 
-    /// Mean rest length of the rods, metres: the length scale of tolerances.
+    /// Mean rest length of the edges, metres: the length scale of tolerances.
     pub fn mean_length(&self) -> f64 {
         self.mean_length
     }
 
-    /// Length of the shortest rod at a vertex, metres: the scale of displacements that must not
+    /// Length of the shortest edge at a vertex, metres: the scale of displacements that must not
     /// turn a face over.
-    pub(crate) fn shortest_rod(&self, vertex: usize) -> f64 {
-        self.shortest_rods[vertex]
+    pub(crate) fn shortest_edge(&self, vertex: usize) -> f64 {
+        self.shortest_edges[vertex]
     }
 
     /// Mean vertex mass, kilograms: the mass scale of tolerances.

@@ -7,7 +7,7 @@ use isosheet_coords::linalg::norm_inf;
 pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {
     let size = norm_inf(&state.x);
     let shortest = model
-        .rods()
+        .edges()
         .lengths()
         .iter()
         .fold(f64::INFINITY, |m, l| m.min(*l));

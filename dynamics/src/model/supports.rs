@@ -132,7 +132,7 @@ impl SheetModel {
             } else {
                 self.mass.vertex[vertex.index()]
             },
-            length: self.shortest_rod(vertex.index()),
+            length: self.shortest_edge(vertex.index()),
         });
         scales.collect()
     }

@@ -148,7 +148,7 @@ impl Objective {
         let model = Arc::clone(&self.model);
         for (term, scale) in self.weighted(h) {
             let mut product = HessianProduct {
-                edges: model.rods().edges(),
+                edges: model.edges().edges(),
                 scale,
                 vector: rest,
                 product: out,

@@ -3,12 +3,12 @@
 use crate::chart::engine::InChart;
 use crate::engine::substeps::WithoutChart;
 use crate::report::checkpoint_error::{CheckpointError, check_finite};
-use crate::{Isometry, SheetModel};
+use crate::SheetModel;
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use serde::{Deserialize, Serialize};
 
 /// Format version; it grows with every change of the fields.
-const VERSION: u32 = 14;
+const VERSION: u32 = 15;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
@@ -111,20 +111,18 @@ impl SheetFingerprint {
             bytes.for_each(|b| digest.update(&b.to_le_bytes()));
             digest.finalize()
         };
-        let (rods, mass) = (model.rods(), model.mass());
+        let (edges, mass) = (model.edges(), model.mass());
         let faces = model.topology().faces().iter();
         let edge_mass = mass.edge.iter().flatten();
         let pins = model.pins().into_iter().map(|v| u64::from(v.0));
         let constrained = model.constraints().iter().map(|c| u64::from(c.vertex().0));
-        let isometry = match model.isometry() {
-            Isometry::Rods => None,
-            Isometry::Elastic => Some(u64::MAX),
-        };
+        let rods = model.rod_edges().iter().map(|e| u64::from(e.0));
+        let lengths = edges.lengths().iter().map(|l| l.to_bits());
         Self {
             vertices: model.topology().vertex_count(),
-            edges: rods.len(),
+            edges: edges.len(),
             connectivity: sum(&mut faces.flatten().map(|v| u64::from(v.0))),
-            lengths: sum(&mut rods.lengths().iter().map(|l| l.to_bits()).chain(isometry)),
+            lengths: sum(&mut lengths.chain(rods)),
             masses: sum(&mut mass.vertex.iter().chain(edge_mass).map(|m| m.to_bits())),
             supports: sum(&mut pins.chain([u64::MAX]).chain(constrained)),
         }

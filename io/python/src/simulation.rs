@@ -337,7 +337,7 @@ impl Simulation {
     /// Largest relative error of an edge length.
     #[getter]
     fn strain(&self, py: Python<'_>) -> f64 {
-        self.copied(py, |s| s.model().rods().max_strain(&s.state().x))
+        self.copied(py, |s| s.model().edges().max_strain(&s.state().x))
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {

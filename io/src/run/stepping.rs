@@ -74,7 +74,7 @@ impl HistoryRow {
             kinetic,
             potential: total - kinetic,
             total,
-            strain: simulation.model().rods().max_strain(&state.x),
+            strain: simulation.model().edges().max_strain(&state.x),
             plastic: dissipated(simulation.model(), 0.0),
             gap: simulation.contacts().and_then(finite_gap),
             ..Self::default()

@@ -483,7 +483,8 @@ impl<'a> Builder<'a> {
             return Ok(());
         }
         let key = Key::root().name("sheet");
-        let elastic = ElasticSheet::union(elastic).map_err(at(&key))?;
+        let faces = self.model().topology().face_count();
+        let elastic = ElasticSheet::union(elastic, faces).map_err(at(&key))?;
         self.change(|m| m.with_elastic_sheet(elastic), at(&key))
     }
 

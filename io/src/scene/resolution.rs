@@ -64,7 +64,7 @@ pub(super) fn check_shape(sheet: &Sheet, key: &Key) -> Result<(), Problem> {
 #[cfg(feature = "run")]
 pub(crate) fn check_positions(model: &SheetModel, x: &[f64]) -> Result<(), Problem> {
     let farthest = x.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-    let shortest = shortest(model.rods().lengths());
+    let shortest = shortest(model.edges().lengths());
     if farthest <= reach(shortest) {
         return Ok(());
     }

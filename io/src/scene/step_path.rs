@@ -19,7 +19,7 @@ pub(super) fn check_step(scene: &Scene, model: &SheetModel, v: &[f64]) -> Result
     let fields: f64 = fields.map(|f| largest(f.size.range(scene.stop.time))).sum();
     let h = scene.method.step;
     let path = h * speed + h * h * (gravity + fields);
-    let shortest = shortest(model.rods().lengths());
+    let shortest = shortest(model.edges().lengths());
     if path <= reach(shortest) {
         return Ok(());
     }

@@ -64,7 +64,7 @@ fn shares(
         return None;
     }
     let model = simulation.model();
-    let (t, lengths) = (model.topology(), model.rods().lengths());
+    let (t, lengths) = (model.topology(), model.edges().lengths());
     let numbers = immobile.iter().enumerate().map(|(i, &v)| (v, i));
     let number: HashMap<VertexId, usize> = numbers.collect();
     let mut matrix = DMatrix::zeros(immobile.len(), immobile.len());

@@ -497,7 +497,7 @@ impl Lagrangian {
         let model = problem.model;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         for (i, d) in self.dx.iter_mut().enumerate() {
-            let size = self.tuning.perturbation * model.shortest_rod(i / 3);
+            let size = self.tuning.perturbation * model.shortest_edge(i / 3);
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);

@@ -3,7 +3,7 @@
 use super::problem::StepProblem;
 use crate::step::integrator::Phases;
 use crate::step::tuning::Tuning;
-use crate::{ImplicitOptions, Isometry, SheetModel};
+use crate::{ImplicitOptions, SheetModel};
 use isosheet_mesh::area_from_lengths;
 
 /// What the slimmest face of a sheet allows.
@@ -18,7 +18,7 @@ pub(super) enum Faces {
 
 impl Faces {
     pub(super) fn of(model: &SheetModel, tuning: &Tuning) -> Self {
-        let lengths = model.rods().lengths();
+        let lengths = model.edges().lengths();
         let is_sliver = |f| {
             let sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
             let longest = sides.iter().fold(0.0, |longest, side| side.max(longest));
@@ -105,7 +105,7 @@ impl Phase {
     /// | SQP | start of the step | of the step before (in contact none); solved for | near the lengths | 1 |
     /// | augmented Lagrangian | prediction | none; by rounds | free | many loose ones in contact |
     ///
-    /// Elastic sheets have no rods to solve for, and pins that move in contact stall SQP: both have the second
+    /// Elastic sheets alone have no rods to solve for, and pins that move in contact stall SQP: both have the second
     /// row alone. Slivers begin with it without contact, with its own multipliers of the step before.
     ///
     /// A whole step of rods among bodies and supports at rest is divided early where both fail: sheets that
@@ -124,7 +124,7 @@ impl Phase {
         let has_contact = problem.has_contact();
         let sqp = Self::sqp(problem, options, tuning);
         let rounds = Self::rounds(problem, options, tuning);
-        if model.isometry() != Isometry::Rods || problem.is_bounded() && model.has_drives() {
+        if model.rods().is_empty() || problem.is_bounded() && model.has_drives() {
             [None, Some(rounds)]
         } else if faces == Faces::Slivers && !has_contact {
             // The multipliers of rounds are a start for rounds; the phase that comes first looks for saddles.
@@ -211,7 +211,7 @@ impl Phase {
                 true => options.max_iterations,
                 false => 1,
             },
-            stays_semidefinite: problem.model.isometry() == Isometry::Elastic,
+            stays_semidefinite: problem.model.elastic_sheet().is_some(),
             small_strain: match has_contact {
                 true => tuning.small_strain,
                 false => f64::INFINITY,

@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 /// A face with one constant strain.
 #[derive(Debug, Clone)]
 pub(super) struct Face {
+    pub(super) id: FaceId,
     edges: [EdgeId; 3],
     /// Across from each edge: edge `i` leads from corner `i + 1` to corner `i + 2`, modulo three.
     corners: [VertexId; 3],
@@ -81,6 +82,7 @@ impl Face {
         let errors = Matrix3::from_rows(&[row(first), row(second), row(third)]);
         let strains = errors.try_inverse()?;
         strains.iter().all(|s| s.is_finite()).then(|| Self {
+            id: face,
             edges,
             corners: [across(0), across(1), across(2)],
             first_ends: ends.map(|[a, _]| a),
@@ -96,6 +98,7 @@ impl Face {
     /// The same face of a sheet in a union of several.
     pub(super) fn in_union(self, part: &Part) -> Self {
         Self {
+            id: part.face(self.id),
             edges: self.edges.map(|e| part.edge(e)),
             corners: self.corners.map(|v| part.vertex(v)),
             first_ends: self.first_ends.map(|v| part.vertex(v)),
