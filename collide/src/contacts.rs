@@ -22,10 +22,10 @@ use body::Body;
 use evaluate::{Placed, Sheet};
 use isosheet_dynamics::contact::{
     ActiveContact, ActiveContacts, BodyMotion, BodyPlace, Coefficients, Contact, ContactError,
-    ContactKey, ContactLaws, JointMotion, SheetPair, StepSpan,
+    ContactKey, ContactLaws, JointMotion, SheetPair, StepSpan, SurfacePoints,
 };
 use isosheet_dynamics::{SheetModel, State};
-use isosheet_mesh::VertexId;
+use isosheet_mesh::{Topology, VertexId};
 use motion::SheetMotion;
 use nalgebra::Vector3;
 use neighbours::{Neighbours, SelfPairs};
@@ -131,6 +131,8 @@ pub struct Contacts {
     laws: ContactLaws,
     ccd: CcdOptions,
     mesh: ContactMesh,
+    /// The points of the mesh, where these are not the vertices of the model.
+    points: Option<SurfacePoints>,
     /// Squared rest lengths of the edges.
     lengths2: Vec<f64>,
     mean_length: f64,
@@ -151,17 +153,51 @@ impl Contacts {
     /// # Errors
     /// [`ContactsError`] naming the option that makes no sense.
     pub fn new(model: &SheetModel, options: ContactOptions) -> Result<Self, ContactsError> {
+        let (topology, lengths) = (model.topology(), model.edges().lengths());
+        Self::between(topology, lengths, options)
+    }
+
+    /// Contact of a surface whose points are combinations of the vertices of a model, with nothing yet: sheets
+    /// whose vertices these are, and surfaces of [rigid bodies](isosheet_dynamics::RigidBody). The `points`
+    /// are the vertices of `surface`, in this order. What belongs to one body does not touch itself if its
+    /// vertices are told to be [glued](Contacts::with_glue) to one another.
+    ///
+    /// # Errors
+    /// [`ContactsError`] naming the option that makes no sense.
+    ///
+    /// # Panics
+    /// If the numbers of points and of vertices of the surface differ.
+    pub fn on_surface(
+        surface: &isosheet_mesh::Sheet,
+        points: SurfacePoints,
+        options: ContactOptions,
+    ) -> Result<Self, ContactsError> {
+        let count = surface.topology().vertex_count();
+        assert_eq!(points.count(), count, "a point for each vertex");
+        let contacts = Self::between(surface.topology(), surface.lengths(), options)?;
+        Ok(Self {
+            points: Some(points),
+            ..contacts
+        })
+    }
+
+    fn between(
+        topology: &Topology,
+        lengths: &[f64],
+        options: ContactOptions,
+    ) -> Result<Self, ContactsError> {
         options.validate()?;
         Ok(Self {
             options,
             laws: options.laws(),
             ccd: options.ccd(),
-            mesh: ContactMesh::from_topology(model.topology()),
-            lengths2: model.edges().lengths().iter().map(|l| l * l).collect(),
-            smallest_height: smallest_height(model),
+            mesh: ContactMesh::from_topology(topology),
+            points: None,
+            lengths2: lengths.iter().map(|l| l * l).collect(),
+            smallest_height: smallest_height(topology, lengths),
             bodies: Vec::new(),
             has_self_contact: false,
-            mean_length: model.mean_length(),
+            mean_length: lengths.iter().sum::<f64>() / lengths.len() as f64,
             neighbours: None,
             parts: Vec::new(),
             part_of_motion: Vec::new(),
@@ -320,6 +356,10 @@ impl Contact for Contacts {
         &self.laws
     }
 
+    fn points(&self) -> Option<&SurfacePoints> {
+        self.points.as_ref()
+    }
+
     fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>) {
         out.extend(self.bodies.iter().map(|b| b.motion_over(span)));
     }
@@ -384,12 +424,23 @@ impl Contact for Contacts {
     }
 
     fn check_start(&mut self, model: &SheetModel, state: &State) -> Result<(), ContactError> {
-        let expected = self.mesh.vertex_count();
+        let expected = match &self.points {
+            None => self.mesh.vertex_count(),
+            Some(points) => points.model_vertices(),
+        };
         let found = model.topology().vertex_count();
         if found != expected || state.x.len() != 3 * expected {
             return Err(ContactError::Sheet { expected, found });
         }
-        let (t, x) = (state.t, &state.x);
+        let mut surface = Vec::new();
+        let x = match &self.points {
+            None => &state.x,
+            Some(points) => {
+                points.place(&state.x, &mut surface);
+                &surface
+            }
+        };
+        let t = state.t;
         let active = ActiveContacts::at_rest(self, t, x);
         start::check_gaps(active.list(), t)?;
         let Some(neighbours) = &mut self.neighbours else {

@@ -24,6 +24,7 @@ mod modules;
 mod orders;
 mod origami;
 mod plastic;
+mod rigid_bodies;
 mod robust;
 mod scenes;
 mod statics;

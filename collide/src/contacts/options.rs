@@ -5,7 +5,7 @@ use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::contact::internals::BarrierPotential;
 use isosheet_dynamics::contact::{BarrierError, ContactLaws, FrictionError, Stiffness};
 use isosheet_mesh::wording::{brief, given};
-use isosheet_mesh::{Advice, area_from_lengths};
+use isosheet_mesh::{Advice, Sheet, Topology, area_from_lengths};
 use thiserror::Error;
 
 /// Options of [`super::Contacts`]. Start from [`ContactOptions::for_sheet`].
@@ -118,8 +118,18 @@ const APPROACH: f64 = 0.5;
 impl ContactOptions {
     /// The defaults for a sheet.
     pub fn for_sheet(model: &SheetModel) -> Self {
-        let length = model.mean_length();
-        let (_, height) = smallest_height(model);
+        Self::between(model.topology(), model.edges().lengths())
+    }
+
+    /// The defaults for a surface that is not that of the model, see
+    /// [`Contacts::on_surface`](crate::Contacts::on_surface).
+    pub fn for_surface(surface: &Sheet) -> Self {
+        Self::between(surface.topology(), surface.lengths())
+    }
+
+    fn between(topology: &Topology, lengths: &[f64]) -> Self {
+        let length = lengths.iter().sum::<f64>() / lengths.len() as f64;
+        let (_, height) = smallest_height(topology, lengths);
         Self {
             activation: (RELATIVE_ACTIVATION * length).min(0.5 * height),
             thickness: 0.0,
@@ -182,9 +192,7 @@ impl ContactOptions {
 /// The face with the smallest height and that height, metres. In the flat sheet no vertex is closer
 /// than this to an edge or face that it does not belong to, nor are two edges without a common end,
 /// except across slits and at re-entrant corners of the outline.
-pub(super) fn smallest_height(model: &SheetModel) -> (u32, f64) {
-    let lengths = model.edges().lengths();
-    let topology = model.topology();
+pub(super) fn smallest_height(topology: &Topology, lengths: &[f64]) -> (u32, f64) {
     let mut best = (0, f64::INFINITY);
     for (number, face) in (0..).zip(topology.face_ids()) {
         let sides = topology.face_edges(face).map(|e| lengths[e.index()]);

@@ -26,6 +26,9 @@ impl ChartContact {
         model: &SheetModel,
         state: &State,
     ) -> Result<Self, ContactError> {
+        if geometry.points().is_some() {
+            return Err(ContactError::Method);
+        }
         let bodies = check_start(geometry.as_mut(), model, state)?;
         let displacement = vec![0.0; state.x.len()];
         let motion = JointMotion {

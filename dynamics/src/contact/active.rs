@@ -2,7 +2,7 @@
 
 use super::{
     BarrierPotential, BodyMotions, BodyPlace, Contact, ContactKey, ContactKind, ContactSet,
-    CouplingSink, ParallelEdges, StepSpan, add_at, add_block, add_weighted, couple,
+    CouplingSink, ParallelEdges, StepSpan, SurfacePoints, add_at, add_block, add_weighted, couple,
 };
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
@@ -71,11 +71,12 @@ impl ActiveContact {
     }
 
     /// The vertex of the sheet with the largest weight.
-    pub(crate) fn heaviest_vertex(&self) -> VertexId {
+    pub(crate) fn heaviest_vertex(&self, points: Option<&SurfacePoints>) -> VertexId {
         let heavier =
             |a: &usize, b: &usize| self.weights[*a].abs().total_cmp(&self.weights[*b].abs());
         let place = (0..self.vertex_count()).max_by(heavier).unwrap_or(0);
-        VertexId(self.vertices[place])
+        let point = self.vertices[place];
+        points.map_or(VertexId(point), |points| points.heaviest_carrier(point))
     }
 
     /// Size of the barrier force along the normal, newtons.

@@ -40,6 +40,7 @@ mod lagged;
 mod laws;
 mod parallel;
 mod set;
+mod surface_points;
 mod term;
 mod terms;
 mod vertex_data;
@@ -57,6 +58,8 @@ pub use laws::{ContactLaws, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;
 pub(crate) use set::ContactSet;
 pub use set::{ContactKey, ContactKind, JointMotion};
+pub(crate) use surface_points::on_surface;
+pub use surface_points::{CarriedPoint, SurfacePoints, SurfacePointsError};
 pub(crate) use term::{ContactTerm, check_start};
 pub use terms::BodyLoad;
 pub(crate) use terms::{ContactState, ContactTerms};
@@ -73,6 +76,12 @@ use nalgebra::{Matrix3, Vector3};
 pub trait Contact: Send + Sync {
     /// Activation distance of the barrier, stiffness, friction.
     fn laws(&self) -> &ContactLaws;
+
+    /// The points that contact acts between, where these are not the vertices of the model; positions and
+    /// displacements, and the numbers of vertices in contacts, are those of the points then.
+    fn points(&self) -> Option<&SurfacePoints> {
+        None
+    }
 
     /// Appends the motions of the bodies over a span of time, in the order of the bodies.
     fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>);
@@ -100,19 +109,19 @@ pub trait Contact: Send + Sync {
     ///
     /// # Errors
     /// [`ContactError`] if something touches or passes through at the start, or the implementation was made
-    /// for another sheet.
+    /// for another sheet. The state is that of the vertices of the model.
     fn check_start(&mut self, model: &SheetModel, state: &State) -> Result<(), ContactError>;
 }
 
 /// Adds `w_i w_j block` for all pairs of a stencil; the block is symmetric.
 pub(crate) fn add_weighted(
-    vertices: &[u32; 4],
-    weights: &[f64; 4],
+    vertices: &[u32],
+    weights: &[f64],
     block: &Matrix3<f64>,
     sink: &mut dyn CouplingSink,
 ) {
-    for i in 0..4 {
-        for j in i..4 {
+    for i in 0..vertices.len() {
+        for j in i..vertices.len() {
             let w = weights[i] * weights[j];
             if w != 0.0 {
                 add_block(vertices[i], vertices[j], w * block, sink);

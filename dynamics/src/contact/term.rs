@@ -1,18 +1,22 @@
 //! Contact as a term of the objective of a step.
 
+use super::surface_points::CarriedSink;
 use super::{
     ActiveContacts, BarrierPotential, BodyMotionError, BodyMotions, Contact, ContactError,
-    ContactSet, ContactState, ContactTerms, JointMotion, LaggedFriction, StepSpan, advanced,
+    ContactSet, ContactState, ContactTerms, JointMotion, LaggedFriction, StepSpan, SurfacePoints,
+    advanced, on_surface,
 };
 use crate::hessian::{BlockSink, HessianPart, HessianProduct};
 use crate::term::{Barrier, Exchange, Iterate, Refusal, StepStart, Term, Value};
 use crate::{SheetModel, State};
+use std::sync::Arc;
 
 /// Barrier and lagged friction, `B(x) + D(x - x0)`.
 pub(crate) struct ContactTerm {
     geometry: Box<dyn Contact>,
     /// Its stiffness is set at the start of a run.
     barrier: BarrierPotential,
+    points: Option<Arc<SurfacePoints>>,
     /// The motions of the bodies that were asked for last.
     bodies: BodyMotions,
     /// What belongs to the present step; nothing before the first one.
@@ -22,20 +26,23 @@ pub(crate) struct ContactTerm {
 /// Contact in the course of a step. The contacts are evaluated where the term is asked for, and no more often
 /// than that.
 struct InStep {
+    points: Option<Arc<SurfacePoints>>,
     bodies: BodyMotions,
     /// Progress of the bodies over the step.
     progress: f64,
     /// The pairs of the motion that was checked last; the iterates stay on it.
     set: ContactSet,
     state: ContactState,
-    /// Positions of the active contacts; `None` where set or bodies have changed since.
-    evaluated: Option<Vec<f64>>,
-    /// Room for them.
-    room: Vec<f64>,
+    /// Positions of the vertices at which the contacts were evaluated, unless set or bodies have changed since.
+    x: Vec<f64>,
+    is_evaluated: bool,
+    /// The points there, where they are not the vertices, and forces on them.
+    surface: Vec<f64>,
+    forces: Vec<f64>,
     friction_before: LaggedFriction,
-    /// Positions at the start of the step.
+    /// The points at the start of the step.
     start: Vec<f64>,
-    /// Positions at the end of the motion that was checked last, and the contacts there.
+    /// The points at the end of the motion that was checked last, and the contacts there.
     end: Vec<f64>,
     ahead: ActiveContacts,
     /// Work and energy of the barrier at the start of the step, joules.
@@ -53,19 +60,13 @@ impl ContactTerm {
     ) -> Result<(Self, ContactState), ContactError> {
         let bodies = check_start(geometry.as_mut(), model, state)?;
         let barrier = BarrierPotential::at_start(geometry.laws(), model, state)?;
+        let x = on_surface(geometry.points(), &state.x).into_owned();
         let contacts = ContactState {
             barrier,
-            active: ActiveContacts::at_rest(geometry.as_mut(), state.t, &state.x),
+            active: ActiveContacts::at_rest(geometry.as_mut(), state.t, &x),
             friction: LaggedFriction::none(),
         };
-        let step = None;
-        let term = Self {
-            geometry,
-            barrier,
-            bodies,
-            step,
-        };
-        Ok((term, contacts))
+        Ok((Self::with(geometry, barrier, bodies), contacts))
     }
 
     /// Goes on with the barrier of an earlier run.
@@ -79,13 +80,27 @@ impl ContactTerm {
         state: &State,
     ) -> Result<Self, ContactError> {
         let bodies = check_start(geometry.as_mut(), model, state)?;
-        let step = None;
-        Ok(Self {
+        Ok(Self::with(geometry, barrier, bodies))
+    }
+
+    fn with(geometry: Box<dyn Contact>, barrier: BarrierPotential, bodies: BodyMotions) -> Self {
+        Self {
+            points: geometry.points().cloned().map(Arc::new),
             geometry,
             barrier,
             bodies,
-            step,
-        })
+            step: None,
+        }
+    }
+
+    /// The same, for longer than the term is borrowed.
+    pub(crate) fn shared_points(&self) -> Option<Arc<SurfacePoints>> {
+        self.points.clone()
+    }
+
+    /// The points that contact acts between, where these are not the vertices.
+    pub(crate) fn points(&self) -> Option<&SurfacePoints> {
+        self.points.as_deref()
     }
 
     /// Refuses a span of time if the pose of a body is not finite at its start or end.
@@ -107,16 +122,19 @@ impl ContactTerm {
     /// The step, with the contacts at positions `x`.
     fn at(&mut self, x: &[f64]) -> &mut InStep {
         let step = self.step.as_mut().expect("a step has begun");
-        if step.evaluated.as_deref() != Some(x) {
-            let active = &mut step.state.active;
-            active.update(self.geometry.as_ref(), &step.set, step.progress, x);
-            let mut room = match step.evaluated.take() {
-                Some(room) => room,
-                None => std::mem::take(&mut step.room),
+        if !step.is_evaluated || step.x != x {
+            step.is_evaluated = true;
+            step.x.clear();
+            step.x.extend_from_slice(x);
+            let places = match &step.points {
+                None => x,
+                Some(points) => {
+                    points.place(x, &mut step.surface);
+                    &step.surface
+                }
             };
-            room.clear();
-            room.extend_from_slice(x);
-            step.evaluated = Some(room);
+            let active = &mut step.state.active;
+            active.update(self.geometry.as_ref(), &step.set, step.progress, places);
         }
         step
     }
@@ -124,26 +142,30 @@ impl ContactTerm {
 
 impl InStep {
     fn new(geometry: &mut dyn Contact, barrier: BarrierPotential, start: &StepStart<'_>) -> Self {
-        let x0 = &start.state.x;
+        let points = geometry.points().cloned().map(Arc::new);
+        let x0 = on_surface(points.as_deref(), &start.state.x).into_owned();
         let bodies = BodyMotions::over(geometry, span(start));
         let progress = bodies.first_progress();
         let zeros = vec![0.0; x0.len()];
-        let set = ContactSet::of(geometry, at_rest(&bodies, progress, x0, &zeros));
-        let active = ActiveContacts::at(geometry, &set, progress, x0);
+        let set = ContactSet::of(geometry, at_rest(&bodies, progress, &x0, &zeros));
+        let active = ActiveContacts::at(geometry, &set, progress, &x0);
         Self {
+            points,
             bodies,
             progress,
             set,
-            start: x0.clone(),
             end: x0.clone(),
+            start: x0,
             ahead: active.clone(),
             state: ContactState {
                 barrier,
                 active,
                 friction: LaggedFriction::none(),
             },
-            evaluated: None,
-            room: Vec::new(),
+            x: Vec::new(),
+            is_evaluated: false,
+            surface: Vec::new(),
+            forces: Vec::new(),
             friction_before: LaggedFriction::none(),
             start_work: 0.0,
             start_energy: 0.0,
@@ -153,20 +175,47 @@ impl InStep {
 
     /// Back to the start of a step; reuses memory.
     fn restart(&mut self, geometry: &mut dyn Contact, start: &StepStart<'_>) {
-        let x0 = &start.state.x;
-        self.start.copy_from_slice(x0);
+        match &self.points {
+            None => self.start.copy_from_slice(&start.state.x),
+            Some(points) => points.place(&start.state.x, &mut self.start),
+        }
         self.bodies.update(geometry, span(start));
         self.progress = self.bodies.first_progress();
-        let motion = at_rest(&self.bodies, self.progress, x0, &self.zeros);
+        let motion = at_rest(&self.bodies, self.progress, &self.start, &self.zeros);
         self.set.update(geometry, motion);
         self.forget();
     }
 
     /// Has the contacts evaluated anew when they are asked for.
     fn forget(&mut self) {
-        if let Some(room) = self.evaluated.take() {
-            self.room = room;
+        self.is_evaluated = false;
+    }
+
+    /// The points where the contacts were evaluated.
+    fn places(&self) -> &[f64] {
+        match self.points {
+            None => &self.x,
+            Some(_) => &self.surface,
         }
+    }
+
+    /// The terms there.
+    fn terms(&self) -> ContactTerms<'_> {
+        ContactTerms::of(&self.state, self.places())
+    }
+
+    /// Adds to `out` (`3V`) what `add` adds at the points.
+    fn add_carried(&mut self, out: &mut [f64], add: impl FnOnce(&Self, &mut [f64])) {
+        let Some(points) = &self.points else {
+            return add(self, out);
+        };
+        let points = Arc::clone(points);
+        let mut forces = std::mem::take(&mut self.forces);
+        forces.clear();
+        forces.resize(3 * points.count(), 0.0);
+        add(self, &mut forces);
+        points.add_forces(&forces, out);
+        self.forces = forces;
     }
 
     fn set_start(&mut self, geometry: &dyn Contact) {
@@ -217,24 +266,29 @@ impl Term for ContactTerm {
     }
 
     fn value(&mut self, at: Iterate<'_>) -> Value {
-        let step = self.at(at.x);
-        Value::of(ContactTerms::of(&step.state, at.x).energy())
+        Value::of(self.at(at.x).terms().energy())
     }
 
     fn add_gradient(&mut self, at: Iterate<'_>, scale: f64, out: &mut [f64]) {
         let step = self.at(at.x);
-        ContactTerms::of(&step.state, at.x).add_gradient(scale, out);
+        step.add_carried(out, |step, out| step.terms().add_gradient(scale, out));
     }
 
     /// Each contact's own part is positive semidefinite.
     fn add_hessian(&mut self, at: Iterate<'_>, _part: HessianPart, sink: &mut dyn BlockSink) {
         let step = self.at(at.x);
-        ContactTerms::of(&step.state, at.x).add_hessian(sink);
+        match &step.points {
+            None => step.terms().add_hessian(sink),
+            Some(points) => step.terms().add_hessian(&mut CarriedSink { points, sink }),
+        }
     }
 
     fn append_couplings(&mut self, at: Iterate<'_>, out: &mut Vec<[u32; 2]>) {
-        let step = self.at(at.x);
-        ContactTerms::of(&step.state, at.x).append_couplings(out);
+        let (step, start) = (self.at(at.x), out.len());
+        step.terms().append_couplings(out);
+        if let Some(points) = &step.points {
+            points.carry_couplings(out, start);
+        }
     }
 
     fn barrier(&self) -> Option<Barrier> {
@@ -244,11 +298,12 @@ impl Term for ContactTerm {
     /// The bodies go on by the same part of the rest of their motions.
     fn safe_part(&mut self, at: Iterate<'_>, dx: &[f64]) -> f64 {
         let step = self.step.as_mut().expect("a step has begun");
+        let points = step.points.as_deref();
         let motion = JointMotion {
             bodies: &step.bodies,
             progress: [step.progress, 1.0],
-            x: at.x,
-            dx,
+            x: &on_surface(points, at.x),
+            dx: &on_surface(points, dx),
         };
         step.set.update(self.geometry.as_mut(), motion);
         step.forget();
@@ -260,16 +315,24 @@ impl Term for ContactTerm {
     fn add_correction(&mut self, at: Iterate<'_>, dx: &[f64], scale: f64, out: &mut [f64]) -> bool {
         self.at(at.x);
         let step = self.step.as_mut().expect("a step has begun");
-        for ((end, x), d) in step.end.iter_mut().zip(at.x).zip(dx) {
+        let points = step.points.clone();
+        let dx = on_surface(points.as_deref(), dx);
+        let mut end = std::mem::take(&mut step.end);
+        for ((end, x), d) in end.iter_mut().zip(step.places()).zip(dx.iter()) {
             *end = x + d;
         }
+        step.end = end;
         let geometry = self.geometry.as_ref();
         step.ahead
             .update(geometry, &step.set, step.progress, &step.end);
-        let ContactState {
-            barrier, active, ..
-        } = &step.state;
-        active.add_gap_correction(&step.ahead, barrier, dx, scale, out)
+        let mut any = false;
+        step.add_carried(out, |step, out| {
+            let ContactState {
+                active, barrier, ..
+            } = &step.state;
+            any = active.add_gap_correction(&step.ahead, barrier, &dx, scale, out);
+        });
+        any
     }
 
     fn progress(&self) -> f64 {
@@ -286,8 +349,10 @@ impl Term for ContactTerm {
     /// By the motions of the bodies. (What pins change is left out.)
     fn add_drive(&mut self, at: Iterate<'_>, product: &mut HessianProduct<'_>) {
         let step = self.at(at.x);
-        let terms = ContactTerms::of(&step.state, at.x);
-        terms.add_drive(product.scale, product.product);
+        let scale = product.scale;
+        step.add_carried(product.product, |step, out| {
+            step.terms().add_drive(scale, out)
+        });
     }
 
     /// Lags friction of the step anew where a normal force has changed by more than `settled`, relative to the
@@ -322,15 +387,20 @@ impl Term for ContactTerm {
         if gap <= 0.0 || gap.is_nan() {
             return Err(Refusal::Contact { gap });
         }
-        let terms = ContactTerms::of(&step.state, at.x);
+        let terms = step.terms();
         let exchange = terms.exchange(step.start_work, step.start_energy);
-        let ContactState {
-            barrier, active, ..
-        } = &step.state;
-        let settled = &mut step.friction_before;
-        settled.lag(self.geometry.laws(), barrier, active, &step.start);
+        let mut settled = std::mem::take(&mut step.friction_before);
+        let terms = step.terms();
+        settled.lag(
+            self.geometry.laws(),
+            terms.barrier,
+            terms.active,
+            &step.start,
+        );
+        let settled_friction = settled.loss(terms.x, terms.active.bodies());
+        step.friction_before = settled;
         Ok(Exchange {
-            settled_friction: settled.loss(at.x, active.bodies()),
+            settled_friction,
             ..exchange
         })
     }

@@ -11,6 +11,7 @@ pub(crate) fn pressing(
     span: StepSpan,
 ) -> Option<Pressing> {
     let barrier = contacts.barrier;
+    let points = term.shared_points();
     let motions = term.motions(span).list();
     let mut work = vec![0.0; motions.len()];
     let touching: Vec<_> = contacts
@@ -34,7 +35,7 @@ pub(crate) fn pressing(
     own.sort_by(|a, b| b.2.total_cmp(&a.2));
     let mut vertices = Vec::new();
     for (contact, ..) in &own {
-        let vertex = contact.heaviest_vertex();
+        let vertex = contact.heaviest_vertex(points.as_deref());
         if !vertices.contains(&vertex) {
             vertices.push(vertex);
         }

@@ -1,8 +1,8 @@
 //! Forces of the rods.
 
 use crate::linear::rod_least_squares::RodLeastSquares;
-use crate::step::history::Multipliers;
 use crate::model::PINNED;
+use crate::step::history::Multipliers;
 use crate::{Method, SheetModel};
 
 impl Method {

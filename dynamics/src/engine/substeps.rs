@@ -1,6 +1,6 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
-use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan};
+use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan, SurfacePoints};
 use crate::damped::implicit::Implicit;
 use crate::diagnosis::blocked::{blocked_vertices, dependent_vertices};
 use crate::diagnosis::infeasibility::infeasibility;
@@ -25,8 +25,7 @@ use crate::step::reaction::Balance;
 use crate::step::tuning::Tuning;
 use crate::term::{Exchange, Formula};
 use crate::{
-    Fallback, HandError, Method, SheetModel, SimulationError, State, StepControl,
-    Unsatisfiable,
+    Fallback, HandError, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
 };
 use isosheet_mesh::VertexId;
 use serde::{Deserialize, Serialize};
@@ -165,6 +164,14 @@ impl Engine {
     /// The contacts, if the scene has any.
     pub(crate) fn contacts(&self) -> Option<&ContactState> {
         self.motion.contacts.as_ref()
+    }
+
+    /// The points between which contact acts, where these are not the vertices.
+    pub(crate) fn surface_points(&self) -> Option<&SurfacePoints> {
+        self.objective
+            .contact
+            .as_ref()
+            .and_then(ContactTerm::points)
     }
 
     /// Forces of the rods in the last accepted sub-step; `None` where the method does not solve for them.

@@ -1,9 +1,9 @@
 //! Checkpoints.
 
+use crate::SheetModel;
 use crate::chart::engine::InChart;
 use crate::engine::substeps::WithoutChart;
 use crate::report::checkpoint_error::{CheckpointError, check_finite};
-use crate::SheetModel;
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use serde::{Deserialize, Serialize};
 

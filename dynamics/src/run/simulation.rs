@@ -2,7 +2,9 @@
 
 use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
-use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, ContactTerms};
+use crate::contact::{
+    ActiveContacts, BodyLoad, Contact, ContactState, ContactTerms, SurfacePoints, on_surface,
+};
 use crate::damped::start::{check_finite, check_motions, check_state};
 use crate::engine::substeps::Engine as FreeEngine;
 use crate::potential::Memories;
@@ -280,7 +282,8 @@ impl Simulation {
     /// impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
         self.barrier().map_or_else(Vec::new, |contacts| {
-            ContactTerms::of(contacts, &self.state().x).loads()
+            let x = on_surface(self.surface_points(), &self.state().x);
+            ContactTerms::of(contacts, &x).loads()
         })
     }
 
@@ -297,14 +300,16 @@ impl Simulation {
     pub fn contact_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => {
-                let terms = ContactTerms::of(engine.contacts()?, &self.state().x);
-                Some(terms.vertex_forces())
+                let points = self.surface_points();
+                let x = on_surface(points, &self.state().x);
+                Some(ContactTerms::of(engine.contacts()?, &x).vertex_forces(points))
             }
             Engine::Chart(chart) => chart.contact_forces(),
         }
     }
 
-    /// Smallest gap of each vertex and of its edges and faces, metres: a distance less the thickness of the
+    /// Smallest gap of each vertex, or of each point of the surface where that is not the sheet
+    /// ([`SurfacePoints`]), and of its edges and faces, metres: a distance less the thickness of the
     /// sheet and the radius of a rounded body, and at most the activation distance of the barrier. `None`
     /// without contact.
     pub fn vertex_gaps(&self) -> Option<Vec<f64>> {
@@ -312,8 +317,19 @@ impl Simulation {
             Engine::Free(engine) => engine.contacts()?.barrier.activation(),
             Engine::Chart(chart) => chart.simulation.activation()?,
         };
-        let vertices = self.model().topology().vertex_count();
-        Some(self.contacts()?.vertex_gaps(vertices, reach))
+        let count = match self.surface_points() {
+            None => self.model().topology().vertex_count(),
+            Some(points) => points.count(),
+        };
+        Some(self.contacts()?.point_gaps(count, reach))
+    }
+
+    /// The points between which contact acts, where these are not the vertices.
+    fn surface_points(&self) -> Option<&SurfacePoints> {
+        match &self.engine {
+            Engine::Free(engine) => engine.surface_points(),
+            Engine::Chart(_) => None,
+        }
     }
 
     /// Contact by a barrier.

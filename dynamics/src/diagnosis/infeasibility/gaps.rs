@@ -12,8 +12,8 @@ struct Gap {
     body: usize,
     /// The vertex with the largest weight.
     vertex: VertexId,
-    vertices: [u32; 4],
-    weights: [f64; 4],
+    vertices: Vec<u32>,
+    weights: Vec<f64>,
     normal: Vector3<f64>,
     /// Metres.
     offset: f64,
@@ -23,7 +23,7 @@ struct Gap {
 
 impl Gap {
     fn at(&self, x: &[f64]) -> f64 {
-        let parts = self.vertices.iter().zip(self.weights);
+        let parts = self.vertices.iter().zip(&self.weights);
         let along = parts.map(|(v, w)| w * self.normal.dot(&point(x, VertexId(*v))));
         self.offset + along.sum::<f64>()
     }
@@ -52,6 +52,7 @@ impl Gaps {
             t0: state.t,
             h: t - state.t,
         };
+        let points = term.shared_points();
         let motions = term.motions(span);
         let mut list = Vec::new();
         for contact in contacts.active.list() {
@@ -60,17 +61,20 @@ impl Gaps {
             };
             let body = body as usize;
             let shift = motions.list()[body].surface.displacement(&contact.closest);
+            let stencil = contact.corners().iter().copied().zip(contact.weights);
+            let (vertices, weights) = match &points {
+                None => stencil.unzip(),
+                Some(points) => points.carried_weights(stencil).into_iter().unzip(),
+            };
             let mut gap = Gap {
                 body,
-                vertex: contact.heaviest_vertex(),
-                vertices: contact.vertices,
-                weights: [0.0; 4],
+                vertex: contact.heaviest_vertex(points.as_deref()),
+                vertices,
+                weights,
                 normal: contact.normal,
                 offset: 0.0,
                 closed_by_body: shift.dot(&contact.normal),
             };
-            let count = contact.corners().len();
-            gap.weights[..count].copy_from_slice(&contact.weights[..count]);
             gap.offset = contact.gap - gap.at(&state.x) - gap.closed_by_body;
             list.push(gap);
         }
@@ -104,8 +108,8 @@ impl Gaps {
     pub(super) fn add_gradient(&self, x: &[f64], gradient: &mut [f64]) {
         for (gap, value) in self.closed(x) {
             let force = self.stiffness * value * gap.normal;
-            for (v, w) in gap.vertices.into_iter().zip(gap.weights) {
-                add_at(gradient, v, w * force);
+            for (v, w) in gap.vertices.iter().zip(&gap.weights) {
+                add_at(gradient, *v, *w * force);
             }
         }
     }
