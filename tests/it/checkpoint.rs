@@ -271,8 +271,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 15,
-            supported: 14
+            found: 14,
+            supported: 15
         }
     ));
     // Every other byte is under the checksum, the checksum included.
