@@ -83,7 +83,7 @@ pub(super) struct ChartSubstep<'a> {
 }
 
 /// Why a step in a chart is not taken as proposed.
-pub(super) enum Refusal {
+pub(super) enum SubstepRefusal {
     /// Only this part of the displacement is proven free of contact.
     Blocked(f64),
     /// It changes the Hamiltonian by this much, joules.
@@ -212,11 +212,11 @@ impl<'a> ChartSubstep<'a> {
 }
 
 impl Stepping for ChartSubstep<'_> {
-    type Refusal = Refusal;
+    type Refusal = SubstepRefusal;
     type Error = ChartDynamicsError;
     type Report = ChartStepReport;
 
-    fn propose(&mut self, h: f64) -> Result<(), Refusal> {
+    fn propose(&mut self, h: f64) -> Result<(), SubstepRefusal> {
         let ChartSimulation {
             stepper,
             motion,
@@ -227,26 +227,26 @@ impl Stepping for ChartSubstep<'_> {
         let t = motion.t + h;
         if let Some((support, value)) = stepper.mechanics.model().find_bad_motion(t) {
             let error = ChartDynamicsError::Motion { support, value, t };
-            return Err(Refusal::Failed(error));
+            return Err(SubstepRefusal::Failed(error));
         }
         let trial = stepper
             .attempt(motion.t, &motion.state, h)
-            .map_err(Refusal::Failed)?;
+            .map_err(SubstepRefusal::Failed)?;
         if let Some(contact) = contact {
             let span = StepSpan { t0: motion.t, h };
             let part = contact.safe_fraction(span, &motion.state.x, &trial.x);
-            let part = part.map_err(|error| Refusal::Failed(error.into()))?;
+            let part = part.map_err(|error| SubstepRefusal::Failed(error.into()))?;
             if part < 1.0 {
-                return Err(Refusal::Blocked(part));
+                return Err(SubstepRefusal::Blocked(part));
             }
         }
         let change = (trial.hamiltonian - motion.hamiltonian).abs();
         if self.bound.judge(h, change) != Verdict::Accept {
-            return Err(Refusal::Energy(change));
+            return Err(SubstepRefusal::Energy(change));
         }
         let strain = stepper.mechanics.system().max_strain(&trial.x);
         if strain > options.failure_strain {
-            return Err(Refusal::Failed(ChartDynamicsError::Diverged {
+            return Err(SubstepRefusal::Failed(ChartDynamicsError::Diverged {
                 t: motion.t + h,
                 strain,
                 limit: options.failure_strain,
@@ -256,21 +256,21 @@ impl Stepping for ChartSubstep<'_> {
         Ok(())
     }
 
-    fn decide(&mut self, refusal: Refusal, h: f64) -> Decision<ChartDynamicsError> {
+    fn decide(&mut self, refusal: SubstepRefusal, h: f64) -> Decision<ChartDynamicsError> {
         let may_rebase = self.simulation.options.rebase == Rebase::WhenNeeded
             && !self.simulation.motion.is_fresh;
         match refusal {
-            Refusal::Blocked(part) => self.cut(part * h),
-            Refusal::Failed(ChartDynamicsError::Chart(_)) if may_rebase => Decision::Restart,
+            SubstepRefusal::Blocked(part) => self.cut(part * h),
+            SubstepRefusal::Failed(ChartDynamicsError::Chart(_)) if may_rebase => Decision::Restart,
             // The edge lengths have drifted over many steps, or a prescribed motion is not finite: a shorter
             // step does not help.
-            Refusal::Failed(
+            SubstepRefusal::Failed(
                 error @ (ChartDynamicsError::Diverged { .. }
                 | ChartDynamicsError::Motion { .. }
                 | ChartDynamicsError::Body(_)),
             ) => Decision::Stop(error),
-            Refusal::Failed(error) => self.shorten(h, f64::NAN, Some(error)),
-            Refusal::Energy(change) => self.shorten(h, change, None),
+            SubstepRefusal::Failed(error) => self.shorten(h, f64::NAN, Some(error)),
+            SubstepRefusal::Energy(change) => self.shorten(h, change, None),
         }
     }
 

@@ -139,7 +139,7 @@ pub(crate) struct ConstrainedVertex {
 }
 
 #[derive(Debug)]
-enum Shape {
+enum Locus {
     Surface(Box<dyn Surface>, Side),
     Curve(Box<dyn Curve>),
 }
@@ -160,7 +160,7 @@ enum Shape {
 #[derive(Debug)]
 pub struct VertexConstraint {
     vertex: VertexId,
-    shape: Shape,
+    shape: Locus,
     motion: Option<RigidMotion>,
 }
 
@@ -169,7 +169,7 @@ impl VertexConstraint {
     pub fn on_surface(vertex: VertexId, surface: impl Surface + 'static, side: Side) -> Self {
         Self {
             vertex,
-            shape: Shape::Surface(Box::new(surface), side),
+            shape: Locus::Surface(Box::new(surface), side),
             motion: None,
         }
     }
@@ -178,7 +178,7 @@ impl VertexConstraint {
     pub fn on_curve(vertex: VertexId, curve: impl Curve + 'static) -> Self {
         Self {
             vertex,
-            shape: Shape::Curve(Box::new(curve)),
+            shape: Locus::Curve(Box::new(curve)),
             motion: None,
         }
     }
@@ -223,14 +223,14 @@ impl VertexConstraint {
 
     /// Whether the constraint is an inequality: it pushes, and does not pull.
     pub(crate) fn is_one_sided(&self) -> bool {
-        matches!(self.shape, Shape::Surface(_, Side::Outside | Side::Inside))
+        matches!(self.shape, Locus::Surface(_, Side::Outside | Side::Inside))
     }
 
     /// Number of independent equations: 1 for a surface, 2 for a curve.
     pub(crate) fn equation_count(&self) -> usize {
         match self.shape {
-            Shape::Surface(..) => 1,
-            Shape::Curve(_) => 2,
+            Locus::Surface(..) => 1,
+            Locus::Curve(_) => 2,
         }
     }
 
@@ -292,7 +292,7 @@ impl VertexConstraint {
     }
 }
 
-impl Shape {
+impl Locus {
     fn at(&self, p: &Vector3<f64>) -> LocalEquations {
         match self {
             Self::Surface(surface, side) => {

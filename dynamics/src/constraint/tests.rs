@@ -31,12 +31,12 @@ fn samples() -> Vec<(&'static str, VertexConstraint)> {
     });
     let surface = |s: Box<dyn Surface>, side| VertexConstraint {
         vertex: id,
-        shape: Shape::Surface(s, side),
+        shape: Locus::Surface(s, side),
         motion: None,
     };
     let curve = |c: Box<dyn Curve>| VertexConstraint {
         vertex: id,
-        shape: Shape::Curve(c),
+        shape: Locus::Curve(c),
         motion: None,
     };
     let mut all = Vec::new();
@@ -67,8 +67,8 @@ fn samples() -> Vec<(&'static str, VertexConstraint)> {
     for k in 0..all.len() {
         let (name, c) = &all[k];
         let shape = match &c.shape {
-            Shape::Surface(..) => continue,
-            Shape::Curve(_) => *name,
+            Locus::Surface(..) => continue,
+            Locus::Curve(_) => *name,
         };
         if shape == "circle" {
             let circle = Circle::new([0.1, 0.2, -0.3], [1.0, 1.0, 0.3], 0.7).expect("valid");
@@ -114,7 +114,7 @@ fn derivatives_are_those_of_the_values() {
 #[test]
 fn closest_points_are_closest_and_stationary() {
     for (name, c) in samples() {
-        let Shape::Curve(curve) = &c.shape else {
+        let Locus::Curve(curve) = &c.shape else {
             continue;
         };
         for i in 0..60 {

@@ -351,7 +351,7 @@ impl Term for ContactTerm {
         let step = self.at(at.x);
         let scale = product.scale;
         step.add_carried(product.product, |step, out| {
-            step.terms().add_drive(scale, out)
+            step.terms().add_drive(scale, out);
         });
     }
 

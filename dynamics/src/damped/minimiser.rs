@@ -22,7 +22,7 @@ use crate::{ImplicitOptions, SheetModel};
 use isosheet_coords::linalg::LinalgError;
 use lagrangian::{Merit, OPERATIONS};
 use newton::{Failure, Minimum, Newton};
-use phase::{Faces, Multipliers, Phase};
+use phase::{Faces, MultiplierUpdate, Phase};
 use problem::StepProblem;
 use workspace::Workspace;
 
@@ -187,8 +187,8 @@ impl Minimiser {
         let Some(bound) = bound else { return true };
         let now = self.work.lagrangian.merit(problem);
         let rod_scale = match phase.multipliers {
-            Multipliers::Solved => 0.0,
-            Multipliers::Rounds => now.rod_scale.max(bound.rod_scale),
+            MultiplierUpdate::Solved => 0.0,
+            MultiplierUpdate::Rounds => now.rod_scale.max(bound.rod_scale),
         };
         let slack = problem.h().powi(2) * self.length_slack(problem)
             + OPERATIONS

@@ -40,7 +40,7 @@ pub(crate) struct Objective {
 
 /// The incremental potential `Phi` at an iterate, joules times squared seconds.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Potential {
+pub(crate) struct IncrementalPotential {
     pub(crate) value: f64,
     /// Its inertia term.
     pub(crate) inertia: f64,
@@ -105,7 +105,7 @@ impl Objective {
     }
 
     /// The incremental potential in a step of the effective length `h`, seconds.
-    pub(crate) fn value(&mut self, at: Iterate<'_>, h: f64) -> Potential {
+    pub(crate) fn value(&mut self, at: Iterate<'_>, h: f64) -> IncrementalPotential {
         let inertia = self.inertia.value(at).energy;
         let mut sum = Value::default();
         for term in self.terms() {
@@ -118,7 +118,7 @@ impl Objective {
             sum.size += size;
             sum.round_off += round_off;
         }
-        Potential {
+        IncrementalPotential {
             value: inertia + h * h * sum.energy,
             inertia,
             size: inertia + h * h * sum.size,
@@ -245,11 +245,9 @@ impl Objective {
         scale: f64,
         out: &mut [f64],
     ) -> bool {
-        let mut any = false;
-        for term in self.barriers() {
-            any |= term.add_correction(at, dx, scale, out);
-        }
-        any
+        self.barriers().fold(false, |any, term| {
+            any | term.add_correction(at, dx, scale, out)
+        })
     }
 
     /// Adds what displacements of second order take back; whether there is any.
@@ -260,11 +258,9 @@ impl Objective {
         scale: f64,
         out: &mut [f64],
     ) -> bool {
-        let mut any = false;
-        for term in self.terms() {
-            any |= term.add_second_order(at, dx, scale, out);
-        }
-        any
+        self.terms().fold(false, |any, term| {
+            any | term.add_second_order(at, dx, scale, out)
+        })
     }
 
     /// How far prescribed motions of terms have gone on, from 0 to 1.
@@ -279,11 +275,8 @@ impl Objective {
 
     /// Brings what lags to the iterate; whether it had changed by more than `settled`.
     pub(crate) fn renew(&mut self, at: Iterate<'_>, settled: f64) -> bool {
-        let mut any = false;
-        for term in self.terms() {
-            any |= term.renew(at, settled);
-        }
-        any
+        self.terms()
+            .fold(false, |any, term| any | term.renew(at, settled))
     }
 
     /// Number of contacts that are active.

@@ -1,7 +1,7 @@
 //! Newton's method on the incremental potential of a step, in a phase.
 
 use super::lagrangian::{Definiteness, Merit, RodLoad};
-use super::phase::{Multipliers, Phase, Saddle, Start};
+use super::phase::{MultiplierUpdate, Phase, Saddle, StartingPoint};
 use super::problem::StepProblem;
 use super::workspace::{LengthGoal, Workspace};
 use crate::damped::ARMIJO;
@@ -174,21 +174,21 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         } = &mut *self.work;
         match (self.phase.remembers, self.phase.multipliers) {
             (true, _) => lagrangian.multipliers.copy_from_slice(remembered),
-            (false, Multipliers::Solved) => lagrangian.multipliers.fill(0.0),
-            (false, Multipliers::Rounds) => lagrangian.clear_multipliers(),
+            (false, MultiplierUpdate::Solved) => lagrangian.multipliers.fill(0.0),
+            (false, MultiplierUpdate::Rounds) => lagrangian.clear_multipliers(),
         }
         let first = match self.problem.has_contact() {
             true => tuning.last_stiffness,
             false => tuning.first_stiffness,
         };
-        if self.phase.multipliers == Multipliers::Solved {
+        if self.phase.multipliers == MultiplierUpdate::Solved {
             // Contact is not kept to round-off.
             *rod_stiffness = rod_stiffness.max(first);
         }
         let problem = &mut *self.problem;
         match self.phase.start {
-            Start::Prediction => lagrangian.predict(problem),
-            Start::Lower if !problem.is_bounded() && problem.model.has_drives() => {
+            StartingPoint::Prediction => lagrangian.predict(problem),
+            StartingPoint::Lower if !problem.is_bounded() && problem.model.has_drives() => {
                 lagrangian.set_stiffness(options.stiffness, options.stiffness);
                 lagrangian.place_pins(problem);
                 let start = lagrangian.merit(problem).value;
@@ -200,7 +200,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 }
             }
             // The prediction may be beyond an obstacle.
-            Start::Lower => {}
+            StartingPoint::Lower => {}
         }
         lagrangian.set_stiffness(self.penalty, options.stiffness);
         lagrangian.merit(problem);
@@ -210,10 +210,10 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     fn direction(&mut self) -> Result<Direction, Reason> {
         self.effort.iterations += 1;
         let hessian = match self.phase.multipliers {
-            Multipliers::Solved => self.solve_with_multipliers()?,
-            Multipliers::Rounds => self.solve()?,
+            MultiplierUpdate::Solved => self.solve_with_multipliers()?,
+            MultiplierUpdate::Rounds => self.solve()?,
         };
-        if hessian == Definiteness::Modified && self.phase.multipliers == Multipliers::Rounds {
+        if hessian == Definiteness::Modified && self.phase.multipliers == MultiplierUpdate::Rounds {
             self.outcome = self.outcome.max(StepOutcome::Globalised);
         }
         let lagrangian = &mut self.work.lagrangian;
@@ -354,7 +354,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// Applies the second-order correction for contact to a step of which only the part `limit` is safe; the
     /// part that is safe then.
     fn correct(&mut self, limit: f64, direction: &mut Direction) -> f64 {
-        if limit == 1.0 || self.phase.multipliers == Multipliers::Rounds {
+        if limit == 1.0 || self.phase.multipliers == MultiplierUpdate::Rounds {
             return limit;
         }
         let lagrangian = &mut self.work.lagrangian;
@@ -455,7 +455,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         let tuning = &self.work.tuning;
         let is_early = self.iterations <= tuning.repetitions as usize;
         match self.phase.multipliers {
-            Multipliers::Solved if !is_early => {
+            MultiplierUpdate::Solved if !is_early => {
                 tuning.contraction() * self.work.options.strain_tolerance * merit.rod_scale
             }
             _ => 0.0,
@@ -464,7 +464,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
 
     /// Whether the restoration at the end will be a small displacement, or further rounds see to that.
     fn is_near(&self) -> bool {
-        self.phase.multipliers == Multipliers::Rounds
+        self.phase.multipliers == MultiplierUpdate::Rounds
             || self.phase.small_strain == f64::INFINITY
             || self.strain() <= self.phase.small_strain
     }
@@ -484,7 +484,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// iterations.
     fn renew_friction(&mut self, quality: Quality) -> bool {
         let is_early =
-            self.phase.multipliers == Multipliers::Rounds && quality == Quality::Descends;
+            self.phase.multipliers == MultiplierUpdate::Rounds && quality == Quality::Descends;
         if is_early || self.friction_updates == self.phase.friction_updates {
             return false;
         }
@@ -556,7 +556,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// begins, or the iteration goes on.
     fn finish(&mut self) -> Result<bool, Reason> {
         let is_last = self.round + 1 == self.phase.rounds;
-        if self.phase.multipliers == Multipliers::Rounds {
+        if self.phase.multipliers == MultiplierUpdate::Rounds {
             let lagrangian = &mut self.work.lagrangian;
             for e in 0..lagrangian.c.len() {
                 lagrangian.multipliers[e] += lagrangian.penalty(e) * lagrangian.c[e];
@@ -573,11 +573,11 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         }
         self.work.lagrangian.merit(self.problem);
         match self.phase.multipliers {
-            Multipliers::Solved => {}
-            Multipliers::Rounds if is_last => {
+            MultiplierUpdate::Solved => {}
+            MultiplierUpdate::Rounds if is_last => {
                 return Err(self.effort.failed(Reason::DependentRods));
             }
-            Multipliers::Rounds => self.begin_round(),
+            MultiplierUpdate::Rounds => self.begin_round(),
         }
         Ok(false)
     }
@@ -599,8 +599,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             strain: self.work.strain_tolerance(self.problem),
             max_iterations: self.phase.restorations,
             matrix: match self.phase.multipliers {
-                Multipliers::Solved => FirstMatrix::Factorised,
-                Multipliers::Rounds => FirstMatrix::Assembled,
+                MultiplierUpdate::Solved => FirstMatrix::Factorised,
+                MultiplierUpdate::Rounds => FirstMatrix::Assembled,
             },
         };
         self.work.restore(self.problem, to, self.effort) <= to.strain

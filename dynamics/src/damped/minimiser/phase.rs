@@ -34,7 +34,7 @@ impl Faces {
 
 /// Where a phase starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Start {
+pub(super) enum StartingPoint {
     /// At the positions at the start of the step; without contact, where supports have moved on, at the
     /// prediction if its merit is lower.
     Lower,
@@ -44,7 +44,7 @@ pub(super) enum Start {
 
 /// Where the multipliers of the rods come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Multipliers {
+pub(super) enum MultiplierUpdate {
     /// Each iteration solves for them together with the search direction (sequential quadratic programming).
     Solved,
     /// Each round adds the penalty times the length errors (augmented Lagrangian).
@@ -67,8 +67,8 @@ pub(super) enum Saddle {
 pub(super) struct Phase {
     /// Its name in a trace.
     pub(super) name: &'static str,
-    pub(super) start: Start,
-    pub(super) multipliers: Multipliers,
+    pub(super) start: StartingPoint,
+    pub(super) multipliers: MultiplierUpdate,
     /// Whether it begins with the multipliers of the step before.
     pub(super) remembers: bool,
     /// Largest strain of iterates, above which their lengths are restored; infinite where they are left.
@@ -162,8 +162,8 @@ impl Phase {
         // step to step.
         Self {
             name: "SQP",
-            start: Start::Lower,
-            multipliers: Multipliers::Solved,
+            start: StartingPoint::Lower,
+            multipliers: MultiplierUpdate::Solved,
             remembers: !has_contact,
             iterate_strain: tuning.iterate_strain,
             merit_penalty: match has_contact {
@@ -198,8 +198,8 @@ impl Phase {
         // The multipliers of SQP grow without bound where rods are nearly dependent, and are no start here.
         Self {
             name: "augmented Lagrangian",
-            start: Start::Prediction,
-            multipliers: Multipliers::Rounds,
+            start: StartingPoint::Prediction,
+            multipliers: MultiplierUpdate::Rounds,
             remembers: false,
             iterate_strain: f64::INFINITY,
             merit_penalty: options.stiffness,

@@ -49,12 +49,12 @@ pub(super) struct FarCouplings {
 struct Named {
     vertices: [VertexId; 2],
     /// The pair, unless a vertex is pinned.
-    place: Option<Place>,
+    place: Option<OrientedPair>,
 }
 
 /// A pair, and which of its vertices the rows of a block belong to.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct OrientedPair {
     pair: u32,
     rows: Rows,
 }
@@ -142,7 +142,7 @@ impl FarCouplings {
         block: &Matrix3<f64>,
         scale: f64,
     ) {
-        let Some(Place { pair, rows }) = self.find(model, vertices) else {
+        let Some(OrientedPair { pair, rows }) = self.find(model, vertices) else {
             return;
         };
         let pair = pair as usize;
@@ -171,7 +171,7 @@ impl FarCouplings {
     }
 
     /// The place of a block. Potentials give blocks in the order in which they name pairs, as a rule.
-    fn find(&mut self, model: &SheetModel, vertices: [VertexId; 2]) -> Option<Place> {
+    fn find(&mut self, model: &SheetModel, vertices: [VertexId; 2]) -> Option<OrientedPair> {
         let expected = self.named.get(self.next);
         if let Some(named) = expected.filter(|named| named.vertices == vertices) {
             self.next += 1;
@@ -283,10 +283,14 @@ fn pair_of(model: &SheetModel, vertices: [VertexId; 2]) -> Option<([u32; 2], Row
     (i != PINNED && j != PINNED && i != j).then_some(([i.max(j), i.min(j)], rows))
 }
 
-fn place_of(model: &SheetModel, pairs: &[[u32; 2]], vertices: [VertexId; 2]) -> Option<Place> {
+fn place_of(
+    model: &SheetModel,
+    pairs: &[[u32; 2]],
+    vertices: [VertexId; 2],
+) -> Option<OrientedPair> {
     let (pair, rows) = pair_of(model, vertices)?;
     let pair = pairs.binary_search(&pair).ok()? as u32;
-    Some(Place { pair, rows })
+    Some(OrientedPair { pair, rows })
 }
 
 fn multiple_of_identity(block: &Matrix3<f64>) -> Option<f64> {
