@@ -239,7 +239,9 @@ impl CreaseSprings {
     ///
     /// On a union-jack grid of squares a bend along grid lines has exactly the energy `D kappa^2 / 2` per
     /// area, one along diagonals twice that. A sheet of rigid rods bends at its edges only: how stiff it is
-    /// in other directions depends on the mesh.
+    /// in other directions depends on the mesh. One angle at an edge says nothing of the bend along it, so that
+    /// there is no Poisson's ratio: twist is as stiff as the mesh makes it
+    /// ([`PlateBending`](crate::PlateBending) has the torsion of a plate).
     ///
     /// # Errors
     /// [`CreaseError::Rigidity`].

@@ -3,7 +3,10 @@
 mod plastic;
 #[cfg(test)]
 mod plastic_tests;
+#[cfg(test)]
+mod poisson_tests;
 mod stencil;
+mod stiffness;
 #[cfg(test)]
 mod tests;
 
@@ -19,6 +22,7 @@ use nalgebra::{Matrix2, Matrix3, Vector3};
 use plastic::{Blocks, PlasticCurvature};
 use std::collections::BTreeMap;
 use stencil::Stencils;
+pub use stiffness::PlateStiffness;
 
 /// Why the bending stiffness of a plate cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -29,6 +33,12 @@ pub enum PlateBendingError {
     Rigidity {
         /// The rigidity given, N m.
         rigidity: f64,
+    },
+    /// Poisson's ratio is out of range.
+    #[error("Poisson's ratio is {ratio}", ratio = given(*ratio))]
+    Poisson {
+        /// The ratio given.
+        ratio: f64,
     },
     /// A clamped vertex does not exist.
     #[error("{vertex} is named as clamped, but the sheet has {count} vertices")]
@@ -59,6 +69,7 @@ impl Advice for PlateBendingError {
         match self {
             Self::Yield { source } => source.advice(),
             Self::Rigidity { .. } => Some("give a finite one of at least 0"),
+            Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
             Self::NoVertex { .. } | Self::NoEdge { .. } => None,
         }
     }
@@ -67,24 +78,25 @@ impl Advice for PlateBendingError {
 /// Bending energy of a thin plate that is flat at rest,
 ///
 /// ```text
-/// V(x) = D/2 sum_T A_T |H_T x|^2,
+/// V(x) = D/2 sum_T A_T [ (1 - nu) |H_T x|^2 + nu |tr H_T x|^2 ],
 /// H_T x = 1/A_T sum_{e in T} l_e [ s_e n n^T + (x_b - x_a) / l_e  sym(t n^T) ],
 /// ```
 ///
-/// with the flexural rigidity `D` (newton metres), the areas `A_T` of the faces, and for each edge `e = (a,
+/// with the flexural rigidity `D` (newton metres), Poisson's ratio `nu` ([`PlateStiffness`]), the areas `A_T` of the faces, and for each edge `e = (a,
 /// b)` of a face its length `l_e`, its direction `t`, the outward normal `n` in the plane of the face and the
 /// derivative `s_e` of the positions along `n` at its midpoint. `H_T x` is the mean of the second derivatives
 /// of the positions by material coordinates over the face (Gauss's theorem), one vector for each of its three
 /// components. For an isometric deformation these second derivatives are the second fundamental form times
-/// the surface normal, and `V` is the energy of the plate with Poisson's ratio zero; a developable surface
-/// has one principal curvature, and any other ratio is a factor that belongs to `D`.
+/// the surface normal, and `V` is the energy of Kirchhoff's plate. A developable surface has one principal
+/// curvature, and its energy does not depend on Poisson's ratio; twist and bending in two directions do.
 ///
 /// The two faces of an edge share `s_e`, which makes the energy that of Morley's plate element, with the
 /// slopes eliminated: inside, `s_e` is the slope of the quadratic polynomial that fits the vertices of the
-/// two faces and their neighbours by weighted least squares; at free edges it is the one that minimises `V`;
-/// at the edges of faces with three clamped corners it is the slope of that face. Second derivatives are
-/// exact for quadratic positions (but for faces at free edges, which no moment bends), and deflections are of
-/// second order in the size of the faces on any mesh. (The stiffness of
+/// two faces and their neighbours by weighted least squares; at free edges it is that of the face and its
+/// neighbours to one side; at the edges of faces with three clamped corners it is the slope of that face.
+/// Second derivatives are exact for quadratic positions, and deflections are of second order in the size of
+/// the faces on any mesh. (Where a mesh has too few vertices for a fit, and at creases, a face is not bent
+/// across its edge: a strip of one cell across does not curve across, and bends as a wide one does.) (The stiffness of
 /// [`CreaseSprings::bending`](crate::CreaseSprings::bending) depends on how mesh and bend run.)
 ///
 /// Of the sheet that the plate is made of, the edge lengths alone count: where its rest positions are folded,
@@ -113,7 +125,7 @@ impl Advice for PlateBendingError {
 /// Zarate, "Rotation-free triangular plate and shell elements", Int. J. Numer. Methods Eng. 47, 2000.)
 #[derive(Debug)]
 pub struct PlateBending {
-    rigidity: f64,
+    stiffness: PlateStiffness,
     stencils: Stencils,
     plastic: Option<PlasticCurvature>,
     /// The Hessian of the elastic plate: one multiple of the identity for each vertex, edge and further pair
@@ -124,13 +136,16 @@ pub struct PlateBending {
 }
 
 impl PlateBending {
-    /// The bending stiffness of a plate without clamps; `rigidity` in newton metres (office paper: about
-    /// 5e-4).
+    /// The bending stiffness of a plate without clamps. (A number is its rigidity, with a Poisson's ratio of
+    /// zero.)
     ///
     /// # Errors
-    /// [`PlateBendingError::Rigidity`].
-    pub fn new(sheet: &Sheet, rigidity: f64) -> Result<Self, PlateBendingError> {
-        Self::clamped(sheet, rigidity, &[])
+    /// [`PlateBendingError::Rigidity`] and [`PlateBendingError::Poisson`].
+    pub fn new(
+        sheet: &Sheet,
+        stiffness: impl Into<PlateStiffness>,
+    ) -> Result<Self, PlateBendingError> {
+        Self::clamped(sheet, stiffness, &[])
     }
 
     /// The bending stiffness of a plate that is clamped by pinned vertices: where all three corners of a face
@@ -141,10 +156,10 @@ impl PlateBending {
     /// [`PlateBendingError`].
     pub fn clamped(
         sheet: &Sheet,
-        rigidity: f64,
+        stiffness: impl Into<PlateStiffness>,
         clamped: &[VertexId],
     ) -> Result<Self, PlateBendingError> {
-        Self::creased(sheet, rigidity, clamped, &[])
+        Self::creased(sheet, stiffness, clamped, &[])
     }
 
     /// As [`PlateBending::clamped`], of a sheet with creases: at the edges `creases` the slopes of the two
@@ -156,12 +171,17 @@ impl PlateBending {
     /// [`PlateBendingError`].
     pub fn creased(
         sheet: &Sheet,
-        rigidity: f64,
+        stiffness: impl Into<PlateStiffness>,
         clamped: &[VertexId],
         creases: &[EdgeId],
     ) -> Result<Self, PlateBendingError> {
+        let stiffness = stiffness.into();
+        let PlateStiffness { rigidity, poisson } = stiffness;
         if !(rigidity.is_finite() && rigidity >= 0.0) {
             return Err(PlateBendingError::Rigidity { rigidity });
+        }
+        if !(0.0..=0.5).contains(&poisson) {
+            return Err(PlateBendingError::Poisson { ratio: poisson });
         }
         let count = sheet.topology().vertex_count();
         if let Some(&vertex) = clamped.iter().find(|v| v.index() >= count) {
@@ -171,7 +191,7 @@ impl PlateBending {
         if let Some(&edge) = creases.iter().find(|e| e.index() >= edges) {
             return Err(PlateBendingError::NoEdge { edge, count: edges });
         }
-        let stencils = Stencils::new(sheet, rigidity, clamped, creases);
+        let stencils = Stencils::new(sheet, stiffness, clamped, creases);
         let mut at_vertices = vec![0.0; count];
         let mut others = BTreeMap::<[u32; 2], f64>::new();
         for stencil in stencils.iter() {
@@ -196,7 +216,7 @@ impl PlateBending {
             }
         }
         Ok(Self {
-            rigidity,
+            stiffness,
             stencils,
             plastic: None,
             at_vertices,
@@ -213,9 +233,15 @@ impl PlateBending {
     pub fn with_yield(mut self, sheet: &Sheet, yields: Yield) -> Result<Self, PlateBendingError> {
         let checked = yields.validate();
         checked.map_err(|source| PlateBendingError::Yield { source })?;
-        self.plastic = (self.rigidity > 0.0).then(|| {
+        self.plastic = (self.stiffness.rigidity > 0.0).then(|| {
             let (edges, pairs) = (&self.at_edges, &self.at_pairs);
-            PlasticCurvature::new(sheet, &self.stencils, (self.rigidity, yields), edges, pairs)
+            PlasticCurvature::new(
+                sheet,
+                &self.stencils,
+                (self.stiffness, yields),
+                edges,
+                pairs,
+            )
         });
         Ok(self)
     }

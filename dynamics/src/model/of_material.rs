@@ -132,7 +132,7 @@ impl SheetOfMaterial<'_> {
         let mass = MassMatrix::from_density(sheet, material.density, MassKind::Lumped);
         let mass = mass.map_err(ModelError::from)?;
         let model = SheetModel::with_mass(sheet, mass)?.with_pins(&clamps)?;
-        let mut plate = PlateBending::creased(sheet, material.rigidity, &clamps, &creases)?;
+        let mut plate = PlateBending::creased(sheet, &material, &clamps, &creases)?;
         if let Some(yields) = yields {
             plate = plate.with_yield(sheet, yields)?;
         }
@@ -171,7 +171,7 @@ mod tests {
         let clamp = sheet.vertices_where(|[x, _, _]| x < 0.03);
         let steel = Material::aluminium_foil();
         let yields = steel.yields.unwrap().in_layers(2);
-        let plate = PlateBending::clamped(&sheet, steel.rigidity, &clamp);
+        let plate = PlateBending::clamped(&sheet, &steel, &clamp);
         let plate = plate.and_then(|p| p.with_yield(&sheet, yields)).unwrap();
         let by_hand = SheetModel::new(&sheet, steel.density * sheet.area(), MassKind::Lumped)
             .and_then(|m| m.with_pins(&clamp))

@@ -21,9 +21,9 @@ use isosheet_collide as collide;
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
     AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, PAPER_GRAVITY,
-    PlateBending, PointMotion, PointProfile, Potential, PotentialOfPart, RigidProfile, SheetModel,
-    SimulationError, State, VertexConstraint, VertexLoad, leave_flat_in, project_positions,
-    start_of_folding,
+    PlateBending, PlateStiffness, PointMotion, PointProfile, Potential, PotentialOfPart,
+    RigidProfile, SheetModel, SimulationError, State, VertexConstraint, VertexLoad, leave_flat_in,
+    project_positions, start_of_folding,
 };
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
@@ -99,8 +99,8 @@ pub(crate) struct Kept {
     pub(crate) files: Files,
     /// Of each sheet, once they have been made.
     forms: Vec<Arc<Form>>,
-    /// The plate of each sheet that does not yield, by rigidity, clamped vertices and creases.
-    plates: Slots<(f64, Vec<VertexId>, Vec<EdgeId>), Arc<PlateBending>>,
+    /// The plate of each sheet that does not yield, by stiffness, clamped vertices and creases.
+    plates: Slots<(PlateStiffness, Vec<VertexId>, Vec<EdgeId>), Arc<PlateBending>>,
     /// Those of the obstacles.
     shapes: Slots<obstacles::Shape, collide::Shape>,
 }
@@ -363,31 +363,8 @@ impl<'a> Builder<'a> {
         if yields.is_some() {
             modelled.push("bends that stay");
         }
-        match of.bending() {
-            Bending::None => {}
-            Bending::Plate { rigidity } => {
-                let pins = self.model().pins().into_iter();
-                let own = pins.filter(|v| part.vertices.contains(&v.index()));
-                let clamped: Vec<VertexId> = own.map(|v| part.local_vertex(v)).collect();
-                let plate = |clamped: &[VertexId], creases: &[EdgeId]| {
-                    PlateBending::creased(placed, rigidity, clamped, creases).map_err(at(&key))
-                };
-                modelled.push("bending stiffness of a plate");
-                if let Some(yields) = yields {
-                    let yielding = plate(&clamped, creases)?.with_yield(placed, yields);
-                    self.add_potential_of(number, yielding.map_err(at(&yield_key))?);
-                } else {
-                    let made_of = (rigidity, clamped, creases.to_vec());
-                    let shared = self
-                        .kept
-                        .plates
-                        .get(number, made_of, |(_, clamped, creases)| {
-                            plate(clamped, creases).map(Arc::new)
-                        });
-                    self.add_potential_of(number, shared?);
-                }
-            }
-            Bending::Hinges { rigidity } => {
+        match (of.bending(), of.plate()) {
+            (Bending::Hinges { rigidity }, _) => {
                 let springs = CreaseSprings::bending_beside(placed, rigidity, creases);
                 let mut springs = springs.map_err(at(&key))?;
                 if let Some(yields) = yields {
@@ -396,6 +373,29 @@ impl<'a> Builder<'a> {
                 }
                 modelled.push("bending stiffness at edges");
                 self.add_potential_of(number, springs);
+            }
+            (_, None) => {}
+            (_, Some(stiffness)) => {
+                let pins = self.model().pins().into_iter();
+                let own = pins.filter(|v| part.vertices.contains(&v.index()));
+                let clamped: Vec<VertexId> = own.map(|v| part.local_vertex(v)).collect();
+                let plate = |clamped: &[VertexId], creases: &[EdgeId]| {
+                    PlateBending::creased(placed, stiffness, clamped, creases).map_err(at(&key))
+                };
+                modelled.push("bending stiffness of a plate");
+                if let Some(yields) = yields {
+                    let yielding = plate(&clamped, creases)?.with_yield(placed, yields);
+                    self.add_potential_of(number, yielding.map_err(at(&yield_key))?);
+                } else {
+                    let made_of = (stiffness, clamped, creases.to_vec());
+                    let shared = self
+                        .kept
+                        .plates
+                        .get(number, made_of, |(_, clamped, creases)| {
+                            plate(clamped, creases).map(Arc::new)
+                        });
+                    self.add_potential_of(number, shared?);
+                }
             }
         }
         Ok(modelled)

@@ -132,9 +132,13 @@ pub enum Bending {
     Plate {
         /// Flexural rigidity, N m: office paper has about 5e-4.
         rigidity: f64,
+        /// Poisson's ratio, from 0 to 0.5: how twist and bends in two directions at once compare with bends in
+        /// one. If left out, that of `isometry` or of the material; without one 0.3.
+        #[serde(default)]
+        poisson: Option<f64>,
     },
     /// Springs at the edges: cheaper than a plate, and dependent on the mesh where bends do not follow its
-    /// lines.
+    /// lines. They know no Poisson's ratio.
     Hinges {
         /// Flexural rigidity, N m.
         rigidity: f64,
@@ -188,8 +192,31 @@ impl Sheet {
             (Some(bending), _) => bending.clone(),
             (None, Some(m)) if m.rigidity > 0.0 => Bending::Plate {
                 rigidity: m.rigidity,
+                poisson: None,
             },
             (None, _) => Bending::None,
+        }
+    }
+
+    /// Poisson's ratio: as written for the elasticity in the plane, of the material, or a typical one.
+    fn poisson(&self) -> f64 {
+        let written = match self.isometry {
+            Some(Isometry::Elastic { poisson, .. }) => poisson,
+            _ => None,
+        };
+        let given = written.or(self.made_of().map(|m| m.poisson));
+        given.unwrap_or_else(typical_poisson)
+    }
+
+    /// The stiffness of the plate, if bending is resisted by one: as written, or what follows from the
+    /// elasticity and the material.
+    pub fn plate(&self) -> Option<engine::PlateStiffness> {
+        match self.bending() {
+            Bending::Plate { rigidity, poisson } => Some(engine::PlateStiffness {
+                rigidity,
+                poisson: poisson.unwrap_or_else(|| self.poisson()),
+            }),
+            Bending::None | Bending::Hinges { .. } => None,
         }
     }
 
@@ -203,9 +230,7 @@ impl Sheet {
     /// without a stiffness.
     pub fn elasticity(&self) -> Option<Elasticity> {
         let Isometry::Elastic {
-            stiffness,
-            poisson,
-            limit,
+            stiffness, limit, ..
         } = self.isometry()
         else {
             return None;
@@ -213,9 +238,7 @@ impl Sheet {
         let material = self.made_of();
         Some(Elasticity {
             stiffness: stiffness.or(material.map(|m| m.stiffness))?,
-            poisson: poisson
-                .or(material.map(|m| m.poisson))
-                .unwrap_or_else(typical_poisson),
+            poisson: self.poisson(),
             limit: limit
                 .or(material.map(|m| m.strain_limit))
                 .unwrap_or(engine::Material::STRAIN_LIMIT),
@@ -312,14 +335,19 @@ impl Bending {
     pub(crate) fn rigidity(&self) -> f64 {
         match self {
             Self::None => 0.0,
-            Self::Plate { rigidity } | Self::Hinges { rigidity } => *rigidity,
+            Self::Plate { rigidity, .. } | Self::Hinges { rigidity } => *rigidity,
         }
     }
 
     fn check(&self, key: &Key, checks: &mut Checks) {
         let name = match self {
             Self::None => return,
-            Self::Plate { .. } => "plate.rigidity",
+            Self::Plate { poisson, .. } => {
+                if let Some(poisson) = poisson {
+                    checks.within(key.name("plate.poisson"), *poisson, [0.0, 0.5]);
+                }
+                "plate.rigidity"
+            }
             Self::Hinges { .. } => "hinges.rigidity",
         };
         checks.positive(key.name(name), self.rigidity(), Unit::NewtonMetre);

@@ -31,9 +31,11 @@ fn a_material_gives_mass_stiffness_and_an_elastic_sheet() {
     assert_eq!(
         scene.bending(),
         Bending::Plate {
-            rigidity: paper.rigidity
+            rigidity: paper.rigidity,
+            poisson: None
         }
     );
+    assert_eq!(scene.plate(), Some((&paper).into()));
     assert_eq!(scene.isometry(), Isometry::ELASTIC);
     let numbers = Elasticity {
         stiffness: paper.stiffness,
@@ -48,6 +50,32 @@ fn a_material_gives_mass_stiffness_and_an_elastic_sheet() {
     assert_eq!(steel.areal_density(), named.areal_density());
     assert_eq!(steel.bending(), named.bending());
     assert_eq!(steel.elasticity(), named.elasticity());
+}
+
+/// Poisson's ratio of a plate: its own, that of the elasticity in the plane, of the material, or 0.3; of rods
+/// as well.
+#[test]
+fn a_plate_has_the_poissons_ratio_of_its_sheet() {
+    let steel = "material = { youngs = 2.1e11, thickness = 5e-4, density = 7850, poisson = 0.25 }";
+    let plate = "bending = { plate = { rigidity = 2.0 } }";
+    let rods = "isometry = \"rods\"";
+    let elastic = "isometry = { elastic = { poisson = 0.1 } }";
+    let own = "bending = { plate = { rigidity = 2.0, poisson = 0.5 } }";
+    for (lines, poisson) in [
+        ([steel, ""], 0.25),
+        ([steel, rods], 0.25),
+        ([steel, elastic], 0.1),
+        ([steel, plate], 0.25),
+        ([plate, ""], 0.3),
+        ([own, steel], 0.5),
+    ] {
+        let lines = lines.join("\n");
+        let found = sheet(&lines).sheet.remove(0).plate().expect("a plate");
+        assert_eq!(found.poisson, poisson, "{lines}");
+    }
+    let wrong = "bending = { plate = { rigidity = 2.0, poisson = 0.6 } }";
+    let wrong = refused(&with(wrong));
+    assert!(wrong.contains("sheet.bending.plate.poisson"), "{wrong}");
 }
 
 #[test]

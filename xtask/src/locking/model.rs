@@ -2,7 +2,9 @@
 
 use anyhow::Result;
 use isosheet_dynamics::At;
-use isosheet_dynamics::{CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
+use isosheet_dynamics::{
+    CreaseSprings, ElasticSheet, PlateBending, PlateStiffness, Potential, SheetModel,
+};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -85,7 +87,10 @@ impl Plate<'_> {
         let (clamped, creases) = (self.clamped, self.creases);
         Ok(PlateBending::creased(
             sheet,
-            self.rigidity,
+            PlateStiffness {
+                rigidity: self.rigidity,
+                poisson: MEMBRANE[1],
+            },
             clamped,
             creases,
         )?)

@@ -1,5 +1,6 @@
 //! Plastic curvature of a plate.
 
+use super::PlateStiffness;
 use super::stencil::{Stencil, Stencils};
 use crate::material::plasticity::{Flow, Yield};
 use crate::potential::At;
@@ -11,12 +12,12 @@ use std::f64::consts::SQRT_2;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The plastic curvatures of the faces of a plate.
+/// The plastic curvatures of the faces of a plate. Curvatures are those of the stencils, `R k` with the
+/// [root](PlateStiffness::root) `R` of the law, so that a norm is that of the elastic energy.
 #[derive(Debug)]
 pub(super) struct PlasticCurvature {
     yields: Yield,
-    /// Flexural rigidity `D`, newton metres.
-    rigidity: f64,
+    stiffness: PlateStiffness,
     faces: Vec<PlasticFace>,
     /// Of each pair of vertices of each stencil, the second one being before the first, where its block of
     /// the Hessian is.
@@ -93,7 +94,7 @@ impl Blocks {
 }
 
 /// A face at positions, `B` being the second derivatives of the positions, `n` the unit normal and `p` the
-/// plastic curvature at the end of the step.
+/// plastic curvature at the end of the step, both times the root of the law.
 pub(super) struct BentFace {
     corners: [VertexId; 3],
     normal: Vector3<f64>,
@@ -128,7 +129,7 @@ impl PlasticCurvature {
     pub(super) fn new(
         sheet: &Sheet,
         stencils: &Stencils,
-        (rigidity, yields): (f64, Yield),
+        (stiffness, yields): (PlateStiffness, Yield),
         edges: &[(EdgeId, f64)],
         pairs: &[([VertexId; 2], f64)],
     ) -> Self {
@@ -164,7 +165,7 @@ impl PlasticCurvature {
         }
         Self {
             yields,
-            rigidity,
+            stiffness,
             faces,
             slots,
             blocks: Mutex::new(Blocks {
@@ -176,8 +177,8 @@ impl PlasticCurvature {
         }
     }
 
-    /// No plastic curvature. A memory has one for each layer of each face, 1/m: the components
-    /// `(11, sqrt(2) 12, 22)`, the first axis along the first edge of the face.
+    /// No plastic curvature. A memory has one for each layer of each face, 1/m: `R p` with the components
+    /// `(11, sqrt(2) 12, 22)` of `p`, the first axis along the first edge of the face.
     pub(super) fn memory(&self) -> Vec<f64> {
         vec![0.0; 3 * self.yields.layers * self.faces.len()]
     }
@@ -190,8 +191,9 @@ impl PlasticCurvature {
 
     /// The plastic curvatures of a memory as matrices, 1/m.
     pub(super) fn matrices(&self, memory: &[f64]) -> impl Iterator<Item = Matrix2<f64>> {
-        let matrix = |face| {
-            let p: Vector3<f64> = self.yields.plastic(&memory[self.layers(face)]);
+        let inverse = self.stiffness.inverse_root();
+        let matrix = move |face| {
+            let p = inverse * self.yields.plastic(&memory[self.layers(face)]);
             Matrix2::new(p[0], p[1] / SQRT_2, p[1] / SQRT_2, p[2])
         };
         (0..self.faces.len()).map(matrix)
@@ -201,7 +203,7 @@ impl PlasticCurvature {
     pub(super) fn bent(&self, face: usize, stencil: &Stencil<'_>, at: At<'_>) -> BentFace {
         let At { x, memory, .. } = at;
         let PlasticFace { corners, area, .. } = self.faces[face];
-        let scale = (self.rigidity * area).sqrt();
+        let scale = (self.stiffness.rigidity * area).sqrt();
         let [a, b, c] = corners.map(|v| point(x, v));
         let normal = (b - a).cross(&(c - a));
         let double_area = normal.norm();
@@ -211,7 +213,7 @@ impl PlasticCurvature {
         let layers = &memory[self.layers(face)];
         let before: Vector3<f64> = self.yields.plastic(layers);
         let trial = derivatives.tr_mul(&normal) / scale - before;
-        let flow = self.yields.flow(self.rigidity, trial, layers);
+        let flow = self.yields.flow(self.stiffness.rigidity, trial, layers);
         let plastic = scale * (before + flow.step);
         BentFace {
             corners,
@@ -238,7 +240,8 @@ impl PlasticCurvature {
             let at = At::new(0.0, x).with_memory(memory);
             let trial = self.bent(face, &stencil, at).trial;
             let layers = &mut memory[self.layers(face)];
-            dissipated += self.faces[face].area * self.yields.settle(self.rigidity, trial, layers);
+            dissipated +=
+                self.faces[face].area * self.yields.settle(self.stiffness.rigidity, trial, layers);
         }
         dissipated
     }

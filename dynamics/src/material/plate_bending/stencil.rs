@@ -1,5 +1,6 @@
 //! Second derivatives of positions on a triangle mesh, from the positions of vertices nearby.
 
+use super::PlateStiffness;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
@@ -13,8 +14,9 @@ const MAX_RINGS: usize = 4;
 /// Coefficients of a quadratic polynomial in two variables.
 const COEFFICIENTS: usize = 6;
 
-/// For each face the weights `w_v` with `sqrt(D A) H x = sum_v w_v x_v`, the three components of a weight
-/// being those of the symmetric 2 x 2 matrix: `(11, sqrt(2) 12, 22)`.
+/// For each face the weights `w_v` with `sqrt(D A) R H x = sum_v w_v x_v`, the three components of a weight
+/// being those of the symmetric 2 x 2 matrix, `(11, sqrt(2) 12, 22)`, and `R` the [root](PlateStiffness::root)
+/// of the law of the plate.
 #[derive(Debug)]
 pub(super) struct Stencils {
     /// Where the entries of each face begin, and their number.
@@ -62,7 +64,7 @@ type Combination = Vec<(VertexId, f64)>;
 impl Stencils {
     pub(super) fn new(
         sheet: &Sheet,
-        rigidity: f64,
+        stiffness: PlateStiffness,
         clamped: &[VertexId],
         creases: &[EdgeId],
     ) -> Self {
@@ -81,8 +83,9 @@ impl Stencils {
             vertices: Vec::new(),
             weights: Vec::new(),
         };
+        let root = stiffness.root();
         for face in topology.face_ids() {
-            let scale = (rigidity * sheet.face_areas()[face.index()]).sqrt();
+            let scale = (stiffness.rigidity * sheet.face_areas()[face.index()]).sqrt() * root;
             for (v, w) in face_weights(sheet, &slopes, face) {
                 stencils.vertices.push(v.0);
                 stencils.weights.push(scale * w);
@@ -155,7 +158,7 @@ fn place(
 }
 
 /// The derivative of the positions at the midpoint of an edge along the normal that points out of its left
-/// face; nothing at free edges and at creases.
+/// face; nothing at creases, and at free edges of meshes too small for a fit.
 fn slope(sheet: &Sheet, clamps: &Clamps, is_creased: &[bool], edge: EdgeId) -> Option<Combination> {
     if is_creased[edge.index()] {
         return None;
@@ -174,9 +177,6 @@ fn slope(sheet: &Sheet, clamps: &Clamps, is_creased: &[bool], edge: EdgeId) -> O
     if let Some((_, face)) = patch.iter().find(|(f, _)| clamps.faces[f.index()]) {
         return Some(slope_of_face(face));
     }
-    if patch.len() < 2 {
-        return None;
-    }
     let mean = patch_size(sheet, [left, right]);
     for _ in 0..MAX_RINGS {
         grow(sheet, is_creased, &mut patch);
@@ -185,6 +185,9 @@ fn slope(sheet: &Sheet, clamps: &Clamps, is_creased: &[bool], edge: EdgeId) -> O
         }
     }
     // Too small a mesh for a fit: the mean slope of the two faces.
+    let [Some(_), Some(_)] = [left, right] else {
+        return None;
+    };
     let mut slope = Combination::new();
     for (_, face) in &patch[..2] {
         slope.extend(slope_of_face(face).into_iter().map(|(v, w)| (v, 0.5 * w)));
@@ -311,7 +314,8 @@ fn symmetric(u: Vector2<f64>, v: Vector2<f64>) -> Vector3<f64> {
     Vector3::new(u.x * v.x, (u.x * v.y + u.y * v.x) / SQRT_2, u.y * v.y)
 }
 
-/// Takes the components along `directions` out of all weights: slopes at free edges that minimise the energy.
+/// Takes the components along `directions` out of all weights: the slopes at these edges are those for which
+/// the face is not bent across them.
 fn without(weights: &mut [(VertexId, Vector3<f64>)], directions: Vec<Vector3<f64>>) {
     let mut basis: Vec<Vector3<f64>> = Vec::new();
     for mut d in directions {
