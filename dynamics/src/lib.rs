@@ -89,7 +89,10 @@ pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, FLAT, RestA
 pub use material::elastic_sheet::{ElasticSheet, ElasticSheetError};
 pub use material::glue::{Glue, GlueError};
 pub use material::plasticity::Yield;
-pub use material::plate_bending::{PlateBending, PlateBendingError, PlateStiffness};
+pub use material::plate_bending::{
+    Curl, CurlError, DirectionError, MaterialDirection, OrthotropicPlate, PlateBending,
+    PlateBendingError, PlateLaw, PlateStiffness,
+};
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};
 pub use model::clamps::ClampAcrossMesh;

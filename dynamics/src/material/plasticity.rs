@@ -99,6 +99,17 @@ pub(super) struct Flow<const N: usize> {
     pub(super) energy: f64,
 }
 
+impl<const N: usize> Flow<N> {
+    /// That of a section that does not yield.
+    pub(super) fn none() -> Self {
+        Self {
+            step: SVector::zeros(),
+            slope: SMatrix::zeros(),
+            energy: 0.0,
+        }
+    }
+}
+
 /// A layer of a section.
 #[derive(Clone, Copy, Debug)]
 struct Layer {
@@ -242,11 +253,7 @@ impl Yield {
         layers: &[f64],
     ) -> Flow<N> {
         let before = self.plastic(layers);
-        let mut flow = Flow {
-            step: SVector::zeros(),
-            slope: SMatrix::zeros(),
-            energy: 0.0,
-        };
+        let mut flow = Flow::none();
         let mut after = Mean::NONE;
         for (layer, p) in self.of_section(k).zip(layers.as_chunks::<N>().0) {
             let p = SVector::from(*p);

@@ -1,12 +1,16 @@
 //! Bending stiffness of a thin plate that does not depend on how the mesh runs.
 
-mod plastic;
+mod law;
+mod natural;
+#[cfg(test)]
+mod natural_tests;
 #[cfg(test)]
 mod plastic_tests;
 #[cfg(test)]
 mod poisson_tests;
 mod stencil;
 mod stiffness;
+mod stress_free;
 #[cfg(test)]
 mod tests;
 
@@ -18,11 +22,15 @@ use crate::potential::Settled;
 use crate::{HessianSink, Potential};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, FaceId, Sheet, VertexId};
+use law::Roots;
+pub use law::{DirectionError, MaterialDirection, OrthotropicPlate, PlateLaw};
 use nalgebra::{Matrix2, Matrix3, Vector3};
-use plastic::{Blocks, PlasticCurvature};
+use natural::NaturalCurvature;
+pub use natural::{Curl, CurlError};
 use std::collections::BTreeMap;
 use stencil::Stencils;
 pub use stiffness::PlateStiffness;
+use stress_free::{Blocks, StressFreeCurvature};
 
 /// Why the bending stiffness of a plate cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -39,6 +47,24 @@ pub enum PlateBendingError {
     Poisson {
         /// The ratio given.
         ratio: f64,
+    },
+    /// The coupling of the two directions of an orthotropic plate leaves a bend without resistance.
+    #[error("the coupling D12 of the plate is {coupling} N m", coupling = given(*coupling))]
+    Coupling {
+        /// The coupling, N m.
+        coupling: f64,
+    },
+    /// The direction of the material is none.
+    #[error(transparent)]
+    Direction {
+        /// Why.
+        source: DirectionError,
+    },
+    /// The natural curvature makes no sense.
+    #[error(transparent)]
+    Curl {
+        /// Why.
+        source: CurlError,
     },
     /// A clamped vertex does not exist.
     #[error("{vertex} is named as clamped, but the sheet has {count} vertices")]
@@ -68,7 +94,12 @@ impl Advice for PlateBendingError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Yield { source } => source.advice(),
-            Self::Rigidity { .. } => Some("give a finite one of at least 0"),
+            Self::Rigidity { .. } => {
+                Some("give a finite one of at least 0; above 0 if it depends on the direction")
+            }
+            Self::Coupling { .. } => Some("give one whose square is less than D11 D22"),
+            Self::Direction { source } => source.advice(),
+            Self::Curl { source } => source.advice(),
             Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
             Self::NoVertex { .. } | Self::NoEdge { .. } => None,
         }
@@ -125,9 +156,10 @@ impl Advice for PlateBendingError {
 /// Zarate, "Rotation-free triangular plate and shell elements", Int. J. Numer. Methods Eng. 47, 2000.)
 #[derive(Debug)]
 pub struct PlateBending {
-    stiffness: PlateStiffness,
+    roots: Roots,
     stencils: Stencils,
-    plastic: Option<PlasticCurvature>,
+    /// Nothing for a plate that is flat without stress, and stays so.
+    stress_free: Option<StressFreeCurvature>,
     /// The Hessian of the elastic plate: one multiple of the identity for each vertex, edge and further pair
     /// of vertices.
     at_vertices: Vec<f64>,
@@ -141,11 +173,8 @@ impl PlateBending {
     ///
     /// # Errors
     /// [`PlateBendingError::Rigidity`] and [`PlateBendingError::Poisson`].
-    pub fn new(
-        sheet: &Sheet,
-        stiffness: impl Into<PlateStiffness>,
-    ) -> Result<Self, PlateBendingError> {
-        Self::clamped(sheet, stiffness, &[])
+    pub fn new(sheet: &Sheet, law: impl Into<PlateLaw>) -> Result<Self, PlateBendingError> {
+        Self::clamped(sheet, law, &[])
     }
 
     /// The bending stiffness of a plate that is clamped by pinned vertices: where all three corners of a face
@@ -156,10 +185,10 @@ impl PlateBending {
     /// [`PlateBendingError`].
     pub fn clamped(
         sheet: &Sheet,
-        stiffness: impl Into<PlateStiffness>,
+        law: impl Into<PlateLaw>,
         clamped: &[VertexId],
     ) -> Result<Self, PlateBendingError> {
-        Self::creased(sheet, stiffness, clamped, &[])
+        Self::creased(sheet, law, clamped, &[])
     }
 
     /// As [`PlateBending::clamped`], of a sheet with creases: at the edges `creases` the slopes of the two
@@ -171,18 +200,11 @@ impl PlateBending {
     /// [`PlateBendingError`].
     pub fn creased(
         sheet: &Sheet,
-        stiffness: impl Into<PlateStiffness>,
+        law: impl Into<PlateLaw>,
         clamped: &[VertexId],
         creases: &[EdgeId],
     ) -> Result<Self, PlateBendingError> {
-        let stiffness = stiffness.into();
-        let PlateStiffness { rigidity, poisson } = stiffness;
-        if !(rigidity.is_finite() && rigidity >= 0.0) {
-            return Err(PlateBendingError::Rigidity { rigidity });
-        }
-        if !(0.0..=0.5).contains(&poisson) {
-            return Err(PlateBendingError::Poisson { ratio: poisson });
-        }
+        let roots = law.into().roots(sheet)?;
         let count = sheet.topology().vertex_count();
         if let Some(&vertex) = clamped.iter().find(|v| v.index() >= count) {
             return Err(PlateBendingError::NoVertex { vertex, count });
@@ -191,8 +213,12 @@ impl PlateBending {
         if let Some(&edge) = creases.iter().find(|e| e.index() >= edges) {
             return Err(PlateBendingError::NoEdge { edge, count: edges });
         }
-        let stencils = Stencils::new(sheet, stiffness, clamped, creases);
-        let mut at_vertices = vec![0.0; count];
+        let stencils = Stencils::new(sheet, &roots, clamped, creases);
+        Ok(Self::of_stencils(sheet, roots, stencils))
+    }
+
+    fn of_stencils(sheet: &Sheet, roots: Roots, stencils: Stencils) -> Self {
+        let mut at_vertices = vec![0.0; sheet.topology().vertex_count()];
         let mut others = BTreeMap::<[u32; 2], f64>::new();
         for stencil in stencils.iter() {
             for (i, (v, a)) in stencil.clone().enumerate() {
@@ -215,13 +241,52 @@ impl PlateBending {
                 None => at_pairs.push((pair, value)),
             }
         }
-        Ok(Self {
-            stiffness,
+        Self {
+            roots,
             stencils,
-            plastic: None,
+            stress_free: None,
             at_vertices,
             at_edges,
             at_pairs,
+        }
+    }
+
+    /// The plate of `sheet` at rest in the positions of the sheet, curved as they are, in place of flat:
+    /// without stress there, and with the energy of what it is bent beyond. (Of second derivatives along the
+    /// faces, which no bend makes, those of the rest positions are left out.)
+    #[must_use]
+    pub fn curved(mut self, sheet: &Sheet) -> Self {
+        let natural = self.stencils.straighten(sheet, &self.roots);
+        let Self {
+            roots, stencils, ..
+        } = self;
+        self = Self::of_stencils(sheet, roots, stencils);
+        self.stress_free(sheet)
+            .set_natural(NaturalCurvature::of_faces(natural));
+        self
+    }
+
+    /// The plate of `sheet` with a natural curvature, in place of the one that it had.
+    ///
+    /// # Errors
+    /// [`PlateBendingError::Curl`].
+    pub fn with_curl(mut self, sheet: &Sheet, curl: Curl) -> Result<Self, PlateBendingError> {
+        let natural = NaturalCurvature::of_curl(sheet, &self.roots, curl);
+        let natural = natural.map_err(|source| PlateBendingError::Curl { source })?;
+        self.stress_free(sheet).set_natural(natural);
+        Ok(self)
+    }
+
+    fn stress_free(&mut self, sheet: &Sheet) -> &mut StressFreeCurvature {
+        let Self {
+            roots,
+            stencils,
+            at_edges,
+            at_pairs,
+            ..
+        } = self;
+        self.stress_free.get_or_insert_with(|| {
+            StressFreeCurvature::new(sheet, stencils, roots.clone(), at_edges, at_pairs)
         })
     }
 
@@ -233,16 +298,9 @@ impl PlateBending {
     pub fn with_yield(mut self, sheet: &Sheet, yields: Yield) -> Result<Self, PlateBendingError> {
         let checked = yields.validate();
         checked.map_err(|source| PlateBendingError::Yield { source })?;
-        self.plastic = (self.stiffness.rigidity > 0.0).then(|| {
-            let (edges, pairs) = (&self.at_edges, &self.at_pairs);
-            PlasticCurvature::new(
-                sheet,
-                &self.stencils,
-                (self.stiffness, yields),
-                edges,
-                pairs,
-            )
-        });
+        if self.roots.rigidity > 0.0 {
+            self.stress_free(sheet).set_yield(yields);
+        }
         Ok(self)
     }
 }
@@ -250,7 +308,7 @@ impl PlateBending {
 impl Potential for PlateBending {
     fn energy(&self, at: At<'_>) -> f64 {
         let At { x, .. } = at;
-        if let Some(plastic) = &self.plastic {
+        if let Some(plastic) = &self.stress_free {
             let faces = self.stencils.iter().enumerate();
             let energy = |(k, s)| plastic.energy(k, &plastic.bent(k, &s, at));
             return faces.map(energy).sum();
@@ -262,7 +320,7 @@ impl Potential for PlateBending {
     fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
         let At { x, .. } = at;
         for (k, (face, stencil)) in faces.iter_mut().zip(self.stencils.iter()).enumerate() {
-            let elastic = match &self.plastic {
+            let elastic = match &self.stress_free {
                 None => stencil.apply(x),
                 Some(plastic) => plastic.bent(k, &stencil, at).elastic,
             };
@@ -278,7 +336,7 @@ impl Potential for PlateBending {
             }
         };
         for (k, stencil) in self.stencils.iter().enumerate() {
-            let h = match &self.plastic {
+            let h = match &self.stress_free {
                 None => stencil.apply(x),
                 Some(plastic) => {
                     let bent = plastic.bent(k, &stencil, at);
@@ -295,7 +353,7 @@ impl Potential for PlateBending {
     }
 
     fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
-        let plastic = self.plastic.as_ref();
+        let plastic = self.stress_free.as_ref();
         let plastic = plastic.and_then(|plastic| plastic.blocks(&self.stencils, at));
         let block = |value: f64, list: fn(&Blocks) -> &[Matrix3<f64>], k: usize| {
             let elastic = Matrix3::from_diagonal_element(value);
@@ -319,25 +377,35 @@ impl Potential for PlateBending {
     }
 
     fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
-        let plastic = self.plastic.iter();
+        let plastic = self.stress_free.iter();
         let matrices = plastic.flat_map(|plastic| plastic.matrices(memory));
         let faces = (0..).map(FaceId::from_index);
         faces.zip(matrices).collect()
     }
 
     fn memory(&self) -> Vec<f64> {
-        let plastic = self.plastic.as_ref();
-        plastic.map_or_else(Vec::new, PlasticCurvature::memory)
+        let plastic = self.stress_free.as_ref();
+        plastic.map_or_else(Vec::new, StressFreeCurvature::memory)
     }
 
     fn can_yield(&self) -> bool {
-        self.plastic.is_some()
+        self.stress_free
+            .as_ref()
+            .is_some_and(StressFreeCurvature::yields)
+    }
+
+    fn is_driven(&self) -> bool {
+        self.stress_free
+            .as_ref()
+            .is_some_and(StressFreeCurvature::is_driven)
     }
 
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
-        let settle = |plastic: &PlasticCurvature| plastic.settle(&self.stencils, state.x, memory);
+        let settle = |curvature: &StressFreeCurvature| {
+            curvature.settle(&self.stencils, (state.t, state.x), memory)
+        };
         Settled {
-            dissipated: self.plastic.as_ref().map_or(0.0, settle),
+            dissipated: self.stress_free.as_ref().map_or(0.0, settle),
             work: 0.0,
         }
     }

@@ -1,6 +1,6 @@
 //! Second derivatives of positions on a triangle mesh, from the positions of vertices nearby.
 
-use super::PlateStiffness;
+use super::law::Roots;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
@@ -15,8 +15,8 @@ const MAX_RINGS: usize = 4;
 const COEFFICIENTS: usize = 6;
 
 /// For each face the weights `w_v` with `sqrt(D A) R H x = sum_v w_v x_v`, the three components of a weight
-/// being those of the symmetric 2 x 2 matrix, `(11, sqrt(2) 12, 22)`, and `R` the [root](PlateStiffness::root)
-/// of the law of the plate.
+/// being those of the symmetric 2 x 2 matrix, `(11, sqrt(2) 12, 22)`, and `R` the root of the
+/// law of the plate there, see [`Roots`].
 #[derive(Debug)]
 pub(super) struct Stencils {
     /// Where the entries of each face begin, and their number.
@@ -64,7 +64,7 @@ type Combination = Vec<(VertexId, f64)>;
 impl Stencils {
     pub(super) fn new(
         sheet: &Sheet,
-        stiffness: PlateStiffness,
+        roots: &Roots,
         clamped: &[VertexId],
         creases: &[EdgeId],
     ) -> Self {
@@ -83,9 +83,9 @@ impl Stencils {
             vertices: Vec::new(),
             weights: Vec::new(),
         };
-        let root = stiffness.root();
         for face in topology.face_ids() {
-            let scale = (stiffness.rigidity * sheet.face_areas()[face.index()]).sqrt() * root;
+            let scale =
+                (roots.rigidity * sheet.face_areas()[face.index()]).sqrt() * roots.of(face.index());
             for (v, w) in face_weights(sheet, &slopes, face) {
                 stencils.vertices.push(v.0);
                 stencils.weights.push(scale * w);
@@ -93,6 +93,41 @@ impl Stencils {
             stencils.starts.push(stencils.vertices.len());
         }
         stencils
+    }
+
+    /// Changes the weights such that the second derivatives of the positions of `sheet` have no part along the
+    /// faces: by that part, as a multiple of two edges of each face, which stay edges wherever it goes. The
+    /// curvatures `R k` that are left, 1/m.
+    pub(super) fn straighten(&mut self, sheet: &Sheet, roots: &Roots) -> Vec<Vector3<f64>> {
+        let x = sheet.positions();
+        let faces = sheet.topology().faces().iter().zip(sheet.face_areas());
+        let curvatures = faces.enumerate().map(|(f, (corners, area))| {
+            let range = self.starts[f]..self.starts[f + 1];
+            let stencil = Stencil {
+                vertices: &self.vertices[range.clone()],
+                weights: &self.weights[range.clone()],
+            };
+            let derivatives = stencil.apply(x);
+            let [a, b, c] = corners.map(|v| point(x, v));
+            let normal = (b - a).cross(&(c - a)).normalize();
+            let axes = Matrix3::from_columns(&[b - a, c - a, normal]);
+            let inverse = axes.try_inverse().unwrap_or_else(Matrix3::zeros);
+            // Rows: multiples of both edges and of the normal.
+            let parts = inverse * derivatives;
+            let [along_b, along_c, bent] = [0, 1, 2].map(|k| parts.row(k).transpose());
+            for k in range {
+                let v = VertexId(self.vertices[k]);
+                let place = corners.iter().position(|corner| *corner == v);
+                self.weights[k] += match place {
+                    Some(0) => along_b + along_c,
+                    Some(1) => -along_b,
+                    Some(2) => -along_c,
+                    _ => Vector3::zeros(),
+                };
+            }
+            bent / (roots.rigidity * area).sqrt()
+        });
+        curvatures.collect()
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = Stencil<'_>> {

@@ -1,8 +1,6 @@
 //! How stiff a plate is.
 
 use crate::material::Material;
-use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The stiffness of an isotropic plate: a curvature `k`, a symmetric 2 x 2 matrix, stores
 ///
@@ -44,51 +42,6 @@ impl From<&Material> for PlateStiffness {
         Self {
             rigidity: material.rigidity,
             poisson: material.poisson,
-        }
-    }
-}
-
-impl PlateStiffness {
-    /// The root of the law: with the components `k = (11, sqrt(2) 12, 22)` of a curvature, `|root k|^2` is
-    /// what is in brackets above. Of the law, the unit matrix has the eigenvalue `1 + nu`, and what is
-    /// perpendicular to it `1 - nu`.
-    pub(super) fn root(self) -> Matrix3<f64> {
-        self.by_eigenvalues(f64::sqrt)
-    }
-
-    /// The inverse of the [root](Self::root).
-    pub(super) fn inverse_root(self) -> Matrix3<f64> {
-        self.by_eigenvalues(|law| 1.0 / law.sqrt())
-    }
-
-    fn by_eigenvalues(self, function: fn(f64) -> f64) -> Matrix3<f64> {
-        let unit = Vector3::new(FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2);
-        let trace = unit * unit.transpose();
-        let [trace_law, other_law] = [1.0 + self.poisson, 1.0 - self.poisson].map(function);
-        trace * trace_law + (Matrix3::identity() - trace) * other_law
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::f64::consts::SQRT_2;
-
-    #[test]
-    fn the_root_of_the_law_gives_its_energy() {
-        let [k11, k12, k22] = [0.7, -1.3, 0.4];
-        let (norm, trace) = (k11 * k11 + 2.0 * k12 * k12 + k22 * k22, k11 + k22);
-        for poisson in [0.0, 0.3, 0.5] {
-            let stiffness = PlateStiffness {
-                rigidity: 1.0,
-                poisson,
-            };
-            let root = stiffness.root();
-            let energy = (root * Vector3::new(k11, SQRT_2 * k12, k22)).norm_squared();
-            let expected = (1.0 - poisson) * norm + poisson * trace * trace;
-            assert!((energy - expected).abs() < 1e-14, "{poisson}");
-            let unit = root * stiffness.inverse_root();
-            assert!((unit - Matrix3::identity()).norm() < 1e-14, "{poisson}");
         }
     }
 }

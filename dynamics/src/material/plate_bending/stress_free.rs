@@ -1,6 +1,7 @@
-//! Plastic curvature of a plate.
+//! The curvature of a plate without stress: natural and plastic.
 
-use super::PlateStiffness;
+use super::law::Roots;
+use super::natural::NaturalCurvature;
 use super::stencil::{Stencil, Stencils};
 use crate::material::plasticity::{Flow, Yield};
 use crate::potential::At;
@@ -12,13 +13,15 @@ use std::f64::consts::SQRT_2;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The plastic curvatures of the faces of a plate. Curvatures are those of the stencils, `R k` with the
-/// [root](PlateStiffness::root) `R` of the law, so that a norm is that of the elastic energy.
+/// The curvatures that the faces of a plate have without moments, natural ones and the plastic ones of a plate
+/// that yields. Curvatures are those of the stencils, `R k` with the root `R` of the law ([`Roots`]), so that
+/// a norm is that of the elastic energy.
 #[derive(Debug)]
-pub(super) struct PlasticCurvature {
-    yields: Yield,
-    stiffness: PlateStiffness,
-    faces: Vec<PlasticFace>,
+pub(super) struct StressFreeCurvature {
+    roots: Roots,
+    natural: Option<NaturalCurvature>,
+    yields: Option<Yield>,
+    faces: Vec<FaceOfPlate>,
     /// Of each pair of vertices of each stencil, the second one being before the first, where its block of
     /// the Hessian is.
     slots: Vec<Slot>,
@@ -28,7 +31,7 @@ pub(super) struct PlasticCurvature {
 
 /// What does not change of a face.
 #[derive(Debug)]
-struct PlasticFace {
+struct FaceOfPlate {
     /// Counter-clockwise.
     corners: [VertexId; 3],
     /// In square metres.
@@ -58,7 +61,7 @@ enum Rows {
     Second,
 }
 
-/// What the plastic curvatures add to the Hessian of an elastic plate, in the places of its blocks.
+/// What these curvatures add to the Hessian of an elastic plate, in the places of its blocks.
 #[derive(Debug)]
 pub(super) struct Blocks {
     pub(super) at_vertices: Vec<Matrix3<f64>>,
@@ -75,7 +78,7 @@ struct BentVertex {
     /// Its weights `w`, and `slope w`.
     weights: Vector3<f64>,
     yielded: Vector3<f64>,
-    /// `w . p`, the plastic curvature as [`BentFace::plastic`] has it.
+    /// `w . p`, the curvature without stress as [`BentFace::stress_free`] has it.
     along: f64,
     /// Gradient of the linear function that is one here, zero where the vertex is no corner.
     hat: Vector3<f64>,
@@ -94,7 +97,7 @@ impl Blocks {
 }
 
 /// A face at positions, `B` being the second derivatives of the positions, `n` the unit normal and `p` the
-/// plastic curvature at the end of the step, both times the root of the law.
+/// curvature without stress at the end of the step, both times the root of the law.
 pub(super) struct BentFace {
     corners: [VertexId; 3],
     normal: Vector3<f64>,
@@ -103,8 +106,8 @@ pub(super) struct BentFace {
     /// `sqrt(D A) (B - n p^T)`.
     pub(super) elastic: Matrix3<f64>,
     /// `sqrt(D A) p`.
-    plastic: Vector3<f64>,
-    /// The curvature less the plastic one before the step, 1/m.
+    stress_free: Vector3<f64>,
+    /// The curvature less the one without stress before the step, 1/m.
     trial: Vector3<f64>,
     flow: Flow<3>,
 }
@@ -113,23 +116,24 @@ impl BentFace {
     /// The derivatives of the energy by the corners, as far as they are those of the normal: with the hats
     /// `g_j` it is `dn = -sum_j g_j (n . dx_j)`.
     pub(super) fn turning_forces(&self) -> [(VertexId, Vector3<f64>); 3] {
-        let moved = self.elastic * self.plastic;
+        let moved = self.elastic * self.stress_free;
         let force = |k: usize| self.normal * self.hats[k].dot(&moved);
         [0, 1, 2].map(|k| (self.corners[k], force(k)))
     }
 
-    /// Whether it bends as a face that has never yielded.
-    fn is_elastic(&self) -> bool {
-        self.plastic == Vector3::zeros() && self.flow.slope == Matrix3::zeros()
+    /// Whether it bends as a face that is flat without stress.
+    fn is_flat(&self) -> bool {
+        self.stress_free == Vector3::zeros() && self.flow.slope == Matrix3::zeros()
     }
 }
 
-impl PlasticCurvature {
-    /// A plate that has not yielded, with blocks of the Hessian at vertices, `edges` and `pairs`.
+impl StressFreeCurvature {
+    /// Of a plate that is flat without stress and does not yield, with blocks of the Hessian at vertices,
+    /// `edges` and `pairs`.
     pub(super) fn new(
         sheet: &Sheet,
         stencils: &Stencils,
-        (stiffness, yields): (PlateStiffness, Yield),
+        roots: Roots,
         edges: &[(EdgeId, f64)],
         pairs: &[([VertexId; 2], f64)],
     ) -> Self {
@@ -152,7 +156,7 @@ impl PlasticCurvature {
         let (mut slots, mut faces, mut most) = (Vec::new(), Vec::new(), 0);
         let corners = topology.faces().iter().zip(sheet.face_areas());
         for ((corners, area), stencil) in corners.zip(stencils.iter()) {
-            faces.push(PlasticFace {
+            faces.push(FaceOfPlate {
                 corners: *corners,
                 area: *area,
                 slots: slots.len(),
@@ -164,8 +168,9 @@ impl PlasticCurvature {
             }
         }
         Self {
-            yields,
-            stiffness,
+            roots,
+            natural: None,
+            yields: None,
             faces,
             slots,
             blocks: Mutex::new(Blocks {
@@ -177,33 +182,55 @@ impl PlasticCurvature {
         }
     }
 
+    pub(super) fn set_yield(&mut self, yields: Yield) {
+        self.yields = Some(yields);
+    }
+
+    pub(super) fn set_natural(&mut self, natural: NaturalCurvature) {
+        self.natural = Some(natural);
+    }
+
+    pub(super) fn yields(&self) -> bool {
+        self.yields.is_some()
+    }
+
+    /// Whether the natural curvature changes with time.
+    pub(super) fn is_driven(&self) -> bool {
+        self.natural
+            .as_ref()
+            .is_some_and(NaturalCurvature::is_driven)
+    }
+
     /// No plastic curvature. A memory has one for each layer of each face, 1/m: `R p` with the components
     /// `(11, sqrt(2) 12, 22)` of `p`, the first axis along the first edge of the face.
     pub(super) fn memory(&self) -> Vec<f64> {
-        vec![0.0; 3 * self.yields.layers * self.faces.len()]
+        vec![0.0; self.layers(0).len() * self.faces.len()]
     }
 
     /// The plastic curvatures of the layers of a face, in a memory.
     fn layers(&self, face: usize) -> Range<usize> {
-        let count = 3 * self.yields.layers;
+        let count = self.yields.map_or(0, |yields| 3 * yields.layers);
         count * face..count * (face + 1)
     }
 
     /// The plastic curvatures of a memory as matrices, 1/m.
     pub(super) fn matrices(&self, memory: &[f64]) -> impl Iterator<Item = Matrix2<f64>> {
-        let inverse = self.stiffness.inverse_root();
-        let matrix = move |face| {
-            let p = inverse * self.yields.plastic(&memory[self.layers(face)]);
+        let yields = self.yields.into_iter();
+        let matrix = move |face, yields: Yield| {
+            let p = yields.plastic(&memory[self.layers(face)]);
+            let solved = self.roots.of(face).lu().solve(&p);
+            let p = solved.expect("the root of a positive definite law");
             Matrix2::new(p[0], p[1] / SQRT_2, p[1] / SQRT_2, p[2])
         };
-        (0..self.faces.len()).map(matrix)
+        yields.flat_map(move |yields| (0..self.faces.len()).map(move |face| matrix(face, yields)))
     }
 
-    /// A face at positions, with the plastic curvatures of a memory.
+    /// A face at positions, with the natural curvature at a time and the plastic ones of a memory.
     pub(super) fn bent(&self, face: usize, stencil: &Stencil<'_>, at: At<'_>) -> BentFace {
-        let At { x, memory, .. } = at;
-        let PlasticFace { corners, area, .. } = self.faces[face];
-        let scale = (self.stiffness.rigidity * area).sqrt();
+        let At { t, x, memory } = at;
+        let FaceOfPlate { corners, area, .. } = self.faces[face];
+        let rigidity = self.roots.rigidity;
+        let scale = (rigidity * area).sqrt();
         let [a, b, c] = corners.map(|v| point(x, v));
         let normal = (b - a).cross(&(c - a));
         let double_area = normal.norm();
@@ -211,16 +238,23 @@ impl PlasticCurvature {
         let hats = [c - b, a - c, b - a].map(|opposite| normal.cross(&opposite) / double_area);
         let derivatives = stencil.apply(x);
         let layers = &memory[self.layers(face)];
-        let before: Vector3<f64> = self.yields.plastic(layers);
+        let natural = self.natural.as_ref();
+        let mut before = natural.map_or(Vector3::zeros(), |natural| natural.at(face, t));
+        if let Some(yields) = &self.yields {
+            before += yields.plastic(layers);
+        }
         let trial = derivatives.tr_mul(&normal) / scale - before;
-        let flow = self.yields.flow(self.stiffness.rigidity, trial, layers);
-        let plastic = scale * (before + flow.step);
+        let flow = match &self.yields {
+            Some(yields) => yields.flow(rigidity, trial, layers),
+            None => Flow::none(),
+        };
+        let stress_free = scale * (before + flow.step);
         BentFace {
             corners,
             normal,
             hats,
-            elastic: derivatives - normal * plastic.transpose(),
-            plastic,
+            elastic: derivatives - normal * stress_free.transpose(),
+            stress_free,
             trial,
             flow,
         }
@@ -234,44 +268,52 @@ impl PlasticCurvature {
 
     /// Makes the curvatures of a memory those at the end of a step; the energy that has been dissipated,
     /// joules.
-    pub(super) fn settle(&self, stencils: &Stencils, x: &[f64], memory: &mut [f64]) -> f64 {
+    pub(super) fn settle(
+        &self,
+        stencils: &Stencils,
+        (t, x): (f64, &[f64]),
+        memory: &mut [f64],
+    ) -> f64 {
         let mut dissipated = 0.0;
+        let Some(yields) = &self.yields else {
+            return dissipated;
+        };
         for (face, stencil) in stencils.iter().enumerate() {
-            let at = At::new(0.0, x).with_memory(memory);
+            let at = At::new(t, x).with_memory(memory);
             let trial = self.bent(face, &stencil, at).trial;
             let layers = &mut memory[self.layers(face)];
-            dissipated +=
-                self.faces[face].area * self.yields.settle(self.stiffness.rigidity, trial, layers);
+            let area = self.faces[face].area;
+            dissipated += area * yields.settle(self.roots.rigidity, trial, layers);
         }
         dissipated
     }
 
-    /// What the plastic curvatures add to the Hessian of the elastic plate; nothing as long as no face has
-    /// yielded.
+    /// What the curvatures without stress add to the Hessian of the elastic plate; nothing as long as there
+    /// are none.
     ///
     /// The Hessian is that of `|P (dB - dn p^T)|^2 + n . dB (1 - slope) dB^T n`, with the projection `P`
     /// along the normal, and of `max(0, p . (k - p)) |dn|^2`: it is positive semidefinite, and differs from
     /// the second derivatives by terms that vanish where the sheet is isometric and no face is bent against
-    /// its plastic curvature.
+    /// the one that it has without stress.
     pub(super) fn blocks(&self, stencils: &Stencils, at: At<'_>) -> Option<MutexGuard<'_, Blocks>> {
         let mut blocks = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut is_elastic = true;
+        let mut is_flat = true;
         for (face, stencil) in stencils.iter().enumerate() {
             let bent = self.bent(face, &stencil, at);
-            if bent.is_elastic() {
+            if bent.is_flat() {
                 continue;
             }
-            if is_elastic {
+            if is_flat {
                 blocks.zero();
-                is_elastic = false;
+                is_flat = false;
             }
             self.add_blocks(&bent, face, stencil, &mut blocks);
         }
-        (!is_elastic).then_some(blocks)
+        (!is_flat).then_some(blocks)
     }
 
     fn add_blocks(&self, bent: &BentFace, face: usize, stencil: Stencil<'_>, blocks: &mut Blocks) {
-        let (n, p) = (bent.normal, bent.plastic);
+        let (n, p) = (bent.normal, bent.stress_free);
         let turning = p.norm_squared() + (bent.elastic * p).dot(&n).max(0.0);
         let Blocks {
             at_vertices,

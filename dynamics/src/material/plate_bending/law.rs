@@ -1,0 +1,375 @@
+//! The law of a plate: moments by curvatures.
+
+use super::{PlateBendingError, PlateStiffness};
+use crate::material::Material;
+use isosheet_mesh::{FaceId, Sheet};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use std::f64::consts::SQRT_2;
+
+/// The stiffness of an orthotropic plate: a curvature with the components `k_1` along a direction of the
+/// material, `k_2` across it and the twist `k_12` stores
+///
+/// ```text
+/// 1/2 [ D11 k_1^2 + 2 D12 k_1 k_2 + D22 k_2^2 + 4 D66 k_12^2 ]
+/// ```
+///
+/// per area (S. G. Lekhnitskii, *Anisotropic Plates*, 1968, sections 61 and 62; there `D66` is `D_k`). With the
+/// Young's moduli `E1` and `E2`, the shear modulus `G12` and the Poisson's ratios `nu12 / E1 = nu21 / E2` of a
+/// homogeneous plate of thickness `h` it is `D11 = E1 h^3 / (12 (1 - nu12 nu21))`, `D22 = D11 E2 / E1`, `D12 =
+/// nu12 D22` and `D66 = G12 h^3 / 12`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OrthotropicPlate {
+    /// `D11`: resists curvature along the direction, newton metres.
+    pub along: f64,
+    /// `D22`: resists curvature across it, newton metres.
+    pub across: f64,
+    /// `D12`: couples the two, newton metres.
+    pub coupling: f64,
+    /// `D66`: resists twist, newton metres.
+    pub twist: f64,
+    /// The direction of the material.
+    pub direction: MaterialDirection,
+}
+
+/// A direction of the material of a sheet at rest, such as the machine direction of paper or the warp of a
+/// cloth: vectors at the rest positions, of any length, of which the part in the plane of a face counts.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MaterialDirection {
+    /// The same everywhere.
+    Uniform([f64; 3]),
+    /// One for each face.
+    Faces(Vec<[f64; 3]>),
+}
+
+/// Why a direction of the material is none.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DirectionError {
+    /// There are not as many vectors as faces.
+    #[error("{found} directions are given for {expected} faces")]
+    Count {
+        /// How many there are.
+        found: usize,
+        /// Number of faces.
+        expected: usize,
+    },
+    /// A vector has no part in the plane of a face.
+    #[error("the direction ({x}, {y}, {z}) has no part in the plane of {face}", x = vector[0], y = vector[1], z = vector[2])]
+    Face {
+        /// The face.
+        face: FaceId,
+        /// The vector.
+        vector: [f64; 3],
+    },
+}
+
+impl isosheet_mesh::Advice for DirectionError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Count { .. } => Some("give one vector for each face"),
+            Self::Face { .. } => Some("give vectors along the sheet at rest"),
+        }
+    }
+}
+
+/// Part of its length that a vector must have in the plane of a face: below, its direction there is round-off
+/// of the positions.
+const LEAST_PART: f64 = 1e-6;
+
+impl MaterialDirection {
+    /// The angle of the direction from the first edge of a face (from its first corner to its second one)
+    /// towards its third corner, radians, at the rest positions of a sheet.
+    ///
+    /// # Errors
+    /// [`DirectionError`].
+    pub(crate) fn angle(&self, sheet: &Sheet, face: FaceId) -> Result<f64, DirectionError> {
+        let expected = sheet.topology().face_count();
+        let vector = match self {
+            Self::Uniform(vector) => *vector,
+            Self::Faces(vectors) => {
+                let found = vectors.len();
+                let error = DirectionError::Count { found, expected };
+                if found != expected {
+                    return Err(error);
+                }
+                vectors[face.index()]
+            }
+        };
+        let corners = sheet.topology().faces()[face.index()];
+        let [a, b, c] = corners.map(|v| crate::vectors::point(sheet.positions(), v));
+        let first = (b - a).normalize();
+        let second = (c - a) - first * first.dot(&(c - a));
+        let second = second.normalize();
+        let direction = Vector3::from(vector);
+        let [along, across] = [first, second].map(|axis| axis.dot(&direction));
+        let is_in_plane = along.hypot(across) > LEAST_PART * direction.norm();
+        match is_in_plane {
+            true => Ok(across.atan2(along)),
+            false => Err(DirectionError::Face { face, vector }),
+        }
+    }
+}
+
+/// Which law a plate has.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PlateLaw {
+    /// The same in all directions.
+    Isotropic(PlateStiffness),
+    /// With two perpendicular directions.
+    Orthotropic(OrthotropicPlate),
+}
+
+impl From<f64> for PlateLaw {
+    fn from(rigidity: f64) -> Self {
+        Self::Isotropic(rigidity.into())
+    }
+}
+
+impl From<PlateStiffness> for PlateLaw {
+    fn from(stiffness: PlateStiffness) -> Self {
+        Self::Isotropic(stiffness)
+    }
+}
+
+impl From<&Material> for PlateLaw {
+    fn from(material: &Material) -> Self {
+        Self::Isotropic(material.into())
+    }
+}
+
+impl From<OrthotropicPlate> for PlateLaw {
+    fn from(plate: OrthotropicPlate) -> Self {
+        Self::Orthotropic(plate)
+    }
+}
+
+impl PlateLaw {
+    /// The flexural rigidity to which curvatures are related: that of an isotropic plate, the geometric mean
+    /// of both directions of an orthotropic one; newton metres.
+    pub fn rigidity(&self) -> f64 {
+        match self {
+            Self::Isotropic(stiffness) => stiffness.rigidity,
+            Self::Orthotropic(plate) => (plate.along * plate.across).sqrt(),
+        }
+    }
+
+    fn check(&self) -> Result<(), PlateBendingError> {
+        match self {
+            Self::Isotropic(PlateStiffness { rigidity, poisson }) => {
+                let (rigidity, ratio) = (*rigidity, *poisson);
+                if !(rigidity.is_finite() && rigidity >= 0.0) {
+                    return Err(PlateBendingError::Rigidity { rigidity });
+                }
+                if !(0.0..=0.5).contains(&ratio) {
+                    return Err(PlateBendingError::Poisson { ratio });
+                }
+            }
+            Self::Orthotropic(plate) => {
+                let OrthotropicPlate {
+                    along,
+                    across,
+                    coupling,
+                    twist,
+                    ..
+                } = *plate;
+                for rigidity in [along, across, twist] {
+                    if !(rigidity.is_finite() && rigidity > 0.0) {
+                        return Err(PlateBendingError::Rigidity { rigidity });
+                    }
+                }
+                // (Not a number is refused, too.)
+                let is_definite = coupling * coupling < along * across;
+                if !is_definite {
+                    return Err(PlateBendingError::Coupling { coupling });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The law over the [rigidity](Self::rigidity) by the components `(11, sqrt(2) 12, 22)` of a curvature,
+    /// the first axis along the direction of the material.
+    fn matrix(&self) -> Matrix3<f64> {
+        let [along, coupling, across, twist] = match self {
+            Self::Isotropic(PlateStiffness { poisson, .. }) => {
+                [1.0, *poisson, 1.0, 0.5 * (1.0 - poisson)]
+            }
+            Self::Orthotropic(plate) => {
+                let all = [plate.along, plate.coupling, plate.across, plate.twist];
+                all.map(|d| d / self.rigidity())
+            }
+        };
+        Matrix3::new(
+            along,
+            0.0,
+            coupling,
+            0.0,
+            2.0 * twist,
+            0.0,
+            coupling,
+            0.0,
+            across,
+        )
+    }
+
+    /// The roots of the law of the faces of a sheet.
+    ///
+    /// # Errors
+    /// [`PlateBendingError`] if the law makes no sense, or a direction is none.
+    pub(super) fn roots(&self, sheet: &Sheet) -> Result<Roots, PlateBendingError> {
+        self.check()?;
+        let of_material = root(&self.matrix());
+        let of_faces = match self {
+            Self::Isotropic(_) => vec![of_material],
+            Self::Orthotropic(plate) => {
+                let own = |face| {
+                    let angle = plate.direction.angle(sheet, face)?;
+                    let turn = turn(angle);
+                    Ok(turn.transpose() * of_material * turn)
+                };
+                let own = sheet.topology().face_ids().map(own);
+                own.collect::<Result<_, DirectionError>>()
+                    .map_err(|source| PlateBendingError::Direction { source })?
+            }
+        };
+        Ok(Roots {
+            rigidity: self.rigidity(),
+            of_faces,
+        })
+    }
+}
+
+/// The laws of the faces: with the components `k = (11, sqrt(2) 12, 22)` of a curvature, the first axis along
+/// the first edge of a face, `D |R k|^2 / 2` is the energy per area.
+#[derive(Debug, Clone)]
+pub(super) struct Roots {
+    /// `D`, newton metres.
+    pub(super) rigidity: f64,
+    /// `R` of each face, or of all.
+    of_faces: Vec<Matrix3<f64>>,
+}
+
+impl Roots {
+    /// `R` of a face.
+    pub(super) fn of(&self, face: usize) -> &Matrix3<f64> {
+        &self.of_faces[face.min(self.of_faces.len() - 1)]
+    }
+}
+
+/// The components `(11, sqrt(2) 12, 22)` of a symmetric matrix along axes that are turned by an angle: an
+/// orthogonal matrix.
+pub(super) fn turn(angle: f64) -> Matrix3<f64> {
+    let (s, c) = angle.sin_cos();
+    Matrix3::new(
+        c * c,
+        SQRT_2 * s * c,
+        s * s,
+        -SQRT_2 * s * c,
+        c * c - s * s,
+        SQRT_2 * s * c,
+        s * s,
+        -SQRT_2 * s * c,
+        c * c,
+    )
+}
+
+/// The symmetric root of a positive definite matrix.
+fn root(matrix: &Matrix3<f64>) -> Matrix3<f64> {
+    let SymmetricEigen {
+        eigenvectors,
+        eigenvalues,
+    } = matrix.symmetric_eigen();
+    eigenvectors * Matrix3::from_diagonal(&eigenvalues.map(f64::sqrt)) * eigenvectors.transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isosheet_mesh::generate;
+
+    fn components(k: [f64; 3]) -> Vector3<f64> {
+        Vector3::new(k[0], SQRT_2 * k[1], k[2])
+    }
+
+    #[test]
+    fn the_root_of_an_isotropic_law_gives_its_energy() {
+        let sheet = generate::isotropic_square(0, 1.0).unwrap();
+        let [k11, k12, k22] = [0.7, -1.3, 0.4];
+        let (norm, trace) = (k11 * k11 + 2.0 * k12 * k12 + k22 * k22, k11 + k22);
+        for poisson in [0.0, 0.3, 0.5] {
+            let law = PlateLaw::from(PlateStiffness {
+                rigidity: 2.0,
+                poisson,
+            });
+            let roots = law.roots(&sheet).unwrap();
+            let energy = (roots.of(1) * components([k11, k12, k22])).norm_squared();
+            let expected = (1.0 - poisson) * norm + poisson * trace * trace;
+            assert!((energy - expected).abs() < 1e-14, "{poisson}");
+        }
+    }
+
+    /// Of a face whose first edge is turned against the direction of the material.
+    #[test]
+    fn the_root_of_an_orthotropic_law_turns_with_the_direction() {
+        let direction = [0.8_f64, 0.6, 0.0];
+        let plate = OrthotropicPlate {
+            along: 4.0,
+            across: 1.0,
+            coupling: 0.5,
+            twist: 0.7,
+            direction: MaterialDirection::Uniform(direction),
+        };
+        let law = PlateLaw::from(plate);
+        let sheet = generate::isotropic_square(1, 1.0).unwrap();
+        let roots = law.roots(&sheet).unwrap();
+        // A curvature in space, and its components along the direction and along the first edge.
+        let matrix = Matrix3::new(0.7, -0.3, 0.0, -0.3, 0.2, 0.0, 0.0, 0.0, 0.0);
+        let by = |first: Vector3<f64>| {
+            let second = Vector3::z().cross(&first);
+            let entry = |u: &Vector3<f64>, v: &Vector3<f64>| u.dot(&(matrix * v));
+            [
+                entry(&first, &first),
+                entry(&first, &second),
+                entry(&second, &second),
+            ]
+        };
+        let [k1, k12, k2] = by(Vector3::from(direction));
+        let expected = 4.0 * k1 * k1 + 2.0 * 0.5 * k1 * k2 + k2 * k2 + 4.0 * 0.7 * k12 * k12;
+        for (f, corners) in sheet.topology().faces().iter().enumerate() {
+            let [a, b, _] = corners.map(|v| crate::vectors::point(sheet.positions(), v));
+            let own = components(by((b - a).normalize()));
+            let energy = roots.rigidity * (roots.of(f) * own).norm_squared();
+            assert!((energy - expected).abs() < 1e-13, "{energy} {expected}");
+        }
+    }
+
+    #[test]
+    fn laws_that_make_no_sense_are_refused() {
+        let sheet = generate::isotropic_square(0, 1.0).unwrap();
+        let plate = |coupling: f64, direction| {
+            let plate = OrthotropicPlate {
+                along: 4.0,
+                across: 1.0,
+                coupling,
+                twist: 1.0,
+                direction,
+            };
+            PlateLaw::from(plate).roots(&sheet).unwrap_err()
+        };
+        let x = MaterialDirection::Uniform([1.0, 0.0, 0.0]);
+        assert_eq!(plate(2.5, x), PlateBendingError::Coupling { coupling: 2.5 });
+        let z = MaterialDirection::Uniform([0.0, 0.0, 1.0]);
+        assert!(matches!(plate(0.0, z), PlateBendingError::Direction { .. }));
+        let few = MaterialDirection::Faces(vec![[1.0, 0.0, 0.0]]);
+        let source = DirectionError::Count {
+            found: 1,
+            expected: 8,
+        };
+        assert_eq!(plate(0.0, few), PlateBendingError::Direction { source });
+        let nan = MaterialDirection::Uniform([f64::NAN; 3]);
+        assert!(matches!(
+            plate(0.0, nan),
+            PlateBendingError::Direction { .. }
+        ));
+    }
+}

@@ -1,0 +1,108 @@
+//! The curvature that a plate has without moments.
+
+use super::law::{Roots, turn};
+use super::{DirectionError, MaterialDirection};
+use crate::motion::profile::{Profile, ProfileError};
+use isosheet_mesh::{Advice, FaceId, Sheet};
+use nalgebra::Vector3;
+
+/// The curvature that a sheet has by itself, without moments: that of paper which curls along one direction, of
+/// a poster off a roll, of a bilayer or a bimetal.
+///
+/// With the curvature `k_1` along a direction of the material and `k_2` across it, times a profile of time, `V`
+/// is the energy of what a face is bent beyond, `k_T - k_0`. Curvatures are positive towards the front of the
+/// faces, from which their corners run counter-clockwise: the sheet rolls up with its front inside.
+///
+/// A strip whose two layers want strains that differ by `e` has the curvature `6 e (1 + m)^2 / (h (3 (1 + m)^2
+/// + (1 + m n) (m^2 + 1 / (m n))))` with the thickness `h` of both, the ratio `m` of their thicknesses and `n` of
+/// their moduli: `1.5 e / h` for equal layers (S. Timoshenko, "Analysis of bi-metal thermostats", J. Opt. Soc.
+/// Am. 11, 1925). A wide plate with `k_0` in both directions rolls up along one, to the curvature `(1 + nu)
+/// k_0`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curl {
+    /// The direction along which the sheet is curved.
+    pub direction: MaterialDirection,
+    /// Curvature along the direction, 1/m.
+    pub along: f64,
+    /// Curvature across it, 1/m.
+    pub across: f64,
+    /// A factor of time, in seconds: a constant 1 for a curl that is always there.
+    pub profile: Profile,
+}
+
+/// Why a curl makes no sense.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CurlError {
+    /// A curvature is not finite.
+    #[error("the natural curvature is {value} 1/m")]
+    Curvature {
+        /// The curvature, 1/m.
+        value: f64,
+    },
+    /// The direction is none.
+    #[error(transparent)]
+    Direction(#[from] DirectionError),
+    /// The profile makes no sense.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
+}
+
+impl Advice for CurlError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Curvature { .. } => Some("give finite curvatures, one over a radius"),
+            Self::Direction(error) => error.advice(),
+            Self::Profile(error) => error.advice(),
+        }
+    }
+}
+
+/// Natural curvatures of the faces.
+#[derive(Debug)]
+pub(super) struct NaturalCurvature {
+    /// `R k_0` of each face, 1/m.
+    faces: Vec<Vector3<f64>>,
+    /// Its factor, unless that is always one.
+    profile: Option<Profile>,
+}
+
+impl NaturalCurvature {
+    /// Of curvatures `R k` of the faces, 1/m.
+    pub(super) fn of_faces(faces: Vec<Vector3<f64>>) -> Self {
+        let profile = None;
+        Self { faces, profile }
+    }
+
+    /// # Errors
+    /// [`CurlError`].
+    pub(super) fn of_curl(sheet: &Sheet, roots: &Roots, curl: Curl) -> Result<Self, CurlError> {
+        curl.profile.validate()?;
+        for value in [curl.along, curl.across] {
+            if !value.is_finite() {
+                return Err(CurlError::Curvature { value });
+            }
+        }
+        let own = Vector3::new(curl.along, 0.0, curl.across);
+        let of_face = |face: FaceId| {
+            let angle = curl.direction.angle(sheet, face)?;
+            Ok(roots.of(face.index()) * turn(angle).tr_mul(&own))
+        };
+        let faces = sheet.topology().face_ids().map(of_face);
+        Ok(Self {
+            faces: faces.collect::<Result<_, DirectionError>>()?,
+            profile: Some(curl.profile),
+        })
+    }
+
+    pub(super) fn is_driven(&self) -> bool {
+        let profile = self.profile.as_ref();
+        profile.is_some_and(|profile| !matches!(profile, Profile::Constant(_)))
+    }
+
+    /// `R k_0` of a face at a time, 1/m.
+    pub(super) fn at(&self, face: usize, t: f64) -> Vector3<f64> {
+        let factor = self.profile.as_ref().map_or(1.0, |p| p.value(t));
+        factor * self.faces[face]
+    }
+}
