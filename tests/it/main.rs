@@ -11,6 +11,7 @@ mod conservation;
 mod constraints;
 mod contact;
 mod contact_forces;
+mod curl;
 mod effort;
 mod elastic;
 mod flat;

@@ -276,6 +276,16 @@ impl CreaseSprings {
         Self::new(t, springs.collect())
     }
 
+    /// Makes springs of the bending stiffness of a sheet ([`CreaseSprings::bending`]) rest at the fold angles
+    /// that its edges have in the positions of the sheet, in place of flat.
+    #[must_use]
+    pub fn curved(mut self, sheet: &Sheet) -> Self {
+        for hinge in &mut self.hinges {
+            hinge.rest = Fold::at(sheet.positions(), &hinge.vertices).angle().into();
+        }
+        self
+    }
+
     /// Moments `k (rest - theta)` of the springs, newton metres, in the order given: positive where a spring
     /// folds towards a valley.
     pub fn moments(&self, at: At<'_>) -> Vec<f64> {

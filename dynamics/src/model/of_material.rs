@@ -3,7 +3,7 @@
 use crate::material::Material;
 use crate::material::elastic_sheet::ElasticSheetError;
 use crate::material::plasticity::Yield;
-use crate::material::plate_bending::{PlateBending, PlateBendingError};
+use crate::material::plate_bending::{Curl, PlateBending, PlateBendingError};
 use crate::options::OptionsError;
 use crate::{Isometry, ModelError, SheetModel};
 use isosheet_mesh::{Advice, EdgeId, MassKind, MassMatrix, Sheet, VertexId};
@@ -47,6 +47,16 @@ pub struct SheetOfMaterial<'a> {
     clamps: Vec<VertexId>,
     creases: Vec<EdgeId>,
     yields: Option<Yield>,
+    curvature: WithoutStress,
+}
+
+/// The shape that bending moments are measured from.
+#[derive(Debug, Clone)]
+enum WithoutStress {
+    Flat,
+    /// That of the sheet.
+    AsGiven,
+    Curled(Curl),
 }
 
 impl SheetModel {
@@ -79,6 +89,7 @@ impl SheetModel {
             clamps: Vec::new(),
             creases: Vec::new(),
             yields: None,
+            curvature: WithoutStress::Flat,
         }
     }
 }
@@ -106,6 +117,19 @@ impl SheetOfMaterial<'_> {
         self
     }
 
+    /// Leaves the sheet curved as its positions are, without stress, in place of flat
+    /// ([`PlateBending::curved`]).
+    pub fn curved(mut self) -> Self {
+        self.curvature = WithoutStress::AsGiven;
+        self
+    }
+
+    /// Gives the sheet a curvature that it has by itself ([`PlateBending::with_curl`]).
+    pub fn curled(mut self, curl: Curl) -> Self {
+        self.curvature = WithoutStress::Curled(curl);
+        self
+    }
+
     /// What keeps the lengths: the elasticity of the material, which is the default, or rigid rods along the
     /// edges, of which the material gives mass and bending stiffness alone.
     pub fn with_isometry(mut self, isometry: Isometry) -> Self {
@@ -125,6 +149,7 @@ impl SheetOfMaterial<'_> {
             clamps,
             creases,
             yields,
+            curvature,
         } = self;
         material
             .validate()
@@ -133,6 +158,11 @@ impl SheetOfMaterial<'_> {
         let mass = mass.map_err(ModelError::from)?;
         let model = SheetModel::with_mass(sheet, mass)?.with_pins(&clamps)?;
         let mut plate = PlateBending::creased(sheet, &material, &clamps, &creases)?;
+        plate = match curvature {
+            WithoutStress::Flat => plate,
+            WithoutStress::AsGiven => plate.curved(sheet),
+            WithoutStress::Curled(curl) => plate.with_curl(sheet, curl)?,
+        };
         if let Some(yields) = yields {
             plate = plate.with_yield(sheet, yields)?;
         }

@@ -13,11 +13,15 @@ use nalgebra::Vector3;
 /// is the energy of what a face is bent beyond, `k_T - k_0`. Curvatures are positive towards the front of the
 /// faces, from which their corners run counter-clockwise: the sheet rolls up with its front inside.
 ///
-/// A strip whose two layers want strains that differ by `e` has the curvature `6 e (1 + m)^2 / (h (3 (1 + m)^2
-/// + (1 + m n) (m^2 + 1 / (m n))))` with the thickness `h` of both, the ratio `m` of their thicknesses and `n` of
-/// their moduli: `1.5 e / h` for equal layers (S. Timoshenko, "Analysis of bi-metal thermostats", J. Opt. Soc.
-/// Am. 11, 1925). A wide plate with `k_0` in both directions rolls up along one, to the curvature `(1 + nu)
-/// k_0`.
+/// A strip whose two layers want strains that differ by `e` has the curvature
+///
+/// ```text
+/// 6 e (1 + m)^2 / (h [3 (1 + m)^2 + (1 + m n) (m^2 + 1 / (m n))])
+/// ```
+///
+/// with the thickness `h` of both together, the ratio `m` of their thicknesses and `n` of their moduli: `1.5 e /
+/// h` for equal layers (S. Timoshenko, "Analysis of bi-metal thermostats", J. Opt. Soc. Am. 11, 1925). A wide
+/// plate with `k_0` in both directions rolls up along one, to the curvature `(1 + nu) k_0`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curl {
     /// The direction along which the sheet is curved.
@@ -97,7 +101,7 @@ impl NaturalCurvature {
 
     pub(super) fn is_driven(&self) -> bool {
         let profile = self.profile.as_ref();
-        profile.is_some_and(|profile| !matches!(profile, Profile::Constant(_)))
+        profile.is_some_and(|profile| !profile.is_constant())
     }
 
     /// `R k_0` of a face at a time, 1/m.
