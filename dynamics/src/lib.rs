@@ -90,8 +90,8 @@ pub use material::elastic_sheet::{ElasticSheet, ElasticSheetError};
 pub use material::glue::{Glue, GlueError};
 pub use material::plasticity::Yield;
 pub use material::plate_bending::{
-    Curl, CurlError, DirectionError, MaterialDirection, OrthotropicPlate, PlateBending,
-    PlateBendingError, PlateLaw, PlateStiffness,
+    Curl, CurlError, DirectionError, LineClamp, MaterialDirection, OrthotropicPlate, PlateBending,
+    PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
 };
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};

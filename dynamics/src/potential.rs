@@ -131,6 +131,12 @@ pub trait Potential: Debug + Send + Sync {
         Vec::new()
     }
 
+    /// The moments (newton metres, in space) by which clamps that it knows hold slopes of the sheet, one for each
+    /// of its clamps. The default has none.
+    fn clamp_moments(&self, _at: At<'_>) -> Vec<[f64; 3]> {
+        Vec::new()
+    }
+
     /// Whether displacements are bounded: whether the energy is infinite beyond a limit.
     fn has_limit(&self) -> bool {
         false
@@ -309,6 +315,10 @@ impl<P: Potential + ?Sized> Potential for Arc<P> {
 
     fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
         (**self).plastic_curvatures(memory)
+    }
+
+    fn clamp_moments(&self, at: At<'_>) -> Vec<[f64; 3]> {
+        (**self).clamp_moments(at)
     }
 
     fn has_limit(&self) -> bool {

@@ -1,6 +1,9 @@
 //! Bending stiffness of a thin plate that does not depend on how the mesh runs.
 
 mod law;
+mod line_clamp;
+#[cfg(test)]
+mod line_clamp_tests;
 mod natural;
 #[cfg(test)]
 mod natural_tests;
@@ -15,6 +18,7 @@ mod stress_free;
 mod tests;
 
 use super::plasticity::Yield;
+use crate::MotionError;
 use crate::options::OptionsError;
 use crate::potential::At;
 use crate::potential::Reached;
@@ -24,6 +28,7 @@ use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, FaceId, Sheet, VertexId};
 use law::Roots;
 pub use law::{DirectionError, MaterialDirection, OrthotropicPlate, PlateLaw};
+pub use line_clamp::LineClamp;
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use natural::NaturalCurvature;
 pub use natural::{Curl, CurlError};
@@ -66,6 +71,12 @@ pub enum PlateBendingError {
         /// Why.
         source: CurlError,
     },
+    /// The motion of a clamp makes no sense.
+    #[error(transparent)]
+    Motion {
+        /// Why.
+        source: MotionError,
+    },
     /// A clamped vertex does not exist.
     #[error("{vertex} is named as clamped, but the sheet has {count} vertices")]
     NoVertex {
@@ -100,6 +111,7 @@ impl Advice for PlateBendingError {
             Self::Coupling { .. } => Some("give one whose square is less than D11 D22"),
             Self::Direction { source } => source.advice(),
             Self::Curl { source } => source.advice(),
+            Self::Motion { source } => source.advice(),
             Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
             Self::NoVertex { .. } | Self::NoEdge { .. } => None,
         }
@@ -167,6 +179,18 @@ pub struct PlateBending {
     at_pairs: Vec<([VertexId; 2], f64)>,
 }
 
+/// What holds a plate or interrupts it, see [`PlateBending::held`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PlateEdges<'a> {
+    /// Pinned vertices: where all three corners of a face are among them, the plate leaves the clamp with the
+    /// slope of that face.
+    pub pinned: &'a [VertexId],
+    /// Edges of creases: the slopes of the two sides are independent there.
+    pub creases: &'a [EdgeId],
+    /// Clamps along lines of vertices.
+    pub clamps: &'a [LineClamp],
+}
+
 impl PlateBending {
     /// The bending stiffness of a plate without clamps. (A number is its rigidity, with a Poisson's ratio of
     /// zero.)
@@ -204,16 +228,47 @@ impl PlateBending {
         clamped: &[VertexId],
         creases: &[EdgeId],
     ) -> Result<Self, PlateBendingError> {
+        let edges = PlateEdges {
+            pinned: clamped,
+            creases,
+            clamps: &[],
+        };
+        Self::held(sheet, law, &edges)
+    }
+
+    /// As [`PlateBending::creased`], with clamps along lines of vertices.
+    ///
+    /// # Errors
+    /// [`PlateBendingError`].
+    ///
+    /// # Panics
+    /// If the positions of a clamp are not of length `3V`.
+    pub fn held(
+        sheet: &Sheet,
+        law: impl Into<PlateLaw>,
+        edges: &PlateEdges<'_>,
+    ) -> Result<Self, PlateBendingError> {
         let roots = law.into().roots(sheet)?;
+        let of_clamps = edges.clamps.iter().flat_map(|clamp| &clamp.vertices);
         let count = sheet.topology().vertex_count();
-        if let Some(&vertex) = clamped.iter().find(|v| v.index() >= count) {
+        let mut named = edges.pinned.iter().chain(of_clamps);
+        if let Some(&vertex) = named.find(|v| v.index() >= count) {
             return Err(PlateBendingError::NoVertex { vertex, count });
         }
-        let edges = sheet.topology().edge_count();
-        if let Some(&edge) = creases.iter().find(|e| e.index() >= edges) {
-            return Err(PlateBendingError::NoEdge { edge, count: edges });
+        for clamp in edges.clamps {
+            assert_eq!(
+                clamp.positions.len(),
+                3 * count,
+                "a position for each vertex"
+            );
+            let source = clamp.motion.validate();
+            source.map_err(|source| PlateBendingError::Motion { source })?;
         }
-        let stencils = Stencils::new(sheet, &roots, clamped, creases);
+        let count = sheet.topology().edge_count();
+        if let Some(&edge) = edges.creases.iter().find(|e| e.index() >= count) {
+            return Err(PlateBendingError::NoEdge { edge, count });
+        }
+        let stencils = Stencils::new(sheet, &roots, edges);
         Ok(Self::of_stencils(sheet, roots, stencils))
     }
 
@@ -307,21 +362,19 @@ impl PlateBending {
 
 impl Potential for PlateBending {
     fn energy(&self, at: At<'_>) -> f64 {
-        let At { x, .. } = at;
         if let Some(plastic) = &self.stress_free {
             let faces = self.stencils.iter().enumerate();
             let energy = |(k, s)| plastic.energy(k, &plastic.bent(k, &s, at));
             return faces.map(energy).sum();
         }
         let energy = |h: Matrix3<f64>| 0.5 * h.norm_squared();
-        self.stencils.iter().map(|s| energy(s.apply(x))).sum()
+        self.stencils.iter().map(|s| energy(s.apply(at))).sum()
     }
 
     fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
-        let At { x, .. } = at;
         for (k, (face, stencil)) in faces.iter_mut().zip(self.stencils.iter()).enumerate() {
             let elastic = match &self.stress_free {
-                None => stencil.apply(x),
+                None => stencil.apply(at),
                 Some(plastic) => plastic.bent(k, &stencil, at).elastic,
             };
             *face += 0.5 * elastic.norm_squared();
@@ -329,7 +382,6 @@ impl Potential for PlateBending {
     }
 
     fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
-        let At { x, .. } = at;
         let mut add = |v: usize, force: Vector3<f64>| {
             for k in 0..3 {
                 gradient[3 * v + k] += force[k];
@@ -337,7 +389,7 @@ impl Potential for PlateBending {
         };
         for (k, stencil) in self.stencils.iter().enumerate() {
             let h = match &self.stress_free {
-                None => stencil.apply(x),
+                None => stencil.apply(at),
                 Some(plastic) => {
                     let bent = plastic.bent(k, &stencil, at);
                     for (v, force) in bent.turning_forces() {
@@ -394,10 +446,31 @@ impl Potential for PlateBending {
             .is_some_and(StressFreeCurvature::yields)
     }
 
+    /// With the slopes `d_e` that clamps hold and their forces `f_e = dV/dd_e` it is `sum_e d_e x f_e`.
+    fn clamp_moments(&self, at: At<'_>) -> Vec<[f64; 3]> {
+        let mut moments = vec![Vector3::zeros(); self.stencils.clamp_count()];
+        for (k, stencil) in self.stencils.iter().enumerate() {
+            if stencil.clamps().next().is_none() {
+                continue;
+            }
+            let elastic = match &self.stress_free {
+                None => stencil.apply(at),
+                Some(curvature) => curvature.bent(k, &stencil, at).elastic,
+            };
+            for (clamp, (director, weights)) in stencil.clamps().zip(stencil.directors(at.t)) {
+                moments[clamp] += director.cross(&(elastic * weights));
+            }
+        }
+        moments.into_iter().map(Into::into).collect()
+    }
+
     fn is_driven(&self) -> bool {
-        self.stress_free
-            .as_ref()
-            .is_some_and(StressFreeCurvature::is_driven)
+        let turns = self.stencils.is_driven();
+        turns
+            || self
+                .stress_free
+                .as_ref()
+                .is_some_and(StressFreeCurvature::is_driven)
     }
 
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {

@@ -118,6 +118,10 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
         own.map(|(e, angle)| (self.part.edge(e), angle)).collect()
     }
 
+    fn clamp_moments(&self, at: At<'_>) -> Vec<[f64; 3]> {
+        self.potential.clamp_moments(self.own(at))
+    }
+
     fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
         let first = self.part.faces.start;
         let own = self.potential.plastic_curvatures(memory).into_iter();

@@ -368,6 +368,15 @@ impl Simulation {
         }
     }
 
+    /// Moments by which clamps along lines of vertices ([`LineClamp`](crate::LineClamp)) hold the slopes of the
+    /// sheet at the present state, newton metres, in the order of the potentials and of their clamps. With the
+    /// forces of the pins ([`Simulation::reactions`]) they are all that such a clamp does.
+    pub fn clamp_moments(&self) -> Vec<[f64; 3]> {
+        let State { t, x, .. } = self.state();
+        let potentials = self.model().potentials_at(*t, x, self.memories());
+        potentials.flat_map(|(p, at)| p.clamp_moments(at)).collect()
+    }
+
     /// Forces of the rods in the last accepted sub-step, newtons, tension positive, in the order of the
     /// edges. `None` in charts and for elastic sheets.
     ///

@@ -1,9 +1,14 @@
 //! Second derivatives of positions on a triangle mesh, from the positions of vertices nearby.
 
+use super::PlateEdges;
 use super::law::Roots;
+use super::line_clamp::{Director, HeldEdges};
+use crate::RigidMotion;
+use crate::potential::At;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
+use std::collections::BTreeMap;
 use std::f64::consts::SQRT_2;
 
 /// Smallest singular value of a least-squares fit, in units of the mean length of the edges around, below
@@ -23,6 +28,9 @@ pub(super) struct Stencils {
     starts: Vec<usize>,
     vertices: Vec<u32>,
     weights: Vec<Vector3<f64>>,
+    /// The motions of the clamps, and the slopes that they hold, by faces.
+    clamps: Vec<RigidMotion>,
+    directors: BTreeMap<u32, Vec<Director>>,
 }
 
 /// The vertices and weights of a face.
@@ -30,11 +38,35 @@ pub(super) struct Stencils {
 pub(super) struct Stencil<'a> {
     vertices: &'a [u32],
     weights: &'a [Vector3<f64>],
+    directors: &'a [Director],
+    clamps: &'a [RigidMotion],
 }
 
 impl Stencil<'_> {
+    /// `sum_v x_v w_v^T + sum_e d_e w_e^T`, with what clamps hold at a time.
+    pub(super) fn apply(&self, At { t, x, .. }: At<'_>) -> Matrix3<f64> {
+        let mut sum = self.apply_to_positions(x);
+        for (director, weights) in self.directors(t) {
+            sum.ger(1.0, &director, &weights, 1.0);
+        }
+        sum
+    }
+
+    /// The slopes that clamps hold at a time, with their weights.
+    pub(super) fn directors(&self, t: f64) -> impl Iterator<Item = (Vector3<f64>, Vector3<f64>)> {
+        self.directors.iter().map(move |d| {
+            let turn = self.clamps[d.clamp].pose(t).rotation;
+            (turn * d.rest, d.weights)
+        })
+    }
+
+    /// The clamps that hold these slopes.
+    pub(super) fn clamps(&self) -> impl Iterator<Item = usize> {
+        self.directors.iter().map(|d| d.clamp)
+    }
+
     /// `sum_v x_v w_v^T`. (The weights sum to zero; differences keep the round-off that of the shape.)
-    pub(super) fn apply(&self, x: &[f64]) -> Matrix3<f64> {
+    fn apply_to_positions(&self, x: &[f64]) -> Matrix3<f64> {
         let Some(&first) = self.vertices.first() else {
             return Matrix3::zeros();
         };
@@ -62,16 +94,12 @@ impl Iterator for Stencil<'_> {
 type Combination = Vec<(VertexId, f64)>;
 
 impl Stencils {
-    pub(super) fn new(
-        sheet: &Sheet,
-        roots: &Roots,
-        clamped: &[VertexId],
-        creases: &[EdgeId],
-    ) -> Self {
+    pub(super) fn new(sheet: &Sheet, roots: &Roots, edges: &PlateEdges<'_>) -> Self {
         let topology = sheet.topology();
-        let clamps = Clamps::new(sheet, clamped);
+        let clamps = Clamps::new(sheet, edges.pinned);
+        let held = HeldEdges::new(sheet, edges.clamps);
         let mut is_creased = vec![false; topology.edge_count()];
-        for edge in creases {
+        for edge in edges.creases {
             is_creased[edge.index()] = true;
         }
         let slopes: Vec<_> = topology
@@ -82,13 +110,25 @@ impl Stencils {
             starts: vec![0],
             vertices: Vec::new(),
             weights: Vec::new(),
+            clamps: edges.clamps.iter().map(|c| c.motion.clone()).collect(),
+            directors: BTreeMap::new(),
         };
         for face in topology.face_ids() {
             let scale =
                 (roots.rigidity * sheet.face_areas()[face.index()]).sqrt() * roots.of(face.index());
-            for (v, w) in face_weights(sheet, &slopes, face) {
+            let is_clamped = clamps.faces[face.index()];
+            let director = |edge| (!is_clamped).then(|| held.director(sheet, face, edge))?;
+            let (weights, directors) = face_weights(sheet, &slopes, director, face);
+            for (v, w) in weights {
                 stencils.vertices.push(v.0);
                 stencils.weights.push(scale * w);
+            }
+            if !directors.is_empty() {
+                let scaled = directors.into_iter().map(|d| Director {
+                    weights: scale * d.weights,
+                    ..d
+                });
+                stencils.directors.insert(face.0, scaled.collect());
             }
             stencils.starts.push(stencils.vertices.len());
         }
@@ -101,13 +141,13 @@ impl Stencils {
     pub(super) fn straighten(&mut self, sheet: &Sheet, roots: &Roots) -> Vec<Vector3<f64>> {
         let x = sheet.positions();
         let faces = sheet.topology().faces().iter().zip(sheet.face_areas());
-        let curvatures = faces.enumerate().map(|(f, (corners, area))| {
+        let mut curvatures = Vec::new();
+        for (f, (corners, area)) in faces.enumerate() {
+            let mut derivatives = self.of(f).apply_to_positions(x);
+            for d in self.directors.get(&(f as u32)).into_iter().flatten() {
+                derivatives += d.rest * d.weights.transpose();
+            }
             let range = self.starts[f]..self.starts[f + 1];
-            let stencil = Stencil {
-                vertices: &self.vertices[range.clone()],
-                weights: &self.weights[range.clone()],
-            };
-            let derivatives = stencil.apply(x);
             let [a, b, c] = corners.map(|v| point(x, v));
             let normal = (b - a).cross(&(c - a)).normalize();
             let axes = Matrix3::from_columns(&[b - a, c - a, normal]);
@@ -125,16 +165,35 @@ impl Stencils {
                     _ => Vector3::zeros(),
                 };
             }
-            bent / (roots.rigidity * area).sqrt()
-        });
-        curvatures.collect()
+            curvatures.push(bent / (roots.rigidity * area).sqrt());
+        }
+        curvatures
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = Stencil<'_>> {
-        self.starts.windows(2).map(|range| Stencil {
-            vertices: &self.vertices[range[0]..range[1]],
-            weights: &self.weights[range[0]..range[1]],
-        })
+        (0..self.starts.len() - 1).map(|face| self.of(face))
+    }
+
+    fn of(&self, face: usize) -> Stencil<'_> {
+        let range = self.starts[face]..self.starts[face + 1];
+        // (An empty map is looked up at no cost.)
+        let directors = self.directors.get(&(face as u32));
+        Stencil {
+            vertices: &self.vertices[range.clone()],
+            weights: &self.weights[range],
+            directors: directors.map_or(&[], Vec::as_slice),
+            clamps: &self.clamps,
+        }
+    }
+
+    /// Number of clamps.
+    pub(super) fn clamp_count(&self) -> usize {
+        self.clamps.len()
+    }
+
+    /// Whether a clamp turns.
+    pub(super) fn is_driven(&self) -> bool {
+        self.clamps.iter().any(|motion| !motion.is_fixed())
     }
 }
 
@@ -304,12 +363,13 @@ fn fit(points: &[(VertexId, Vector2<f64>)], size: f64) -> Option<Combination> {
     Some(points.iter().enumerate().map(entry).collect())
 }
 
-/// The second derivatives of a face from the slopes at its edges.
+/// The second derivatives of a face from the slopes at its edges, those that clamps hold apart.
 fn face_weights(
     sheet: &Sheet,
     slopes: &[Option<Combination>],
+    director: impl Fn(EdgeId) -> Option<(usize, Vector3<f64>)>,
     face: FaceId,
-) -> Vec<(VertexId, Vector3<f64>)> {
+) -> (Vec<(VertexId, Vector3<f64>)>, Vec<Director>) {
     let topology = sheet.topology();
     let [a, b, _] = topology.faces()[face.index()];
     let base = topology.find_edge(a, b).expect("an edge of a face");
@@ -322,7 +382,7 @@ fn face_weights(
             Some((_, sum)) => *sum += w,
             None => weights.push((v, w)),
         };
-    let mut free = Vec::new();
+    let (mut free, mut directors) = (Vec::new(), Vec::new());
     for k in 0..3 {
         let ((p, xp), (q, xq)) = (corners[k], corners[(k + 1) % 3]);
         let edge = topology.find_edge(p, q).expect("an edge of a face");
@@ -335,13 +395,24 @@ fn face_weights(
         let bend = symmetric(n, n) * (length / area);
         let is_left = topology.left_face(edge) == face;
         let sign = if is_left { 1.0 } else { -1.0 };
+        if let Some((clamp, rest)) = director(edge) {
+            let weights = bend;
+            directors.push(Director {
+                clamp,
+                rest,
+                weights,
+            });
+            continue;
+        }
         match &slopes[edge.index()] {
             Some(slope) => slope.iter().for_each(|(v, s)| add(*v, sign * s * bend)),
             None => free.push(symmetric(n, n)),
         }
     }
-    without(&mut weights, free);
-    weights
+    let of_directors = directors.iter_mut().map(|d| &mut d.weights);
+    let of_vertices = weights.iter_mut().map(|(_, w)| w);
+    without(of_vertices.chain(of_directors), free);
+    (weights, directors)
 }
 
 /// The symmetric part of `u v^T` as the vector `(11, sqrt(2) 12, 22)`, which has the norm of the matrix.
@@ -351,7 +422,7 @@ fn symmetric(u: Vector2<f64>, v: Vector2<f64>) -> Vector3<f64> {
 
 /// Takes the components along `directions` out of all weights: the slopes at these edges are those for which
 /// the face is not bent across them.
-fn without(weights: &mut [(VertexId, Vector3<f64>)], directions: Vec<Vector3<f64>>) {
+fn without<'a>(weights: impl Iterator<Item = &'a mut Vector3<f64>>, directions: Vec<Vector3<f64>>) {
     let mut basis: Vec<Vector3<f64>> = Vec::new();
     for mut d in directions {
         for b in &basis {
@@ -359,7 +430,7 @@ fn without(weights: &mut [(VertexId, Vector3<f64>)], directions: Vec<Vector3<f64
         }
         basis.push(d.normalize());
     }
-    for (_, w) in weights {
+    for w in weights {
         for b in &basis {
             *w -= b * b.dot(w);
         }

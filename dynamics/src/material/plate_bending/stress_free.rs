@@ -236,7 +236,7 @@ impl StressFreeCurvature {
         let double_area = normal.norm();
         let normal = normal / double_area;
         let hats = [c - b, a - c, b - a].map(|opposite| normal.cross(&opposite) / double_area);
-        let derivatives = stencil.apply(x);
+        let derivatives = stencil.apply(at);
         let layers = &memory[self.layers(face)];
         let natural = self.natural.as_ref();
         let mut before = natural.map_or(Vector3::zeros(), |natural| natural.at(face, t));

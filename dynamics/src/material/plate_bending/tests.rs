@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// A strip along x of which the lines of vertices at the ends and at `fixed` stay where they are; the others
 /// are displaced by up to `jitter` cells.
-fn strip(
+pub(super) fn strip(
     cells: [usize; 2],
     size: [f64; 2],
     diagonals: Diagonals,
@@ -52,7 +52,7 @@ fn second_derivatives_are_exact_for_quadratic_positions() {
     let faces = sheet.topology().face_ids();
     for (face, stencil) in faces.zip(plate.stencils.iter()) {
         // The frame of a face is its own; norm and trace of a component do not depend on it.
-        let h = stencil.apply(&x) / (2.0 * sheet.face_areas()[face.index()]).sqrt();
+        let h = stencil.apply(At::new(0.0, &x)) / (2.0 * sheet.face_areas()[face.index()]).sqrt();
         for k in 0..3 {
             let row = h.row(k);
             let (norm, trace) = (row.norm(), row[0] + row[2]);
@@ -147,9 +147,9 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
 }
 
 /// Collects the entries of a Hessian for displacements along z.
-struct Upwards<'a> {
-    sheet: &'a Sheet,
-    matrix: DMatrix<f64>,
+pub(super) struct Upwards<'a> {
+    pub(super) sheet: &'a Sheet,
+    pub(super) matrix: DMatrix<f64>,
 }
 
 impl HessianSink for Upwards<'_> {
