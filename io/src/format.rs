@@ -3,6 +3,7 @@
 pub(crate) mod atomic;
 #[cfg(feature = "run")]
 mod cell;
+mod data_error;
 mod export;
 mod finite;
 mod history;
@@ -17,6 +18,7 @@ mod trajectory;
 pub use atomic::{FileWriter, WriteError, write_atomically};
 #[cfg(feature = "run")]
 pub(crate) use cell::cell;
+pub use data_error::DataError;
 #[cfg(feature = "run")]
 pub(crate) use finite::{Finding, check_finite};
 

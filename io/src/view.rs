@@ -84,13 +84,12 @@
 //! }
 //! .to_html()?;
 //! assert!(page.starts_with("<!doctype html>"));
-//! # Ok::<(), isosheet_io::view::ViewError>(())
+//! # Ok::<(), isosheet_io::DataError>(())
 //! ```
 
 mod body;
 mod check;
 mod document;
-mod error;
 mod field;
 mod frames;
 mod live;
@@ -100,7 +99,8 @@ mod quantise;
 mod replay;
 
 pub use body::{Body, BodyShape, Pose};
-pub use error::ViewError;
+#[cfg(feature = "run")]
+pub(crate) use check::no_frames;
 #[cfg(feature = "run")]
 pub(crate) use field::strains;
 pub use field::{Field, Place, Scale, Series};

@@ -5,10 +5,10 @@ use crate::threads::ThreadsError;
 use anyhow::Error;
 use isosheet_coords::ChartError;
 use isosheet_dynamics::{ModelError, SimulationError, StepError};
+use isosheet_io::DataError;
 use isosheet_io::picture::PictureError;
 use isosheet_io::run::RunError;
 use isosheet_io::scene::{SceneError, SceneFileError};
-use isosheet_io::view::ViewError;
 use isosheet_io::{Advice, ExportError, HistoryError, JsonError, TrajectoryError, WriteError};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -82,7 +82,7 @@ fn advice(error: &Error) -> Option<&'static str> {
         advice_of::<TrajectoryError>,
         advice_of::<ExportError>,
         advice_of::<PictureError>,
-        advice_of::<ViewError>,
+        advice_of::<DataError>,
         advice_of::<SceneError>,
         advice_of::<SceneFileError>,
         advice_of::<StepError>,

@@ -105,9 +105,7 @@ pub(crate) fn write(
         return Err(wrong(&message, "choose one of them"));
     }
     let film = Film::new(recording, frames, options).map_err(|e| match e {
-        PictureError::Size { .. } | PictureError::Angle { .. } => {
-            Failure::of(Code::CommandLine, &e)
-        }
+        PictureError::Options(_) => Failure::of(Code::CommandLine, &e),
         _ => input(&e),
     })?;
     let progress = DrawingProgress::new(film.len());

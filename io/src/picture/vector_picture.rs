@@ -21,8 +21,7 @@ const DOT: f64 = 3.0;
 /// faces on each other.
 ///
 /// # Errors
-/// Those of [`Look::validate`]; [`PictureError::Coordinates`], [`PictureError::NotFinite`] and
-/// [`PictureError::Pin`] for a picture that does not fit together.
+/// Those of [`Look::validate`]; [`PictureError::Data`] for a picture that does not fit together.
 pub fn render_svg(
     picture: &SheetPicture<'_>,
     camera: &Camera,
@@ -296,6 +295,6 @@ mod tests {
         };
         let camera = Camera::new([0.0; 3], 0.0, 0.0, 1.0, 2.0);
         let result = render_svg(&picture, &camera, &Look::default());
-        assert!(matches!(result, Err(PictureError::NotFinite { .. })));
+        assert!(matches!(result, Err(PictureError::Data(_))));
     }
 }

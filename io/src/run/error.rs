@@ -1,8 +1,7 @@
 //! Why a run cannot go on.
 
-use crate::format::{ExportError, HistoryError, JsonError, TrajectoryError, WriteError};
+use crate::format::{DataError, ExportError, HistoryError, JsonError, TrajectoryError, WriteError};
 use crate::scene::{SceneError, SceneFileError};
-use crate::view::ViewError;
 use isosheet_mesh::Advice;
 use std::io;
 use std::path::PathBuf;
@@ -131,7 +130,7 @@ pub enum RunError {
     Json(#[from] JsonError),
     /// The run cannot be shown as a page.
     #[error("no page of the run can be made: {0}")]
-    Page(#[from] ViewError),
+    Page(#[from] DataError),
     /// An OBJ file cannot be written.
     #[error(transparent)]
     Obj(#[from] ExportError),

@@ -1,7 +1,7 @@
 //! Fields of a page, frame by frame.
 
-use crate::format::{MotionFrame, Quantity};
-use crate::view::{Field, Place, Scale, ViewError, strains};
+use crate::format::{DataError, MotionFrame, Quantity};
+use crate::view::{Field, Place, Scale, strains};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{ElasticDeformation, SheetModel};
 use isosheet_mesh::Sheet;
@@ -200,14 +200,13 @@ fn plastic(name: &str, unit: &str, place: Place) -> Field {
 }
 
 /// Checks that a frame is one of a sheet.
-pub(super) fn check_frame(frame: &MotionFrame<'_>, sheet: &Sheet) -> Result<(), ViewError> {
+pub(super) fn check_frame(frame: &MotionFrame<'_>, sheet: &Sheet) -> Result<(), DataError> {
     let (got, expected) = (frame.x.len(), sheet.positions().len());
     if got == expected {
         return Ok(());
     }
-    Err(ViewError::Length {
-        what: format!("the positions of frame {}", frame.number),
-        got,
-        expected,
-    })
+    let number = frame.number;
+    let message =
+        format!("the positions of frame {number}: the length is {got} and has to be {expected}");
+    Err(DataError::plain(message).at(number))
 }

@@ -6,9 +6,9 @@ use super::recording::{Recording, RunFrames};
 use super::spool::Spool;
 use super::{EndReason, RunError, SheetPlace, Summary, constraints};
 use crate::format::atomic::prepare_folder;
-use crate::format::{Quantity, write_atomically};
+use crate::format::{DataError, Quantity, write_atomically};
 use crate::scene::bounds;
-use crate::view::{PageOptions, Replay, Series, ViewError};
+use crate::view::{PageOptions, Replay, Series, no_frames};
 use std::io::Write;
 use std::path::Path;
 
@@ -18,10 +18,10 @@ impl Recording {
     /// the run again.
     ///
     /// # Errors
-    /// [`ViewError::NoFrames`] of a run without a frame yet.
-    pub fn replay(&self) -> Result<Replay, ViewError> {
+    /// [`DataError`] of a run without a frame yet.
+    pub fn replay(&self) -> Result<Replay, DataError> {
         if self.trajectory.is_empty() {
-            return Err(ViewError::NoFrames);
+            return Err(no_frames());
         }
         let frames = (0..self.trajectory.len()).filter_map(|k| self.trajectory.frame(k));
         let corners = bounds(frames.flat_map(|x| x.as_chunks::<3>().0));
@@ -221,7 +221,7 @@ pub(super) fn page_of(
     let fields = recording.fields();
     let spool = Spool::of(frames, &recording.sheet, &fields, folder)?;
     if spool.times.is_empty() {
-        return Err(ViewError::NoFrames.into());
+        return Err(no_frames().into());
     }
     let still = recording.still(spool.times.clone(), spool.corners);
     let still = Replay {

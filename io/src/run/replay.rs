@@ -1,8 +1,8 @@
 //! What the page shows of a recorded motion.
 
 use super::frame_field::{FrameField, check_frame};
-use crate::format::{HistoryRow, MeasureRow, Motion, Quantity, Trajectory};
-use crate::view::{Body, BodyShape, Pose, Replay, Scale, Series, ViewError};
+use crate::format::{DataError, HistoryRow, MeasureRow, Motion, Quantity, Trajectory};
+use crate::view::{Body, BodyShape, Pose, Replay, Scale, Series};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_mesh::Sheet;
 use nalgebra::Isometry3;
@@ -19,13 +19,13 @@ impl Replay {
     /// Titles, pins and texts are left to the caller.
     ///
     /// # Errors
-    /// [`ViewError`] if the trajectory is not one of this sheet.
+    /// [`DataError`] if the trajectory is not one of this sheet.
     pub fn of_motion(
         sheet: &Sheet,
         obstacles: &[Obstacle],
         trajectory: &Trajectory,
         history: &[HistoryRow],
-    ) -> Result<Self, ViewError> {
+    ) -> Result<Self, DataError> {
         let has = |quantity: Quantity| {
             let first = trajectory.first_data();
             first.is_some_and(|data| !quantity.of(&data).is_empty())
@@ -61,7 +61,7 @@ impl Replay {
         trajectory: &Trajectory,
         sheet: &Sheet,
         fields: &[FrameField<'_>],
-    ) -> Result<Self, ViewError> {
+    ) -> Result<Self, DataError> {
         self.fields = fields.iter().map(|field| field.head.clone()).collect();
         let mut done = Ok(());
         let Ok(()) = trajectory.each(&mut |frame| {

@@ -4,7 +4,7 @@ use super::RunError;
 use super::frame_field::{FrameField, check_frame};
 use crate::format::{FrameData, Motion, MotionFrame};
 use crate::scene::bounds;
-use crate::view::ViewError;
+use crate::view::no_frames;
 use isosheet_mesh::Sheet;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
@@ -114,7 +114,7 @@ impl Motion for Spool {
             });
             let lists: Vec<&[f64]> = lists.collect();
             let Some((x, fields)) = lists.split_first() else {
-                return Err(ViewError::NoFrames.into());
+                return Err(no_frames().into());
             };
             let frame = MotionFrame {
                 number,

@@ -4,13 +4,13 @@ use serde::Serialize;
 use std::ops::ControlFlow;
 
 use super::body::{Body, BodyShape};
-use super::error::ViewError;
 use super::field::{Field, Place, Scale, Series};
 use super::frames::Kept;
 use super::live::LivePage;
 use super::pack::{Packed, RowPacker, pack_doubles, pack_indices};
 use super::quantise::{FieldScale, PositionScale};
 use super::replay::{Axis, Replay};
+use crate::format::DataError;
 use crate::format::Motion;
 
 /// A replay with every `stride`-th frame and the last one. The field names are those in the JSON text.
@@ -76,7 +76,7 @@ struct SeriesData<'a> {
 impl<'a> Document<'a> {
     /// The document of the frames of a replay, which were validated; none where it is longer than `most` bytes
     /// for sure. Positions and values of fields come from `frames`, everything else from the replay.
-    pub(super) fn new<M: Motion<Error: From<ViewError>>>(
+    pub(super) fn new<M: Motion<Error: From<DataError>>>(
         replay: &'a Replay,
         frames: &M,
         kept: Kept,
@@ -146,7 +146,7 @@ impl<'a> Document<'a> {
 }
 
 /// How positions and the values of each field become integers.
-fn scales<M: Motion<Error: From<ViewError>>>(
+fn scales<M: Motion<Error: From<DataError>>>(
     replay: &Replay,
     frames: &M,
     kept: Kept,
@@ -169,7 +169,7 @@ fn scales<M: Motion<Error: From<ViewError>>>(
 }
 
 /// Positions and the values of each field, packed; none where they are longer than `most` bytes for sure.
-fn pack<M: Motion<Error: From<ViewError>>>(
+fn pack<M: Motion<Error: From<DataError>>>(
     scales: &[FieldScale],
     positions: PositionScale,
     frames: &M,

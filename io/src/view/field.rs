@@ -3,7 +3,7 @@
 use isosheet_mesh::Topology;
 
 use super::check;
-use super::error::ViewError;
+use crate::format::DataError;
 use serde::Serialize;
 
 /// Where the values of a [`Field`] belong.
@@ -77,13 +77,13 @@ impl Field {
     /// list of length 3V for each frame. The page cannot recover strains from its rounded positions.
     ///
     /// # Errors
-    /// [`ViewError`] when the triangles are no manifold, or a list has the wrong length.
+    /// [`DataError`] when the triangles are no manifold, or a list has the wrong length.
     pub fn edge_strain(
         faces: &[[u32; 3]],
         rest: &[f64],
         positions: &[Vec<f64>],
-    ) -> Result<Self, ViewError> {
-        let topology = Topology::from_faces(rest.len() / 3, faces)?;
+    ) -> Result<Self, DataError> {
+        let topology = check::topology(rest.len() / 3, faces)?;
         let size = 3 * topology.vertex_count();
         check::length("the rest positions", rest.len(), size)?;
         let strain = strains(&topology, rest);
@@ -122,7 +122,7 @@ impl Field {
         index: usize,
         frame: usize,
         topology: &Topology,
-    ) -> Result<(), ViewError> {
+    ) -> Result<(), DataError> {
         let what = || format!("{}, frame {frame}", self.place_in_page(index));
         let expected = match self.place {
             Place::Vertex => topology.vertex_count(),
@@ -155,7 +155,7 @@ pub(crate) fn strains(topology: &Topology, rest: &[f64]) -> impl Fn(&[f64]) -> V
 }
 
 impl Series {
-    pub(super) fn validate(&self, index: usize) -> Result<(), ViewError> {
+    pub(super) fn validate(&self, index: usize) -> Result<(), DataError> {
         let what = format!("series {index} (`{}`)", self.name);
         check::length(&what, self.values.len(), self.times.len())?;
         check::times(&format!("{what}: the times"), &self.times)?;

@@ -1,6 +1,6 @@
 //! Which frames of a motion a page shows.
 
-use super::error::ViewError;
+use crate::format::DataError;
 use crate::format::{Motion, MotionFrame};
 use std::ops::ControlFlow;
 
@@ -35,10 +35,10 @@ impl Kept {
     }
 
     /// Shows those of a motion, in their order, until `show` fails.
-    pub(super) fn try_each<M: Motion<Error: From<ViewError>>>(
+    pub(super) fn try_each<M: Motion<Error: From<DataError>>>(
         self,
         motion: &M,
-        mut show: impl FnMut(&MotionFrame<'_>) -> Result<(), ViewError>,
+        mut show: impl FnMut(&MotionFrame<'_>) -> Result<(), DataError>,
     ) -> Result<(), M::Error> {
         let mut done = Ok(());
         self.each(motion, &mut |frame| {
