@@ -34,9 +34,9 @@ pub use json::{JsonError, read_json, write_json};
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};
 pub use measures::{MeasureRow, MeasureWriter, read_measures};
 pub use mesh_file::{
-    EdgeAssignment, FileCrease, FoldFrame, FoldProblem, GltfProblem, MeshFile, MeshFileError,
-    MeshFileProblem, MeshFormat, MeshOptions, Place, Polygons, ReadingChanges, Repair,
-    SeparateBuffers, parse_mesh, read_mesh, read_mesh_with, read_sheet,
+    EdgeAssignment, FileCrease, FoldFrame, MeshFile, MeshFileError, MeshFileProblem, MeshFormat,
+    MeshOptions, Place, Polygons, ReadingChanges, Repair, SeparateBuffers, parse_mesh, read_mesh,
+    read_mesh_with, read_sheet,
 };
 pub use trajectory::{FrameData, Trajectory, TrajectoryError};
 #[cfg(feature = "run")]

@@ -156,7 +156,7 @@ fn read(path: &Path, polygons: Polygons) -> Result<MeshFile, Failure> {
     read_mesh_with(path, &options).map_err(|error| {
         let failure = Failure::of(Code::Input, &error);
         match error.problem {
-            MeshFileProblem::Polygon { .. } => failure.remedy(
+            MeshFileProblem::Polygon(_) => failure.remedy(
                 "`--fix -o FILE2` cuts polygons into triangles: their new edges are lines along which the sheet can \
                  fold",
             ),

@@ -134,7 +134,7 @@ impl Convert {
             ..MeshOptions::default()
         };
         let mesh = read_mesh_with(&self.input, &options).map_err(|e| match e.problem {
-            MeshFileProblem::WeldTolerance { .. } => Failure::of(Code::CommandLine, &e),
+            MeshFileProblem::Options(_) => Failure::of(Code::CommandLine, &e),
             _ => input(&e),
         })?;
         self.write_mesh(&mesh)
@@ -171,7 +171,7 @@ impl Convert {
             Some(rate) if !trajectory.is_empty() => {
                 let range = self.frames.unwrap_or_default().of(trajectory.len());
                 trajectory.at_rate(rate, range).map_err(|e| match e {
-                    TrajectoryError::Rate { .. } => Failure::of(Code::CommandLine, &e),
+                    TrajectoryError::Rate(_) => Failure::of(Code::CommandLine, &e),
                     _ => input(&e),
                 })
             }
@@ -390,10 +390,7 @@ fn input(error: &impl Advice) -> Failure {
 /// The failure of an export: of what the command line asks for, or else with the given code.
 fn failed(error: &ExportError, otherwise: Code) -> Failure {
     let code = match error {
-        ExportError::Extension { .. }
-        | ExportError::NoFrame { .. }
-        | ExportError::Range { .. }
-        | ExportError::Rate { .. } => Code::CommandLine,
+        ExportError::Extension { .. } | ExportError::Frames(_) => Code::CommandLine,
         _ => otherwise,
     };
     Failure::of(code, error)

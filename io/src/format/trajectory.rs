@@ -11,8 +11,10 @@ pub(crate) use data::{MeshCounts, Quantity};
 pub use error::TrajectoryError;
 pub(crate) use motion::{Motion, MotionError, MotionFrame};
 
+use crate::format::DataError;
 use crate::format::atomic::write_atomically;
 use archive::{ArchiveReader, ArchiveWriter};
+use isosheet_mesh::wording::given;
 use isosheet_mesh::{Sheet, VertexId};
 use std::convert::Infallible;
 use std::io;
@@ -144,27 +146,23 @@ impl Trajectory {
             number, t, x, data, ..
         } = frame;
         if x.len() != 3 * self.vertex_count {
-            return Err(TrajectoryError::WrongLength {
-                frame: number,
-                got: x.len(),
-                vertices: self.vertex_count,
-            });
+            let message = format!(
+                "frame {number} has {} coordinates, but the mesh has {} vertices, three coordinates each",
+                x.len(),
+                self.vertex_count
+            );
+            return Err(DataError::plain(message).at(number).into());
         }
         if let Some(k) = x.iter().position(|c| !c.is_finite()) {
-            let vertex = VertexId::from_index(k / 3);
-            return Err(TrajectoryError::NotFinite {
-                frame: number,
-                vertex,
-                axis: k % 3,
-                value: x[k],
-            });
+            let (vertex, axis) = (VertexId::from_index(k / 3), ["x", "y", "z"][k % 3]);
+            let what = format!("coordinate {axis} of {vertex}");
+            return Err(not_finite(&what, number, x[k]).into());
         }
         if !t.is_finite() || t < before {
-            return Err(TrajectoryError::Time {
-                frame: number,
-                t,
-                before,
-            });
+            let (now, before) = (given(t), given(before));
+            let message = format!("frame {number} has the time {now} s after {before} s");
+            let error = DataError::new(message, "record frames in the order of time");
+            return Err(error.at(number).value(t).into());
         }
         for quantity in Quantity::ALL {
             let values = quantity.of(&data);
@@ -472,6 +470,15 @@ impl Trajectory {
             data,
         })
     }
+}
+
+/// A number of a frame that is not finite.
+fn not_finite(what: &str, frame: usize, value: f64) -> DataError {
+    let value_in_words = given(value);
+    let message =
+        format!("{what} in frame {frame} is {value_in_words}, and the frame was not recorded");
+    let error = DataError::new(message, "go back to the last state that was finite");
+    error.at(frame).value(value)
 }
 
 #[cfg(test)]

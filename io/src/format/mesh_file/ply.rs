@@ -1,7 +1,8 @@
 //! Reading PLY files (Polygon File Format).
 
-use super::error::{Located, MeshFileProblem, Place};
+use super::error::{CORRECT, Located, Place, announced, unexpected};
 use super::faces::Polyhedron;
+use crate::format::DataError;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,
@@ -21,11 +22,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     }
     if !bytes.starts_with(MAGIC) {
         let first: String = bytes.iter().take(20).map(|&b| char::from(b)).collect();
-        let problem = MeshFileProblem::Syntax {
-            expected: "the word ply".to_owned(),
-            found: first.lines().next().unwrap_or_default().to_owned(),
-        };
-        return Err((Some(Place::Line(1)), problem));
+        let found = first.lines().next().unwrap_or_default();
+        let problem = unexpected("the word ply", found);
+        return Err((Some(Place::Line(1)), problem.into()));
     }
     let parser = Parser::<Row>::new();
     let mut reader = Reader::new(bytes);
@@ -42,7 +41,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
             "vertex" => {
                 for row in rows {
                     mesh.push_vertex(row.place)
-                        .map_err(|problem| (None, problem))?;
+                        .map_err(|problem| (None, problem.into()))?;
                 }
             }
             "face" => {
@@ -112,7 +111,7 @@ impl Row {
 /// Checks that the elements have the properties of a mesh, and that the rest of the file can hold as many as
 /// the header announces.
 fn check(header: &Header, available: u64) -> Result<(), Located> {
-    let problem = |text: String| Err((None, MeshFileProblem::Ply(text)));
+    let problem = |text: String| Err((None, DataError::new(text, CORRECT).into()));
     let has = |element: &ElementDef, name: &str| element.properties.iter().any(|(k, _)| k == name);
     for (name, element) in &header.elements {
         let (count, text) = (element.count as u64, header.encoding == Encoding::Ascii);
@@ -129,13 +128,8 @@ fn check(header: &Header, available: u64) -> Result<(), Located> {
             .saturating_mul(sizes.sum())
             .saturating_sub(u64::from(text));
         if needed > available {
-            let problem = MeshFileProblem::Announced {
-                what: format!("elements {name:?}"),
-                count,
-                needed,
-                available,
-            };
-            return Err((None, problem));
+            let what = format!("elements {name:?}");
+            return Err((None, announced(&what, count, needed, available).into()));
         }
         if name == "vertex"
             && let Some(missing) = ["x", "y", "z"].iter().find(|c| !has(element, c))
@@ -167,5 +161,5 @@ fn located(error: &ParseError, is_text: bool) -> Located {
     let message = error.to_string().replace(['\n', '\t'], " ");
     let short: String = message.chars().take(200).collect();
     let line = error.line().filter(|_| is_text).map(Place::Line);
-    (line, MeshFileProblem::Ply(short))
+    (line, DataError::new(short, CORRECT).into())
 }

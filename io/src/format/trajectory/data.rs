@@ -1,6 +1,7 @@
 //! What frames have besides positions.
 
-use super::TrajectoryError;
+use super::not_finite;
+use crate::format::DataError;
 
 /// What a frame has besides its positions. An empty slice says that there is nothing of its kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -106,24 +107,20 @@ impl Quantity {
         values: &[f64],
         frame: usize,
         expected: usize,
-    ) -> Result<(), TrajectoryError> {
+    ) -> Result<(), DataError> {
         let (array, got) = (self.name(), values.len());
         if got != expected {
-            return Err(TrajectoryError::DataCount {
-                frame,
-                array,
-                got,
-                expected,
-            });
+            let message =
+                format!("frame {frame} has {got} values of `{array}` where {expected} are needed");
+            let error = DataError::new(message, "give them in all frames or in none");
+            return Err(error.at(frame));
         }
         match values.iter().position(|f| !f.is_finite()) {
             None => Ok(()),
-            Some(index) => Err(TrajectoryError::DataNotFinite {
-                frame,
-                array,
-                index,
-                value: values[index],
-            }),
+            Some(index) => {
+                let what = format!("value {index} of `{array}`");
+                Err(not_finite(&what, frame, values[index]))
+            }
         }
     }
 }

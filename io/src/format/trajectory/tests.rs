@@ -167,33 +167,25 @@ fn arrays_have_the_documented_names_types_and_shapes() {
 fn bad_frames_are_refused() {
     let (sheet, mut run) = sample();
     let mut x = sheet.positions().to_vec();
-    assert!(matches!(
-        run.push(1.0, &x[..6]),
-        Err(TrajectoryError::WrongLength {
-            frame: 5,
-            got: 6,
-            vertices: 21
-        })
-    ));
-    assert!(matches!(
-        run.push(0.05, &x),
-        Err(TrajectoryError::Time { frame: 5, .. })
-    ));
-    assert!(matches!(
-        run.push(f64::NAN, &x),
-        Err(TrajectoryError::Time { .. })
-    ));
+    for (t, x, says) in [
+        (
+            1.0,
+            &x[..6],
+            "frame 5 has 6 coordinates, but the mesh has 21 vertices",
+        ),
+        (0.05, &x[..], "frame 5 has the time 0.05 s after "),
+        (f64::NAN, &x[..], "frame 5 has the time NaN s after "),
+    ] {
+        match run.push(t, x) {
+            Err(TrajectoryError::Frame(error)) => {
+                assert!(error.message.starts_with(says), "{error}");
+                assert_eq!(error.index, Some(5));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
     x[4] = f64::NAN;
     let error = run.push(1.0, &x).unwrap_err();
-    assert!(matches!(
-        error,
-        TrajectoryError::NotFinite {
-            frame: 5,
-            vertex: VertexId(1),
-            axis: 1,
-            ..
-        }
-    ));
     assert!(
         error
             .to_string()
@@ -300,35 +292,26 @@ fn bad_frames_are_refused() {
     ] {
         let (mut run, frame) = (run.clone(), run.len());
         match run.push_with(1.0, &x, &data) {
-            Err(TrajectoryError::DataCount {
-                frame: f,
-                array: a,
-                got: g,
-                expected: e,
-            }) => assert_eq!((f, a, g, e), (frame, array, got, expected)),
-            other => panic!("{other:?}"),
+            Err(error) => assert_eq!(
+                error.to_string(),
+                format!("frame {frame} has {got} values of `{array}` where {expected} are needed")
+            ),
+            Ok(()) => panic!("{array}"),
         }
         assert_eq!(run.len(), frame, "nothing was added");
     }
     let mut forces = forces.clone();
     forces[7] = f64::NEG_INFINITY;
     let contact_forces = &forces[..];
-    assert!(matches!(
-        run.push_with(
-            1.0,
-            &x,
-            &FrameData {
-                contact_forces,
-                ..whole
-            }
-        ),
-        Err(TrajectoryError::DataNotFinite {
-            frame: 5,
-            array: "contact_forces",
-            index: 7,
-            ..
-        })
-    ));
+    let data = FrameData {
+        contact_forces,
+        ..whole
+    };
+    let error = run.push_with(1.0, &x, &data).unwrap_err().to_string();
+    assert!(
+        error.starts_with("value 7 of `contact_forces` in frame 5 is -inf"),
+        "{error}"
+    );
     assert_eq!((run.len(), without.len()), (5, 1), "nothing was added");
 }
 
