@@ -75,7 +75,8 @@ pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
 use crate::format::{
-    HistoryRow, Motion, MotionError, Row, Trajectory, frame_path, read_json, write_json, write_obj,
+    FileError, HistoryRow, Motion, MotionError, Row, Trajectory, frame_path, read_json, write_json,
+    write_obj,
 };
 use crate::scene::{Kept, SceneFile, Setup};
 use crate::view::PageOptions;
@@ -292,7 +293,8 @@ fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError>
 /// The simulation at the start, whose energies can be written.
 fn started(setup: Setup) -> Result<Simulation, RunError> {
     let simulation = setup.start()?;
-    HistoryRow::of_start(&simulation).check_finite()?;
+    let start = HistoryRow::of_start(&simulation).check_finite();
+    start.map_err(FileError::from)?;
     Ok(simulation)
 }
 

@@ -5,11 +5,10 @@ use crate::threads::ThreadsError;
 use anyhow::Error;
 use isosheet_coords::ChartError;
 use isosheet_dynamics::{ModelError, SimulationError, StepError};
-use isosheet_io::DataError;
 use isosheet_io::picture::PictureError;
 use isosheet_io::run::RunError;
 use isosheet_io::scene::{SceneError, SceneFileError};
-use isosheet_io::{Advice, ExportError, HistoryError, JsonError, TrajectoryError, WriteError};
+use isosheet_io::{Advice, DataError, ExportError, FileError, ReadError, WriteError};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -77,9 +76,8 @@ fn advice(error: &Error) -> Option<&'static str> {
         advice_of::<ThreadsError>,
         advice_of::<RunError>,
         advice_of::<WriteError>,
-        advice_of::<JsonError>,
-        advice_of::<HistoryError>,
-        advice_of::<TrajectoryError>,
+        advice_of::<FileError>,
+        advice_of::<ReadError>,
         advice_of::<ExportError>,
         advice_of::<PictureError>,
         advice_of::<DataError>,

@@ -9,8 +9,8 @@ use super::write::{is_same_file, to_stdout};
 use crate::run::{FilmOptions, Recording};
 use crate::{
     Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem,
-    MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, TrajectoryError, read_mesh_with,
-    write_frame, write_mesh, write_series,
+    MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, read_mesh_with, write_frame,
+    write_mesh, write_series,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -170,10 +170,8 @@ impl Convert {
         match self.fps {
             Some(rate) if !trajectory.is_empty() => {
                 let range = self.frames.unwrap_or_default().of(trajectory.len());
-                trajectory.at_rate(rate, range).map_err(|e| match e {
-                    TrajectoryError::Rate(_) => Failure::of(Code::CommandLine, &e),
-                    _ => input(&e),
-                })
+                let changed = trajectory.at_rate(rate, range);
+                changed.map_err(|e| Failure::of(Code::CommandLine, &e))
             }
             _ => Ok(trajectory),
         }

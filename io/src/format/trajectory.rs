@@ -2,17 +2,15 @@
 
 mod archive;
 mod data;
-mod error;
 mod motion;
 mod rate;
 
 pub use data::FrameData;
 pub(crate) use data::{MeshCounts, Quantity};
-pub use error::TrajectoryError;
 pub(crate) use motion::{Motion, MotionError, MotionFrame};
 
-use crate::format::DataError;
 use crate::format::atomic::write_atomically;
+use crate::format::{DataError, FileError, ReadError};
 use archive::{ArchiveReader, ArchiveWriter};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Sheet, VertexId};
@@ -99,23 +97,17 @@ impl Trajectory {
     /// Adds a frame: time in seconds and positions (length 3V, metres).
     ///
     /// # Errors
-    /// [`TrajectoryError`] for a wrong length, a number that is not finite, a time before the last, or if the
+    /// [`DataError`] for a wrong length, a number that is not finite, a time before the last, or if the
     /// frames before have further data; nothing is added then.
-    pub fn push(&mut self, t: f64, x: &[f64]) -> Result<(), TrajectoryError> {
+    pub fn push(&mut self, t: f64, x: &[f64]) -> Result<(), DataError> {
         self.push_with(t, x, &FrameData::default())
     }
 
     /// Adds a frame with further data, each of which all frames of a trajectory have, or none.
     ///
     /// # Errors
-    /// As [`Self::push`]; [`TrajectoryError::DataCount`] for another number of values than the frames before
-    /// have.
-    pub fn push_with(
-        &mut self,
-        t: f64,
-        x: &[f64],
-        data: &FrameData<'_>,
-    ) -> Result<(), TrajectoryError> {
+    /// As [`Self::push`], and for another number of values than the frames before have.
+    pub fn push_with(&mut self, t: f64, x: &[f64], data: &FrameData<'_>) -> Result<(), DataError> {
         let frame = MotionFrame {
             number: self.t.len(),
             t,
@@ -141,7 +133,7 @@ impl Trajectory {
         frame: &MotionFrame<'_>,
         before: f64,
         has: &dyn Fn(Quantity) -> bool,
-    ) -> Result<(), TrajectoryError> {
+    ) -> Result<(), DataError> {
         let &MotionFrame {
             number, t, x, data, ..
         } = frame;
@@ -151,18 +143,18 @@ impl Trajectory {
                 x.len(),
                 self.vertex_count
             );
-            return Err(DataError::plain(message).at(number).into());
+            return Err(DataError::plain(message).at(number));
         }
         if let Some(k) = x.iter().position(|c| !c.is_finite()) {
             let (vertex, axis) = (VertexId::from_index(k / 3), ["x", "y", "z"][k % 3]);
             let what = format!("coordinate {axis} of {vertex}");
-            return Err(not_finite(&what, number, x[k]).into());
+            return Err(not_finite(&what, number, x[k]));
         }
         if !t.is_finite() || t < before {
             let (now, before) = (given(t), given(before));
             let message = format!("frame {number} has the time {now} s after {before} s");
             let error = DataError::new(message, "record frames in the order of time");
-            return Err(error.at(number).value(t).into());
+            return Err(error.at(number).value(t));
         }
         for quantity in Quantity::ALL {
             let values = quantity.of(&data);
@@ -178,7 +170,7 @@ impl Trajectory {
     }
 
     /// The trajectory of some of the frames, in the order of time.
-    pub(super) fn subset(&self, frames: &[usize]) -> Result<Self, TrajectoryError> {
+    pub(super) fn subset(&self, frames: &[usize]) -> Result<Self, DataError> {
         let mut subset = self.without_frames();
         for &k in frames {
             let data = FrameData::each(|quantity| self.values(quantity, k).unwrap_or_default());
@@ -311,8 +303,8 @@ impl Trajectory {
     /// Writes the `.npz` file, atomically. Equal trajectories give equal bytes.
     ///
     /// # Errors
-    /// [`TrajectoryError::File`].
-    pub fn write(&self, path: &Path) -> Result<(), TrajectoryError> {
+    /// [`FileError`].
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
         Ok(self.write_motion(path, self)?)
     }
 
@@ -365,7 +357,7 @@ impl Trajectory {
         });
         match failed {
             Some(error) => Err(MotionError::Frame(error)),
-            None => Ok(written.map_err(TrajectoryError::File)?),
+            None => Ok(written.map_err(FileError::from)?),
         }
     }
 
@@ -388,26 +380,18 @@ impl Trajectory {
             }
         });
         shown.map_err(MotionError::Frame)?;
-        checked?;
+        checked.map_err(FileError::from)?;
         Ok(Contents { times, quantities })
     }
 
     /// Reads an `.npz` file that [`Self::write`] wrote, or one of the same arrays.
     ///
     /// # Errors
-    /// [`TrajectoryError::Read`], or [`TrajectoryError::Array`] naming the array that is missing or does not
-    /// fit the others.
-    pub fn read(path: &Path) -> Result<Self, TrajectoryError> {
-        let read_error = |source| TrajectoryError::Read {
-            path: path.to_owned(),
-            source,
-        };
-        let mut npz = ArchiveReader::open(path).map_err(read_error)?;
-        let array = |array, problem: String| TrajectoryError::Array {
-            path: path.to_owned(),
-            array,
-            problem,
-        };
+    /// [`ReadError`], naming the array that is missing or does not fit the others.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let mut npz = ArchiveReader::open(path)
+            .map_err(|e| ReadError::content(path, e, "check that it is an .npz file"))?;
+        let array = |name: &str, problem: String| wrong_array(path, name, &problem);
         let (t_shape, t) = npz.get::<f64>("t", 1)?;
         let (x_shape, x) = npz.get::<f64>("x", 3)?;
         let (faces_shape, faces) = npz.get::<u32>("faces", 2)?;
@@ -470,6 +454,13 @@ impl Trajectory {
             data,
         })
     }
+}
+
+/// An array of a file that is missing or of another type or shape.
+fn wrong_array(path: &Path, name: &str, problem: &str) -> ReadError {
+    let problem = format!("array `{name}`: {problem}");
+    let remedy = "give a trajectory that this program wrote, and that memory can hold";
+    ReadError::content(path, problem, remedy)
 }
 
 /// A number of a frame that is not finite.

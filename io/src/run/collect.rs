@@ -3,7 +3,7 @@
 use super::Summary;
 use super::folder::RunFolder;
 use super::sweep::{Sweep, SweepError};
-use crate::format::{Finding, JsonError, cell, check_finite, read_json, write_atomically};
+use crate::format::{ReadError, cell, check_finite, read_json, write_atomically};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -90,7 +90,7 @@ impl Collection {
     /// Writes the table as a CSV file, which appears when it is complete.
     ///
     /// # Errors
-    /// [`SweepError::Write`].
+    /// [`SweepError::File`].
     pub fn write(&self, path: &Path) -> Result<(), SweepError> {
         use std::io::Write;
         Ok(write_atomically(path, |w| w.write_all(&self.to_csv()))?)
@@ -103,19 +103,9 @@ impl Collection {
             return Ok(());
         }
         let summary: Summary = read_json(&path)?;
-        let form = |problem| JsonError::Form {
-            path: path.clone(),
-            problem,
-        };
-        check_finite(&summary).map_err(|finding| match finding {
-            Finding::NotFinite { path: field, value } => JsonError::NotFinite {
-                path: path.clone(),
-                field,
-                value,
-            },
-            Finding::Other(problem) => form(problem),
-        })?;
-        let fields = serde_json::to_value(&summary).map_err(|e| form(e.to_string()))?;
+        let wrong = |problem: String| ReadError::content(&path, problem, "run the scene again");
+        check_finite(&summary).map_err(|e| wrong(e.message))?;
+        let fields = serde_json::to_value(&summary).map_err(|e| wrong(e.to_string()))?;
         let mut row = vec![("folder".to_owned(), folder.display().to_string())];
         row.extend(keys);
         add_fields(&mut row, "", &fields);

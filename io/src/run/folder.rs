@@ -1,8 +1,9 @@
 //! The folder of a run.
 
+use super::error::BEGIN_ANEW;
 use super::{RunError, Summary};
 use crate::format::atomic::is_unfinished;
-use crate::format::{frame_number, input, read_json, write_atomically};
+use crate::format::{ReadError, frame_number, input, read_json, write_atomically};
 use crate::scene::{Files, Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use std::ffi::OsString;
@@ -350,7 +351,7 @@ pub fn remove_unfinished(folder: &Path) -> io::Result<()> {
 /// The scene that is stored in the folder of a run. Its mesh files are those of the folder.
 ///
 /// # Errors
-/// [`RunError::NoRun`] without one, [`RunError::Damaged`] if it names files that are not in the folder.
+/// [`RunError::NoRun`] without one, [`RunError::File`] if it names files that are not in the folder.
 pub(crate) fn stored_scene(root: &Path) -> Result<SceneFile, RunError> {
     if root.as_os_str().is_empty() {
         return Err(RunError::NoFolder);
@@ -365,7 +366,7 @@ pub(crate) fn stored_scene(root: &Path) -> Result<SceneFile, RunError> {
     for (_, name) in stored.scene().files() {
         if let Err(error) = input::within(root, &name) {
             let problem = format!("it names the mesh file {}: {error}", name.display());
-            return Err(RunError::Damaged { path, problem });
+            return Err(ReadError::content(&path, problem, BEGIN_ANEW).into());
         }
     }
     Ok(stored)

@@ -1,8 +1,9 @@
 //! The frames of a run: one file that grows while it goes on.
 
 use super::RunError;
+use super::error::BEGIN_ANEW;
 use crate::format::input;
-use crate::format::{FrameData, MeshCounts, Motion, MotionFrame, Quantity, WriteError};
+use crate::format::{FrameData, MeshCounts, Motion, MotionFrame, Quantity, ReadError, WriteError};
 use crate::scene::Setup;
 use crc::{CRC_64_XZ, Crc};
 use std::fs::File;
@@ -127,10 +128,8 @@ impl FrameFile {
         let mut frames = Frames::open(path, shape)?;
         for k in 0..count {
             if frames.next_record()?.is_none() {
-                return Err(RunError::Damaged {
-                    path: path.to_owned(),
-                    problem: format!("it ends after frame {k}, {count} were written"),
-                });
+                let problem = format!("it ends after frame {k}, {count} were written");
+                return Err(ReadError::content(path, problem, BEGIN_ANEW).into());
             }
         }
         let length = MAGIC.len() as u64 + count * shape.bytes() as u64;
@@ -202,24 +201,20 @@ struct Frames<'a> {
 }
 
 impl<'a> Frames<'a> {
-    fn open(path: &'a Path, shape: FrameShape) -> Result<Self, RunError> {
+    fn open(path: &'a Path, shape: FrameShape) -> Result<Self, ReadError> {
         let read = |source: io::Error| match source.kind() {
-            ErrorKind::NotFound => RunError::NoFrames {
-                path: path.to_owned(),
-            },
-            _ => RunError::Read {
-                path: path.to_owned(),
-                source,
-            },
+            ErrorKind::NotFound => {
+                let problem = "it is missing, which has the frames of the run";
+                ReadError::content(path, problem, BEGIN_ANEW)
+            }
+            _ => ReadError::new(path, source),
         };
         let mut file = BufReader::new(input::open(path).map_err(read)?);
         let mut magic = [0; MAGIC.len()];
         let found = read_whole(&mut file, &mut magic).map_err(read)?;
         if !found || magic != *MAGIC {
-            return Err(RunError::Damaged {
-                path: path.to_owned(),
-                problem: "it is not a file of frames of this version".to_owned(),
-            });
+            let problem = "it is not a file of frames of this version";
+            return Err(ReadError::content(path, problem, BEGIN_ANEW));
         }
         Ok(Self {
             path,
@@ -231,13 +226,9 @@ impl<'a> Frames<'a> {
 
     /// The numbers of the next frame as bytes; none at the end of the file, where the last frame may be a
     /// part of one.
-    fn next_record(&mut self) -> Result<Option<&[u8]>, RunError> {
-        let path = || self.path.to_owned();
+    fn next_record(&mut self) -> Result<Option<&[u8]>, ReadError> {
         let found = read_whole(&mut self.file, &mut self.record);
-        if !found.map_err(|source| RunError::Read {
-            path: path(),
-            source,
-        })? {
+        if !found.map_err(|source| ReadError::new(self.path, source))? {
             return Ok(None);
         }
         let frame = self.count;
@@ -246,10 +237,12 @@ impl<'a> Frames<'a> {
             Some((numbers, sum)) if SUM.checksum(numbers).to_le_bytes() == *sum => {
                 Ok(Some(numbers))
             }
-            _ => Err(RunError::DamagedFrame {
-                path: path(),
-                frame,
-            }),
+            _ => {
+                let problem = format!("frame {frame} is damaged, its checksum is wrong");
+                let remedy = "give the `simulate` command again, which takes up a run that is not complete at its \
+                              last checkpoint; if it names the same frame, run the scene again with --force";
+                Err(ReadError::content(self.path, problem, remedy))
+            }
         }
     }
 }
@@ -380,11 +373,11 @@ mod tests {
             std::fs::write(&path, &damaged).unwrap();
             let error = read_frames(&path, shape).unwrap_err();
             let of_frame = at.checked_sub(MAGIC.len()).map(|at| at / shape.bytes());
-            match (of_frame, &error) {
-                (None, RunError::Damaged { .. }) => {}
-                (Some(at), RunError::DamagedFrame { frame, .. }) => assert_eq!(*frame, at as u64),
-                _ => panic!("byte {at}: {error}"),
-            }
+            let says = match of_frame {
+                None => "it is not a file of frames".to_owned(),
+                Some(frame) => format!(": frame {frame} is damaged"),
+            };
+            assert!(error.to_string().contains(&says), "byte {at}: {error}");
             assert!(error.advice().is_some());
             // What follows the frames that a run continues after does not count.
             let resumed = FrameFile::resume(&path, 1, shape);

@@ -138,24 +138,32 @@ impl<'a> Stepping<'a> {
         let (history, loads, measures, frames) = match &saved {
             None => (
                 HistoryWriter::create(&history)?,
-                bears_loads.then(|| LoadWriter::create(&loads)),
-                (!facts.measures.is_empty()).then(|| MeasureWriter::create(&measures)),
+                bears_loads
+                    .then(|| LoadWriter::create(&loads))
+                    .transpose()?,
+                (!facts.measures.is_empty())
+                    .then(|| MeasureWriter::create(&measures))
+                    .transpose()?,
                 FrameFile::create(&frames)?,
             ),
             Some(saved) => (
                 HistoryWriter::resume(&history, saved.history)?,
-                saved.loads.map(|of| LoadWriter::resume(&loads, of)),
+                saved
+                    .loads
+                    .map(|of| LoadWriter::resume(&loads, of))
+                    .transpose()?,
                 saved
                     .measures
-                    .map(|of| MeasureWriter::resume(&measures, of)),
+                    .map(|of| MeasureWriter::resume(&measures, of))
+                    .transpose()?,
                 FrameFile::resume(&frames, saved.frames, plan.shape)?,
             ),
         };
         let mut stepping = Self {
             supports: SupportForces::new(facts.origins.clone(), &simulation, scene.support.len()),
             history,
-            loads: loads.transpose()?,
-            measures: measures.transpose()?,
+            loads,
+            measures,
             frames,
             progress: saved.unwrap_or_else(|| Progress {
                 scene: plan.hash.to_string(),

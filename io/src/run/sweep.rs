@@ -27,10 +27,10 @@ pub use variation::{Variation, VariationError};
 pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
-use crate::format::{input, write_atomically};
+use crate::format::{ReadError, input, write_atomically};
 use crate::scene::{KeyPart, SceneFile, SceneFileError};
 use shell::shell_word;
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// A sweep: all combinations of the values of some keys of a scene.
@@ -154,10 +154,8 @@ impl Sweep {
     /// [`SweepError::Refused`] with all that is wrong in any run.
     pub fn check(&self) -> Result<(), SweepError> {
         let path = Path::new(&self.scene);
-        let text = input::read_text(path).map_err(|source| SceneFileError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text =
+            input::read_text(path).map_err(|e| SceneFileError::from(ReadError::new(path, e)))?;
         let mut refused: Vec<RefusedRuns> = Vec::new();
         for run in self.runs() {
             let start = || -> Result<(), SceneFileError> {
@@ -204,10 +202,8 @@ impl Sweep {
                 let folder = self.folder().to_owned();
                 return Err(SweepError::OtherSweep { folder });
             }
-            Err(SweepError::Read { source, .. }) if source.kind() == ErrorKind::NotFound => {
-                self.refuse_other_files()?;
-            }
-            Err(error) => return Err(error),
+            Err(error) if error.is_missing() => self.refuse_other_files()?,
+            Err(error) => return Err(error.into()),
         }
         table.write(&path)?;
         let commands = self.folder().join(Self::COMMANDS);
@@ -234,10 +230,7 @@ impl Sweep {
         match holds_other_files(self.folder(), &[]) {
             Ok(false) => Ok(()),
             Ok(true) => Err(SweepError::Foreign { folder: path() }),
-            Err(source) => Err(SweepError::Read {
-                path: path(),
-                source,
-            }),
+            Err(source) => Err(ReadError::new(&path(), source).into()),
         }
     }
 
@@ -247,16 +240,13 @@ impl Sweep {
         if !path.is_file() {
             return Ok(None);
         }
-        SweepTable::read(&path).map(Some)
+        Ok(Some(SweepTable::read(&path)?))
     }
 }
 
 /// A path that does not depend on the current folder, as text for a line of shell.
 fn absolute(path: &Path) -> Result<String, SweepError> {
-    let whole = std::path::absolute(path).map_err(|source| SweepError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let whole = std::path::absolute(path).map_err(|e| ReadError::new(path, e))?;
     match whole.to_str() {
         Some(text) if !text.chars().any(char::is_control) => Ok(text.to_owned()),
         _ => Err(SweepError::Path { path: whole }),

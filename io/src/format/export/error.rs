@@ -1,6 +1,6 @@
 //! What can be wrong with a mesh or a series that is to be written.
 
-use crate::format::{DataError, TrajectoryError, WriteError};
+use crate::format::{DataError, FileError, WriteError};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, TopologyError, VertexId};
 use thiserror::Error;
@@ -32,10 +32,7 @@ pub enum ExportError {
     Topology(#[from] TopologyError),
     /// The file could not be written.
     #[error(transparent)]
-    File(#[from] WriteError),
-    /// The frames could not be written as a trajectory.
-    #[error(transparent)]
-    Trajectory(#[from] TrajectoryError),
+    File(#[from] FileError),
 }
 
 impl Advice for ExportError {
@@ -45,8 +42,13 @@ impl Advice for ExportError {
             Self::Frames(error) | Self::Data(error) => error.advice(),
             Self::Topology(error) => error.advice(),
             Self::File(error) => error.advice(),
-            Self::Trajectory(error) => error.advice(),
         }
+    }
+}
+
+impl From<WriteError> for ExportError {
+    fn from(error: WriteError) -> Self {
+        Self::File(error.into())
     }
 }
 

@@ -7,7 +7,7 @@ use super::sheets::NamedPart;
 use super::{ExportError, SeriesBody};
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
 use crate::format::trajectory::Quantity;
-use crate::format::{DataError, Trajectory, TrajectoryError};
+use crate::format::{DataError, Trajectory};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{EdgeId, Part, Topology, VertexId, fold_angle};
@@ -287,7 +287,7 @@ impl<'a> Series<'a> {
     }
 
     /// The frames that are written as a trajectory of their own.
-    pub(super) fn chosen(&self) -> Result<Trajectory, TrajectoryError> {
+    pub(super) fn chosen(&self) -> Result<Trajectory, DataError> {
         self.trajectory.subset(&self.frames)
     }
 

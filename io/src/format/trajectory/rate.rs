@@ -1,7 +1,7 @@
 //! Trajectories at another rate of frames.
 
+use super::Trajectory;
 use super::data::Quantity;
-use super::{Trajectory, TrajectoryError};
 use crate::format::DataError;
 
 /// The largest number of frames that are made: an hour of film at 24 frames a second.
@@ -15,9 +15,9 @@ impl Trajectory {
     /// frames only. Of frames at one time the last one counts.
     ///
     /// # Errors
-    /// [`TrajectoryError::Rate`] for a rate that is not positive or gives more than 86 400 frames, and for
+    /// [`DataError`] for a rate that is not positive or gives more than 86 400 frames, and for
     /// frames that do not exist.
-    pub fn at_rate(&self, rate: f64, [first, last]: [usize; 2]) -> Result<Self, TrajectoryError> {
+    pub fn at_rate(&self, rate: f64, [first, last]: [usize; 2]) -> Result<Self, DataError> {
         let wrong = || {
             let message = format!(
                 "{rate} frames a second from frame {first} to frame {last}: the trajectory has {} frames, counted \
@@ -26,7 +26,7 @@ impl Trajectory {
             );
             let remedy = "give a positive rate with at most 86 400 frames in all, and frames that exist, the first \
                           before the last";
-            TrajectoryError::Rate(DataError::new(message, remedy).value(rate))
+            DataError::new(message, remedy).value(rate)
         };
         let Some(times) = self.t.get(first..=last).filter(|times| !times.is_empty()) else {
             return Err(wrong());
@@ -121,10 +121,7 @@ mod tests {
             (24.0, [3, 2]),
         ] {
             let result = trajectory.at_rate(rate, range);
-            assert!(
-                matches!(result, Err(TrajectoryError::Rate(_))),
-                "{rate} {range:?}"
-            );
+            assert!(result.is_err(), "{rate} {range:?}");
         }
     }
 }

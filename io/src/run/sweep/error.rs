@@ -1,10 +1,9 @@
 //! Why a sweep cannot be made, run or collected.
 
 use super::run::{MOST_RUNS, SweepRun};
-use crate::format::{JsonError, WriteError};
+use crate::format::{FileError, ReadError, WriteError};
 use crate::scene::SceneFileError;
 use isosheet_mesh::Advice;
-use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -58,25 +57,6 @@ pub enum SweepError {
         /// The folder.
         folder: PathBuf,
     },
-    /// A file or a folder cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The path.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// The table is not one of a sweep.
-    #[error("{}: {problem}", path.display())]
-    Table {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-    },
-    /// A summary cannot be read.
-    #[error(transparent)]
-    Summary(#[from] JsonError),
     /// A folder has neither a sweep nor a run.
     #[error(
         "{} is the folder neither of a sweep (with runs.csv) nor of a run (with scene.toml)", folder.display()
@@ -85,9 +65,21 @@ pub enum SweepError {
         /// The folder.
         folder: PathBuf,
     },
-    /// A file cannot be written.
+    /// A file or a folder cannot be read or written, or is not what it should be.
     #[error(transparent)]
-    Write(#[from] WriteError),
+    File(#[from] FileError),
+}
+
+impl From<WriteError> for SweepError {
+    fn from(error: WriteError) -> Self {
+        Self::File(error.into())
+    }
+}
+
+impl From<ReadError> for SweepError {
+    fn from(error: ReadError) -> Self {
+        Self::File(error.into())
+    }
 }
 
 impl Advice for SweepError {
@@ -102,13 +94,10 @@ impl Advice for SweepError {
                 "choose another folder with --out, or add values at the end of the list of its first key",
             ),
             Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
-            Self::Read { .. } => Some("check the path and the permissions"),
-            Self::Table { .. } => Some("make the sweep anew in another folder"),
-            Self::Summary(error) => error.advice(),
             Self::NothingToCollect { .. } => {
                 Some("name folders that `isosheet sweep` or `isosheet simulate` wrote")
             }
-            Self::Write(error) => error.advice(),
+            Self::File(error) => error.advice(),
             Self::Refused(..) => None,
         }
     }

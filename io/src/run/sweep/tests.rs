@@ -1,4 +1,5 @@
 use super::*;
+use isosheet_mesh::Advice;
 use std::fs;
 
 fn sweep(variations: &[&str]) -> Result<Sweep, SweepError> {
@@ -108,6 +109,10 @@ fn a_table_comes_back_and_other_files_are_no_tables() {
     ] {
         fs::write(&path, wrong).unwrap();
         let read = SweepTable::read(&path);
-        assert!(matches!(read, Err(SweepError::Table { .. })), "{wrong:?}");
+        let error = read.unwrap_err();
+        assert!(
+            error.advice().is_some_and(|a| a.contains("sweep anew")),
+            "{wrong:?}: {error}"
+        );
     }
 }
