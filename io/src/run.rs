@@ -90,7 +90,7 @@ use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use stepping::{Plan, Stepping, step_count};
+use stepping::{Plan, Rows, Stepping, step_count};
 
 /// How a call of [`simulate`] ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,7 +129,30 @@ pub fn simulate(
     folder: &Path,
     watch: &mut dyn Watch,
 ) -> Result<Outcome, RunError> {
-    simulate_in(file, folder, Existing::Continue, watch)
+    let ended = simulate_in(file, folder, Existing::Continue, Wanted::Files, watch)?;
+    Ok(ended.outcome)
+}
+
+/// Runs a scene in a folder as [`simulate`] does, and returns what the run recorded: nothing of one that was
+/// interrupted.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_recorded(
+    file: &SceneFile,
+    folder: &Path,
+    watch: &mut dyn Watch,
+) -> Result<Option<Recording>, RunError> {
+    let wanted = Wanted::Recording;
+    let ended = simulate_in(file, folder, Existing::Continue, wanted, watch)?;
+    match (ended.outcome, ended.recorded) {
+        (Outcome::Interrupted, _) => Ok(None),
+        (_, Some((mut recording, frames))) => {
+            recording.load(frames, folder)?;
+            Ok(Some(recording))
+        }
+        (_, None) => Recording::read(folder).map(Some),
+    }
 }
 
 /// Runs a scene in a folder from the start. A run that the folder holds, of whatever scene, is deleted
@@ -143,15 +166,41 @@ pub fn simulate_anew(
     folder: &Path,
     watch: &mut dyn Watch,
 ) -> Result<Outcome, RunError> {
-    simulate_in(file, folder, Existing::Delete, watch)
+    let ended = simulate_in(file, folder, Existing::Delete, Wanted::Files, watch)?;
+    Ok(ended.outcome)
+}
+
+/// What is wanted of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wanted {
+    /// Its files.
+    Files,
+    /// What it recorded, too.
+    Recording,
+}
+
+/// How a run ended, and what it recorded, where that is wanted or its page is made of it.
+struct Ended {
+    outcome: Outcome,
+    recorded: Option<(Recording, RunFrames)>,
+}
+
+impl From<Outcome> for Ended {
+    fn from(outcome: Outcome) -> Self {
+        Self {
+            outcome,
+            recorded: None,
+        }
+    }
 }
 
 fn simulate_in(
     file: &SceneFile,
     folder: &Path,
     existing: Existing,
+    wanted: Wanted,
     watch: &mut dyn Watch,
-) -> Result<Outcome, RunError> {
+) -> Result<Ended, RunError> {
     let clock = Instant::now();
     if folder.as_os_str().is_empty() {
         return Err(RunError::NoFolder);
@@ -160,7 +209,7 @@ fn simulate_in(
     let material = Material::read(file, &mut kept.files)?;
     let hash = material.hash;
     if existing == Existing::Continue && RunFolder::is_complete(folder, &material)? {
-        return already_complete(folder, hash);
+        return Ok(already_complete(folder, hash)?.into());
     }
     let setup = file.build_with(&mut kept)?;
     let estimate = Estimate::of(file.scene(), &setup);
@@ -170,6 +219,10 @@ fn simulate_in(
         hash,
         facts: setup.facts(),
         shape: FrameShape::of(&setup),
+        rows: match file.scene().output.page || wanted == Wanted::Recording {
+            true => Rows::InMemory,
+            false => Rows::InFiles,
+        },
     };
     // A scene that cannot start leaves the folder as it was.
     let continued = existing == Existing::Continue && RunFolder::has_checkpoint(folder);
@@ -186,7 +239,7 @@ fn simulate_in(
             if file.scene().output.trajectory && lost {
                 write_trajectory(&open, &plan)?;
             }
-            return already_complete(folder, hash);
+            return Ok(already_complete(folder, hash)?.into());
         }
         Contents::Empty(open) => (open, None),
         Contents::Partial(open) => {
@@ -223,11 +276,17 @@ fn simulate_in(
     } else {
         advanced?;
     }
-    let recorded = || -> Result<_, RunError> {
-        let setup = file.build_with(&mut kept)?;
-        Recording::of(folder, material.stored, setup)
+    let Stepping {
+        progress, tables, ..
+    } = stepping;
+    let recorded = match (progress.ending.is_some(), tables) {
+        (true, Some(tables)) => {
+            let setup = file.build_with(&mut kept)?;
+            Some(Recording::of(folder, material.stored, setup, tables))
+        }
+        _ => None,
     };
-    finish(&plan, &open, &stepping.progress, recorded)
+    finish(&plan, &open, &progress, recorded)
 }
 
 /// Takes steps until the run ends or the watcher asks for a stop.
@@ -319,10 +378,10 @@ fn finish(
     plan: &Plan<'_>,
     folder: &RunFolder,
     progress: &Progress,
-    recorded: impl FnOnce() -> Result<(Recording, RunFrames), RunError>,
-) -> Result<Outcome, RunError> {
+    mut recorded: Option<(Recording, RunFrames)>,
+) -> Result<Ended, RunError> {
     let Some(ending) = progress.ending.clone() else {
-        return Ok(Outcome::Interrupted);
+        return Ok(Outcome::Interrupted.into());
     };
     let clock = Instant::now();
     let facts = &plan.facts;
@@ -354,12 +413,15 @@ fn finish(
         measures: progress.measured.clone(),
         ending,
     };
-    if output.page {
-        let (recording, frames) = recorded()?;
-        write_page_before(folder, recording, &frames, &summary)?;
+    if let Some((recording, frames)) = &mut recorded {
+        recording.summary = Some(summary.clone());
+        if output.page {
+            write_page_before(folder, recording, frames)?;
+        }
     }
     write_json(&folder.path(RunFolder::SUMMARY), &summary)?;
-    Ok(Outcome::Complete(Box::new(summary)))
+    let outcome = Outcome::Complete(Box::new(summary));
+    Ok(Ended { outcome, recorded })
 }
 
 /// Writes the frames as OBJ files.
@@ -380,13 +442,11 @@ fn write_obj_files(folder: &RunFolder, plan: &Plan<'_>) -> Result<(), RunError> 
 /// all the same: [`write_page`] says why there is none.
 fn write_page_before(
     folder: &RunFolder,
-    mut recording: Recording,
+    recording: &Recording,
     frames: &RunFrames,
-    summary: &Summary,
 ) -> Result<(), RunError> {
-    recording.summary = Some(summary.clone());
     let path = folder.path(RunFolder::PAGE);
-    match write_page_of(&recording, frames, &path, &PageOptions::default()) {
+    match write_page_of(recording, frames, &path, &PageOptions::default()) {
         Err(RunError::Page(_)) => match std::fs::remove_file(&path) {
             Err(source) if source.kind() != ErrorKind::NotFound => Err(RunError::Unwritable {
                 folder: folder.root().to_owned(),

@@ -22,8 +22,8 @@ use toml::Value;
 /// Numbers of frames, vertices, faces and edges are T, V, F and E. In a notebook a run shows its 3D page.
 #[pyclass(frozen, module = "isosheet")]
 pub(crate) struct Run {
-    folder: PathBuf,
-    recording: Recording,
+    pub(crate) folder: PathBuf,
+    pub(crate) recording: Recording,
 }
 
 /// A column of the history: its name and its values.

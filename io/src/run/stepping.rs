@@ -5,6 +5,7 @@ use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::folder::{RunFolder, SceneHash};
 use super::frames::{FrameFile, FrameShape};
+use super::recording::Tables;
 use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
@@ -24,6 +25,16 @@ pub(crate) struct Plan<'a> {
     pub(crate) hash: SceneHash,
     pub(crate) facts: Facts,
     pub(crate) shape: FrameShape,
+    pub(crate) rows: Rows,
+}
+
+/// Where the rows of the tables of a run are, while it goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rows {
+    /// In its files.
+    InFiles,
+    /// In its files, and in memory for what is made of them at the end.
+    InMemory,
 }
 
 /// A run between two steps.
@@ -38,6 +49,8 @@ pub(crate) struct Stepping<'a> {
     /// What the measures of the scene show, if there are any.
     measures: Option<MeasureWriter>,
     frames: FrameFile,
+    /// The rows of these tables, where they are kept in memory.
+    pub(crate) tables: Option<Tables>,
     pub(crate) progress: Progress,
     /// Since when the wall time in the progress counts.
     pub(crate) clock: Instant,
@@ -135,6 +148,7 @@ impl<'a> Stepping<'a> {
         ]
         .map(path);
         let is_new = saved.is_none();
+        let keeps = plan.rows == Rows::InMemory;
         let (history, loads, measures, frames) = match &saved {
             None => (
                 HistoryWriter::create(&history)?,
@@ -159,7 +173,13 @@ impl<'a> Stepping<'a> {
                 FrameFile::resume(&frames, saved.frames, plan.shape)?,
             ),
         };
+        // The files have been cut back to the checkpoint.
+        let tables = match keeps && !is_new {
+            true => Some(Tables::read(folder.root())?),
+            false => keeps.then(Tables::default),
+        };
         let mut stepping = Self {
+            tables,
             supports: SupportForces::new(facts.origins.clone(), &simulation, scene.support.len()),
             history,
             loads,
@@ -190,10 +210,18 @@ impl<'a> Stepping<'a> {
         self.progress.energy = EnergySummary::of_start(row.kinetic, row.potential);
         self.progress.strain = row.strain;
         self.progress.gap = row.gap;
-        self.history.append(&row)?;
+        self.record_row(row)?;
         self.record_measures()?;
         self.record_frame()?;
         self.save()
+    }
+
+    fn record_row(&mut self, row: HistoryRow) -> Result<(), RunError> {
+        self.history.append(&row)?;
+        if let Some(tables) = &mut self.tables {
+            tables.history.push(row);
+        }
+        Ok(())
     }
 
     fn record_frame(&mut self) -> Result<(), RunError> {
@@ -237,6 +265,9 @@ impl<'a> Stepping<'a> {
         });
         for row in on_supports.chain(on_obstacles) {
             loads.append(&row)?;
+            if let Some(tables) = &mut self.tables {
+                tables.loads.push(row);
+            }
         }
         Ok(())
     }
@@ -254,6 +285,9 @@ impl<'a> Stepping<'a> {
                 value: gauge.value(&state.x),
             };
             measures.append(&row)?;
+            if let Some(tables) = &mut self.tables {
+                tables.measures.push(row.clone());
+            }
             let first = Measured {
                 last: row.value,
                 least: row.value,
@@ -319,7 +353,7 @@ impl<'a> Stepping<'a> {
         self.progress.steps = number;
         self.count(&report);
         self.observe_elastic();
-        self.history.append(&self.row(&report))?;
+        self.record_row(self.row(&report))?;
         self.record_loads()?;
         self.record_measures()?;
         let reason = self.end_reason(&report);
