@@ -35,7 +35,6 @@ Files that are written of a run:
   .npz    a numpy archive of all frames, as trajectory.npz of the run
   .png    a shaded picture of one frame (--frame K, the last one without it); with --frames, --every or --fps
           numbered pictures in a folder of that name
-  .svg    the same as vector drawings
   .apng   shaded pictures of all frames as an animation in real time (browsers)
 A file that exists is replaced, unless it is the one that is read. docs/formats.md says more.";
 
@@ -198,7 +197,7 @@ impl Convert {
         ];
         match options.iter().find(|(_, given)| *given) {
             Some((option, _)) => Err(wrong(
-                &format!("{option} is for pictures of runs: .png, .svg and .apng"),
+                &format!("{option} is for pictures of runs: .png and .apng"),
                 "leave it out",
             )),
             None => Ok(()),
@@ -236,9 +235,7 @@ impl Convert {
             .iter()
             .any(|e| extension.eq_ignore_ascii_case(e));
         let is_many = self.frames.is_some() || self.every.is_some() || self.fps.is_some();
-        let is_picture = ["png", "svg"]
-            .iter()
-            .any(|e| extension.eq_ignore_ascii_case(e));
+        let is_picture = extension.eq_ignore_ascii_case("png");
         has_folder && self.frame.is_none() || is_picture && is_many
     }
 
@@ -312,7 +309,7 @@ impl Convert {
             let failure = failed(&error, Code::Output);
             match error {
                 ExportError::Extension { .. } => failure.remedy(
-                    "choose a known format, or .png, .svg or .apng for pictures of the folder of a run; formats \
+                    "choose a known format, or .png or .apng for pictures of the folder of a run; formats \
                      of meshes take one frame, with `--frame K`",
                 ),
                 _ => failure,

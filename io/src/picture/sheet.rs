@@ -20,7 +20,7 @@ const REACH: f64 = 0.3;
 pub(super) const GROUND: f64 = 0.8;
 
 /// Largest edge over which the light on a body is interpolated, as part of the height of the picture.
-pub(super) const GRAIN: f64 = 0.035;
+const GRAIN: f64 = 0.035;
 
 /// The same at the rim of a shadow, where the openness would change by more than [`CONTRAST`] within a piece.
 const FINE_GRAIN: f64 = 0.007;
@@ -29,13 +29,13 @@ const FINE_GRAIN: f64 = 0.007;
 const CONTRAST: f64 = 0.12;
 
 /// How far lines are drawn in front of what they lie on, as part of what the picture shows.
-pub(super) const LIFT: f64 = 0.004;
+const LIFT: f64 = 0.004;
 
 /// Wires that are closer than so many pixels are drawn lighter, so that fine meshes stay light.
 const CLOSE: f64 = 9.0;
 
 /// sRGB colours of lines, of pins and of immobile vertices.
-pub(super) const INK: [u8; 3] = [38, 42, 48];
+const INK: [u8; 3] = [38, 42, 48];
 const PIN: [u8; 3] = [213, 94, 0];
 const IMMOBILE: [u8; 3] = [240, 228, 66];
 

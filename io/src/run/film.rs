@@ -3,7 +3,7 @@
 use super::{Recording, Viewpoint};
 use crate::DataError;
 use crate::picture::{
-    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render, render_svg,
+    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render,
 };
 use crate::scene::bounds;
 use isosheet_mesh::Part;
@@ -168,22 +168,6 @@ impl<'a> Film<'a> {
     /// # Errors
     /// [`PictureError`] if there is none, or it cannot be drawn.
     pub fn picture(&self, place: usize) -> Result<Image, PictureError> {
-        self.draw(place, render)
-    }
-
-    /// One of the frames as an SVG document ([`render_svg`]), by its place among them.
-    ///
-    /// # Errors
-    /// As [`picture`](Self::picture).
-    pub fn svg(&self, place: usize) -> Result<String, PictureError> {
-        self.draw(place, render_svg)
-    }
-
-    fn draw<T>(
-        &self,
-        place: usize,
-        draw: impl Fn(&SheetPicture<'_>, &Camera, &Look) -> Result<T, PictureError>,
-    ) -> Result<T, PictureError> {
         let frame = *self.frames.get(place).ok_or_else(PictureError::no_frames)?;
         let trajectory = &self.recording.trajectory;
         let positions = trajectory
@@ -198,7 +182,7 @@ impl<'a> Film<'a> {
             solids: &solids.collect::<Vec<_>>(),
             parts: &self.parts,
         };
-        draw(&picture, &self.camera, &self.look)
+        render(&picture, &self.camera, &self.look)
     }
 
     /// All pictures as an animated PNG file, in real time. `drawn` is told the number of pictures that are

@@ -69,7 +69,7 @@ fn refuse_mesh(path: &Path) -> Result<(), ReadError> {
         Some(_) => {
             let remedy = "name it in a scene, `mesh = { file = { path = ... } }`: `isosheet new` writes a scene to start \
                           from";
-            let problem = "this is a mesh file and no scene";
+            let problem = "it is a mesh file and no scene";
             Err(ReadError::content(path, problem, remedy))
         }
     }
