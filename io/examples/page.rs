@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::io::Write;
 use std::path::PathBuf;
 
-use isosheet_io::view::{Body, BodyShape, Field, Place, Pose, Replay, Scale, Series};
+use isosheet_io::view::{Body, BodyShape, Centering, Field, Pose, Replay, Scale, TimeSeries};
 use isosheet_io::write_atomically;
 use isosheet_mesh::{Sheet, Topology, fold_angle, generate};
 
@@ -99,7 +99,7 @@ fn gaps(positions: &[Vec<f64>]) -> Field {
     Field {
         name: "gap to the cylinder".into(),
         unit: "m".into(),
-        place: Place::Vertex,
+        place: Centering::Vertex,
         scale: Scale::Linear,
         note: String::new(),
         values: positions
@@ -147,8 +147,8 @@ fn series(
     times: &[f64],
     positions: &[Vec<f64>],
     fields: &[Field],
-) -> Vec<Series> {
-    let one = |name: &str, unit: &str, scale, values| Series {
+) -> Vec<TimeSeries> {
+    let one = |name: &str, unit: &str, scale, values| TimeSeries {
         name: name.into(),
         unit: unit.into(),
         scale,

@@ -80,8 +80,8 @@ use crate::format::{
 };
 use crate::scene::{Kept, SceneFile, Setup};
 use crate::view::PageOptions;
-use checkpoint::Progress;
-use folder::{Contents, Existing, Material, RunFolder, stored_scene};
+use checkpoint::RunProgress;
+use folder::{Existing, FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use isosheet_dynamics::Simulation;
 use page::write_page_of;
@@ -206,7 +206,7 @@ fn simulate_in(
         return Err(RunError::NoFolder);
     }
     let mut kept = Kept::in_folder(file.folder());
-    let material = Material::read(file, &mut kept.files)?;
+    let material = RunInputs::read(file, &mut kept.files)?;
     let hash = material.hash;
     if existing == Existing::Continue && RunFolder::is_complete(folder, &material)? {
         return Ok(already_complete(folder, hash)?.into());
@@ -234,15 +234,15 @@ fn simulate_in(
         }
     };
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
-        Contents::Complete(open) => {
+        FolderState::Complete(open) => {
             let lost = !open.path(RunFolder::TRAJECTORY).is_file();
             if file.scene().output.trajectory && lost {
                 write_trajectory(&open, &plan)?;
             }
             return Ok(already_complete(folder, hash)?.into());
         }
-        Contents::Empty(open) => (open, None),
-        Contents::Partial(open) => {
+        FolderState::Empty(open) => (open, None),
+        FolderState::Partial(open) => {
             let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
             check_origin(&open, &saved.0, hash)?;
             (open, Some(saved))
@@ -359,7 +359,11 @@ fn started(setup: Setup) -> Result<Simulation, RunError> {
 
 /// Refuses a checkpoint of another scene, where the one in the folder was changed since, or of another
 /// version.
-fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Result<(), RunError> {
+fn check_origin(
+    folder: &RunFolder,
+    progress: &RunProgress,
+    hash: SceneHash,
+) -> Result<(), RunError> {
     let root = folder.root().to_owned();
     if progress.scene != hash.to_string() {
         return Err(RunError::OtherScene { folder: root });
@@ -377,7 +381,7 @@ fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Res
 fn finish(
     plan: &Plan<'_>,
     folder: &RunFolder,
-    progress: &Progress,
+    progress: &RunProgress,
     mut recorded: Option<(Recording, RunFrames)>,
 ) -> Result<Ended, RunError> {
     let Some(ending) = progress.ending.clone() else {

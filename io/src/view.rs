@@ -103,7 +103,7 @@ pub use body::{Body, BodyShape, Pose};
 pub(crate) use check::no_frames;
 #[cfg(feature = "run")]
 pub(crate) use field::strains;
-pub use field::{Field, Place, Scale, Series};
+pub use field::{Centering, Field, Scale, TimeSeries};
 pub use live::{LivePage, LiveSlider};
 pub use page::PageOptions;
 pub use replay::{Axis, Replay};

@@ -35,7 +35,7 @@ use std::sync::LazyLock;
 /// The file of the yardsticks.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Contents {
+struct YardsticksFile {
     /// Why requirements may be missed, by a word.
     reasons: BTreeMap<String, String>,
     yardstick: Vec<Yardstick>,
@@ -59,7 +59,7 @@ pub(crate) struct Yardstick {
     required: Vec<Required>,
 }
 
-static CONTENTS: LazyLock<Contents> = LazyLock::new(|| {
+static CONTENTS: LazyLock<YardsticksFile> = LazyLock::new(|| {
     let contents = toml::from_str(include_str!("locking/yardsticks.toml"));
     contents.unwrap_or_else(|error| panic!("yardsticks.toml: {error}"))
 });

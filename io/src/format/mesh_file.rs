@@ -21,7 +21,7 @@ mod tests;
 mod weld;
 
 pub use assignment::EdgeAssignment;
-pub use error::{MeshFileError, MeshFileProblem, Place};
+pub use error::{Location, MeshFileError, MeshFileProblem};
 pub use fold_frame::FoldFrame;
 pub use format::MeshFormat;
 pub use mesh::{FileCrease, MeshFile, ReadingChanges};

@@ -6,7 +6,7 @@ mod motion;
 mod rate;
 
 pub use data::FrameData;
-pub(crate) use data::{MeshCounts, Quantity};
+pub(crate) use data::{FrameQuantity, MeshCounts};
 pub(crate) use motion::{Motion, MotionError, MotionFrame};
 
 use crate::format::atomic::write_atomically;
@@ -44,15 +44,15 @@ pub struct Trajectory {
     edges: Vec<[u32; 2]>,
     rest_lengths: Vec<f64>,
     /// Of each quantity the values of all frames, or none at all.
-    data: [Vec<f64>; Quantity::COUNT],
+    data: [Vec<f64>; FrameQuantity::COUNT],
 }
 
 /// What a motion has.
-struct Contents {
+struct MotionContents {
     /// Times of the frames, seconds.
     times: Vec<f64>,
     /// What the frames have besides positions.
-    quantities: Vec<Quantity>,
+    quantities: Vec<FrameQuantity>,
 }
 
 impl Motion for Trajectory {
@@ -68,7 +68,9 @@ impl Motion for Trajectory {
                 number,
                 t,
                 x: &self.x[n * number..n * (number + 1)],
-                data: FrameData::each(|q: Quantity| self.values(q, number).unwrap_or_default()),
+                data: FrameData::each(|q: FrameQuantity| {
+                    self.values(q, number).unwrap_or_default()
+                }),
                 fields: &[],
             };
             if show(&frame).is_break() {
@@ -116,9 +118,9 @@ impl Trajectory {
             fields: &[],
         };
         let before = self.t.last().copied().unwrap_or(f64::NEG_INFINITY);
-        let has = |quantity: Quantity| !self.data[quantity as usize].is_empty();
+        let has = |quantity: FrameQuantity| !self.data[quantity as usize].is_empty();
         self.check(&frame, before, &has)?;
-        for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut self.data) {
+        for (quantity, kept) in FrameQuantity::ALL.into_iter().zip(&mut self.data) {
             kept.extend_from_slice(quantity.of(data));
         }
         self.t.push(t);
@@ -132,7 +134,7 @@ impl Trajectory {
         &self,
         frame: &MotionFrame<'_>,
         before: f64,
-        has: &dyn Fn(Quantity) -> bool,
+        has: &dyn Fn(FrameQuantity) -> bool,
     ) -> Result<(), DataError> {
         let &MotionFrame {
             number, t, x, data, ..
@@ -156,7 +158,7 @@ impl Trajectory {
             let error = DataError::new(message, "record frames in the order of time");
             return Err(error.at(number).value(t));
         }
-        for quantity in Quantity::ALL {
+        for quantity in FrameQuantity::ALL {
             let values = quantity.of(&data);
             let expected = match number {
                 0 if values.is_empty() => 0,
@@ -194,12 +196,12 @@ impl Trajectory {
     }
 
     /// A quantity in all frames, one after the other; nothing if the trajectory does not have it.
-    pub(super) fn all(&self, quantity: Quantity) -> &[f64] {
+    pub(super) fn all(&self, quantity: FrameQuantity) -> &[f64] {
         &self.data[quantity as usize]
     }
 
     /// The numbers of a quantity in one frame.
-    fn size(&self, quantity: Quantity) -> usize {
+    fn size(&self, quantity: FrameQuantity) -> usize {
         quantity.size(self.counts())
     }
 
@@ -219,7 +221,7 @@ impl Trajectory {
     }
 
     /// A quantity in a frame.
-    fn values(&self, quantity: Quantity, k: usize) -> Option<&[f64]> {
+    fn values(&self, quantity: FrameQuantity, k: usize) -> Option<&[f64]> {
         let n = self.size(quantity);
         self.data[quantity as usize].get(n * k..n * (k + 1))
     }
@@ -268,28 +270,28 @@ impl Trajectory {
     /// The force of each edge in a frame (newtons, tension positive); `None` when the trajectory has no
     /// forces or no such frame.
     pub fn rod_forces(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::RodForces, k)
+        self.values(FrameQuantity::RodForces, k)
     }
 
     /// The force of contact on each vertex in a frame (length 3V, newtons): normal forces and friction of the
     /// bodies on the sheet and of the sheet on itself. `None` when the trajectory has no contact or no such
     /// frame.
     pub fn contact_forces(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::ContactForces, k)
+        self.values(FrameQuantity::ContactForces, k)
     }
 
     /// The gap of each vertex in a frame (length V, metres): the smallest gap of the contacts that the vertex
     /// or an edge or a face at it takes part in, and the activation distance of contact where nothing is
     /// within reach; `None` when the trajectory has no contact or no such frame.
     pub fn gaps(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::Gaps, k)
+        self.values(FrameQuantity::Gaps, k)
     }
 
     /// The plastic angle of each edge in a frame (length E, radians, positive for valleys, 0 where nothing
     /// yields): what stays of its fold angle where its moment is zero. `None` when no edge can yield, or
     /// there is no such frame.
     pub fn plastic_angles(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::PlasticAngles, k)
+        self.values(FrameQuantity::PlasticAngles, k)
     }
 
     /// The two principal values of the plastic curvature of each face in a frame (length 2F, 1/m): the larger
@@ -297,7 +299,7 @@ impl Trajectory {
     /// counter-clockwise. It is what stays of the curvature where the moment is zero. `None` when no face can
     /// yield, or there is no such frame.
     pub fn plastic_curvatures(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::PlasticCurvatures, k)
+        self.values(FrameQuantity::PlasticCurvatures, k)
     }
 
     /// Writes the `.npz` file, atomically. Equal trajectories give equal bytes.
@@ -314,7 +316,7 @@ impl Trajectory {
         path: &Path,
         motion: &M,
     ) -> Result<(), MotionError<M::Error>> {
-        let Contents { times, quantities } = self.contents(motion)?;
+        let MotionContents { times, quantities } = self.contents(motion)?;
         let (frames, vertices) = (times.len() as u64, self.vertex_count as u64);
         let mut failed = None;
         let mut rows = |of: &dyn for<'f> Fn(&MotionFrame<'f>) -> &'f [f64],
@@ -362,15 +364,15 @@ impl Trajectory {
     }
 
     /// What a motion has, if its frames are those of a trajectory.
-    fn contents<M: Motion>(&self, motion: &M) -> Result<Contents, MotionError<M::Error>> {
+    fn contents<M: Motion>(&self, motion: &M) -> Result<MotionContents, MotionError<M::Error>> {
         let (mut times, mut quantities) = (Vec::new(), Vec::new());
         let mut checked = Ok(());
         let shown = motion.each(&mut |frame| {
             let before = times.last().copied().unwrap_or(f64::NEG_INFINITY);
             checked = self.check(frame, before, &|quantity| quantities.contains(&quantity));
             if times.is_empty() {
-                let has = |quantity: &Quantity| !quantity.of(&frame.data).is_empty();
-                quantities.extend(Quantity::ALL.into_iter().filter(has));
+                let has = |quantity: &FrameQuantity| !quantity.of(&frame.data).is_empty();
+                quantities.extend(FrameQuantity::ALL.into_iter().filter(has));
             }
             times.push(frame.t);
             if checked.is_ok() {
@@ -381,7 +383,7 @@ impl Trajectory {
         });
         shown.map_err(MotionError::Frame)?;
         checked.map_err(FileError::from)?;
-        Ok(Contents { times, quantities })
+        Ok(MotionContents { times, quantities })
     }
 
     /// Reads an `.npz` file that [`Self::write`] wrote, or one of the same arrays.
@@ -414,8 +416,8 @@ impl Trajectory {
             edges: rods as usize,
             faces: faces_shape[0] as usize,
         };
-        let mut data: [Vec<f64>; Quantity::COUNT] = Default::default();
-        for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut data) {
+        let mut data: [Vec<f64>; FrameQuantity::COUNT] = Default::default();
+        for (quantity, kept) in FrameQuantity::ALL.into_iter().zip(&mut data) {
             let frame = quantity.shape(counts);
             let expected = [&[frames], &frame[..]].concat();
             let found = npz.get_if_there::<f64>(quantity.name(), expected.len())?;
@@ -437,7 +439,10 @@ impl Trajectory {
                 ));
             }
         }
-        let further = Quantity::ALL.map(Quantity::name).into_iter().zip(&data);
+        let further = FrameQuantity::ALL
+            .map(FrameQuantity::name)
+            .into_iter()
+            .zip(&data);
         let own = [("t", &t), ("x", &x), ("rest_lengths", &rest_lengths)];
         for (name, list) in own.into_iter().chain(further) {
             if let Some(v) = list.iter().find(|v| !v.is_finite()) {

@@ -20,13 +20,13 @@ const FLAT: f64 = 0.97;
 /// A body as it is drawn, in a pose.
 #[derive(Clone, Debug)]
 pub struct Solid {
-    form: Arc<Form>,
+    form: Arc<SolidForm>,
     pose: Isometry3<f64>,
 }
 
 /// A body in its own frame.
 #[derive(Debug)]
-struct Form {
+struct SolidForm {
     /// None for a half-space.
     mesh: Option<BodyMesh>,
     /// Edges where two faces meet at an angle.
@@ -67,7 +67,7 @@ impl Solid {
             (Shape::Cuboid { .. } | Shape::Surface(_), Some(mesh)) => ridges(mesh),
             _ => Vec::new(),
         };
-        let form = Form {
+        let form = SolidForm {
             mesh,
             edges,
             shape: body.shape().clone(),

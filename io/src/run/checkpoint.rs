@@ -16,7 +16,7 @@ use std::path::Path;
 
 /// How far a run has come.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Progress {
+pub(crate) struct RunProgress {
     /// Hash of the scene.
     pub(crate) scene: String,
     /// Version of the program that began the run.
@@ -73,7 +73,7 @@ const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
 /// progress as JSON, the simulation as [`Checkpoint::to_bytes`] has it, and the CRC-64 of all that.
 pub(crate) fn write(
     path: &Path,
-    progress: &Progress,
+    progress: &RunProgress,
     simulation: &Checkpoint,
 ) -> Result<(), RunError> {
     let head = serde_json::to_vec(progress).map_err(|e| damaged(path, e))?;
@@ -94,7 +94,7 @@ fn damaged(path: &Path, problem: impl Display) -> ReadError {
 }
 
 /// Reads a checkpoint.
-pub(crate) fn read(path: &Path) -> Result<(Progress, Checkpoint), RunError> {
+pub(crate) fn read(path: &Path) -> Result<(RunProgress, Checkpoint), RunError> {
     let bytes = input::read(path).map_err(|e| damaged(path, e))?;
     let whole = || -> Option<(&[u8], &[u8])> {
         let (content, sum) = bytes.split_last_chunk::<8>()?;

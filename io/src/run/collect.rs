@@ -15,12 +15,12 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Collection {
     columns: Vec<String>,
-    rows: Vec<Row>,
+    rows: Vec<SummaryRow>,
     incomplete: Vec<PathBuf>,
 }
 
 /// The cells of a run, with the names of their columns.
-type Row = Vec<(String, String)>;
+type SummaryRow = Vec<(String, String)>;
 
 impl Collection {
     /// Reads the summaries of runs and of all runs of sweeps, in the order of `folders` and of their numbers.
@@ -96,7 +96,7 @@ impl Collection {
         Ok(write_atomically(path, |w| w.write_all(&self.to_csv()))?)
     }
 
-    fn add(&mut self, folder: &Path, keys: Row) -> Result<(), SweepError> {
+    fn add(&mut self, folder: &Path, keys: SummaryRow) -> Result<(), SweepError> {
         let path = folder.join(RunFolder::SUMMARY);
         if !path.is_file() {
             self.incomplete.push(folder.to_owned());
@@ -122,7 +122,7 @@ fn note(names: &mut Vec<String>, name: &str) {
 }
 
 /// Adds the fields of a value by their names.
-fn add_fields(row: &mut Row, name: &str, value: &Value) {
+fn add_fields(row: &mut SummaryRow, name: &str, value: &Value) {
     match value {
         Value::Null => row.push((name.to_owned(), String::new())),
         Value::String(text) => row.push((name.to_owned(), text.clone())),

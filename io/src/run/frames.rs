@@ -3,7 +3,9 @@
 use super::RunError;
 use super::error::BEGIN_ANEW;
 use crate::format::input;
-use crate::format::{FrameData, MeshCounts, Motion, MotionFrame, Quantity, ReadError, WriteError};
+use crate::format::{
+    FrameData, FrameQuantity, MeshCounts, Motion, MotionFrame, ReadError, WriteError,
+};
 use crate::scene::Setup;
 use crc::{CRC_64_XZ, Crc};
 use std::fs::File;
@@ -37,7 +39,7 @@ pub(crate) struct Frame {
     pub(crate) t: f64,
     pub(crate) x: Vec<f64>,
     /// Of each quantity the values, none in runs without it.
-    pub(crate) data: [Vec<f64>; Quantity::COUNT],
+    pub(crate) data: [Vec<f64>; FrameQuantity::COUNT],
 }
 
 impl Frame {
@@ -64,7 +66,7 @@ pub(crate) struct FrameShape {
     /// `3V`.
     pub(crate) coordinates: usize,
     /// Those of each quantity, zero of what there is not.
-    pub(crate) data: [usize; Quantity::COUNT],
+    pub(crate) data: [usize; FrameQuantity::COUNT],
 }
 
 impl FrameShape {
@@ -78,20 +80,22 @@ impl FrameShape {
             faces: topology.face_count(),
         };
         let is_there = |quantity| match quantity {
-            Quantity::RodForces => setup.has_rod_forces(),
-            Quantity::ContactForces | Quantity::Gaps => setup.contacts.is_some(),
-            Quantity::PlasticAngles => model.plastic_angles(&model.memories()).is_some(),
-            Quantity::PlasticCurvatures => model.plastic_curvatures(&model.memories()).is_some(),
+            FrameQuantity::RodForces => setup.has_rod_forces(),
+            FrameQuantity::ContactForces | FrameQuantity::Gaps => setup.contacts.is_some(),
+            FrameQuantity::PlasticAngles => model.plastic_angles(&model.memories()).is_some(),
+            FrameQuantity::PlasticCurvatures => {
+                model.plastic_curvatures(&model.memories()).is_some()
+            }
         };
-        let size = |q: Quantity| if is_there(q) { q.size(counts) } else { 0 };
+        let size = |q: FrameQuantity| if is_there(q) { q.size(counts) } else { 0 };
         Self {
             coordinates: setup.start.x.len(),
-            data: Quantity::ALL.map(size),
+            data: FrameQuantity::ALL.map(size),
         }
     }
 
     /// Whether frames have a quantity.
-    pub(crate) fn has(self, quantity: Quantity) -> bool {
+    pub(crate) fn has(self, quantity: FrameQuantity) -> bool {
         self.data[quantity as usize] > 0
     }
 
@@ -165,7 +169,7 @@ impl FrameFile {
     ) -> Result<(), WriteError> {
         self.record.clear();
         self.record.extend(t.to_le_bytes());
-        let further = Quantity::ALL.map(|quantity| quantity.of(data));
+        let further = FrameQuantity::ALL.map(|quantity| quantity.of(data));
         for numbers in std::iter::once(x).chain(further) {
             let bytes = numbers.iter().flat_map(|c| c.to_le_bytes());
             self.record.extend(bytes);
@@ -302,7 +306,7 @@ mod tests {
             all.push(Frame {
                 t: frame.t,
                 x: frame.x.to_vec(),
-                data: Quantity::ALL.map(|quantity| quantity.of(&frame.data).to_vec()),
+                data: FrameQuantity::ALL.map(|quantity| quantity.of(&frame.data).to_vec()),
             });
             ControlFlow::Continue(())
         })?;
@@ -358,7 +362,7 @@ mod tests {
         let path = dir.path().join("frames.bin");
         let shape = FrameShape {
             coordinates: 3,
-            data: [0; Quantity::COUNT],
+            data: [0; FrameQuantity::COUNT],
         };
         let mut file = FrameFile::create(&path).unwrap();
         for k in 0..3 {

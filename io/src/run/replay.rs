@@ -1,8 +1,8 @@
 //! What the page shows of a recorded motion.
 
 use super::frame_field::{FrameField, check_frame};
-use crate::format::{DataError, HistoryRow, MeasureRow, Motion, Quantity, Trajectory};
-use crate::view::{Body, BodyShape, Pose, Replay, Scale, Series};
+use crate::format::{DataError, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory};
+use crate::view::{Body, BodyShape, Pose, Replay, Scale, TimeSeries};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_mesh::Sheet;
 use nalgebra::Isometry3;
@@ -14,7 +14,7 @@ impl Replay {
     /// - the field "strain" ([`Field::edge_strain`](crate::view::Field::edge_strain)), where there are bodies
     ///   "distance to obstacles" (of each vertex, without the thickness of the sheet), and where the trajectory has
     ///   them the forces of the rods, the forces of contact and the gaps of the vertices, and what has yielded,
-    /// - the series of the history (see [`Series::of_history`]).
+    /// - the series of the history (see [`TimeSeries::of_history`]).
     ///
     /// Titles, pins and texts are left to the caller.
     ///
@@ -26,7 +26,7 @@ impl Replay {
         trajectory: &Trajectory,
         history: &[HistoryRow],
     ) -> Result<Self, DataError> {
-        let has = |quantity: Quantity| {
+        let has = |quantity: FrameQuantity| {
             let first = trajectory.first_data();
             first.is_some_and(|data| !quantity.of(&data).is_empty())
         };
@@ -47,7 +47,7 @@ impl Replay {
             bodies.map(|(k, body)| Body::of_obstacle(&format!("obstacle[{k}]"), body, &times));
         Self {
             bodies: bodies.collect(),
-            series: Series::of_history(history),
+            series: TimeSeries::of_history(history),
             faces: sheet.face_indices(),
             rest: sheet.positions().to_vec(),
             times,
@@ -149,7 +149,7 @@ impl Body {
     }
 }
 
-impl Series {
+impl TimeSeries {
     /// The columns of a history over time: energies, largest strain, smallest gap (in runs that have one; 0,
     /// which plots leave out, while nothing is within reach), change of the total energy, length of the step,
     /// and the iterations, factorisations and rejected sub-steps of each step.
@@ -157,7 +157,7 @@ impl Series {
         // The row of the start is no step.
         let steps: Vec<&HistoryRow> = rows.iter().filter(|row| row.h > 0.0).collect();
         let all: Vec<&HistoryRow> = rows.iter().collect();
-        let one = |name: &str, unit: &str, scale, rows: &[&HistoryRow], of: Column| Self {
+        let one = |name: &str, unit: &str, scale, rows: &[&HistoryRow], of: HistoryColumn| Self {
             name: name.into(),
             unit: unit.into(),
             scale,
@@ -222,7 +222,7 @@ impl Series {
 }
 
 /// A number of a row.
-type Column = fn(&HistoryRow) -> f64;
+type HistoryColumn = fn(&HistoryRow) -> f64;
 
 /// The unit of counts, which share a plot.
 const PER_STEP: &str = "per step";

@@ -1,6 +1,6 @@
 //! The steps of a run and what is recorded of them.
 
-use super::checkpoint::{self, Progress};
+use super::checkpoint::{self, RunProgress};
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::folder::{RunFolder, SceneHash};
@@ -51,7 +51,7 @@ pub(crate) struct Stepping<'a> {
     frames: FrameFile,
     /// The rows of these tables, where they are kept in memory.
     pub(crate) tables: Option<Tables>,
-    pub(crate) progress: Progress,
+    pub(crate) progress: RunProgress,
     /// Since when the wall time in the progress counts.
     pub(crate) clock: Instant,
 }
@@ -134,7 +134,7 @@ impl<'a> Stepping<'a> {
         plan: &'a Plan<'a>,
         folder: &'a RunFolder,
         simulation: Simulation,
-        saved: Option<Progress>,
+        saved: Option<RunProgress>,
         clock: Instant,
     ) -> Result<Self, RunError> {
         let (scene, facts) = (plan.file.scene(), &plan.facts);
@@ -185,10 +185,10 @@ impl<'a> Stepping<'a> {
             loads,
             measures,
             frames,
-            progress: saved.unwrap_or_else(|| Progress {
+            progress: saved.unwrap_or_else(|| RunProgress {
                 scene: plan.hash.to_string(),
                 version: env!("CARGO_PKG_VERSION").into(),
-                ..Progress::default()
+                ..RunProgress::default()
             }),
             plan,
             folder,

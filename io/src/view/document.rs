@@ -4,8 +4,8 @@ use serde::Serialize;
 use std::ops::ControlFlow;
 
 use super::body::{Body, BodyShape};
-use super::field::{Field, Place, Scale, Series};
-use super::frames::Kept;
+use super::field::{Centering, Field, Scale, TimeSeries};
+use super::frames::KeptFrames;
 use super::live::LivePage;
 use super::pack::{Packed, RowPacker, pack_doubles, pack_indices};
 use super::quantise::{FieldScale, PositionScale};
@@ -56,7 +56,7 @@ struct BodyData<'a> {
 struct FieldData<'a> {
     name: &'a str,
     unit: &'a str,
-    place: Place,
+    place: Centering,
     scale: Scale,
     note: &'a str,
     low: f64,
@@ -79,7 +79,7 @@ impl<'a> Document<'a> {
     pub(super) fn new<M: Motion<Error: From<DataError>>>(
         replay: &'a Replay,
         frames: &M,
-        kept: Kept,
+        kept: KeptFrames,
         most: usize,
     ) -> Result<Option<Self>, M::Error> {
         let (scales, positions) = scales(replay, frames, kept)?;
@@ -149,7 +149,7 @@ impl<'a> Document<'a> {
 fn scales<M: Motion<Error: From<DataError>>>(
     replay: &Replay,
     frames: &M,
-    kept: Kept,
+    kept: KeptFrames,
 ) -> Result<(Vec<FieldScale>, PositionScale), M::Error> {
     let mut positions = PositionScale::new();
     let new = |field: &Field| FieldScale::new(field.scale);
@@ -173,7 +173,7 @@ fn pack<M: Motion<Error: From<DataError>>>(
     scales: &[FieldScale],
     positions: PositionScale,
     frames: &M,
-    kept: Kept,
+    kept: KeptFrames,
     most: usize,
 ) -> Result<Option<(Packed, Vec<Packed>)>, M::Error> {
     let mut packed = RowPacker::new(2);
@@ -207,7 +207,7 @@ fn pack<M: Motion<Error: From<DataError>>>(
     Ok(Some((packed.finish(), fields)))
 }
 
-fn body_data(body: &Body, kept: Kept) -> BodyData<'_> {
+fn body_data(body: &Body, kept: KeptFrames) -> BodyData<'_> {
     let poses: Vec<_> = match body.poses.as_slice() {
         [pose] => vec![pose],
         poses => kept.numbers().map(|k| &poses[k]).collect(),
@@ -222,7 +222,7 @@ fn body_data(body: &Body, kept: Kept) -> BodyData<'_> {
     }
 }
 
-fn series_data(series: &Series) -> SeriesData<'_> {
+fn series_data(series: &TimeSeries) -> SeriesData<'_> {
     SeriesData {
         name: &series.name,
         unit: &series.unit,

@@ -9,7 +9,7 @@ use serde::Serialize;
 /// Where the values of a [`Field`] belong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Place {
+pub enum Centering {
     /// One value for each vertex.
     Vertex,
     /// One value for each edge, in the order of [`Topology::edges`]: by smaller, then by larger vertex.
@@ -45,7 +45,7 @@ pub struct Field {
     /// Its unit, empty for a number without one.
     pub unit: String,
     /// Where its values belong.
-    pub place: Place,
+    pub place: Centering,
     /// The scale of its colours.
     pub scale: Scale,
     /// What to know of the values, a sentence that is shown with them; empty if there is nothing.
@@ -58,7 +58,7 @@ pub struct Field {
 ///
 /// Series that follow each other and have the same unit (not empty), scale and times share a plot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+pub struct TimeSeries {
     /// Its name.
     pub name: String,
     /// Its unit, empty for a number without one.
@@ -103,7 +103,7 @@ impl Field {
         Self {
             name: "strain".into(),
             unit: String::new(),
-            place: Place::Edge,
+            place: Centering::Edge,
             scale: Scale::Logarithmic,
             note: String::new(),
             values: Vec::new(),
@@ -125,9 +125,9 @@ impl Field {
     ) -> Result<(), DataError> {
         let what = || format!("{}, frame {frame}", self.place_in_page(index));
         let expected = match self.place {
-            Place::Vertex => topology.vertex_count(),
-            Place::Edge => topology.edge_count(),
-            Place::Face => topology.face_count(),
+            Centering::Vertex => topology.vertex_count(),
+            Centering::Edge => topology.edge_count(),
+            Centering::Face => topology.face_count(),
         };
         check::length_of(values.len(), expected, what)?;
         check::finite_of(values, what)?;
@@ -154,7 +154,7 @@ pub(crate) fn strains(topology: &Topology, rest: &[f64]) -> impl Fn(&[f64]) -> V
     }
 }
 
-impl Series {
+impl TimeSeries {
     pub(super) fn validate(&self, index: usize) -> Result<(), DataError> {
         let what = format!("series {index} (`{}`)", self.name);
         check::length(&what, self.values.len(), self.times.len())?;

@@ -6,13 +6,13 @@ use std::ops::ControlFlow;
 
 /// Which frames of a run are kept: every `stride`-th one and the last one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kept {
+pub(super) struct KeptFrames {
     /// The number of all frames, at least one.
     pub(super) frames: usize,
     pub(super) stride: usize,
 }
 
-impl Kept {
+impl KeptFrames {
     fn has(self, frame: usize) -> bool {
         frame < self.frames && (frame.is_multiple_of(self.stride) || frame + 1 == self.frames)
     }

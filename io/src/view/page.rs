@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::document::Document;
-use super::frames::Kept;
+use super::frames::KeptFrames;
 use super::live::LivePage;
 use super::pack::pack_text;
 use super::replay::Replay;
@@ -87,7 +87,7 @@ impl Replay {
         self.check_frames(frames)?;
         let mut stride = 1;
         loop {
-            let kept = Kept {
+            let kept = KeptFrames {
                 frames: self.times.len(),
                 stride,
             };
@@ -127,7 +127,7 @@ impl Replay {
             "" => String::new(),
             nonce => format!(" nonce=\"{}\"", escape(nonce)),
         };
-        let kept = Kept {
+        let kept = KeptFrames {
             frames: self.times.len(),
             stride: 1,
         };

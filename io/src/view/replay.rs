@@ -4,8 +4,8 @@ use isosheet_mesh::Topology;
 
 use super::body::Body;
 use super::check;
-use super::field::{Field, Series};
-use super::frames::Kept;
+use super::field::{Field, TimeSeries};
+use super::frames::KeptFrames;
 use crate::format::{DataError, FrameData, Motion, MotionFrame};
 use serde::Serialize;
 use std::ops::ControlFlow;
@@ -52,7 +52,7 @@ pub struct Replay {
     /// Values at vertices, edges or faces, to colour the sheet by.
     pub fields: Vec<Field>,
     /// Quantities over time, to plot.
-    pub series: Vec<Series>,
+    pub series: Vec<TimeSeries>,
     /// Rows of a table: name and value.
     pub summary: Vec<(String, String)>,
     /// The scene as a text.
@@ -90,7 +90,7 @@ impl Replay {
         frames: &M,
     ) -> Result<(), M::Error> {
         let topology = self.check_still()?;
-        let kept = Kept {
+        let kept = KeptFrames {
             frames: self.times.len(),
             stride: 1,
         };

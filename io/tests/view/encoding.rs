@@ -2,7 +2,7 @@
 
 use super::decoder::{self, document, doubles, field, frames, indices, positions};
 use super::scenes::{every_body, scattered, waving};
-use isosheet_io::view::{Field, PageOptions, Place, Replay, Scale};
+use isosheet_io::view::{Centering, Field, PageOptions, Replay, Scale};
 use isosheet_mesh::{Topology, generate};
 use serde_json::Value;
 
@@ -267,7 +267,7 @@ fn a_sheet_that_does_not_move_and_constant_fields_are_kept() {
         replay.fields = vec![Field {
             name: "constant".into(),
             unit: String::new(),
-            place: Place::Face,
+            place: Centering::Face,
             scale,
             note: String::new(),
             values: vec![vec![value; count]; 3],

@@ -1,6 +1,6 @@
 //! Replays for the tests.
 
-use isosheet_io::view::{Axis, Body, BodyShape, Field, Place, Pose, Replay, Scale, Series};
+use isosheet_io::view::{Axis, Body, BodyShape, Centering, Field, Pose, Replay, Scale, TimeSeries};
 use isosheet_mesh::{Sheet, generate};
 
 /// Pseudo-random numbers in [0, 1): the low-discrepancy sequence of the golden ratio.
@@ -34,7 +34,7 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
         Field {
             name: "depth <b>&\u{e4}".into(),
             unit: "m".into(),
-            place: Place::Vertex,
+            place: Centering::Vertex,
             scale: Scale::Linear,
             note: String::new(),
             values: positions.iter().map(depths).collect(),
@@ -42,7 +42,7 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
         Field {
             name: "rod force".into(),
             unit: "N".into(),
-            place: Place::Edge,
+            place: Centering::Edge,
             scale: Scale::Signed,
             note: "Forces <i>& are one choice.".into(),
             values: (0..frames)
@@ -50,7 +50,7 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
                 .collect(),
         },
     ];
-    let series = |name: &str, unit: &str, scale, f: fn(f64) -> f64| Series {
+    let series = |name: &str, unit: &str, scale, f: fn(f64) -> f64| TimeSeries {
         name: name.into(),
         unit: unit.into(),
         scale,

@@ -34,11 +34,11 @@ struct Part {
 /// The file of the works.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Contents {
+struct WorksFile {
     part: Vec<Part>,
 }
 
-static CONTENTS: LazyLock<Contents> = LazyLock::new(|| {
+static CONTENTS: LazyLock<WorksFile> = LazyLock::new(|| {
     let contents = toml::from_str(include_str!("works/works.toml"));
     contents.unwrap_or_else(|error| panic!("works.toml: {error}"))
 });

@@ -19,7 +19,7 @@ const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/cases");
 /// The contents of a file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Contents {
+pub(super) struct CaseFile {
     pub(super) title: String,
     /// What should happen.
     pub(super) expected: String,
@@ -41,7 +41,7 @@ pub(super) struct Contents {
 #[derive(Clone, Debug)]
 pub(super) struct Case {
     pub(super) name: String,
-    pub(super) contents: Contents,
+    pub(super) contents: CaseFile,
     scene: PathBuf,
     /// The texts of case and scene and of all meshes beside the scene, which decide what is found.
     pub(super) texts: Vec<String>,
@@ -107,7 +107,7 @@ impl Case {
     /// What is wrong with it, or with its scene.
     fn read(path: &Path) -> Result<Self> {
         let text = fs::read_to_string(path)?;
-        let contents: Contents = toml::from_str(&text)?;
+        let contents: CaseFile = toml::from_str(&text)?;
         let folder = path.parent().unwrap_or(Path::new("."));
         let scene = folder.join(&contents.scene);
         let mut texts = vec![text];

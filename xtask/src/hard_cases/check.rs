@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// What is bounded: a number of each run, of which the worst counts, or of all runs together.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum Quantity {
+enum CaseQuantity {
     /// Runs that stop before their end.
     Stopped,
     LargestStrain,
@@ -37,7 +37,7 @@ enum Quantity {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Check {
-    quantity: Quantity,
+    quantity: CaseQuantity,
     /// The runs that it is for, by values of variants; all if left out.
     #[serde(default)]
     only: BTreeMap<String, toml::Value>,
@@ -46,7 +46,7 @@ pub(super) struct Check {
     limitation: Option<Limitation>,
 }
 
-impl Quantity {
+impl CaseQuantity {
     /// Of a run that came to its end. Nothing if the scene has no such measure.
     fn of(&self, summary: &Summary) -> Option<f64> {
         Some(match self {
@@ -133,8 +133,8 @@ impl Check {
             false => only.join(", "),
         };
         match &self.quantity {
-            Quantity::Stopped => format!("{runs}: number that stop early"),
-            Quantity::Measure(name) => format!("{runs}: measure {name} at the end, m"),
+            CaseQuantity::Stopped => format!("{runs}: number that stop early"),
+            CaseQuantity::Measure(name) => format!("{runs}: measure {name} at the end, m"),
             quantity => {
                 let name = serde_json::to_value(quantity).unwrap_or_default();
                 format!("{runs}: {}", name.as_str().unwrap_or_default())
@@ -152,7 +152,7 @@ impl Check {
         );
         let findings = self.bounds().map(|bound| {
             let mut finding = match self.quantity {
-                Quantity::Stopped => self.count(runs, bound),
+                CaseQuantity::Stopped => self.count(runs, bound),
                 _ => self.worst(runs, bound)?,
             };
             finding.limitation.clone_from(&self.limitation);

@@ -6,7 +6,7 @@ use super::moving::{Moving, MovingSheet};
 use super::sheets::NamedPart;
 use super::{ExportError, SeriesBody};
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
-use crate::format::trajectory::Quantity;
+use crate::format::trajectory::FrameQuantity;
 use crate::format::{DataError, Trajectory};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::wording::{brief, counted, given};
@@ -416,29 +416,29 @@ fn recorded_fields(trajectory: &Trajectory, topology: &Topology) -> Vec<SeriesFi
         values,
     };
     let mut fields = Vec::new();
-    for quantity in Quantity::ALL {
+    for quantity in FrameQuantity::ALL {
         let values = trajectory.all(quantity);
         if values.is_empty() {
             continue;
         }
         fields.extend(match quantity {
-            Quantity::RodForces => {
+            FrameQuantity::RodForces => {
                 let values = on_edges(trajectory, topology, values);
                 vec![field("rod_force", FieldSupport::Edges, values)]
             }
-            Quantity::ContactForces => {
+            FrameQuantity::ContactForces => {
                 let support = FieldSupport::VertexVectors;
                 vec![field("contact_force", support, values.to_vec())]
             }
-            Quantity::Gaps => vec![field("gap", FieldSupport::Vertices, values.to_vec())],
-            Quantity::PlasticAngles => {
+            FrameQuantity::Gaps => vec![field("gap", FieldSupport::Vertices, values.to_vec())],
+            FrameQuantity::PlasticAngles => {
                 let mut values = on_edges(trajectory, topology, values);
                 values
                     .iter_mut()
                     .for_each(|angle| *angle = angle.to_degrees());
                 vec![field("plastic_angle", FieldSupport::Edges, values)]
             }
-            Quantity::PlasticCurvatures => {
+            FrameQuantity::PlasticCurvatures => {
                 let of = |k: usize| values.iter().copied().skip(k).step_by(2).collect();
                 let support = FieldSupport::Faces;
                 vec![

@@ -9,7 +9,7 @@ use thiserror::Error;
 /// Where in a file something is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Place {
+pub enum Location {
     /// A line of a text file, counted from 1.
     Line(usize),
     /// A byte of a binary file, counted from 0.
@@ -18,7 +18,7 @@ pub enum Place {
     Face(usize),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
@@ -29,7 +29,7 @@ impl fmt::Display for Place {
 }
 
 /// What is wrong, with its place where there is one.
-pub(super) type Located = (Option<Place>, MeshFileProblem);
+pub(super) type Located = (Option<Location>, MeshFileProblem);
 
 /// A mesh file that cannot be read, with the place.
 #[derive(Debug, Error)]
@@ -38,7 +38,7 @@ pub struct MeshFileError {
     /// The file.
     pub path: PathBuf,
     /// The place, where there is one to blame.
-    pub place: Option<Place>,
+    pub place: Option<Location>,
     /// What is wrong.
     #[source]
     pub problem: MeshFileProblem,

@@ -1,6 +1,6 @@
 //! Polygons of a file, and what becomes of them.
 
-use super::error::{COPY, Located, MeshFileProblem, Place, no_such_vertex};
+use super::error::{COPY, Located, Location, MeshFileProblem, no_such_vertex};
 use super::{MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
 use crate::format::DataError;
 use isosheet_mesh::wording::given;
@@ -14,7 +14,7 @@ pub(super) struct Polyhedron {
     /// Corners of all faces, one after the other, from 0; whether each exists is checked at the end.
     corners: Vec<i64>,
     /// The end of each face in `corners`, and its place.
-    ends: Vec<(usize, Place)>,
+    ends: Vec<(usize, Location)>,
     /// The first vertices of the objects of the file, where it has several and they do not share vertices.
     parts: Vec<usize>,
     /// The number that the format gives to the first vertex, for errors.
@@ -34,7 +34,7 @@ impl Polyhedron {
     }
 
     /// Adds a face with corners counted from 0.
-    pub(super) fn push_face(&mut self, corners: impl IntoIterator<Item = i64>, place: Place) {
+    pub(super) fn push_face(&mut self, corners: impl IntoIterator<Item = i64>, place: Location) {
         self.corners.extend(corners);
         self.ends.push((self.corners.len(), place));
     }

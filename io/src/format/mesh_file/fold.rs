@@ -8,12 +8,12 @@ mod sides;
 #[cfg(test)]
 mod tests;
 
-use super::error::{Located, Place};
+use super::error::{Located, Location};
 use super::faces::Polyhedron;
 use super::plane;
 use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
 use crate::format::DataError;
-use frames::Frame;
+use frames::FrameRecord;
 use isosheet_mesh::wording::brief;
 use std::collections::HashMap;
 
@@ -65,7 +65,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     }
     sides::turn(&mut edges, &sides).map_err(|e| plain(e.into()))?;
     for (k, face) in faces.into_iter().enumerate() {
-        polyhedron.push_face(face, Place::Face(k));
+        polyhedron.push_face(face, Location::Face(k));
     }
     polyhedron.lines = edges.len();
     let mut mesh = polyhedron.assemble(options)?;
@@ -81,7 +81,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     Ok(mesh)
 }
 
-fn add_vertices(frame: &Frame, polyhedron: &mut Polyhedron) -> Result<(), DataError> {
+fn add_vertices(frame: &FrameRecord, polyhedron: &mut Polyhedron) -> Result<(), DataError> {
     let unit = frame.metres()?;
     for (vertex, p) in frame.vertices_coords.iter().flatten().enumerate() {
         let [x, y, rest @ ..] = &p[..] else {
@@ -100,7 +100,7 @@ fn add_vertices(frame: &Frame, polyhedron: &mut Polyhedron) -> Result<(), DataEr
 }
 
 /// The edges with their assignments and angles.
-fn read_edges(frame: &Frame, vertices: usize) -> Result<Vec<FileCrease>, DataError> {
+fn read_edges(frame: &FrameRecord, vertices: usize) -> Result<Vec<FileCrease>, DataError> {
     let Some(ends) = &frame.edges_vertices else {
         return Ok(Vec::new());
     };

@@ -1,6 +1,6 @@
 //! Reading glTF 2.0 files, as text or binary.
 
-use super::error::{Located, MeshFileProblem, Place, cut_short};
+use super::error::{Located, Location, MeshFileProblem, cut_short};
 use super::faces::Polyhedron;
 use super::{MeshOptions, SeparateBuffers};
 use crate::format::{DataError, input};
@@ -28,7 +28,7 @@ pub(super) fn parse(
     }
     if bytes.starts_with(b"glTF") && (bytes.len() < GLB_HEADER || glb_length(bytes) < GLB_HEADER) {
         let problem = cut_short("the header of a binary glTF file");
-        return Err((Some(Place::Byte(bytes.len().min(8))), problem.into()));
+        return Err((Some(Location::Byte(bytes.len().min(8))), problem.into()));
     }
     read(bytes, path, options).map_err(|problem| (None, problem))
 }
@@ -107,7 +107,7 @@ fn add_mesh(
         for t in triangles {
             let [a, b, c] = t.map(|v| first + v);
             let corners = if is_mirrored { [a, c, b] } else { [a, b, c] };
-            let place = Place::Face(polyhedron.face_count());
+            let place = Location::Face(polyhedron.face_count());
             polyhedron.push_face(corners, place);
         }
     }

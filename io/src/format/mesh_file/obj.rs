@@ -3,7 +3,7 @@
 //! This crate has its own reader because a sheet needs what general readers do not keep: the numbering of the
 //! vertices (scenes hold "vertex 0"), vertices shared between groups, all digits, and the line of an error.
 
-use super::error::{Located, Place, excerpt, no_such_vertex};
+use super::error::{Located, Location, excerpt, no_such_vertex};
 use super::faces::Polyhedron;
 use crate::format::DataError;
 use isosheet_mesh::wording::given;
@@ -38,12 +38,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
             let whole = std::mem::take(&mut joined);
             parser.line(&whole, first)
         };
-        result.map_err(|problem| (Some(Place::Line(first)), problem.into()))?;
+        result.map_err(|problem| (Some(Location::Line(first)), problem.into()))?;
     }
     if !joined.is_empty() {
         parser
             .line(&joined, first)
-            .map_err(|problem| (Some(Place::Line(first)), problem.into()))?;
+            .map_err(|problem| (Some(Location::Line(first)), problem.into()))?;
     }
     parser.finish()
 }
@@ -88,7 +88,7 @@ impl Parser {
             Some("v") => self.vertex(content)?,
             Some("f" | "fo") => {
                 let corners: Vec<i64> = words.map(|w| self.corner(w)).collect::<Result<_, _>>()?;
-                self.mesh.push_face(corners, Place::Line(number));
+                self.mesh.push_face(corners, Location::Line(number));
             }
             Some("l") => self.mesh.lines += 1,
             Some("p") => self.mesh.points += 1,
@@ -151,7 +151,7 @@ impl Parser {
                 let message =
                     format!("the file has no vertices, and its first unknown word is {word:?}");
                 let error = DataError::new(message, "check that it is an OBJ file");
-                Err((Some(Place::Line(line)), error.into()))
+                Err((Some(Location::Line(line)), error.into()))
             }
             _ => Ok(self.mesh),
         }

@@ -1,6 +1,6 @@
 //! Reading OFF files (Object File Format of Geomview).
 
-use super::error::{Located, Place, cut_short, excerpt, unexpected};
+use super::error::{Located, Location, cut_short, excerpt, unexpected};
 use super::faces::Polyhedron;
 use std::str::FromStr;
 
@@ -64,7 +64,7 @@ struct Lines<'a> {
 
 /// What is left of a line.
 struct Line<'a> {
-    place: Place,
+    place: Location,
     words: Vec<&'a str>,
     next: usize,
 }
@@ -83,7 +83,7 @@ impl<'a> Lines<'a> {
             let words: Vec<&str> = content.split_whitespace().collect();
             if !words.is_empty() {
                 return Ok(Line {
-                    place: Place::Line(k + 1),
+                    place: Location::Line(k + 1),
                     words,
                     next: 0,
                 });

@@ -1,6 +1,6 @@
 //! Reading PLY files (Polygon File Format).
 
-use super::error::{CORRECT, Located, Place, announced, unexpected};
+use super::error::{CORRECT, Located, Location, announced, unexpected};
 use super::faces::Polyhedron;
 use crate::format::DataError;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -24,9 +24,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
         let first: String = bytes.iter().take(20).map(|&b| char::from(b)).collect();
         let found = first.lines().next().unwrap_or_default();
         let problem = unexpected("the word ply", found);
-        return Err((Some(Place::Line(1)), problem.into()));
+        return Err((Some(Location::Line(1)), problem.into()));
     }
-    let parser = Parser::<Row>::new();
+    let parser = Parser::<PlyRow>::new();
     let mut reader = Reader::new(bytes);
     let header = parser
         .read_header(&mut reader)
@@ -46,7 +46,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
             }
             "face" => {
                 for (k, row) in rows.into_iter().enumerate() {
-                    mesh.push_face(row.corners, Place::Face(k));
+                    mesh.push_face(row.corners, Location::Face(k));
                 }
             }
             _ => {}
@@ -56,12 +56,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
 }
 
 /// A vertex, a face or another element.
-struct Row {
+struct PlyRow {
     place: [f64; 3],
     corners: Vec<i64>,
 }
 
-impl PropertyAccess for Row {
+impl PropertyAccess for PlyRow {
     fn new() -> Self {
         Self {
             place: [0.0; 3],
@@ -91,7 +91,7 @@ impl PropertyAccess for Row {
     }
 }
 
-impl Row {
+impl PlyRow {
     fn set(&mut self, axis: usize, property: &Property) -> PropertyAccessResult {
         self.place[axis] = match *property {
             Property::Char(v) => v.into(),
@@ -160,6 +160,6 @@ fn size(scalar: &ScalarType) -> u64 {
 fn located(error: &ParseError, is_text: bool) -> Located {
     let message = error.to_string().replace(['\n', '\t'], " ");
     let short: String = message.chars().take(200).collect();
-    let line = error.line().filter(|_| is_text).map(Place::Line);
+    let line = error.line().filter(|_| is_text).map(Location::Line);
     (line, DataError::new(short, CORRECT).into())
 }

@@ -1,6 +1,6 @@
 //! Reading STL files (stereolithography).
 
-use super::error::{CORRECT, Located, Place, announced, cut_short};
+use super::error::{CORRECT, Located, Location, announced, cut_short};
 use super::faces::Polyhedron;
 use crate::format::DataError;
 use std::io::Cursor;
@@ -37,11 +37,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
         Some((count, needed)) => {
             let [needed, available] = [needed, length].map(|bytes| bytes - HEADER as u64);
             let problem = announced("facets", count.into(), needed, available);
-            return Err((Some(Place::Byte(80)), problem.into()));
+            return Err((Some(Location::Byte(80)), problem.into()));
         }
         None => {
             let problem = cut_short("the number of facets of a binary STL file");
-            return Err((Some(Place::Byte(bytes.len())), problem.into()));
+            return Err((Some(Location::Byte(bytes.len())), problem.into()));
         }
     }
     Ok(mesh)
@@ -51,7 +51,7 @@ fn binary(mesh: &mut Polyhedron, bytes: &[u8]) -> Result<(), Located> {
     // The comment of a binary file may begin with "solid" as a text does.
     let rest = &bytes[80..];
     let file = [&[0; 80][..], rest].concat();
-    let place = |facet: usize| Some(Place::Byte(HEADER + FACET * facet));
+    let place = |facet: usize| Some(Location::Byte(HEADER + FACET * facet));
     facets(mesh, file, &place)
 }
 
@@ -78,7 +78,7 @@ fn text(mesh: &mut Polyhedron, text: &str) -> Result<(), Located> {
 fn facets(
     mesh: &mut Polyhedron,
     file: Vec<u8>,
-    place: &dyn Fn(usize) -> Option<Place>,
+    place: &dyn Fn(usize) -> Option<Location>,
 ) -> Result<(), Located> {
     let mut file = Cursor::new(file);
     let failed = |facet: usize, problem: String| {
@@ -98,7 +98,7 @@ fn facets(
             pushed.map_err(|problem| (place(k), problem.into()))?;
         }
         let vertex = 3 * k as i64;
-        mesh.push_face([vertex, vertex + 1, vertex + 2], Place::Face(k));
+        mesh.push_face([vertex, vertex + 1, vertex + 2], Location::Face(k));
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ pub(super) fn parse(format: MeshFormat, bytes: &[u8]) -> Result<MeshFile, MeshFi
     parse_mesh(bytes, format, Path::new(&path), &MeshOptions::default())
 }
 
-pub(super) fn problem(format: MeshFormat, bytes: &[u8]) -> (Option<Place>, MeshFileProblem) {
+pub(super) fn problem(format: MeshFormat, bytes: &[u8]) -> (Option<Location>, MeshFileProblem) {
     let error = parse(format, bytes).expect_err("should be refused");
     let text = error.with_advice();
     assert!(text.starts_with("test.") && text.len() > 40, "{text}");
@@ -17,7 +17,7 @@ pub(super) fn problem(format: MeshFormat, bytes: &[u8]) -> (Option<Place>, MeshF
 }
 
 #[track_caller]
-pub(super) fn refuses(format: MeshFormat, bytes: &[u8], place: Option<Place>, says: &str) {
+pub(super) fn refuses(format: MeshFormat, bytes: &[u8], place: Option<Location>, says: &str) {
     let (found, problem) = problem(format, bytes);
     assert_eq!(found, place, "{problem}");
     assert!(problem.to_string().contains(says), "{problem}");
@@ -204,7 +204,7 @@ fn formats_are_known_by_their_extension() {
 #[test]
 fn defects_of_off_files_name_their_line() {
     let off = |text: &str, place: Option<usize>, says: &str| {
-        let place = place.map(Place::Line);
+        let place = place.map(Location::Line);
         refuses(MeshFormat::Off, text.as_bytes(), place, says);
     };
     off("", None, "the file ends before the keyword OFF");
@@ -226,7 +226,7 @@ fn defects_of_off_files_name_their_line() {
 #[test]
 fn defects_of_stl_files_name_their_byte_or_facet() {
     let stl = |bytes: &[u8], place: Option<usize>, says: &str| {
-        refuses(MeshFormat::Stl, bytes, place.map(Place::Byte), says);
+        refuses(MeshFormat::Stl, bytes, place.map(Location::Byte), says);
     };
     stl(b"", None, "it is empty");
     stl(
@@ -247,18 +247,18 @@ fn defects_of_stl_files_name_their_byte_or_facet() {
 
 #[test]
 fn defects_of_ply_files_name_their_place() {
-    let ply = |text: &str, place: Option<Place>, says: &str| {
+    let ply = |text: &str, place: Option<Location>, says: &str| {
         refuses(MeshFormat::Ply, text.as_bytes(), place, says);
     };
-    ply("plx\n", Some(Place::Line(1)), "expected the word ply");
+    ply("plx\n", Some(Location::Line(1)), "expected the word ply");
     let many = TEXT_PLY.replace("vertex 4", "vertex 4000000000");
     ply(&many, None, "announces 4000000000 elements \"vertex\"");
     let empty = TEXT_PLY.replace("element face", "element nothing 99999999999\nelement face");
     ply(&empty, None, "\"nothing\" has no properties");
     let word = TEXT_PLY.replace("2 1 0.5", "2 one 0.5");
-    ply(&word, Some(Place::Line(13)), "one");
+    ply(&word, Some(Location::Line(13)), "one");
     let index = TEXT_PLY.replace("3 0 2 3", "3 0 2 4");
-    ply(&index, Some(Place::Face(1)), "vertex 4, but there are 4");
+    ply(&index, Some(Location::Face(1)), "vertex 4, but there are 4");
     let flat = TEXT_PLY.replace("float z", "float w");
     ply(&flat, None, "the vertices have no property \"z\"");
     // Triangles that would be lost beside those of the faces.

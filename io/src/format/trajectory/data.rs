@@ -21,13 +21,13 @@ pub struct FrameData<'a> {
 
 impl<'a> FrameData<'a> {
     /// What a function has of each quantity.
-    pub(crate) fn each(of: impl Fn(Quantity) -> &'a [f64]) -> Self {
+    pub(crate) fn each(of: impl Fn(FrameQuantity) -> &'a [f64]) -> Self {
         Self {
-            rod_forces: of(Quantity::RodForces),
-            contact_forces: of(Quantity::ContactForces),
-            gaps: of(Quantity::Gaps),
-            plastic_angles: of(Quantity::PlasticAngles),
-            plastic_curvatures: of(Quantity::PlasticCurvatures),
+            rod_forces: of(FrameQuantity::RodForces),
+            contact_forces: of(FrameQuantity::ContactForces),
+            gaps: of(FrameQuantity::Gaps),
+            plastic_angles: of(FrameQuantity::PlasticAngles),
+            plastic_curvatures: of(FrameQuantity::PlasticCurvatures),
         }
     }
 }
@@ -42,7 +42,7 @@ pub(crate) struct MeshCounts {
 
 /// One kind of data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Quantity {
+pub(crate) enum FrameQuantity {
     RodForces,
     ContactForces,
     Gaps,
@@ -50,7 +50,7 @@ pub(crate) enum Quantity {
     PlasticCurvatures,
 }
 
-impl Quantity {
+impl FrameQuantity {
     /// How many there are.
     pub(crate) const COUNT: usize = 5;
 

@@ -1,7 +1,7 @@
 //! Trajectories at another rate of frames.
 
 use super::Trajectory;
-use super::data::Quantity;
+use super::data::FrameQuantity;
 use crate::format::DataError;
 
 /// The largest number of frames that are made: an hour of film at 24 frames a second.
@@ -55,7 +55,7 @@ impl Trajectory {
             let [p, q] = [a, b].map(|k| &self.x[n * k..n * (k + 1)]);
             resampled.t.push(t);
             resampled.x.extend(p.iter().zip(q).map(mix));
-            for quantity in Quantity::ALL {
+            for quantity in FrameQuantity::ALL {
                 if let (Some(p), Some(q)) = (self.values(quantity, a), self.values(quantity, b)) {
                     let kept = &mut resampled.data[quantity as usize];
                     kept.extend(p.iter().zip(q).map(mix));

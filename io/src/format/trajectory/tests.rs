@@ -331,7 +331,7 @@ fn write_unchecked(run: &Trajectory, path: &Path) {
     let lengths = run.rest_lengths.iter().copied();
     npz.put("rest_lengths", &[run.rest_lengths.len() as u64], lengths)
         .unwrap();
-    for quantity in Quantity::ALL {
+    for quantity in FrameQuantity::ALL {
         let shape = [&[frames], &quantity.shape(run.counts())[..]].concat();
         let values = run.data[quantity as usize].iter().copied();
         npz.put(quantity.name(), &shape, values).unwrap();

@@ -9,7 +9,7 @@ use serde::Deserialize;
 /// What is used of a frame. All keys of the format are optional.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct Frame {
+pub(super) struct FrameRecord {
     frame_title: Option<String>,
     frame_parent: Option<usize>,
     frame_inherit: Option<bool>,
@@ -23,18 +23,21 @@ pub(super) struct Frame {
     pub(super) fold_angles: Option<Vec<Option<f64>>>,
     pub(super) faces_vertices: Option<Vec<Vec<i64>>>,
     /// The other frames; in the key frame alone, whose keys are those of the file itself.
-    file_frames: Option<Vec<Frame>>,
+    file_frames: Option<Vec<FrameRecord>>,
 }
 
 /// Reads one frame with what it inherits; without a number the first that has vertices.
-pub(super) fn read(bytes: &[u8], wanted: Option<&FoldFrame>) -> Result<Frame, MeshFileProblem> {
+pub(super) fn read(
+    bytes: &[u8],
+    wanted: Option<&FoldFrame>,
+) -> Result<FrameRecord, MeshFileProblem> {
     if bytes.trim_ascii().is_empty() {
         return Err(empty().into());
     }
-    let mut key: Frame = serde_json::from_slice(bytes)
+    let mut key: FrameRecord = serde_json::from_slice(bytes)
         .map_err(|e| DataError::new(format!("the file is not valid FOLD: {e}"), CORRECT))?;
     let others = key.file_frames.take().unwrap_or_default();
-    let frames: Vec<Frame> = std::iter::once(key).chain(others).collect();
+    let frames: Vec<FrameRecord> = std::iter::once(key).chain(others).collect();
     if let Some(wanted) = wanted {
         return Ok(inherited(&frames, number_of(&frames, wanted)?)?);
     }
@@ -52,7 +55,7 @@ pub(super) fn read(bytes: &[u8], wanted: Option<&FoldFrame>) -> Result<Frame, Me
 }
 
 /// The number of the frame that is asked for.
-fn number_of(frames: &[Frame], wanted: &FoldFrame) -> Result<usize, MeshFileProblem> {
+fn number_of(frames: &[FrameRecord], wanted: &FoldFrame) -> Result<usize, MeshFileProblem> {
     let problem = |found: Vec<usize>| {
         let what = match found.len() {
             0 => format!("there is no frame {wanted}"),
@@ -82,8 +85,8 @@ const MOST_LISTED: usize = 12;
 const LONGEST_TITLE: usize = 80;
 
 /// The frames of a file, with titles and classes, for an error.
-fn listed(frames: &[Frame]) -> String {
-    let name = |(k, frame): (usize, &Frame)| {
+fn listed(frames: &[FrameRecord]) -> String {
+    let name = |(k, frame): (usize, &FrameRecord)| {
         let title = frame.frame_title.as_deref();
         let title = title.map_or(String::new(), |title| {
             let short: String = title.chars().take(LONGEST_TITLE).collect();
@@ -117,7 +120,7 @@ const MOST_ANCESTORS: usize = 1000;
 
 /// A frame and those that it inherits from, the nearest first. A frame that inherits and names no parent
 /// inherits from the key frame.
-fn ancestry(frames: &[Frame], number: usize) -> Result<Vec<usize>, DataError> {
+fn ancestry(frames: &[FrameRecord], number: usize) -> Result<Vec<usize>, DataError> {
     let mut chain = vec![number];
     let mut at = number;
     while at != 0 && frames[at].frame_inherit == Some(true) {
@@ -136,11 +139,11 @@ fn ancestry(frames: &[Frame], number: usize) -> Result<Vec<usize>, DataError> {
 }
 
 /// A frame with the keys of its ancestors that it does not have itself.
-fn inherited(frames: &[Frame], number: usize) -> Result<Frame, DataError> {
+fn inherited(frames: &[FrameRecord], number: usize) -> Result<FrameRecord, DataError> {
     let chain = ancestry(frames, number)?;
-    let merge = |frame: Frame, &ancestor: &usize| {
+    let merge = |frame: FrameRecord, &ancestor: &usize| {
         let from = &frames[ancestor];
-        Frame {
+        FrameRecord {
             frame_title: None,
             frame_parent: None,
             frame_inherit: None,
@@ -158,10 +161,10 @@ fn inherited(frames: &[Frame], number: usize) -> Result<Frame, DataError> {
             file_frames: None,
         }
     };
-    Ok(chain.iter().fold(Frame::default(), merge))
+    Ok(chain.iter().fold(FrameRecord::default(), merge))
 }
 
-impl Frame {
+impl FrameRecord {
     /// Whether the frame says that it is of a class such as `creasePattern` or `foldedForm`.
     pub(super) fn has_class(&self, class: &str) -> bool {
         self.frame_classes.iter().flatten().any(|c| c == class)

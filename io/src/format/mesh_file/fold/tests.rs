@@ -2,7 +2,7 @@
 
 use crate::format::mesh_file::tests::{FOLD, cross, parse, refuses};
 use crate::format::mesh_file::{
-    EdgeAssignment, FoldFrame, MeshFileProblem, MeshFormat, MeshOptions, Place, parse_mesh,
+    EdgeAssignment, FoldFrame, Location, MeshFileProblem, MeshFormat, MeshOptions, parse_mesh,
 };
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, VertexId, fold_angle};
@@ -36,7 +36,7 @@ fn defects_of_fold_files_are_typed() {
     let cut = &FOLD.as_bytes()[..100];
     refuses(MeshFormat::Fold, cut, None, "the file is not valid FOLD: ");
     let index = FOLD.replace("[0, 2, 3]", "[0, 2, -3]");
-    let face = Some(Place::Face(1));
+    let face = Some(Location::Face(1));
     refuses(
         MeshFormat::Fold,
         index.as_bytes(),

@@ -2,8 +2,8 @@ use isosheet_mesh::{MeshError, Topology, TopologyError, generate};
 use proptest::prelude::*;
 
 use crate::{
-    MeshFile, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, Place, Polygons, frame_path,
-    parse_mesh, read_sheet, write_obj,
+    Location, MeshFile, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, Polygons,
+    frame_path, parse_mesh, read_sheet, write_obj,
 };
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn problem(text: &str) -> (Option<usize>, MeshFileProblem) {
     let e = parse(text).unwrap_err();
     assert!(e.to_string().starts_with("test.obj"), "{e}");
     let line = e.place.map(|p| match p {
-        Place::Line(line) => line,
+        Location::Line(line) => line,
         other => panic!("{other}"),
     });
     (line, e.problem)
