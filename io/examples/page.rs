@@ -7,7 +7,8 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::io::Write;
 use std::path::PathBuf;
 
-use isosheet_io::view::{Body, BodyShape, Centering, Field, Pose, Replay, Scale, TimeSeries};
+use isosheet_io::BodyPose;
+use isosheet_io::view::{Body, BodyShape, Centering, Field, Replay, Scale, TimeSeries};
 use isosheet_io::write_atomically;
 use isosheet_mesh::{Sheet, Topology, fold_angle, generate};
 
@@ -116,7 +117,7 @@ fn bodies(times: &[f64]) -> Vec<Body> {
         poses,
     };
     // A quarter turn about x puts the axis along y.
-    let lying = Pose {
+    let lying = BodyPose {
         rotation: [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2],
         translation: [0.0, 0.0, HEIGHT],
     };
@@ -129,14 +130,14 @@ fn bodies(times: &[f64]) -> Vec<Body> {
     let rolling = |&t: &f64| {
         let way = 0.3 * share(t);
         let half = way / BALL / 2.0;
-        Pose {
+        BodyPose {
             rotation: [0.0, half.sin(), 0.0, half.cos()],
             translation: [way - 0.15, -0.3, BALL],
         }
     };
     let ball = BodyShape::Sphere { radius: BALL };
     vec![
-        body("floor", BodyShape::HalfSpace, vec![Pose::IDENTITY]),
+        body("floor", BodyShape::HalfSpace, vec![BodyPose::IDENTITY]),
         body("cylinder", cylinder, vec![lying]),
         body("ball", ball, times.iter().map(rolling).collect()),
     ]

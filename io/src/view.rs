@@ -98,7 +98,7 @@ mod page;
 mod quantise;
 mod replay;
 
-pub use body::{Body, BodyShape, Pose};
+pub use body::{Body, BodyShape};
 #[cfg(feature = "run")]
 pub(crate) use check::no_frames;
 #[cfg(feature = "run")]

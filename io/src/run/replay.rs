@@ -1,8 +1,10 @@
 //! What the page shows of a recorded motion.
 
 use super::frame_field::{FrameField, check_frame};
-use crate::format::{DataError, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory};
-use crate::view::{Body, BodyShape, Pose, Replay, Scale, TimeSeries};
+use crate::format::{
+    BodyPose, DataError, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory,
+};
+use crate::view::{Body, BodyShape, Replay, Scale, TimeSeries};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_mesh::Sheet;
 use nalgebra::Isometry3;
@@ -79,7 +81,7 @@ impl Replay {
     }
 }
 
-impl From<Isometry3<f64>> for Pose {
+impl From<Isometry3<f64>> for BodyPose {
     fn from(pose: Isometry3<f64>) -> Self {
         let q = pose.rotation.quaternion();
         Self {
@@ -130,7 +132,7 @@ impl Body {
         times: &[f64],
         pose: impl Fn(f64) -> Isometry3<f64>,
     ) -> Self {
-        let mut poses: Vec<Pose> = times.iter().map(|&t| pose(t).into()).collect();
+        let mut poses: Vec<BodyPose> = times.iter().map(|&t| pose(t).into()).collect();
         if poses.windows(2).all(|pair| pair[0] == pair[1]) {
             poses.truncate(1);
         }

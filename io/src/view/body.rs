@@ -2,7 +2,7 @@
 
 use super::check;
 use super::pack::{packed_doubles, packed_triangles};
-use crate::format::DataError;
+use crate::format::{BodyPose, DataError};
 use isosheet_mesh::wording::{brief, given};
 use serde::Serialize;
 
@@ -47,31 +47,6 @@ pub enum BodyShape {
     },
 }
 
-/// Where a body is: a point `X` of its own frame is at `R X + translation`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// The rotation `R` as a quaternion `[x, y, z, w]` of length 1, where `w` is the real part.
-    pub rotation: [f64; 4],
-    /// Where the origin of the body is, in metres.
-    pub translation: [f64; 3],
-}
-
-impl Pose {
-    /// No rotation and no translation.
-    pub const IDENTITY: Self = Self {
-        rotation: [0.0, 0.0, 0.0, 1.0],
-        translation: [0.0; 3],
-    };
-
-    /// A translation, in metres.
-    pub const fn at(translation: [f64; 3]) -> Self {
-        Self {
-            translation,
-            ..Self::IDENTITY
-        }
-    }
-}
-
 /// A rigid body beside the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
@@ -80,7 +55,7 @@ pub struct Body {
     /// Its form.
     pub shape: BodyShape,
     /// Its pose in each frame (length T), or a single one when it does not move.
-    pub poses: Vec<Pose>,
+    pub poses: Vec<BodyPose>,
 }
 
 /// By how much the length of a quaternion may differ from 1: quaternions that were integrated or rounded to

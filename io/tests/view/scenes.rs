@@ -1,6 +1,7 @@
 //! Replays for the tests.
 
-use isosheet_io::view::{Axis, Body, BodyShape, Centering, Field, Pose, Replay, Scale, TimeSeries};
+use isosheet_io::BodyPose;
+use isosheet_io::view::{Axis, Body, BodyShape, Centering, Field, Replay, Scale, TimeSeries};
 use isosheet_mesh::{Sheet, generate};
 
 /// Pseudo-random numbers in [0, 1): the low-discrepancy sequence of the golden ratio.
@@ -104,7 +105,7 @@ pub(crate) fn every_body(frames: usize) -> Replay {
     let body = |name: &str, shape, x: f64| Body {
         name: name.into(),
         shape,
-        poses: vec![Pose {
+        poses: vec![BodyPose {
             rotation: turned,
             translation: [x, -0.6, 0.2],
         }],
@@ -130,7 +131,7 @@ pub(crate) fn every_body(frames: usize) -> Replay {
         Body {
             name: "floor".into(),
             shape: BodyShape::HalfSpace,
-            poses: vec![Pose {
+            poses: vec![BodyPose {
                 rotation: [upward[0], 0.0, 0.0, upward[0].abs()],
                 translation: [0.0, -0.9, 0.0],
             }],
@@ -143,7 +144,7 @@ pub(crate) fn every_body(frames: usize) -> Replay {
     ];
     for body in &mut replay.bodies[1..3] {
         let pose = body.poses[0];
-        let at = |k: usize| Pose {
+        let at = |k: usize| BodyPose {
             translation: [
                 pose.translation[0],
                 pose.translation[1] + 0.01 * k as f64,

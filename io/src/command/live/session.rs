@@ -2,10 +2,11 @@
 
 use super::message::{HandFrame, LiveCommand, LiveFrame, Notice, NoticeKind};
 use super::slider::Slider;
+use crate::BodyPose;
 use crate::format::HistoryRow;
 use crate::run::HoldingBody;
 use crate::scene::{LiveScene, SceneError, SceneFile, bounds};
-use crate::view::{Pose, TimeSeries};
+use crate::view::TimeSeries;
 use isosheet_dynamics::{StepError, StepProgress};
 use isosheet_mesh::wording::brief;
 use isosheet_mesh::{Advice, VertexId};
@@ -230,7 +231,7 @@ impl Session {
         let bodies = self.live.obstacles().iter();
         let bodies = bodies.map(|body| body.motion().pose(state.t));
         let holding = self.holding.iter().map(|body| body.pose(scene, state.t));
-        let numbers = |pose: Pose| {
+        let numbers = |pose: BodyPose| {
             let ([a, b, c, d], [x, y, z]) = (pose.rotation, pose.translation);
             [a, b, c, d, x, y, z]
         };

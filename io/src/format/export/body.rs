@@ -17,13 +17,26 @@ pub struct SeriesBody {
     pub poses: Vec<BodyPose>,
 }
 
-/// Where a body is: its points are first turned and then moved.
+/// Where a body is: a point `X` of its own frame is at `R X + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyPose {
-    /// A unit quaternion, with the real part last.
+    /// The rotation `R` as a quaternion `[x, y, z, w]` of length 1, where `w` is the real part.
     pub rotation: [f64; 4],
     /// Where the origin of the body is, metres.
     pub translation: [f64; 3],
+}
+
+impl BodyPose {
+    /// No rotation and no translation.
+    pub const IDENTITY: Self = Self::at([0.0; 3]);
+
+    /// A translation, in metres.
+    pub const fn at(translation: [f64; 3]) -> Self {
+        Self {
+            rotation: [0.0, 0.0, 0.0, 1.0],
+            translation,
+        }
+    }
 }
 
 impl SeriesBody {
