@@ -58,6 +58,12 @@ impl Key {
         Self(parts)
     }
 
+    /// The entries of the list at this key, each with its own.
+    pub(crate) fn entries<'a, T>(&self, list: &'a [T]) -> impl Iterator<Item = (Self, &'a T)> {
+        let entries = list.iter().enumerate();
+        entries.map(|(k, entry)| (self.entry(k), entry))
+    }
+
     /// The place one step further.
     #[must_use]
     pub(crate) fn part(&self, part: &KeyPart) -> Self {
