@@ -18,35 +18,6 @@ pub struct ReadError {
     remedy: &'static str,
 }
 
-impl ReadError {
-    /// What the system says of a file or a folder that is to be read.
-    pub fn new(path: &Path, source: io::Error) -> Self {
-        Self {
-            path: path.to_owned(),
-            message: format!("cannot read {}: {source}", path.display()),
-            source: Some(source),
-            remedy: "check the path and the permissions",
-        }
-    }
-
-    /// What is wrong with the content of a file, and what to do.
-    pub(crate) fn content(path: &Path, problem: impl Display, remedy: &'static str) -> Self {
-        Self {
-            path: path.to_owned(),
-            message: format!("{}: {problem}", path.display()),
-            source: None,
-            remedy,
-        }
-    }
-
-    /// Whether there is nothing of this name.
-    #[cfg(feature = "run")]
-    pub(crate) fn is_missing(&self) -> bool {
-        let kind = self.source.as_ref().map(io::Error::kind);
-        kind == Some(io::ErrorKind::NotFound)
-    }
-}
-
 impl Advice for ReadError {
     fn advice(&self) -> Option<&'static str> {
         Some(self.remedy)
@@ -66,6 +37,44 @@ pub enum FileError {
     /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+}
+
+impl FileError {
+    /// What the system says of a file or a folder that is to be read.
+    pub(crate) fn unreadable(path: &Path, source: io::Error) -> Self {
+        Self::Read(ReadError {
+            path: path.to_owned(),
+            message: format!("cannot read {}: {source}", path.display()),
+            source: Some(source),
+            remedy: "check the path and the permissions",
+        })
+    }
+
+    /// What the system says of a file that is being written.
+    pub(crate) fn unwritable(path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        Self::Write(WriteError::Write { path, source })
+    }
+
+    /// What is wrong with the content of a file, and what to do.
+    pub(crate) fn content(path: &Path, problem: impl Display, remedy: &'static str) -> Self {
+        Self::Read(ReadError {
+            path: path.to_owned(),
+            message: format!("{}: {problem}", path.display()),
+            source: None,
+            remedy,
+        })
+    }
+
+    /// Whether what is to be read is not there.
+    #[cfg(feature = "run")]
+    pub(crate) fn is_missing(&self) -> bool {
+        let Self::Read(error) = self else {
+            return false;
+        };
+        let kind = error.source.as_ref().map(io::Error::kind);
+        kind == Some(io::ErrorKind::NotFound)
+    }
 }
 
 impl Advice for FileError {

@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use crate::format::atomic::{WriteError, prepare_folder};
-use crate::format::{DataError, FileError, ReadError, input};
+use crate::format::{DataError, FileError, input};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -180,7 +180,7 @@ impl<R: Row> RowWriter<R> {
     ///
     /// # Errors
     /// [`WriteError`].
-    pub fn create(path: &Path) -> Result<Self, WriteError> {
+    pub fn create(path: &Path) -> Result<Self, FileError> {
         let folder = prepare_folder(path)?;
         let file =
             input::replace(path).map_err(|source| WriteError::CreateFile { folder, source })?;
@@ -199,10 +199,10 @@ impl<R: Row> RowWriter<R> {
     /// is cut off.
     ///
     /// # Errors
-    /// [`ReadError`] if the file cannot be opened, does not have as many bytes, or these are others.
-    pub fn resume(path: &Path, written: Written) -> Result<Self, ReadError> {
+    /// [`FileError::Read`] if the file cannot be opened, does not have as many bytes, or these are others.
+    pub fn resume(path: &Path, written: Written) -> Result<Self, FileError> {
         let length = written.length;
-        let read = |source| ReadError::new(path, source);
+        let read = |source| FileError::unreadable(path, source);
         let remedy = "start the run anew in another folder";
         let file = input::reopen(path, File::options().read(true).write(true));
         let mut file = file.map_err(read)?;
@@ -210,12 +210,12 @@ impl<R: Row> RowWriter<R> {
         if found < length {
             let problem =
                 format!("it has {found} bytes, {length} were written: it was cut or replaced");
-            return Err(ReadError::content(path, problem, remedy));
+            return Err(FileError::content(path, problem, remedy));
         }
         let sum = sum_of(&mut (&file).take(length)).map_err(read)?;
         if sum.clone().finalize() != written.sum {
             let problem = "it was changed since it was written, its checksum is wrong";
-            return Err(ReadError::content(path, problem, remedy));
+            return Err(FileError::content(path, problem, remedy));
         }
         file.set_len(length).map_err(read)?;
         file.seek(io::SeekFrom::End(0)).map_err(read)?;
@@ -240,12 +240,9 @@ impl<R: Row> RowWriter<R> {
     ///
     /// # Errors
     /// [`WriteError`].
-    pub fn sync(&self) -> Result<(), WriteError> {
+    pub fn sync(&self) -> Result<(), FileError> {
         let synced = self.file.sync_data();
-        synced.map_err(|source| WriteError::Write {
-            path: self.path.clone(),
-            source,
-        })
+        synced.map_err(|e| FileError::unwritable(&self.path, e))
     }
 
     /// Adds a row.
@@ -255,7 +252,7 @@ impl<R: Row> RowWriter<R> {
     /// [`FileError::Write`].
     pub fn append(&mut self, row: &R) -> Result<(), FileError> {
         row.check_finite()?;
-        Ok(self.write_record(|w| w.serialize(row))?)
+        self.write_record(|w| w.serialize(row))
     }
 
     /// The file being written.
@@ -268,11 +265,8 @@ impl<R: Row> RowWriter<R> {
     fn write_record(
         &mut self,
         record: impl FnOnce(&mut csv::Writer<&mut Vec<u8>>) -> csv::Result<()>,
-    ) -> Result<(), WriteError> {
-        let failed = |source| WriteError::Write {
-            path: self.path.clone(),
-            source,
-        };
+    ) -> Result<(), FileError> {
+        let failed = |source| FileError::unwritable(&self.path, source);
         let mut line = Vec::with_capacity(192);
         {
             let mut writer = csv::WriterBuilder::new()
@@ -302,14 +296,14 @@ fn sum_of(bytes: &mut impl Read) -> io::Result<Digest<'static, u64>> {
 /// Reads a history. A last row that is cut short, as an interrupted run may leave it, is ignored.
 ///
 /// # Errors
-/// [`ReadError`] for a file that is missing, has other columns, or an unreadable row before the last.
-pub fn read_history(path: &Path) -> Result<Vec<HistoryRow>, ReadError> {
+/// [`FileError::Read`] for a file that is missing, has other columns, or an unreadable row before the last.
+pub fn read_history(path: &Path) -> Result<Vec<HistoryRow>, FileError> {
     read_rows(path)
 }
 
 /// Reads what a [`RowWriter`] has written.
-pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>, ReadError> {
-    let text = input::read(path).map_err(|e| ReadError::new(path, e))?;
+pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>, FileError> {
+    let text = input::read(path).map_err(|e| FileError::unreadable(path, e))?;
     // A complete row ends with a line break.
     let complete = text.iter().rposition(|&b| b == b'\n').map_or(0, |k| k + 1);
     let mut reader = csv::Reader::from_reader(&text[..complete]);
@@ -321,7 +315,7 @@ pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>
         let (columns, found) = (R::COLUMNS.join(","), header.join(","));
         let problem = format!("it does not start with the columns {columns}, but with {found:?}");
         let remedy = "name the file of a run, such as its history.csv";
-        return Err(ReadError::content(path, problem, remedy));
+        return Err(FileError::content(path, problem, remedy));
     }
     // Rows are read by the order of their columns, so that a row may hold vectors.
     reader.set_headers(csv::StringRecord::new());
@@ -330,7 +324,7 @@ pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>
         let row = record.and_then(|record| record.deserialize(None));
         rows.push(row.map_err(|e| {
             let problem = format!("row {}: {e}", k + 1);
-            ReadError::content(path, problem, "correct or remove the row")
+            FileError::content(path, problem, "correct or remove the row")
         })?);
     }
     Ok(rows)

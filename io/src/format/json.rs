@@ -2,7 +2,7 @@
 
 use crate::format::atomic::write_atomically;
 use crate::format::finite::check_finite;
-use crate::format::{DataError, FileError, ReadError, input};
+use crate::format::{DataError, FileError, input};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io::Write;
@@ -23,11 +23,11 @@ pub fn write_json<T: Serialize + ?Sized>(path: &Path, value: &T) -> Result<(), F
 /// Reads a JSON file.
 ///
 /// # Errors
-/// [`ReadError`] for a file that cannot be read, or is not what was expected.
-pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, ReadError> {
-    let text = input::read(path).map_err(|e| ReadError::new(path, e))?;
+/// [`FileError::Read`] for a file that cannot be read, or is not what was expected.
+pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, FileError> {
+    let text = input::read(path).map_err(|e| FileError::unreadable(path, e))?;
     serde_json::from_slice(&text)
-        .map_err(|e| ReadError::content(path, e, "correct the file or write it anew"))
+        .map_err(|e| FileError::content(path, e, "correct the file or write it anew"))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The loads of supports and bodies in a run.
 
-use super::ReadError;
+use super::FileError;
 use super::history::{Row, RowWriter, read_rows};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -73,6 +73,6 @@ pub type LoadWriter = RowWriter<LoadRow>;
 ///
 /// # Errors
 /// As [`read_history`](super::read_history).
-pub fn read_loads(path: &Path) -> Result<Vec<LoadRow>, ReadError> {
+pub fn read_loads(path: &Path) -> Result<Vec<LoadRow>, FileError> {
     read_rows(path)
 }

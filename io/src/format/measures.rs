@@ -1,6 +1,6 @@
 //! The measures of a run.
 
-use super::ReadError;
+use super::FileError;
 use super::history::{Row, RowWriter, read_rows};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -47,6 +47,6 @@ pub type MeasureWriter = RowWriter<MeasureRow>;
 ///
 /// # Errors
 /// As [`read_history`](super::read_history).
-pub fn read_measures(path: &Path) -> Result<Vec<MeasureRow>, ReadError> {
+pub fn read_measures(path: &Path) -> Result<Vec<MeasureRow>, FileError> {
     read_rows(path)
 }

@@ -10,7 +10,7 @@ pub(crate) use data::{FrameQuantity, MeshCounts};
 pub(crate) use motion::{Motion, MotionError, MotionFrame};
 
 use crate::format::atomic::write_atomically;
-use crate::format::{DataError, FileError, ReadError};
+use crate::format::{DataError, FileError};
 use archive::{ArchiveReader, ArchiveWriter};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Sheet, VertexId};
@@ -359,7 +359,7 @@ impl Trajectory {
         });
         match failed {
             Some(error) => Err(MotionError::Frame(error)),
-            None => Ok(written.map_err(FileError::from)?),
+            None => Ok(written?),
         }
     }
 
@@ -389,10 +389,10 @@ impl Trajectory {
     /// Reads an `.npz` file that [`Self::write`] wrote, or one of the same arrays.
     ///
     /// # Errors
-    /// [`ReadError`], naming the array that is missing or does not fit the others.
-    pub fn read(path: &Path) -> Result<Self, ReadError> {
+    /// [`FileError::Read`], naming the array that is missing or does not fit the others.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
         let mut npz = ArchiveReader::open(path)
-            .map_err(|e| ReadError::content(path, e, "check that it is an .npz file"))?;
+            .map_err(|e| FileError::content(path, e, "check that it is an .npz file"))?;
         let array = |name: &str, problem: String| wrong_array(path, name, &problem);
         let (t_shape, t) = npz.get::<f64>("t", 1)?;
         let (x_shape, x) = npz.get::<f64>("x", 3)?;
@@ -462,10 +462,10 @@ impl Trajectory {
 }
 
 /// An array of a file that is missing or of another type or shape.
-fn wrong_array(path: &Path, name: &str, problem: &str) -> ReadError {
+fn wrong_array(path: &Path, name: &str, problem: &str) -> FileError {
     let problem = format!("array `{name}`: {problem}");
     let remedy = "give a trajectory that this program wrote, and that memory can hold";
-    ReadError::content(path, problem, remedy)
+    FileError::content(path, problem, remedy)
 }
 
 /// A number of a frame that is not finite.

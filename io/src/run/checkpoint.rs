@@ -5,7 +5,7 @@ use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::error::BEGIN_ANEW;
 use super::summary::{Ending, Measured};
-use crate::format::{ReadError, Written, input, write_atomically};
+use crate::format::{FileError, Written, input, write_atomically};
 use crc::{CRC_64_XZ, Crc};
 use isosheet_dynamics::Checkpoint;
 use serde::{Deserialize, Serialize};
@@ -89,8 +89,8 @@ pub(crate) fn write(
 }
 
 /// A checkpoint that cannot be used.
-fn damaged(path: &Path, problem: impl Display) -> ReadError {
-    ReadError::content(path, problem, BEGIN_ANEW)
+fn damaged(path: &Path, problem: impl Display) -> FileError {
+    FileError::content(path, problem, BEGIN_ANEW)
 }
 
 /// Reads a checkpoint.

@@ -3,7 +3,7 @@
 use super::Summary;
 use super::folder::RunFolder;
 use super::sweep::{Sweep, SweepError};
-use crate::format::{ReadError, cell, check_finite, read_json, write_atomically};
+use crate::format::{FileError, cell, check_finite, read_json, write_atomically};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -103,7 +103,7 @@ impl Collection {
             return Ok(());
         }
         let summary: Summary = read_json(&path)?;
-        let wrong = |problem: String| ReadError::content(&path, problem, "run the scene again");
+        let wrong = |problem: String| FileError::content(&path, problem, "run the scene again");
         check_finite(&summary).map_err(|e| wrong(e.message))?;
         let fields = serde_json::to_value(&summary).map_err(|e| wrong(e.to_string()))?;
         let mut row = vec![("folder".to_owned(), folder.display().to_string())];

@@ -1,6 +1,6 @@
 //! Why a run cannot go on.
 
-use crate::format::{DataError, ExportError, FileError, ReadError, WriteError};
+use crate::format::{DataError, ExportError, FileError};
 use crate::scene::{SceneError, SceneFileError};
 use isosheet_mesh::Advice;
 use std::io;
@@ -99,18 +99,6 @@ pub enum RunError {
 
 /// What to do about a damaged file of a run.
 pub(super) const BEGIN_ANEW: &str = "run the scene again with --force, which replaces the run";
-
-impl From<WriteError> for RunError {
-    fn from(error: WriteError) -> Self {
-        Self::File(error.into())
-    }
-}
-
-impl From<ReadError> for RunError {
-    fn from(error: ReadError) -> Self {
-        Self::File(error.into())
-    }
-}
 
 impl Advice for RunError {
     fn advice(&self) -> Option<&'static str> {

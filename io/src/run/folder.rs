@@ -3,7 +3,7 @@
 use super::error::BEGIN_ANEW;
 use super::{RunError, Summary};
 use crate::format::atomic::is_unfinished;
-use crate::format::{ReadError, frame_number, input, read_json, write_atomically};
+use crate::format::{FileError, frame_number, input, read_json, write_atomically};
 use crate::scene::{Files, Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use std::ffi::OsString;
@@ -366,7 +366,7 @@ pub(crate) fn stored_scene(root: &Path) -> Result<SceneFile, RunError> {
     for (_, name) in stored.scene().files() {
         if let Err(error) = input::within(root, &name) {
             let problem = format!("it names the mesh file {}: {error}", name.display());
-            return Err(ReadError::content(&path, problem, BEGIN_ANEW).into());
+            return Err(FileError::content(&path, problem, BEGIN_ANEW).into());
         }
     }
     Ok(stored)

@@ -3,9 +3,7 @@
 use super::RunError;
 use super::error::BEGIN_ANEW;
 use crate::format::input;
-use crate::format::{
-    FrameData, FrameQuantity, MeshCounts, Motion, MotionFrame, ReadError, WriteError,
-};
+use crate::format::{FileError, FrameData, FrameQuantity, MeshCounts, Motion, MotionFrame};
 use crate::scene::Setup;
 use crc::{CRC_64_XZ, Crc};
 use std::fs::File;
@@ -107,15 +105,12 @@ impl FrameShape {
 
 impl FrameFile {
     /// Starts a new file.
-    pub(crate) fn create(path: &Path) -> Result<Self, WriteError> {
+    pub(crate) fn create(path: &Path) -> Result<Self, FileError> {
         let begun = input::replace(path).and_then(|mut file| {
             file.write_all(MAGIC)?;
             Ok(file)
         });
-        let file = begun.map_err(|source| WriteError::Write {
-            path: path.to_owned(),
-            source,
-        })?;
+        let file = begun.map_err(|e| FileError::unwritable(path, e))?;
         Ok(Self {
             path: path.to_owned(),
             file,
@@ -133,7 +128,7 @@ impl FrameFile {
         for k in 0..count {
             if frames.next_record()?.is_none() {
                 let problem = format!("it ends after frame {k}, {count} were written");
-                return Err(ReadError::content(path, problem, BEGIN_ANEW).into());
+                return Err(FileError::content(path, problem, BEGIN_ANEW).into());
             }
         }
         let length = MAGIC.len() as u64 + count * shape.bytes() as u64;
@@ -143,10 +138,7 @@ impl FrameFile {
             file.seek(SeekFrom::End(0))?;
             Ok(file)
         });
-        let file = continued.map_err(|source| WriteError::Write {
-            path: path.to_owned(),
-            source,
-        })?;
+        let file = continued.map_err(|e| FileError::unwritable(path, e))?;
         Ok(Self {
             path: path.to_owned(),
             file,
@@ -166,7 +158,7 @@ impl FrameFile {
         t: f64,
         x: &[f64],
         data: &FrameData<'_>,
-    ) -> Result<(), WriteError> {
+    ) -> Result<(), FileError> {
         self.record.clear();
         self.record.extend(t.to_le_bytes());
         let further = FrameQuantity::ALL.map(|quantity| quantity.of(data));
@@ -177,21 +169,15 @@ impl FrameFile {
         let sum = SUM.checksum(&self.record);
         self.record.extend(sum.to_le_bytes());
         let written = self.file.write_all(&self.record);
-        written.map_err(|source| self.failed(source))?;
+        written.map_err(|e| FileError::unwritable(&self.path, e))?;
         self.count += 1;
         Ok(())
     }
 
     /// Waits until all frames are on the disk.
-    pub(crate) fn sync(&self) -> Result<(), WriteError> {
-        self.file.sync_data().map_err(|source| self.failed(source))
-    }
-
-    fn failed(&self, source: io::Error) -> WriteError {
-        WriteError::Write {
-            path: self.path.clone(),
-            source,
-        }
+    pub(crate) fn sync(&self) -> Result<(), FileError> {
+        let synced = self.file.sync_data();
+        synced.map_err(|e| FileError::unwritable(&self.path, e))
     }
 }
 
@@ -205,20 +191,20 @@ struct Frames<'a> {
 }
 
 impl<'a> Frames<'a> {
-    fn open(path: &'a Path, shape: FrameShape) -> Result<Self, ReadError> {
+    fn open(path: &'a Path, shape: FrameShape) -> Result<Self, FileError> {
         let read = |source: io::Error| match source.kind() {
             ErrorKind::NotFound => {
                 let problem = "it is missing, which has the frames of the run";
-                ReadError::content(path, problem, BEGIN_ANEW)
+                FileError::content(path, problem, BEGIN_ANEW)
             }
-            _ => ReadError::new(path, source),
+            _ => FileError::unreadable(path, source),
         };
         let mut file = BufReader::new(input::open(path).map_err(read)?);
         let mut magic = [0; MAGIC.len()];
         let found = read_whole(&mut file, &mut magic).map_err(read)?;
         if !found || magic != *MAGIC {
             let problem = "it is not a file of frames of this version";
-            return Err(ReadError::content(path, problem, BEGIN_ANEW));
+            return Err(FileError::content(path, problem, BEGIN_ANEW));
         }
         Ok(Self {
             path,
@@ -230,9 +216,9 @@ impl<'a> Frames<'a> {
 
     /// The numbers of the next frame as bytes; none at the end of the file, where the last frame may be a
     /// part of one.
-    fn next_record(&mut self) -> Result<Option<&[u8]>, ReadError> {
+    fn next_record(&mut self) -> Result<Option<&[u8]>, FileError> {
         let found = read_whole(&mut self.file, &mut self.record);
-        if !found.map_err(|source| ReadError::new(self.path, source))? {
+        if !found.map_err(|source| FileError::unreadable(self.path, source))? {
             return Ok(None);
         }
         let frame = self.count;
@@ -245,7 +231,7 @@ impl<'a> Frames<'a> {
                 let problem = format!("frame {frame} is damaged, its checksum is wrong");
                 let remedy = "give the `simulate` command again, which takes up a run that is not complete at its \
                               last checkpoint; if it names the same frame, run the scene again with --force";
-                Err(ReadError::content(self.path, problem, remedy))
+                Err(FileError::content(self.path, problem, remedy))
             }
         }
     }

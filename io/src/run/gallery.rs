@@ -10,7 +10,7 @@ pub use error::GalleryError;
 use super::folder::{RunFolder, holds_other_files, remove_unfinished};
 use super::page::page_of;
 use super::{Film, FilmOptions, Recording, RunError, Sweep};
-use crate::format::{ReadError, WriteError, read_json, write_atomically, write_json};
+use crate::format::{FileError, read_json, write_atomically, write_json};
 use crate::picture::PictureError;
 use crate::view::PageOptions;
 use entry::RUNS;
@@ -76,10 +76,7 @@ impl Gallery {
             let _ = remove_unfinished(&folder);
         }
         let made = fs::create_dir_all(&runs);
-        made.map_err(|source| WriteError::CreateFolder {
-            folder: runs.clone(),
-            source,
-        })?;
+        made.map_err(|e| FileError::unwritable(&runs, e))?;
         let mut gallery = Self {
             entries: Vec::new(),
             left_out,
@@ -121,7 +118,7 @@ impl Gallery {
                         "it names the run {name:?}, which is no name of a file of a gallery"
                     );
                     let remedy = "choose an empty or a new folder with --out";
-                    Err(ReadError::content(&data, problem, remedy).into())
+                    Err(FileError::content(&data, problem, remedy).into())
                 }
             };
         }
@@ -129,7 +126,7 @@ impl Gallery {
         match holds_other_files(out, &[RUNS, Self::INDEX]) {
             Ok(false) => Ok(Vec::new()),
             Ok(true) => Err(GalleryError::Foreign { folder: path() }),
-            Err(source) => Err(ReadError::new(&path(), source).into()),
+            Err(source) => Err(FileError::unreadable(&path(), source).into()),
         }
     }
 }
@@ -145,7 +142,7 @@ fn find(folder: &Path, found: &mut Vec<PathBuf>) -> Result<Vec<PathBuf>, Gallery
         found.push(folder.to_owned());
         return Ok(Vec::new());
     }
-    let unreadable = |source| ReadError::new(folder, source);
+    let unreadable = |source| FileError::unreadable(folder, source);
     let mut folders = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let entry = entry.map_err(unreadable)?;

@@ -4,8 +4,8 @@ use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, StoredFrames};
 use super::{RunError, Summary};
 use crate::format::{
-    FileError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, ReadError, SeriesBody,
-    Trajectory, read_history, read_json, read_loads, read_measures,
+    FileError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, SeriesBody, Trajectory,
+    read_history, read_json, read_loads, read_measures,
 };
 use crate::scene::{SceneFile, Setup};
 use isosheet_collide::Obstacle;
@@ -170,7 +170,7 @@ impl Tables {
 }
 
 /// The rows of a file that only some runs have.
-fn rows<R>(file: &Path, read: fn(&Path) -> Result<Vec<R>, ReadError>) -> Result<Vec<R>, RunError> {
+fn rows<R>(file: &Path, read: fn(&Path) -> Result<Vec<R>, FileError>) -> Result<Vec<R>, RunError> {
     Ok(match file.is_file() {
         true => read(file)?,
         false => Vec::new(),

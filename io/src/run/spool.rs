@@ -2,7 +2,7 @@
 
 use super::RunError;
 use super::frame_field::{FrameField, check_frame};
-use crate::format::{FrameData, Motion, MotionFrame, ReadError};
+use crate::format::{FileError, FrameData, Motion, MotionFrame};
 use crate::scene::bounds;
 use crate::view::no_frames;
 use isosheet_mesh::Sheet;
@@ -95,7 +95,7 @@ impl Motion for Spool {
         &self,
         show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
     ) -> Result<(), RunError> {
-        let unreadable = |source| ReadError::new(&self.folder, source);
+        let unreadable = |source| FileError::unreadable(&self.folder, source);
         let mut file = BufReader::new(&self.file);
         file.rewind().map_err(unreadable)?;
         let mut bytes = vec![0; 8 * self.sizes.iter().sum::<usize>()];

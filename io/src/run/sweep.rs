@@ -27,7 +27,7 @@ pub use variation::{Variation, VariationError};
 pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
-use crate::format::{ReadError, input, write_atomically};
+use crate::format::{FileError, input, write_atomically};
 use crate::scene::{KeyPart, SceneFile, SceneFileError};
 use shell::shell_word;
 use std::io::Write;
@@ -154,8 +154,8 @@ impl Sweep {
     /// [`SweepError::Refused`] with all that is wrong in any run.
     pub fn check(&self) -> Result<(), SweepError> {
         let path = Path::new(&self.scene);
-        let text =
-            input::read_text(path).map_err(|e| SceneFileError::from(ReadError::new(path, e)))?;
+        let text = input::read_text(path)
+            .map_err(|e| SceneFileError::from(FileError::unreadable(path, e)))?;
         let mut refused: Vec<RefusedRuns> = Vec::new();
         for run in self.runs() {
             let start = || -> Result<(), SceneFileError> {
@@ -230,7 +230,7 @@ impl Sweep {
         match holds_other_files(self.folder(), &[]) {
             Ok(false) => Ok(()),
             Ok(true) => Err(SweepError::Foreign { folder: path() }),
-            Err(source) => Err(ReadError::new(&path(), source).into()),
+            Err(source) => Err(FileError::unreadable(&path(), source).into()),
         }
     }
 
@@ -246,7 +246,7 @@ impl Sweep {
 
 /// A path that does not depend on the current folder, as text for a line of shell.
 fn absolute(path: &Path) -> Result<String, SweepError> {
-    let whole = std::path::absolute(path).map_err(|e| ReadError::new(path, e))?;
+    let whole = std::path::absolute(path).map_err(|e| FileError::unreadable(path, e))?;
     match whole.to_str() {
         Some(text) if !text.chars().any(char::is_control) => Ok(text.to_owned()),
         _ => Err(SweepError::Path { path: whole }),

@@ -9,7 +9,7 @@ use super::key::Key;
 use super::problem::Problem;
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
-use crate::format::{MeshFormat, ReadError, input};
+use crate::format::{FileError, MeshFormat, input};
 use isosheet_mesh::Advice;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -43,7 +43,7 @@ impl PartialEq for SceneFile {
 pub enum SceneFileError {
     /// The file cannot be read, or is a mesh file by its name.
     #[error(transparent)]
-    Read(#[from] ReadError),
+    Read(#[from] FileError),
     /// An edit cannot be made.
     #[error(transparent)]
     Edit(#[from] EditError),
@@ -63,14 +63,14 @@ impl Advice for SceneFileError {
 }
 
 /// Refuses what is a mesh file by its name: as TOML it is wrong in a way that helps nobody.
-fn refuse_mesh(path: &Path) -> Result<(), ReadError> {
+fn refuse_mesh(path: &Path) -> Result<(), FileError> {
     match MeshFormat::of(path) {
         None => Ok(()),
         Some(_) => {
             let remedy = "name it in a scene, `mesh = { file = { path = ... } }`: `isosheet new` writes a scene to start \
                           from";
             let problem = "it is a mesh file and no scene";
-            Err(ReadError::content(path, problem, remedy))
+            Err(FileError::content(path, problem, remedy))
         }
     }
 }
@@ -82,7 +82,7 @@ impl SceneFile {
     /// [`SceneFileError`], with all problems that were found.
     pub fn read(path: &Path, edits: &[String]) -> Result<Self, SceneFileError> {
         refuse_mesh(path)?;
-        let text = input::read_text(path).map_err(|e| ReadError::new(path, e))?;
+        let text = input::read_text(path).map_err(|e| FileError::unreadable(path, e))?;
         Self::parse(text, path, edits)
     }
 

@@ -1,6 +1,6 @@
 //! What can be wrong with a mesh or a series that is to be written.
 
-use crate::format::{DataError, FileError, WriteError};
+use crate::format::{DataError, FileError};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, TopologyError, VertexId};
 use thiserror::Error;
@@ -43,12 +43,6 @@ impl Advice for ExportError {
             Self::Topology(error) => error.advice(),
             Self::File(error) => error.advice(),
         }
-    }
-}
-
-impl From<WriteError> for ExportError {
-    fn from(error: WriteError) -> Self {
-        Self::File(error.into())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Arrays in an archive of numpy: a zip file with one `.npy` file for each.
 
 use super::wrong_array;
-use crate::format::ReadError;
+use crate::format::FileError;
 use crate::format::{input, memory};
 use npyz::npz::file_name_from_array_name;
 use npyz::{AutoSerialize, Deserialize, NpyFile, Order, WriteOptions, WriterBuilder};
@@ -168,7 +168,7 @@ impl<'a> ArchiveReader<'a> {
         &mut self,
         name: &'static str,
         dimensions: usize,
-    ) -> Result<Shaped<T>, ReadError> {
+    ) -> Result<Shaped<T>, FileError> {
         let found = self.get_if_there(name, dimensions)?;
         found.ok_or_else(|| wrong_array(self.path, name, "it is missing"))
     }
@@ -178,7 +178,7 @@ impl<'a> ArchiveReader<'a> {
         &mut self,
         name: &'static str,
         dimensions: usize,
-    ) -> Result<Option<Shaped<T>>, ReadError> {
+    ) -> Result<Option<Shaped<T>>, FileError> {
         let error = |problem: String| wrong_array(self.path, name, &problem);
         let entry = match self.zip.by_name(&file_name_from_array_name(name)) {
             Err(ZipError::FileNotFound) => return Ok(None),

@@ -1,6 +1,6 @@
 //! Why there is no gallery.
 
-use crate::format::{FileError, ReadError, WriteError};
+use crate::format::FileError;
 use isosheet_mesh::Advice;
 use std::path::PathBuf;
 
@@ -29,18 +29,6 @@ pub enum GalleryError {
     /// A file or a folder cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-}
-
-impl From<WriteError> for GalleryError {
-    fn from(error: WriteError) -> Self {
-        Self::File(error.into())
-    }
-}
-
-impl From<ReadError> for GalleryError {
-    fn from(error: ReadError) -> Self {
-        Self::File(error.into())
-    }
 }
 
 impl Advice for GalleryError {

@@ -1,7 +1,7 @@
 //! Why a sweep cannot be made, run or collected.
 
 use super::run::{MOST_RUNS, SweepRun};
-use crate::format::{FileError, ReadError, WriteError};
+use crate::format::FileError;
 use crate::scene::SceneFileError;
 use isosheet_mesh::Advice;
 use std::path::PathBuf;
@@ -68,18 +68,6 @@ pub enum SweepError {
     /// A file or a folder cannot be read or written, or is not what it should be.
     #[error(transparent)]
     File(#[from] FileError),
-}
-
-impl From<WriteError> for SweepError {
-    fn from(error: WriteError) -> Self {
-        Self::File(error.into())
-    }
-}
-
-impl From<ReadError> for SweepError {
-    fn from(error: ReadError) -> Self {
-        Self::File(error.into())
-    }
 }
 
 impl Advice for SweepError {

@@ -1,7 +1,7 @@
 //! The table of the runs of a sweep.
 
 use super::SweepError;
-use crate::format::{ReadError, input, write_atomically};
+use crate::format::{FileError, input, write_atomically};
 use std::path::Path;
 
 /// The first two columns; the keys follow.
@@ -38,10 +38,10 @@ impl SweepTable {
     }
 
     /// Reads what [`SweepTable::write`] has written.
-    pub(crate) fn read(path: &Path) -> Result<Self, ReadError> {
-        let text = input::read(path).map_err(|e| ReadError::new(path, e))?;
+    pub(crate) fn read(path: &Path) -> Result<Self, FileError> {
+        let text = input::read(path).map_err(|e| FileError::unreadable(path, e))?;
         let remedy = "make the sweep anew in another folder";
-        Self::parse(&text).map_err(|problem| ReadError::content(path, problem, remedy))
+        Self::parse(&text).map_err(|problem| FileError::content(path, problem, remedy))
     }
 
     fn parse(text: &[u8]) -> Result<Self, String> {
