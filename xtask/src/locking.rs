@@ -23,7 +23,7 @@ use crate::interrupt;
 use crate::report::{Options, Part, Record, Report, Table, all_findings, findings};
 use crate::report::{machine, one_of};
 use crate::store::{Files, Kept, Store, Unit};
-use analysis::{Required, Summary};
+use analysis::{Required, SummaryTable};
 use anyhow::Result;
 use clap::Args;
 use maud::html;
@@ -54,7 +54,7 @@ pub(crate) struct Yardstick {
     #[serde(default)]
     size: String,
     /// Tables of the page and of the book.
-    table: Vec<Summary>,
+    table: Vec<SummaryTable>,
     #[serde(default)]
     required: Vec<Required>,
 }

@@ -1,6 +1,6 @@
 //! The bounds of a case.
 
-use super::case::Ran;
+use super::case::CaseRun;
 use super::variants::Variants;
 use crate::report::{Bound, Finding, Limitation, Shortfall};
 use anyhow::{Result, bail, ensure};
@@ -65,7 +65,7 @@ impl CaseQuantity {
     }
 
     /// Of a run that may have stopped early.
-    fn of_run(&self, run: &Ran) -> Option<f64> {
+    fn of_run(&self, run: &CaseRun) -> Option<f64> {
         match (self, &run.outcome) {
             (Self::LargestStrain, _) => Some(run.largest_strain()),
             (Self::SmallestGap, _) => run.smallest_gap(),
@@ -143,7 +143,7 @@ impl Check {
     }
 
     /// Judges the runs that it is for.
-    pub(super) fn judge(&self, runs: &[&Ran]) -> Result<Vec<Finding>> {
+    pub(super) fn judge(&self, runs: &[&CaseRun]) -> Result<Vec<Finding>> {
         let stops = |l: &Limitation| matches!(l.shortfall, Shortfall::Stops { .. });
         ensure!(
             runs.len() == 1 || !self.limitation.as_ref().is_some_and(stops),
@@ -162,7 +162,7 @@ impl Check {
     }
 
     /// How many runs stopped, and why the first of them did.
-    fn count(&self, runs: &[&Ran], bound: Bound) -> Finding {
+    fn count(&self, runs: &[&CaseRun], bound: Bound) -> Finding {
         let stopped: Vec<_> = runs
             .iter()
             .filter_map(|r| r.outcome.as_ref().err())
@@ -173,9 +173,9 @@ impl Check {
     }
 
     /// The worst run: one without the number, or the one that is farthest on the wrong side.
-    fn worst(&self, runs: &[&Ran], bound: Bound) -> Result<Finding> {
-        let value = |run: &Ran| self.quantity.of_run(run);
-        let badness = |run: &Ran| value(run).map_or(f64::INFINITY, |v| bound.badness(v));
+    fn worst(&self, runs: &[&CaseRun], bound: Bound) -> Result<Finding> {
+        let value = |run: &CaseRun| self.quantity.of_run(run);
+        let badness = |run: &CaseRun| value(run).map_or(f64::INFINITY, |v| bound.badness(v));
         let worst = runs.iter().max_by(|a, b| badness(a).total_cmp(&badness(b)));
         let worst = worst.expect("there are runs");
         let (found, stopped) = (value(worst), worst.outcome.as_ref().err());
