@@ -68,10 +68,9 @@ pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
-pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, VariationError};
+pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
 #[cfg(feature = "picture")]
 pub use viewpoint::Viewpoint;
-pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
 use crate::format::{

@@ -89,7 +89,7 @@ pub use chart::{
 };
 pub use contact::{Contact, SheetPair};
 pub use creases::{Crease, CreaseEdges, PatternEdges};
-pub use edit::{Edit, EditError, EditProblem};
+pub use edit::{Edit, EditError};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
@@ -123,7 +123,7 @@ pub use support_forces::SupportForces;
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
 pub use targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
 pub use unit::UnitRange;
-pub use warning::SceneWarning;
+pub use warning::Warning;
 pub use weight::Weight;
 pub use yields::{CreaseYield, SheetYield};
 

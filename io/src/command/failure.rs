@@ -140,9 +140,7 @@ impl From<SweepError> for Failure {
     fn from(error: SweepError) -> Self {
         let code = match error {
             SweepError::Scene(error) => return error.into(),
-            SweepError::NoKeys | SweepError::SameKey { .. } | SweepError::TooMany { .. } => {
-                Code::CommandLine
-            }
+            SweepError::Keys(_) => Code::CommandLine,
             SweepError::OtherSweep { .. } | SweepError::Foreign { .. } => Code::OtherScene,
             SweepError::File(FileError::Write(_)) => Code::Output,
             _ => Code::Input,

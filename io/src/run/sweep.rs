@@ -22,12 +22,12 @@ mod variation;
 pub use engine::Engine;
 pub use error::{RefusedRuns, SweepError};
 pub use run::SweepRun;
-pub use variation::{Variation, VariationError};
+pub use variation::Variation;
 
 pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
-use crate::format::{FileError, input, write_atomically};
+use crate::format::{DataError, FileError, input, write_atomically};
 use crate::scene::{KeyPart, SceneFile, SceneFileError};
 use shell::shell_word;
 use std::io::Write;
@@ -64,7 +64,9 @@ impl Sweep {
         variations: Vec<Variation>,
     ) -> Result<Self, SweepError> {
         if variations.is_empty() {
-            return Err(SweepError::NoKeys);
+            let remedy = "name one, for example `stop.time=0.5,1,2`";
+            let error = DataError::new("a sweep needs a key with values", remedy);
+            return Err(SweepError::Keys(error));
         }
         let places: Vec<_> = variations.iter().map(|v| v.place().parts()).collect();
         for (j, second) in places.iter().enumerate() {
@@ -73,16 +75,18 @@ impl Sweep {
                 first[..common] == second[..common]
             };
             if let Some(i) = places[..j].iter().position(contained) {
-                return Err(SweepError::SameKey {
-                    first: variations[i].key().to_owned(),
-                    second: variations[j].key().to_owned(),
-                });
+                let [first, second] = [i, j].map(|k| variations[k].key());
+                let message = format!("`{first}` and `{second}` change the same part of the scene");
+                let error = DataError::new(message, "give one key with all its values");
+                return Err(SweepError::Keys(error));
             }
         }
         let counts = variations.iter().map(|v| v.values().len());
         let count = counts.fold(1, usize::saturating_mul);
         if count > Self::MOST_RUNS {
-            return Err(SweepError::TooMany { count });
+            let message = format!("these are {count} runs, more than {}", Self::MOST_RUNS);
+            let error = DataError::new(message, "give fewer values, or make several sweeps");
+            return Err(SweepError::Keys(error));
         }
         Ok(Self {
             scene: absolute(scene)?,

@@ -1,5 +1,6 @@
 //! Places in a scene.
 
+use crate::DataError;
 use isosheet_mesh::Advice;
 use std::fmt;
 use std::str::FromStr;
@@ -33,6 +34,15 @@ impl Advice for KeyError {
             "write names with dots between them, and numbers of list entries in brackets, for example \
              `obstacle[0].shape.sphere.radius`",
         )
+    }
+}
+
+impl From<KeyError> for DataError {
+    fn from(error: KeyError) -> Self {
+        Self {
+            remedy: error.advice(),
+            ..Self::plain(error.to_string())
+        }
     }
 }
 

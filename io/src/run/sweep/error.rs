@@ -1,7 +1,7 @@
 //! Why a sweep cannot be made, run or collected.
 
-use super::run::{MOST_RUNS, SweepRun};
-use crate::format::FileError;
+use super::run::SweepRun;
+use crate::format::{DataError, FileError};
 use crate::scene::SceneFileError;
 use isosheet_mesh::Advice;
 use std::path::PathBuf;
@@ -11,23 +11,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SweepError {
-    /// There is no key.
-    #[error("a sweep needs a key with values")]
-    NoKeys,
-    /// Two keys are the same, or one contains the other.
-    #[error("`{first}` and `{second}` change the same part of the scene")]
-    SameKey {
-        /// The first key.
-        first: String,
-        /// The second key.
-        second: String,
-    },
-    /// There are too many runs.
-    #[error("these are {count} runs, more than {MOST_RUNS}")]
-    TooMany {
-        /// The number of runs.
-        count: usize,
-    },
+    /// There is no key, two keys change the same part of the scene, or there are too many runs.
+    #[error(transparent)]
+    Keys(DataError),
     /// A path cannot be part of a line of text.
     #[error("{} is not valid UTF-8 or has a control character", path.display())]
     Path {
@@ -73,9 +59,7 @@ pub enum SweepError {
 impl Advice for SweepError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::NoKeys => Some("name one, for example `stop.time=0.5,1,2`"),
-            Self::SameKey { .. } => Some("give one key with all its values"),
-            Self::TooMany { .. } => Some("give fewer values, or make several sweeps"),
+            Self::Keys(error) => error.advice(),
             Self::Path { .. } => Some("rename it or choose another --out"),
             Self::Scene(error) => error.advice(),
             Self::OtherSweep { .. } => Some(
