@@ -3,7 +3,9 @@
 pub(crate) mod atomic;
 #[cfg(feature = "run")]
 mod cell;
+mod data_error;
 mod export;
+mod file_error;
 mod finite;
 mod history;
 pub(crate) mod input;
@@ -17,8 +19,9 @@ mod trajectory;
 pub use atomic::{FileWriter, WriteError, write_atomically};
 #[cfg(feature = "run")]
 pub(crate) use cell::cell;
+pub use data_error::DataError;
 #[cfg(feature = "run")]
-pub(crate) use finite::{Finding, check_finite};
+pub(crate) use finite::check_finite;
 
 #[cfg(feature = "run")]
 pub(crate) use export::frame_number;
@@ -27,17 +30,18 @@ pub use export::{
     SeriesBody, SeriesField, SeriesFormat, SeriesOptions, frame_path, write_frame, write_mesh,
     write_obj, write_series,
 };
-pub use history::{HistoryError, HistoryRow, HistoryWriter, Row, RowWriter, Written, read_history};
-pub use json::{JsonError, read_json, write_json};
+pub use file_error::{FileError, ReadError};
+pub use history::{HistoryRow, HistoryWriter, Row, RowWriter, Written, read_history};
+pub use json::{read_json, write_json};
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};
 pub use measures::{MeasureRow, MeasureWriter, read_measures};
 pub use mesh_file::{
-    EdgeAssignment, FileCrease, FoldFrame, FoldProblem, GltfProblem, MeshFile, MeshFileError,
-    MeshFileProblem, MeshFormat, MeshOptions, Place, Polygons, ReadingChanges, Repair,
-    SeparateBuffers, parse_mesh, read_mesh, read_mesh_with, read_sheet,
+    EdgeAssignment, FileCrease, FoldFrame, Location, MeshFile, MeshFileError, MeshFileProblem,
+    MeshFormat, MeshOptions, Polygons, ReadingChanges, Repair, SeparateBuffers, parse_mesh,
+    read_mesh, read_mesh_with, read_sheet,
 };
-pub use trajectory::{FrameData, Trajectory, TrajectoryError};
+pub use trajectory::{FrameData, Trajectory};
 #[cfg(feature = "run")]
-pub(crate) use trajectory::{MeshCounts, MotionError, Quantity};
+pub(crate) use trajectory::{FrameQuantity, MeshCounts, MotionError};
 #[cfg(feature = "view")]
 pub(crate) use trajectory::{Motion, MotionFrame};

@@ -68,19 +68,19 @@ pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
-pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, VariationError};
+pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
 #[cfg(feature = "picture")]
 pub use viewpoint::Viewpoint;
-pub use warning::RunWarning;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
 use crate::format::{
-    HistoryRow, Motion, MotionError, Row, Trajectory, frame_path, read_json, write_json, write_obj,
+    FileError, HistoryRow, Motion, MotionError, Row, Trajectory, frame_path, read_json, write_json,
+    write_obj,
 };
 use crate::scene::{Kept, SceneFile, Setup};
 use crate::view::PageOptions;
-use checkpoint::Progress;
-use folder::{Contents, Existing, Material, RunFolder, stored_scene};
+use checkpoint::RunProgress;
+use folder::{Existing, FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use isosheet_dynamics::Simulation;
 use page::write_page_of;
@@ -89,7 +89,7 @@ use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use stepping::{Plan, Stepping, step_count};
+use stepping::{Plan, Rows, Stepping, step_count};
 
 /// How a call of [`simulate`] ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,7 +128,30 @@ pub fn simulate(
     folder: &Path,
     watch: &mut dyn Watch,
 ) -> Result<Outcome, RunError> {
-    simulate_in(file, folder, Existing::Continue, watch)
+    let ended = simulate_in(file, folder, Existing::Continue, Wanted::Files, watch)?;
+    Ok(ended.outcome)
+}
+
+/// Runs a scene in a folder as [`simulate`] does, and returns what the run recorded: nothing of one that was
+/// interrupted.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_recorded(
+    file: &SceneFile,
+    folder: &Path,
+    watch: &mut dyn Watch,
+) -> Result<Option<Recording>, RunError> {
+    let wanted = Wanted::Recording;
+    let ended = simulate_in(file, folder, Existing::Continue, wanted, watch)?;
+    match (ended.outcome, ended.recorded) {
+        (Outcome::Interrupted, _) => Ok(None),
+        (_, Some((mut recording, frames))) => {
+            recording.load(frames, folder)?;
+            Ok(Some(recording))
+        }
+        (_, None) => Recording::read(folder).map(Some),
+    }
 }
 
 /// Runs a scene in a folder from the start. A run that the folder holds, of whatever scene, is deleted
@@ -142,24 +165,50 @@ pub fn simulate_anew(
     folder: &Path,
     watch: &mut dyn Watch,
 ) -> Result<Outcome, RunError> {
-    simulate_in(file, folder, Existing::Delete, watch)
+    let ended = simulate_in(file, folder, Existing::Delete, Wanted::Files, watch)?;
+    Ok(ended.outcome)
+}
+
+/// What is wanted of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wanted {
+    /// Its files.
+    Files,
+    /// What it recorded, too.
+    Recording,
+}
+
+/// How a run ended, and what it recorded, where that is wanted or its page is made of it.
+struct Ended {
+    outcome: Outcome,
+    recorded: Option<(Recording, RunFrames)>,
+}
+
+impl From<Outcome> for Ended {
+    fn from(outcome: Outcome) -> Self {
+        Self {
+            outcome,
+            recorded: None,
+        }
+    }
 }
 
 fn simulate_in(
     file: &SceneFile,
     folder: &Path,
     existing: Existing,
+    wanted: Wanted,
     watch: &mut dyn Watch,
-) -> Result<Outcome, RunError> {
+) -> Result<Ended, RunError> {
     let clock = Instant::now();
     if folder.as_os_str().is_empty() {
         return Err(RunError::NoFolder);
     }
     let mut kept = Kept::in_folder(file.folder());
-    let material = Material::read(file, &mut kept.files)?;
+    let material = RunInputs::read(file, &mut kept.files)?;
     let hash = material.hash;
     if existing == Existing::Continue && RunFolder::is_complete(folder, &material)? {
-        return already_complete(folder, hash);
+        return Ok(already_complete(folder, hash)?.into());
     }
     let setup = file.build_with(&mut kept)?;
     let estimate = Estimate::of(file.scene(), &setup);
@@ -169,6 +218,10 @@ fn simulate_in(
         hash,
         facts: setup.facts(),
         shape: FrameShape::of(&setup),
+        rows: match file.scene().output.page || wanted == Wanted::Recording {
+            true => Rows::InMemory,
+            false => Rows::InFiles,
+        },
     };
     // A scene that cannot start leaves the folder as it was.
     let continued = existing == Existing::Continue && RunFolder::has_checkpoint(folder);
@@ -180,15 +233,15 @@ fn simulate_in(
         }
     };
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
-        Contents::Complete(open) => {
+        FolderState::Complete(open) => {
             let lost = !open.path(RunFolder::TRAJECTORY).is_file();
             if file.scene().output.trajectory && lost {
                 write_trajectory(&open, &plan)?;
             }
-            return already_complete(folder, hash);
+            return Ok(already_complete(folder, hash)?.into());
         }
-        Contents::Empty(open) => (open, None),
-        Contents::Partial(open) => {
+        FolderState::Empty(open) => (open, None),
+        FolderState::Partial(open) => {
             let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
             check_origin(&open, &saved.0, hash)?;
             (open, Some(saved))
@@ -222,11 +275,17 @@ fn simulate_in(
     } else {
         advanced?;
     }
-    let recorded = || -> Result<_, RunError> {
-        let setup = file.build_with(&mut kept)?;
-        Recording::of(folder, material.stored, setup)
+    let Stepping {
+        progress, tables, ..
+    } = stepping;
+    let recorded = match (progress.ending.is_some(), tables) {
+        (true, Some(tables)) => {
+            let setup = file.build_with(&mut kept)?;
+            Some(Recording::of(folder, material.stored, setup, tables))
+        }
+        _ => None,
     };
-    finish(&plan, &open, &stepping.progress, recorded)
+    finish(&plan, &open, &progress, recorded)
 }
 
 /// Takes steps until the run ends or the watcher asks for a stop.
@@ -292,13 +351,18 @@ fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError>
 /// The simulation at the start, whose energies can be written.
 fn started(setup: Setup) -> Result<Simulation, RunError> {
     let simulation = setup.start()?;
-    HistoryRow::of_start(&simulation).check_finite()?;
+    let start = HistoryRow::of_start(&simulation).check_finite();
+    start.map_err(FileError::from)?;
     Ok(simulation)
 }
 
 /// Refuses a checkpoint of another scene, where the one in the folder was changed since, or of another
 /// version.
-fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Result<(), RunError> {
+fn check_origin(
+    folder: &RunFolder,
+    progress: &RunProgress,
+    hash: SceneHash,
+) -> Result<(), RunError> {
     let root = folder.root().to_owned();
     if progress.scene != hash.to_string() {
         return Err(RunError::OtherScene { folder: root });
@@ -316,11 +380,11 @@ fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Res
 fn finish(
     plan: &Plan<'_>,
     folder: &RunFolder,
-    progress: &Progress,
-    recorded: impl FnOnce() -> Result<(Recording, RunFrames), RunError>,
-) -> Result<Outcome, RunError> {
+    progress: &RunProgress,
+    mut recorded: Option<(Recording, RunFrames)>,
+) -> Result<Ended, RunError> {
     let Some(ending) = progress.ending.clone() else {
-        return Ok(Outcome::Interrupted);
+        return Ok(Outcome::Interrupted.into());
     };
     let clock = Instant::now();
     let facts = &plan.facts;
@@ -352,12 +416,15 @@ fn finish(
         measures: progress.measured.clone(),
         ending,
     };
-    if output.page {
-        let (recording, frames) = recorded()?;
-        write_page_before(folder, recording, &frames, &summary)?;
+    if let Some((recording, frames)) = &mut recorded {
+        recording.summary = Some(summary.clone());
+        if output.page {
+            write_page_before(folder, recording, frames)?;
+        }
     }
     write_json(&folder.path(RunFolder::SUMMARY), &summary)?;
-    Ok(Outcome::Complete(Box::new(summary)))
+    let outcome = Outcome::Complete(Box::new(summary));
+    Ok(Ended { outcome, recorded })
 }
 
 /// Writes the frames as OBJ files.
@@ -378,13 +445,11 @@ fn write_obj_files(folder: &RunFolder, plan: &Plan<'_>) -> Result<(), RunError> 
 /// all the same: [`write_page`] says why there is none.
 fn write_page_before(
     folder: &RunFolder,
-    mut recording: Recording,
+    recording: &Recording,
     frames: &RunFrames,
-    summary: &Summary,
 ) -> Result<(), RunError> {
-    recording.summary = Some(summary.clone());
     let path = folder.path(RunFolder::PAGE);
-    match write_page_of(&recording, frames, &path, &PageOptions::default()) {
+    match write_page_of(recording, frames, &path, &PageOptions::default()) {
         Err(RunError::Page(_)) => match std::fs::remove_file(&path) {
             Err(source) if source.kind() != ErrorKind::NotFound => Err(RunError::Unwritable {
                 folder: folder.root().to_owned(),

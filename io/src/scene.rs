@@ -89,7 +89,7 @@ pub use chart::{
 };
 pub use contact::{Contact, SheetPair};
 pub use creases::{Crease, CreaseEdges, PatternEdges};
-pub use edit::{Edit, EditError, EditProblem};
+pub use edit::{Edit, EditError};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
@@ -123,7 +123,7 @@ pub use support_forces::SupportForces;
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
 pub use targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
 pub use unit::UnitRange;
-pub use warning::SceneWarning;
+pub use warning::Warning;
 pub use weight::Weight;
 pub use yields::{CreaseYield, SheetYield};
 
@@ -253,8 +253,7 @@ impl Scene {
         let is_known = |name: &Option<String>, key: &Key, checks: &mut Checks| {
             sheets::check_reference(&self.sheet, name.as_deref(), &key.name("sheet"), checks);
         };
-        for (k, crease) in self.crease.iter().enumerate() {
-            let key = root.name("crease").entry(k);
+        for (key, crease) in root.name("crease").entries(&self.crease) {
             crease.check(&key, &mut checks);
             is_known(&crease.sheet, &key, &mut checks);
         }
@@ -265,25 +264,22 @@ impl Scene {
                 Err(problem) => checks.problems.push(problem),
             }
         }
-        for (k, glue) in self.glue.iter().enumerate() {
-            glue.check(&self.sheet, &root.name("glue").entry(k), &mut checks);
+        for (key, glue) in root.name("glue").entries(&self.glue) {
+            glue.check(&self.sheet, &key, &mut checks);
         }
-        for (k, weight) in self.weight.iter().enumerate() {
-            let key = root.name("weight").entry(k);
+        for (key, weight) in root.name("weight").entries(&self.weight) {
             weight.check(&key, &mut checks);
             is_known(&weight.sheet, &key, &mut checks);
         }
-        for (k, support) in self.support.iter().enumerate() {
-            let key = root.name("support").entry(k);
+        for (key, support) in root.name("support").entries(&self.support) {
             support.check(&key, &mut checks);
             is_known(&support.sheet, &key, &mut checks);
         }
-        for (k, load) in self.forces.load.iter().enumerate() {
-            let key = root.name("forces.load").entry(k);
+        for (key, load) in root.name("forces.load").entries(&self.forces.load) {
             is_known(&load.sheet, &key, &mut checks);
         }
-        for (k, obstacle) in self.obstacle.iter().enumerate() {
-            obstacle.check(&root.name("obstacle").entry(k), &mut checks);
+        for (key, obstacle) in root.name("obstacle").entries(&self.obstacle) {
+            obstacle.check(&key, &mut checks);
         }
         self.forces.check(&root.name("forces"), &mut checks);
         if let Some(air) = &self.air {
@@ -296,8 +292,7 @@ impl Scene {
                 sheets::check_reference(&self.sheet, Some(name), &key.entry(i), &mut checks);
             }
         }
-        for (k, measure) in self.measure.iter().enumerate() {
-            let key = root.name("measure").entry(k);
+        for (key, measure) in root.name("measure").entries(&self.measure) {
             measure.check(&key, &mut checks);
             is_known(&measure.sheet, &key, &mut checks);
         }

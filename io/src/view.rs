@@ -84,13 +84,12 @@
 //! }
 //! .to_html()?;
 //! assert!(page.starts_with("<!doctype html>"));
-//! # Ok::<(), isosheet_io::view::ViewError>(())
+//! # Ok::<(), isosheet_io::DataError>(())
 //! ```
 
 mod body;
 mod check;
 mod document;
-mod error;
 mod field;
 mod frames;
 mod live;
@@ -99,11 +98,12 @@ mod page;
 mod quantise;
 mod replay;
 
-pub use body::{Body, BodyShape, Pose};
-pub use error::ViewError;
+pub use body::{Body, BodyShape};
+#[cfg(feature = "run")]
+pub(crate) use check::no_frames;
 #[cfg(feature = "run")]
 pub(crate) use field::strains;
-pub use field::{Field, Place, Scale, Series};
+pub use field::{Centering, Field, Scale, TimeSeries};
 pub use live::{LivePage, LiveSlider};
 pub use page::PageOptions;
 pub use replay::{Axis, Replay};

@@ -35,36 +35,25 @@ fn nasty_files_are_read_or_refused_for_the_right_reason() {
         MeshFileProblem::Mesh(MeshError::Topology(t)) => t,
         other => panic!("{name}: {other}"),
     };
-    let polygons = |name: &str| matches!(refused(sheet(name)), MeshFileProblem::Polygon { .. });
+    let polygons = |name: &str| matches!(refused(sheet(name)), MeshFileProblem::Polygon(_));
 
-    assert!(matches!(
-        refused(sheet("empty.obj")),
-        MeshFileProblem::Empty
-    ));
-    assert!(matches!(
-        refused(sheet("points_only.obj")),
-        MeshFileProblem::NoFaces { vertices: 8, .. }
-    ));
-    assert!(matches!(
-        refused(sheet("wireframe_lines_only.obj")),
-        MeshFileProblem::NoFaces {
-            vertices: 8,
-            lines: 1..,
-            ..
-        }
-    ));
-    assert!(matches!(
-        refused(sheet("collinear_line.obj")),
-        MeshFileProblem::NoFaces { vertices: 4, .. }
-    ));
-    assert!(matches!(
-        refused(sheet("face_with_missing_indices.obj")),
-        MeshFileProblem::TooFewCorners { corners: 2 }
-    ));
-    assert!(matches!(
-        refused(sheet("polygon_faces.obj")),
-        MeshFileProblem::Polygon { corners: 5 }
-    ));
+    for (name, says) in [
+        ("empty.obj", "it is empty"),
+        (
+            "points_only.obj",
+            "the file has 8 vertices, 0 line elements",
+        ),
+        ("wireframe_lines_only.obj", "but no faces"),
+        ("collinear_line.obj", "the file has 4 vertices, "),
+        ("face_with_missing_indices.obj", "a face has 2 corners"),
+        (
+            "polygon_faces.obj",
+            "a face has 5 corners, and a rigid sheet",
+        ),
+    ] {
+        let problem = refused(sheet(name)).to_string();
+        assert!(problem.contains(says), "{name}: {problem}");
+    }
     for name in [
         "closed_pentagons.obj",
         "five_closed_components_mixed.obj",
@@ -221,7 +210,7 @@ const FILES: [(&str, Expected); 79] = [
     ("fold/miura_herringbone_large_tri.fold", Read(289, 512, 0, Chi(1))),
     ("fold/miura_ori_oripa_quads.fold", Read(81, 128, 56, Chi(1))),
     ("fold/not_flat_foldable.fold", Read(9, 8, 3, Chi(1))),
-    ("fold/one_vertex.fold", Refused("NoFaces")),
+    ("fold/one_vertex.fold", Refused("but no faces")),
     ("fold/single_vertex_no_faces.fold", Read(5, 4, 0, Chi(1))),
     ("fold/snowflake_tri.fold", Read(61, 60, 0, Chi(1))),
     ("fold/squarebase_perfect_rot.fold", Read(9, 8, 0, Chi(1))),
@@ -240,11 +229,11 @@ const FILES: [(&str, Expected); 79] = [
     ("nasty/closed_pentagons.obj", Read(20, 36, 12, Chi(2))),
     ("nasty/closed_sphere_ascii.ply", Read(162, 320, 0, Chi(2))),
     ("nasty/closed_tet.obj", Read(4, 4, 0, Chi(2))),
-    ("nasty/collinear_line.obj", Refused("NoFaces")),
+    ("nasty/collinear_line.obj", Refused("but no faces")),
     ("nasty/degenerate_and_duplicate_L.obj", Read(24, 44, 0, No("ZeroAreaFace"))),
     ("nasty/duplicate_vertices.obj", Read(16, 4, 0, No("UnreferencedVertex"))),
-    ("nasty/empty.obj", Refused("Empty")),
-    ("nasty/face_with_missing_indices.obj", Refused("TooFewCorners")),
+    ("nasty/empty.obj", Refused("it is empty")),
+    ("nasty/face_with_missing_indices.obj", Refused("2 corners, and needs at least three")),
     ("nasty/five_closed_components_mixed.obj", Read(50, 80, 18, Chi(10))),
     ("nasty/fully_split_vertices.obj", Read(288, 96, 0, Chi(96))),
     ("nasty/moebius_nonorientable_quads.obj", Read(280, 448, 224, No("InconsistentWinding"))),
@@ -255,12 +244,12 @@ const FILES: [(&str, Expected); 79] = [
     ("nasty/nonmanifold_triple_vierbein.obj", Read(75, 108, 0, No("NonManifoldEdge"))),
     ("nasty/nonplanar_cap.obj", Read(217, 384, 0, Chi(1))),
     ("nasty/off_whitespace.off", Read(8, 12, 6, Chi(2))),
-    ("nasty/points_only.obj", Refused("NoFaces")),
-    ("nasty/polygon_faces.obj", Refused("CrossedPolygon")),
+    ("nasty/points_only.obj", Refused("but no faces")),
+    ("nasty/polygon_faces.obj", Refused("crosses or touches itself")),
     ("nasty/shared_edge_solids.STL", Read(14, 24, 0, No("NonManifoldEdge"))),
     ("nasty/triangle_soup.stl", Read(300, 100, 0, Chi(100))),
     ("nasty/two_objects.obj", Read(12, 16, 0, Chi(4))),
-    ("nasty/wireframe_lines_only.obj", Refused("NoFaces")),
+    ("nasty/wireframe_lines_only.obj", Refused("but no faces")),
     ("planar/annulus_60v.obj", Read(60, 98, 0, Chi(0))),
     ("planar/card_strip.obj", Read(10, 8, 0, Chi(1))),
     ("planar/disk_688v_mm_scale.obj", Read(688, 1296, 0, Chi(1))),
@@ -314,7 +303,7 @@ fn every_file_is_read_or_refused_for_the_right_reason() {
             }
             (Err(e), Refused(reason)) => {
                 assert!(e.with_advice().len() > 60, "an error explains itself: {e}");
-                assert_eq!(variant(&e.problem), *reason, "{name}: {e}");
+                assert!(e.to_string().contains(reason), "{name}: {e}");
             }
             (Ok(_), Refused(reason)) => panic!("{name} was read, and not refused as {reason}"),
             (Err(e), Read(..)) => panic!("{e}"),

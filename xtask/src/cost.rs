@@ -9,7 +9,7 @@ mod works;
 use crate::interrupt;
 use crate::report::{FullOptions, Record, Report, machine, one_of};
 use crate::store::{Kept, Store, Unit};
-use accuracy::Problem;
+use accuracy::ExactProblem;
 use anyhow::Result;
 use clap::Args;
 use maud::html;
@@ -25,8 +25,8 @@ pub(crate) struct CostArgs {
     options: FullOptions,
 
     /// Problems to measure, separated by commas; all, and all works, when neither is given
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = one_of(Problem::named))]
-    parts: Vec<Problem>,
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = one_of(ExactProblem::named))]
+    parts: Vec<ExactProblem>,
 
     /// Whole runs to measure, separated by commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = one_of(works::named))]
@@ -38,7 +38,11 @@ pub(crate) fn run(args: &CostArgs) -> Result<()> {
     let store = args.options.open("cost")?;
     let (mut problems, mut works) = (args.parts.clone(), args.works.clone());
     if problems.is_empty() && works.is_empty() {
-        problems.extend(Problem::named().into_iter().map(|(_, problem)| problem));
+        problems.extend(
+            ExactProblem::named()
+                .into_iter()
+                .map(|(_, problem)| problem),
+        );
         works.extend(works::named().into_iter().map(|(_, work)| work));
     }
     let made = works::measure(&store, &works).and_then(|()| {
@@ -51,14 +55,14 @@ pub(crate) fn run(args: &CostArgs) -> Result<()> {
     interrupt::afterwards(made, || report(&store))
 }
 
-fn unit(store: &Store, problem: Problem) -> Unit {
+fn unit(store: &Store, problem: ExactProblem) -> Unit {
     let name = problem.name();
     store.unit(format!("cost-{name}"), name)
 }
 
 /// Writes the page and the other files of all that is kept.
 fn report(store: &Store) -> Result<()> {
-    let all = Problem::named().into_iter();
+    let all = ExactProblem::named().into_iter();
     let units = all.map(|(_, problem)| unit(store, problem)).collect();
     let mut kept: Kept<Record> = store.all_kept(units);
     let mut works = works::records(store, &mut kept.left_out)?;

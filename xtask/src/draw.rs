@@ -22,6 +22,6 @@ pub(crate) use marker::Marker;
 pub(crate) use series::Series;
 pub(crate) use shaded::{Shot, Viewpoint};
 pub(crate) use sheet::{flat_edges, flat_faces, plan};
-pub(crate) use spatial::View;
+pub(crate) use spatial::Projection;
 pub(crate) use svg::Vector;
 pub(crate) use text::{SMALL, TEXT};

@@ -8,8 +8,7 @@ use isosheet_dynamics::{ModelError, SimulationError, StepError};
 use isosheet_io::picture::PictureError;
 use isosheet_io::run::RunError;
 use isosheet_io::scene::{SceneError, SceneFileError};
-use isosheet_io::view::ViewError;
-use isosheet_io::{Advice, ExportError, HistoryError, JsonError, TrajectoryError, WriteError};
+use isosheet_io::{Advice, DataError, ExportError, FileError};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -76,13 +75,10 @@ fn advice(error: &Error) -> Option<&'static str> {
         advice_of::<Interrupted>,
         advice_of::<ThreadsError>,
         advice_of::<RunError>,
-        advice_of::<WriteError>,
-        advice_of::<JsonError>,
-        advice_of::<HistoryError>,
-        advice_of::<TrajectoryError>,
+        advice_of::<FileError>,
         advice_of::<ExportError>,
         advice_of::<PictureError>,
-        advice_of::<ViewError>,
+        advice_of::<DataError>,
         advice_of::<SceneError>,
         advice_of::<SceneFileError>,
         advice_of::<StepError>,
@@ -110,7 +106,7 @@ fn code(error: &Error) -> u8 {
                 | ReportError::Reports { .. } => 1,
             });
         }
-        if cause.is::<WriteError>() || cause.is::<std::io::Error>() {
+        if cause.is::<FileError>() || cause.is::<std::io::Error>() {
             return Some(6);
         }
         Some(match cause.downcast_ref()? {
@@ -151,10 +147,10 @@ mod tests {
     #[test]
     fn causes_are_told_once_with_advice_and_code() {
         let full = || std::io::Error::other("disk full");
-        let error = Error::from(WriteError::Write {
+        let error = Error::from(FileError::from(isosheet_io::WriteError::Write {
             path: "a".into(),
             source: full(),
-        });
+        }));
         let error = error.context("figure 3");
         assert_eq!(explain(&error), "figure 3: cannot write a: disk full");
         assert_eq!(advice(&error), Some("check the free space"));

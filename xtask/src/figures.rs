@@ -132,7 +132,7 @@ fn nearest(values: impl IntoIterator<Item = f64>, wanted: f64) -> usize {
 }
 
 /// A quantity, and what was measured of it.
-type Row = (&'static str, String);
+type FigureRow = (&'static str, String);
 
 /// Quantities, and what was measured of them: `rows! { "quantity" => text, ... }`.
 macro_rules! rows {
@@ -141,12 +141,12 @@ macro_rules! rows {
 use rows;
 
 /// Quantities with what was measured of them.
-fn measured(rows: impl IntoIterator<Item = Row>) -> Table {
+fn measured(rows: impl IntoIterator<Item = FigureRow>) -> Table {
     compared(&["value"], &[rows.into_iter().collect()])
 }
 
 /// Quantities with what was measured of them in several runs, whose names and columns are given.
-fn compared(names: &[&str], columns: &[Vec<Row>]) -> Table {
+fn compared(names: &[&str], columns: &[Vec<FigureRow>]) -> Table {
     let rows = columns.first().map_or(0, Vec::len);
     let row = |k: usize| {
         let values = columns.iter().map(|column| column[k].1.clone());
@@ -159,7 +159,7 @@ fn compared(names: &[&str], columns: &[Vec<Row>]) -> Table {
 }
 
 /// What the course of a run was.
-fn course(run: &RunSummary) -> Vec<Row> {
+fn course(run: &RunSummary) -> Vec<FigureRow> {
     let course = &run.course;
     let steps = format!(
         "{} frames, {} rejected steps",

@@ -32,10 +32,10 @@ struct Shown {
 }
 
 /// Scene, label, azimuth and elevation, moment and bodies, as [`Shown`] has them.
-type Row = (&'static str, &'static str, [f64; 2], f64, &'static [usize]);
+type GalleryRow = (&'static str, &'static str, [f64; 2], f64, &'static [usize]);
 
 /// The scenes in the order of the picture.
-const SCENES: [Row; 16] = [
+const SCENES: [GalleryRow; 16] = [
     ("drape", "new --kind drape", [-62.0, 24.0], 1.0, &[0]),
     ("stamp", "new --kind stamp", [-65.0, 20.0], 1.0, &[0, 1, 2]),
     ("feed", "new --kind feed", [-70.0, 18.0], 1.0, &[1]),

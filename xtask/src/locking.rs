@@ -23,7 +23,7 @@ use crate::interrupt;
 use crate::report::{Options, Part, Record, Report, Table, all_findings, findings};
 use crate::report::{machine, one_of};
 use crate::store::{Files, Kept, Store, Unit};
-use analysis::{Required, Summary};
+use analysis::{Required, SummaryTable};
 use anyhow::Result;
 use clap::Args;
 use maud::html;
@@ -35,7 +35,7 @@ use std::sync::LazyLock;
 /// The file of the yardsticks.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Contents {
+struct YardsticksFile {
     /// Why requirements may be missed, by a word.
     reasons: BTreeMap<String, String>,
     yardstick: Vec<Yardstick>,
@@ -54,12 +54,12 @@ pub(crate) struct Yardstick {
     #[serde(default)]
     size: String,
     /// Tables of the page and of the book.
-    table: Vec<Summary>,
+    table: Vec<SummaryTable>,
     #[serde(default)]
     required: Vec<Required>,
 }
 
-static CONTENTS: LazyLock<Contents> = LazyLock::new(|| {
+static CONTENTS: LazyLock<YardsticksFile> = LazyLock::new(|| {
     let contents = toml::from_str(include_str!("locking/yardsticks.toml"));
     contents.unwrap_or_else(|error| panic!("yardsticks.toml: {error}"))
 });

@@ -30,7 +30,7 @@ const LAST: i64 = 15;
 
 /// What is kept of a figure: its section of the page and its tables.
 #[derive(Debug, Serialize, Deserialize)]
-struct Record {
+struct FigureRecord {
     section: Section,
     /// Its tables for the book.
     excerpt: Vec<Part>,
@@ -70,7 +70,7 @@ fn make(store: &Store, figure: u8, scenes: u64) -> Result<()> {
         made.write(figure, files)?;
         let wall = started.elapsed().as_secs_f64();
         progress::note(&unit.title, &format!("made ({wall:.1} s)"));
-        Ok(Record {
+        Ok(FigureRecord {
             section: section(figure, &made).into(),
             excerpt: tables(figure, &made),
         })
@@ -81,7 +81,7 @@ fn make(store: &Store, figure: u8, scenes: u64) -> Result<()> {
 /// Writes `index.html` of all figures made so far.
 fn write(store: &Store, scenes: u64) -> Result<()> {
     let units = all().map(|figure| unit(store, figure, scenes));
-    let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
+    let Kept::<FigureRecord> { records, left_out } = store.all_kept(units.collect());
     let parts: Vec<Part> = records.iter().flat_map(|r| r.excerpt.clone()).collect();
     excerpt::write(store, "reproduce-figures", parts)?;
     let body = html! {

@@ -16,4 +16,4 @@ pub(crate) use ensemble::{Member, ensemble};
 pub(crate) use hanging::{Hanging, mass};
 pub(crate) use record::{Run, RunSummary};
 pub(crate) use scene::{FigureScene, displaced, scene_fingerprint};
-pub(crate) use shape::{PLATE, Shape};
+pub(crate) use shape::{PLATE, SheetShape};

@@ -28,7 +28,7 @@ const SOLVER: &[&str] = &[
 
 /// A report that writes what it measured, with its sources.
 #[derive(Debug)]
-pub(crate) struct Report {
+pub(crate) struct MeasuredReport {
     pub(crate) name: &'static str,
     /// Files and folders of other crates.
     solver: &'static [&'static str],
@@ -37,33 +37,33 @@ pub(crate) struct Report {
 }
 
 /// All of them.
-pub(crate) const REPORTS: [Report; 6] = [
-    Report {
+pub(crate) const REPORTS: [MeasuredReport; 6] = [
+    MeasuredReport {
         name: "condition-table",
         solver: CHARTS,
         own: &["src/condition.rs"],
     },
-    Report {
+    MeasuredReport {
         name: "cost",
         solver: SOLVER,
         own: &["src/cost.rs", "src/cost", "src/runs", "scenes"],
     },
-    Report {
+    MeasuredReport {
         name: "hard-cases",
         solver: SOLVER,
         own: &["src/hard_cases.rs", "src/hard_cases", "src/runs", "cases"],
     },
-    Report {
+    MeasuredReport {
         name: "locking",
         solver: SOLVER,
         own: &["src/locking.rs", "src/locking", "src/runs"],
     },
-    Report {
+    MeasuredReport {
         name: "reproduce-figures",
         solver: SOLVER,
         own: &["src/figures.rs", "src/figures", "src/runs", "scenes"],
     },
-    Report {
+    MeasuredReport {
         name: "tuning",
         solver: SOLVER,
         own: &["src/tuning.rs", "src/tuning", "src/runs", "scenes"],

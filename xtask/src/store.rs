@@ -14,7 +14,7 @@ use crate::report::Effort;
 use crate::sources::Origin;
 use anyhow::{Context, Result};
 use isosheet_io::run::{RunError, holds_other_files, remove_unfinished};
-use isosheet_io::{WriteError, read_json, write_atomically, write_json};
+use isosheet_io::{FileError, read_json, write_atomically, write_json};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -108,7 +108,7 @@ pub(crate) struct Files<'a> {
 
 impl Files<'_> {
     /// Writes a file, given relative to the output folder.
-    pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), WriteError> {
+    pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), FileError> {
         self.entries.push(path.to_owned());
         self.store.write(path, bytes)
     }
@@ -284,7 +284,7 @@ impl Store {
     }
 
     /// Writes a file of the output folder in one piece.
-    pub(crate) fn write(&self, path: &str, bytes: &[u8]) -> Result<(), WriteError> {
+    pub(crate) fn write(&self, path: &str, bytes: &[u8]) -> Result<(), FileError> {
         write_atomically(&self.path(path), |w| w.write_all(bytes))
     }
 }

@@ -50,12 +50,12 @@ struct Kind {
 /// The file of the kinds.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Contents {
+struct KindsFile {
     kind: Vec<Kind>,
 }
 
 static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
-    let contents: Result<Contents, _> = toml::from_str(include_str!("tuning/kinds.toml"));
+    let contents: Result<KindsFile, _> = toml::from_str(include_str!("tuning/kinds.toml"));
     contents
         .unwrap_or_else(|error| panic!("kinds.toml: {error}"))
         .kind

@@ -5,7 +5,7 @@ use crate::error::{of_run, plain};
 use crate::scene::Scene;
 use crate::value::to_python;
 use isosheet_io::run::{self, Recording};
-use isosheet_io::view::{PageOptions, Series};
+use isosheet_io::view::{PageOptions, TimeSeries};
 use isosheet_io::{HistoryRow, LoadKind, LoadRow};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -22,8 +22,8 @@ use toml::Value;
 /// Numbers of frames, vertices, faces and edges are T, V, F and E. In a notebook a run shows its 3D page.
 #[pyclass(frozen, module = "isosheet")]
 pub(crate) struct Run {
-    folder: PathBuf,
-    recording: Recording,
+    pub(crate) folder: PathBuf,
+    pub(crate) recording: Recording,
 }
 
 /// A column of the history: its name and its values.
@@ -221,7 +221,7 @@ impl Run {
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
-        for series in Series::of_measures(&self.recording.measures) {
+        for series in TimeSeries::of_measures(&self.recording.measures) {
             columns.set_item(series.name, array(py, &series.values))?;
         }
         Ok(columns)

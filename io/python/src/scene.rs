@@ -2,6 +2,7 @@
 
 use crate::error::{of_file, of_run};
 use crate::mesh::Mesh;
+use crate::run::Run;
 use crate::value::{Remade, edits_as_texts, remade, table, to_python};
 use isosheet_io::run::{self, StepPart, Tick, Watch};
 use isosheet_io::scene::{Key, SceneFile, SceneFileError, StartingPoint};
@@ -160,14 +161,14 @@ impl Scene {
     /// one is continued. Returns what the run wrote.
     ///
     /// Raises `StepFailed` or `RunFailed`; `KeyboardInterrupt` after Ctrl-C, when the same call continues.
-    fn simulate<'py>(&self, py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyAny>> {
+    fn simulate(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Run> {
         let mut signals = Signals::default();
-        let outcome = py.detach(|| run::simulate(&self.file, &folder, &mut signals));
-        match outcome.map_err(|e| of_run(py, &e))? {
-            run::Outcome::Interrupted => Err(signals
+        let run = py.detach(|| run::simulate_recorded(&self.file, &folder, &mut signals));
+        match run.map_err(|e| of_run(py, &e))? {
+            None => Err(signals
                 .raised
                 .unwrap_or_else(|| PyKeyboardInterrupt::new_err(()))),
-            _ => py.import("isosheet")?.getattr("Run")?.call1((folder,)),
+            Some(recording) => Ok(Run { folder, recording }),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::arrays::refuse_array;
 use crate::error::of_file;
-use isosheet_io::scene::{Edit, EditError, EditProblem, SceneFileError};
+use isosheet_io::scene::{Edit, EditError, SceneFileError};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -93,7 +93,7 @@ pub(crate) fn edits(dict: &Bound<'_, PyDict>, further: Further) -> PyResult<Vec<
             Err(error) => {
                 let error = EditError {
                     edit: format!("{text}={value}"),
-                    problem: EditProblem::Key(error),
+                    problem: error.into(),
                 };
                 Err(of_file(dict.py(), &SceneFileError::Edit(error)))
             }

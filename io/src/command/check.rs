@@ -7,7 +7,7 @@ use super::reading::what_reading_did;
 use super::write::{is_same_file, to_stdout};
 use crate::mesh::Sheet;
 use crate::run::Estimate;
-use crate::scene::{SceneFile, SceneWarning};
+use crate::scene::{SceneFile, Warning};
 use crate::{
     Advice, MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
     write_mesh,
@@ -77,10 +77,7 @@ impl Check {
                 let changes = what_reading_did(&mesh);
                 let merging = what_merging_does(mesh);
                 to_stdout(&format!("{name}: a sheet of {counts}\n{changes}{merging}"))?;
-                let warnings = [
-                    SceneWarning::closed(&sheet),
-                    SceneWarning::wide_file(&sheet),
-                ];
+                let warnings = [Warning::closed(&sheet), Warning::wide_file(&sheet)];
                 print_warnings(&warnings.into_iter().flatten().collect::<Vec<_>>());
                 Ok(())
             }
@@ -156,7 +153,7 @@ fn read(path: &Path, polygons: Polygons) -> Result<MeshFile, Failure> {
     read_mesh_with(path, &options).map_err(|error| {
         let failure = Failure::of(Code::Input, &error);
         match error.problem {
-            MeshFileProblem::Polygon { .. } => failure.remedy(
+            MeshFileProblem::Polygon(_) => failure.remedy(
                 "`--fix -o FILE2` cuts polygons into triangles: their new edges are lines along which the sheet can \
                  fold",
             ),

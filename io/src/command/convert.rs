@@ -9,8 +9,8 @@ use super::write::{is_same_file, to_stdout};
 use crate::run::{FilmOptions, Recording};
 use crate::{
     Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem,
-    MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, TrajectoryError, read_mesh_with,
-    write_frame, write_mesh, write_series,
+    MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, read_mesh_with, write_frame,
+    write_mesh, write_series,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,6 @@ Files that are written of a run:
   .npz    a numpy archive of all frames, as trajectory.npz of the run
   .png    a shaded picture of one frame (--frame K, the last one without it); with --frames, --every or --fps
           numbered pictures in a folder of that name
-  .svg    the same as vector drawings
   .apng   shaded pictures of all frames as an animation in real time (browsers)
 A file that exists is replaced, unless it is the one that is read. docs/formats.md says more.";
 
@@ -134,7 +133,7 @@ impl Convert {
             ..MeshOptions::default()
         };
         let mesh = read_mesh_with(&self.input, &options).map_err(|e| match e.problem {
-            MeshFileProblem::WeldTolerance { .. } => Failure::of(Code::CommandLine, &e),
+            MeshFileProblem::Options(_) => Failure::of(Code::CommandLine, &e),
             _ => input(&e),
         })?;
         self.write_mesh(&mesh)
@@ -170,10 +169,8 @@ impl Convert {
         match self.fps {
             Some(rate) if !trajectory.is_empty() => {
                 let range = self.frames.unwrap_or_default().of(trajectory.len());
-                trajectory.at_rate(rate, range).map_err(|e| match e {
-                    TrajectoryError::Rate { .. } => Failure::of(Code::CommandLine, &e),
-                    _ => input(&e),
-                })
+                let changed = trajectory.at_rate(rate, range);
+                changed.map_err(|e| Failure::of(Code::CommandLine, &e))
             }
             _ => Ok(trajectory),
         }
@@ -200,7 +197,7 @@ impl Convert {
         ];
         match options.iter().find(|(_, given)| *given) {
             Some((option, _)) => Err(wrong(
-                &format!("{option} is for pictures of runs: .png, .svg and .apng"),
+                &format!("{option} is for pictures of runs: .png and .apng"),
                 "leave it out",
             )),
             None => Ok(()),
@@ -238,9 +235,7 @@ impl Convert {
             .iter()
             .any(|e| extension.eq_ignore_ascii_case(e));
         let is_many = self.frames.is_some() || self.every.is_some() || self.fps.is_some();
-        let is_picture = ["png", "svg"]
-            .iter()
-            .any(|e| extension.eq_ignore_ascii_case(e));
+        let is_picture = extension.eq_ignore_ascii_case("png");
         has_folder && self.frame.is_none() || is_picture && is_many
     }
 
@@ -314,7 +309,7 @@ impl Convert {
             let failure = failed(&error, Code::Output);
             match error {
                 ExportError::Extension { .. } => failure.remedy(
-                    "choose a known format, or .png, .svg or .apng for pictures of the folder of a run; formats \
+                    "choose a known format, or .png or .apng for pictures of the folder of a run; formats \
                      of meshes take one frame, with `--frame K`",
                 ),
                 _ => failure,
@@ -390,10 +385,7 @@ fn input(error: &impl Advice) -> Failure {
 /// The failure of an export: of what the command line asks for, or else with the given code.
 fn failed(error: &ExportError, otherwise: Code) -> Failure {
     let code = match error {
-        ExportError::Extension { .. }
-        | ExportError::NoFrame { .. }
-        | ExportError::Range { .. }
-        | ExportError::Rate { .. } => Code::CommandLine,
+        ExportError::Extension { .. } | ExportError::Frames(_) => Code::CommandLine,
         _ => otherwise,
     };
     Failure::of(code, error)

@@ -2,7 +2,7 @@
 
 use crate::run::{RunError, SweepError};
 use crate::scene::{SceneError, SceneFileError};
-use crate::{Advice, HistoryError};
+use crate::{Advice, FileError};
 
 /// A class of failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,18 +118,8 @@ impl From<RunError> for Failure {
             RunError::Scene(_)
             | RunError::SceneFile(_)
             | RunError::NoRun { .. }
-            | RunError::Damaged { .. }
-            | RunError::DamagedFrame { .. }
-            | RunError::NoFrames { .. }
             | RunError::Page(_)
-            | RunError::Read { .. }
-            | RunError::History(
-                HistoryError::Read { .. }
-                | HistoryError::Shorter { .. }
-                | HistoryError::Changed { .. }
-                | HistoryError::Header { .. }
-                | HistoryError::Row { .. },
-            ) => Code::Input,
+            | RunError::File(FileError::Read(_)) => Code::Input,
             _ => Code::Output,
         };
         match error {
@@ -150,11 +140,9 @@ impl From<SweepError> for Failure {
     fn from(error: SweepError) -> Self {
         let code = match error {
             SweepError::Scene(error) => return error.into(),
-            SweepError::NoKeys | SweepError::SameKey { .. } | SweepError::TooMany { .. } => {
-                Code::CommandLine
-            }
+            SweepError::Keys(_) => Code::CommandLine,
             SweepError::OtherSweep { .. } | SweepError::Foreign { .. } => Code::OtherScene,
-            SweepError::Write(_) => Code::Output,
+            SweepError::File(FileError::Write(_)) => Code::Output,
             _ => Code::Input,
         };
         Self::of(code, &error)

@@ -3,6 +3,7 @@
 use super::failure::{Code, Done, Failure};
 use super::message::{counted, print_message, print_result};
 use super::open::open_page;
+use crate::FileError;
 use crate::run::{Gallery, GalleryError};
 use clap::Args;
 use std::path::PathBuf;
@@ -34,7 +35,7 @@ impl GalleryArgs {
         let gallery = Gallery::make(&self.folders, &self.out).map_err(|error| {
             let code = match error {
                 GalleryError::Foreign { .. } => Code::OtherScene,
-                GalleryError::Write(_) => Code::Output,
+                GalleryError::File(FileError::Write(_)) => Code::Output,
                 _ => Code::Input,
             };
             Failure::of(code, &error)

@@ -79,7 +79,7 @@ impl Info {
                     let remedy = format!("`isosheet check {}` says more", self.file.display());
                     Failure::new(Code::Input, e).remedy(remedy)
                 }
-                MeshFileProblem::Polygon { .. } => {
+                MeshFileProblem::Polygon(_) => {
                     let remedy = "`isosheet convert` cuts polygons into triangles";
                     Failure::new(Code::Input, e).remedy(remedy)
                 }

@@ -18,8 +18,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub(crate) enum PictureFormat {
     /// One frame.
     Png,
-    /// One frame as a vector drawing.
-    Svg,
     /// All frames, animated.
     AnimatedPng,
 }
@@ -30,7 +28,6 @@ impl PictureFormat {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match extension.as_str() {
             "png" => Some(Self::Png),
-            "svg" => Some(Self::Svg),
             "apng" => Some(Self::AnimatedPng),
             _ => None,
         }
@@ -86,7 +83,7 @@ pub(crate) fn write(
     let count = recording.trajectory.len();
     let frames: Vec<usize> = match (format, choice) {
         (PictureFormat::AnimatedPng, FrameChoice::One(_)) => {
-            let message = "--frame is for .png and .svg: an .apng file has many frames";
+            let message = "--frame is for .png: an .apng file has many frames";
             return Err(wrong(
                 message,
                 "choose frames with --frames A..B or --every N",
@@ -105,16 +102,11 @@ pub(crate) fn write(
         return Err(wrong(&message, "choose one of them"));
     }
     let film = Film::new(recording, frames, options).map_err(|e| match e {
-        PictureError::Size { .. } | PictureError::Angle { .. } => {
-            Failure::of(Code::CommandLine, &e)
-        }
+        PictureError::Options(_) => Failure::of(Code::CommandLine, &e),
         _ => input(&e),
     })?;
     let progress = DrawingProgress::new(film.len());
-    let picture = |place: usize| match format {
-        PictureFormat::Svg => film.svg(place).map(String::into_bytes),
-        _ => film.picture(place).and_then(|image| image.to_png()),
-    };
+    let picture = |place: usize| film.picture(place).and_then(|image| image.to_png());
     let save = |path: &Path, bytes: Result<Vec<u8>, PictureError>| {
         let bytes = bytes.map_err(|e| input(&e))?;
         let written = write_atomically(path, |w| w.write_all(&bytes));
@@ -136,7 +128,7 @@ pub(crate) fn write(
     progress.end();
     saved?;
     let name = match (format, choice) {
-        (PictureFormat::Png | PictureFormat::Svg, FrameChoice::Many { .. }) => {
+        (PictureFormat::Png, FrameChoice::Many { .. }) => {
             let last = numbered(path, film.len() - 1);
             format!("{} to {}", numbered(path, 0).display(), last.display())
         }

@@ -1,5 +1,6 @@
 //! Files that appear only when they are complete.
 
+use super::FileError;
 use isosheet_mesh::Advice;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -87,16 +88,14 @@ pub(crate) fn is_unfinished(name: &std::ffi::OsStr) -> bool {
 }
 
 /// Creates the missing parent folders of `path` and returns the folder.
-pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, WriteError> {
+pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, FileError> {
     if path.file_name().is_none() {
-        return Err(WriteError::NoFileName {
-            path: path.to_owned(),
-        });
+        let path = path.to_owned();
+        return Err(WriteError::NoFileName { path }.into());
     }
     if path.is_dir() {
-        return Err(WriteError::IsFolder {
-            path: path.to_owned(),
-        });
+        let path = path.to_owned();
+        return Err(WriteError::IsFolder { path }.into());
     }
     let folder = match path.parent() {
         Some(p) if !p.as_os_str().is_empty() => p.to_owned(),
@@ -104,7 +103,7 @@ pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, WriteError> {
     };
     match fs::create_dir_all(&folder) {
         Ok(()) => Ok(folder),
-        Err(source) => Err(WriteError::CreateFolder { folder, source }),
+        Err(source) => Err(WriteError::CreateFolder { folder, source }.into()),
     }
 }
 
@@ -124,16 +123,13 @@ pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, WriteError> {
 /// ```
 ///
 /// # Errors
-/// [`WriteError`] naming the file or folder; errors that `write` returns become [`WriteError::Write`].
+/// [`FileError::Write`] naming the file or folder; errors that `write` returns become [`WriteError::Write`].
 pub fn write_atomically<T>(
     path: &Path,
     write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<T>,
-) -> Result<T, WriteError> {
+) -> Result<T, FileError> {
     let folder = prepare_folder(path)?;
-    let failed = |source| WriteError::Write {
-        path: path.to_owned(),
-        source,
-    };
+    let failed = |source| FileError::unwritable(path, source);
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
     // Temporary files are private by default; a result should be as readable as any other new file.
@@ -153,10 +149,10 @@ pub fn write_atomically<T>(
     };
     match file.persist(path) {
         Ok(_) => Ok(value),
-        Err(e) => Err(WriteError::Persist {
-            path: path.to_owned(),
-            source: e.error,
-        }),
+        Err(e) => {
+            let (path, source) = (path.to_owned(), e.error);
+            Err(WriteError::Persist { path, source }.into())
+        }
     }
 }
 
@@ -239,19 +235,19 @@ mod tests {
         let inside_a_file = file.join("sub/c.txt");
         assert!(matches!(
             write_atomically(&inside_a_file, |_| Ok(())),
-            Err(WriteError::CreateFolder { .. })
+            Err(FileError::Write(WriteError::CreateFolder { .. }))
         ));
         assert!(matches!(
             write_atomically(dir.path(), |_| Ok(())),
-            Err(WriteError::IsFolder { .. })
+            Err(FileError::Write(WriteError::IsFolder { .. }))
         ));
         assert!(matches!(
             write_atomically(Path::new(".."), |_| Ok(())),
-            Err(WriteError::NoFileName { .. })
+            Err(FileError::Write(WriteError::NoFileName { .. }))
         ));
         assert!(matches!(
             write_atomically(Path::new(""), |_| Ok(())),
-            Err(WriteError::NoFileName { .. })
+            Err(FileError::Write(WriteError::NoFileName { .. }))
         ));
     }
 }

@@ -2,26 +2,24 @@
 //!
 //! JSON has no NaN, and `serde_json` silently writes `null` for it; this finds it first and says where.
 
+use super::DataError;
 use ciborium::Value;
+use isosheet_mesh::wording::given;
 use serde::Serialize;
 
-/// Where a value is not finite, or why it has no form in which that could be seen.
-#[derive(Debug)]
-pub(crate) enum Finding {
-    NotFinite { path: String, value: f64 },
-    Other(String),
-}
-
-/// Checks every number in `value`; a finding carries its path, as in `steps[3].energy`.
-pub(crate) fn check_finite<T: Serialize + ?Sized>(value: &T) -> Result<(), Finding> {
+/// Checks every number in `value`; what is not finite is named by its path, as in `steps[3].energy`.
+pub(crate) fn check_finite<T: Serialize + ?Sized>(value: &T) -> Result<(), DataError> {
     // Of all forms that a value may take, CBOR has what JSON has, and NaN too.
-    let value = Value::serialized(value).map_err(|e| Finding::Other(e.to_string()))?;
+    let value = Value::serialized(value)
+        .map_err(|e| DataError::plain(format!("the value has no form in JSON: {e}")))?;
     match not_finite(&value) {
         None => Ok(()),
-        Some((path, value)) => Err(Finding::NotFinite {
-            path: path.trim_start_matches('.').to_owned(),
-            value,
-        }),
+        Some((path, value)) => {
+            let path = path.trim_start_matches('.');
+            let message = format!("{path} is {}, which JSON cannot hold", given(value));
+            let remedy = "leave it out (`None`) or find where it comes from";
+            Err(DataError::new(message, remedy).value(value))
+        }
     }
 }
 

@@ -1,7 +1,6 @@
 //! The history of a run: one row per step.
 
 use crc::{CRC_64_XZ, Crc, Digest};
-use isosheet_mesh::Advice;
 use isosheet_mesh::wording::brief;
 use std::fmt;
 use std::fs::File;
@@ -9,12 +8,10 @@ use std::io::{self, Read, Seek, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
+use crate::format::atomic::{WriteError, prepare_folder};
+use crate::format::{DataError, FileError, input};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
-
-use crate::format::atomic::{WriteError, prepare_folder};
-use crate::format::input;
 
 /// One step of a run. The field order is the column order of the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -77,92 +74,6 @@ const COLUMNS: [&str; 16] = [
     "gap",
 ];
 
-/// A history that cannot be written or read.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum HistoryError {
-    /// The file could not be created or written.
-    #[error(transparent)]
-    File(#[from] WriteError),
-    /// A value is NaN or infinite.
-    #[error(
-        "{column} at t = {t} s is {value}, and the row was not written",
-        t = brief(*t), value = brief(*value)
-    )]
-    NotFinite {
-        /// The column.
-        column: &'static str,
-        /// The time of the row, in seconds.
-        t: f64,
-        /// The value.
-        value: f64,
-    },
-    /// A file could not be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// A history that is to be continued has lost rows.
-    #[error(
-        "{} has {found} bytes, {length} were written: it was cut or replaced",
-        path.display()
-    )]
-    Shorter {
-        /// The file.
-        path: PathBuf,
-        /// Its length in bytes.
-        found: u64,
-        /// The length that it had.
-        length: u64,
-    },
-    /// A history that is to be continued was changed.
-    #[error("{} was changed since it was written, its checksum is wrong", path.display())]
-    Changed {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The first line is not the expected one.
-    #[error("{} does not start with the columns {columns}, but with {found:?}", path.display())]
-    Header {
-        /// The file.
-        path: PathBuf,
-        /// The columns that were expected.
-        columns: String,
-        /// The first line.
-        found: String,
-    },
-    /// A row is not readable.
-    #[error("row {row} of {}: {problem}", path.display())]
-    Row {
-        /// The file.
-        path: PathBuf,
-        /// The row, 1 for the first below the header.
-        row: usize,
-        /// What is wrong.
-        problem: String,
-    },
-}
-
-impl Advice for HistoryError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::File(error) => error.advice(),
-            Self::NotFinite { .. } => {
-                Some("go back to the last good step, with which the history ends")
-            }
-            Self::Read { .. } => Some("check the path"),
-            Self::Shorter { .. } | Self::Changed { .. } => {
-                Some("start the run anew in another folder")
-            }
-            Self::Header { .. } => Some("name the file of a run, such as its history.csv"),
-            Self::Row { .. } => Some("correct or remove the row"),
-        }
-    }
-}
-
 /// Writes a history row by row: every row is on disk when [`HistoryWriter::append`] returns, so that the file
 /// of an interrupted run ends with its last complete step.
 ///
@@ -191,15 +102,17 @@ pub trait Row: Serialize {
     /// Checks that they are.
     ///
     /// # Errors
-    /// [`HistoryError::NotFinite`] naming the column.
-    fn check_finite(&self) -> Result<(), HistoryError> {
+    /// [`DataError`] naming the column.
+    fn check_finite(&self) -> Result<(), DataError> {
         match self.numbers().find(|(_, v)| !v.is_finite()) {
             None => Ok(()),
-            Some((column, value)) => Err(HistoryError::NotFinite {
-                column,
-                t: self.time(),
-                value,
-            }),
+            Some((column, value)) => {
+                let (t, found) = (brief(self.time()), brief(value));
+                let message =
+                    format!("{column} at t = {t} s is {found}, and the row was not written");
+                let remedy = "go back to the last good step, with which the history ends";
+                Err(DataError::new(message, remedy).value(value))
+            }
         }
     }
 }
@@ -266,8 +179,8 @@ impl<R: Row> RowWriter<R> {
     /// Starts a new history, replacing an older file; missing parent folders are created.
     ///
     /// # Errors
-    /// [`HistoryError::File`].
-    pub fn create(path: &Path) -> Result<Self, HistoryError> {
+    /// [`WriteError`].
+    pub fn create(path: &Path) -> Result<Self, FileError> {
         let folder = prepare_folder(path)?;
         let file =
             input::replace(path).map_err(|source| WriteError::CreateFile { folder, source })?;
@@ -286,29 +199,23 @@ impl<R: Row> RowWriter<R> {
     /// is cut off.
     ///
     /// # Errors
-    /// [`HistoryError::Read`] if the file cannot be opened, [`HistoryError::Shorter`] if it does not have as
-    /// many bytes, [`HistoryError::Changed`] if these are others.
-    pub fn resume(path: &Path, written: Written) -> Result<Self, HistoryError> {
+    /// [`FileError::Read`] if the file cannot be opened, does not have as many bytes, or these are others.
+    pub fn resume(path: &Path, written: Written) -> Result<Self, FileError> {
         let length = written.length;
-        let read = |source| HistoryError::Read {
-            path: path.to_owned(),
-            source,
-        };
+        let read = |source| FileError::unreadable(path, source);
+        let remedy = "start the run anew in another folder";
         let file = input::reopen(path, File::options().read(true).write(true));
         let mut file = file.map_err(read)?;
         let found = file.metadata().map_err(read)?.len();
         if found < length {
-            return Err(HistoryError::Shorter {
-                path: path.to_owned(),
-                found,
-                length,
-            });
+            let problem =
+                format!("it has {found} bytes, {length} were written: it was cut or replaced");
+            return Err(FileError::content(path, problem, remedy));
         }
         let sum = sum_of(&mut (&file).take(length)).map_err(read)?;
         if sum.clone().finalize() != written.sum {
-            return Err(HistoryError::Changed {
-                path: path.to_owned(),
-            });
+            let problem = "it was changed since it was written, its checksum is wrong";
+            return Err(FileError::content(path, problem, remedy));
         }
         file.set_len(length).map_err(read)?;
         file.seek(io::SeekFrom::End(0)).map_err(read)?;
@@ -332,21 +239,18 @@ impl<R: Row> RowWriter<R> {
     /// Waits until all rows are on the disk, so that they survive the end of the system too.
     ///
     /// # Errors
-    /// [`HistoryError::File`].
-    pub fn sync(&self) -> Result<(), HistoryError> {
+    /// [`WriteError`].
+    pub fn sync(&self) -> Result<(), FileError> {
         let synced = self.file.sync_data();
-        Ok(synced.map_err(|source| WriteError::Write {
-            path: self.path.clone(),
-            source,
-        })?)
+        synced.map_err(|e| FileError::unwritable(&self.path, e))
     }
 
     /// Adds a row.
     ///
     /// # Errors
-    /// [`HistoryError::NotFinite`] naming the column, in which case nothing is written;
-    /// [`HistoryError::File`].
-    pub fn append(&mut self, row: &R) -> Result<(), HistoryError> {
+    /// [`FileError::Data`] naming the column of a number that is not finite, in which case nothing is written;
+    /// [`FileError::Write`].
+    pub fn append(&mut self, row: &R) -> Result<(), FileError> {
         row.check_finite()?;
         self.write_record(|w| w.serialize(row))
     }
@@ -361,11 +265,8 @@ impl<R: Row> RowWriter<R> {
     fn write_record(
         &mut self,
         record: impl FnOnce(&mut csv::Writer<&mut Vec<u8>>) -> csv::Result<()>,
-    ) -> Result<(), HistoryError> {
-        let failed = |source| WriteError::Write {
-            path: self.path.clone(),
-            source,
-        };
+    ) -> Result<(), FileError> {
+        let failed = |source| FileError::unwritable(&self.path, source);
         let mut line = Vec::with_capacity(192);
         {
             let mut writer = csv::WriterBuilder::new()
@@ -395,17 +296,14 @@ fn sum_of(bytes: &mut impl Read) -> io::Result<Digest<'static, u64>> {
 /// Reads a history. A last row that is cut short, as an interrupted run may leave it, is ignored.
 ///
 /// # Errors
-/// [`HistoryError`] for a file that is missing, has other columns, or an unreadable row before the last.
-pub fn read_history(path: &Path) -> Result<Vec<HistoryRow>, HistoryError> {
+/// [`FileError::Read`] for a file that is missing, has other columns, or an unreadable row before the last.
+pub fn read_history(path: &Path) -> Result<Vec<HistoryRow>, FileError> {
     read_rows(path)
 }
 
 /// Reads what a [`RowWriter`] has written.
-pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>, HistoryError> {
-    let text = input::read(path).map_err(|source| HistoryError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>, FileError> {
+    let text = input::read(path).map_err(|e| FileError::unreadable(path, e))?;
     // A complete row ends with a line break.
     let complete = text.iter().rposition(|&b| b == b'\n').map_or(0, |k| k + 1);
     let mut reader = csv::Reader::from_reader(&text[..complete]);
@@ -414,21 +312,19 @@ pub(crate) fn read_rows<R: Row + DeserializeOwned>(path: &Path) -> Result<Vec<R>
         .map(|h| h.iter().map(str::to_owned).collect::<Vec<_>>())
         .unwrap_or_default();
     if header != R::COLUMNS {
-        return Err(HistoryError::Header {
-            path: path.to_owned(),
-            columns: R::COLUMNS.join(","),
-            found: header.join(","),
-        });
+        let (columns, found) = (R::COLUMNS.join(","), header.join(","));
+        let problem = format!("it does not start with the columns {columns}, but with {found:?}");
+        let remedy = "name the file of a run, such as its history.csv";
+        return Err(FileError::content(path, problem, remedy));
     }
     // Rows are read by the order of their columns, so that a row may hold vectors.
     reader.set_headers(csv::StringRecord::new());
     let mut rows = Vec::new();
     for (k, record) in reader.records().enumerate() {
         let row = record.and_then(|record| record.deserialize(None));
-        rows.push(row.map_err(|e| HistoryError::Row {
-            path: path.to_owned(),
-            row: k + 1,
-            problem: e.to_string(),
+        rows.push(row.map_err(|e| {
+            let problem = format!("row {}: {e}", k + 1);
+            FileError::content(path, problem, "correct or remove the row")
         })?);
     }
     Ok(rows)

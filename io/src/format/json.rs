@@ -1,97 +1,21 @@
 //! JSON files such as a run's summary.
 
-use isosheet_mesh::Advice;
-use isosheet_mesh::wording::given;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
+use crate::format::atomic::write_atomically;
+use crate::format::finite::check_finite;
+use crate::format::{DataError, FileError, input};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use thiserror::Error;
-
-use crate::format::atomic::{WriteError, write_atomically};
-use crate::format::finite::{Finding, check_finite};
-use crate::format::input;
-
-/// A JSON file that cannot be written or read.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum JsonError {
-    /// The file could not be written.
-    #[error(transparent)]
-    File(#[from] WriteError),
-    /// A number is NaN or infinite, which JSON cannot hold.
-    #[error(
-        "{field} is {value}, which cannot be written to {}", path.display(),
-        value = given(*value)
-    )]
-    NotFinite {
-        /// The file.
-        path: PathBuf,
-        /// Which number, as in `steps[3].energy`.
-        field: String,
-        /// Its value.
-        value: f64,
-    },
-    /// The value has no JSON form, for example a map whose keys are not strings.
-    #[error("cannot write {} as JSON: {problem}", path.display())]
-    Form {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-    },
-    /// The file could not be opened.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// The content is not what was expected.
-    #[error("{}: {source}", path.display())]
-    Parse {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, with line and column.
-        source: serde_json::Error,
-    },
-}
-
-impl Advice for JsonError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::File(error) => error.advice(),
-            Self::NotFinite { .. } => Some("leave it out (`None`) or find where it comes from"),
-            Self::Read { .. } => Some("check the path"),
-            Self::Parse { .. } => Some("correct the file or write it anew"),
-            Self::Form { .. } => None,
-        }
-    }
-}
+use std::io::Write;
+use std::path::Path;
 
 /// Writes `value` as indented JSON, atomically. Numbers keep all their digits.
 ///
 /// # Errors
-/// [`JsonError`]; a number that is not finite is refused by name, and nothing is written then.
-pub fn write_json<T: Serialize + ?Sized>(path: &Path, value: &T) -> Result<(), JsonError> {
-    let path_buf = || path.to_owned();
-    check_finite(value).map_err(|finding| match finding {
-        Finding::NotFinite { path: field, value } => JsonError::NotFinite {
-            path: path_buf(),
-            field,
-            value,
-        },
-        Finding::Other(problem) => JsonError::Form {
-            path: path_buf(),
-            problem,
-        },
-    })?;
-    let mut text = serde_json::to_vec_pretty(value).map_err(|e| JsonError::Form {
-        path: path_buf(),
-        problem: e.to_string(),
-    })?;
+/// [`FileError`]; a number that is not finite is refused by name, and nothing is written then.
+pub fn write_json<T: Serialize + ?Sized>(path: &Path, value: &T) -> Result<(), FileError> {
+    check_finite(value)?;
+    let mut text = serde_json::to_vec_pretty(value)
+        .map_err(|e| DataError::plain(format!("cannot write {} as JSON: {e}", path.display())))?;
     text.push(b'\n');
     Ok(write_atomically(path, |w| w.write_all(&text))?)
 }
@@ -99,16 +23,11 @@ pub fn write_json<T: Serialize + ?Sized>(path: &Path, value: &T) -> Result<(), J
 /// Reads a JSON file.
 ///
 /// # Errors
-/// [`JsonError::Read`] or [`JsonError::Parse`].
-pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, JsonError> {
-    let text = input::read(path).map_err(|source| JsonError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
-    serde_json::from_slice(&text).map_err(|source| JsonError::Parse {
-        path: path.to_owned(),
-        source,
-    })
+/// [`FileError::Read`] for a file that cannot be read, or is not what was expected.
+pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, FileError> {
+    let text = input::read(path).map_err(|e| FileError::unreadable(path, e))?;
+    serde_json::from_slice(&text)
+        .map_err(|e| FileError::content(path, e, "correct the file or write it anew"))
 }
 
 #[cfg(test)]
@@ -238,14 +157,16 @@ mod tests {
         ];
         for (name, s) in cases {
             match write_json(&path, &s) {
-                Err(JsonError::NotFinite { field, .. }) => assert_eq!(field, name),
+                Err(FileError::Data(error)) => {
+                    assert!(error.message.starts_with(&format!("{name} is ")), "{error}");
+                }
                 other => panic!("{name}: {other:?}"),
             }
         }
         assert!(!path.exists());
         assert!(matches!(
             write_json(&path, &f32::NAN),
-            Err(JsonError::NotFinite { .. })
+            Err(FileError::Data(_))
         ));
     }
 
@@ -253,10 +174,8 @@ mod tests {
     fn unreadable_files_are_named() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("summary.json");
-        assert!(matches!(
-            read_json::<Summary>(&path),
-            Err(JsonError::Read { .. })
-        ));
+        let missing = read_json::<Summary>(&path).unwrap_err().to_string();
+        assert!(missing.starts_with("cannot read "), "{missing}");
         std::fs::write(&path, "{\"name\": 3").unwrap();
         let error = read_json::<Summary>(&path).unwrap_err();
         assert!(
@@ -264,9 +183,6 @@ mod tests {
             "{error}"
         );
         let keyed = BTreeMap::from([((1, 2), 3)]);
-        assert!(matches!(
-            write_json(&path, &keyed),
-            Err(JsonError::Form { .. })
-        ));
+        assert!(matches!(write_json(&path, &keyed), Err(FileError::Data(_))));
     }
 }

@@ -1,6 +1,7 @@
 //! The loads of supports and bodies in a run.
 
-use super::history::{HistoryError, Row, RowWriter, read_rows};
+use super::FileError;
+use super::history::{Row, RowWriter, read_rows};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -72,6 +73,6 @@ pub type LoadWriter = RowWriter<LoadRow>;
 ///
 /// # Errors
 /// As [`read_history`](super::read_history).
-pub fn read_loads(path: &Path) -> Result<Vec<LoadRow>, HistoryError> {
+pub fn read_loads(path: &Path) -> Result<Vec<LoadRow>, FileError> {
     read_rows(path)
 }

@@ -1,6 +1,7 @@
 //! The measures of a run.
 
-use super::history::{HistoryError, Row, RowWriter, read_rows};
+use super::FileError;
+use super::history::{Row, RowWriter, read_rows};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -46,6 +47,6 @@ pub type MeasureWriter = RowWriter<MeasureRow>;
 ///
 /// # Errors
 /// As [`read_history`](super::read_history).
-pub fn read_measures(path: &Path) -> Result<Vec<MeasureRow>, HistoryError> {
+pub fn read_measures(path: &Path) -> Result<Vec<MeasureRow>, FileError> {
     read_rows(path)
 }

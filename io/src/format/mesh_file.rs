@@ -21,14 +21,14 @@ mod tests;
 mod weld;
 
 pub use assignment::EdgeAssignment;
-pub use error::{FoldProblem, GltfProblem, MeshFileError, MeshFileProblem, Place};
+pub use error::{Location, MeshFileError, MeshFileProblem};
 pub use fold_frame::FoldFrame;
 pub use format::MeshFormat;
 pub use mesh::{FileCrease, MeshFile, ReadingChanges};
 pub use options::{MeshOptions, Polygons, SeparateBuffers};
 pub use repair::Repair;
 
-use crate::format::input;
+use crate::format::{DataError, input};
 use error::Located;
 use isosheet_mesh::Sheet;
 use std::path::Path;
@@ -65,9 +65,14 @@ pub fn read_mesh_with(path: &Path, options: &MeshOptions) -> Result<MeshFile, Me
     std::fs::metadata(path).map_err(|e| error(MeshFileProblem::Read(e)))?;
     let format = MeshFormat::of(path).ok_or_else(|| {
         let extension = path.extension().unwrap_or_default();
-        error(MeshFileProblem::Extension {
-            extension: extension.to_string_lossy().into_owned(),
-        })
+        let found = match extension.to_string_lossy() {
+            none if none.is_empty() => "a name without extension".to_owned(),
+            some => format!(".{some}"),
+        };
+        let known = MeshFormat::ALL.map(|f| format!(".{}", f.extension()));
+        let known = known.join(", ");
+        let message = format!("{found} is no known format of meshes (known are {known})");
+        error(DataError::new(message, "convert the file to a known format").into())
     })?;
     let bytes = input::read(path).map_err(|e| error(MeshFileProblem::Read(e)))?;
     parse_mesh(&bytes, format, path, options)
@@ -111,10 +116,14 @@ fn parse(
 ) -> Result<MeshFile, Located> {
     options.validate().map_err(|problem| (None, problem))?;
     if options.frame.is_some() && format != MeshFormat::Fold {
-        return Err((None, MeshFileProblem::NoFrames));
+        let message = "a frame is asked for, and only FOLD files have frames";
+        let error = DataError::new(message, "leave the frame out");
+        return Err((None, MeshFileProblem::Frame(error)));
     }
     if options.mesh.is_some() && !matches!(format, MeshFormat::Gltf | MeshFormat::Glb) {
-        return Err((None, MeshFileProblem::NoNames));
+        let message = "a mesh is named, and only the meshes of glTF files have names";
+        let error = DataError::new(message, "leave the name out");
+        return Err((None, MeshFileProblem::Name(error)));
     }
     let mut mesh = match format {
         MeshFormat::Obj => obj::parse(bytes)?.assemble(options)?,

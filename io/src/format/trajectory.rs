@@ -2,17 +2,17 @@
 
 mod archive;
 mod data;
-mod error;
 mod motion;
 mod rate;
 
 pub use data::FrameData;
-pub(crate) use data::{MeshCounts, Quantity};
-pub use error::TrajectoryError;
+pub(crate) use data::{FrameQuantity, MeshCounts};
 pub(crate) use motion::{Motion, MotionError, MotionFrame};
 
 use crate::format::atomic::write_atomically;
+use crate::format::{DataError, FileError};
 use archive::{ArchiveReader, ArchiveWriter};
+use isosheet_mesh::wording::given;
 use isosheet_mesh::{Sheet, VertexId};
 use std::convert::Infallible;
 use std::io;
@@ -44,15 +44,15 @@ pub struct Trajectory {
     edges: Vec<[u32; 2]>,
     rest_lengths: Vec<f64>,
     /// Of each quantity the values of all frames, or none at all.
-    data: [Vec<f64>; Quantity::COUNT],
+    data: [Vec<f64>; FrameQuantity::COUNT],
 }
 
 /// What a motion has.
-struct Contents {
+struct MotionContents {
     /// Times of the frames, seconds.
     times: Vec<f64>,
     /// What the frames have besides positions.
-    quantities: Vec<Quantity>,
+    quantities: Vec<FrameQuantity>,
 }
 
 impl Motion for Trajectory {
@@ -68,7 +68,9 @@ impl Motion for Trajectory {
                 number,
                 t,
                 x: &self.x[n * number..n * (number + 1)],
-                data: FrameData::each(|q: Quantity| self.values(q, number).unwrap_or_default()),
+                data: FrameData::each(|q: FrameQuantity| {
+                    self.values(q, number).unwrap_or_default()
+                }),
                 fields: &[],
             };
             if show(&frame).is_break() {
@@ -97,23 +99,17 @@ impl Trajectory {
     /// Adds a frame: time in seconds and positions (length 3V, metres).
     ///
     /// # Errors
-    /// [`TrajectoryError`] for a wrong length, a number that is not finite, a time before the last, or if the
+    /// [`DataError`] for a wrong length, a number that is not finite, a time before the last, or if the
     /// frames before have further data; nothing is added then.
-    pub fn push(&mut self, t: f64, x: &[f64]) -> Result<(), TrajectoryError> {
+    pub fn push(&mut self, t: f64, x: &[f64]) -> Result<(), DataError> {
         self.push_with(t, x, &FrameData::default())
     }
 
     /// Adds a frame with further data, each of which all frames of a trajectory have, or none.
     ///
     /// # Errors
-    /// As [`Self::push`]; [`TrajectoryError::DataCount`] for another number of values than the frames before
-    /// have.
-    pub fn push_with(
-        &mut self,
-        t: f64,
-        x: &[f64],
-        data: &FrameData<'_>,
-    ) -> Result<(), TrajectoryError> {
+    /// As [`Self::push`], and for another number of values than the frames before have.
+    pub fn push_with(&mut self, t: f64, x: &[f64], data: &FrameData<'_>) -> Result<(), DataError> {
         let frame = MotionFrame {
             number: self.t.len(),
             t,
@@ -122,9 +118,9 @@ impl Trajectory {
             fields: &[],
         };
         let before = self.t.last().copied().unwrap_or(f64::NEG_INFINITY);
-        let has = |quantity: Quantity| !self.data[quantity as usize].is_empty();
+        let has = |quantity: FrameQuantity| !self.data[quantity as usize].is_empty();
         self.check(&frame, before, &has)?;
-        for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut self.data) {
+        for (quantity, kept) in FrameQuantity::ALL.into_iter().zip(&mut self.data) {
             kept.extend_from_slice(quantity.of(data));
         }
         self.t.push(t);
@@ -138,35 +134,31 @@ impl Trajectory {
         &self,
         frame: &MotionFrame<'_>,
         before: f64,
-        has: &dyn Fn(Quantity) -> bool,
-    ) -> Result<(), TrajectoryError> {
+        has: &dyn Fn(FrameQuantity) -> bool,
+    ) -> Result<(), DataError> {
         let &MotionFrame {
             number, t, x, data, ..
         } = frame;
         if x.len() != 3 * self.vertex_count {
-            return Err(TrajectoryError::WrongLength {
-                frame: number,
-                got: x.len(),
-                vertices: self.vertex_count,
-            });
+            let message = format!(
+                "frame {number} has {} coordinates, but the mesh has {} vertices, three coordinates each",
+                x.len(),
+                self.vertex_count
+            );
+            return Err(DataError::plain(message).at(number));
         }
         if let Some(k) = x.iter().position(|c| !c.is_finite()) {
-            let vertex = VertexId::from_index(k / 3);
-            return Err(TrajectoryError::NotFinite {
-                frame: number,
-                vertex,
-                axis: k % 3,
-                value: x[k],
-            });
+            let (vertex, axis) = (VertexId::from_index(k / 3), ["x", "y", "z"][k % 3]);
+            let what = format!("coordinate {axis} of {vertex}");
+            return Err(not_finite(&what, number, x[k]));
         }
         if !t.is_finite() || t < before {
-            return Err(TrajectoryError::Time {
-                frame: number,
-                t,
-                before,
-            });
+            let (now, before) = (given(t), given(before));
+            let message = format!("frame {number} has the time {now} s after {before} s");
+            let error = DataError::new(message, "record frames in the order of time");
+            return Err(error.at(number).value(t));
         }
-        for quantity in Quantity::ALL {
+        for quantity in FrameQuantity::ALL {
             let values = quantity.of(&data);
             let expected = match number {
                 0 if values.is_empty() => 0,
@@ -180,7 +172,7 @@ impl Trajectory {
     }
 
     /// The trajectory of some of the frames, in the order of time.
-    pub(super) fn subset(&self, frames: &[usize]) -> Result<Self, TrajectoryError> {
+    pub(super) fn subset(&self, frames: &[usize]) -> Result<Self, DataError> {
         let mut subset = self.without_frames();
         for &k in frames {
             let data = FrameData::each(|quantity| self.values(quantity, k).unwrap_or_default());
@@ -204,12 +196,12 @@ impl Trajectory {
     }
 
     /// A quantity in all frames, one after the other; nothing if the trajectory does not have it.
-    pub(super) fn all(&self, quantity: Quantity) -> &[f64] {
+    pub(super) fn all(&self, quantity: FrameQuantity) -> &[f64] {
         &self.data[quantity as usize]
     }
 
     /// The numbers of a quantity in one frame.
-    fn size(&self, quantity: Quantity) -> usize {
+    fn size(&self, quantity: FrameQuantity) -> usize {
         quantity.size(self.counts())
     }
 
@@ -229,7 +221,7 @@ impl Trajectory {
     }
 
     /// A quantity in a frame.
-    fn values(&self, quantity: Quantity, k: usize) -> Option<&[f64]> {
+    fn values(&self, quantity: FrameQuantity, k: usize) -> Option<&[f64]> {
         let n = self.size(quantity);
         self.data[quantity as usize].get(n * k..n * (k + 1))
     }
@@ -278,28 +270,28 @@ impl Trajectory {
     /// The force of each edge in a frame (newtons, tension positive); `None` when the trajectory has no
     /// forces or no such frame.
     pub fn rod_forces(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::RodForces, k)
+        self.values(FrameQuantity::RodForces, k)
     }
 
     /// The force of contact on each vertex in a frame (length 3V, newtons): normal forces and friction of the
     /// bodies on the sheet and of the sheet on itself. `None` when the trajectory has no contact or no such
     /// frame.
     pub fn contact_forces(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::ContactForces, k)
+        self.values(FrameQuantity::ContactForces, k)
     }
 
     /// The gap of each vertex in a frame (length V, metres): the smallest gap of the contacts that the vertex
     /// or an edge or a face at it takes part in, and the activation distance of contact where nothing is
     /// within reach; `None` when the trajectory has no contact or no such frame.
     pub fn gaps(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::Gaps, k)
+        self.values(FrameQuantity::Gaps, k)
     }
 
     /// The plastic angle of each edge in a frame (length E, radians, positive for valleys, 0 where nothing
     /// yields): what stays of its fold angle where its moment is zero. `None` when no edge can yield, or
     /// there is no such frame.
     pub fn plastic_angles(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::PlasticAngles, k)
+        self.values(FrameQuantity::PlasticAngles, k)
     }
 
     /// The two principal values of the plastic curvature of each face in a frame (length 2F, 1/m): the larger
@@ -307,14 +299,14 @@ impl Trajectory {
     /// counter-clockwise. It is what stays of the curvature where the moment is zero. `None` when no face can
     /// yield, or there is no such frame.
     pub fn plastic_curvatures(&self, k: usize) -> Option<&[f64]> {
-        self.values(Quantity::PlasticCurvatures, k)
+        self.values(FrameQuantity::PlasticCurvatures, k)
     }
 
     /// Writes the `.npz` file, atomically. Equal trajectories give equal bytes.
     ///
     /// # Errors
-    /// [`TrajectoryError::File`].
-    pub fn write(&self, path: &Path) -> Result<(), TrajectoryError> {
+    /// [`FileError`].
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
         Ok(self.write_motion(path, self)?)
     }
 
@@ -324,7 +316,7 @@ impl Trajectory {
         path: &Path,
         motion: &M,
     ) -> Result<(), MotionError<M::Error>> {
-        let Contents { times, quantities } = self.contents(motion)?;
+        let MotionContents { times, quantities } = self.contents(motion)?;
         let (frames, vertices) = (times.len() as u64, self.vertex_count as u64);
         let mut failed = None;
         let mut rows = |of: &dyn for<'f> Fn(&MotionFrame<'f>) -> &'f [f64],
@@ -367,20 +359,20 @@ impl Trajectory {
         });
         match failed {
             Some(error) => Err(MotionError::Frame(error)),
-            None => Ok(written.map_err(TrajectoryError::File)?),
+            None => Ok(written?),
         }
     }
 
     /// What a motion has, if its frames are those of a trajectory.
-    fn contents<M: Motion>(&self, motion: &M) -> Result<Contents, MotionError<M::Error>> {
+    fn contents<M: Motion>(&self, motion: &M) -> Result<MotionContents, MotionError<M::Error>> {
         let (mut times, mut quantities) = (Vec::new(), Vec::new());
         let mut checked = Ok(());
         let shown = motion.each(&mut |frame| {
             let before = times.last().copied().unwrap_or(f64::NEG_INFINITY);
             checked = self.check(frame, before, &|quantity| quantities.contains(&quantity));
             if times.is_empty() {
-                let has = |quantity: &Quantity| !quantity.of(&frame.data).is_empty();
-                quantities.extend(Quantity::ALL.into_iter().filter(has));
+                let has = |quantity: &FrameQuantity| !quantity.of(&frame.data).is_empty();
+                quantities.extend(FrameQuantity::ALL.into_iter().filter(has));
             }
             times.push(frame.t);
             if checked.is_ok() {
@@ -390,26 +382,18 @@ impl Trajectory {
             }
         });
         shown.map_err(MotionError::Frame)?;
-        checked?;
-        Ok(Contents { times, quantities })
+        checked.map_err(FileError::from)?;
+        Ok(MotionContents { times, quantities })
     }
 
     /// Reads an `.npz` file that [`Self::write`] wrote, or one of the same arrays.
     ///
     /// # Errors
-    /// [`TrajectoryError::Read`], or [`TrajectoryError::Array`] naming the array that is missing or does not
-    /// fit the others.
-    pub fn read(path: &Path) -> Result<Self, TrajectoryError> {
-        let read_error = |source| TrajectoryError::Read {
-            path: path.to_owned(),
-            source,
-        };
-        let mut npz = ArchiveReader::open(path).map_err(read_error)?;
-        let array = |array, problem: String| TrajectoryError::Array {
-            path: path.to_owned(),
-            array,
-            problem,
-        };
+    /// [`FileError::Read`], naming the array that is missing or does not fit the others.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        let mut npz = ArchiveReader::open(path)
+            .map_err(|e| FileError::content(path, e, "check that it is an .npz file"))?;
+        let array = |name: &str, problem: String| wrong_array(path, name, &problem);
         let (t_shape, t) = npz.get::<f64>("t", 1)?;
         let (x_shape, x) = npz.get::<f64>("x", 3)?;
         let (faces_shape, faces) = npz.get::<u32>("faces", 2)?;
@@ -432,8 +416,8 @@ impl Trajectory {
             edges: rods as usize,
             faces: faces_shape[0] as usize,
         };
-        let mut data: [Vec<f64>; Quantity::COUNT] = Default::default();
-        for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut data) {
+        let mut data: [Vec<f64>; FrameQuantity::COUNT] = Default::default();
+        for (quantity, kept) in FrameQuantity::ALL.into_iter().zip(&mut data) {
             let frame = quantity.shape(counts);
             let expected = [&[frames], &frame[..]].concat();
             let found = npz.get_if_there::<f64>(quantity.name(), expected.len())?;
@@ -455,7 +439,10 @@ impl Trajectory {
                 ));
             }
         }
-        let further = Quantity::ALL.map(Quantity::name).into_iter().zip(&data);
+        let further = FrameQuantity::ALL
+            .map(FrameQuantity::name)
+            .into_iter()
+            .zip(&data);
         let own = [("t", &t), ("x", &x), ("rest_lengths", &rest_lengths)];
         for (name, list) in own.into_iter().chain(further) {
             if let Some(v) = list.iter().find(|v| !v.is_finite()) {
@@ -472,6 +459,22 @@ impl Trajectory {
             data,
         })
     }
+}
+
+/// An array of a file that is missing or of another type or shape.
+fn wrong_array(path: &Path, name: &str, problem: &str) -> FileError {
+    let problem = format!("array `{name}`: {problem}");
+    let remedy = "give a trajectory that this program wrote, and that memory can hold";
+    FileError::content(path, problem, remedy)
+}
+
+/// A number of a frame that is not finite.
+fn not_finite(what: &str, frame: usize, value: f64) -> DataError {
+    let value_in_words = given(value);
+    let message =
+        format!("{what} in frame {frame} is {value_in_words}, and the frame was not recorded");
+    let error = DataError::new(message, "go back to the last state that was finite");
+    error.at(frame).value(value)
 }
 
 #[cfg(test)]

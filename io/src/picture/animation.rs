@@ -2,6 +2,7 @@
 
 use super::canvas::{Image, encoder, srgb_bytes};
 use super::error::PictureError;
+use crate::DataError;
 use rayon::prelude::*;
 
 /// An animated PNG file of `count` pictures of one size (pixels), which `picture` makes, several at a time on
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 /// Programs that know no animations show the first picture.
 ///
 /// # Errors
-/// [`PictureError::NoFrames`] for no picture, [`PictureError::FrameSize`] for one of another size,
+/// [`PictureError::Data`] for no picture, or for one of another size,
 /// [`PictureError::Png`] if the file cannot be made, and whatever `picture` returns.
 pub fn animated_png(
     size: [usize; 2],
@@ -19,7 +20,7 @@ pub fn animated_png(
 ) -> Result<Vec<u8>, PictureError> {
     let frames = u32::try_from(count).unwrap_or(u32::MAX);
     if frames == 0 {
-        return Err(PictureError::NoFrames);
+        return Err(PictureError::no_frames());
     }
     let mut bytes = Vec::new();
     let mut encoder = encoder(&mut bytes, size[0] as u32, size[1] as u32);
@@ -36,7 +37,12 @@ pub fn animated_png(
             let image = picture(frame)?;
             if image.size() != size {
                 let found = image.size();
-                return Err(PictureError::FrameSize { frame, found, size });
+                let message = format!(
+                    "picture {frame} has {} x {} pixels, the animation {} x {}",
+                    found[0], found[1], size[0], size[1]
+                );
+                let error = DataError::new(message, "draw all pictures in one size");
+                return Err(PictureError::Data(error.at(frame)));
             }
             Ok(srgb_bytes(&image))
         });
@@ -78,11 +84,11 @@ mod tests {
     fn no_frames_and_other_sizes_are_refused() {
         let white = |_: usize| Ok(Image::white(3, 2));
         let none = animated_png([3, 2], 40, 0, white);
-        assert!(matches!(none, Err(PictureError::NoFrames)));
+        assert!(matches!(none, Err(PictureError::Data(_))));
         let other = animated_png([2, 2], 40, 1, white);
         assert!(matches!(
             other,
-            Err(PictureError::FrameSize { frame: 0, .. })
+            Err(PictureError::Data(error)) if error.index == Some(0)
         ));
     }
 }

@@ -1,75 +1,19 @@
 //! Why a picture cannot be made.
 
+use crate::format::DataError;
 use isosheet_collide::ObstacleError;
-use isosheet_mesh::wording::{brief, given};
-use isosheet_mesh::{Advice, VertexId};
+use isosheet_mesh::Advice;
 
 /// Why a picture cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureError {
-    /// The picture has no pixels.
-    #[error("the picture has {width} x {height} pixels")]
-    Size {
-        /// Width, pixels.
-        width: usize,
-        /// Height, pixels.
-        height: usize,
-    },
-    /// There is no frame to draw.
-    #[error("there is no such frame")]
-    NoFrames,
-    /// A picture of an animation has another size than the animation.
-    #[error(
-        "picture {frame} has {} x {} pixels, the animation {} x {}",
-        found[0], found[1], size[0], size[1]
-    )]
-    FrameSize {
-        /// The picture, from 0.
-        frame: usize,
-        /// Its width and height, pixels.
-        found: [usize; 2],
-        /// Width and height of the animation, pixels.
-        size: [usize; 2],
-    },
-    /// An angle of the viewer is out of range.
-    #[error("the {name} is {value} degrees", value = given(*value))]
-    Angle {
-        /// Which angle.
-        name: &'static str,
-        /// Its value, degrees.
-        value: f64,
-    },
-    /// The wires have no width.
-    #[error("wires have the width {width}", width = brief(*width))]
-    Wire {
-        /// The width given, pixels.
-        width: f64,
-    },
-    /// The positions do not belong to the sheet.
-    #[error("there are {count} coordinates for {vertices} vertices")]
-    Coordinates {
-        /// Coordinates given.
-        count: usize,
-        /// Vertices of the sheet.
-        vertices: usize,
-    },
-    /// A coordinate is not finite.
-    #[error("{vertex} is at {value}", value = given(*value))]
-    NotFinite {
-        /// The vertex.
-        vertex: VertexId,
-        /// The coordinate, metres.
-        value: f64,
-    },
-    /// A pin is no vertex of the sheet.
-    #[error("the pin {vertex} is none of the {vertices} vertices of the sheet")]
-    Pin {
-        /// The vertex given.
-        vertex: VertexId,
-        /// Vertices of the sheet.
-        vertices: usize,
-    },
+    /// A size, an angle of the viewer or a width of lines is out of range.
+    #[error(transparent)]
+    Options(DataError),
+    /// What is to be drawn does not fit together, or there is nothing to draw.
+    #[error(transparent)]
+    Data(DataError),
     /// A body has no geometry.
     #[error(transparent)]
     Body(#[from] ObstacleError),
@@ -81,17 +25,25 @@ pub enum PictureError {
     Png(#[from] png::EncodingError),
 }
 
+impl PictureError {
+    /// Pictures of a size (pixels) cannot be made.
+    pub(crate) fn size(width: usize, height: usize) -> Self {
+        let message = format!("the picture has {width} x {height} pixels");
+        let remedy = "give at least one each way, and no more than memory holds";
+        Self::Options(DataError::new(message, remedy))
+    }
+
+    /// There is no frame to draw.
+    pub(crate) fn no_frames() -> Self {
+        let remedy = "choose frames that the run has";
+        Self::Data(DataError::new("there is no such frame", remedy))
+    }
+}
+
 impl Advice for PictureError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::Size { .. } => Some("give at least one each way, and no more than memory holds"),
-            Self::NoFrames => Some("choose frames that the run has"),
-            Self::FrameSize { .. } => Some("draw all pictures in one size"),
-            Self::Angle { .. } => Some("give a finite one, and an elevation from -90 to 90"),
-            Self::Wire { .. } => Some("give a finite one of at least 0 pixels"),
-            Self::Coordinates { .. } => Some("give three for each vertex"),
-            Self::NotFinite { .. } => Some("draw finite positions"),
-            Self::Pin { .. } => Some("name one of them"),
+            Self::Options(error) | Self::Data(error) => error.advice(),
             Self::Body(error) => error.advice(),
             Self::Svg(..) => Some("give an SVG document"),
             Self::Png(..) => None,

@@ -48,7 +48,7 @@ impl Image {
 /// Puts pictures of one size into rows of `columns`.
 ///
 /// # Errors
-/// [`PictureError::Size`] for pictures without pixels.
+/// [`PictureError::Options`] for pictures without pixels.
 pub fn montage(frames: &[Labelled], columns: usize) -> Result<Image, PictureError> {
     let [width, height] = frames.first().map_or([1, 1], |f| f.image.size());
     let columns = columns.clamp(1, frames.len().max(1));

@@ -8,6 +8,8 @@ use super::pieces::{Cutter, Piece};
 use super::raster::{Corner, Drawing, Facet, Stroke};
 use super::solid::{Solid, Triangles};
 use super::vector::{axpy, dot};
+use crate::DataError;
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Part, Topology, VertexId};
 
 /// How far faces darken each other, as part of what the picture shows.
@@ -18,7 +20,7 @@ const REACH: f64 = 0.3;
 pub(super) const GROUND: f64 = 0.8;
 
 /// Largest edge over which the light on a body is interpolated, as part of the height of the picture.
-pub(super) const GRAIN: f64 = 0.035;
+const GRAIN: f64 = 0.035;
 
 /// The same at the rim of a shadow, where the openness would change by more than [`CONTRAST`] within a piece.
 const FINE_GRAIN: f64 = 0.007;
@@ -27,13 +29,13 @@ const FINE_GRAIN: f64 = 0.007;
 const CONTRAST: f64 = 0.12;
 
 /// How far lines are drawn in front of what they lie on, as part of what the picture shows.
-pub(super) const LIFT: f64 = 0.004;
+const LIFT: f64 = 0.004;
 
 /// Wires that are closer than so many pixels are drawn lighter, so that fine meshes stay light.
 const CLOSE: f64 = 9.0;
 
 /// sRGB colours of lines, of pins and of immobile vertices.
-pub(super) const INK: [u8; 3] = [38, 42, 48];
+const INK: [u8; 3] = [38, 42, 48];
 const PIN: [u8; 3] = [213, 94, 0];
 const IMMOBILE: [u8; 3] = [240, 228, 66];
 
@@ -64,13 +66,15 @@ impl SheetPicture<'_> {
     pub(super) fn validate(&self) -> Result<(), PictureError> {
         let (count, vertices) = (self.positions.len(), self.topology.vertex_count());
         if count != 3 * vertices {
-            return Err(PictureError::Coordinates { count, vertices });
+            let message = format!("there are {count} coordinates for {vertices} vertices");
+            let error = DataError::new(message, "give three for each vertex");
+            return Err(PictureError::Data(error));
         }
         if let Some(k) = self.positions.iter().position(|c| !c.is_finite()) {
-            return Err(PictureError::NotFinite {
-                vertex: VertexId((k / 3) as u32),
-                value: self.positions[k],
-            });
+            let (vertex, value) = (k / 3, self.positions[k]);
+            let message = format!("{} is at {}", VertexId(vertex as u32), given(value));
+            let error = DataError::new(message, "draw finite positions");
+            return Err(PictureError::Data(error.at(vertex).value(value)));
         }
         match self
             .pins
@@ -78,7 +82,12 @@ impl SheetPicture<'_> {
             .chain(self.immobile)
             .find(|v| v.index() >= vertices)
         {
-            Some(&vertex) => Err(PictureError::Pin { vertex, vertices }),
+            Some(&vertex) => {
+                let message =
+                    format!("the pin {vertex} is none of the {vertices} vertices of the sheet");
+                let error = DataError::new(message, "name one of them").at(vertex.index());
+                Err(PictureError::Data(error))
+            }
             None => Ok(()),
         }
     }
@@ -122,15 +131,16 @@ impl Look {
     /// Whether the values make sense.
     ///
     /// # Errors
-    /// [`PictureError::Size`] without pixels, [`PictureError::Wire`] for a width that is negative or not
-    /// finite.
+    /// [`PictureError::Options`] without pixels, and for a width that is negative or not finite.
     pub fn validate(&self) -> Result<(), PictureError> {
         let [width, height] = self.size;
         if width == 0 || height == 0 || width.checked_mul(height).is_none() {
-            return Err(PictureError::Size { width, height });
+            return Err(PictureError::size(width, height));
         }
         if !(self.wire.is_finite() && self.wire >= 0.0) {
-            return Err(PictureError::Wire { width: self.wire });
+            let message = format!("wires have the width {}", brief(self.wire));
+            let error = DataError::new(message, "give a finite one of at least 0 pixels");
+            return Err(PictureError::Options(error.value(self.wire)));
         }
         Ok(())
     }
@@ -139,8 +149,7 @@ impl Look {
 /// Draws a sheet on white.
 ///
 /// # Errors
-/// Those of [`Look::validate`]; [`PictureError::Coordinates`], [`PictureError::NotFinite`] and
-/// [`PictureError::Pin`] for a picture that does not fit together.
+/// Those of [`Look::validate`]; [`PictureError::Data`] for a picture that does not fit together.
 pub fn render(
     picture: &SheetPicture<'_>,
     camera: &Camera,

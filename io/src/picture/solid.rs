@@ -20,13 +20,13 @@ const FLAT: f64 = 0.97;
 /// A body as it is drawn, in a pose.
 #[derive(Clone, Debug)]
 pub struct Solid {
-    form: Arc<Form>,
+    form: Arc<SolidForm>,
     pose: Isometry3<f64>,
 }
 
 /// A body in its own frame.
 #[derive(Debug)]
-struct Form {
+struct SolidForm {
     /// None for a half-space.
     mesh: Option<BodyMesh>,
     /// Edges where two faces meet at an angle.
@@ -37,9 +37,8 @@ struct Form {
 /// The surface that faces of a body approximate, in space.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Skin {
-    /// The faces themselves; of a closed body the back sides are never seen, and of a convex one no face
-    /// hides another.
-    Flat { is_closed: bool, is_convex: bool },
+    /// The faces themselves; of a closed body the back sides are never seen.
+    Flat { is_closed: bool },
     /// A ball or a capsule: all points at a distance from a segment.
     Round { ends: [[f64; 3]; 2], radius: f64 },
     /// A cylinder with flat ends about a segment.
@@ -68,7 +67,7 @@ impl Solid {
             (Shape::Cuboid { .. } | Shape::Surface(_), Some(mesh)) => ridges(mesh),
             _ => Vec::new(),
         };
-        let form = Form {
+        let form = SolidForm {
             mesh,
             edges,
             shape: body.shape().clone(),
@@ -104,13 +103,9 @@ impl Solid {
                 let (centre, radius) = (foot.coords.into(), reach);
                 Skin::Ground { centre, radius }
             }
-            Shape::Cuboid { .. } => Skin::Flat {
-                is_closed: true,
-                is_convex: true,
-            },
+            Shape::Cuboid { .. } => Skin::Flat { is_closed: true },
             Shape::Surface(ref surface) => Skin::Flat {
                 is_closed: surface.is_closed(),
-                is_convex: false,
             },
             Shape::Sphere { radius } => Skin::Round {
                 ends: ends(0.0),
@@ -254,13 +249,7 @@ impl Skin {
 
     /// Whether faces that are seen from behind are left out.
     pub(super) fn hides_backs(&self) -> bool {
-        !matches!(
-            self,
-            Self::Flat {
-                is_closed: false,
-                ..
-            }
-        )
+        !matches!(self, Self::Flat { is_closed: false })
     }
 
     /// How much of its colour a point of the surface has, from 0 to 1.
@@ -346,47 +335,6 @@ impl Triangles {
     /// The number of the sheet that a face is of.
     pub(super) fn sheet(&self, face: usize) -> usize {
         self.sheets.partition_point(|end| *end <= face)
-    }
-
-    /// The layer of a piece of a body: no two pieces of one layer cover each other. Convex bodies are a
-    /// layer, and each face of others is one.
-    pub(super) fn layer_of_face(&self, face: usize) -> usize {
-        let body = self.skins.partition_point(|(_, end)| *end <= face);
-        match self.skins.get(body) {
-            Some((
-                Skin::Flat {
-                    is_convex: false, ..
-                },
-                _,
-            ))
-            | None => self.skins.len() + face,
-            Some(_) => body,
-        }
-    }
-
-    /// The layer of an edge of a body: that of its faces if the body is convex, and one of its own otherwise.
-    pub(super) fn layer_of_ridge(&self, number: usize) -> usize {
-        let corner = self.ridges[number].0[0];
-        let beside = self.faces[self.own..]
-            .iter()
-            .position(|f| f.contains(&corner));
-        match beside.map(|k| self.layer_of_face(self.own + k)) {
-            Some(body) if body < self.skins.len() => body,
-            _ => self.skins.len() + self.faces.len() + number,
-        }
-    }
-
-    /// Whether a viewer may see an edge of a body: one of the faces beside it, where these hide their backs.
-    pub(super) fn shows(&self, number: usize, eye: &[f64; 3]) -> bool {
-        let ([a, b], skin) = self.ridges[number];
-        let mut beside = self.faces[self.own..]
-            .iter()
-            .filter(|f| f.contains(&a) && f.contains(&b));
-        !skin.hides_backs()
-            || beside.any(|f| {
-                let corners = f.map(|v| self.x[v]);
-                dot(&normal(&corners), &sub(eye, &corners[0])) > 0.0
-            })
     }
 
     /// The surface of which a face is a part; none for the sheet.

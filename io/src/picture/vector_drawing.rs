@@ -10,7 +10,7 @@ use resvg::{tiny_skia, usvg};
 /// files everywhere.
 ///
 /// # Errors
-/// [`PictureError::Svg`] if the document cannot be read, [`PictureError::Size`] if it is empty or too large.
+/// [`PictureError::Svg`] if the document cannot be read, [`PictureError::Options`] if it is empty or too large.
 pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>, PictureError> {
     let pixels = pixels(svg, scale)?;
     let data: Vec<u8> = pixels
@@ -43,10 +43,8 @@ fn pixels(svg: &str, scale: f32) -> Result<tiny_skia::Pixmap, PictureError> {
     let tree = usvg::Tree::from_str(svg, &options)?;
     let size = tree.size();
     let [width, height] = [size.width(), size.height()].map(|s| (s * scale).ceil() as u32);
-    let mut pixels = tiny_skia::Pixmap::new(width, height).ok_or(PictureError::Size {
-        width: width as usize,
-        height: height as usize,
-    })?;
+    let mut pixels = tiny_skia::Pixmap::new(width, height)
+        .ok_or_else(|| PictureError::size(width as usize, height as usize))?;
     // The last row and column may be covered in part only.
     pixels.fill(tiny_skia::Color::WHITE);
     let transform = tiny_skia::Transform::from_scale(scale, scale);

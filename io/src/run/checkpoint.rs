@@ -3,18 +3,20 @@
 use super::RunError;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
+use super::error::BEGIN_ANEW;
 use super::summary::{Ending, Measured};
-use crate::format::{Written, input, write_atomically};
+use crate::format::{FileError, Written, input, write_atomically};
 use crc::{CRC_64_XZ, Crc};
 use isosheet_dynamics::Checkpoint;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::io::Write;
 use std::path::Path;
 
 /// How far a run has come.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Progress {
+pub(crate) struct RunProgress {
     /// Hash of the scene.
     pub(crate) scene: String,
     /// Version of the program that began the run.
@@ -71,15 +73,11 @@ const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
 /// progress as JSON, the simulation as [`Checkpoint::to_bytes`] has it, and the CRC-64 of all that.
 pub(crate) fn write(
     path: &Path,
-    progress: &Progress,
+    progress: &RunProgress,
     simulation: &Checkpoint,
 ) -> Result<(), RunError> {
-    let damaged = |problem: String| RunError::Damaged {
-        path: path.to_owned(),
-        problem,
-    };
-    let head = serde_json::to_vec(progress).map_err(|e| damaged(e.to_string()))?;
-    let body = simulation.to_bytes().map_err(|e| damaged(e.to_string()))?;
+    let head = serde_json::to_vec(progress).map_err(|e| damaged(path, e))?;
+    let body = simulation.to_bytes().map_err(|e| damaged(path, e))?;
     let mut bytes = Vec::with_capacity(head.len() + body.len() + 24);
     bytes.extend_from_slice(MAGIC);
     bytes.extend((head.len() as u64).to_le_bytes());
@@ -90,13 +88,14 @@ pub(crate) fn write(
     Ok(())
 }
 
+/// A checkpoint that cannot be used.
+fn damaged(path: &Path, problem: impl Display) -> FileError {
+    FileError::content(path, problem, BEGIN_ANEW)
+}
+
 /// Reads a checkpoint.
-pub(crate) fn read(path: &Path) -> Result<(Progress, Checkpoint), RunError> {
-    let damaged = |problem: &str| RunError::Damaged {
-        path: path.to_owned(),
-        problem: problem.to_owned(),
-    };
-    let bytes = input::read(path).map_err(|e| damaged(&e.to_string()))?;
+pub(crate) fn read(path: &Path) -> Result<(RunProgress, Checkpoint), RunError> {
+    let bytes = input::read(path).map_err(|e| damaged(path, e))?;
     let whole = || -> Option<(&[u8], &[u8])> {
         let (content, sum) = bytes.split_last_chunk::<8>()?;
         if SUM.checksum(content).to_le_bytes() != *sum {
@@ -106,8 +105,8 @@ pub(crate) fn read(path: &Path) -> Result<(Progress, Checkpoint), RunError> {
         rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)
     };
     let (head, body) =
-        whole().ok_or_else(|| damaged("it is not a whole checkpoint of this version"))?;
-    let progress = serde_json::from_slice(head).map_err(|e| damaged(&e.to_string()))?;
-    let simulation = Checkpoint::from_bytes(body).map_err(|e| damaged(&e.to_string()))?;
+        whole().ok_or_else(|| damaged(path, "it is not a whole checkpoint of this version"))?;
+    let progress = serde_json::from_slice(head).map_err(|e| damaged(path, e))?;
+    let simulation = Checkpoint::from_bytes(body).map_err(|e| damaged(path, e))?;
     Ok((progress, simulation))
 }

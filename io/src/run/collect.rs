@@ -3,7 +3,7 @@
 use super::Summary;
 use super::folder::RunFolder;
 use super::sweep::{Sweep, SweepError};
-use crate::format::{Finding, JsonError, cell, check_finite, read_json, write_atomically};
+use crate::format::{FileError, cell, check_finite, read_json, write_atomically};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -15,12 +15,12 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Collection {
     columns: Vec<String>,
-    rows: Vec<Row>,
+    rows: Vec<SummaryRow>,
     incomplete: Vec<PathBuf>,
 }
 
 /// The cells of a run, with the names of their columns.
-type Row = Vec<(String, String)>;
+type SummaryRow = Vec<(String, String)>;
 
 impl Collection {
     /// Reads the summaries of runs and of all runs of sweeps, in the order of `folders` and of their numbers.
@@ -90,32 +90,22 @@ impl Collection {
     /// Writes the table as a CSV file, which appears when it is complete.
     ///
     /// # Errors
-    /// [`SweepError::Write`].
+    /// [`SweepError::File`].
     pub fn write(&self, path: &Path) -> Result<(), SweepError> {
         use std::io::Write;
         Ok(write_atomically(path, |w| w.write_all(&self.to_csv()))?)
     }
 
-    fn add(&mut self, folder: &Path, keys: Row) -> Result<(), SweepError> {
+    fn add(&mut self, folder: &Path, keys: SummaryRow) -> Result<(), SweepError> {
         let path = folder.join(RunFolder::SUMMARY);
         if !path.is_file() {
             self.incomplete.push(folder.to_owned());
             return Ok(());
         }
         let summary: Summary = read_json(&path)?;
-        let form = |problem| JsonError::Form {
-            path: path.clone(),
-            problem,
-        };
-        check_finite(&summary).map_err(|finding| match finding {
-            Finding::NotFinite { path: field, value } => JsonError::NotFinite {
-                path: path.clone(),
-                field,
-                value,
-            },
-            Finding::Other(problem) => form(problem),
-        })?;
-        let fields = serde_json::to_value(&summary).map_err(|e| form(e.to_string()))?;
+        let wrong = |problem: String| FileError::content(&path, problem, "run the scene again");
+        check_finite(&summary).map_err(|e| wrong(e.message))?;
+        let fields = serde_json::to_value(&summary).map_err(|e| wrong(e.to_string()))?;
         let mut row = vec![("folder".to_owned(), folder.display().to_string())];
         row.extend(keys);
         add_fields(&mut row, "", &fields);
@@ -132,7 +122,7 @@ fn note(names: &mut Vec<String>, name: &str) {
 }
 
 /// Adds the fields of a value by their names.
-fn add_fields(row: &mut Row, name: &str, value: &Value) {
+fn add_fields(row: &mut SummaryRow, name: &str, value: &Value) {
     match value {
         Value::Null => row.push((name.to_owned(), String::new())),
         Value::String(text) => row.push((name.to_owned(), text.clone())),

@@ -1,8 +1,7 @@
 //! Why a run cannot go on.
 
-use crate::format::{ExportError, HistoryError, JsonError, TrajectoryError, WriteError};
+use crate::format::{DataError, ExportError, FileError};
 use crate::scene::{SceneError, SceneFileError};
-use crate::view::ViewError;
 use isosheet_mesh::Advice;
 use std::io;
 use std::path::PathBuf;
@@ -77,28 +76,6 @@ pub enum RunError {
         /// The folder.
         folder: PathBuf,
     },
-    /// A file of the run cannot be read or is damaged.
-    #[error("{}: {problem}", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-    },
-    /// A frame of the run is damaged.
-    #[error("{}: frame {frame} is damaged, its checksum is wrong", path.display())]
-    DamagedFrame {
-        /// The file.
-        path: PathBuf,
-        /// The number of the frame, from 0.
-        frame: u64,
-    },
-    /// The file with the frames of the run is gone.
-    #[error("{} is missing, which has the frames of the run", path.display())]
-    NoFrames {
-        /// The file.
-        path: PathBuf,
-    },
     /// The run was begun by another version of the program, which does not compute the same bits.
     #[error(
         "the run in {} was begun by version {begun} of the program, this is {}", folder.display(), env!("CARGO_PKG_VERSION")
@@ -109,33 +86,19 @@ pub enum RunError {
         /// The version that began the run.
         begun: String,
     },
-    /// A file of the run cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// A file cannot be written.
+    /// A file of the run cannot be read or written, or is damaged.
     #[error(transparent)]
-    Write(#[from] WriteError),
-    /// The history cannot be written.
-    #[error(transparent)]
-    History(#[from] HistoryError),
-    /// The frames cannot be written or read.
-    #[error(transparent)]
-    Trajectory(#[from] TrajectoryError),
-    /// The summary cannot be written or read.
-    #[error(transparent)]
-    Json(#[from] JsonError),
+    File(#[from] FileError),
     /// The run cannot be shown as a page.
     #[error("no page of the run can be made: {0}")]
-    Page(#[from] ViewError),
+    Page(#[from] DataError),
     /// An OBJ file cannot be written.
     #[error(transparent)]
     Obj(#[from] ExportError),
 }
+
+/// What to do about a damaged file of a run.
+pub(super) const BEGIN_ANEW: &str = "run the scene again with --force, which replaces the run";
 
 impl Advice for RunError {
     fn advice(&self) -> Option<&'static str> {
@@ -156,21 +119,10 @@ impl Advice for RunError {
                 "check the permissions and the free space, or choose another folder with --out",
             ),
             Self::NoRun { .. } => Some("name the folder that `isosheet simulate` wrote"),
-            Self::Damaged { .. } | Self::NoFrames { .. } => {
-                Some("run the scene again with --force, which replaces the run")
-            }
-            Self::DamagedFrame { .. } => Some(
-                "give the `simulate` command again, which takes up a run that is not complete at its last \
-                 checkpoint; if it names the same frame, run the scene again with --force",
-            ),
             Self::OtherVersion { .. } => Some(
                 "continue it with that version, replace it with --force, or choose another folder with --out",
             ),
-            Self::Read { .. } => Some("check the path"),
-            Self::Write(error) => error.advice(),
-            Self::History(error) => error.advice(),
-            Self::Trajectory(error) => error.advice(),
-            Self::Json(error) => error.advice(),
+            Self::File(error) => error.advice(),
             Self::Page(error) => error.advice(),
             Self::Obj(error) => error.advice(),
         }

@@ -4,9 +4,8 @@ use super::frames::FrameShape;
 use super::stepping::step_count;
 use crate::format::memory;
 use crate::scene::bytes_in_words;
-use crate::scene::{
-    Key, MEMORY_OF_FACE, Problem, Scene, SceneError, SceneFile, SceneWarning, Setup,
-};
+use crate::scene::{Key, MEMORY_OF_FACE, Problem, Scene, SceneError, SceneFile, Setup, Warning};
+use isosheet_mesh::wording::counted;
 use std::fmt;
 use std::path::Path;
 
@@ -92,22 +91,28 @@ impl Estimate {
     }
 
     /// What to know of it before a run in a folder.
-    pub fn warnings(&self, folder: &Path) -> Vec<SceneWarning> {
+    pub fn warnings(&self, folder: &Path) -> Vec<Warning> {
         const MUCH: f64 = 1e10;
         const DAY: f64 = 86_400.0;
         let mut warnings = Vec::new();
         let free = free_space(folder).unwrap_or(f64::INFINITY);
         if self.disk > MUCH.min(0.5 * free) {
-            let bytes = self.disk as u64;
-            warnings.push(SceneWarning::Disk { bytes });
+            let needed = bytes_in_words(self.disk);
+            let message = format!("the files of the run need about {needed}");
+            let remedy = "take fewer frames a second, `output.frames_per_second`";
+            warnings.push(Warning::new(message, remedy));
         }
         if self.memory > 0.5 * memory::free() as f64 {
-            let bytes = self.memory as u64;
-            warnings.push(SceneWarning::Memory { bytes });
+            let needed = bytes_in_words(self.memory);
+            let message =
+                format!("the run needs about {needed} of memory, more than half of what is free");
+            warnings.push(Warning::new(message, "make the mesh coarser"));
         }
         if self.time > DAY {
-            let days = (self.time / DAY) as u64;
-            warnings.push(SceneWarning::Time { days });
+            let days = counted((self.time / DAY) as usize, "day", "days");
+            let message = format!("the run takes {days} or more");
+            let remedy = "make the mesh coarser, the steps longer or the time shorter";
+            warnings.push(Warning::new(message, remedy));
         }
         warnings
     }

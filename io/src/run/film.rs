@@ -1,11 +1,13 @@
 //! Shaded pictures of the frames of a run.
 
 use super::{Recording, Viewpoint};
+use crate::DataError;
 use crate::picture::{
-    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render, render_svg,
+    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render,
 };
 use crate::scene::bounds;
 use isosheet_mesh::Part;
+use isosheet_mesh::wording::given;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How a run is shown.
@@ -38,27 +40,23 @@ impl FilmOptions {
     /// Whether the values make sense.
     ///
     /// # Errors
-    /// [`PictureError::Size`] for no pixels or more than 16 384 each way, [`PictureError::Angle`] for angles
-    /// that are not finite or an elevation beyond 90 degrees.
+    /// [`PictureError::Options`] for no pixels or more than 16 384 each way, and for angles that are not finite
+    /// or an elevation beyond 90 degrees.
     pub fn validate(&self) -> Result<(), PictureError> {
         let (width, height) = (self.width.unwrap_or(self.height), self.height);
         if !(1..=LARGEST).contains(&width) || !(1..=LARGEST).contains(&height) {
-            return Err(PictureError::Size { width, height });
+            return Err(PictureError::size(width, height));
         }
         let Viewpoint { azimuth, elevation } = self.view.unwrap_or_default();
-        if !azimuth.is_finite() {
-            return Err(PictureError::Angle {
-                name: "azimuth",
-                value: azimuth,
-            });
-        }
-        if !(-90.0..=90.0).contains(&elevation) {
-            return Err(PictureError::Angle {
-                name: "elevation",
-                value: elevation,
-            });
-        }
-        Ok(())
+        let wrong = match (azimuth.is_finite(), (-90.0..=90.0).contains(&elevation)) {
+            (true, true) => return Ok(()),
+            (false, _) => ("azimuth", azimuth),
+            _ => ("elevation", elevation),
+        };
+        let message = format!("the {} is {} degrees", wrong.0, given(wrong.1));
+        let remedy = "give a finite one, and an elevation from -90 to 90";
+        let error = DataError::new(message, remedy).value(wrong.1);
+        Err(PictureError::Options(error))
     }
 }
 
@@ -88,7 +86,7 @@ impl<'a> Film<'a> {
     /// The given frames of a run.
     ///
     /// # Errors
-    /// [`PictureError::NoFrames`] without frames or for a frame that the run has not, and those of
+    /// [`PictureError::Data`] without frames or for a frame that the run has not, and those of
     /// [`FilmOptions::validate`].
     pub fn new(
         recording: &'a Recording,
@@ -102,7 +100,7 @@ impl<'a> Film<'a> {
             .map(|frame| trajectory.frame(*frame))
             .collect();
         let states = states.filter(|states| !states.is_empty());
-        let states = states.ok_or(PictureError::NoFrames)?;
+        let states = states.ok_or_else(PictureError::no_frames)?;
         let bodies = recording.obstacles.iter().map(|body| Solid::of(body, 0.0));
         let solids: Vec<Solid> = bodies.collect::<Result<_, _>>()?;
         let mut points: Vec<[f64; 3]> = states
@@ -168,27 +166,13 @@ impl<'a> Film<'a> {
     /// The picture of one of the frames, by its place among them.
     ///
     /// # Errors
-    /// [`PictureError::NoFrames`] if there is none, [`PictureError`] if it cannot be drawn.
+    /// [`PictureError`] if there is none, or it cannot be drawn.
     pub fn picture(&self, place: usize) -> Result<Image, PictureError> {
-        self.draw(place, render)
-    }
-
-    /// One of the frames as an SVG document ([`render_svg`]), by its place among them.
-    ///
-    /// # Errors
-    /// As [`picture`](Self::picture).
-    pub fn svg(&self, place: usize) -> Result<String, PictureError> {
-        self.draw(place, render_svg)
-    }
-
-    fn draw<T>(
-        &self,
-        place: usize,
-        draw: impl Fn(&SheetPicture<'_>, &Camera, &Look) -> Result<T, PictureError>,
-    ) -> Result<T, PictureError> {
-        let frame = *self.frames.get(place).ok_or(PictureError::NoFrames)?;
+        let frame = *self.frames.get(place).ok_or_else(PictureError::no_frames)?;
         let trajectory = &self.recording.trajectory;
-        let positions = trajectory.frame(frame).ok_or(PictureError::NoFrames)?;
+        let positions = trajectory
+            .frame(frame)
+            .ok_or_else(PictureError::no_frames)?;
         let solids = placed(&self.solids, self.recording, trajectory.times()[frame]);
         let picture = SheetPicture {
             topology: self.recording.sheet.topology(),
@@ -198,7 +182,7 @@ impl<'a> Film<'a> {
             solids: &solids.collect::<Vec<_>>(),
             parts: &self.parts,
         };
-        draw(&picture, &self.camera, &self.look)
+        render(&picture, &self.camera, &self.look)
     }
 
     /// All pictures as an animated PNG file, in real time. `drawn` is told the number of pictures that are

@@ -1,8 +1,9 @@
 //! The folder of a run.
 
+use super::error::BEGIN_ANEW;
 use super::{RunError, Summary};
 use crate::format::atomic::is_unfinished;
-use crate::format::{frame_number, input, read_json, write_atomically};
+use crate::format::{FileError, frame_number, input, read_json, write_atomically};
 use crate::scene::{Files, Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use std::ffi::OsString;
@@ -30,7 +31,7 @@ impl fmt::Display for SceneHash {
 }
 
 /// A scene with the bytes of the mesh files that it names.
-pub(crate) struct Material<'a> {
+pub(crate) struct RunInputs<'a> {
     pub(crate) file: &'a SceneFile,
     meshes: Vec<Arc<[u8]>>,
     /// The scene as the folder of a run has it, which names copies of the mesh files.
@@ -38,7 +39,7 @@ pub(crate) struct Material<'a> {
     pub(crate) hash: SceneHash,
 }
 
-impl<'a> Material<'a> {
+impl<'a> RunInputs<'a> {
     /// Reads the mesh files of a scene.
     pub(crate) fn read(file: &'a SceneFile, files: &mut Files) -> Result<Self, RunError> {
         let (mut meshes, mut names) = (Vec::new(), Vec::new());
@@ -93,7 +94,7 @@ fn hash(scene: &Scene, meshes: &[Arc<[u8]>]) -> SceneHash {
 }
 
 /// What is in a folder at the start.
-pub(crate) enum Contents {
+pub(crate) enum FolderState {
     /// A complete run of the same scene.
     Complete(RunFolder),
     /// Nothing that could be continued.
@@ -159,7 +160,7 @@ impl RunFolder {
 
     /// Whether the folder holds a complete run of the scene with all its files. Such a run is not touched:
     /// its folder may be read-only.
-    pub(crate) fn is_complete(root: &Path, material: &Material<'_>) -> Result<bool, RunError> {
+    pub(crate) fn is_complete(root: &Path, material: &RunInputs<'_>) -> Result<bool, RunError> {
         let complete = root.join(Self::SUMMARY).is_file() && Self::is_marked(root);
         if complete {
             check_scene(root, material)?;
@@ -176,9 +177,9 @@ impl RunFolder {
     /// Creates the folder when missing, locks it and says what is in it.
     pub(crate) fn open(
         root: &Path,
-        material: &Material<'_>,
+        material: &RunInputs<'_>,
         existing: Existing,
-    ) -> Result<Contents, RunError> {
+    ) -> Result<FolderState, RunError> {
         let unwritable = |source| RunError::Unwritable {
             folder: root.to_owned(),
             source,
@@ -216,15 +217,15 @@ impl RunFolder {
         }
         // Another process may have completed the run before the lock was free.
         if root.join(Self::SUMMARY).is_file() {
-            return Ok(Contents::Complete(folder));
+            return Ok(FolderState::Complete(folder));
         }
         if Self::has_checkpoint(root) {
-            return Ok(Contents::Partial(folder));
+            return Ok(FolderState::Partial(folder));
         }
         if !stored {
             material.store(root)?;
         }
-        Ok(Contents::Empty(folder))
+        Ok(FolderState::Empty(folder))
     }
 
     /// Removes the unfinished files that a killed process left.
@@ -350,7 +351,7 @@ pub fn remove_unfinished(folder: &Path) -> io::Result<()> {
 /// The scene that is stored in the folder of a run. Its mesh files are those of the folder.
 ///
 /// # Errors
-/// [`RunError::NoRun`] without one, [`RunError::Damaged`] if it names files that are not in the folder.
+/// [`RunError::NoRun`] without one, [`RunError::File`] if it names files that are not in the folder.
 pub(crate) fn stored_scene(root: &Path) -> Result<SceneFile, RunError> {
     if root.as_os_str().is_empty() {
         return Err(RunError::NoFolder);
@@ -365,16 +366,16 @@ pub(crate) fn stored_scene(root: &Path) -> Result<SceneFile, RunError> {
     for (_, name) in stored.scene().files() {
         if let Err(error) = input::within(root, &name) {
             let problem = format!("it names the mesh file {}: {error}", name.display());
-            return Err(RunError::Damaged { path, problem });
+            return Err(FileError::content(&path, problem, BEGIN_ANEW).into());
         }
     }
     Ok(stored)
 }
 
 /// Refuses a folder with a run of another scene.
-fn check_scene(root: &Path, material: &Material<'_>) -> Result<(), RunError> {
+fn check_scene(root: &Path, material: &RunInputs<'_>) -> Result<(), RunError> {
     let stored = stored_scene(root)?;
-    let stored = Material::read(&stored, &mut Files::in_folder(root))?;
+    let stored = RunInputs::read(&stored, &mut Files::in_folder(root))?;
     if stored.hash == material.hash {
         return Ok(());
     }

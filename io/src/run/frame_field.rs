@@ -1,7 +1,7 @@
 //! Fields of a page, frame by frame.
 
-use crate::format::{MotionFrame, Quantity};
-use crate::view::{Field, Place, Scale, ViewError, strains};
+use crate::format::{DataError, FrameQuantity, MotionFrame};
+use crate::view::{Centering, Field, Scale, strains};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{ElasticDeformation, SheetModel};
 use isosheet_mesh::Sheet;
@@ -30,7 +30,7 @@ impl<'a> FrameField<'a> {
     pub(super) fn all(
         sheet: &Sheet,
         obstacles: &'a [Obstacle],
-        has: impl Fn(Quantity) -> bool,
+        has: impl Fn(FrameQuantity) -> bool,
     ) -> Vec<Self> {
         let strain = strains(sheet.topology(), sheet.positions());
         let mut fields = vec![Self::new(Field::strain(), move |frame| strain(frame.x))];
@@ -38,11 +38,11 @@ impl<'a> FrameField<'a> {
             fields.push(Self::obstacle_distance(obstacles));
         }
         let shown = [
-            (Quantity::RodForces, Self::rod_force()),
-            (Quantity::ContactForces, Self::contact_force()),
-            (Quantity::Gaps, Self::gap()),
-            (Quantity::PlasticCurvatures, Self::plastic_curvature()),
-            (Quantity::PlasticAngles, Self::plastic_angle()),
+            (FrameQuantity::RodForces, Self::rod_force()),
+            (FrameQuantity::ContactForces, Self::contact_force()),
+            (FrameQuantity::Gaps, Self::gap()),
+            (FrameQuantity::PlasticCurvatures, Self::plastic_curvature()),
+            (FrameQuantity::PlasticAngles, Self::plastic_angle()),
         ];
         let shown = shown.into_iter().filter(|(quantity, _)| has(*quantity));
         fields.extend(shown.map(|(_, field)| field));
@@ -61,7 +61,7 @@ impl<'a> FrameField<'a> {
         let head = Field {
             name: "distance to obstacles".into(),
             unit: "m".into(),
-            place: Place::Vertex,
+            place: Centering::Vertex,
             scale: Scale::Logarithmic,
             note: String::new(),
             values: Vec::new(),
@@ -87,7 +87,7 @@ impl<'a> FrameField<'a> {
         let head = Field {
             name: "rod force (tension +)".into(),
             unit: "N".into(),
-            place: Place::Edge,
+            place: Centering::Edge,
             scale: Scale::Signed,
             note: "Where rods depend on each other, as in a flat part of the sheet, their forces are not unique."
                 .into(),
@@ -101,7 +101,7 @@ impl<'a> FrameField<'a> {
         let head = Field {
             name: "contact force".into(),
             unit: "N".into(),
-            place: Place::Vertex,
+            place: Centering::Vertex,
             scale: Scale::Magnitude,
             note: String::new(),
             values: Vec::new(),
@@ -118,7 +118,7 @@ impl<'a> FrameField<'a> {
         let head = Field {
             name: "gap".into(),
             unit: "m".into(),
-            place: Place::Vertex,
+            place: Centering::Vertex,
             scale: Scale::Linear,
             note: String::new(),
             values: Vec::new(),
@@ -128,7 +128,7 @@ impl<'a> FrameField<'a> {
 
     /// Of plates the principal value of the plastic curvature of each face that is larger in size, 1/m.
     fn plastic_curvature() -> Self {
-        let head = plastic("curvature that stays (valley +)", "1/m", Place::Face);
+        let head = plastic("curvature that stays (valley +)", "1/m", Centering::Face);
         Self::new(head, |frame| {
             let pairs = frame.data.plastic_curvatures.as_chunks::<2>().0;
             pairs.iter().map(|p| p[0]).collect()
@@ -137,7 +137,7 @@ impl<'a> FrameField<'a> {
 
     /// Of edges that yield the plastic angle, degrees.
     fn plastic_angle() -> Self {
-        let head = plastic("angle that stays (valley +)", "°", Place::Edge);
+        let head = plastic("angle that stays (valley +)", "°", Centering::Edge);
         Self::new(head, |frame| {
             let angles = frame.data.plastic_angles.iter();
             angles.map(|a| a.to_degrees()).collect()
@@ -153,7 +153,7 @@ impl<'a> FrameField<'a> {
         let field = |name: &str, scale, note: &str| Field {
             name: name.into(),
             unit: String::new(),
-            place: Place::Face,
+            place: Centering::Face,
             scale,
             note: note.into(),
             values: Vec::new(),
@@ -188,7 +188,7 @@ impl<'a> FrameField<'a> {
 }
 
 /// A field of what has yielded, without values.
-fn plastic(name: &str, unit: &str, place: Place) -> Field {
+fn plastic(name: &str, unit: &str, place: Centering) -> Field {
     Field {
         name: name.into(),
         unit: unit.into(),
@@ -200,14 +200,13 @@ fn plastic(name: &str, unit: &str, place: Place) -> Field {
 }
 
 /// Checks that a frame is one of a sheet.
-pub(super) fn check_frame(frame: &MotionFrame<'_>, sheet: &Sheet) -> Result<(), ViewError> {
+pub(super) fn check_frame(frame: &MotionFrame<'_>, sheet: &Sheet) -> Result<(), DataError> {
     let (got, expected) = (frame.x.len(), sheet.positions().len());
     if got == expected {
         return Ok(());
     }
-    Err(ViewError::Length {
-        what: format!("the positions of frame {}", frame.number),
-        got,
-        expected,
-    })
+    let number = frame.number;
+    let message =
+        format!("the positions of frame {number}: the length is {got} and has to be {expected}");
+    Err(DataError::plain(message).at(number))
 }

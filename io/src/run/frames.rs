@@ -1,8 +1,9 @@
 //! The frames of a run: one file that grows while it goes on.
 
 use super::RunError;
+use super::error::BEGIN_ANEW;
 use crate::format::input;
-use crate::format::{FrameData, MeshCounts, Motion, MotionFrame, Quantity, WriteError};
+use crate::format::{FileError, FrameData, FrameQuantity, MeshCounts, Motion, MotionFrame};
 use crate::scene::Setup;
 use crc::{CRC_64_XZ, Crc};
 use std::fs::File;
@@ -36,7 +37,7 @@ pub(crate) struct Frame {
     pub(crate) t: f64,
     pub(crate) x: Vec<f64>,
     /// Of each quantity the values, none in runs without it.
-    pub(crate) data: [Vec<f64>; Quantity::COUNT],
+    pub(crate) data: [Vec<f64>; FrameQuantity::COUNT],
 }
 
 impl Frame {
@@ -63,7 +64,7 @@ pub(crate) struct FrameShape {
     /// `3V`.
     pub(crate) coordinates: usize,
     /// Those of each quantity, zero of what there is not.
-    pub(crate) data: [usize; Quantity::COUNT],
+    pub(crate) data: [usize; FrameQuantity::COUNT],
 }
 
 impl FrameShape {
@@ -77,20 +78,22 @@ impl FrameShape {
             faces: topology.face_count(),
         };
         let is_there = |quantity| match quantity {
-            Quantity::RodForces => setup.has_rod_forces(),
-            Quantity::ContactForces | Quantity::Gaps => setup.contacts.is_some(),
-            Quantity::PlasticAngles => model.plastic_angles(&model.memories()).is_some(),
-            Quantity::PlasticCurvatures => model.plastic_curvatures(&model.memories()).is_some(),
+            FrameQuantity::RodForces => setup.has_rod_forces(),
+            FrameQuantity::ContactForces | FrameQuantity::Gaps => setup.contacts.is_some(),
+            FrameQuantity::PlasticAngles => model.plastic_angles(&model.memories()).is_some(),
+            FrameQuantity::PlasticCurvatures => {
+                model.plastic_curvatures(&model.memories()).is_some()
+            }
         };
-        let size = |q: Quantity| if is_there(q) { q.size(counts) } else { 0 };
+        let size = |q: FrameQuantity| if is_there(q) { q.size(counts) } else { 0 };
         Self {
             coordinates: setup.start.x.len(),
-            data: Quantity::ALL.map(size),
+            data: FrameQuantity::ALL.map(size),
         }
     }
 
     /// Whether frames have a quantity.
-    pub(crate) fn has(self, quantity: Quantity) -> bool {
+    pub(crate) fn has(self, quantity: FrameQuantity) -> bool {
         self.data[quantity as usize] > 0
     }
 
@@ -102,15 +105,12 @@ impl FrameShape {
 
 impl FrameFile {
     /// Starts a new file.
-    pub(crate) fn create(path: &Path) -> Result<Self, WriteError> {
+    pub(crate) fn create(path: &Path) -> Result<Self, FileError> {
         let begun = input::replace(path).and_then(|mut file| {
             file.write_all(MAGIC)?;
             Ok(file)
         });
-        let file = begun.map_err(|source| WriteError::Write {
-            path: path.to_owned(),
-            source,
-        })?;
+        let file = begun.map_err(|e| FileError::unwritable(path, e))?;
         Ok(Self {
             path: path.to_owned(),
             file,
@@ -127,10 +127,8 @@ impl FrameFile {
         let mut frames = Frames::open(path, shape)?;
         for k in 0..count {
             if frames.next_record()?.is_none() {
-                return Err(RunError::Damaged {
-                    path: path.to_owned(),
-                    problem: format!("it ends after frame {k}, {count} were written"),
-                });
+                let problem = format!("it ends after frame {k}, {count} were written");
+                return Err(FileError::content(path, problem, BEGIN_ANEW).into());
             }
         }
         let length = MAGIC.len() as u64 + count * shape.bytes() as u64;
@@ -140,10 +138,7 @@ impl FrameFile {
             file.seek(SeekFrom::End(0))?;
             Ok(file)
         });
-        let file = continued.map_err(|source| WriteError::Write {
-            path: path.to_owned(),
-            source,
-        })?;
+        let file = continued.map_err(|e| FileError::unwritable(path, e))?;
         Ok(Self {
             path: path.to_owned(),
             file,
@@ -163,10 +158,10 @@ impl FrameFile {
         t: f64,
         x: &[f64],
         data: &FrameData<'_>,
-    ) -> Result<(), WriteError> {
+    ) -> Result<(), FileError> {
         self.record.clear();
         self.record.extend(t.to_le_bytes());
-        let further = Quantity::ALL.map(|quantity| quantity.of(data));
+        let further = FrameQuantity::ALL.map(|quantity| quantity.of(data));
         for numbers in std::iter::once(x).chain(further) {
             let bytes = numbers.iter().flat_map(|c| c.to_le_bytes());
             self.record.extend(bytes);
@@ -174,21 +169,15 @@ impl FrameFile {
         let sum = SUM.checksum(&self.record);
         self.record.extend(sum.to_le_bytes());
         let written = self.file.write_all(&self.record);
-        written.map_err(|source| self.failed(source))?;
+        written.map_err(|e| FileError::unwritable(&self.path, e))?;
         self.count += 1;
         Ok(())
     }
 
     /// Waits until all frames are on the disk.
-    pub(crate) fn sync(&self) -> Result<(), WriteError> {
-        self.file.sync_data().map_err(|source| self.failed(source))
-    }
-
-    fn failed(&self, source: io::Error) -> WriteError {
-        WriteError::Write {
-            path: self.path.clone(),
-            source,
-        }
+    pub(crate) fn sync(&self) -> Result<(), FileError> {
+        let synced = self.file.sync_data();
+        synced.map_err(|e| FileError::unwritable(&self.path, e))
     }
 }
 
@@ -202,24 +191,20 @@ struct Frames<'a> {
 }
 
 impl<'a> Frames<'a> {
-    fn open(path: &'a Path, shape: FrameShape) -> Result<Self, RunError> {
+    fn open(path: &'a Path, shape: FrameShape) -> Result<Self, FileError> {
         let read = |source: io::Error| match source.kind() {
-            ErrorKind::NotFound => RunError::NoFrames {
-                path: path.to_owned(),
-            },
-            _ => RunError::Read {
-                path: path.to_owned(),
-                source,
-            },
+            ErrorKind::NotFound => {
+                let problem = "it is missing, which has the frames of the run";
+                FileError::content(path, problem, BEGIN_ANEW)
+            }
+            _ => FileError::unreadable(path, source),
         };
         let mut file = BufReader::new(input::open(path).map_err(read)?);
         let mut magic = [0; MAGIC.len()];
         let found = read_whole(&mut file, &mut magic).map_err(read)?;
         if !found || magic != *MAGIC {
-            return Err(RunError::Damaged {
-                path: path.to_owned(),
-                problem: "it is not a file of frames of this version".to_owned(),
-            });
+            let problem = "it is not a file of frames of this version";
+            return Err(FileError::content(path, problem, BEGIN_ANEW));
         }
         Ok(Self {
             path,
@@ -231,13 +216,9 @@ impl<'a> Frames<'a> {
 
     /// The numbers of the next frame as bytes; none at the end of the file, where the last frame may be a
     /// part of one.
-    fn next_record(&mut self) -> Result<Option<&[u8]>, RunError> {
-        let path = || self.path.to_owned();
+    fn next_record(&mut self) -> Result<Option<&[u8]>, FileError> {
         let found = read_whole(&mut self.file, &mut self.record);
-        if !found.map_err(|source| RunError::Read {
-            path: path(),
-            source,
-        })? {
+        if !found.map_err(|source| FileError::unreadable(self.path, source))? {
             return Ok(None);
         }
         let frame = self.count;
@@ -246,10 +227,12 @@ impl<'a> Frames<'a> {
             Some((numbers, sum)) if SUM.checksum(numbers).to_le_bytes() == *sum => {
                 Ok(Some(numbers))
             }
-            _ => Err(RunError::DamagedFrame {
-                path: path(),
-                frame,
-            }),
+            _ => {
+                let problem = format!("frame {frame} is damaged, its checksum is wrong");
+                let remedy = "give the `simulate` command again, which takes up a run that is not complete at its \
+                              last checkpoint; if it names the same frame, run the scene again with --force";
+                Err(FileError::content(self.path, problem, remedy))
+            }
         }
     }
 }
@@ -309,7 +292,7 @@ mod tests {
             all.push(Frame {
                 t: frame.t,
                 x: frame.x.to_vec(),
-                data: Quantity::ALL.map(|quantity| quantity.of(&frame.data).to_vec()),
+                data: FrameQuantity::ALL.map(|quantity| quantity.of(&frame.data).to_vec()),
             });
             ControlFlow::Continue(())
         })?;
@@ -365,7 +348,7 @@ mod tests {
         let path = dir.path().join("frames.bin");
         let shape = FrameShape {
             coordinates: 3,
-            data: [0; Quantity::COUNT],
+            data: [0; FrameQuantity::COUNT],
         };
         let mut file = FrameFile::create(&path).unwrap();
         for k in 0..3 {
@@ -380,11 +363,11 @@ mod tests {
             std::fs::write(&path, &damaged).unwrap();
             let error = read_frames(&path, shape).unwrap_err();
             let of_frame = at.checked_sub(MAGIC.len()).map(|at| at / shape.bytes());
-            match (of_frame, &error) {
-                (None, RunError::Damaged { .. }) => {}
-                (Some(at), RunError::DamagedFrame { frame, .. }) => assert_eq!(*frame, at as u64),
-                _ => panic!("byte {at}: {error}"),
-            }
+            let says = match of_frame {
+                None => "it is not a file of frames".to_owned(),
+                Some(frame) => format!(": frame {frame} is damaged"),
+            };
+            assert!(error.to_string().contains(&says), "byte {at}: {error}");
             assert!(error.advice().is_some());
             // What follows the frames that a run continues after does not count.
             let resumed = FrameFile::resume(&path, 1, shape);

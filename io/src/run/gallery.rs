@@ -10,7 +10,7 @@ pub use error::GalleryError;
 use super::folder::{RunFolder, holds_other_files, remove_unfinished};
 use super::page::page_of;
 use super::{Film, FilmOptions, Recording, RunError, Sweep};
-use crate::format::{WriteError, read_json, write_atomically, write_json};
+use crate::format::{FileError, read_json, write_atomically, write_json};
 use crate::picture::PictureError;
 use crate::view::PageOptions;
 use entry::RUNS;
@@ -76,10 +76,7 @@ impl Gallery {
             let _ = remove_unfinished(&folder);
         }
         let made = fs::create_dir_all(&runs);
-        made.map_err(|source| WriteError::CreateFolder {
-            folder: runs.clone(),
-            source,
-        })?;
+        made.map_err(|e| FileError::unwritable(&runs, e))?;
         let mut gallery = Self {
             entries: Vec::new(),
             left_out,
@@ -116,20 +113,20 @@ impl Gallery {
             let entries: Vec<GalleryEntry> = read_json(&data)?;
             return match entries.iter().find(|entry| !is_plain(&entry.name)) {
                 None => Ok(entries),
-                Some(GalleryEntry { name, .. }) => Err(GalleryError::Name {
-                    path: data,
-                    name: name.clone(),
-                }),
+                Some(GalleryEntry { name, .. }) => {
+                    let problem = format!(
+                        "it names the run {name:?}, which is no name of a file of a gallery"
+                    );
+                    let remedy = "choose an empty or a new folder with --out";
+                    Err(FileError::content(&data, problem, remedy).into())
+                }
             };
         }
         let path = || out.to_owned();
         match holds_other_files(out, &[RUNS, Self::INDEX]) {
             Ok(false) => Ok(Vec::new()),
             Ok(true) => Err(GalleryError::Foreign { folder: path() }),
-            Err(source) => Err(GalleryError::Read {
-                path: path(),
-                source,
-            }),
+            Err(source) => Err(FileError::unreadable(&path(), source).into()),
         }
     }
 }
@@ -145,10 +142,7 @@ fn find(folder: &Path, found: &mut Vec<PathBuf>) -> Result<Vec<PathBuf>, Gallery
         found.push(folder.to_owned());
         return Ok(Vec::new());
     }
-    let unreadable = |source| GalleryError::Read {
-        path: folder.to_owned(),
-        source,
-    };
+    let unreadable = |source| FileError::unreadable(folder, source);
     let mut folders = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let entry = entry.map_err(unreadable)?;

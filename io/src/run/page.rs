@@ -6,9 +6,9 @@ use super::recording::{Recording, RunFrames};
 use super::spool::Spool;
 use super::{EndReason, RunError, SheetPlace, Summary, constraints};
 use crate::format::atomic::prepare_folder;
-use crate::format::{Quantity, write_atomically};
+use crate::format::{DataError, FrameQuantity, write_atomically};
 use crate::scene::bounds;
-use crate::view::{PageOptions, Replay, Series, ViewError};
+use crate::view::{PageOptions, Replay, TimeSeries, no_frames};
 use std::io::Write;
 use std::path::Path;
 
@@ -18,10 +18,10 @@ impl Recording {
     /// the run again.
     ///
     /// # Errors
-    /// [`ViewError::NoFrames`] of a run without a frame yet.
-    pub fn replay(&self) -> Result<Replay, ViewError> {
+    /// [`DataError`] of a run without a frame yet.
+    pub fn replay(&self) -> Result<Replay, DataError> {
         if self.trajectory.is_empty() {
-            return Err(ViewError::NoFrames);
+            return Err(no_frames());
         }
         let frames = (0..self.trajectory.len()).filter_map(|k| self.trajectory.frame(k));
         let corners = bounds(frames.flat_map(|x| x.as_chunks::<3>().0));
@@ -31,7 +31,7 @@ impl Recording {
 
     /// The fields of the page.
     fn fields(&self) -> Vec<FrameField<'_>> {
-        let has = |quantity: Quantity| self.shape.has(quantity);
+        let has = |quantity: FrameQuantity| self.shape.has(quantity);
         let mut fields = FrameField::all(&self.sheet, &self.obstacles, has);
         fields.extend(FrameField::elastic(&self.model));
         fields
@@ -43,7 +43,9 @@ impl Recording {
         let mut replay = Replay::still(&self.sheet, &self.obstacles, times, &self.history);
         let held = constraints::bodies(self.scene.scene(), &replay.times, corners);
         replay.bodies.extend(held);
-        replay.series.extend(Series::of_measures(&self.measures));
+        replay
+            .series
+            .extend(TimeSeries::of_measures(&self.measures));
         Replay {
             title: self.name.clone(),
             sheets: self
@@ -71,7 +73,7 @@ impl Recording {
                 rows.add("state", format!("not complete: up to {t:.4} s"));
             }
         }
-        if !self.shape.has(Quantity::Gaps) {
+        if !self.shape.has(FrameQuantity::Gaps) {
             rows.add(
                 "not recorded",
                 "gaps of the sheet to itself by vertex".into(),
@@ -221,7 +223,7 @@ pub(super) fn page_of(
     let fields = recording.fields();
     let spool = Spool::of(frames, &recording.sheet, &fields, folder)?;
     if spool.times.is_empty() {
-        return Err(ViewError::NoFrames.into());
+        return Err(no_frames().into());
     }
     let still = recording.still(spool.times.clone(), spool.corners);
     let still = Replay {

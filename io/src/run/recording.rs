@@ -4,7 +4,7 @@ use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, StoredFrames};
 use super::{RunError, Summary};
 use crate::format::{
-    HistoryError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, SeriesBody, Trajectory,
+    FileError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, SeriesBody, Trajectory,
     read_history, read_json, read_loads, read_measures,
 };
 use crate::scene::{SceneFile, Setup};
@@ -82,23 +82,28 @@ impl Recording {
     pub(crate) fn open(folder: &Path) -> Result<(Self, RunFrames), RunError> {
         let scene = stored_scene(folder)?;
         let setup = scene.build()?;
-        Self::of(folder, scene, setup)
+        let summary = folder.join(RunFolder::SUMMARY);
+        let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
+        let (mut recording, mut frames) = Self::of(folder, scene, setup, Tables::read(folder)?);
+        recording.summary = summary;
+        let has_frames = folder.join(RunFolder::FRAMES).is_file();
+        if recording.summary.is_some() && is_whole(folder) && !has_frames {
+            let trajectory = Trajectory::read(&folder.join(RunFolder::TRAJECTORY))?;
+            frames = RunFrames::Whole(trajectory);
+        }
+        Ok((recording, frames))
     }
 
-    /// The same for the scene in the folder and what it was built to.
+    /// The same for the scene of a run that is not complete yet, what it was built to, and its tables.
     pub(crate) fn of(
         folder: &Path,
         scene: SceneFile,
         setup: Setup,
-    ) -> Result<(Self, RunFrames), RunError> {
-        let summary = folder.join(RunFolder::SUMMARY);
-        let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
+        tables: Tables,
+    ) -> (Self, RunFrames) {
         let shape = FrameShape::of(&setup);
         let path = folder.join(RunFolder::FRAMES);
-        let frames = match summary.is_some() && is_whole(folder) && !path.is_file() {
-            true => RunFrames::Whole(Trajectory::read(&folder.join(RunFolder::TRAJECTORY))?),
-            false => RunFrames::Stored(StoredFrames { path, shape }),
-        };
+        let frames = RunFrames::Stored(StoredFrames { path, shape });
         let recording = Self {
             name: name_of(folder),
             immobile: immobile_vertices(&setup.model, &setup.start.x),
@@ -111,13 +116,13 @@ impl Recording {
             shape,
             sheet: setup.sheet,
             obstacles: setup.obstacles,
-            history: read_history(&folder.join(RunFolder::HISTORY))?,
-            loads: rows(&folder.join(RunFolder::LOADS), read_loads)?,
-            measures: rows(&folder.join(RunFolder::MEASURES), read_measures)?,
+            history: tables.history,
+            loads: tables.loads,
+            measures: tables.measures,
             scene,
-            summary,
+            summary: None,
         };
-        Ok((recording, frames))
+        (recording, frames)
     }
 
     /// The bodies for files of other programs, `obstacle_0` and so on in the order of the scene, with their
@@ -145,11 +150,27 @@ impl Recording {
     }
 }
 
+/// The rows of a run for each of its steps.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tables {
+    pub(crate) history: Vec<HistoryRow>,
+    pub(crate) loads: Vec<LoadRow>,
+    pub(crate) measures: Vec<MeasureRow>,
+}
+
+impl Tables {
+    /// Those that the folder of a run has.
+    pub(crate) fn read(folder: &Path) -> Result<Self, RunError> {
+        Ok(Self {
+            history: read_history(&folder.join(RunFolder::HISTORY))?,
+            loads: rows(&folder.join(RunFolder::LOADS), read_loads)?,
+            measures: rows(&folder.join(RunFolder::MEASURES), read_measures)?,
+        })
+    }
+}
+
 /// The rows of a file that only some runs have.
-fn rows<R>(
-    file: &Path,
-    read: fn(&Path) -> Result<Vec<R>, HistoryError>,
-) -> Result<Vec<R>, RunError> {
+fn rows<R>(file: &Path, read: fn(&Path) -> Result<Vec<R>, FileError>) -> Result<Vec<R>, RunError> {
     Ok(match file.is_file() {
         true => read(file)?,
         false => Vec::new(),
@@ -205,7 +226,7 @@ impl StoredFrames {
                 Err(_) => ControlFlow::Break(()),
             }
         })?;
-        done?;
+        done.map_err(FileError::from)?;
         Ok(trajectory)
     }
 }

@@ -1,8 +1,10 @@
 //! What the page shows of a recorded motion.
 
 use super::frame_field::{FrameField, check_frame};
-use crate::format::{HistoryRow, MeasureRow, Motion, Quantity, Trajectory};
-use crate::view::{Body, BodyShape, Pose, Replay, Scale, Series, ViewError};
+use crate::format::{
+    BodyPose, DataError, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory,
+};
+use crate::view::{Body, BodyShape, Replay, Scale, TimeSeries};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_mesh::Sheet;
 use nalgebra::Isometry3;
@@ -14,19 +16,19 @@ impl Replay {
     /// - the field "strain" ([`Field::edge_strain`](crate::view::Field::edge_strain)), where there are bodies
     ///   "distance to obstacles" (of each vertex, without the thickness of the sheet), and where the trajectory has
     ///   them the forces of the rods, the forces of contact and the gaps of the vertices, and what has yielded,
-    /// - the series of the history (see [`Series::of_history`]).
+    /// - the series of the history (see [`TimeSeries::of_history`]).
     ///
     /// Titles, pins and texts are left to the caller.
     ///
     /// # Errors
-    /// [`ViewError`] if the trajectory is not one of this sheet.
+    /// [`DataError`] if the trajectory is not one of this sheet.
     pub fn of_motion(
         sheet: &Sheet,
         obstacles: &[Obstacle],
         trajectory: &Trajectory,
         history: &[HistoryRow],
-    ) -> Result<Self, ViewError> {
-        let has = |quantity: Quantity| {
+    ) -> Result<Self, DataError> {
+        let has = |quantity: FrameQuantity| {
             let first = trajectory.first_data();
             first.is_some_and(|data| !quantity.of(&data).is_empty())
         };
@@ -47,7 +49,7 @@ impl Replay {
             bodies.map(|(k, body)| Body::of_obstacle(&format!("obstacle[{k}]"), body, &times));
         Self {
             bodies: bodies.collect(),
-            series: Series::of_history(history),
+            series: TimeSeries::of_history(history),
             faces: sheet.face_indices(),
             rest: sheet.positions().to_vec(),
             times,
@@ -61,7 +63,7 @@ impl Replay {
         trajectory: &Trajectory,
         sheet: &Sheet,
         fields: &[FrameField<'_>],
-    ) -> Result<Self, ViewError> {
+    ) -> Result<Self, DataError> {
         self.fields = fields.iter().map(|field| field.head.clone()).collect();
         let mut done = Ok(());
         let Ok(()) = trajectory.each(&mut |frame| {
@@ -79,7 +81,7 @@ impl Replay {
     }
 }
 
-impl From<Isometry3<f64>> for Pose {
+impl From<Isometry3<f64>> for BodyPose {
     fn from(pose: Isometry3<f64>) -> Self {
         let q = pose.rotation.quaternion();
         Self {
@@ -130,7 +132,7 @@ impl Body {
         times: &[f64],
         pose: impl Fn(f64) -> Isometry3<f64>,
     ) -> Self {
-        let mut poses: Vec<Pose> = times.iter().map(|&t| pose(t).into()).collect();
+        let mut poses: Vec<BodyPose> = times.iter().map(|&t| pose(t).into()).collect();
         if poses.windows(2).all(|pair| pair[0] == pair[1]) {
             poses.truncate(1);
         }
@@ -149,7 +151,7 @@ impl Body {
     }
 }
 
-impl Series {
+impl TimeSeries {
     /// The columns of a history over time: energies, largest strain, smallest gap (in runs that have one; 0,
     /// which plots leave out, while nothing is within reach), change of the total energy, length of the step,
     /// and the iterations, factorisations and rejected sub-steps of each step.
@@ -157,7 +159,7 @@ impl Series {
         // The row of the start is no step.
         let steps: Vec<&HistoryRow> = rows.iter().filter(|row| row.h > 0.0).collect();
         let all: Vec<&HistoryRow> = rows.iter().collect();
-        let one = |name: &str, unit: &str, scale, rows: &[&HistoryRow], of: Column| Self {
+        let one = |name: &str, unit: &str, scale, rows: &[&HistoryRow], of: HistoryColumn| Self {
             name: name.into(),
             unit: unit.into(),
             scale,
@@ -222,7 +224,7 @@ impl Series {
 }
 
 /// A number of a row.
-type Column = fn(&HistoryRow) -> f64;
+type HistoryColumn = fn(&HistoryRow) -> f64;
 
 /// The unit of counts, which share a plot.
 const PER_STEP: &str = "per step";

@@ -2,9 +2,9 @@
 
 use super::RunError;
 use super::frame_field::{FrameField, check_frame};
-use crate::format::{FrameData, Motion, MotionFrame};
+use crate::format::{FileError, FrameData, Motion, MotionFrame};
 use crate::scene::bounds;
-use crate::view::ViewError;
+use crate::view::no_frames;
 use isosheet_mesh::Sheet;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
@@ -95,10 +95,7 @@ impl Motion for Spool {
         &self,
         show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
     ) -> Result<(), RunError> {
-        let unreadable = |source| RunError::Read {
-            path: self.folder.clone(),
-            source,
-        };
+        let unreadable = |source| FileError::unreadable(&self.folder, source);
         let mut file = BufReader::new(&self.file);
         file.rewind().map_err(unreadable)?;
         let mut bytes = vec![0; 8 * self.sizes.iter().sum::<usize>()];
@@ -114,7 +111,7 @@ impl Motion for Spool {
             });
             let lists: Vec<&[f64]> = lists.collect();
             let Some((x, fields)) = lists.split_first() else {
-                return Err(ViewError::NoFrames.into());
+                return Err(no_frames().into());
             };
             let frame = MotionFrame {
                 number,

@@ -1,10 +1,11 @@
 //! The steps of a run and what is recorded of them.
 
-use super::checkpoint::{self, Progress};
+use super::checkpoint::{self, RunProgress};
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::folder::{RunFolder, SceneHash};
 use super::frames::{FrameFile, FrameShape};
+use super::recording::Tables;
 use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
@@ -24,6 +25,16 @@ pub(crate) struct Plan<'a> {
     pub(crate) hash: SceneHash,
     pub(crate) facts: Facts,
     pub(crate) shape: FrameShape,
+    pub(crate) rows: Rows,
+}
+
+/// Where the rows of the tables of a run are, while it goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rows {
+    /// In its files.
+    InFiles,
+    /// In its files, and in memory for what is made of them at the end.
+    InMemory,
 }
 
 /// A run between two steps.
@@ -38,7 +49,9 @@ pub(crate) struct Stepping<'a> {
     /// What the measures of the scene show, if there are any.
     measures: Option<MeasureWriter>,
     frames: FrameFile,
-    pub(crate) progress: Progress,
+    /// The rows of these tables, where they are kept in memory.
+    pub(crate) tables: Option<Tables>,
+    pub(crate) progress: RunProgress,
     /// Since when the wall time in the progress counts.
     pub(crate) clock: Instant,
 }
@@ -121,7 +134,7 @@ impl<'a> Stepping<'a> {
         plan: &'a Plan<'a>,
         folder: &'a RunFolder,
         simulation: Simulation,
-        saved: Option<Progress>,
+        saved: Option<RunProgress>,
         clock: Instant,
     ) -> Result<Self, RunError> {
         let (scene, facts) = (plan.file.scene(), &plan.facts);
@@ -135,32 +148,47 @@ impl<'a> Stepping<'a> {
         ]
         .map(path);
         let is_new = saved.is_none();
+        let keeps = plan.rows == Rows::InMemory;
         let (history, loads, measures, frames) = match &saved {
             None => (
                 HistoryWriter::create(&history)?,
-                bears_loads.then(|| LoadWriter::create(&loads)),
-                (!facts.measures.is_empty()).then(|| MeasureWriter::create(&measures)),
+                bears_loads
+                    .then(|| LoadWriter::create(&loads))
+                    .transpose()?,
+                (!facts.measures.is_empty())
+                    .then(|| MeasureWriter::create(&measures))
+                    .transpose()?,
                 FrameFile::create(&frames)?,
             ),
             Some(saved) => (
                 HistoryWriter::resume(&history, saved.history)?,
-                saved.loads.map(|of| LoadWriter::resume(&loads, of)),
+                saved
+                    .loads
+                    .map(|of| LoadWriter::resume(&loads, of))
+                    .transpose()?,
                 saved
                     .measures
-                    .map(|of| MeasureWriter::resume(&measures, of)),
+                    .map(|of| MeasureWriter::resume(&measures, of))
+                    .transpose()?,
                 FrameFile::resume(&frames, saved.frames, plan.shape)?,
             ),
         };
+        // The files have been cut back to the checkpoint.
+        let tables = match keeps && !is_new {
+            true => Some(Tables::read(folder.root())?),
+            false => keeps.then(Tables::default),
+        };
         let mut stepping = Self {
+            tables,
             supports: SupportForces::new(facts.origins.clone(), &simulation, scene.support.len()),
             history,
-            loads: loads.transpose()?,
-            measures: measures.transpose()?,
+            loads,
+            measures,
             frames,
-            progress: saved.unwrap_or_else(|| Progress {
+            progress: saved.unwrap_or_else(|| RunProgress {
                 scene: plan.hash.to_string(),
                 version: env!("CARGO_PKG_VERSION").into(),
-                ..Progress::default()
+                ..RunProgress::default()
             }),
             plan,
             folder,
@@ -182,10 +210,18 @@ impl<'a> Stepping<'a> {
         self.progress.energy = EnergySummary::of_start(row.kinetic, row.potential);
         self.progress.strain = row.strain;
         self.progress.gap = row.gap;
-        self.history.append(&row)?;
+        self.record_row(row)?;
         self.record_measures()?;
         self.record_frame()?;
         self.save()
+    }
+
+    fn record_row(&mut self, row: HistoryRow) -> Result<(), RunError> {
+        self.history.append(&row)?;
+        if let Some(tables) = &mut self.tables {
+            tables.history.push(row);
+        }
+        Ok(())
     }
 
     fn record_frame(&mut self) -> Result<(), RunError> {
@@ -229,6 +265,9 @@ impl<'a> Stepping<'a> {
         });
         for row in on_supports.chain(on_obstacles) {
             loads.append(&row)?;
+            if let Some(tables) = &mut self.tables {
+                tables.loads.push(row);
+            }
         }
         Ok(())
     }
@@ -246,6 +285,9 @@ impl<'a> Stepping<'a> {
                 value: gauge.value(&state.x),
             };
             measures.append(&row)?;
+            if let Some(tables) = &mut self.tables {
+                tables.measures.push(row.clone());
+            }
             let first = Measured {
                 last: row.value,
                 least: row.value,
@@ -311,7 +353,7 @@ impl<'a> Stepping<'a> {
         self.progress.steps = number;
         self.count(&report);
         self.observe_elastic();
-        self.history.append(&self.row(&report))?;
+        self.record_row(self.row(&report))?;
         self.record_loads()?;
         self.record_measures()?;
         let reason = self.end_reason(&report);

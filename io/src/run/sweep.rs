@@ -22,15 +22,15 @@ mod variation;
 pub use engine::Engine;
 pub use error::{RefusedRuns, SweepError};
 pub use run::SweepRun;
-pub use variation::{Variation, VariationError};
+pub use variation::Variation;
 
 pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
-use crate::format::{input, write_atomically};
+use crate::format::{DataError, FileError, input, write_atomically};
 use crate::scene::{KeyPart, SceneFile, SceneFileError};
 use shell::shell_word;
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// A sweep: all combinations of the values of some keys of a scene.
@@ -64,7 +64,9 @@ impl Sweep {
         variations: Vec<Variation>,
     ) -> Result<Self, SweepError> {
         if variations.is_empty() {
-            return Err(SweepError::NoKeys);
+            let remedy = "name one, for example `stop.time=0.5,1,2`";
+            let error = DataError::new("a sweep needs a key with values", remedy);
+            return Err(SweepError::Keys(error));
         }
         let places: Vec<_> = variations.iter().map(|v| v.place().parts()).collect();
         for (j, second) in places.iter().enumerate() {
@@ -73,16 +75,18 @@ impl Sweep {
                 first[..common] == second[..common]
             };
             if let Some(i) = places[..j].iter().position(contained) {
-                return Err(SweepError::SameKey {
-                    first: variations[i].key().to_owned(),
-                    second: variations[j].key().to_owned(),
-                });
+                let [first, second] = [i, j].map(|k| variations[k].key());
+                let message = format!("`{first}` and `{second}` change the same part of the scene");
+                let error = DataError::new(message, "give one key with all its values");
+                return Err(SweepError::Keys(error));
             }
         }
         let counts = variations.iter().map(|v| v.values().len());
         let count = counts.fold(1, usize::saturating_mul);
         if count > Self::MOST_RUNS {
-            return Err(SweepError::TooMany { count });
+            let message = format!("these are {count} runs, more than {}", Self::MOST_RUNS);
+            let error = DataError::new(message, "give fewer values, or make several sweeps");
+            return Err(SweepError::Keys(error));
         }
         Ok(Self {
             scene: absolute(scene)?,
@@ -154,10 +158,8 @@ impl Sweep {
     /// [`SweepError::Refused`] with all that is wrong in any run.
     pub fn check(&self) -> Result<(), SweepError> {
         let path = Path::new(&self.scene);
-        let text = input::read_text(path).map_err(|source| SceneFileError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = input::read_text(path)
+            .map_err(|e| SceneFileError::from(FileError::unreadable(path, e)))?;
         let mut refused: Vec<RefusedRuns> = Vec::new();
         for run in self.runs() {
             let start = || -> Result<(), SceneFileError> {
@@ -204,10 +206,8 @@ impl Sweep {
                 let folder = self.folder().to_owned();
                 return Err(SweepError::OtherSweep { folder });
             }
-            Err(SweepError::Read { source, .. }) if source.kind() == ErrorKind::NotFound => {
-                self.refuse_other_files()?;
-            }
-            Err(error) => return Err(error),
+            Err(error) if error.is_missing() => self.refuse_other_files()?,
+            Err(error) => return Err(error.into()),
         }
         table.write(&path)?;
         let commands = self.folder().join(Self::COMMANDS);
@@ -234,10 +234,7 @@ impl Sweep {
         match holds_other_files(self.folder(), &[]) {
             Ok(false) => Ok(()),
             Ok(true) => Err(SweepError::Foreign { folder: path() }),
-            Err(source) => Err(SweepError::Read {
-                path: path(),
-                source,
-            }),
+            Err(source) => Err(FileError::unreadable(&path(), source).into()),
         }
     }
 
@@ -247,16 +244,13 @@ impl Sweep {
         if !path.is_file() {
             return Ok(None);
         }
-        SweepTable::read(&path).map(Some)
+        Ok(Some(SweepTable::read(&path)?))
     }
 }
 
 /// A path that does not depend on the current folder, as text for a line of shell.
 fn absolute(path: &Path) -> Result<String, SweepError> {
-    let whole = std::path::absolute(path).map_err(|source| SweepError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let whole = std::path::absolute(path).map_err(|e| FileError::unreadable(path, e))?;
     match whole.to_str() {
         Some(text) if !text.chars().any(char::is_control) => Ok(text.to_owned()),
         _ => Err(SweepError::Path { path: whole }),

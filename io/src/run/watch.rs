@@ -1,6 +1,6 @@
 //! Who watches a run, and what the watcher is told.
 
-use crate::scene::SceneWarning;
+use crate::scene::Warning;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ pub struct Beginning {
     /// Number of vertices.
     pub vertices: usize,
     /// What to know before the run.
-    pub warnings: Vec<SceneWarning>,
+    pub warnings: Vec<Warning>,
 }
 
 /// What has been reached after a step.

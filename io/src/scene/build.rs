@@ -189,8 +189,7 @@ impl<'a> Builder<'a> {
             )?;
             self.modelled.push("gravity".into());
         }
-        for (k, load) in forces.load.iter().enumerate() {
-            let key = key.name("load").entry(k);
+        for (key, load) in key.name("load").entries(&forces.load) {
             let vertices = self
                 .sheets
                 .vertices(load.sheet.as_deref(), &load.at, &key)?;
@@ -200,8 +199,7 @@ impl<'a> Builder<'a> {
             let load = load.map_err(at(&key))?;
             self.change(|m| Ok(m.with_force(load)), at::<SimulationError>(&key))?;
         }
-        for (k, field) in forces.acceleration.iter().enumerate() {
-            let key = key.name("acceleration").entry(k);
+        for (key, field) in key.name("acceleration").entries(&forces.acceleration) {
             let weights = self.model().mass().row_sums(self.sheets.union.topology());
             let size = field.size.as_given();
             let field = AccelerationField::new(weights, field.direction, size);
@@ -530,8 +528,7 @@ impl<'a> Builder<'a> {
         let norm = |g: [f64; 3]| g.iter().map(|c| c * c).sum::<f64>().sqrt();
         let gravity = self.scene.forces.gravity.map(norm).filter(|g| *g > 0.0);
         let gravity = gravity.unwrap_or(norm(PAPER_GRAVITY));
-        for (k, seam) in self.scene.glue.iter().enumerate() {
-            let key = Key::root().name("glue").entry(k);
+        for (key, seam) in Key::root().name("glue").entries(&self.scene.glue) {
             let pairs = seam.pairs(&self.sheets, &key)?;
             let model = self.model();
             let (mass, length) = (model.mass().total(), model.mean_length());
@@ -658,8 +655,7 @@ impl<'a> Builder<'a> {
             contacts = contacts
                 .with_self_contact(coefficients)
                 .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
-            for (k, pair) in scene.contact.pair.iter().enumerate() {
-                let key = key.name("contact.pair").entry(k);
+            for (key, pair) in key.name("contact.pair").entries(&scene.contact.pair) {
                 let [first, second] = &pair.sheets;
                 let first = self.sheets.one(Some(first), &key, "the contacts")?;
                 let second = self.sheets.one(Some(second), &key, "the contacts")?;

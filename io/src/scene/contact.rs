@@ -66,8 +66,7 @@ pub struct SheetPair {
 impl Contact {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.not_negative(key.name("friction"), self.friction, Unit::One);
-        for (k, pair) in self.pair.iter().enumerate() {
-            let key = key.name("pair").entry(k);
+        for (key, pair) in key.name("pair").entries(&self.pair) {
             checks.not_negative(key.name("friction"), pair.friction, Unit::One);
             if !self.self_contact {
                 let remedy = "write `self_contact = true`, or leave the pair out";

@@ -138,12 +138,7 @@ impl Crease {
             yields.check(&key.name("yield"), checks);
         }
         if let CreaseEdges::Line { from, to } = &self.at {
-            checks.finite(key.name("at.line.from"), from, Unit::Metre);
-            checks.finite(key.name("at.line.to"), to, Unit::Metre);
-            if from == to {
-                let message = "the line begins where it ends";
-                checks.report(key.name("at.line.to"), message, "give two different points");
-            }
+            checks.line(&key.name("at.line"), from, to);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Edits of a scene by `key=value`.
 
-use super::key::{Key, KeyError, KeyPart};
+use super::key::{Key, KeyPart};
+use crate::DataError;
 use isosheet_mesh::Advice;
 use std::fmt;
 use std::str::FromStr;
@@ -45,63 +46,33 @@ impl fmt::Display for Edit {
 }
 
 /// An edit that cannot be made.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[error("`{edit}`: {problem}")]
 pub struct EditError {
     /// The edit.
     pub edit: String,
     /// Why it cannot be made.
-    pub problem: EditProblem,
-}
-
-/// Why an edit cannot be made.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum EditProblem {
-    /// There is no equals sign.
-    #[error("it is not of the form key=value")]
-    Form,
-    /// What is before the equals sign is not a key.
-    #[error(transparent)]
-    Key(#[from] KeyError),
-    /// A key on the way is a value that has no keys, or a list that has no such entry.
-    #[error("the scene has no place `{place}`")]
-    Place {
-        /// The key up to where it fails.
-        place: Key,
-    },
-    /// An entry of a list of tables would become something else.
-    #[error("the entries of `{list}` are tables")]
-    NoTable {
-        /// The key of the list.
-        list: Key,
-    },
-    /// What is driven is no function of time.
-    #[error("the scene has no function of time at `{place}`")]
-    NoProfile {
-        /// The key.
-        place: Key,
-    },
+    pub problem: DataError,
 }
 
 impl Advice for EditError {
     fn advice(&self) -> Option<&'static str> {
-        match &self.problem {
-            EditProblem::Form => Some("write for example `stop.time=0.5`"),
-            EditProblem::Key(error) => error.advice(),
-            EditProblem::Place { .. } => {
-                Some("count the entries of lists from 0, for example `obstacle[0].friction=0.3`")
-            }
-            EditProblem::NoProfile { .. } => Some(
-                "name a function of time, for example `support[0].hold.moving_pin.z` of a support that the \
-                 scene holds by a `moving_pin`, or `crease[0].angle`",
-            ),
-            EditProblem::NoTable { .. } => Some(
-                "write all keys of the entry in braces, for example \
-                 `obstacle[0]={ shape = { sphere = { radius = 0.1 } } }`, or change one of its keys, \
-                 `obstacle[0].friction=0.3`",
-            ),
-        }
+        self.problem.advice()
     }
+}
+
+/// A key on the way is a value that has no keys, or a list that has no such entry.
+fn no_place(place: &Key) -> DataError {
+    let remedy = "count the entries of lists from 0, for example `obstacle[0].friction=0.3`";
+    DataError::new(format!("the scene has no place `{place}`"), remedy)
+}
+
+/// What is driven is no function of time.
+pub(super) fn no_function(place: &Key) -> DataError {
+    let message = format!("the scene has no function of time at `{place}`");
+    let remedy = "name a function of time, for example `support[0].hold.moving_pin.z` of a support that the scene holds \
+                  by a `moving_pin`, or `crease[0].angle`";
+    DataError::new(message, remedy)
 }
 
 /// The document with all edits made, in their order. A value that is not TOML is taken as a string, so that
@@ -116,20 +87,23 @@ pub(crate) fn apply(document: &mut DocumentMut, edits: &[String]) -> Result<(), 
     Ok(())
 }
 
-fn make(document: &mut DocumentMut, edit: &str) -> Result<(), EditProblem> {
+fn make(document: &mut DocumentMut, edit: &str) -> Result<(), DataError> {
     let (key, value) = split(edit)?;
     let value: Value = value.parse().unwrap_or_else(|_| Value::from(value));
     set(document.as_item_mut(), &key, value)
 }
 
 /// Key and value of an edit.
-fn split(edit: &str) -> Result<(Key, &str), EditProblem> {
-    let (key, value) = edit.split_once('=').ok_or(EditProblem::Form)?;
+fn split(edit: &str) -> Result<(Key, &str), DataError> {
+    let (key, value) = edit.split_once('=').ok_or_else(|| {
+        let remedy = "write for example `stop.time=0.5`";
+        DataError::new("it is not of the form key=value", remedy)
+    })?;
     Ok((key.trim().parse()?, value.trim()))
 }
 
 /// Sets the value at a key; tables on the way are made where they are missing.
-pub(super) fn set(mut item: &mut Item, key: &Key, value: Value) -> Result<(), EditProblem> {
+pub(super) fn set(mut item: &mut Item, key: &Key, value: Value) -> Result<(), DataError> {
     let mut place = Key::root();
     for part in key.parts() {
         let list = place.clone();
@@ -138,16 +112,17 @@ pub(super) fn set(mut item: &mut Item, key: &Key, value: Value) -> Result<(), Ed
         item = match (item, part) {
             // An entry of a list of tables stays a table: the text has no place for another item there.
             (Item::ArrayOfTables(tables), KeyPart::Entry(k)) if is_last => {
-                let table = tables.get_mut(*k).ok_or(EditProblem::Place { place })?;
+                let table = tables.get_mut(*k).ok_or_else(|| no_place(&place))?;
                 let Value::InlineTable(new) = value else {
-                    return Err(EditProblem::NoTable { list });
+                    let remedy = "write all keys of the entry in braces, for example `obstacle[0]={ shape = { sphere = { \
+                                  radius = 0.1 } } }`, or change one of its keys, `obstacle[0].friction=0.3`";
+                    let message = format!("the entries of `{list}` are tables");
+                    return Err(DataError::new(message, remedy));
                 };
                 replace(table, new.into_table());
                 return Ok(());
             }
-            (item, part) => descend(item, part).ok_or_else(|| EditProblem::Place {
-                place: place.clone(),
-            })?,
+            (item, part) => descend(item, part).ok_or_else(|| no_place(&place))?,
         };
     }
     *item = Item::Value(value);

@@ -132,9 +132,11 @@ impl Folding {
     pub(crate) fn check(&self, mesh: &Mesh, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("time"), self.time, Unit::Second);
         checks.positive(key.name("stiffness"), self.stiffness, Unit::Newton);
-        if let Some(stiffness) = self.flat_stiffness {
-            checks.positive(key.name("flat_stiffness"), stiffness, Unit::Newton);
-        }
+        checks.positive(
+            key.name("flat_stiffness"),
+            self.flat_stiffness,
+            Unit::Newton,
+        );
         checks.within(key.name("part"), self.part, [-1.0, 1.0]);
         if !matches!(mesh, Mesh::File(_)) {
             let message = "the angles are those of a FOLD file, and `sheet.mesh` is no file";

@@ -78,14 +78,12 @@ impl Forces {
         if let Some(gravity) = &self.gravity {
             checks.finite(key.name("gravity"), gravity, Unit::MetrePerSquareSecond);
         }
-        for (k, load) in self.load.iter().enumerate() {
-            let key = key.name("load").entry(k);
+        for (key, load) in key.name("load").entries(&self.load) {
             load.at.check(&key.name("at"), checks);
             checks.direction(key.name("direction"), &load.direction);
             load.size.check(key.name("size"), Unit::Newton, checks);
         }
-        for (k, field) in self.acceleration.iter().enumerate() {
-            let key = key.name("acceleration").entry(k);
+        for (key, field) in key.name("acceleration").entries(&self.acceleration) {
             checks.direction(key.name("direction"), &field.direction);
             field
                 .size

@@ -22,12 +22,12 @@ pub(crate) fn form_problems(scene: &DeTable<'_>) -> Vec<Problem> {
 }
 
 /// The place of a value, as far as messages need it.
-struct Place {
+struct ValuePlace {
     key: Key,
     span: Range<usize>,
 }
 
-impl Place {
+impl ValuePlace {
     fn problem(&self, message: String, remedy: impl Into<String>) -> Problem {
         Problem {
             span: Some(self.span.clone()),
@@ -39,7 +39,7 @@ impl Place {
 fn visit(
     forms: &[&'static Schema],
     value: &DeValue<'_>,
-    place: &Place,
+    place: &ValuePlace,
     problems: &mut Vec<Problem>,
 ) {
     let key = &place.key;
@@ -57,7 +57,7 @@ fn visit(
                 problems.push(place.problem(message, remedy));
             }
             for (k, entry) in entries.iter().enumerate() {
-                let place = Place {
+                let place = ValuePlace {
                     key: key.entry(k),
                     span: entry.span(),
                 };
@@ -98,14 +98,14 @@ fn visit_table(
     }
     let names: Vec<&str> = known.keys().copied().collect();
     for (name, entry) in entries {
-        let place = Place {
+        let place = ValuePlace {
             key: key.name(name.get_ref()),
             span: entry.span(),
         };
         match known.get(&**name.get_ref()) {
             Some(forms) => visit(forms, entry.get_ref(), &place, problems),
             None => {
-                let place = Place {
+                let place = ValuePlace {
                     span: name.span(),
                     ..place
                 };

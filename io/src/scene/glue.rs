@@ -86,18 +86,11 @@ impl Glue {
         for (name, side) in [("first", &self.first), ("second", &self.second)] {
             let key = key.name(name);
             if let SeamSide::Line { from, to } = side {
-                checks.finite(key.name("line.from"), from, Unit::Metre);
-                checks.finite(key.name("line.to"), to, Unit::Metre);
-                if from == to {
-                    let message = "the line begins where it ends";
-                    checks.report(key.name("line.to"), message, "give two different points");
-                }
+                checks.line(&key.name("line"), from, to);
             }
         }
         self.closing.check(key.name("closing"), Unit::One, checks);
-        if let Some(stiffness) = self.stiffness {
-            checks.positive(key.name("stiffness"), stiffness, Unit::NewtonPerMetre);
-        }
+        checks.positive(key.name("stiffness"), self.stiffness, Unit::NewtonPerMetre);
     }
 
     /// The pairs of vertices, by their numbers in the union of all sheets.

@@ -1,5 +1,6 @@
 //! Places in a scene.
 
+use crate::DataError;
 use isosheet_mesh::Advice;
 use std::fmt;
 use std::str::FromStr;
@@ -36,6 +37,15 @@ impl Advice for KeyError {
     }
 }
 
+impl From<KeyError> for DataError {
+    fn from(error: KeyError) -> Self {
+        Self {
+            remedy: error.advice(),
+            ..Self::plain(error.to_string())
+        }
+    }
+}
+
 impl Key {
     /// The scene as a whole.
     pub fn root() -> Self {
@@ -56,6 +66,12 @@ impl Key {
         let mut parts = self.0.clone();
         parts.push(KeyPart::Entry(number));
         Self(parts)
+    }
+
+    /// The entries of the list at this key, each with its own.
+    pub(crate) fn entries<'a, T>(&self, list: &'a [T]) -> impl Iterator<Item = (Self, &'a T)> {
+        let entries = list.iter().enumerate();
+        entries.map(|(k, entry)| (self.entry(k), entry))
     }
 
     /// The place one step further.

@@ -6,7 +6,7 @@ pub use hand::HoldError;
 
 use super::build::Kept;
 use super::changed::edited;
-use super::edit::{Edit, EditError, EditProblem};
+use super::edit::{Edit, EditError, no_function};
 use super::key::Key;
 use super::profile::{Change, Course};
 use super::setup::Facts;
@@ -212,7 +212,7 @@ impl LiveScene {
     /// creases, sizes of loads. Values are in the units of the scene.
     ///
     /// # Errors
-    /// As [`LiveScene::change`]; [`EditProblem::NoProfile`] at a key that is no function of time.
+    /// As [`LiveScene::change`]; [`EditError`] at a key that is no function of time.
     pub fn drive(&mut self, targets: &[(Key, f64)], until: f64) -> Result<(), SceneFileError> {
         let begin = self.simulation.state().t;
         let mut scene = self.file.scene().clone();
@@ -221,7 +221,7 @@ impl LiveScene {
             let found = functions.iter_mut().find(|(place, _)| place == key);
             let (_, function) = found.ok_or_else(|| EditError {
                 edit: key.to_string(),
-                problem: EditProblem::NoProfile { place: key.clone() },
+                problem: no_function(key),
             })?;
             **function = Profile::Course(Course::Ramp(Change {
                 from: function.value(begin),

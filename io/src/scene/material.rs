@@ -82,9 +82,7 @@ impl Plate {
         let unit = Unit::KilogramPerCubicMetre;
         checks.positive(key.name("density"), self.density, unit);
         checks.within(key.name("poisson"), self.poisson, [0.0, 0.5]);
-        if let Some(stress) = self.yield_stress {
-            checks.positive(key.name("yield_stress"), stress, Unit::Pascal);
-        }
+        checks.positive(key.name("yield_stress"), self.yield_stress, Unit::Pascal);
         if checks.problems.len() > before {
             return;
         }

@@ -314,9 +314,7 @@ impl Mesh {
                 }
             }
             Self::Triangles { vertices, .. } => {
-                for (k, vertex) in vertices.iter().enumerate() {
-                    checks.finite(key.name("vertices").entry(k), vertex, Unit::Metre);
-                }
+                checks.points(key.name("vertices"), vertices);
             }
             Self::File(file) => file.check(&key, checks),
             _ => {}

@@ -4,8 +4,8 @@ use super::key::Key;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use crate::format::{
-    self, FoldFrame, FoldProblem, GltfProblem, MeshFileError, MeshFileProblem, MeshFormat,
-    MeshOptions, Polygons, SeparateBuffers, input, parse_mesh, read_mesh_with,
+    self, FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, Polygons,
+    SeparateBuffers, input, parse_mesh, read_mesh_with,
 };
 use isosheet_mesh::Advice;
 use schemars::JsonSchema;
@@ -151,12 +151,8 @@ impl Files {
     ) -> Result<Arc<format::MeshFile>, Problem> {
         self.mesh(file).map_err(|e| {
             let name = match &e.problem {
-                problem if is_about_frame(problem) => "frame",
-                MeshFileProblem::NoNames | MeshFileProblem::Gltf(GltfProblem::NoMesh { .. })
-                    if file.mesh.is_some() =>
-                {
-                    "mesh"
-                }
+                MeshFileProblem::Frame(_) => "frame",
+                MeshFileProblem::Name(_) => "mesh",
                 _ => "path",
             };
             Problem::new(key.name(name), e.to_string(), file_remedy(&e))
@@ -181,18 +177,10 @@ impl Files {
     }
 }
 
-/// Whether a file is refused because of the frame that is asked for.
-fn is_about_frame(problem: &MeshFileProblem) -> bool {
-    matches!(
-        problem,
-        MeshFileProblem::NoFrames | MeshFileProblem::Fold(FoldProblem::Choice { .. })
-    )
-}
-
 /// What to do about a mesh file that cannot be read, in words of scenes.
 fn file_remedy(error: &MeshFileError) -> String {
     match &error.problem {
-        MeshFileProblem::Polygon { .. } => {
+        MeshFileProblem::Polygon(_) => {
             "triangulate the file as the sheet is meant to fold, or write `polygons = \"triangulate\"` beside \
              `path`"
                 .to_owned()
@@ -200,7 +188,7 @@ fn file_remedy(error: &MeshFileError) -> String {
         MeshFileProblem::Read(_) => {
             "check the path, which is relative to the scene, and the permissions".to_owned()
         }
-        problem if is_about_frame(problem) => problem.advice().unwrap_or_default().to_owned(),
+        problem @ MeshFileProblem::Frame(_) => problem.advice().unwrap_or_default().to_owned(),
         problem => {
             let advice = problem.advice().map(|advice| format!("{advice}; "));
             let advice = advice.unwrap_or_default();

@@ -121,9 +121,11 @@ impl Method {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("step"), self.step, Unit::Second);
         checks.within(key.name("min_fraction"), self.min_fraction, [1e-12, 1.0]);
-        if let Some(tolerance) = self.strain_tolerance {
-            checks.within(key.name("strain_tolerance"), tolerance, [1e-15, 1e-2]);
-        }
+        checks.within(
+            key.name("strain_tolerance"),
+            self.strain_tolerance,
+            [1e-15, 1e-2],
+        );
         checks.count(key.name("max_factorisations"), self.max_factorisations, 1);
         if let Some(iterations) = self.max_iterations {
             checks.count(key.name("max_iterations"), iterations, 1);

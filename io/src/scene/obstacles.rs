@@ -181,9 +181,7 @@ impl Obstacle {
             }
             Shape::Wall(wall) => {
                 length("width", wall.width);
-                for (k, point) in wall.line.iter().enumerate() {
-                    checks.finite(shape.name("line").entry(k), point, Unit::Metre);
-                }
+                checks.points(shape.name("line"), &wall.line);
                 checks.count(shape.name("line"), wall.line.len(), 2);
                 checks.not_negative(shape.name("corner_radius"), wall.corner_radius, Unit::Metre);
             }

@@ -68,9 +68,7 @@ impl Outline {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         match self {
             Self::Corners(corners) => {
-                for (k, corner) in corners.iter().enumerate() {
-                    checks.finite(key.entry(k), corner, Unit::Metre);
-                }
+                checks.points(key.clone(), corners);
                 checks.count(key.clone(), corners.len(), 3);
             }
             Self::Shape(OutlineShape::Regular { sides, radius }) => {

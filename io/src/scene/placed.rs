@@ -108,8 +108,7 @@ impl<'a> PlacedSheets<'a> {
     pub(super) fn mass(&self, weights: &[Weight]) -> Result<MassMatrix, Problem> {
         let masses: Vec<MassMatrix> = self.list.iter().map(|sheet| sheet.mass.clone()).collect();
         let mut mass = MassMatrix::union(&masses);
-        for (k, weight) in weights.iter().enumerate() {
-            let key = Key::root().name("weight").entry(k);
+        for (key, weight) in Key::root().name("weight").entries(weights) {
             let vertices = self.vertices(weight.sheet.as_deref(), &weight.at, &key)?;
             for v in &vertices {
                 mass.vertex[v.index()] += weight.mass / vertices.len() as f64;

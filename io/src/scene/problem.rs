@@ -82,8 +82,11 @@ impl Checks {
         self.problems.push(Problem::new(key, message, remedy));
     }
 
-    /// A number above zero, in the range of its unit.
-    pub(crate) fn positive(&mut self, key: Key, value: f64, unit: Unit) {
+    /// A number above zero, in the range of its unit, if there is one.
+    pub(crate) fn positive(&mut self, key: Key, value: impl Into<Option<f64>>, unit: Unit) {
+        let Some(value) = value.into() else {
+            return;
+        };
         if value.is_finite() && value > 0.0 {
             let least = unit.range().least;
             return self.in_range(key, value, least, unit);
@@ -93,8 +96,11 @@ impl Checks {
         self.report(key, message, in_unit("give a number above 0", unit));
     }
 
-    /// A number of at least zero, in the range of its unit.
-    pub(crate) fn not_negative(&mut self, key: Key, value: f64, unit: Unit) {
+    /// A number of at least zero, in the range of its unit, if there is one.
+    pub(crate) fn not_negative(&mut self, key: Key, value: impl Into<Option<f64>>, unit: Unit) {
+        let Some(value) = value.into() else {
+            return;
+        };
         if value.is_finite() && value >= 0.0 {
             return self.in_range(key, value, 0.0, unit);
         }
@@ -122,9 +128,14 @@ impl Checks {
         self.report(key, message, format!("{remedy}: {}", range.reason));
     }
 
-    /// A number from `least` to `most`.
-    pub(crate) fn within(&mut self, key: Key, value: f64, [least, most]: [f64; 2]) {
-        if !(least..=most).contains(&value) {
+    /// A number from `least` to `most`, if there is one.
+    pub(crate) fn within(
+        &mut self,
+        key: Key,
+        value: impl Into<Option<f64>>,
+        [least, most]: [f64; 2],
+    ) {
+        if let Some(value) = value.into().filter(|v| !(least..=most).contains(v)) {
             let message = format!("`{key}` is {}, which is out of range", given(value));
             let remedy = format!("give a number from {} to {}", given(least), given(most));
             self.report(key, message, remedy);
@@ -163,6 +174,23 @@ impl Checks {
         }
         for (k, value) in vector.iter().enumerate() {
             self.in_range(key.entry(k), *value, 0.0, unit);
+        }
+    }
+
+    /// Points with finite coordinates, metres.
+    pub(crate) fn points<const N: usize>(&mut self, key: Key, points: &[[f64; N]]) {
+        for (key, point) in key.entries(points) {
+            self.finite(key, point, Unit::Metre);
+        }
+    }
+
+    /// A line between two different points, metres.
+    pub(crate) fn line(&mut self, key: &Key, from: &[f64; 3], to: &[f64; 3]) {
+        self.finite(key.name("from"), from, Unit::Metre);
+        self.finite(key.name("to"), to, Unit::Metre);
+        if from == to {
+            let message = "the line begins where it ends";
+            self.report(key.name("to"), message, "give two different points");
         }
     }
 

@@ -50,9 +50,7 @@ impl Selection {
         match self {
             Self::All | Self::Boundary | Self::Vertices(_) => {}
             Self::Nearest(points) => {
-                for (k, point) in points.iter().enumerate() {
-                    checks.finite(key.name("nearest").entry(k), point, Unit::Metre);
-                }
+                checks.points(key.name("nearest"), points);
             }
             Self::Box { min, max } => {
                 let key = key.name("box");

@@ -5,7 +5,7 @@ use super::error::{SceneError, SceneText};
 use super::key::Key;
 use super::problem::Problem;
 use super::targets::Targets;
-use super::warning::SceneWarning;
+use super::warning::Warning;
 use super::{Gauge, Origins};
 use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
@@ -79,7 +79,7 @@ pub struct Setup {
     /// pattern among the meshes; `None` for an edge of which the pattern does not say it.
     pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
     /// What to know of the sheets before the scene is run.
-    pub(crate) of_sheets: Vec<SceneWarning>,
+    pub(crate) of_sheets: Vec<Warning>,
     /// Which entry of the scene made what.
     pub origins: Origins,
     /// The text of the scene, if it is a file.

@@ -250,13 +250,12 @@ impl Sheet {
         if let Some(material) = &self.material {
             material.check(&key.name("material"), checks);
         }
-        if let Some(density) = self.density {
-            let unit = Unit::KilogramPerSquareMetre;
-            checks.positive(key.name("density"), density, unit);
-        }
-        if let Some(mass) = self.mass {
-            checks.positive(key.name("mass"), mass, Unit::Kilogram);
-        }
+        checks.positive(
+            key.name("density"),
+            self.density,
+            Unit::KilogramPerSquareMetre,
+        );
+        checks.positive(key.name("mass"), self.mass, Unit::Kilogram);
         checks.not_negative(key.name("thickness"), self.thickness, Unit::Metre);
         checks.not_negative(key.name("damping"), self.damping, Unit::PerSecond);
         let isometry = self.isometry();
@@ -315,15 +314,9 @@ impl Isometry {
                 limit,
             } => {
                 let key = key.name("elastic");
-                if let Some(stiffness) = stiffness {
-                    checks.positive(key.name("stiffness"), *stiffness, Unit::NewtonPerMetre);
-                }
-                if let Some(poisson) = poisson {
-                    checks.within(key.name("poisson"), *poisson, [0.0, 0.5]);
-                }
-                if let Some(limit) = limit {
-                    checks.within(key.name("limit"), *limit, LIMITS);
-                }
+                checks.positive(key.name("stiffness"), *stiffness, Unit::NewtonPerMetre);
+                checks.within(key.name("poisson"), *poisson, [0.0, 0.5]);
+                checks.within(key.name("limit"), *limit, LIMITS);
             }
             Self::Rods => {}
         }

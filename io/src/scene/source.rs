@@ -9,10 +9,9 @@ use super::key::Key;
 use super::problem::Problem;
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
-use crate::format::{MeshFormat, input};
+use crate::format::{FileError, MeshFormat, input};
 use isosheet_mesh::Advice;
 use serde::Deserialize;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use thiserror::Error;
@@ -42,20 +41,9 @@ impl PartialEq for SceneFile {
 /// A scene file that cannot be used.
 #[derive(Debug, Error)]
 pub enum SceneFileError {
-    /// The file cannot be read.
-    #[error("cannot read the scene {}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// The file is a mesh file by its name.
-    #[error("{} is a mesh file and no scene", path.display())]
-    Mesh {
-        /// The file.
-        path: PathBuf,
-    },
+    /// The file cannot be read, or is a mesh file by its name.
+    #[error(transparent)]
+    Read(#[from] FileError),
     /// An edit cannot be made.
     #[error(transparent)]
     Edit(#[from] EditError),
@@ -67,10 +55,7 @@ pub enum SceneFileError {
 impl Advice for SceneFileError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::Read { .. } => Some("check the path and the permissions"),
-            Self::Mesh { .. } => Some(
-                "name it in a scene, `mesh = { file = { path = ... } }`: `isosheet new` writes a scene to start from",
-            ),
+            Self::Read(error) => error.advice(),
             Self::Edit(error) => error.advice(),
             Self::Scene(error) => error.advice(),
         }
@@ -78,12 +63,15 @@ impl Advice for SceneFileError {
 }
 
 /// Refuses what is a mesh file by its name: as TOML it is wrong in a way that helps nobody.
-fn refuse_mesh(path: &Path) -> Result<(), SceneFileError> {
+fn refuse_mesh(path: &Path) -> Result<(), FileError> {
     match MeshFormat::of(path) {
         None => Ok(()),
-        Some(_) => Err(SceneFileError::Mesh {
-            path: path.to_owned(),
-        }),
+        Some(_) => {
+            let remedy = "name it in a scene, `mesh = { file = { path = ... } }`: `isosheet new` writes a scene to start \
+                          from";
+            let problem = "it is a mesh file and no scene";
+            Err(FileError::content(path, problem, remedy))
+        }
     }
 }
 
@@ -94,10 +82,7 @@ impl SceneFile {
     /// [`SceneFileError`], with all problems that were found.
     pub fn read(path: &Path, edits: &[String]) -> Result<Self, SceneFileError> {
         refuse_mesh(path)?;
-        let text = input::read_text(path).map_err(|source| SceneFileError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = input::read_text(path).map_err(|e| FileError::unreadable(path, e))?;
         Self::parse(text, path, edits)
     }
 

@@ -84,8 +84,6 @@ impl Stop {
             checks.positive(key.name("rest.speed"), rest.speed, Unit::MetrePerSecond);
             checks.positive(key.name("rest.duration"), rest.duration, Unit::Second);
         }
-        if let Some(force) = self.support_force {
-            checks.positive(key.name("support_force"), force, Unit::Newton);
-        }
+        checks.positive(key.name("support_force"), self.support_force, Unit::Newton);
     }
 }

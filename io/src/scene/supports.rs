@@ -139,11 +139,11 @@ impl Curve {
                 points,
                 corner_radius,
             } => {
-                check_points(points, key, checks);
+                checks.points(key.name("points"), points);
                 checks.positive(key.name("corner_radius"), *corner_radius, Unit::Metre);
             }
             Self::Spline { points } | Self::ClosedSpline { points } => {
-                check_points(points, key, checks);
+                checks.points(key.name("points"), points);
             }
         }
         // What no number alone is to blame for.
@@ -154,12 +154,6 @@ impl Curve {
                 .problems
                 .push(Problem::from_error(key.clone(), &error));
         }
-    }
-}
-
-fn check_points(points: &[[f64; 3]], key: &Key, checks: &mut Checks) {
-    for (k, point) in points.iter().enumerate() {
-        checks.finite(key.name("points").entry(k), point, Unit::Metre);
     }
 }
 

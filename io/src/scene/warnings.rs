@@ -3,54 +3,76 @@
 use super::placed::PlacedSheets;
 use super::selection::{self, Selection};
 use super::setup::Setup;
-use super::warning::SceneWarning;
+use super::warning::Warning;
 use super::{Key, Mesh, Quantity, Scene};
 use isosheet_dynamics::Isometry;
+use isosheet_mesh::wording::{brief, counted};
 use isosheet_mesh::{Sheet, VertexId};
 
 /// Width from which the unit of lengths is questioned, metres: hardly a sheet is larger than a big tent, and
 /// files in millimetres, points or pixels are.
 const WIDE: f64 = 20.0;
 
-impl SceneWarning {
+impl Warning {
     /// Closed parts of a sheet of rods.
     pub(crate) fn closed(sheet: &Sheet) -> Option<Self> {
         let t = sheet.topology();
         let parts = t.components();
         let is_closed = |part: &&Vec<VertexId>| !part.iter().any(|&v| t.is_boundary_vertex(v));
         let closed = parts.iter().filter(is_closed).count();
-        (closed > 0).then_some(Self::Closed {
-            closed,
-            parts: parts.len(),
+        (closed > 0).then(|| {
+            let what = match closed == parts.len() {
+                true => "the surface is closed".to_owned(),
+                false => format!("{closed} of the {} parts are closed surfaces", parts.len()),
+            };
+            let message = format!("{what}: a sheet of rigid rods without a boundary cannot bend");
+            Self::new(
+                message,
+                "cut it open along some edges, or make it an obstacle",
+            )
         })
     }
 
     /// A sheet of a file whose unit is not the metre, as it seems.
     pub(crate) fn wide_file(sheet: &Sheet) -> Option<Self> {
         let width = selection::size(sheet.positions().as_chunks::<3>().0);
-        (width > WIDE).then_some(Self::WideFile { width })
+        (width > WIDE).then(|| {
+            let message = format!(
+                "the sheet is {} m wide, as the numbers of a file are taken for metres",
+                brief(width)
+            );
+            let remedy =
+                "of a file in millimetres write `scale = 0.001` beside `path` in the scene";
+            Self::new(message, remedy)
+        })
     }
 }
 
 impl PlacedSheets<'_> {
     /// What to know of the sheets, and of how a scene names their vertices.
-    pub(super) fn warnings(&self, scene: &Scene) -> Vec<SceneWarning> {
+    pub(super) fn warnings(&self, scene: &Scene) -> Vec<Warning> {
         let of_sheets = self.list.iter().flat_map(|sheet| {
             let wide = match &sheet.of.mesh {
                 // A scale says that the unit was thought of.
                 Mesh::File(file) if file.scale != 1.0 => None,
-                Mesh::File(_) => SceneWarning::wide_file(&sheet.form.placed),
+                Mesh::File(_) => Warning::wide_file(&sheet.form.placed),
                 _ => {
                     let width = selection::size(sheet.form.placed.positions().as_chunks::<3>().0);
-                    let key = sheet.key.clone();
-                    (width > WIDE).then_some(SceneWarning::Wide { key, width })
+                    let message = format!("`{}` is {} m wide", sheet.key, brief(width));
+                    (width > WIDE).then_some(Warning::new(message, "give lengths in metres"))
                 }
             };
             let reversed = match (&sheet.of.mesh, sheet.form.changes.reversed_faces) {
-                (Mesh::File(file), faces @ 1..) => Some(SceneWarning::ReversedFaces {
-                    path: file.path.clone(),
-                    faces,
-                }),
+                (Mesh::File(file), count @ 1..) => {
+                    let message = format!(
+                        "{} of {} are clockwise: they were reversed, with the mountains and valleys at them",
+                        counted(count, "face", "faces"),
+                        file.path.display()
+                    );
+                    let remedy = "a valley folds towards the side from which its faces are counter-clockwise in the \
+                                  file: if the sheet folds the wrong way, list the faces counter-clockwise there";
+                    Some(Warning::new(message, remedy))
+                }
                 _ => None,
             };
             wide.into_iter().chain(reversed)
@@ -59,7 +81,7 @@ impl PlacedSheets<'_> {
     }
 
     /// Points that choose vertices which are far away.
-    fn far_points(&self, scene: &Scene) -> Vec<SceneWarning> {
+    fn far_points(&self, scene: &Scene) -> Vec<Warning> {
         let mut selections: Vec<(Key, Option<&String>, &Selection)> = Vec::new();
         let entry = |name: &str, k: usize| Key::root().name(name).entry(k);
         for (k, support) in scene.support.iter().enumerate() {
@@ -86,10 +108,16 @@ impl PlacedSheets<'_> {
             let width = selection::size(points);
             let distances = at.distances(points).into_iter().enumerate();
             let far = distances.filter(move |(_, distance)| *distance > width);
-            far.map(move |(k, distance)| SceneWarning::FarPoint {
-                key: key.name("nearest").entry(k),
-                distance,
-                width,
+            far.map(move |(k, distance)| {
+                let message = format!(
+                    "`{}` is {} m away from the nearest vertex, and the sheet is {} m wide",
+                    key.name("nearest").entry(k),
+                    brief(distance),
+                    brief(width)
+                );
+                let remedy = "give coordinates in metres of where the sheet is at the start: `isosheet info` gives its \
+                              bounds";
+                Warning::new(message, remedy)
             })
         });
         far.collect()
@@ -107,20 +135,26 @@ impl PlacedSheets<'_> {
 
 impl Setup {
     /// What to know before the scene is run.
-    pub fn warnings(&self) -> Vec<SceneWarning> {
+    pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = self.of_sheets.clone();
         if self.model.isometry() == Isometry::Rods {
-            warnings.extend(SceneWarning::closed(&self.sheet));
+            warnings.extend(Warning::closed(&self.sheet));
         }
         for clamp in self.model.clamps_across_the_mesh(&self.start.x) {
             let pins = clamp.edge.iter().filter_map(|v| self.origins.pins.get(v));
             let mut supports: Vec<usize> = pins.copied().collect();
             supports.sort_unstable();
             supports.dedup();
-            warnings.push(SceneWarning::ClampAcrossMesh {
-                supports,
-                edge: clamp.edge,
-            });
+            let keys = supports.iter().map(|k| format!("`support[{k}]`"));
+            let message = format!(
+                "no line of edges of the mesh runs along the clamp by {}: the {} beside its free part are on no line, \
+                 so that the rods cannot fold there, and most such sheets lock",
+                keys.collect::<Vec<_>>().join(" and "),
+                counted(clamp.edge.len(), "vertex", "vertices")
+            );
+            let remedy = "name what the sheet is made of, `sheet.material`, which makes it elastic; or make a mesh with \
+                          a line of edges along the clamp";
+            warnings.push(Warning::new(message, remedy));
         }
         warnings
     }

@@ -92,12 +92,8 @@ impl SheetYield {
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        if let Some(moment) = self.moment {
-            checks.positive(key.name("moment"), moment, Unit::Newton);
-        }
-        if let Some(hardening) = self.hardening {
-            checks.not_negative(key.name("hardening"), hardening, Unit::NewtonMetre);
-        }
+        checks.positive(key.name("moment"), self.moment, Unit::Newton);
+        checks.not_negative(key.name("hardening"), self.hardening, Unit::NewtonMetre);
         check_layers(key, self.layers, checks);
     }
 }

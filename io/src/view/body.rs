@@ -1,8 +1,9 @@
 //! Bodies beside the sheet.
 
 use super::check;
-use super::error::ViewError;
 use super::pack::{packed_doubles, packed_triangles};
+use crate::format::{BodyPose, DataError};
+use isosheet_mesh::wording::{brief, given};
 use serde::Serialize;
 
 /// The form of a body in its own frame. Lengths in metres.
@@ -46,31 +47,6 @@ pub enum BodyShape {
     },
 }
 
-/// Where a body is: a point `X` of its own frame is at `R X + translation`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// The rotation `R` as a quaternion `[x, y, z, w]` of length 1, where `w` is the real part.
-    pub rotation: [f64; 4],
-    /// Where the origin of the body is, in metres.
-    pub translation: [f64; 3],
-}
-
-impl Pose {
-    /// No rotation and no translation.
-    pub const IDENTITY: Self = Self {
-        rotation: [0.0, 0.0, 0.0, 1.0],
-        translation: [0.0; 3],
-    };
-
-    /// A translation, in metres.
-    pub const fn at(translation: [f64; 3]) -> Self {
-        Self {
-            translation,
-            ..Self::IDENTITY
-        }
-    }
-}
-
 /// A rigid body beside the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
@@ -79,7 +55,7 @@ pub struct Body {
     /// Its form.
     pub shape: BodyShape,
     /// Its pose in each frame (length T), or a single one when it does not move.
-    pub poses: Vec<Pose>,
+    pub poses: Vec<BodyPose>,
 }
 
 /// By how much the length of a quaternion may differ from 1: quaternions that were integrated or rounded to
@@ -87,7 +63,7 @@ pub struct Body {
 const QUATERNION_TOLERANCE: f64 = 1e-3;
 
 impl Body {
-    pub(super) fn validate(&self, index: usize, frames: usize) -> Result<(), ViewError> {
+    pub(super) fn validate(&self, index: usize, frames: usize) -> Result<(), DataError> {
         let what = format!("body {index} (`{}`)", self.name);
         self.check_shape(&what)?;
         if self.poses.len() != 1 {
@@ -102,21 +78,22 @@ impl Body {
             })?;
             let norm = pose.rotation.iter().map(|c| c * c).sum::<f64>().sqrt();
             if (norm - 1.0).abs() > QUATERNION_TOLERANCE {
-                return Err(ViewError::Rotation { what, index, norm });
+                let length = brief(norm);
+                let message =
+                    format!("{what}: the quaternion of pose {index} has the length {length}");
+                let error = DataError::new(message, "give a quaternion of length 1");
+                return Err(error.at(index).value(norm));
             }
         }
         Ok(())
     }
 
-    fn check_shape(&self, what: &str) -> Result<(), ViewError> {
+    fn check_shape(&self, what: &str) -> Result<(), DataError> {
         let positive = |lengths: &[(&'static str, f64)]| {
             for &(name, value) in lengths {
                 if !value.is_finite() || value <= 0.0 {
-                    return Err(ViewError::BodyLength {
-                        what: what.into(),
-                        name,
-                        value,
-                    });
+                    let message = format!("{what}: {name} is {} m", given(value));
+                    return Err(DataError::new(message, "give a positive length").value(value));
                 }
             }
             Ok(())
@@ -143,7 +120,8 @@ impl Body {
                 check::length(&name, vertices.len(), 3 * count)?;
                 check::finite(&name, vertices)?;
                 if faces.is_empty() {
-                    return Err(ViewError::NoBodyFaces { what: what.into() });
+                    let message = format!("{what}: the mesh has no triangles");
+                    return Err(DataError::new(message, "give at least one"));
                 }
                 let corners = faces.as_flattened();
                 check::vertices(&format!("{what}: the triangles"), corners, count)

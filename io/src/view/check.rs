@@ -1,11 +1,13 @@
 //! Checks of lists. The name of a list is only made up when it is needed for an error.
 
-use super::error::ViewError;
+use crate::format::DataError;
+use isosheet_mesh::wording::given;
+use isosheet_mesh::{Advice, Topology};
 
 /// The largest number that a list may have. Box sizes and second differences of such numbers are finite.
 const LARGEST: f64 = 1e300;
 
-pub(super) fn length(what: &str, got: usize, expected: usize) -> Result<(), ViewError> {
+pub(super) fn length(what: &str, got: usize, expected: usize) -> Result<(), DataError> {
     length_of(got, expected, || what.into())
 }
 
@@ -13,65 +15,90 @@ pub(super) fn length_of(
     got: usize,
     expected: usize,
     what: impl Fn() -> String,
-) -> Result<(), ViewError> {
+) -> Result<(), DataError> {
     if got == expected {
         return Ok(());
     }
-    Err(ViewError::Length {
-        what: what(),
-        got,
-        expected,
-    })
+    let what = what();
+    Err(DataError::plain(format!(
+        "{what}: the length is {got} and has to be {expected}"
+    )))
 }
 
-pub(super) fn finite(what: &str, values: &[f64]) -> Result<(), ViewError> {
+pub(super) fn finite(what: &str, values: &[f64]) -> Result<(), DataError> {
     finite_of(values, || what.into())
 }
 
-pub(super) fn finite_of(values: &[f64], what: impl Fn() -> String) -> Result<(), ViewError> {
-    match values.iter().position(|v| v.is_nan() || v.abs() > LARGEST) {
-        None => Ok(()),
-        Some(index) => Err(ViewError::NotFinite {
-            what: what(),
-            index,
-            value: values[index],
-        }),
-    }
+pub(super) fn finite_of(values: &[f64], what: impl Fn() -> String) -> Result<(), DataError> {
+    let is_wrong = |v: &f64| v.is_nan() || v.abs() > LARGEST;
+    let remedy = "give finite numbers below 1e300 in size";
+    refuse(values, is_wrong, "", remedy, what)
 }
 
 /// Checks values that a logarithmic scale shows: none is negative.
-pub(super) fn not_negative(values: &[f64], what: impl Fn() -> String) -> Result<(), ViewError> {
-    match values.iter().position(|&v| v < 0.0) {
-        None => Ok(()),
-        Some(index) => Err(ViewError::Negative {
-            what: what(),
-            index,
-            value: values[index],
-        }),
-    }
+pub(super) fn not_negative(values: &[f64], what: impl Fn() -> String) -> Result<(), DataError> {
+    let remedy = "use a linear scale or sizes";
+    refuse(
+        values,
+        |v| *v < 0.0,
+        ", which has no logarithm",
+        remedy,
+        what,
+    )
 }
 
-pub(super) fn times(what: &str, times: &[f64]) -> Result<(), ViewError> {
+/// Refuses a list with a number that cannot be used, of which it is said why.
+fn refuse(
+    values: &[f64],
+    is_wrong: impl Fn(&f64) -> bool,
+    why: &str,
+    remedy: &'static str,
+    what: impl Fn() -> String,
+) -> Result<(), DataError> {
+    let Some(index) = values.iter().position(is_wrong) else {
+        return Ok(());
+    };
+    let (what, value) = (what(), values[index]);
+    let message = format!("{what}: entry {index} is {}{why}", given(value));
+    Err(DataError::new(message, remedy).at(index).value(value))
+}
+
+pub(super) fn times(what: &str, times: &[f64]) -> Result<(), DataError> {
     finite(what, times)?;
     match times.windows(2).position(|w| w[1] < w[0]) {
         None => Ok(()),
-        Some(k) => Err(ViewError::Time {
-            what: what.into(),
-            index: k + 1,
-            time: times[k + 1],
-            before: times[k],
-        }),
+        Some(k) => {
+            let [before, time] = [times[k], times[k + 1]].map(given);
+            let message = format!("{what}: entry {} is {time} s after {before} s", k + 1);
+            let error = DataError::new(message, "give the times in ascending order");
+            Err(error.at(k + 1).value(times[k + 1]))
+        }
     }
 }
 
-pub(super) fn vertices(what: &str, list: &[u32], vertices: usize) -> Result<(), ViewError> {
+pub(super) fn vertices(what: &str, list: &[u32], vertices: usize) -> Result<(), DataError> {
     match list.iter().position(|&v| v as usize >= vertices) {
         None => Ok(()),
-        Some(index) => Err(ViewError::Vertex {
-            what: what.into(),
-            index,
-            vertex: list[index],
-            vertices,
-        }),
+        Some(index) => {
+            let vertex = list[index];
+            let message = format!(
+                "{what}: entry {index} is the vertex {vertex}, but there are {vertices} vertices, counted from 0"
+            );
+            Err(DataError::plain(message).at(index))
+        }
     }
+}
+
+/// The connectivity of triangles.
+pub(super) fn topology(vertices: usize, faces: &[[u32; 3]]) -> Result<Topology, DataError> {
+    Topology::from_faces(vertices, faces).map_err(|e| DataError {
+        remedy: e.advice(),
+        ..DataError::plain(format!("the triangles of the sheet: {e}"))
+    })
+}
+
+/// There is no frame.
+pub(crate) fn no_frames() -> DataError {
+    let remedy = "give the positions at one time at least";
+    DataError::new("the replay has no frames", remedy)
 }

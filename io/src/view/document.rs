@@ -4,13 +4,13 @@ use serde::Serialize;
 use std::ops::ControlFlow;
 
 use super::body::{Body, BodyShape};
-use super::error::ViewError;
-use super::field::{Field, Place, Scale, Series};
-use super::frames::Kept;
+use super::field::{Centering, Field, Scale, TimeSeries};
+use super::frames::KeptFrames;
 use super::live::LivePage;
 use super::pack::{Packed, RowPacker, pack_doubles, pack_indices};
 use super::quantise::{FieldScale, PositionScale};
 use super::replay::{Axis, Replay};
+use crate::format::DataError;
 use crate::format::Motion;
 
 /// A replay with every `stride`-th frame and the last one. The field names are those in the JSON text.
@@ -56,7 +56,7 @@ struct BodyData<'a> {
 struct FieldData<'a> {
     name: &'a str,
     unit: &'a str,
-    place: Place,
+    place: Centering,
     scale: Scale,
     note: &'a str,
     low: f64,
@@ -76,10 +76,10 @@ struct SeriesData<'a> {
 impl<'a> Document<'a> {
     /// The document of the frames of a replay, which were validated; none where it is longer than `most` bytes
     /// for sure. Positions and values of fields come from `frames`, everything else from the replay.
-    pub(super) fn new<M: Motion<Error: From<ViewError>>>(
+    pub(super) fn new<M: Motion<Error: From<DataError>>>(
         replay: &'a Replay,
         frames: &M,
-        kept: Kept,
+        kept: KeptFrames,
         most: usize,
     ) -> Result<Option<Self>, M::Error> {
         let (scales, positions) = scales(replay, frames, kept)?;
@@ -146,10 +146,10 @@ impl<'a> Document<'a> {
 }
 
 /// How positions and the values of each field become integers.
-fn scales<M: Motion<Error: From<ViewError>>>(
+fn scales<M: Motion<Error: From<DataError>>>(
     replay: &Replay,
     frames: &M,
-    kept: Kept,
+    kept: KeptFrames,
 ) -> Result<(Vec<FieldScale>, PositionScale), M::Error> {
     let mut positions = PositionScale::new();
     let new = |field: &Field| FieldScale::new(field.scale);
@@ -169,11 +169,11 @@ fn scales<M: Motion<Error: From<ViewError>>>(
 }
 
 /// Positions and the values of each field, packed; none where they are longer than `most` bytes for sure.
-fn pack<M: Motion<Error: From<ViewError>>>(
+fn pack<M: Motion<Error: From<DataError>>>(
     scales: &[FieldScale],
     positions: PositionScale,
     frames: &M,
-    kept: Kept,
+    kept: KeptFrames,
     most: usize,
 ) -> Result<Option<(Packed, Vec<Packed>)>, M::Error> {
     let mut packed = RowPacker::new(2);
@@ -207,7 +207,7 @@ fn pack<M: Motion<Error: From<ViewError>>>(
     Ok(Some((packed.finish(), fields)))
 }
 
-fn body_data(body: &Body, kept: Kept) -> BodyData<'_> {
+fn body_data(body: &Body, kept: KeptFrames) -> BodyData<'_> {
     let poses: Vec<_> = match body.poses.as_slice() {
         [pose] => vec![pose],
         poses => kept.numbers().map(|k| &poses[k]).collect(),
@@ -222,7 +222,7 @@ fn body_data(body: &Body, kept: Kept) -> BodyData<'_> {
     }
 }
 
-fn series_data(series: &Series) -> SeriesData<'_> {
+fn series_data(series: &TimeSeries) -> SeriesData<'_> {
     SeriesData {
         name: &series.name,
         unit: &series.unit,

@@ -3,13 +3,13 @@
 use isosheet_mesh::Topology;
 
 use super::check;
-use super::error::ViewError;
+use crate::format::DataError;
 use serde::Serialize;
 
 /// Where the values of a [`Field`] belong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Place {
+pub enum Centering {
     /// One value for each vertex.
     Vertex,
     /// One value for each edge, in the order of [`Topology::edges`]: by smaller, then by larger vertex.
@@ -45,7 +45,7 @@ pub struct Field {
     /// Its unit, empty for a number without one.
     pub unit: String,
     /// Where its values belong.
-    pub place: Place,
+    pub place: Centering,
     /// The scale of its colours.
     pub scale: Scale,
     /// What to know of the values, a sentence that is shown with them; empty if there is nothing.
@@ -58,7 +58,7 @@ pub struct Field {
 ///
 /// Series that follow each other and have the same unit (not empty), scale and times share a plot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+pub struct TimeSeries {
     /// Its name.
     pub name: String,
     /// Its unit, empty for a number without one.
@@ -77,13 +77,13 @@ impl Field {
     /// list of length 3V for each frame. The page cannot recover strains from its rounded positions.
     ///
     /// # Errors
-    /// [`ViewError`] when the triangles are no manifold, or a list has the wrong length.
+    /// [`DataError`] when the triangles are no manifold, or a list has the wrong length.
     pub fn edge_strain(
         faces: &[[u32; 3]],
         rest: &[f64],
         positions: &[Vec<f64>],
-    ) -> Result<Self, ViewError> {
-        let topology = Topology::from_faces(rest.len() / 3, faces)?;
+    ) -> Result<Self, DataError> {
+        let topology = check::topology(rest.len() / 3, faces)?;
         let size = 3 * topology.vertex_count();
         check::length("the rest positions", rest.len(), size)?;
         let strain = strains(&topology, rest);
@@ -103,7 +103,7 @@ impl Field {
         Self {
             name: "strain".into(),
             unit: String::new(),
-            place: Place::Edge,
+            place: Centering::Edge,
             scale: Scale::Logarithmic,
             note: String::new(),
             values: Vec::new(),
@@ -122,12 +122,12 @@ impl Field {
         index: usize,
         frame: usize,
         topology: &Topology,
-    ) -> Result<(), ViewError> {
+    ) -> Result<(), DataError> {
         let what = || format!("{}, frame {frame}", self.place_in_page(index));
         let expected = match self.place {
-            Place::Vertex => topology.vertex_count(),
-            Place::Edge => topology.edge_count(),
-            Place::Face => topology.face_count(),
+            Centering::Vertex => topology.vertex_count(),
+            Centering::Edge => topology.edge_count(),
+            Centering::Face => topology.face_count(),
         };
         check::length_of(values.len(), expected, what)?;
         check::finite_of(values, what)?;
@@ -154,8 +154,8 @@ pub(crate) fn strains(topology: &Topology, rest: &[f64]) -> impl Fn(&[f64]) -> V
     }
 }
 
-impl Series {
-    pub(super) fn validate(&self, index: usize) -> Result<(), ViewError> {
+impl TimeSeries {
+    pub(super) fn validate(&self, index: usize) -> Result<(), DataError> {
         let what = format!("series {index} (`{}`)", self.name);
         check::length(&what, self.values.len(), self.times.len())?;
         check::times(&format!("{what}: the times"), &self.times)?;

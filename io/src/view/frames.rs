@@ -1,18 +1,18 @@
 //! Which frames of a motion a page shows.
 
-use super::error::ViewError;
+use crate::format::DataError;
 use crate::format::{Motion, MotionFrame};
 use std::ops::ControlFlow;
 
 /// Which frames of a run are kept: every `stride`-th one and the last one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kept {
+pub(super) struct KeptFrames {
     /// The number of all frames, at least one.
     pub(super) frames: usize,
     pub(super) stride: usize,
 }
 
-impl Kept {
+impl KeptFrames {
     fn has(self, frame: usize) -> bool {
         frame < self.frames && (frame.is_multiple_of(self.stride) || frame + 1 == self.frames)
     }
@@ -35,10 +35,10 @@ impl Kept {
     }
 
     /// Shows those of a motion, in their order, until `show` fails.
-    pub(super) fn try_each<M: Motion<Error: From<ViewError>>>(
+    pub(super) fn try_each<M: Motion<Error: From<DataError>>>(
         self,
         motion: &M,
-        mut show: impl FnMut(&MotionFrame<'_>) -> Result<(), ViewError>,
+        mut show: impl FnMut(&MotionFrame<'_>) -> Result<(), DataError>,
     ) -> Result<(), M::Error> {
         let mut done = Ok(());
         self.each(motion, &mut |frame| {

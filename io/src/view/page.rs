@@ -3,11 +3,11 @@
 use std::sync::LazyLock;
 
 use super::document::Document;
-use super::error::ViewError;
-use super::frames::Kept;
+use super::frames::KeptFrames;
 use super::live::LivePage;
 use super::pack::pack_text;
 use super::replay::Replay;
+use crate::format::DataError;
 use crate::format::Motion;
 
 /// The page without title, style, licences, data and program, which belong at the markers, in this order.
@@ -43,14 +43,15 @@ impl PageOptions {
     /// Checks that the budget has room for the program of the page.
     ///
     /// # Errors
-    /// [`ViewError::Budget`].
-    pub fn validate(&self) -> Result<(), ViewError> {
+    /// [`DataError`].
+    pub fn validate(&self) -> Result<(), DataError> {
         let least = shell_size();
         if self.budget < least {
-            return Err(ViewError::Budget {
-                budget: self.budget,
-                least,
-            });
+            let message = format!(
+                "the budget is {} bytes, but the program of the page alone has {least} bytes",
+                self.budget
+            );
+            return Err(DataError::new(message, "raise the budget"));
         }
         Ok(())
     }
@@ -61,23 +62,23 @@ impl Replay {
     ///
     /// # Errors
     /// See [`Self::to_html_with`].
-    pub fn to_html(&self) -> Result<String, ViewError> {
+    pub fn to_html(&self) -> Result<String, DataError> {
         self.to_html_with(&PageOptions::default())
     }
 
     /// The page as a text: one file that needs no other and no connection.
     ///
     /// # Errors
-    /// [`ViewError`] for a replay or options that are not valid, and [`ViewError::TooLarge`] when a page with
-    /// the first and the last frame alone exceeds the budget.
-    pub fn to_html_with(&self, options: &PageOptions) -> Result<String, ViewError> {
+    /// [`DataError`] for a replay or options that are not valid, and when a page with the first and the last
+    /// frame alone exceeds the budget.
+    pub fn to_html_with(&self, options: &PageOptions) -> Result<String, DataError> {
         self.check_lengths()?;
         self.page_of(self, options)
     }
 
     /// The page of some frames, which have as many positions as the rest shape and values of all fields; what
     /// this replay has of them is not used. One frame is in memory at a time.
-    pub(crate) fn page_of<M: Motion<Error: From<ViewError>>>(
+    pub(crate) fn page_of<M: Motion<Error: From<DataError>>>(
         &self,
         frames: &M,
         options: &PageOptions,
@@ -86,7 +87,7 @@ impl Replay {
         self.check_frames(frames)?;
         let mut stride = 1;
         loop {
-            let kept = Kept {
+            let kept = KeptFrames {
                 frames: self.times.len(),
                 stride,
             };
@@ -102,11 +103,13 @@ impl Replay {
             match page {
                 Some(page) if page.len() <= options.budget => return Ok(page),
                 Some(page) if count <= 2 => {
-                    return Err(M::Error::from(ViewError::TooLarge {
-                        bytes: page.len(),
-                        frames: count,
-                        budget: options.budget,
-                    }));
+                    let message = format!(
+                        "the page has {} bytes with {count} frames left, but the budget is {} bytes",
+                        page.len(),
+                        options.budget
+                    );
+                    let remedy = "raise the budget, or leave out fields or series";
+                    return Err(DataError::new(message, remedy).into());
                 }
                 _ => stride *= 2,
             }
@@ -117,14 +120,14 @@ impl Replay {
     /// from.
     ///
     /// # Errors
-    /// [`ViewError`] for a replay that is not valid.
-    pub fn to_live_html(&self, live: &LivePage) -> Result<String, ViewError> {
+    /// [`DataError`] for a replay that is not valid.
+    pub fn to_live_html(&self, live: &LivePage) -> Result<String, DataError> {
         self.validate()?;
         let nonce = match live.nonce.as_str() {
             "" => String::new(),
             nonce => format!(" nonce=\"{}\"", escape(nonce)),
         };
-        let kept = Kept {
+        let kept = KeptFrames {
             frames: self.times.len(),
             stride: 1,
         };

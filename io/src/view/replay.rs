@@ -4,10 +4,9 @@ use isosheet_mesh::Topology;
 
 use super::body::Body;
 use super::check;
-use super::error::ViewError;
-use super::field::{Field, Series};
-use super::frames::Kept;
-use crate::format::{FrameData, Motion, MotionFrame};
+use super::field::{Field, TimeSeries};
+use super::frames::KeptFrames;
+use crate::format::{DataError, FrameData, Motion, MotionFrame};
 use serde::Serialize;
 use std::ops::ControlFlow;
 
@@ -53,7 +52,7 @@ pub struct Replay {
     /// Values at vertices, edges or faces, to colour the sheet by.
     pub fields: Vec<Field>,
     /// Quantities over time, to plot.
-    pub series: Vec<Series>,
+    pub series: Vec<TimeSeries>,
     /// Rows of a table: name and value.
     pub summary: Vec<(String, String)>,
     /// The scene as a text.
@@ -66,16 +65,16 @@ impl Replay {
     /// Checks every length, index and number.
     ///
     /// # Errors
-    /// [`ViewError`] naming the first list that cannot be shown, the index and the value.
-    pub fn validate(&self) -> Result<(), ViewError> {
+    /// [`DataError`] naming the first list that cannot be shown, the index and the value.
+    pub fn validate(&self) -> Result<(), DataError> {
         self.check_lengths()?;
         self.check_frames(self)
     }
 
     /// Checks that there are positions and values for each of the times.
-    pub(super) fn check_lengths(&self) -> Result<(), ViewError> {
+    pub(super) fn check_lengths(&self) -> Result<(), DataError> {
         if self.positions.is_empty() {
-            return Err(ViewError::NoFrames);
+            return Err(check::no_frames());
         }
         let frames = self.positions.len();
         check::length("the times of the frames", self.times.len(), frames)?;
@@ -86,12 +85,12 @@ impl Replay {
     }
 
     /// Checks everything, with the positions and the values of fields of some frames.
-    pub(super) fn check_frames<M: Motion<Error: From<ViewError>>>(
+    pub(super) fn check_frames<M: Motion<Error: From<DataError>>>(
         &self,
         frames: &M,
     ) -> Result<(), M::Error> {
         let topology = self.check_still()?;
-        let kept = Kept {
+        let kept = KeptFrames {
             frames: self.times.len(),
             stride: 1,
         };
@@ -108,16 +107,17 @@ impl Replay {
     }
 
     /// Checks everything but the frames, and returns the connectivity of the sheet.
-    fn check_still(&self) -> Result<Topology, ViewError> {
+    fn check_still(&self) -> Result<Topology, DataError> {
         if self.times.is_empty() {
-            return Err(ViewError::NoFrames);
+            return Err(check::no_frames());
         }
         if self.faces.is_empty() {
-            return Err(ViewError::NoFaces);
+            let remedy = "give the triangles of the sheet";
+            return Err(DataError::new("the replay has no faces", remedy));
         }
         let vertices = self.rest.len() / 3;
         check::length("the rest positions", self.rest.len(), 3 * vertices)?;
-        let topology = Topology::from_faces(vertices, &self.faces)?;
+        let topology = check::topology(vertices, &self.faces)?;
         check::finite("the rest positions", &self.rest)?;
         check::times("the times of the frames", &self.times)?;
         if !self.sheets.is_empty() {
@@ -141,12 +141,12 @@ fn positions_of(frame: usize, time: f64) -> String {
 }
 
 impl Motion for Replay {
-    type Error = ViewError;
+    type Error = DataError;
 
     fn each(
         &self,
         show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
-    ) -> Result<(), ViewError> {
+    ) -> Result<(), DataError> {
         for (number, x) in self.positions.iter().enumerate() {
             let fields: Vec<&[f64]> = self.fields.iter().map(|f| &f.values[number][..]).collect();
             let frame = MotionFrame {

@@ -83,7 +83,7 @@ fn a_lost_trajectory_comes_back_from_the_frames() {
         let gone = run(dir, command);
         assert_eq!(code(&gone), Some(3), "{command:?}: {}", stderr(&gone));
         assert!(
-            stderr(&gone).contains("frames.bin is missing"),
+            stderr(&gone).contains("frames.bin: it is missing"),
             "{}",
             stderr(&gone)
         );

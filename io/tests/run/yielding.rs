@@ -2,7 +2,7 @@
 
 use crate::{code, killed, run, stderr};
 use isosheet_io::run::Recording;
-use isosheet_io::view::{Place, Scale};
+use isosheet_io::view::{Centering, Scale};
 use isosheet_io::{Series, SeriesOptions, read_history};
 use std::fs;
 use std::path::Path;
@@ -149,7 +149,7 @@ fn the_curvature_that_stays_is_in_the_frames() {
     let replay = recording.replay().unwrap();
     let field = |f: &&isosheet_io::view::Field| f.name == "curvature that stays (valley +)";
     let field = replay.fields.iter().find(field).unwrap();
-    assert_eq!((field.place, field.scale), (Place::Face, Scale::Signed));
+    assert_eq!((field.place, field.scale), (Centering::Face, Scale::Signed));
     assert_eq!(field.values[last][40], values[40][0]);
     let converted = run(dir, &["convert", "run", "strip.pvd"]);
     assert_eq!(code(&converted), Some(0), "{}", stderr(&converted));
@@ -232,5 +232,5 @@ time = 1
         .iter()
         .find(|f| f.name == "angle that stays (valley +)")
         .unwrap();
-    assert_eq!((field.place, &*field.unit), (Place::Edge, "°"));
+    assert_eq!((field.place, &*field.unit), (Centering::Edge, "°"));
 }

@@ -1,6 +1,7 @@
 //! Replays for the tests.
 
-use isosheet_io::view::{Axis, Body, BodyShape, Field, Place, Pose, Replay, Scale, Series};
+use isosheet_io::BodyPose;
+use isosheet_io::view::{Axis, Body, BodyShape, Centering, Field, Replay, Scale, TimeSeries};
 use isosheet_mesh::{Sheet, generate};
 
 /// Pseudo-random numbers in [0, 1): the low-discrepancy sequence of the golden ratio.
@@ -34,7 +35,7 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
         Field {
             name: "depth <b>&\u{e4}".into(),
             unit: "m".into(),
-            place: Place::Vertex,
+            place: Centering::Vertex,
             scale: Scale::Linear,
             note: String::new(),
             values: positions.iter().map(depths).collect(),
@@ -42,7 +43,7 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
         Field {
             name: "rod force".into(),
             unit: "N".into(),
-            place: Place::Edge,
+            place: Centering::Edge,
             scale: Scale::Signed,
             note: "Forces <i>& are one choice.".into(),
             values: (0..frames)
@@ -50,7 +51,7 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
                 .collect(),
         },
     ];
-    let series = |name: &str, unit: &str, scale, f: fn(f64) -> f64| Series {
+    let series = |name: &str, unit: &str, scale, f: fn(f64) -> f64| TimeSeries {
         name: name.into(),
         unit: unit.into(),
         scale,
@@ -104,7 +105,7 @@ pub(crate) fn every_body(frames: usize) -> Replay {
     let body = |name: &str, shape, x: f64| Body {
         name: name.into(),
         shape,
-        poses: vec![Pose {
+        poses: vec![BodyPose {
             rotation: turned,
             translation: [x, -0.6, 0.2],
         }],
@@ -130,7 +131,7 @@ pub(crate) fn every_body(frames: usize) -> Replay {
         Body {
             name: "floor".into(),
             shape: BodyShape::HalfSpace,
-            poses: vec![Pose {
+            poses: vec![BodyPose {
                 rotation: [upward[0], 0.0, 0.0, upward[0].abs()],
                 translation: [0.0, -0.9, 0.0],
             }],
@@ -143,7 +144,7 @@ pub(crate) fn every_body(frames: usize) -> Replay {
     ];
     for body in &mut replay.bodies[1..3] {
         let pose = body.poses[0];
-        let at = |k: usize| Pose {
+        let at = |k: usize| BodyPose {
             translation: [
                 pose.translation[0],
                 pose.translation[1] + 0.01 * k as f64,

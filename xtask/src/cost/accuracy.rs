@@ -16,7 +16,7 @@ use serde::Serialize;
 
 /// What moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Problem {
+pub(super) enum ExactProblem {
     Pendulum,
     Triangle,
     Flap,
@@ -77,7 +77,7 @@ const FIT: f64 = 0.3;
 const FITTED: usize = 4;
 const FLOOR: f64 = 1e-11;
 
-impl Problem {
+impl ExactProblem {
     /// All of them with their names.
     pub(super) fn named() -> Vec<(&'static str, Self)> {
         let all = [Self::Pendulum, Self::Triangle, Self::Flap].into_iter();
@@ -180,7 +180,7 @@ impl Problem {
 }
 
 /// Measures all methods on a problem, coarse to fine, until a run takes longer than so many CPU seconds.
-fn measure(problem: Problem, limit: f64) -> Result<Vec<Point>> {
+fn measure(problem: ExactProblem, limit: f64) -> Result<Vec<Point>> {
     let bar = Progress::start(problem.name(), methods().count());
     let mut points = Vec::new();
     for (name, method, _) in methods() {
@@ -214,7 +214,7 @@ fn order(points: &[Point], method: &str) -> Option<f64> {
 }
 
 /// Methods, their fitted orders, and the time they take for given errors.
-fn table(problem: Problem, points: &[Point]) -> Table {
+fn table(problem: ExactProblem, points: &[Point]) -> Table {
     let cost = |name: &str, level: f64| {
         let good = of(points, name).filter(|p| p.position_error_m.is_some_and(|e| e <= level));
         good.map(|p| p.cpu_s_per_simulated_s).reduce(f64::min)
@@ -275,7 +275,7 @@ fn findings(points: &[Point]) -> Vec<Finding> {
 }
 
 /// Makes the part of a problem.
-pub(super) fn make(problem: Problem, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
+pub(super) fn make(problem: ExactProblem, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
     let name = problem.name();
     let points = measure(problem, effort.pick(0.01, 1.0, 8.0))?;
     Table::of_fields("", &points)?.named(name).write(files)?;
@@ -315,7 +315,7 @@ mod tests {
 
     #[test]
     fn a_quick_study_shows_orders_and_lengths() {
-        for (_, problem) in Problem::named() {
+        for (_, problem) in ExactProblem::named() {
             let all = findings(&measure(problem, 0.0).expect("runs"));
             assert_eq!(all.len(), methods().count() + 2, "{all:?}");
             assert!(all.iter().all(|f| !f.verdict().is_failure()), "{all:?}");

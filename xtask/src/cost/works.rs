@@ -8,19 +8,19 @@ mod run;
 pub(super) use kinds::Work;
 
 use crate::progress;
-use crate::report::{Part as Excerpt, Record, Table, plot};
+use crate::report::{Part, Record, Table, plot};
 use crate::store::{Store, Unit};
 use anyhow::Result;
 use kinds::Stepped;
 use maud::{Markup, html};
-use run::Row;
+use run::WorkRow;
 use serde::Deserialize;
 use std::sync::LazyLock;
 
 /// A table of some works, with its text on the page.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Part {
+struct WorkPart {
     name: String,
     title: String,
     about: String,
@@ -34,11 +34,11 @@ struct Part {
 /// The file of the works.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Contents {
-    part: Vec<Part>,
+struct WorksFile {
+    part: Vec<WorkPart>,
 }
 
-static CONTENTS: LazyLock<Contents> = LazyLock::new(|| {
+static CONTENTS: LazyLock<WorksFile> = LazyLock::new(|| {
     let contents = toml::from_str(include_str!("works/works.toml"));
     contents.unwrap_or_else(|error| panic!("works.toml: {error}"))
 });
@@ -109,9 +109,9 @@ pub(super) fn measure(store: &Store, works: &[&'static Work]) -> Result<()> {
     Ok(())
 }
 
-impl Part {
+impl WorkPart {
     /// What the rows of the part make, with its files; `None` without a row.
-    fn record(&self, store: &Store, rows: &[Row]) -> Result<Option<Record>> {
+    fn record(&self, store: &Store, rows: &[WorkRow]) -> Result<Option<Record>> {
         if rows.is_empty() {
             return Ok(None);
         }
@@ -119,9 +119,9 @@ impl Part {
         let mut files = store.files();
         table.write(&mut files)?;
         let shown = |columns: &str| table.select(&table.caption, columns);
-        let mut excerpt = vec![Excerpt::table(&self.name, &shown(&self.book))];
+        let mut excerpt = vec![Part::table(&self.name, &shown(&self.book))];
         let mut add = |name: &str, table: Table| {
-            excerpt.push(Excerpt::table(name, &table));
+            excerpt.push(Part::table(name, &table));
             table
         };
         let more: Markup = match self.name.as_str() {

@@ -4,7 +4,7 @@ use super::colour::{Colour, palette};
 
 /// A parallel projection; z of the scene points upwards in the drawing.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct View {
+pub(crate) struct Projection {
     right: [f64; 3],
     up: [f64; 3],
     toward: [f64; 3],
@@ -40,7 +40,7 @@ pub(crate) fn unit(a: &[f64; 3]) -> [f64; 3] {
     if l > 0.0 { a.map(|c| c / l) } else { *a }
 }
 
-impl View {
+impl Projection {
     /// Seen from the given azimuth (degrees, counter-clockwise from the x axis) and elevation (degrees above
     /// the horizon); `scale` points per metre.
     pub(crate) fn from(azimuth: f64, elevation: f64, scale: f64) -> Self {
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn views_are_orthonormal_with_z_upwards() {
-        let v = View::from(-60.0, 25.0, 1.0);
+        let v = Projection::from(-60.0, 25.0, 1.0);
         for (a, b) in [(&v.right, &v.up), (&v.up, &v.toward), (&v.toward, &v.right)] {
             assert!(dot(a, b).abs() < 1e-15);
         }

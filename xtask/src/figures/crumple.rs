@@ -1,9 +1,9 @@
 //! Figs. 11 and 12: a sheet of paper held at a corner falls and crumples.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Row, compared, course, rows};
+use super::{Effort, FigureRow, Made, Picture, Play, compared, course, rows};
 use crate::draw::{Viewpoint, mesh_name};
-use crate::runs::{self, FigureScene, Hanging, Run, Shape};
+use crate::runs::{self, FigureScene, Hanging, Run, SheetShape};
 use crate::store::Store;
 use anyhow::{Result, ensure};
 
@@ -109,12 +109,12 @@ fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
 /// The scene of each level of the mesh.
 type Scenes = fn(u32, Effort) -> Result<FigureScene>;
 
-fn end_shape(run: &Run) -> Result<Shape> {
-    Shape::of(&Hanging::of(&run.scene)?, run.end())
+fn end_shape(run: &Run) -> Result<SheetShape> {
+    SheetShape::of(&Hanging::of(&run.scene)?, run.end())
 }
 
 /// What was measured of a run.
-fn describe(run: &Run) -> Result<Vec<Row>> {
+fn describe(run: &Run) -> Result<Vec<FigureRow>> {
     let (scene, s) = (&run.scene, &run.summary);
     let (hanging, mass) = (Hanging::of(scene)?, runs::mass(scene)?);
     let mut rows = rows! {
@@ -127,7 +127,7 @@ fn describe(run: &Run) -> Result<Vec<Row>> {
         ),
     };
     rows.extend(course(s));
-    let shape = Shape::of(&hanging, run.end())?;
+    let shape = SheetShape::of(&hanging, run.end())?;
     rows.extend(rows! {
         "kinetic energy at the end, of the potential energy released" => format!("{:.0e}", s.motion_left),
         "depth of the centre of mass at the end" =>

@@ -2,7 +2,7 @@
 //! not let it lie flat again.
 
 use super::show::View;
-use super::{Effort, Picture, Play, Row, Table, caption, compared, course, height, rows};
+use super::{Effort, FigureRow, Picture, Play, Table, caption, compared, course, height, rows};
 use crate::draw::{Drawing, Stroke, TEXT, Viewpoint, flat_edges, flat_faces, palette, row};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
@@ -113,7 +113,7 @@ impl Crumpled {
         })
     }
 
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self) -> Vec<FigureRow> {
         let facts = &self.facts;
         let millimetres = |length: f64| format!("{:.3} mm", 1e3 * length);
         let millijoules = |energy: f64| format!("{:.2} mJ", 1e3 * energy);

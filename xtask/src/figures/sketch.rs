@@ -1,7 +1,7 @@
 //! Spatial constructions, seen from one side.
 
 use super::{caption, style};
-use crate::draw::{Colour, Drawing, Stroke, TEXT, View, palette, row};
+use crate::draw::{Colour, Drawing, Projection, Stroke, TEXT, palette, row};
 
 /// Colour of vertices that are placed.
 pub(super) const PLACED: Colour = palette::VERMILION;
@@ -9,15 +9,15 @@ pub(super) const PLACED: Colour = palette::VERMILION;
 /// A drawing to which spatial things are added.
 #[derive(Debug)]
 pub(super) struct Sketch {
-    pub(super) view: View,
+    pub(super) view: Projection,
     pub(super) drawing: Drawing,
 }
 
 impl Sketch {
-    /// An empty one, seen as [`View::from`] says.
+    /// An empty one, seen as [`Projection::from`] says.
     pub(super) fn seen(azimuth: f64, elevation: f64, scale: f64) -> Self {
         Self {
-            view: View::from(azimuth, elevation, scale),
+            view: Projection::from(azimuth, elevation, scale),
             drawing: Drawing::new(),
         }
     }

@@ -1,7 +1,7 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Row, compared, course, height, rows};
+use super::{Effort, FigureRow, Made, Picture, Play, compared, course, height, rows};
 use crate::draw::{Axis, Chart, Charts, Series, Viewpoint, palette};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
@@ -109,7 +109,7 @@ impl Punched {
         VIEW.picture(&self.run, effort, [file, &alt], &times)
     }
 
-    fn rows(&self) -> Result<Vec<Row>> {
+    fn rows(&self) -> Result<Vec<FigureRow>> {
         let scene = &self.run.scene;
         let value = |key: &str| scene.value::<f64>(key);
         // The bottom of the holders above the top of the frame.
@@ -174,7 +174,7 @@ impl Released {
         })
     }
 
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self) -> Vec<FigureRow> {
         let millimetres = |length: f64| format!("{:.1} mm", 1e3 * length);
         let yields = self.run.scene.scene().sheet[0].yields();
         let yields = yields.map_or("never".into(), |y| {

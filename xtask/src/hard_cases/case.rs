@@ -19,7 +19,7 @@ const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/cases");
 /// The contents of a file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Contents {
+pub(super) struct CaseFile {
     pub(super) title: String,
     /// What should happen.
     pub(super) expected: String,
@@ -41,7 +41,7 @@ pub(super) struct Contents {
 #[derive(Clone, Debug)]
 pub(super) struct Case {
     pub(super) name: String,
-    pub(super) contents: Contents,
+    pub(super) contents: CaseFile,
     scene: PathBuf,
     /// The texts of case and scene and of all meshes beside the scene, which decide what is found.
     pub(super) texts: Vec<String>,
@@ -49,7 +49,7 @@ pub(super) struct Case {
 
 /// A run of a case, and what came of it.
 #[derive(Debug)]
-pub(super) struct Ran {
+pub(super) struct CaseRun {
     pub(super) edits: Vec<String>,
     pub(super) outcome: Result<Summary, Stopped>,
 }
@@ -107,7 +107,7 @@ impl Case {
     /// What is wrong with it, or with its scene.
     fn read(path: &Path) -> Result<Self> {
         let text = fs::read_to_string(path)?;
-        let contents: Contents = toml::from_str(&text)?;
+        let contents: CaseFile = toml::from_str(&text)?;
         let folder = path.parent().unwrap_or(Path::new("."));
         let scene = folder.join(&contents.scene);
         let mut texts = vec![text];
@@ -158,11 +158,11 @@ impl Case {
     pub(super) fn run(&self, effort: Effort) -> Result<(Vec<Finding>, Table)> {
         self.require_runs()?;
         let runs = self.runs(effort)?.into_par_iter().with_max_len(1);
-        let runs: Result<Vec<Ran>> = runs.map(|edits| ran(&self.scene, edits)).collect();
+        let runs: Result<Vec<CaseRun>> = runs.map(|edits| ran(&self.scene, edits)).collect();
         let runs = runs?;
         let mut findings = Vec::new();
         for check in &self.contents.check {
-            let of: Vec<&Ran> = runs.iter().filter(|r| check.is_for(&r.edits)).collect();
+            let of: Vec<&CaseRun> = runs.iter().filter(|r| check.is_for(&r.edits)).collect();
             if !of.is_empty() {
                 findings.extend(check.judge(&of)?);
             }
@@ -170,13 +170,13 @@ impl Case {
         Ok((findings, self.table(&runs)))
     }
 
-    fn table(&self, runs: &[Ran]) -> Table {
+    fn table(&self, runs: &[CaseRun]) -> Table {
         let scene = self.scene.file_name().unwrap_or_default().to_string_lossy();
-        let command = |run: &Ran| {
+        let command = |run: &CaseRun| {
             let edits = run.edits.iter().map(|e| format!(" --set '{e}'"));
             format!("isosheet simulate {scene}{}", edits.collect::<String>())
         };
-        let complete = |run: &Ran, of: fn(&Summary) -> f64| run.outcome.as_ref().ok().map(of);
+        let complete = |run: &CaseRun, of: fn(&Summary) -> f64| run.outcome.as_ref().ok().map(of);
         Table::of(
             "The runs",
             runs,
@@ -193,7 +193,7 @@ impl Case {
     }
 }
 
-impl Ran {
+impl CaseRun {
     /// Of all accepted steps, also where the run stopped early.
     pub(super) fn largest_strain(&self) -> f64 {
         match &self.outcome {
@@ -202,7 +202,7 @@ impl Ran {
         }
     }
 
-    /// As [`Ran::largest_strain`].
+    /// As [`CaseRun::largest_strain`].
     pub(super) fn smallest_gap(&self) -> Option<f64> {
         match &self.outcome {
             Ok(summary) => summary.smallest_gap,
@@ -212,7 +212,7 @@ impl Ran {
 }
 
 /// Runs a scene with edits.
-fn ran(scene: &Path, edits: Vec<String>) -> Result<Ran> {
+fn ran(scene: &Path, edits: Vec<String>) -> Result<CaseRun> {
     interrupt::check()?;
     // Summaries alone are judged.
     let unseen = ["output.page=false", "output.trajectory=false"].map(str::to_owned);
@@ -233,7 +233,7 @@ fn ran(scene: &Path, edits: Vec<String>) -> Result<Ran> {
         }
         Err(error) => return Err(error.into()),
     };
-    Ok(Ran { edits, outcome })
+    Ok(CaseRun { edits, outcome })
 }
 
 #[cfg(test)]

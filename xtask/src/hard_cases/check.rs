@@ -1,6 +1,6 @@
 //! The bounds of a case.
 
-use super::case::Ran;
+use super::case::CaseRun;
 use super::variants::Variants;
 use crate::report::{Bound, Finding, Limitation, Shortfall};
 use anyhow::{Result, bail, ensure};
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// What is bounded: a number of each run, of which the worst counts, or of all runs together.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum Quantity {
+enum CaseQuantity {
     /// Runs that stop before their end.
     Stopped,
     LargestStrain,
@@ -37,7 +37,7 @@ enum Quantity {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Check {
-    quantity: Quantity,
+    quantity: CaseQuantity,
     /// The runs that it is for, by values of variants; all if left out.
     #[serde(default)]
     only: BTreeMap<String, toml::Value>,
@@ -46,7 +46,7 @@ pub(super) struct Check {
     limitation: Option<Limitation>,
 }
 
-impl Quantity {
+impl CaseQuantity {
     /// Of a run that came to its end. Nothing if the scene has no such measure.
     fn of(&self, summary: &Summary) -> Option<f64> {
         Some(match self {
@@ -65,7 +65,7 @@ impl Quantity {
     }
 
     /// Of a run that may have stopped early.
-    fn of_run(&self, run: &Ran) -> Option<f64> {
+    fn of_run(&self, run: &CaseRun) -> Option<f64> {
         match (self, &run.outcome) {
             (Self::LargestStrain, _) => Some(run.largest_strain()),
             (Self::SmallestGap, _) => run.smallest_gap(),
@@ -133,8 +133,8 @@ impl Check {
             false => only.join(", "),
         };
         match &self.quantity {
-            Quantity::Stopped => format!("{runs}: number that stop early"),
-            Quantity::Measure(name) => format!("{runs}: measure {name} at the end, m"),
+            CaseQuantity::Stopped => format!("{runs}: number that stop early"),
+            CaseQuantity::Measure(name) => format!("{runs}: measure {name} at the end, m"),
             quantity => {
                 let name = serde_json::to_value(quantity).unwrap_or_default();
                 format!("{runs}: {}", name.as_str().unwrap_or_default())
@@ -143,7 +143,7 @@ impl Check {
     }
 
     /// Judges the runs that it is for.
-    pub(super) fn judge(&self, runs: &[&Ran]) -> Result<Vec<Finding>> {
+    pub(super) fn judge(&self, runs: &[&CaseRun]) -> Result<Vec<Finding>> {
         let stops = |l: &Limitation| matches!(l.shortfall, Shortfall::Stops { .. });
         ensure!(
             runs.len() == 1 || !self.limitation.as_ref().is_some_and(stops),
@@ -152,7 +152,7 @@ impl Check {
         );
         let findings = self.bounds().map(|bound| {
             let mut finding = match self.quantity {
-                Quantity::Stopped => self.count(runs, bound),
+                CaseQuantity::Stopped => self.count(runs, bound),
                 _ => self.worst(runs, bound)?,
             };
             finding.limitation.clone_from(&self.limitation);
@@ -162,7 +162,7 @@ impl Check {
     }
 
     /// How many runs stopped, and why the first of them did.
-    fn count(&self, runs: &[&Ran], bound: Bound) -> Finding {
+    fn count(&self, runs: &[&CaseRun], bound: Bound) -> Finding {
         let stopped: Vec<_> = runs
             .iter()
             .filter_map(|r| r.outcome.as_ref().err())
@@ -173,9 +173,9 @@ impl Check {
     }
 
     /// The worst run: one without the number, or the one that is farthest on the wrong side.
-    fn worst(&self, runs: &[&Ran], bound: Bound) -> Result<Finding> {
-        let value = |run: &Ran| self.quantity.of_run(run);
-        let badness = |run: &Ran| value(run).map_or(f64::INFINITY, |v| bound.badness(v));
+    fn worst(&self, runs: &[&CaseRun], bound: Bound) -> Result<Finding> {
+        let value = |run: &CaseRun| self.quantity.of_run(run);
+        let badness = |run: &CaseRun| value(run).map_or(f64::INFINITY, |v| bound.badness(v));
         let worst = runs.iter().max_by(|a, b| badness(a).total_cmp(&badness(b)));
         let worst = worst.expect("there are runs");
         let (found, stopped) = (value(worst), worst.outcome.as_ref().err());

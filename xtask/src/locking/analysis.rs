@@ -13,7 +13,7 @@ type Only = BTreeMap<String, String>;
 /// A table with a row for each group of runs that agree in some columns.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Summary {
+pub(super) struct SummaryTable {
     name: String,
     caption: String,
     #[serde(default)]
@@ -152,7 +152,7 @@ fn title(of: &str) -> String {
     }
 }
 
-impl Summary {
+impl SummaryTable {
     /// The table of the groups, in the order in which the entries that they agree in come first.
     pub(super) fn of(&self, runs: &Table, size: &str) -> Table {
         let mut groups = vec![only(runs, &self.only)];
@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn groups_have_their_worst_values_counts_and_orders() {
-        let summary: Summary = toml::from_str(
+        let summary: SummaryTable = toml::from_str(
             "name = 's'
             caption = 'c'
             only = { mesh = 'b' }

@@ -64,7 +64,7 @@ fn prandtl_michell() -> f64 {
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Job {
+struct BucklingJob {
     mesh: Grid,
     #[serde(rename = "squares across")]
     across: usize,
@@ -113,7 +113,7 @@ fn aside(model: Model, flat: &Sheet, load: f64, plan: &Plan) -> Result<(f64, Cou
 
 /// Halves the interval of the logarithms of the loads so many times, or until a run neither moves aside nor
 /// ends.
-fn search(model: Model, job: Job, halvings: usize, plan: &Plan) -> Result<(Ran, Bracket)> {
+fn search(model: Model, job: BucklingJob, halvings: usize, plan: &Plan) -> Result<(Ran, Bracket)> {
     let cell = WIDTH / job.across as f64;
     let sheet = job.mesh.rectangle([-CLAMP, 0.0], [LENGTH, WIDTH], cell)?;
     let sheet = with_line(&sheet, 0.0, cell)?;
@@ -160,9 +160,13 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let plan = Plan::new(STEP, effort.quick_or(5.0, 20.0)).until_rest(REST);
     let halvings = effort.quick_or(3, 8);
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4]);
-    let of = |mesh: Grid| sizes.iter().map(move |&across| Job { mesh, across });
+    let of = |mesh: Grid| {
+        sizes
+            .iter()
+            .map(move |&across| BucklingJob { mesh, across })
+    };
     let meshes = effort.quick_or(&Grid::ALL[..2], &Grid::ALL[..5]);
-    let jobs: Vec<Job> = meshes.iter().copied().flat_map(of).collect();
+    let jobs: Vec<BucklingJob> = meshes.iter().copied().flat_map(of).collect();
     samples(&records.of_models(&jobs, |model, job| search(model, *job, halvings, &plan))?)
 }
 

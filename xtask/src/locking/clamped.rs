@@ -89,7 +89,7 @@ fn random_sheet(kind: &str, rng: &mut ChaCha8Rng) -> Result<Sheet> {
 
 /// A sheet of the family and a method.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Job {
+struct ClampedJob {
     number: usize,
     method: String,
 }
@@ -113,7 +113,7 @@ struct Fallen {
     is_still: Option<u8>,
 }
 
-fn measure(model: Model, job: &Job, plan: &Plan) -> Result<(Ran, Fallen)> {
+fn measure(model: Model, job: &ClampedJob, plan: &Plan) -> Result<(Ran, Fallen)> {
     let Clamped {
         sheet,
         pins,
@@ -158,11 +158,11 @@ fn methods() -> [(&'static str, Method); 2] {
 }
 
 /// The sheets and methods.
-fn jobs(effort: Effort) -> Vec<Job> {
+fn jobs(effort: Effort) -> Vec<ClampedJob> {
     let counts = effort.quick_or([10, 0], [200, 25]);
     let of = |((method, _), count): ((&str, Method), usize)| {
         let method = method.to_owned();
-        (0..count).map(move |number| Job {
+        (0..count).map(move |number| ClampedJob {
             number,
             method: method.clone(),
         })

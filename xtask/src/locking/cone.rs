@@ -1,6 +1,6 @@
 //! A disk that is pushed into a ring: the developable cone.
 
-use super::disks::{Disk, Job, RADIUS, arcs, rim};
+use super::disks::{Disk, DiskJob, RADIUS, arcs, rim};
 use super::meshes::{nearest, vertices};
 use super::model::{Model, PAPER, Plate};
 use super::nudge::{Nudge, Ring};
@@ -84,7 +84,7 @@ fn model(of: Model, sheet: &Sheet, plate: Plate<'_>) -> Result<SheetModel> {
     Ok(sheet.with_moving_pin(tip, motion)?)
 }
 
-fn measure(of: Model, bound: f64, job: Job, plan: &Plan) -> Result<(Ran, Cone)> {
+fn measure(of: Model, bound: f64, job: DiskJob, plan: &Plan) -> Result<(Ran, Cone)> {
     let sheet = job.sheet()?;
     let plate = Plate { bound, ..PAPER };
     let (course, end) = run(
@@ -119,8 +119,8 @@ fn measure(of: Model, bound: f64, job: Job, plan: &Plan) -> Result<(Ran, Cone)> 
 /// The runs of the yardstick.
 pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
-    let jobs = Job::all(effort);
-    let finest = Job {
+    let jobs = DiskJob::all(effort);
+    let finest = DiskJob {
         mesh: Disk::Delaunay1,
         rings: 2 * jobs.last().map_or(1, |job| job.rings),
     };
@@ -161,5 +161,5 @@ pub(super) fn with_bound(
     plan: &Plan,
 ) -> Result<(Ran, Cone)> {
     let mesh = Disk::Delaunay1;
-    measure(model, bound, Job { mesh, rings }, plan)
+    measure(model, bound, DiskJob { mesh, rings }, plan)
 }

@@ -38,7 +38,7 @@ const NUDGE: f64 = 1.0;
 const REST: f64 = 1e-7;
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Job {
+struct CurvedJob {
     /// Squares across one panel.
     #[serde(rename = "squares across")]
     across: usize,
@@ -58,7 +58,7 @@ struct Folded {
     mean: Option<f64>,
 }
 
-impl Job {
+impl CurvedJob {
     fn sheet(self) -> Result<Sheet> {
         let segments = (TAU * RADIUS / HALF * self.across as f64).round() as usize;
         let radii = [RADIUS - HALF, RADIUS + HALF];
@@ -114,7 +114,7 @@ fn nudge(sheet: &Sheet) -> Nudge {
     }
 }
 
-fn measure(model: Model, job: Job, plan: &Plan) -> Result<(Ran, Folded)> {
+fn measure(model: Model, job: CurvedJob, plan: &Plan) -> Result<(Ran, Folded)> {
     let sheet = job.sheet()?;
     let creases = &crease(&sheet)[..];
     let moved = model
@@ -168,8 +168,12 @@ fn curvature_errors(sheet: &Sheet, crease: &[EdgeId], x: &[f64]) -> [f64; 2] {
 pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
-    let of = |stiffness| sizes.iter().map(move |&across| Job { across, stiffness });
-    let jobs: Vec<Job> = STIFFNESSES.into_iter().flat_map(of).collect();
+    let of = |stiffness| {
+        sizes
+            .iter()
+            .map(move |&across| CurvedJob { across, stiffness })
+    };
+    let jobs: Vec<CurvedJob> = STIFFNESSES.into_iter().flat_map(of).collect();
     let plan = until_rest(effort.quick_or(2.0, 30.0)).until_rest(REST);
     samples(&records.of_models(&jobs, |model, job| measure(model, *job, &plan))?)
 }
@@ -182,7 +186,7 @@ mod tests {
     /// circle.
     #[test]
     fn flat_annuli_have_the_curvature_of_their_circle() {
-        let job = Job {
+        let job = CurvedJob {
             across: 8,
             stiffness: 1.0,
         };

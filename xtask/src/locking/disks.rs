@@ -27,7 +27,7 @@ pub(super) enum Disk {
 
 /// A mesh: the spacing is the radius over `rings`.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Job {
+pub(super) struct DiskJob {
     pub(super) mesh: Disk,
     #[serde(rename = "R/h")]
     pub(super) rings: usize,
@@ -36,7 +36,7 @@ pub(super) struct Job {
 /// Radius of disks that become cones, metres.
 pub(super) const RADIUS: f64 = 0.1;
 
-impl Job {
+impl DiskJob {
     /// The meshes that are compared; the finest is the last of each kind.
     pub(super) fn all(effort: Effort) -> Vec<Self> {
         let sizes: &[usize] = effort.quick_or(&[4], &[6, 10, 16]);

@@ -1,6 +1,6 @@
 //! A disk with an inserted wedge: the excess cone.
 
-use super::disks::{Job, RADIUS};
+use super::disks::{DiskJob, RADIUS};
 use super::meshes::SNAP;
 use super::model::{Model, PAPER};
 use super::runs::{Ran, Records, samples};
@@ -24,11 +24,11 @@ const COUNTED: [f64; 2] = [0.25, 0.5];
 
 /// The place in the disk with the wedge: distance from the centre (metres) and angle (radians, of `2 pi +
 /// phi`).
-type Place = [f64; 2];
+type PlanePoint = [f64; 2];
 
 /// A disk with a wedge, folded to a pyramid: the angles of the flat disk are stretched, and every face lies
 /// in one of four flat sectors.
-fn pyramid(job: Job) -> Result<(Sheet, Vec<Place>)> {
+fn pyramid(job: DiskJob) -> Result<(Sheet, Vec<PlanePoint>)> {
     let mut cut = FlatCut::of(&job.sheet()?);
     for normal in [[1.0, 0.0], [0.0, 1.0]] {
         cut.split([0.0; 2], normal, SNAP * RADIUS / job.rings as f64);
@@ -39,7 +39,7 @@ fn pyramid(job: Job) -> Result<(Sheet, Vec<Place>)> {
         let angle = y.atan2(x).rem_euclid(TAU) % TAU;
         [x.hypot(y), angle * (TAU + EXCESS) / TAU]
     };
-    let places: Vec<Place> = flat
+    let places: Vec<PlanePoint> = flat
         .positions()
         .as_chunks::<3>()
         .0
@@ -52,7 +52,7 @@ fn pyramid(job: Job) -> Result<(Sheet, Vec<Place>)> {
 }
 
 /// The place on the pyramid, metres.
-fn folded([radius, angle]: Place) -> Vector3<f64> {
+fn folded([radius, angle]: PlanePoint) -> Vector3<f64> {
     let sector = FRAC_PI_2 + 0.25 * EXCESS;
     // Edges above and below the axes in turn: any two neighbours include the angle of a sector.
     let edge = |k: f64| {
@@ -81,7 +81,7 @@ struct Saddle {
     place_error: Option<f64>,
 }
 
-fn measure(model: Model, job: Job, plan: &Plan) -> Result<(Ran, Saddle)> {
+fn measure(model: Model, job: DiskJob, plan: &Plan) -> Result<(Ran, Saddle)> {
     let (sheet, places) = pyramid(job)?;
     let moved = model.sheet(&sheet, PAPER)?.with_damping(DAMPING)?;
     let (course, end) = run(model, moved, &sheet, implicit_euler(), plan)?;
@@ -135,7 +135,7 @@ fn weight(radius: f64) -> f64 {
 
 /// Root mean square of the distances from the nearest exact cone, over the height of its folds: the cone may
 /// be moved, turned, and its folds may be anywhere in the disk.
-fn distance(places: &[Place], x: &[f64]) -> f64 {
+fn distance(places: &[PlanePoint], x: &[f64]) -> f64 {
     let cone = ExcessCone::new(EXCESS);
     let measured: Vec<Vector3<f64>> = x.as_chunks::<3>().0.iter().map(|p| (*p).into()).collect();
     let off = |shift: f64| {
@@ -196,7 +196,7 @@ fn apart(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
 pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
     let plan = until_rest(effort.quick_or(2.0, 20.0));
-    let jobs = Job::all(effort);
+    let jobs = DiskJob::all(effort);
     samples(&records.of_models(&jobs, |model, job| measure(model, *job, &plan))?)
 }
 
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn pyramids_are_flat_but_for_the_centre() {
         for mesh in Disk::ALL {
-            let (sheet, _) = pyramid(Job { mesh, rings: 6 }).unwrap();
+            let (sheet, _) = pyramid(DiskJob { mesh, rings: 6 }).unwrap();
             let t = sheet.topology();
             let mut sums = vec![0.0; t.vertex_count()];
             for f in t.faces() {
@@ -236,14 +236,14 @@ mod tests {
     /// and its plate has the exact energy.
     #[test]
     fn the_exact_cone_is_recognised() {
-        let job = Job {
+        let job = DiskJob {
             mesh: Disk::Concentric,
             rings: 24,
         };
         let (sheet, places) = pyramid(job).unwrap();
         let cone = ExcessCone::new(EXCESS);
         let turn = nalgebra::Rotation3::from_euler_angles(0.4, -0.3, 1.0);
-        let point = |[r, angle]: &Place| *r * (turn * cone.ray(angle + 0.5));
+        let point = |[r, angle]: &PlanePoint| *r * (turn * cone.ray(angle + 0.5));
         let x: Vec<f64> = places
             .iter()
             .flat_map(|p| <[f64; 3]>::from(point(p)))

@@ -13,7 +13,7 @@ const BOUNDS: [f64; 7] = [100.0, 500.0, 1000.0, 2000.0, 3000.0, 5000.0, 10_000.0
 
 /// A bound, or the stiffness of the material, with the sizes of both meshes.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Job {
+struct SofteningJob {
     #[serde(rename = "C")]
     bound: Option<f64>,
     /// Radius of the disk over the spacing.
@@ -39,7 +39,7 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let bounds = effort.quick_or(vec![PAPER.bound], BOUNDS.to_vec());
     let mut jobs = Vec::new();
     for bound in bounds.into_iter().map(Some).chain([None]) {
-        jobs.extend(sizes.iter().map(|&[rings, across]| Job {
+        jobs.extend(sizes.iter().map(|&[rings, across]| SofteningJob {
             bound,
             rings,
             across,
@@ -56,7 +56,9 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     Table::of_fields(
         EVERY_RUN,
         found.iter().map(
-            |(job, ran, cone, strips): &(Job, Ran, cone::Cone, Strips)| (job, ran, cone, strips),
+            |(job, ran, cone, strips): &(SofteningJob, Ran, cone::Cone, Strips)| {
+                (job, ran, cone, strips)
+            },
         ),
     )
 }

@@ -33,7 +33,7 @@ const NUDGE: f64 = 0.5;
 
 /// What is done to a strip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Case {
+enum StripCase {
     /// A load upwards, 1.6 in units of `D / L^3`: the one of Bartels.
     #[serde(rename = "loaded")]
     Loaded,
@@ -52,8 +52,8 @@ enum Case {
 
 /// A strip of a case on a mesh.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Job {
-    strip: Case,
+struct StripJob {
+    strip: StripCase,
     mesh: Grid,
     #[serde(rename = "squares across")]
     across: usize,
@@ -86,7 +86,7 @@ struct Rested {
     moment_error: Option<f64>,
 }
 
-impl Case {
+impl StripCase {
     const ALL: [Self; 6] = [
         Self::Loaded,
         Self::Heavy1,
@@ -234,8 +234,8 @@ fn moment(sheet: &Sheet, end: &End) -> f64 {
     moment / (PAPER.rigidity * CURVATURE * WIDTH)
 }
 
-fn measure(model: Model, bound: f64, job: Job, plan: &Plan) -> Result<(Ran, Rested)> {
-    let Job {
+fn measure(model: Model, bound: f64, job: StripJob, plan: &Plan) -> Result<(Ran, Rested)> {
+    let StripJob {
         strip,
         mesh,
         across,
@@ -260,7 +260,7 @@ fn measure(model: Model, bound: f64, job: Job, plan: &Plan) -> Result<(Ran, Rest
     let at = strip.measured(&sheet);
     let [x, z] = [0, 2].map(|k| end.mean(&at, k, |value| value));
     let (exact, [exact_x, exact_z]) = strip.exact();
-    let moment_error = (strip == Case::Bent).then(|| (moment(&sheet, &end) - 1.0).abs());
+    let moment_error = (strip == StripCase::Bent).then(|| (moment(&sheet, &end) - 1.0).abs());
     let rested = Rested {
         energy,
         exact,
@@ -283,9 +283,9 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let grids: &[Grid] = effort.quick_or(&[Grid::Aligned, Grid::Delaunay1], &Grid::ALL);
     let plan = until_rest(effort.quick_or(2.0, 30.0));
     let mut jobs = Vec::new();
-    for strip in Case::ALL {
+    for strip in StripCase::ALL {
         for &mesh in grids {
-            jobs.extend(sizes.iter().map(|&across| Job {
+            jobs.extend(sizes.iter().map(|&across| StripJob {
                 strip,
                 mesh,
                 across,
@@ -304,12 +304,12 @@ pub(super) fn with_bound(
     plan: &Plan,
 ) -> Result<[Option<f64>; 2]> {
     let mut worst = [Some(0.0_f64); 2];
-    for strip in [Case::Heavy100, Case::Pushed] {
+    for strip in [StripCase::Heavy100, StripCase::Pushed] {
         for mesh in Grid::ALL
             .into_iter()
             .filter(|g| !matches!(g, Grid::Aligned | Grid::Crossed))
         {
-            let job = Job {
+            let job = StripJob {
                 strip,
                 mesh,
                 across,
@@ -328,7 +328,7 @@ mod tests {
 
     #[test]
     fn every_strip_has_its_clamps_and_its_middle() {
-        for case in Case::ALL {
+        for case in StripCase::ALL {
             for grid in Grid::ALL {
                 for across in [2, 4] {
                     let sheet = case.sheet(grid, across).unwrap();
@@ -358,8 +358,8 @@ mod tests {
     /// On mesh lines a coarse elastic strip has the energy of the cylinder, and pulls with its moment.
     #[test]
     fn an_aligned_strip_has_energy_and_moment_of_the_cylinder() {
-        let job = Job {
-            strip: Case::Bent,
+        let job = StripJob {
+            strip: StripCase::Bent,
             mesh: Grid::Aligned,
             across: 4,
         };

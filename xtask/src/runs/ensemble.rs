@@ -1,6 +1,6 @@
 //! The same fall many times, each from another slightly uneven start.
 
-use super::{FigureScene, Hanging, Shape, displaced};
+use super::{FigureScene, Hanging, SheetShape, displaced};
 use crate::progress::Progress;
 use anyhow::Result;
 
@@ -8,7 +8,7 @@ use anyhow::Result;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Member {
     /// The shape at the end.
-    pub(crate) shape: Shape,
+    pub(crate) shape: SheetShape,
     /// Total bending averaged over the run, radians times sides.
     pub(crate) mean_bending: f64,
 }
@@ -28,11 +28,11 @@ pub(crate) fn ensemble(scene: &FigureScene, bump: f64, members: u64) -> Result<V
         let frames = scene.play(&mut simulation)?;
         let mut sum = 0.0;
         for state in &frames.states()[1..] {
-            sum += Shape::of(&hanging, &state.x)?.bending;
+            sum += SheetShape::of(&hanging, &state.x)?.bending;
         }
         let end = &simulation.state().x;
         all.push(Member {
-            shape: Shape::of(&hanging, end)?,
+            shape: SheetShape::of(&hanging, end)?,
             mean_bending: sum / scene.frames() as f64,
         });
         bar.step();

@@ -6,7 +6,7 @@ use isosheet_mesh::{EdgeId, MassKind, MassMatrix, VertexId, fold_angle};
 
 /// Measures of a state of a sheet that is held at a corner. Lengths in sides of the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Shape {
+pub(crate) struct SheetShape {
     /// Depth of the centre of mass below the pin.
     pub(crate) centre_depth: f64,
     /// Largest horizontal distance between two vertices.
@@ -19,7 +19,7 @@ pub(crate) struct Shape {
 /// Depth of the centre of mass of a rigid square plate that hangs from a corner, sides: half a diagonal.
 pub(crate) const PLATE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-impl Shape {
+impl SheetShape {
     /// Measures the positions `x`.
     pub(crate) fn of(hanging: &Hanging, x: &[f64]) -> Result<Self> {
         let (sheet, side) = (&hanging.sheet, hanging.side);
@@ -88,7 +88,7 @@ mod tests {
                 [h * (u - w), 0.0, -h * (u + w)]
             })
             .collect();
-        let shape = Shape::of(&hanging, &x).unwrap();
+        let shape = SheetShape::of(&hanging, &x).unwrap();
         assert!((shape.centre_depth - PLATE).abs() < 1e-12);
         assert!((shape.extent - 2f64.sqrt()).abs() < 1e-12);
         assert!(shape.bending < 1e-5);
@@ -114,7 +114,7 @@ mod tests {
                 [c * across - s * down, 0.0, -s * across - c * down]
             })
             .collect();
-        let shape = Shape::of(&hanging, &x).unwrap();
+        let shape = SheetShape::of(&hanging, &x).unwrap();
         assert!(
             (shape.centre_depth - 5f64.sqrt() / 3.0).abs() < 1e-12,
             "{shape:?}"

@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize, Serializer};
 pub(super) struct Order {
     /// The number that the page was given.
     pub(super) viewer: u64,
-    pub(super) command: Command,
+    pub(super) command: LiveCommand,
 }
 
 /// What a page asks for.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub(super) enum Command {
+pub(super) enum LiveCommand {
     /// Take steps, in real time at most.
     Play,
     /// Take no more steps.
@@ -37,7 +37,7 @@ pub(super) enum Command {
 
 /// The state of the run, as pages show it.
 #[derive(Debug, Serialize)]
-pub(super) struct Frame<'a> {
+pub(super) struct LiveFrame<'a> {
     /// Time, seconds.
     pub(super) t: f64,
     pub(super) playing: bool,
@@ -104,10 +104,10 @@ mod tests {
             let text = format!("{{\"viewer\":3,\"command\":{command}}}");
             serde_json::from_str::<Order>(&text).map(|order| order.command)
         };
-        assert_eq!(order("\"play\"").unwrap(), Command::Play);
+        assert_eq!(order("\"play\"").unwrap(), LiveCommand::Play);
         assert_eq!(
             order("{\"drag\":{\"to\":[1,2,0.5]}}").unwrap(),
-            Command::Drag {
+            LiveCommand::Drag {
                 to: [1.0, 2.0, 0.5]
             }
         );

@@ -1,14 +1,15 @@
 //! The page of a run that goes on, at its start.
 
 use super::session::Session;
-use crate::view::{Body, LivePage, Replay, ViewError};
+use crate::DataError;
+use crate::view::{Body, LivePage, Replay};
 use isosheet_mesh::VertexId;
 
 /// The page of a session: that of a run with one frame, and what it is steered by.
 ///
 /// # Errors
-/// [`ViewError`] if the scene cannot be shown.
-pub(super) fn page(session: &Session, title: &str, nonce: &str) -> Result<String, ViewError> {
+/// [`DataError`] if the scene cannot be shown.
+pub(super) fn page(session: &Session, title: &str, nonce: &str) -> Result<String, DataError> {
     let live = session.live();
     let (simulation, scene) = (live.simulation(), live.file().scene());
     let state = simulation.state();

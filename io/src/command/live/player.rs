@@ -2,7 +2,7 @@
 
 use super::board::Board;
 use super::clock::Clock;
-use super::message::Command;
+use super::message::LiveCommand;
 use super::session::{Session, Stepped};
 use isosheet_dynamics::StepProgress;
 use std::ops::ControlFlow;
@@ -28,7 +28,7 @@ pub(super) enum Ended {
 pub(super) struct Player<'a> {
     pub(super) session: Session,
     pub(super) board: &'a Board,
-    pub(super) commands: Receiver<Command>,
+    pub(super) commands: Receiver<LiveCommand>,
     /// Whether the process is to end, asked between and within steps.
     pub(super) is_over: &'a dyn Fn() -> bool,
     /// Whether a page has asked for the end, asked within steps.
@@ -54,10 +54,10 @@ impl Player<'_> {
             };
             let wait = Duration::from_secs_f64(wait).min(NAP);
             match self.commands.recv_timeout(wait) {
-                Ok(Command::End) => return Ended::ByPage,
+                Ok(LiveCommand::End) => return Ended::ByPage,
                 Ok(command) => {
                     self.session.obey(&command);
-                    if command == Command::Step {
+                    if command == LiveCommand::Step {
                         self.step();
                     }
                     // A hand that is led while the run plays is shown with the next step.

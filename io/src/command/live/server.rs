@@ -3,7 +3,7 @@
 use super::access::Access;
 use super::answer::{self, Status};
 use super::board::{Board, Told};
-use super::message::{Command, Order};
+use super::message::{LiveCommand, Order};
 use super::request::Request;
 use std::collections::VecDeque;
 use std::io::{self, Read};
@@ -36,7 +36,7 @@ pub(super) struct Shared {
     /// The content security policy of the page.
     pub(super) policy: String,
     pub(super) board: Arc<Board>,
-    pub(super) commands: Sender<Command>,
+    pub(super) commands: Sender<LiveCommand>,
     pub(super) end_is_asked: Arc<AtomicBool>,
     /// The number of requests that are being answered.
     pub(super) answering: AtomicUsize,
@@ -203,7 +203,7 @@ impl Shared {
         if !self.board.steers(viewer) {
             return Status::Conflict;
         }
-        if command == Command::End {
+        if command == LiveCommand::End {
             self.end_is_asked.store(true, Ordering::SeqCst);
         }
         match self.commands.send(command) {
@@ -220,10 +220,10 @@ impl Shared {
         // What nobody steers any more holds nothing, and what nobody sees does not go on. Where the player
         // has ended nothing is left to be done.
         if leave.steered {
-            let _ = self.commands.send(Command::Release);
+            let _ = self.commands.send(LiveCommand::Release);
         }
         if leave.was_last {
-            let _ = self.commands.send(Command::Pause);
+            let _ = self.commands.send(LiveCommand::Pause);
         }
         told
     }

@@ -1,11 +1,12 @@
 //! A scene that is played: what pages ask for is done here, between its steps.
 
-use super::message::{Command, Frame, HandFrame, Notice, NoticeKind};
+use super::message::{HandFrame, LiveCommand, LiveFrame, Notice, NoticeKind};
 use super::slider::Slider;
+use crate::BodyPose;
 use crate::format::HistoryRow;
 use crate::run::HoldingBody;
 use crate::scene::{LiveScene, SceneError, SceneFile, bounds};
-use crate::view::{Pose, Series};
+use crate::view::TimeSeries;
 use isosheet_dynamics::{StepError, StepProgress};
 use isosheet_mesh::wording::brief;
 use isosheet_mesh::{Advice, VertexId};
@@ -91,22 +92,22 @@ impl Session {
 
     /// The series that are plotted, at the present state: energies, strain, and the gap in scenes with
     /// contact, which has no value while nothing is close.
-    pub(super) fn plotted(&self) -> Vec<Series> {
+    pub(super) fn plotted(&self) -> Vec<TimeSeries> {
         let series = |gap: Option<f64>| {
             let row = HistoryRow {
                 h: 0.0,
                 gap,
                 ..self.row
             };
-            let all = Series::of_history(&[row]).into_iter();
+            let all = TimeSeries::of_history(&[row]).into_iter();
             all.filter(|series| !series.times.is_empty())
         };
         let is_contact = self.live.simulation().contacts().is_some();
-        let known: Vec<Series> = series(self.row.gap).collect();
+        let known: Vec<TimeSeries> = series(self.row.gap).collect();
         let named = series(is_contact.then_some(0.0));
-        let with_value = |named: Series| {
+        let with_value = |named: TimeSeries| {
             let known = known.iter().find(|series| series.name == named.name);
-            known.cloned().unwrap_or(Series {
+            known.cloned().unwrap_or(TimeSeries {
                 times: Vec::new(),
                 values: Vec::new(),
                 ..named
@@ -116,35 +117,35 @@ impl Session {
     }
 
     /// Does what a page asks for. A single step is not taken here.
-    pub(super) fn obey(&mut self, command: &Command) {
+    pub(super) fn obey(&mut self, command: &LiveCommand) {
         match command {
-            Command::Play => {
+            LiveCommand::Play => {
                 self.is_playing = true;
                 self.notice = None;
                 if self.live.next_step(self.until).is_none() {
                     self.until = f64::INFINITY;
                 }
             }
-            Command::Pause | Command::End => self.is_playing = false,
-            Command::Step => {
-                self.obey(&Command::Play);
+            LiveCommand::Pause | LiveCommand::End => self.is_playing = false,
+            LiveCommand::Step => {
+                self.obey(&LiveCommand::Play);
                 self.is_playing = false;
             }
-            Command::Grab { vertex } => match self.live.hold(VertexId(*vertex)) {
+            LiveCommand::Grab { vertex } => match self.live.hold(VertexId(*vertex)) {
                 Ok(at) => {
                     self.aim = Some(at);
                     self.notice = None;
                 }
                 Err(error) => self.refuse(&error),
             },
-            Command::Drag { to } => self.aim = self.aim.map(|_| *to),
-            Command::Release => {
+            LiveCommand::Drag { to } => self.aim = self.aim.map(|_| *to),
+            LiveCommand::Release => {
                 self.aim = None;
                 if let Err(error) = self.live.let_go() {
                     self.refuse(&error);
                 }
             }
-            Command::Set { slider, value } => {
+            LiveCommand::Set { slider, value } => {
                 if let Some(slide) = self.sliders.get(*slider) {
                     self.put.insert(*slider, slide.allowed(*value));
                 }
@@ -225,12 +226,12 @@ impl Session {
     }
 
     /// What pages show of the present state, at a pace.
-    pub(super) fn frame(&self, pace: Option<f64>) -> Frame<'_> {
+    pub(super) fn frame(&self, pace: Option<f64>) -> LiveFrame<'_> {
         let (state, scene) = (self.live.simulation().state(), self.live.file().scene());
         let bodies = self.live.obstacles().iter();
         let bodies = bodies.map(|body| body.motion().pose(state.t));
         let holding = self.holding.iter().map(|body| body.pose(scene, state.t));
-        let numbers = |pose: Pose| {
+        let numbers = |pose: BodyPose| {
             let ([a, b, c, d], [x, y, z]) = (pose.rotation, pose.translation);
             [a, b, c, d, x, y, z]
         };
@@ -243,7 +244,7 @@ impl Session {
             let put = self.put.get(&k).copied();
             put.unwrap_or_else(|| slider.value(state.t))
         };
-        Frame {
+        LiveFrame {
             t: state.t,
             playing: self.is_playing,
             pace: pace.filter(|_| self.is_playing),

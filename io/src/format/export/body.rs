@@ -2,6 +2,7 @@
 
 use super::ExportError;
 use super::error::check_mesh;
+use crate::format::DataError;
 
 /// A rigid body: a mesh in its own frame, and where that is.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,13 +17,26 @@ pub struct SeriesBody {
     pub poses: Vec<BodyPose>,
 }
 
-/// Where a body is: its points are first turned and then moved.
+/// Where a body is: a point `X` of its own frame is at `R X + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyPose {
-    /// A unit quaternion, with the real part last.
+    /// The rotation `R` as a quaternion `[x, y, z, w]` of length 1, where `w` is the real part.
     pub rotation: [f64; 4],
     /// Where the origin of the body is, metres.
     pub translation: [f64; 3],
+}
+
+impl BodyPose {
+    /// No rotation and no translation.
+    pub const IDENTITY: Self = Self::at([0.0; 3]);
+
+    /// A translation, in metres.
+    pub const fn at(translation: [f64; 3]) -> Self {
+        Self {
+            rotation: [0.0, 0.0, 0.0, 1.0],
+            translation,
+        }
+    }
 }
 
 impl SeriesBody {
@@ -45,18 +59,17 @@ impl SeriesBody {
     pub(super) fn validate(&self, frames: usize) -> Result<(), ExportError> {
         let count = self.poses.len();
         if count != 1 && count != frames {
-            return Err(ExportError::Poses {
-                body: self.name.clone(),
-                got: count,
-                frames,
-            });
+            let name = &self.name;
+            let message = format!("{name} has {count} poses, and the trajectory {frames} frames");
+            let remedy = "give a pose for each frame, or a single one for a body at rest";
+            return Err(DataError::new(message, remedy).into());
         }
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let starts = |c: char| is_plain(c) && !c.is_ascii_digit();
         if !(self.name.starts_with(starts) && self.name.chars().all(is_plain)) {
-            return Err(ExportError::BodyName {
-                name: self.name.clone(),
-            });
+            let message = format!("{:?} is no name of a body", self.name);
+            let remedy = "use ASCII letters, digits and _, and no digit at the beginning";
+            return Err(DataError::new(message, remedy).into());
         }
         check_mesh(&self.positions, &self.faces)
     }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// What all frames of a file have in common, and what its first frame has.
 #[derive(Serialize)]
-struct File<'a> {
+struct FoldFile<'a> {
     file_spec: f64,
     file_creator: &'a str,
     file_classes: &'a [&'a str],
@@ -28,12 +28,12 @@ struct File<'a> {
     fold_angles: Vec<Option<f64>>,
     faces_vertices: &'a [[u32; 3]],
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    file_frames: Vec<Frame<'a>>,
+    file_frames: Vec<FoldFileFrame<'a>>,
 }
 
 /// A frame that has the edges and faces of the first one.
 #[derive(Serialize)]
-struct Frame<'a> {
+struct FoldFileFrame<'a> {
     frame_parent: u32,
     frame_inherit: bool,
     frame_classes: &'a [&'a str],
@@ -58,7 +58,7 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
     let (time, x) = series.state(frames[0]);
     let later = |&frame: &usize| {
         let (time, x) = series.state(frame);
-        Frame {
+        FoldFileFrame {
             frame_parent: 0,
             frame_inherit: true,
             frame_classes: FOLDED,
@@ -67,7 +67,7 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
             fold_angles: degrees(frame).collect(),
         }
     };
-    let file = File {
+    let file = FoldFile {
         file_spec: 1.2,
         file_creator: "isosheet",
         file_classes: if frames.len() > 1 {
@@ -122,7 +122,7 @@ pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     };
     let is_pattern = is_flat && mesh.faces.iter().all(|f| area(f) >= 0.0);
-    let file = File {
+    let file = FoldFile {
         file_spec: 1.2,
         file_creator: "isosheet",
         file_classes: &["singleModel"],
@@ -153,7 +153,7 @@ fn letter(assignment: EdgeAssignment) -> &'static str {
     }
 }
 
-fn write_json(w: &mut FileWriter<'_>, file: &File<'_>) -> io::Result<()> {
+fn write_json(w: &mut FileWriter<'_>, file: &FoldFile<'_>) -> io::Result<()> {
     serde_json::to_writer(&mut *w, file)?;
     w.write_all(b"\n")
 }

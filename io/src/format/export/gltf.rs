@@ -44,7 +44,7 @@ fn upright([x, y, z]: [f32; 3]) -> [f32; 3] {
 /// Writes a mesh that may move, and bodies that may: times in seconds, counted from the first one in the
 /// file, positions in metres. The format has y upwards: `(x, y, z)` becomes `(x, z, -y)`.
 pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError> {
-    let mut file = File::default();
+    let mut file = GlbFile::default();
     let mut nodes = Vec::new();
     for sheet in &moving.sheets {
         nodes.push(file.sheet(sheet, moving)?);
@@ -78,13 +78,13 @@ pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError>
 
 /// The parts of a file in the making.
 #[derive(Default)]
-struct File {
+struct GlbFile {
     buffer: Buffer,
     meshes: Vec<Value>,
     animation: Option<Value>,
 }
 
-impl File {
+impl GlbFile {
     /// Adds a sheet, with a morph target for each state but the first, and returns its node.
     fn sheet(
         &mut self,

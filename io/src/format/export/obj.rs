@@ -1,6 +1,6 @@
 //! Wavefront OBJ files.
 
-use super::error::check_mesh;
+use super::error::{check_count, check_mesh};
 use super::{ExportError, Series};
 use crate::format::atomic::{FileWriter, write_atomically};
 use isosheet_mesh::Topology;
@@ -12,17 +12,11 @@ use std::path::{Path, PathBuf};
 /// Vertices and faces keep their order; numbers have as many digits as are needed to read them back exactly.
 ///
 /// # Errors
-/// [`ExportError::Count`] for another number of coordinates, [`ExportError::NotFinite`], [`ExportError::File`];
+/// [`ExportError::Data`] for another number of coordinates and for one that is not finite, [`ExportError::File`];
 /// nothing is written then.
 pub fn write_obj(path: &Path, topology: &Topology, x: &[f64]) -> Result<(), ExportError> {
     let expected = 3 * topology.vertex_count();
-    if x.len() != expected {
-        return Err(ExportError::Count {
-            what: "coordinates of a mesh".to_owned(),
-            got: x.len(),
-            expected,
-        });
-    }
+    check_count("coordinates of a mesh", x.len(), expected)?;
     let faces: Vec<[u32; 3]> = topology.faces().iter().map(|f| f.map(|v| v.0)).collect();
     check_mesh(x, &faces)?;
     write(path, &faces, x, &Extras::default())

@@ -1,13 +1,15 @@
 //! Frames of a moving sheet that are to be written.
 
+use super::error::check_count;
 use super::flat::flat_coordinates;
 use super::moving::{Moving, MovingSheet};
 use super::sheets::NamedPart;
 use super::{ExportError, SeriesBody};
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
-use crate::format::trajectory::Quantity;
-use crate::format::{Trajectory, TrajectoryError};
+use crate::format::trajectory::FrameQuantity;
+use crate::format::{DataError, Trajectory};
 use isosheet_mesh::generate::FoldAssignment;
+use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{EdgeId, Part, Topology, VertexId, fold_angle};
 
 /// Which frames of a trajectory are written.
@@ -39,17 +41,24 @@ impl SeriesOptions {
     /// Checks the values.
     ///
     /// # Errors
-    /// [`ExportError::Every`] for 0, [`ExportError::Rate`] for a rate that is not positive,
-    /// [`ExportError::Range`] for a last frame before the first one.
+    /// [`ExportError::Data`] for every 0th frame, [`ExportError::Frames`] for a rate that is not positive and for a
+    /// last frame before the first one.
     pub fn validate(&self) -> Result<(), ExportError> {
         if self.every == 0 {
-            return Err(ExportError::Every);
+            let remedy = "give 1 for all frames, 2 for every second one";
+            return Err(DataError::new("every 0th frame was asked for", remedy).into());
         }
         if !(self.rate > 0.0 && self.rate.is_finite()) {
-            return Err(ExportError::Rate { rate: self.rate });
+            let message = format!("{} frames a second were asked for", self.rate);
+            let error = DataError::new(message, "give a positive number").value(self.rate);
+            return Err(ExportError::Frames(error));
         }
         match (self.first, self.last) {
-            (first, Some(last)) if last < first => Err(ExportError::Range { first, last }),
+            (first, Some(last)) if last < first => {
+                let message = format!("frames from {first} to {last} were asked for");
+                let error = DataError::new(message, "name the first one first").at(first);
+                Err(ExportError::Frames(error))
+            }
             _ => Ok(()),
         }
     }
@@ -115,7 +124,8 @@ impl<'a> Series<'a> {
     pub fn new(trajectory: &'a Trajectory, options: &SeriesOptions) -> Result<Self, ExportError> {
         options.validate()?;
         if trajectory.is_empty() {
-            return Err(ExportError::NoFrames);
+            let remedy = "let the run take a step, or record a state";
+            return Err(DataError::new("the trajectory has no frames", remedy).into());
         }
         let topology = Topology::from_faces(trajectory.vertex_count(), trajectory.faces())?;
         let mut rest_lengths = vec![f64::NAN; topology.edge_count()];
@@ -126,17 +136,23 @@ impl<'a> Series<'a> {
         }
         for (&[a, b], &length) in topology.edges().iter().zip(&rest_lengths) {
             if length.is_nan() {
-                return Err(ExportError::MissingEdge { a, b });
+                let message = format!(
+                    "the trajectory has no rest length of the edge between {a} and {b}: its edges do not belong \
+                     to its faces"
+                );
+                return Err(DataError::plain(message).into());
             }
             if length <= 0.0 {
-                return Err(ExportError::RestLength { a, b, length });
+                let found = brief(length);
+                let message = format!("the edge between {a} and {b} has the rest length {found} m");
+                let error = DataError::new(message, "give a positive length");
+                return Err(error.value(length).into());
             }
         }
         let times = trajectory.times();
         let last = options.last.unwrap_or(times.len() - 1);
         if let Some(&frame) = [options.first, last].iter().find(|f| **f >= times.len()) {
-            let count = times.len();
-            return Err(ExportError::NoFrame { frame, count });
+            return Err(no_frame(frame, times.len()));
         }
         let mut frames: Vec<usize> = (options.first..=last).step_by(options.every).collect();
         frames.dedup_by(|later, first| times[*later] == times[*first]);
@@ -161,7 +177,7 @@ impl<'a> Series<'a> {
     /// number of the sheet from 0, in VTK files. Characters of names that formats refuse become `_`.
     ///
     /// # Errors
-    /// [`ExportError::Count`] if the sheets are not the whole mesh, one after the other.
+    /// [`ExportError::Data`] if the sheets are not the whole mesh, one after the other.
     pub fn with_sheets(self, sheets: &[(String, Part)]) -> Result<Self, ExportError> {
         let t = &self.topology;
         let counts = [t.vertex_count(), t.edge_count(), t.face_count()];
@@ -179,7 +195,7 @@ impl<'a> Series<'a> {
     /// With the bodies that the sheet meets, for formats that have several meshes.
     ///
     /// # Errors
-    /// [`ExportError::Poses`] for a number of poses that is neither 1 nor that of the frames of the
+    /// [`ExportError::Data`] for a number of poses that is neither 1 nor that of the frames of the
     /// trajectory, [`ExportError`] for a mesh that is none.
     pub fn with_bodies(self, bodies: Vec<SeriesBody>) -> Result<Self, ExportError> {
         for body in &bodies {
@@ -228,19 +244,13 @@ impl<'a> Series<'a> {
     /// With what the edges are meant to do, for FOLD files: one entry for each edge of the topology.
     ///
     /// # Errors
-    /// [`ExportError::Count`] for another number of entries.
+    /// [`ExportError::Data`] for another number of entries.
     pub fn with_assignments(
         self,
         assignments: Vec<Option<FoldAssignment>>,
     ) -> Result<Self, ExportError> {
         let expected = self.topology.edge_count();
-        if assignments.len() != expected {
-            return Err(ExportError::Count {
-                what: "assignments of edges".to_owned(),
-                got: assignments.len(),
-                expected,
-            });
-        }
+        check_count("assignments of edges", assignments.len(), expected)?;
         Ok(Self {
             assignments: Some(assignments),
             ..self
@@ -258,30 +268,26 @@ impl<'a> Series<'a> {
             values,
         } = &field;
         let expected = self.trajectory.len() * self.support_size(*support);
-        if values.len() != expected {
-            return Err(ExportError::Count {
-                what: format!("the field {name:?}"),
-                got: values.len(),
-                expected,
-            });
-        }
+        check_count(&format!("the field {name:?}"), values.len(), expected)?;
         if let Some(index) = values.iter().position(|v| !v.is_finite()) {
-            return Err(ExportError::FieldNotFinite {
-                name: name.clone(),
-                index,
-                value: values[index],
-            });
+            let value = values[index];
+            let message = format!("value {index} of the field {name:?} is {}", given(value));
+            let error = DataError::new(message, "give finite values");
+            return Err(error.at(index).value(value).into());
         }
         let reserved = ["strain", "fold_angle", "sheet", "TimeValue", "uv"].contains(&&name[..]);
         if reserved || self.fields.iter().any(|f| f.name == *name) {
-            return Err(ExportError::FieldName { name: name.clone() });
+            let message = format!("there are two fields with the name {name:?}");
+            let remedy = "rename one (strain, fold_angle, sheet, rod_force, contact_force, gap, plastic_angle, \
+                          plastic_curvature_1 and _2, uv and TimeValue are taken)";
+            return Err(DataError::new(message, remedy).into());
         }
         self.fields.push(field);
         Ok(self)
     }
 
     /// The frames that are written as a trajectory of their own.
-    pub(super) fn chosen(&self) -> Result<Trajectory, TrajectoryError> {
+    pub(super) fn chosen(&self) -> Result<Trajectory, DataError> {
         self.trajectory.subset(&self.frames)
     }
 
@@ -331,11 +337,11 @@ impl<'a> Series<'a> {
     /// One frame of the trajectory as a mesh, with its fold angles and what its edges are meant to do.
     ///
     /// # Errors
-    /// [`ExportError::NoFrame`] if there is no such frame.
+    /// [`ExportError::Frames`] if there is no such frame.
     pub fn mesh(&self, frame: usize) -> Result<MeshFile, ExportError> {
         let count = self.trajectory.len();
         if frame >= count {
-            return Err(ExportError::NoFrame { frame, count });
+            return Err(no_frame(frame, count));
         }
         let t = &self.topology;
         let crease = |(e, angle): (EdgeId, f64)| {
@@ -410,29 +416,29 @@ fn recorded_fields(trajectory: &Trajectory, topology: &Topology) -> Vec<SeriesFi
         values,
     };
     let mut fields = Vec::new();
-    for quantity in Quantity::ALL {
+    for quantity in FrameQuantity::ALL {
         let values = trajectory.all(quantity);
         if values.is_empty() {
             continue;
         }
         fields.extend(match quantity {
-            Quantity::RodForces => {
+            FrameQuantity::RodForces => {
                 let values = on_edges(trajectory, topology, values);
                 vec![field("rod_force", FieldSupport::Edges, values)]
             }
-            Quantity::ContactForces => {
+            FrameQuantity::ContactForces => {
                 let support = FieldSupport::VertexVectors;
                 vec![field("contact_force", support, values.to_vec())]
             }
-            Quantity::Gaps => vec![field("gap", FieldSupport::Vertices, values.to_vec())],
-            Quantity::PlasticAngles => {
+            FrameQuantity::Gaps => vec![field("gap", FieldSupport::Vertices, values.to_vec())],
+            FrameQuantity::PlasticAngles => {
                 let mut values = on_edges(trajectory, topology, values);
                 values
                     .iter_mut()
                     .for_each(|angle| *angle = angle.to_degrees());
                 vec![field("plastic_angle", FieldSupport::Edges, values)]
             }
-            Quantity::PlasticCurvatures => {
+            FrameQuantity::PlasticCurvatures => {
                 let of = |k: usize| values.iter().copied().skip(k).step_by(2).collect();
                 let support = FieldSupport::Faces;
                 vec![
@@ -462,4 +468,11 @@ fn on_edges(trajectory: &Trajectory, topology: &Topology, values: &[f64]) -> Vec
         }
     }
     sorted
+}
+
+/// There is no such frame.
+fn no_frame(frame: usize, count: usize) -> ExportError {
+    let frames = counted(count, "frame", "frames");
+    let message = format!("there is no frame {frame}: the trajectory has {frames}, counted from 0");
+    ExportError::Frames(DataError::new(message, "name one of these").at(frame))
 }

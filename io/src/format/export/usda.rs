@@ -12,7 +12,7 @@ use std::path::Path;
 const COLOURS: [[f32; 3]; 2] = [[0.86, 0.78, 0.62], [0.49, 0.49, 0.47]];
 
 /// A body with its points as 32-bit floats.
-type Body<'a> = (&'a SeriesBody, Vec<[f32; 3]>, &'a [BodyPose]);
+type PlacedBody<'a> = (&'a SeriesBody, Vec<[f32; 3]>, &'a [BodyPose]);
 
 /// Writes a mesh that may move, and bodies that may, below one root: times in seconds and positions in
 /// metres, z upwards. There are as many time codes a second as frames, and programs interpolate between them,
@@ -23,7 +23,7 @@ pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError>
     for (t, x) in &moving.states {
         samples.push((rate * t, single(x)?));
     }
-    let mut bodies: Vec<Body<'_>> = Vec::new();
+    let mut bodies: Vec<PlacedBody<'_>> = Vec::new();
     for (body, poses) in &moving.bodies {
         for pose in poses {
             single(&pose.translation)?;

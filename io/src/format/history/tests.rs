@@ -93,9 +93,10 @@ fn a_history_continues_where_it_is_told() {
         changed[at] ^= 1;
         std::fs::write(&path, &changed).unwrap();
         let refused = HistoryWriter::resume(&path, lengths[2]);
+        let error = refused.unwrap_err().to_string();
         assert!(
-            matches!(refused, Err(HistoryError::Changed { .. })),
-            "byte {at}"
+            error.contains("its checksum is wrong"),
+            "byte {at}: {error}"
         );
         assert_eq!(std::fs::read(&path).unwrap(), changed);
     }
@@ -107,9 +108,14 @@ fn a_history_continues_where_it_is_told() {
             ..lengths[4]
         },
     );
-    assert!(matches!(longer, Err(HistoryError::Shorter { .. })));
+    assert!(
+        longer
+            .unwrap_err()
+            .to_string()
+            .contains("it was cut or replaced")
+    );
     let missing = HistoryWriter::resume(&dir.path().join("none.csv"), lengths[0]);
-    assert!(matches!(missing, Err(HistoryError::Read { .. })));
+    assert!(missing.unwrap_err().to_string().starts_with("cannot read "));
 }
 
 #[test]
@@ -152,7 +158,12 @@ fn nan_is_refused_and_leaves_the_file_as_it_was() {
         ];
         for (r, name) in cases {
             match w.append(&r) {
-                Err(HistoryError::NotFinite { column, .. }) => assert_eq!(column, name),
+                Err(FileError::Data(error)) => {
+                    assert!(
+                        error.message.starts_with(&format!("{name} at t = ")),
+                        "{error}"
+                    );
+                }
                 other => panic!("{other:?}"),
             }
         }
@@ -164,29 +175,21 @@ fn nan_is_refused_and_leaves_the_file_as_it_was() {
 fn other_files_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("x.csv");
-    assert!(matches!(
-        read_history(&path),
-        Err(HistoryError::Read { .. })
-    ));
+    let refused = |says: &str| {
+        let error = read_history(&path).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
+    };
+    refused("cannot read ");
     std::fs::write(&path, "").unwrap();
-    assert!(matches!(
-        read_history(&path),
-        Err(HistoryError::Header { .. })
-    ));
+    refused("does not start with the columns");
     std::fs::write(&path, "a,b\n1,2\n").unwrap();
-    assert!(matches!(
-        read_history(&path),
-        Err(HistoryError::Header { .. })
-    ));
+    refused("but with \"a,b\"");
     let header = COLUMNS.join(",");
     std::fs::write(
         &path,
         format!("{header}\n1,2,x,4,5,6,7,8,9\n1,2,3,4,5,6,7,8,9\n"),
     )
     .unwrap();
-    assert!(matches!(
-        read_history(&path),
-        Err(HistoryError::Row { row: 1, .. })
-    ));
+    refused("row 1: ");
     assert!(HistoryWriter::create(dir.path()).is_err());
 }

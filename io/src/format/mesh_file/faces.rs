@@ -1,7 +1,9 @@
 //! Polygons of a file, and what becomes of them.
 
-use super::error::{Located, MeshFileProblem, Place};
+use super::error::{COPY, Located, Location, MeshFileProblem, no_such_vertex};
 use super::{MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
+use crate::format::DataError;
+use isosheet_mesh::wording::given;
 use std::path::PathBuf;
 
 /// Vertices and polygons as a file has them.
@@ -12,7 +14,7 @@ pub(super) struct Polyhedron {
     /// Corners of all faces, one after the other, from 0; whether each exists is checked at the end.
     corners: Vec<i64>,
     /// The end of each face in `corners`, and its place.
-    ends: Vec<(usize, Place)>,
+    ends: Vec<(usize, Location)>,
     /// The first vertices of the objects of the file, where it has several and they do not share vertices.
     parts: Vec<usize>,
     /// The number that the format gives to the first vertex, for errors.
@@ -32,7 +34,7 @@ impl Polyhedron {
     }
 
     /// Adds a face with corners counted from 0.
-    pub(super) fn push_face(&mut self, corners: impl IntoIterator<Item = i64>, place: Place) {
+    pub(super) fn push_face(&mut self, corners: impl IntoIterator<Item = i64>, place: Location) {
         self.corners.extend(corners);
         self.ends.push((self.corners.len(), place));
     }
@@ -58,13 +60,13 @@ impl Polyhedron {
     }
 
     /// Adds a vertex.
-    pub(super) fn push_vertex(&mut self, p: [f64; 3]) -> Result<(), MeshFileProblem> {
+    pub(super) fn push_vertex(&mut self, p: [f64; 3]) -> Result<(), DataError> {
         if let Some(axis) = p.iter().position(|c| !c.is_finite()) {
-            return Err(MeshFileProblem::NonFinite {
-                vertex: self.positions.len() / 3 + self.first as usize,
-                axis,
-                value: p[axis],
-            });
+            let vertex = self.positions.len() / 3 + self.first as usize;
+            let (axis, value) = (["x", "y", "z"][axis], p[axis]);
+            let message = format!("coordinate {axis} of vertex {vertex} is {}", given(value));
+            let error = DataError::new(message, "export it with finite coordinates");
+            return Err(error.at(vertex).value(value));
         }
         self.positions.extend_from_slice(&p);
         Ok(())
@@ -74,21 +76,27 @@ impl Polyhedron {
     pub(super) fn assemble(self, options: &MeshOptions) -> Result<MeshFile, Located> {
         let vertices = self.positions.len() / 3;
         if u32::try_from(vertices).is_err() {
-            return Err((None, MeshFileProblem::TooManyVertices { vertices }));
+            let message =
+                format!("the file has {vertices} vertices, more than 32-bit numbers can count");
+            return Err((None, DataError::new(message, "split it").into()));
         }
-        match (vertices, self.ends.len()) {
-            (0, 0) => return Err((None, MeshFileProblem::Empty)),
-            (0, faces) => return Err((None, MeshFileProblem::NoVertices { faces })),
+        let missing = match (vertices, self.ends.len()) {
+            (0, 0) => Some(empty()),
+            (0, faces) => {
+                let message = format!("the file has {faces} faces but no vertices");
+                Some(DataError::new(message, "export it with its vertices"))
+            }
             (vertices, 0) => {
                 let (lines, points) = (self.lines, self.points);
-                let problem = MeshFileProblem::NoFaces {
-                    vertices,
-                    lines,
-                    points,
-                };
-                return Err((None, problem));
+                let message = format!(
+                    "the file has {vertices} vertices, {lines} line elements and {points} point elements, but no faces"
+                );
+                Some(DataError::new(message, "export it with its faces"))
             }
-            _ => {}
+            _ => None,
+        };
+        if let Some(missing) = missing {
+            return Err((None, missing.into()));
         }
         let mut mesh = MeshFile {
             faces: Vec::with_capacity(self.ends.len()),
@@ -119,28 +127,45 @@ impl Polyhedron {
         let count = self.positions.len() / 3;
         let vertex = |&k: &i64| match u32::try_from(k) {
             Ok(v) if (v as usize) < count => Ok(v),
-            _ => Err(MeshFileProblem::IndexOutOfRange {
-                index: k.saturating_add(self.first),
+            _ => Err(no_such_vertex(
+                k.saturating_add(self.first),
                 count,
-                first: self.first,
-            }),
+                self.first,
+            )),
         };
         let corners = range.len();
         match self.corners[range] {
             [ref a, ref b, ref c] => mesh.faces.push([vertex(a)?, vertex(b)?, vertex(c)?]),
-            [] | [_] | [_, _] => return Err(MeshFileProblem::TooFewCorners { corners }),
+            [] | [_] | [_, _] => {
+                let message = format!("a face has {corners} corners, and needs at least three");
+                return Err(DataError::new(message, "remove it or complete it").into());
+            }
             ref face => {
                 let face: Vec<u32> = face.iter().map(vertex).collect::<Result<_, _>>()?;
                 if options.polygons == Polygons::Refuse {
-                    return Err(MeshFileProblem::Polygon { corners });
+                    let message = format!(
+                        "a face has {corners} corners, and a rigid sheet is made of triangles"
+                    );
+                    let remedy = "triangulate the file, or ask for `Polygons::Triangulate` (each diagonal is a new \
+                                  crease)";
+                    return Err(MeshFileProblem::Polygon(DataError::new(message, remedy)));
                 }
                 let limit = polygon::MOST_CORNERS;
                 if corners > limit {
-                    return Err(MeshFileProblem::LargePolygon { corners, limit });
+                    let message = format!(
+                        "a face has {corners} corners, more than the {limit} of a polygon that is cut into triangles"
+                    );
+                    return Err(DataError::new(message, "triangulate the file first").into());
                 }
                 let points = self.positions.as_chunks::<3>().0;
                 let pieces = polygon::triangulate(&face, |v| points[v as usize])
-                    .ok_or(MeshFileProblem::CrossedPolygon { corners })?;
+                    .ok_or_else(|| {
+                        let message = format!(
+                            "the outline of a face of {corners} corners crosses or touches itself, or has no area, \
+                             so that it cannot be cut into triangles"
+                        );
+                        DataError::new(message, "correct the face, or remove it")
+                    })?;
                 mesh.diagonals.extend(pieces.cuts);
                 mesh.faces.extend(pieces.triangles);
                 mesh.polygons += 1;
@@ -148,4 +173,10 @@ impl Polyhedron {
         }
         Ok(())
     }
+}
+
+/// There is nothing in the file but comments.
+pub(super) fn empty() -> DataError {
+    let message = "the file has no vertices and no faces: it is empty, or was cut short";
+    DataError::new(message, COPY)
 }

@@ -8,11 +8,13 @@ mod sides;
 #[cfg(test)]
 mod tests;
 
-use super::error::{Located, MeshFileProblem, Place};
+use super::error::{Located, Location};
 use super::faces::Polyhedron;
 use super::plane;
-use super::{EdgeAssignment, FileCrease, FoldProblem, MeshFile, MeshOptions};
-use frames::Frame;
+use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
+use crate::format::DataError;
+use frames::FrameRecord;
+use isosheet_mesh::wording::brief;
 use std::collections::HashMap;
 
 /// Reads a frame of a FOLD file.
@@ -29,7 +31,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     let plain = |problem| (None, problem);
     let frame = frames::read(bytes, options.frame.as_ref()).map_err(plain)?;
     let mut polyhedron = Polyhedron::default();
-    add_vertices(&frame, &mut polyhedron).map_err(plain)?;
+    add_vertices(&frame, &mut polyhedron).map_err(|e| plain(e.into()))?;
     let vertices = polyhedron.positions.len() / 3;
     let is_folded = frame.has_class("foldedForm");
     let mut edges = read_edges(&frame, vertices).map_err(|e| plain(e.into()))?;
@@ -41,7 +43,12 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     let mut faces = match &frame.faces_vertices {
         Some(faces) if !faces.is_empty() => faces.clone(),
         _ if edges.is_empty() => Vec::new(),
-        _ if !is_flat => return Err(plain(FoldProblem::NoFacesInSpace.into())),
+        _ if !is_flat => {
+            let message = "the file has no `faces_vertices`, and its vertices do not lie in the plane z = 0, in which \
+                           alone faces can be made";
+            let error = DataError::new(message, "export the file with its faces");
+            return Err(plain(error.into()));
+        }
         _ => pattern::faces(points, &edges).map_err(|e| plain(e.into()))?,
     };
     let (mut sides, mut reversed_faces) = (Vec::new(), 0);
@@ -58,7 +65,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     }
     sides::turn(&mut edges, &sides).map_err(|e| plain(e.into()))?;
     for (k, face) in faces.into_iter().enumerate() {
-        polyhedron.push_face(face, Place::Face(k));
+        polyhedron.push_face(face, Location::Face(k));
     }
     polyhedron.lines = edges.len();
     let mut mesh = polyhedron.assemble(options)?;
@@ -74,16 +81,18 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     Ok(mesh)
 }
 
-fn add_vertices(frame: &Frame, polyhedron: &mut Polyhedron) -> Result<(), MeshFileProblem> {
+fn add_vertices(frame: &FrameRecord, polyhedron: &mut Polyhedron) -> Result<(), DataError> {
     let unit = frame.metres()?;
     for (vertex, p) in frame.vertices_coords.iter().flatten().enumerate() {
         let [x, y, rest @ ..] = &p[..] else {
-            let count = p.len();
-            return Err(FoldProblem::Coordinates { vertex, count }.into());
+            let message = format!("vertex {vertex} has {} coordinates", p.len());
+            return Err(DataError::new(message, "give two or three").at(vertex));
         };
         let (z, more) = rest.split_first().unwrap_or((&0.0, &[]));
         if more.iter().any(|&c| c != 0.0) {
-            return Err(FoldProblem::Dimension { vertex }.into());
+            let message = format!("vertex {vertex} has a fourth coordinate");
+            let remedy = "give two or three: only the space of three dimensions is supported";
+            return Err(DataError::new(message, remedy).at(vertex));
         }
         polyhedron.push_vertex([x, y, z].map(|c| unit * c))?;
     }
@@ -91,16 +100,15 @@ fn add_vertices(frame: &Frame, polyhedron: &mut Polyhedron) -> Result<(), MeshFi
 }
 
 /// The edges with their assignments and angles.
-fn read_edges(frame: &Frame, vertices: usize) -> Result<Vec<FileCrease>, FoldProblem> {
+fn read_edges(frame: &FrameRecord, vertices: usize) -> Result<Vec<FileCrease>, DataError> {
     let Some(ends) = &frame.edges_vertices else {
         return Ok(Vec::new());
     };
-    let same_length = |array, got: Option<usize>| match got {
-        Some(got) if got != ends.len() => Err(FoldProblem::Length {
-            array,
-            got,
-            edges: ends.len(),
-        }),
+    let same_length = |array: &str, got: Option<usize>| match got {
+        Some(got) if got != ends.len() => {
+            let message = format!("`{array}` has {got} entries for {} edges", ends.len());
+            Err(DataError::new(message, "give one for each edge"))
+        }
         _ => Ok(()),
     };
     let (assignments, angles) = (&frame.edges_assignment, &frame.fold_angles);
@@ -109,29 +117,28 @@ fn read_edges(frame: &Frame, vertices: usize) -> Result<Vec<FileCrease>, FoldPro
     let mut seen = HashMap::new();
     let crease = |(edge, &ends): (usize, &[u32; 2])| {
         if let Some(&vertex) = ends.iter().find(|&&v| v as usize >= vertices) {
-            let count = vertices;
-            return Err(FoldProblem::EdgeVertex {
-                edge,
-                vertex,
-                count,
-            });
+            let message = format!(
+                "edge {edge} refers to vertex {vertex}, but there are {vertices} vertices, counted from 0"
+            );
+            return Err(DataError::new(message, "correct `edges_vertices`").at(edge));
         }
         let [a, b] = ends;
         if a == b {
-            return Err(FoldProblem::EdgeToItself { edge, vertex: a });
+            let message = format!("edge {edge} leads from vertex {a} to the same vertex");
+            return Err(DataError::new(message, "remove it").at(edge));
         }
         if let Some(first) = seen.insert(sides::sorted(ends), edge) {
-            let second = edge;
-            return Err(FoldProblem::EdgeTwice {
-                first,
-                second,
-                ends,
-            });
+            let message = format!(
+                "edges {first} and {edge} are the same edge, between the vertices {a} and {b}"
+            );
+            return Err(DataError::new(message, "remove one of them").at(edge));
         }
         let text = assignments.as_ref().and_then(|a| a[edge].as_deref());
         let angle = angles.as_ref().and_then(|a| a[edge]);
         if let Some(degrees) = angle.filter(|a| !(-180.0..=180.0).contains(a)) {
-            return Err(FoldProblem::Angle { edge, degrees });
+            let message = format!("edge {edge} has the fold angle {} degrees", brief(degrees));
+            let error = DataError::new(message, "give -180 to 180");
+            return Err(error.at(edge).value(degrees));
         }
         Ok(FileCrease {
             ends,
@@ -144,7 +151,7 @@ fn read_edges(frame: &Frame, vertices: usize) -> Result<Vec<FileCrease>, FoldPro
 
 /// Refuses fold angles of a crease pattern that its assignments exclude. Those of a folded form are what the
 /// folds have come to.
-fn check_angles(edges: &[FileCrease]) -> Result<(), FoldProblem> {
+fn check_angles(edges: &[FileCrease]) -> Result<(), DataError> {
     let contradicts = |crease: &FileCrease| {
         let angle = crease.angle.unwrap_or(0.0);
         match crease.assignment {
@@ -155,16 +162,21 @@ fn check_angles(edges: &[FileCrease]) -> Result<(), FoldProblem> {
         }
     };
     match edges.iter().position(contradicts) {
-        Some(edge) => Err(FoldProblem::Contradiction {
-            edge,
-            assignment: edges[edge].assignment,
-            degrees: edges[edge].angle.unwrap_or(0.0).to_degrees(),
-        }),
+        Some(edge) => {
+            let degrees = edges[edge].angle.unwrap_or(0.0).to_degrees();
+            let message = format!(
+                "edge {edge} {} and has the fold angle {} degrees",
+                edges[edge].assignment,
+                brief(degrees)
+            );
+            let remedy = "correct one of them: mountains have negative angles, valleys positive ones, flat edges 0";
+            Err(DataError::new(message, remedy).at(edge).value(degrees))
+        }
         None => Ok(()),
     }
 }
 
-fn assignment(edge: usize, text: Option<&str>) -> Result<EdgeAssignment, FoldProblem> {
+fn assignment(edge: usize, text: Option<&str>) -> Result<EdgeAssignment, DataError> {
     Ok(match text {
         Some("B" | "b") => EdgeAssignment::Boundary,
         Some("M" | "m") => EdgeAssignment::Mountain,
@@ -175,7 +187,8 @@ fn assignment(edge: usize, text: Option<&str>) -> Result<EdgeAssignment, FoldPro
         Some("J" | "j") => EdgeAssignment::Join,
         Some(text) => {
             let found = super::error::excerpt(text);
-            return Err(FoldProblem::Assignment { edge, found });
+            let message = format!("edge {edge} has the assignment {found:?}");
+            return Err(DataError::new(message, "use B, M, V, F, U, C or J").at(edge));
         }
     })
 }

@@ -1,9 +1,9 @@
 //! Reading glTF 2.0 files, as text or binary.
 
-use super::error::{Located, MeshFileProblem, Place};
+use super::error::{Located, Location, MeshFileProblem, cut_short};
 use super::faces::Polyhedron;
-use super::{GltfProblem, MeshOptions, SeparateBuffers};
-use crate::format::input;
+use super::{MeshOptions, SeparateBuffers};
+use crate::format::{DataError, input};
 use base64::Engine;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
@@ -27,9 +27,8 @@ pub(super) fn parse(
         return Ok(Polyhedron::default());
     }
     if bytes.starts_with(b"glTF") && (bytes.len() < GLB_HEADER || glb_length(bytes) < GLB_HEADER) {
-        let missing = "the header of a binary glTF file".to_owned();
-        let problem = MeshFileProblem::Truncated { missing };
-        return Err((Some(Place::Byte(bytes.len().min(8))), problem));
+        let problem = cut_short("the header of a binary glTF file");
+        return Err((Some(Location::Byte(bytes.len().min(8))), problem.into()));
     }
     read(bytes, path, options).map_err(|problem| (None, problem))
 }
@@ -43,19 +42,22 @@ fn read(bytes: &[u8], path: &Path, options: &MeshOptions) -> Result<Polyhedron, 
     let name = options.mesh.as_deref();
     let (document, blob) = open(bytes)?;
     if let Some(name) = document.extensions_required().find(|e| !is_harmless(e)) {
-        let name = name.to_owned();
-        return Err(GltfProblem::Extension { name }.into());
+        let message = format!("the file needs the extension {name}, which is not supported");
+        return Err(DataError::new(message, "export the file without it").into());
     }
     let placed = placed_meshes(&document, name);
     if placed.is_empty() {
         let names = document
             .meshes()
             .map(|m| m.name().unwrap_or_default().to_owned());
-        let problem = GltfProblem::NoMesh {
-            wanted: name.map(str::to_owned),
-            names: names.collect(),
-        };
-        return Err(problem.into());
+        let names: Vec<String> = names.collect();
+        let wanted = name.unwrap_or("at all");
+        let message = format!("there is no mesh {wanted} (the meshes of the file are {names:?})");
+        let error = DataError::new(message, "name a mesh of the file, or export it with one");
+        return Err(match name {
+            Some(_) => MeshFileProblem::Name(error),
+            None => error.into(),
+        });
     }
     let buffers = read_buffers(&document, blob, path, options.buffers)?;
     let mut polyhedron = Polyhedron::default();
@@ -72,14 +74,13 @@ fn add_mesh(
     placement: &Matrix,
     buffers: &[Vec<u8>],
     polyhedron: &mut Polyhedron,
-) -> Result<(), MeshFileProblem> {
+) -> Result<(), DataError> {
     let is_mirrored = determinant(placement) < 0.0;
     for (k, primitive) in mesh.primitives().enumerate() {
-        let array = |array, problem: String| GltfProblem::Array {
-            mesh: mesh.index(),
-            primitive: k,
-            array,
-            problem,
+        let part = format!("part {k} of mesh {}", mesh.index());
+        let array = |array: &str, problem: String| {
+            let message = format!("{part}: {array} {problem}");
+            DataError::new(message, "export the file again").at(mesh.index())
         };
         let first = (polyhedron.positions.len() / 3) as i64;
         let positions = primitive.get(&Semantic::Positions);
@@ -92,16 +93,12 @@ fn add_mesh(
         };
         if let Some(v) = corners.iter().find(|&&v| v >= count) {
             let problem = format!("refer to vertex {v} of {count}");
-            return Err(array("indices", problem).into());
+            return Err(array("indices", problem));
         }
         let Some(triangles) = triangles(primitive.mode(), &corners) else {
-            let (mesh, mode) = (mesh.index(), format!("{:?}", primitive.mode()));
-            return Err(GltfProblem::Mode {
-                mesh,
-                primitive: k,
-                mode,
-            }
-            .into());
+            let message = format!("{part} is made of {:?}", primitive.mode());
+            let remedy = "export it as triangles, or without this part";
+            return Err(DataError::new(message, remedy).at(mesh.index()));
         };
         for p in points {
             let [x, y, z] = apply(placement, p);
@@ -110,7 +107,7 @@ fn add_mesh(
         for t in triangles {
             let [a, b, c] = t.map(|v| first + v);
             let corners = if is_mirrored { [a, c, b] } else { [a, b, c] };
-            let place = Place::Face(polyhedron.face_count());
+            let place = Location::Face(polyhedron.face_count());
             polyhedron.push_face(corners, place);
         }
     }
@@ -133,8 +130,8 @@ fn triangles(mode: Mode, corners: &[i64]) -> Option<Vec<[i64; 3]>> {
 }
 
 /// The valid document and the binary part of a file.
-fn open(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), GltfProblem> {
-    let format = |e: gltf::Error| GltfProblem::Format(e.to_string().chars().take(300).collect());
+fn open(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), DataError> {
+    let format = |e: gltf::Error| invalid(&e.to_string());
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(format)?;
     let json = document.into_json();
     // The validation of the library relies on these indices.
@@ -142,11 +139,18 @@ fn open(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), GltfProblem> {
     let mut accessors = primitives.flat_map(|p| p.attributes.values());
     if let Some(index) = accessors.find(|a| a.value() >= json.accessors.len()) {
         let (index, count) = (index.value(), json.accessors.len());
-        return Err(GltfProblem::Format(format!(
+        return Err(invalid(&format!(
             "a mesh refers to accessor {index} of {count}"
         )));
     }
     Ok((Document::from_json(json).map_err(format)?, blob))
+}
+
+/// A file that breaks the rules of the format.
+fn invalid(problem: &str) -> DataError {
+    let short: String = problem.chars().take(300).collect();
+    let remedy = "export the file again; the Khronos glTF validator says more";
+    DataError::new(format!("the file is not valid glTF: {short}"), remedy)
 }
 
 /// Whether an extension changes neither positions nor triangles.
@@ -161,19 +165,20 @@ fn read_buffers(
     mut blob: Option<Vec<u8>>,
     path: &Path,
     separate: SeparateBuffers,
-) -> Result<Vec<Vec<u8>>, MeshFileProblem> {
-    let problem = |buffer: usize, problem: String| GltfProblem::Buffer { buffer, problem };
+) -> Result<Vec<Vec<u8>>, DataError> {
+    let problem = |buffer: usize, problem: String| {
+        let remedy = "keep the file and its buffers together, or use .glb";
+        DataError::new(format!("buffer {buffer}: {problem}"), remedy).at(buffer)
+    };
     let mut buffers = Vec::new();
     let mut all = 0_u64;
     for buffer in document.buffers() {
         let (k, length) = (buffer.index(), buffer.length());
         all = all.saturating_add(length as u64);
         if all > input::LARGEST {
-            let problem = format!(
-                "with those before it has more than {} bytes",
-                input::LARGEST
-            );
-            return Err(GltfProblem::Buffer { buffer: k, problem }.into());
+            let most = input::LARGEST;
+            let large = format!("with those before it has more than {most} bytes");
+            return Err(problem(k, large));
         }
         let mut bytes = match buffer.source() {
             gltf::buffer::Source::Bin => blob
@@ -188,8 +193,10 @@ fn read_buffers(
                         .map_err(|e| problem(k, e.to_string()))?
                 }
                 None if separate == SeparateBuffers::Refuse => {
-                    let file = uri.chars().take(100).collect();
-                    return Err(GltfProblem::Separate { buffer: k, file }.into());
+                    let file: String = uri.chars().take(100).collect();
+                    let message = format!("buffer {k} is the file {file:?}");
+                    let remedy = "export the mesh as one file, as .glb";
+                    return Err(DataError::new(message, remedy).at(k));
                 }
                 None => {
                     let folder = path.parent().unwrap_or(Path::new(""));
@@ -202,7 +209,7 @@ fn read_buffers(
         if bytes.len() < length {
             let found = bytes.len();
             let short = format!("it has {found} bytes, and {length} by its `byteLength`");
-            return Err(problem(k, short).into());
+            return Err(problem(k, short));
         }
         bytes.truncate(length);
         buffers.push(bytes);

@@ -1,6 +1,6 @@
 //! Reading OFF files (Object File Format of Geomview).
 
-use super::error::{Located, MeshFileProblem, Place, excerpt};
+use super::error::{Located, Location, cut_short, excerpt, unexpected};
 use super::faces::Polyhedron;
 use std::str::FromStr;
 
@@ -21,7 +21,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
             *c = line.number("a coordinate")?;
         }
         let pushed = mesh.push_vertex(p);
-        pushed.map_err(|problem| (Some(line.place), problem))?;
+        pushed.map_err(|problem| (Some(line.place), problem.into()))?;
     }
     for k in 0..faces {
         let mut line = lines.next(&format!("face {k} of {faces}"))?;
@@ -64,7 +64,7 @@ struct Lines<'a> {
 
 /// What is left of a line.
 struct Line<'a> {
-    place: Place,
+    place: Location,
     words: Vec<&'a str>,
     next: usize,
 }
@@ -83,14 +83,13 @@ impl<'a> Lines<'a> {
             let words: Vec<&str> = content.split_whitespace().collect();
             if !words.is_empty() {
                 return Ok(Line {
-                    place: Place::Line(k + 1),
+                    place: Location::Line(k + 1),
                     words,
                     next: 0,
                 });
             }
         }
-        let missing = missing.to_owned();
-        Err((None, MeshFileProblem::Truncated { missing }))
+        Err((None, cut_short(missing).into()))
     }
 }
 
@@ -100,11 +99,8 @@ impl Line<'_> {
         let word = self.words.get(self.next).copied();
         self.next += 1;
         word.and_then(|w| w.parse().ok()).ok_or_else(|| {
-            let problem = MeshFileProblem::Syntax {
-                expected: expected.to_owned(),
-                found: excerpt(word.unwrap_or("the end of the line")),
-            };
-            (Some(self.place), problem)
+            let found = excerpt(word.unwrap_or("the end of the line"));
+            (Some(self.place), unexpected(expected, &found).into())
         })
     }
 }

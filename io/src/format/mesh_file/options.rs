@@ -2,6 +2,8 @@
 
 use super::error::MeshFileProblem;
 use super::fold_frame::FoldFrame;
+use crate::format::DataError;
+use isosheet_mesh::wording::given;
 
 /// What to do with faces of more than three corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,11 +63,15 @@ impl MeshOptions {
     /// Checks the values.
     ///
     /// # Errors
-    /// [`MeshFileProblem::WeldTolerance`] if the tolerance is negative or not finite.
+    /// [`MeshFileProblem::Options`] if the tolerance is negative or not finite.
     pub fn validate(&self) -> Result<(), MeshFileProblem> {
         match self.weld {
             Some(tolerance) if !(tolerance >= 0.0 && tolerance.is_finite()) => {
-                Err(MeshFileProblem::WeldTolerance { tolerance })
+                let found = given(tolerance);
+                let message = format!("the tolerance for welding vertices is {found}");
+                let remedy = "give a length of 0 or more in the unit of the file";
+                let error = DataError::new(message, remedy).value(tolerance);
+                Err(MeshFileProblem::Options(error))
             }
             _ => Ok(()),
         }

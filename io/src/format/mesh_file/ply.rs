@@ -1,7 +1,8 @@
 //! Reading PLY files (Polygon File Format).
 
-use super::error::{Located, MeshFileProblem, Place};
+use super::error::{CORRECT, Located, Location, announced, unexpected};
 use super::faces::Polyhedron;
+use crate::format::DataError;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,
@@ -21,13 +22,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     }
     if !bytes.starts_with(MAGIC) {
         let first: String = bytes.iter().take(20).map(|&b| char::from(b)).collect();
-        let problem = MeshFileProblem::Syntax {
-            expected: "the word ply".to_owned(),
-            found: first.lines().next().unwrap_or_default().to_owned(),
-        };
-        return Err((Some(Place::Line(1)), problem));
+        let found = first.lines().next().unwrap_or_default();
+        let problem = unexpected("the word ply", found);
+        return Err((Some(Location::Line(1)), problem.into()));
     }
-    let parser = Parser::<Row>::new();
+    let parser = Parser::<PlyRow>::new();
     let mut reader = Reader::new(bytes);
     let header = parser
         .read_header(&mut reader)
@@ -42,12 +41,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
             "vertex" => {
                 for row in rows {
                     mesh.push_vertex(row.place)
-                        .map_err(|problem| (None, problem))?;
+                        .map_err(|problem| (None, problem.into()))?;
                 }
             }
             "face" => {
                 for (k, row) in rows.into_iter().enumerate() {
-                    mesh.push_face(row.corners, Place::Face(k));
+                    mesh.push_face(row.corners, Location::Face(k));
                 }
             }
             _ => {}
@@ -57,12 +56,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
 }
 
 /// A vertex, a face or another element.
-struct Row {
+struct PlyRow {
     place: [f64; 3],
     corners: Vec<i64>,
 }
 
-impl PropertyAccess for Row {
+impl PropertyAccess for PlyRow {
     fn new() -> Self {
         Self {
             place: [0.0; 3],
@@ -92,7 +91,7 @@ impl PropertyAccess for Row {
     }
 }
 
-impl Row {
+impl PlyRow {
     fn set(&mut self, axis: usize, property: &Property) -> PropertyAccessResult {
         self.place[axis] = match *property {
             Property::Char(v) => v.into(),
@@ -112,7 +111,7 @@ impl Row {
 /// Checks that the elements have the properties of a mesh, and that the rest of the file can hold as many as
 /// the header announces.
 fn check(header: &Header, available: u64) -> Result<(), Located> {
-    let problem = |text: String| Err((None, MeshFileProblem::Ply(text)));
+    let problem = |text: String| Err((None, DataError::new(text, CORRECT).into()));
     let has = |element: &ElementDef, name: &str| element.properties.iter().any(|(k, _)| k == name);
     for (name, element) in &header.elements {
         let (count, text) = (element.count as u64, header.encoding == Encoding::Ascii);
@@ -129,13 +128,8 @@ fn check(header: &Header, available: u64) -> Result<(), Located> {
             .saturating_mul(sizes.sum())
             .saturating_sub(u64::from(text));
         if needed > available {
-            let problem = MeshFileProblem::Announced {
-                what: format!("elements {name:?}"),
-                count,
-                needed,
-                available,
-            };
-            return Err((None, problem));
+            let what = format!("elements {name:?}");
+            return Err((None, announced(&what, count, needed, available).into()));
         }
         if name == "vertex"
             && let Some(missing) = ["x", "y", "z"].iter().find(|c| !has(element, c))
@@ -166,6 +160,6 @@ fn size(scalar: &ScalarType) -> u64 {
 fn located(error: &ParseError, is_text: bool) -> Located {
     let message = error.to_string().replace(['\n', '\t'], " ");
     let short: String = message.chars().take(200).collect();
-    let line = error.line().filter(|_| is_text).map(Place::Line);
-    (line, MeshFileProblem::Ply(short))
+    let line = error.line().filter(|_| is_text).map(Location::Line);
+    (line, DataError::new(short, CORRECT).into())
 }

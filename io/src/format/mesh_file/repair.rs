@@ -80,7 +80,7 @@ impl MeshFile {
     /// directions.
     ///
     /// # Errors
-    /// [`MeshFileProblem::Mesh`] if the faces cannot be oriented, [`MeshFileProblem::Fold`] if a fold is
+    /// [`MeshFileProblem::Mesh`] if the faces cannot be oriented, [`MeshFileProblem::Data`] if a fold is
     /// between faces in opposite directions; everything else is then repaired.
     pub fn repair(&mut self) -> Result<Repair, MeshFileProblem> {
         let mut repair = Repair {

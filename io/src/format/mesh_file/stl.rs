@@ -1,7 +1,8 @@
 //! Reading STL files (stereolithography).
 
-use super::error::{Located, MeshFileProblem, Place};
+use super::error::{CORRECT, Located, Location, announced, cut_short};
 use super::faces::Polyhedron;
+use crate::format::DataError;
 use std::io::Cursor;
 
 /// Bytes before the first facet of a binary file: a comment of 80 bytes and the number of facets.
@@ -20,7 +21,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     if bytes.is_empty() {
         return Ok(mesh);
     }
-    let announced = bytes.get(80..HEADER).map(|b| {
+    let header = bytes.get(80..HEADER).map(|b| {
         let count = u32::from_le_bytes([b[0], b[1], b[2], b[3]]);
         (count, HEADER as u64 + FACET as u64 * u64::from(count))
     });
@@ -29,23 +30,18 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
         .trim_ascii_start()
         .to_ascii_lowercase()
         .starts_with(b"solid");
-    match announced {
+    match header {
         Some((_, needed)) if needed == length => binary(&mut mesh, bytes)?,
         _ if is_text => text(&mut mesh, &String::from_utf8_lossy(bytes))?,
         Some((_, needed)) if needed < length => binary(&mut mesh, bytes)?,
         Some((count, needed)) => {
-            let problem = MeshFileProblem::Announced {
-                what: "facets".to_owned(),
-                count: count.into(),
-                needed: needed - HEADER as u64,
-                available: length - HEADER as u64,
-            };
-            return Err((Some(Place::Byte(80)), problem));
+            let [needed, available] = [needed, length].map(|bytes| bytes - HEADER as u64);
+            let problem = announced("facets", count.into(), needed, available);
+            return Err((Some(Location::Byte(80)), problem.into()));
         }
         None => {
-            let missing = "the number of facets of a binary STL file".to_owned();
-            let problem = MeshFileProblem::Truncated { missing };
-            return Err((Some(Place::Byte(bytes.len())), problem));
+            let problem = cut_short("the number of facets of a binary STL file");
+            return Err((Some(Location::Byte(bytes.len())), problem.into()));
         }
     }
     Ok(mesh)
@@ -55,7 +51,7 @@ fn binary(mesh: &mut Polyhedron, bytes: &[u8]) -> Result<(), Located> {
     // The comment of a binary file may begin with "solid" as a text does.
     let rest = &bytes[80..];
     let file = [&[0; 80][..], rest].concat();
-    let place = |facet: usize| Some(Place::Byte(HEADER + FACET * facet));
+    let place = |facet: usize| Some(Location::Byte(HEADER + FACET * facet));
     facets(mesh, file, &place)
 }
 
@@ -82,12 +78,15 @@ fn text(mesh: &mut Polyhedron, text: &str) -> Result<(), Located> {
 fn facets(
     mesh: &mut Polyhedron,
     file: Vec<u8>,
-    place: &dyn Fn(usize) -> Option<Place>,
+    place: &dyn Fn(usize) -> Option<Location>,
 ) -> Result<(), Located> {
     let mut file = Cursor::new(file);
     let failed = |facet: usize, problem: String| {
-        let problem = MeshFileProblem::Stl { facet, problem };
-        (place(facet), problem)
+        let message = format!("facet {facet} (from 0): {problem}");
+        (
+            place(facet),
+            DataError::new(message, CORRECT).at(facet).into(),
+        )
     };
     let first = mesh.face_count();
     let reader = stl_io::create_stl_reader(&mut file).map_err(|e| failed(first, e.to_string()))?;
@@ -96,10 +95,10 @@ fn facets(
         let facet = facet.map_err(|e| failed(k, e.to_string()))?;
         for corner in facet.vertices {
             let pushed = mesh.push_vertex(corner.0.map(f64::from));
-            pushed.map_err(|problem| (place(k), problem))?;
+            pushed.map_err(|problem| (place(k), problem.into()))?;
         }
         let vertex = 3 * k as i64;
-        mesh.push_face([vertex, vertex + 1, vertex + 2], Place::Face(k));
+        mesh.push_face([vertex, vertex + 1, vertex + 2], Location::Face(k));
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Arrays in an archive of numpy: a zip file with one `.npy` file for each.
 
-use super::TrajectoryError;
+use super::wrong_array;
+use crate::format::FileError;
 use crate::format::{input, memory};
 use npyz::npz::file_name_from_array_name;
 use npyz::{AutoSerialize, Deserialize, NpyFile, Order, WriteOptions, WriterBuilder};
@@ -167,13 +168,9 @@ impl<'a> ArchiveReader<'a> {
         &mut self,
         name: &'static str,
         dimensions: usize,
-    ) -> Result<Shaped<T>, TrajectoryError> {
+    ) -> Result<Shaped<T>, FileError> {
         let found = self.get_if_there(name, dimensions)?;
-        found.ok_or_else(|| TrajectoryError::Array {
-            path: self.path.to_owned(),
-            array: name,
-            problem: "it is missing".to_owned(),
-        })
+        found.ok_or_else(|| wrong_array(self.path, name, "it is missing"))
     }
 
     /// An array of so many dimensions, which need not be there.
@@ -181,12 +178,8 @@ impl<'a> ArchiveReader<'a> {
         &mut self,
         name: &'static str,
         dimensions: usize,
-    ) -> Result<Option<Shaped<T>>, TrajectoryError> {
-        let error = |problem: String| TrajectoryError::Array {
-            path: self.path.to_owned(),
-            array: name,
-            problem,
-        };
+    ) -> Result<Option<Shaped<T>>, FileError> {
+        let error = |problem: String| wrong_array(self.path, name, &problem);
         let entry = match self.zip.by_name(&file_name_from_array_name(name)) {
             Err(ZipError::FileNotFound) => return Ok(None),
             other => other.map_err(|e| error(e.to_string()))?,

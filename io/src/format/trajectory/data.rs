@@ -1,6 +1,7 @@
 //! What frames have besides positions.
 
-use super::TrajectoryError;
+use super::not_finite;
+use crate::format::DataError;
 
 /// What a frame has besides its positions. An empty slice says that there is nothing of its kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,13 +21,13 @@ pub struct FrameData<'a> {
 
 impl<'a> FrameData<'a> {
     /// What a function has of each quantity.
-    pub(crate) fn each(of: impl Fn(Quantity) -> &'a [f64]) -> Self {
+    pub(crate) fn each(of: impl Fn(FrameQuantity) -> &'a [f64]) -> Self {
         Self {
-            rod_forces: of(Quantity::RodForces),
-            contact_forces: of(Quantity::ContactForces),
-            gaps: of(Quantity::Gaps),
-            plastic_angles: of(Quantity::PlasticAngles),
-            plastic_curvatures: of(Quantity::PlasticCurvatures),
+            rod_forces: of(FrameQuantity::RodForces),
+            contact_forces: of(FrameQuantity::ContactForces),
+            gaps: of(FrameQuantity::Gaps),
+            plastic_angles: of(FrameQuantity::PlasticAngles),
+            plastic_curvatures: of(FrameQuantity::PlasticCurvatures),
         }
     }
 }
@@ -41,7 +42,7 @@ pub(crate) struct MeshCounts {
 
 /// One kind of data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Quantity {
+pub(crate) enum FrameQuantity {
     RodForces,
     ContactForces,
     Gaps,
@@ -49,7 +50,7 @@ pub(crate) enum Quantity {
     PlasticCurvatures,
 }
 
-impl Quantity {
+impl FrameQuantity {
     /// How many there are.
     pub(crate) const COUNT: usize = 5;
 
@@ -106,24 +107,20 @@ impl Quantity {
         values: &[f64],
         frame: usize,
         expected: usize,
-    ) -> Result<(), TrajectoryError> {
+    ) -> Result<(), DataError> {
         let (array, got) = (self.name(), values.len());
         if got != expected {
-            return Err(TrajectoryError::DataCount {
-                frame,
-                array,
-                got,
-                expected,
-            });
+            let message =
+                format!("frame {frame} has {got} values of `{array}` where {expected} are needed");
+            let error = DataError::new(message, "give them in all frames or in none");
+            return Err(error.at(frame));
         }
         match values.iter().position(|f| !f.is_finite()) {
             None => Ok(()),
-            Some(index) => Err(TrajectoryError::DataNotFinite {
-                frame,
-                array,
-                index,
-                value: values[index],
-            }),
+            Some(index) => {
+                let what = format!("value {index} of `{array}`");
+                Err(not_finite(&what, frame, values[index]))
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Motions whose frames need not all be in memory.
 
 use super::data::FrameData;
-use super::error::TrajectoryError;
+use crate::format::FileError;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
@@ -42,16 +42,16 @@ pub(crate) enum MotionError<E> {
     /// One of them cannot be shown.
     Frame(E),
     /// They are no trajectory, or it cannot be written.
-    Trajectory(TrajectoryError),
+    Trajectory(FileError),
 }
 
-impl<E> From<TrajectoryError> for MotionError<E> {
-    fn from(error: TrajectoryError) -> Self {
+impl<E> From<FileError> for MotionError<E> {
+    fn from(error: FileError) -> Self {
         Self::Trajectory(error)
     }
 }
 
-impl From<MotionError<Infallible>> for TrajectoryError {
+impl From<MotionError<Infallible>> for FileError {
     fn from(error: MotionError<Infallible>) -> Self {
         match error {
             MotionError::Frame(never) => match never {},

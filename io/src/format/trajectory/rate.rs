@@ -1,7 +1,8 @@
 //! Trajectories at another rate of frames.
 
-use super::data::Quantity;
-use super::{Trajectory, TrajectoryError};
+use super::Trajectory;
+use super::data::FrameQuantity;
+use crate::format::DataError;
 
 /// The largest number of frames that are made: an hour of film at 24 frames a second.
 const MOST_FRAMES: f64 = 86_400.0;
@@ -14,23 +15,27 @@ impl Trajectory {
     /// frames only. Of frames at one time the last one counts.
     ///
     /// # Errors
-    /// [`TrajectoryError::Rate`] for a rate that is not positive or gives more than 86 400 frames, and for
+    /// [`DataError`] for a rate that is not positive or gives more than 86 400 frames, and for
     /// frames that do not exist.
-    pub fn at_rate(&self, rate: f64, [first, last]: [usize; 2]) -> Result<Self, TrajectoryError> {
-        let wrong = TrajectoryError::Rate {
-            rate,
-            first,
-            last,
-            frames: self.len(),
+    pub fn at_rate(&self, rate: f64, [first, last]: [usize; 2]) -> Result<Self, DataError> {
+        let wrong = || {
+            let message = format!(
+                "{rate} frames a second from frame {first} to frame {last}: the trajectory has {} frames, counted \
+                 from 0",
+                self.len()
+            );
+            let remedy = "give a positive rate with at most 86 400 frames in all, and frames that exist, the first \
+                          before the last";
+            DataError::new(message, remedy).value(rate)
         };
         let Some(times) = self.t.get(first..=last).filter(|times| !times.is_empty()) else {
-            return Err(wrong);
+            return Err(wrong());
         };
         let start = times[0];
         // A part of a frame that rounding has lost at the end is given back.
         let count = ((times[times.len() - 1] - start) * rate + 1e-6).floor();
         if !(rate > 0.0 && count < MOST_FRAMES) {
-            return Err(wrong);
+            return Err(wrong());
         }
         let mut resampled = self.without_frames();
         for k in 0..=count as usize {
@@ -50,7 +55,7 @@ impl Trajectory {
             let [p, q] = [a, b].map(|k| &self.x[n * k..n * (k + 1)]);
             resampled.t.push(t);
             resampled.x.extend(p.iter().zip(q).map(mix));
-            for quantity in Quantity::ALL {
+            for quantity in FrameQuantity::ALL {
                 if let (Some(p), Some(q)) = (self.values(quantity, a), self.values(quantity, b)) {
                     let kept = &mut resampled.data[quantity as usize];
                     kept.extend(p.iter().zip(q).map(mix));
@@ -116,10 +121,7 @@ mod tests {
             (24.0, [3, 2]),
         ] {
             let result = trajectory.at_rate(rate, range);
-            assert!(
-                matches!(result, Err(TrajectoryError::Rate { .. })),
-                "{rate} {range:?}"
-            );
+            assert!(result.is_err(), "{rate} {range:?}");
         }
     }
 }

@@ -1,3 +1,4 @@
+use isosheet_mesh::Advice;
 use isosheet_mesh::generate;
 use npyz::NpyFile;
 use npyz::npz::{array_name_from_file_name, file_name_from_array_name};
@@ -167,33 +168,25 @@ fn arrays_have_the_documented_names_types_and_shapes() {
 fn bad_frames_are_refused() {
     let (sheet, mut run) = sample();
     let mut x = sheet.positions().to_vec();
-    assert!(matches!(
-        run.push(1.0, &x[..6]),
-        Err(TrajectoryError::WrongLength {
-            frame: 5,
-            got: 6,
-            vertices: 21
-        })
-    ));
-    assert!(matches!(
-        run.push(0.05, &x),
-        Err(TrajectoryError::Time { frame: 5, .. })
-    ));
-    assert!(matches!(
-        run.push(f64::NAN, &x),
-        Err(TrajectoryError::Time { .. })
-    ));
+    for (t, x, says) in [
+        (
+            1.0,
+            &x[..6],
+            "frame 5 has 6 coordinates, but the mesh has 21 vertices",
+        ),
+        (0.05, &x[..], "frame 5 has the time 0.05 s after "),
+        (f64::NAN, &x[..], "frame 5 has the time NaN s after "),
+    ] {
+        match run.push(t, x) {
+            Err(error) => {
+                assert!(error.message.starts_with(says), "{error}");
+                assert_eq!(error.index, Some(5));
+            }
+            Ok(()) => panic!("{says}"),
+        }
+    }
     x[4] = f64::NAN;
     let error = run.push(1.0, &x).unwrap_err();
-    assert!(matches!(
-        error,
-        TrajectoryError::NotFinite {
-            frame: 5,
-            vertex: VertexId(1),
-            axis: 1,
-            ..
-        }
-    ));
     assert!(
         error
             .to_string()
@@ -300,35 +293,26 @@ fn bad_frames_are_refused() {
     ] {
         let (mut run, frame) = (run.clone(), run.len());
         match run.push_with(1.0, &x, &data) {
-            Err(TrajectoryError::DataCount {
-                frame: f,
-                array: a,
-                got: g,
-                expected: e,
-            }) => assert_eq!((f, a, g, e), (frame, array, got, expected)),
-            other => panic!("{other:?}"),
+            Err(error) => assert_eq!(
+                error.to_string(),
+                format!("frame {frame} has {got} values of `{array}` where {expected} are needed")
+            ),
+            Ok(()) => panic!("{array}"),
         }
         assert_eq!(run.len(), frame, "nothing was added");
     }
     let mut forces = forces.clone();
     forces[7] = f64::NEG_INFINITY;
     let contact_forces = &forces[..];
-    assert!(matches!(
-        run.push_with(
-            1.0,
-            &x,
-            &FrameData {
-                contact_forces,
-                ..whole
-            }
-        ),
-        Err(TrajectoryError::DataNotFinite {
-            frame: 5,
-            array: "contact_forces",
-            index: 7,
-            ..
-        })
-    ));
+    let data = FrameData {
+        contact_forces,
+        ..whole
+    };
+    let error = run.push_with(1.0, &x, &data).unwrap_err().to_string();
+    assert!(
+        error.starts_with("value 7 of `contact_forces` in frame 5 is -inf"),
+        "{error}"
+    );
     assert_eq!((run.len(), without.len()), (5, 1), "nothing was added");
 }
 
@@ -347,7 +331,7 @@ fn write_unchecked(run: &Trajectory, path: &Path) {
     let lengths = run.rest_lengths.iter().copied();
     npz.put("rest_lengths", &[run.rest_lengths.len() as u64], lengths)
         .unwrap();
-    for quantity in Quantity::ALL {
+    for quantity in FrameQuantity::ALL {
         let shape = [&[frames], &quantity.shape(run.counts())[..]].concat();
         let values = run.data[quantity as usize].iter().copied();
         npz.put(quantity.name(), &shape, values).unwrap();
@@ -359,15 +343,10 @@ fn write_unchecked(run: &Trajectory, path: &Path) {
 fn other_files_are_refused() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("x.npz");
-    assert!(matches!(
-        Trajectory::read(&path),
-        Err(TrajectoryError::Read { .. })
-    ));
+    assert!(Trajectory::read(&path).is_err());
     std::fs::write(&path, b"not a zip").unwrap();
-    assert!(matches!(
-        Trajectory::read(&path),
-        Err(TrajectoryError::Read { .. })
-    ));
+    let error = Trajectory::read(&path).unwrap_err();
+    assert_eq!(error.advice(), Some("check that it is an .npz file"));
     let (_, run) = sample();
     run.write(&path).unwrap();
     let whole = std::fs::read(&path).unwrap();
@@ -379,8 +358,11 @@ fn other_files_are_refused() {
         change(&mut run);
         write_unchecked(&run, &path);
         match Trajectory::read(&path) {
-            Err(TrajectoryError::Array { array: found, .. }) => assert_eq!(found, array),
-            other => panic!("{array}: {other:?}"),
+            Err(error) => {
+                let named = format!("array `{array}`: ");
+                assert!(error.to_string().contains(&named), "{error}");
+            }
+            Ok(_) => panic!("{array}"),
         }
     };
     broken(&|r| r.faces[3][1] = 21, "faces");
@@ -398,12 +380,6 @@ fn other_files_are_refused() {
     npz.put("t", &[1], [0.0].into_iter()).unwrap();
     npz.put("x", &[3], [0.0f64; 3].into_iter()).unwrap();
     npz.finish().unwrap();
-    match Trajectory::read(&path) {
-        Err(TrajectoryError::Array {
-            array: "x",
-            problem,
-            ..
-        }) => assert!(problem.contains("1 dimensions"), "{problem}"),
-        other => panic!("{other:?}"),
-    }
+    let error = Trajectory::read(&path).unwrap_err().to_string();
+    assert!(error.contains("array `x`: it has 1 dimensions"), "{error}");
 }

@@ -1,8 +1,7 @@
 //! Why there is no gallery.
 
-use crate::format::{JsonError, WriteError};
+use crate::format::FileError;
 use isosheet_mesh::Advice;
-use std::io;
 use std::path::PathBuf;
 
 /// Why a gallery cannot be made.
@@ -21,46 +20,25 @@ pub enum GalleryError {
         /// The folder.
         folder: PathBuf,
     },
-    /// The entries name a run as no gallery does.
-    #[error("{} names the run {name:?}, which is no name of a file of a gallery", path.display())]
-    Name {
-        /// The file with the entries.
-        path: PathBuf,
-        /// The name.
-        name: String,
-    },
     /// A link has the name of the folder of pages and pictures.
     #[error("{} is a link or no folder", path.display())]
     Linked {
         /// The folder.
         path: PathBuf,
     },
-    /// A folder cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The folder.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A file cannot be written.
+    /// A file or a folder cannot be read or written.
     #[error(transparent)]
-    Write(#[from] WriteError),
-    /// The entries cannot be read or written.
-    #[error(transparent)]
-    Json(#[from] JsonError),
+    File(#[from] FileError),
 }
 
 impl Advice for GalleryError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::NoRuns { .. } => Some("name folders in which `isosheet simulate` has written"),
-            Self::Foreign { .. } | Self::Name { .. } | Self::Linked { .. } => {
+            Self::Foreign { .. } | Self::Linked { .. } => {
                 Some("choose an empty or a new folder with --out")
             }
-            Self::Read { .. } => Some("check the path and the permissions"),
-            Self::Write(error) => error.advice(),
-            Self::Json(error) => error.advice(),
+            Self::File(error) => error.advice(),
         }
     }
 }

@@ -1,10 +1,9 @@
 //! Why a sweep cannot be made, run or collected.
 
-use super::run::{MOST_RUNS, SweepRun};
-use crate::format::{JsonError, WriteError};
+use super::run::SweepRun;
+use crate::format::{DataError, FileError};
 use crate::scene::SceneFileError;
 use isosheet_mesh::Advice;
-use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -12,23 +11,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SweepError {
-    /// There is no key.
-    #[error("a sweep needs a key with values")]
-    NoKeys,
-    /// Two keys are the same, or one contains the other.
-    #[error("`{first}` and `{second}` change the same part of the scene")]
-    SameKey {
-        /// The first key.
-        first: String,
-        /// The second key.
-        second: String,
-    },
-    /// There are too many runs.
-    #[error("these are {count} runs, more than {MOST_RUNS}")]
-    TooMany {
-        /// The number of runs.
-        count: usize,
-    },
+    /// There is no key, two keys change the same part of the scene, or there are too many runs.
+    #[error(transparent)]
+    Keys(DataError),
     /// A path cannot be part of a line of text.
     #[error("{} is not valid UTF-8 or has a control character", path.display())]
     Path {
@@ -58,25 +43,6 @@ pub enum SweepError {
         /// The folder.
         folder: PathBuf,
     },
-    /// A file or a folder cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The path.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// The table is not one of a sweep.
-    #[error("{}: {problem}", path.display())]
-    Table {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-    },
-    /// A summary cannot be read.
-    #[error(transparent)]
-    Summary(#[from] JsonError),
     /// A folder has neither a sweep nor a run.
     #[error(
         "{} is the folder neither of a sweep (with runs.csv) nor of a run (with scene.toml)", folder.display()
@@ -85,30 +51,25 @@ pub enum SweepError {
         /// The folder.
         folder: PathBuf,
     },
-    /// A file cannot be written.
+    /// A file or a folder cannot be read or written, or is not what it should be.
     #[error(transparent)]
-    Write(#[from] WriteError),
+    File(#[from] FileError),
 }
 
 impl Advice for SweepError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::NoKeys => Some("name one, for example `stop.time=0.5,1,2`"),
-            Self::SameKey { .. } => Some("give one key with all its values"),
-            Self::TooMany { .. } => Some("give fewer values, or make several sweeps"),
+            Self::Keys(error) => error.advice(),
             Self::Path { .. } => Some("rename it or choose another --out"),
             Self::Scene(error) => error.advice(),
             Self::OtherSweep { .. } => Some(
                 "choose another folder with --out, or add values at the end of the list of its first key",
             ),
             Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
-            Self::Read { .. } => Some("check the path and the permissions"),
-            Self::Table { .. } => Some("make the sweep anew in another folder"),
-            Self::Summary(error) => error.advice(),
             Self::NothingToCollect { .. } => {
                 Some("name folders that `isosheet sweep` or `isosheet simulate` wrote")
             }
-            Self::Write(error) => error.advice(),
+            Self::File(error) => error.advice(),
             Self::Refused(..) => None,
         }
     }

@@ -1,7 +1,7 @@
 //! The table of the runs of a sweep.
 
 use super::SweepError;
-use crate::format::{input, write_atomically};
+use crate::format::{FileError, input, write_atomically};
 use std::path::Path;
 
 /// The first two columns; the keys follow.
@@ -38,15 +38,10 @@ impl SweepTable {
     }
 
     /// Reads what [`SweepTable::write`] has written.
-    pub(crate) fn read(path: &Path) -> Result<Self, SweepError> {
-        let text = input::read(path).map_err(|source| SweepError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        Self::parse(&text).map_err(|problem| SweepError::Table {
-            path: path.to_owned(),
-            problem,
-        })
+    pub(crate) fn read(path: &Path) -> Result<Self, FileError> {
+        let text = input::read(path).map_err(|e| FileError::unreadable(path, e))?;
+        let remedy = "make the sweep anew in another folder";
+        Self::parse(&text).map_err(|problem| FileError::content(path, problem, remedy))
     }
 
     fn parse(text: &[u8]) -> Result<Self, String> {

@@ -1,10 +1,9 @@
 //! A key of a scene and the values that a sweep gives it.
 
-use crate::scene::{Key, KeyError};
-use isosheet_mesh::Advice;
+use crate::DataError;
+use crate::scene::Key;
 use std::fmt;
 use std::str::FromStr;
-use thiserror::Error;
 
 /// A key of a scene and the values that it takes, written as `key=a,b,c`.
 ///
@@ -16,71 +15,13 @@ use thiserror::Error;
 /// let v: Variation = "forces.gravity=[0, 0, -9.81],[0, 0, -1.62]".parse()?;
 /// assert_eq!(v.key(), "forces.gravity");
 /// assert_eq!(v.values(), ["[0, 0, -9.81]", "[0, 0, -1.62]"]);
-/// # Ok::<(), isosheet_io::run::VariationError>(())
+/// # Ok::<(), isosheet_io::DataError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Variation {
     key: String,
     place: Key,
     values: Vec<String>,
-}
-
-/// A text that is not of the form `key=a,b,c`.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum VariationError {
-    /// There is no equals sign.
-    #[error("`{text}` is not of the form key=a,b,c")]
-    Form {
-        /// The text.
-        text: String,
-    },
-    /// What is before the equals sign is not a key.
-    #[error(transparent)]
-    Key(#[from] KeyError),
-    /// A value is empty.
-    #[error("value {number} of `{key}` is empty")]
-    Empty {
-        /// The key.
-        key: String,
-        /// Which value, from 1.
-        number: usize,
-    },
-    /// A quote, bracket or brace has no partner.
-    #[error("the values of `{key}` end inside of a quote, bracket or brace")]
-    Open {
-        /// The key.
-        key: String,
-    },
-    /// A value is given twice.
-    #[error("`{key}` takes the value {value} twice")]
-    Twice {
-        /// The key.
-        key: String,
-        /// The value.
-        value: String,
-    },
-    /// A line break or another control character, which a line of a table cannot hold.
-    #[error("`{key}` has a control character")]
-    Control {
-        /// The key.
-        key: String,
-    },
-}
-
-impl Advice for VariationError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::Form { .. } => Some("write for example `stop.time=0.5,1,2`"),
-            Self::Key(error) => error.advice(),
-            Self::Empty { .. } => Some("take out the comma, or write \"\" for an empty text"),
-            Self::Open { .. } => Some("close it"),
-            Self::Twice { .. } => Some("give it once, since both runs would be the same"),
-            Self::Control { .. } => {
-                Some("write values on one line, and \\n in quotes for a line break")
-            }
-        }
-    }
 }
 
 impl Variation {
@@ -101,27 +42,37 @@ impl Variation {
 }
 
 impl FromStr for Variation {
-    type Err = VariationError;
+    type Err = DataError;
 
-    fn from_str(text: &str) -> Result<Self, VariationError> {
-        let form = || VariationError::Form {
-            text: text.to_owned(),
+    fn from_str(text: &str) -> Result<Self, DataError> {
+        let form = || {
+            let message = format!("`{text}` is not of the form key=a,b,c");
+            DataError::new(message, "write for example `stop.time=0.5,1,2`")
         };
         let (key, values) = text.split_once('=').ok_or_else(form)?;
         let key = key.trim().to_owned();
         let place = key.parse()?;
         if text.chars().any(char::is_control) {
-            return Err(VariationError::Control { key });
+            let message = format!("`{key}` has a control character");
+            let remedy = "write values on one line, and \\n in quotes for a line break";
+            return Err(DataError::new(message, remedy));
         }
-        let pieces = split(values).ok_or_else(|| VariationError::Open { key: key.clone() })?;
+        let pieces = split(values).ok_or_else(|| {
+            let message = format!("the values of `{key}` end inside of a quote, bracket or brace");
+            DataError::new(message, "close it")
+        })?;
         let mut values: Vec<String> = Vec::new();
         for (k, piece) in pieces.into_iter().enumerate() {
             let value = piece.trim().to_owned();
             if value.is_empty() {
-                return Err(VariationError::Empty { key, number: k + 1 });
+                let message = format!("value {} of `{key}` is empty", k + 1);
+                let remedy = "take out the comma, or write \"\" for an empty text";
+                return Err(DataError::new(message, remedy).at(k + 1));
             }
             if values.contains(&value) {
-                return Err(VariationError::Twice { key, value });
+                let message = format!("`{key}` takes the value {value} twice");
+                let remedy = "give it once, since both runs would be the same";
+                return Err(DataError::new(message, remedy));
             }
             values.push(value);
         }
@@ -213,18 +164,20 @@ mod tests {
 
     #[test]
     fn what_is_no_list_of_values_is_refused() {
-        type E = VariationError;
-        let error = |text: &str| text.parse::<Variation>().unwrap_err();
-        assert!(matches!(error("stop.time"), E::Form { .. }));
+        let says = |text: &str, says: &str| {
+            let error = text.parse::<Variation>().unwrap_err();
+            assert!(error.message.contains(says), "{text}: {error}");
+        };
+        says("stop.time", "is not of the form");
         for key in [" ", "obstacle[0.friction", "obstacle[0]].friction", "a..b"] {
-            assert!(matches!(error(&format!("{key}=1")), E::Key(_)), "{key}");
+            says(&format!("{key}=1"), "is not a key");
         }
-        assert!(matches!(error("a="), E::Empty { number: 1, .. }));
-        assert!(matches!(error("a=1,,2"), E::Empty { number: 2, .. }));
+        says("a=", "value 1 of `a` is empty");
+        says("a=1,,2", "value 2 of `a` is empty");
         for open in ["a=[1,2", "a=1]", "a=\"x", "a='x,y", "a={b=\"}\"", "a=\"\\"] {
-            assert!(matches!(error(open), E::Open { .. }), "{open}");
+            says(open, "end inside of a quote");
         }
-        assert!(matches!(error("a=1,2,1"), E::Twice { .. }));
-        assert!(matches!(error("a=\"x\ny\""), E::Control { .. }));
+        says("a=1,2,1", "takes the value 1 twice");
+        says("a=\"x\ny\"", "a control character");
     }
 }

@@ -173,7 +173,7 @@ proptest! {
         let mut edited: DocumentMut = text.parse().unwrap();
         let done = apply(&mut edited, std::slice::from_ref(&edit));
         if is_entry && !is_table {
-            let refused = matches!(done, Err(EditError { problem: EditProblem::NoTable { .. }, .. }));
+            let refused = done.as_ref().is_err_and(|e| e.to_string().contains("are tables"));
             prop_assert!(refused, "{edit}: {done:?}");
             prop_assert_eq!(edited.to_string(), text, "a refused edit changes nothing");
         } else {
@@ -219,10 +219,7 @@ fn entries_of_lists_of_tables_are_replaced_in_their_place() {
     );
     for wrong in ["1", "\"x\"", "[]", "[{shape=1}]", "{shape=..}"] {
         let error = edit(&format!("obstacle[1]={wrong}")).unwrap_err();
-        assert!(
-            matches!(error.problem, EditProblem::NoTable { .. }),
-            "{error}"
-        );
+        assert!(error.problem.message.ends_with("are tables"), "{error}");
         assert!(error.advice().unwrap().contains("braces"));
     }
     for wrong in [
@@ -234,7 +231,7 @@ fn entries_of_lists_of_tables_are_replaced_in_their_place() {
     ] {
         let error = edit(wrong).unwrap_err();
         assert!(
-            matches!(error.problem, EditProblem::Place { .. }),
+            error.problem.message.starts_with("the scene has no place"),
             "{error}"
         );
     }
@@ -245,7 +242,7 @@ fn entries_of_lists_of_tables_are_replaced_in_their_place() {
         "sheet..a=1",
     ] {
         let error = edit(wrong).unwrap_err();
-        assert!(matches!(error.problem, EditProblem::Key(_)), "{error}");
+        assert!(error.problem.message.ends_with("is not a key"), "{error}");
         assert!(error.to_string().contains(wrong), "{error}");
     }
 }

@@ -18,7 +18,7 @@ pub(in crate::cost) struct Work {
     pub(super) name: String,
     /// What happens, for people.
     pub(super) title: String,
-    scene: Scene,
+    scene: KindOfScene,
     /// Edits of a scene file besides those of the size and of the start.
     #[serde(default)]
     pub(super) edits: Vec<String>,
@@ -51,7 +51,7 @@ fn single() -> Vec<usize> {
 /// What a run is made of.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Scene {
+enum KindOfScene {
     /// A file of `xtask/scenes`, or a kind of `isosheet new`.
     File(String),
     /// A scene that other programs have been measured on, by several methods: a square M^k of the size k.
@@ -62,7 +62,7 @@ enum Scene {
 pub(super) type Stepped = (Named, f64);
 
 /// A run before its first step.
-pub(super) struct Start {
+pub(super) struct PreparedRun {
     pub(super) simulation: Simulation,
     pub(super) plan: Plan,
     /// Whether the scene ends before.
@@ -84,8 +84,8 @@ impl Work {
     pub(super) fn size_name(&self, size: u32) -> String {
         let is_level = |key: &String| key == "sheet.mesh.square.level";
         match &self.scene {
-            Scene::File(_) if self.keys.is_empty() => String::new(),
-            Scene::File(_) if !self.keys.iter().all(is_level) => size.to_string(),
+            KindOfScene::File(_) if self.keys.is_empty() => String::new(),
+            KindOfScene::File(_) if !self.keys.iter().all(is_level) => size.to_string(),
             _ => format!("M^{size}"),
         }
     }
@@ -94,7 +94,7 @@ impl Work {
     /// file names its own.
     pub(super) fn methods(&self) -> Vec<Option<Stepped>> {
         let default = (DEFAULT, Method::default());
-        let Scene::Bumped(bumped) = &self.scene else {
+        let KindOfScene::Bumped(bumped) = &self.scene else {
             return vec![None];
         };
         if let Bumped::Tablecloth(_) = bumped {
@@ -125,7 +125,7 @@ impl Work {
 
     /// The scene file with the edits that make it the row of the table, for people.
     pub(super) fn command(&self, size: u32) -> Option<String> {
-        let Scene::File(file) = &self.scene else {
+        let KindOfScene::File(file) = &self.scene else {
             return None;
         };
         let words: Vec<String> = self.edits(size).collect();
@@ -138,7 +138,7 @@ impl Work {
     /// # Errors
     /// A scene file that cannot be read or edited.
     pub(super) fn file(&self, size: u32, start: u64) -> Result<Option<FigureScene>> {
-        let Scene::File(file) = &self.scene else {
+        let KindOfScene::File(file) = &self.scene else {
             return Ok(None);
         };
         let mut edits: Vec<String> = self.edits(size).collect();
@@ -165,10 +165,10 @@ impl Work {
         size: u32,
         method: Option<&Stepped>,
         start: u64,
-    ) -> Result<Option<Start>> {
-        if let (Scene::Bumped(bumped), Some(((_, method), step))) = (&self.scene, method) {
+    ) -> Result<Option<PreparedRun>> {
+        if let (KindOfScene::Bumped(bumped), Some(((_, method), step))) = (&self.scene, method) {
             let simulation = bumped.start(size, method.clone())?;
-            return Ok(Some(Start {
+            return Ok(Some(PreparedRun {
                 plan: Plan::new(*step, bumped.duration()),
                 is_over: Box::new(|_| false),
                 simulation,
@@ -182,7 +182,7 @@ impl Work {
         let simulation = setup.start()?;
         let supports = SupportForces::new(origins, &simulation, scene.scene().support.len());
         let stop = scene.scene().stop.clone();
-        Ok(Some(Start {
+        Ok(Some(PreparedRun {
             plan: Plan::new(scene.frame(), scene.frames() as f64 * scene.frame()),
             is_over: Box::new(move |s| stop.is_force_reached(|| supports.of(s))),
             simulation,

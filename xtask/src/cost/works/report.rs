@@ -1,6 +1,6 @@
 //! What the rows say.
 
-use super::run::Row;
+use super::run::WorkRow;
 use crate::cost::DEFAULT;
 use crate::draw::{Chart, Charts, Series};
 use crate::report::{Bound, Finding, LENGTHS, Table, columns, exponent};
@@ -20,13 +20,15 @@ const OVER_SIZES: [(&str, &str); 4] = [
 const EXACT: f64 = 1e-9;
 
 /// The rows of a table, each compared with the fastest of the same work and size that keeps the lengths.
-pub(super) fn table(caption: &str, mut rows: Vec<Row>) -> Result<Table> {
+pub(super) fn table(caption: &str, mut rows: Vec<WorkRow>) -> Result<Table> {
     let all = rows.clone();
     for row in &mut rows {
         let alike = all
             .iter()
             .filter(|r| (&r.work, &r.size) == (&row.work, &row.size));
-        let exact = alike.filter(|r| r.strain <= EXACT).filter_map(Row::rate);
+        let exact = alike
+            .filter(|r| r.strain <= EXACT)
+            .filter_map(WorkRow::rate);
         let least = exact.reduce(f64::min);
         row.times_fastest_exact = row.rate().zip(least).map(|(rate, least)| rate / least);
     }
@@ -34,8 +36,8 @@ pub(super) fn table(caption: &str, mut rows: Vec<Row>) -> Result<Table> {
 }
 
 /// The runs of the default with its default step, for the README.
-pub(super) fn default(rows: &[Row]) -> Table {
-    let is_default = |r: &&Row| r.method.as_deref() == Some(DEFAULT) && r.step_s == STEP;
+pub(super) fn default(rows: &[WorkRow]) -> Table {
+    let is_default = |r: &&WorkRow| r.method.as_deref() == Some(DEFAULT) && r.step_s == STEP;
     Table::of(
         "A square sheet that hangs by a corner and moves for one second, in steps of 1/60 s on one core.",
         rows.iter().filter(is_default),
@@ -49,38 +51,39 @@ pub(super) fn default(rows: &[Row]) -> Table {
 }
 
 /// The rows of a kind that ended, as numbers of vertices with a quantity.
-fn points(rows: &[Row], work: &str, value: fn(&Row) -> Option<f64>) -> Vec<[f64; 2]> {
+fn points(rows: &[WorkRow], work: &str, value: fn(&WorkRow) -> Option<f64>) -> Vec<[f64; 2]> {
     let of = rows.iter().filter(|r| r.work == work);
     let points = of.filter_map(|r| Some([r.vertices as f64, value(r)?]));
     points.collect()
 }
 
 /// Fitted powers over the sizes, by kind.
-pub(super) fn powers(rows: &[Row]) -> Table {
-    let power = |work: &str, value: fn(&Row) -> Option<f64>| exponent(&points(rows, work, value));
+pub(super) fn powers(rows: &[WorkRow]) -> Table {
+    let power =
+        |work: &str, value: fn(&WorkRow) -> Option<f64>| exponent(&points(rows, work, value));
     let vertices = |work: &str| {
-        let points = points(rows, work, Row::rate);
+        let points = points(rows, work, WorkRow::rate);
         let ends = points.first().zip(points.last());
         ends.map(|(first, last)| format!("{} to {}", first[0], last[0]))
     };
-    let is_fitted = |(work, _): &(&str, &str)| power(work, Row::rate).is_some();
+    let is_fitted = |(work, _): &(&str, &str)| power(work, WorkRow::rate).is_some();
     Table::of(
         "Fitted powers of the number of vertices V: of the CPU time of whole runs, and of the factorisations of a step",
         OVER_SIZES.into_iter().filter(is_fitted),
         columns! { kind;
             "runs" => kind.1,
             "vertices" => vertices(kind.0),
-            "power_of_the_time" => power(kind.0, Row::rate),
-            "power_of_the_factorisations" => power(kind.0, Row::factorisations),
+            "power_of_the_time" => power(kind.0, WorkRow::rate),
+            "power_of_the_factorisations" => power(kind.0, WorkRow::factorisations),
         },
     )
 }
 
 /// CPU seconds for a simulated second against the number of vertices, by kind.
-pub(super) fn chart(rows: &[Row]) -> Charts {
+pub(super) fn chart(rows: &[WorkRow]) -> Charts {
     let mut series = Vec::new();
     for (k, (work, name)) in OVER_SIZES.into_iter().enumerate() {
-        series.push(Series::styled(k, name, points(rows, work, Row::rate)));
+        series.push(Series::styled(k, name, points(rows, work, WorkRow::rate)));
     }
     series.retain(|s| !s.points.is_empty());
     let (x, y) = ("vertices", "CPU seconds / simulated second");
@@ -89,13 +92,13 @@ pub(super) fn chart(rows: &[Row]) -> Charts {
 }
 
 /// Lengths of rods by the methods of scene files, gaps, and what is checked beside the contact code.
-pub(super) fn required(rows: &[Row]) -> Vec<Finding> {
+pub(super) fn required(rows: &[WorkRow]) -> Vec<Finding> {
     let files = rows.iter().filter(|r| r.method.is_none());
     let rods: Vec<_> = files
         .filter(|r| r.model == "rods")
         .map(|r| r.strain)
         .collect();
-    let of = |value: fn(&Row) -> Option<f64>| rows.iter().filter_map(value).collect::<Vec<_>>();
+    let of = |value: fn(&WorkRow) -> Option<f64>| rows.iter().filter_map(value).collect::<Vec<_>>();
     let gap = Bound::Above(0.0);
     let all = [
         (
@@ -119,8 +122,8 @@ mod tests {
     use super::*;
     use crate::report::{Cell, Verdict};
 
-    fn row(work: &str, level: u32, threads: usize, cpu: f64) -> Row {
-        Row {
+    fn row(work: &str, level: u32, threads: usize, cpu: f64) -> WorkRow {
+        WorkRow {
             work: work.to_owned(),
             what_happens: "a sheet".to_owned(),
             size: format!("M^{level}"),
@@ -132,21 +135,21 @@ mod tests {
             factorisations_per_step: Some(5.0),
             strain: 1e-13,
             smallest_gap_m: Some(1e-4),
-            ..Row::default()
+            ..WorkRow::default()
         }
     }
 
     #[test]
     fn powers_and_ratios_are_those_of_runs_that_ended() {
         let cost = |level: u32| f64::from((2_u32 << level) + 1).powf(3.0);
-        let mut rows: Vec<Row> = (2..=4).map(|k| row("w1", k, 1, cost(k))).collect();
+        let mut rows: Vec<WorkRow> = (2..=4).map(|k| row("w1", k, 1, cost(k))).collect();
         let text = powers(&rows).text();
         assert!(text.contains("hanging, rods  81 to 1089  1.5 "), "{text}");
         rows[2].failure = Some("late".to_owned());
         let text = powers(&rows).text();
         assert!(text.contains("81 to 289"), "{text}");
-        assert_eq!(points(&rows, "w1", Row::rate).len(), 2);
-        let verdicts = |rows: &[Row]| -> Vec<Verdict> {
+        assert_eq!(points(&rows, "w1", WorkRow::rate).len(), 2);
+        let verdicts = |rows: &[WorkRow]| -> Vec<Verdict> {
             required(rows).iter().map(Finding::verdict).collect()
         };
         assert_eq!(verdicts(&rows), [Verdict::Passed; 2]);

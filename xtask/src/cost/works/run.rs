@@ -1,7 +1,7 @@
 //! The runs of a row: from several starts, by a method, on a number of threads.
 
 use super::Task;
-use super::kinds::Start;
+use super::kinds::PreparedRun;
 use crate::progress::Progress;
 use crate::report::{Effort, extremes, median, number, peak_memory, reset_peak_memory, rounded};
 use crate::runs::{Course, Ending, Plan};
@@ -15,7 +15,7 @@ use std::time::Duration;
 
 /// A run from one start.
 #[derive(Clone, Debug, Default)]
-struct Run {
+struct TimedRun {
     /// Its CPU time is that of all threads, its strain that of the edges of rods or of the faces of an elastic
     /// sheet.
     course: Course,
@@ -27,7 +27,7 @@ struct Run {
     peak: Option<f64>,
 }
 
-impl Run {
+impl TimedRun {
     /// A change of the energy as part of the potential energy released; 0 if none was.
     fn part(&self, k: usize) -> f64 {
         let part = self.changes[k] / self.released;
@@ -38,7 +38,7 @@ impl Run {
 /// A row of the table: medians over the starts where nothing else is said. The fields are the columns, by
 /// their names.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Row {
+pub(super) struct WorkRow {
     pub(super) work: String,
     pub(super) what_happens: String,
     pub(super) size: String,
@@ -81,7 +81,7 @@ pub(super) struct Row {
     pub(super) scene: Option<String>,
 }
 
-impl Row {
+impl WorkRow {
     /// Whether all runs came to their ends.
     pub(super) fn is_good(&self) -> bool {
         self.failure.is_none()
@@ -98,9 +98,9 @@ impl Row {
     }
 
     /// The same row with what its runs gave.
-    fn with(self, runs: &[Run]) -> Self {
+    fn with(self, runs: &[TimedRun]) -> Self {
         // The median of a number that all runs have.
-        let median = |of: &dyn Fn(&Run) -> Option<f64>| {
+        let median = |of: &dyn Fn(&TimedRun) -> Option<f64>| {
             let all: Option<Vec<f64>> = runs.iter().map(of).collect();
             all.and_then(median)
         };
@@ -137,7 +137,7 @@ impl Row {
 ///
 /// # Errors
 /// A scene of which no simulation can be made; [`Interrupted`](crate::interrupt::Interrupted).
-pub(super) fn measure(task: &Task, effort: Effort) -> Result<Row> {
+pub(super) fn measure(task: &Task, effort: Effort) -> Result<WorkRow> {
     // Starts, steps after which a run ends, and its longest time of the processor, seconds.
     let (starts, steps, patience) = effort.pick(
         (1, 4.0, 10.0),
@@ -154,7 +154,7 @@ pub(super) fn measure(task: &Task, effort: Effort) -> Result<Row> {
     let first = start(1)?;
     let model = first.simulation.model();
     let is_elastic = model.elastic_sheet().is_some();
-    let row = Row {
+    let row = WorkRow {
         work: work.name.clone(),
         what_happens: work.title.clone(),
         size: work.size_name(task.size),
@@ -167,7 +167,7 @@ pub(super) fn measure(task: &Task, effort: Effort) -> Result<Row> {
         step_s: first.plan.step,
         threads: task.threads,
         scene: work.command(task.size),
-        ..Row::default()
+        ..WorkRow::default()
     };
     let mut runs = Vec::new();
     for number in 1..=starts {
@@ -186,8 +186,8 @@ pub(super) fn measure(task: &Task, effort: Effort) -> Result<Row> {
     Ok(row)
 }
 
-fn run(start: Start) -> Result<Run> {
-    let Start {
+fn run(start: PreparedRun) -> Result<TimedRun> {
+    let PreparedRun {
         mut simulation,
         plan,
         is_over,
@@ -216,7 +216,7 @@ fn run(start: Start) -> Result<Run> {
     if ends {
         course.ending = Ending::Complete;
     }
-    Ok(Run {
+    Ok(TimedRun {
         changes: [simulation.energy() - energy, course.drift],
         released: height - potential(&simulation),
         course,
@@ -239,26 +239,26 @@ mod tests {
                 ..Course::default()
             };
             (course.cost.cpu, course.cost.factorisations) = (cpu, factorisations);
-            Run {
+            TimedRun {
                 course,
-                ..Run::default()
+                ..TimedRun::default()
             }
         };
         let good = |cpu, factorisations| run(cpu, factorisations, Ending::Complete);
         let mut runs = vec![good(5.0, 10), good(1.0, 10), good(2.0, 15)];
-        let row = Row::default().with(&runs);
+        let row = WorkRow::default().with(&runs);
         let found = (row.rate(), row.largest_over_smallest, row.strain);
         assert_eq!(found, (Some(1.0), Some(1.5), 5e-12));
         assert!(row.smallest_gap_m.is_none());
         runs.push(run(4.0, 10, Ending::CpuTime(4.0)));
-        let row = Row::default().with(&runs);
+        let row = WorkRow::default().with(&runs);
         assert_eq!((row.cpu_s_per_simulated_s, row.rate()), (Some(1.5), None));
         assert_eq!((row.starts, row.ended), (4, 3));
         let failure = row.failure.unwrap();
         assert_eq!(failure, "at 2 s: 4 s of CPU time were over");
     }
 
-    fn of(work: &Work) -> Run {
+    fn of(work: &Work) -> TimedRun {
         let size = work.sizes(Effort::Quick)[0];
         let method = work.methods().swap_remove(0);
         let start = work.start(size, method.as_ref(), 1).unwrap();

@@ -1,13 +1,15 @@
 //! Frames of FOLD files and what they inherit.
 
-use crate::format::mesh_file::error::excerpt;
-use crate::format::mesh_file::{FoldFrame, FoldProblem, MeshFileProblem};
+use crate::format::DataError;
+use crate::format::mesh_file::error::{CORRECT, excerpt};
+use crate::format::mesh_file::faces::empty;
+use crate::format::mesh_file::{FoldFrame, MeshFileProblem};
 use serde::Deserialize;
 
 /// What is used of a frame. All keys of the format are optional.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct Frame {
+pub(super) struct FrameRecord {
     frame_title: Option<String>,
     frame_parent: Option<usize>,
     frame_inherit: Option<bool>,
@@ -21,17 +23,21 @@ pub(super) struct Frame {
     pub(super) fold_angles: Option<Vec<Option<f64>>>,
     pub(super) faces_vertices: Option<Vec<Vec<i64>>>,
     /// The other frames; in the key frame alone, whose keys are those of the file itself.
-    file_frames: Option<Vec<Frame>>,
+    file_frames: Option<Vec<FrameRecord>>,
 }
 
 /// Reads one frame with what it inherits; without a number the first that has vertices.
-pub(super) fn read(bytes: &[u8], wanted: Option<&FoldFrame>) -> Result<Frame, MeshFileProblem> {
+pub(super) fn read(
+    bytes: &[u8],
+    wanted: Option<&FoldFrame>,
+) -> Result<FrameRecord, MeshFileProblem> {
     if bytes.trim_ascii().is_empty() {
-        return Err(MeshFileProblem::Empty);
+        return Err(empty().into());
     }
-    let mut key: Frame = serde_json::from_slice(bytes).map_err(MeshFileProblem::Json)?;
+    let mut key: FrameRecord = serde_json::from_slice(bytes)
+        .map_err(|e| DataError::new(format!("the file is not valid FOLD: {e}"), CORRECT))?;
     let others = key.file_frames.take().unwrap_or_default();
-    let frames: Vec<Frame> = std::iter::once(key).chain(others).collect();
+    let frames: Vec<FrameRecord> = std::iter::once(key).chain(others).collect();
     if let Some(wanted) = wanted {
         return Ok(inherited(&frames, number_of(&frames, wanted)?)?);
     }
@@ -44,15 +50,19 @@ pub(super) fn read(bytes: &[u8], wanted: Option<&FoldFrame>) -> Result<Frame, Me
             return Ok(inherited(&frames, k)?);
         }
     }
-    Err(FoldProblem::NoCoordinates.into())
+    let message = "no frame has `vertices_coords`, so the file has no shape";
+    Err(DataError::new(message, "export it with coordinates").into())
 }
 
 /// The number of the frame that is asked for.
-fn number_of(frames: &[Frame], wanted: &FoldFrame) -> Result<usize, FoldProblem> {
-    let problem = |found: Vec<usize>| FoldProblem::Choice {
-        wanted: wanted.clone(),
-        found,
-        frames: listed(frames),
+fn number_of(frames: &[FrameRecord], wanted: &FoldFrame) -> Result<usize, MeshFileProblem> {
+    let problem = |found: Vec<usize>| {
+        let what = match found.len() {
+            0 => format!("there is no frame {wanted}"),
+            count => format!("{count} frames have the title {wanted}"),
+        };
+        let message = format!("{what}; the frames of the file are {}", listed(frames));
+        MeshFileProblem::Frame(DataError::new(message, "give the number of one of these"))
     };
     match wanted {
         FoldFrame::Number(number) if *number < frames.len() => Ok(*number),
@@ -75,8 +85,8 @@ const MOST_LISTED: usize = 12;
 const LONGEST_TITLE: usize = 80;
 
 /// The frames of a file, with titles and classes, for an error.
-fn listed(frames: &[Frame]) -> String {
-    let name = |(k, frame): (usize, &Frame)| {
+fn listed(frames: &[FrameRecord]) -> String {
+    let name = |(k, frame): (usize, &FrameRecord)| {
         let title = frame.frame_title.as_deref();
         let title = title.map_or(String::new(), |title| {
             let short: String = title.chars().take(LONGEST_TITLE).collect();
@@ -110,13 +120,17 @@ const MOST_ANCESTORS: usize = 1000;
 
 /// A frame and those that it inherits from, the nearest first. A frame that inherits and names no parent
 /// inherits from the key frame.
-fn ancestry(frames: &[Frame], number: usize) -> Result<Vec<usize>, FoldProblem> {
+fn ancestry(frames: &[FrameRecord], number: usize) -> Result<Vec<usize>, DataError> {
     let mut chain = vec![number];
     let mut at = number;
     while at != 0 && frames[at].frame_inherit == Some(true) {
         let parent = frames[at].frame_parent.unwrap_or(0);
         if parent >= frames.len() || chain.len() > MOST_ANCESTORS {
-            return Err(FoldProblem::Parent { frame: at, parent });
+            let message = format!(
+                "frame {at} inherits from frame {parent}, which does not exist, inherits from it in turn, or has too \
+                 many ancestors"
+            );
+            return Err(DataError::new(message, "correct `frame_parent`").at(at));
         }
         chain.push(parent);
         at = parent;
@@ -125,11 +139,11 @@ fn ancestry(frames: &[Frame], number: usize) -> Result<Vec<usize>, FoldProblem> 
 }
 
 /// A frame with the keys of its ancestors that it does not have itself.
-fn inherited(frames: &[Frame], number: usize) -> Result<Frame, FoldProblem> {
+fn inherited(frames: &[FrameRecord], number: usize) -> Result<FrameRecord, DataError> {
     let chain = ancestry(frames, number)?;
-    let merge = |frame: Frame, &ancestor: &usize| {
+    let merge = |frame: FrameRecord, &ancestor: &usize| {
         let from = &frames[ancestor];
-        Frame {
+        FrameRecord {
             frame_title: None,
             frame_parent: None,
             frame_inherit: None,
@@ -147,17 +161,17 @@ fn inherited(frames: &[Frame], number: usize) -> Result<Frame, FoldProblem> {
             file_frames: None,
         }
     };
-    Ok(chain.iter().fold(Frame::default(), merge))
+    Ok(chain.iter().fold(FrameRecord::default(), merge))
 }
 
-impl Frame {
+impl FrameRecord {
     /// Whether the frame says that it is of a class such as `creasePattern` or `foldedForm`.
     pub(super) fn has_class(&self, class: &str) -> bool {
         self.frame_classes.iter().flatten().any(|c| c == class)
     }
 
     /// The unit of the frame in metres; 1 if it has none.
-    pub(super) fn metres(&self) -> Result<f64, FoldProblem> {
+    pub(super) fn metres(&self) -> Result<f64, DataError> {
         Ok(match self.frame_unit.as_deref() {
             None | Some("unit" | "m") => 1.0,
             Some("in") => 0.0254,
@@ -169,7 +183,9 @@ impl Frame {
             Some("nm") => 1e-9,
             Some(found) => {
                 let found = excerpt(found);
-                return Err(FoldProblem::Unit { found });
+                let message = format!("the unit {found:?} is unknown");
+                let remedy = "use unit, in, pt, m, cm, mm, um or nm";
+                return Err(DataError::new(message, remedy));
             }
         })
     }

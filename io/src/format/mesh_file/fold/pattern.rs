@@ -1,6 +1,6 @@
 //! Faces of a flat crease pattern that has vertices and edges alone.
 
-use super::FoldProblem;
+use crate::format::DataError;
 use crate::format::mesh_file::plane::{NEAR, Point, meet, twice_area};
 use crate::format::mesh_file::{EdgeAssignment, FileCrease};
 
@@ -13,7 +13,7 @@ const MOST_EDGES: usize = 50_000;
 /// Each edge has two sides; at its end, a side is followed by that of the next edge clockwise. The
 /// circuits of positive area are the faces, the one of negative area is the outside. A face is a hole of
 /// the sheet if all of its edges are boundary and have another face on their other side.
-pub(super) fn faces(points: &[Point], edges: &[FileCrease]) -> Result<Vec<Vec<i64>>, FoldProblem> {
+pub(super) fn faces(points: &[Point], edges: &[FileCrease]) -> Result<Vec<Vec<i64>>, DataError> {
     check(points, edges)?;
     let out = outgoing(points, edges);
     let mut face_of = vec![usize::MAX; 2 * edges.len()];
@@ -78,19 +78,22 @@ fn next(out: &[Vec<usize>], edges: &[FileCrease], side: usize) -> usize {
 }
 
 /// Checks that the edges are a connected drawing without crossings and loose ends.
-fn check(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldProblem> {
+fn check(points: &[Point], edges: &[FileCrease]) -> Result<(), DataError> {
     if edges.len() > MOST_EDGES {
-        return Err(FoldProblem::TooManyEdges {
-            edges: edges.len(),
-            limit: MOST_EDGES,
-        });
+        let what = format!(
+            "its {} edges are more than the {MOST_EDGES} of which faces are made",
+            edges.len()
+        );
+        return Err(no_drawing(&what, "export it with its faces"));
     }
     let mut degree = vec![0_usize; points.len()];
     let mut piece: Vec<usize> = (0..points.len()).collect();
     for (edge, crease) in edges.iter().enumerate() {
         let [a, b] = crease.ends.map(|v| v as usize);
         if points[a] == points[b] {
-            return Err(FoldProblem::UselessEdge { edge });
+            let what = format!("its edge {edge} has no length");
+            let remedy = "remove it, or export the file with its faces";
+            return Err(no_drawing(&what, remedy).at(edge));
         }
         degree[a] += 1;
         degree[b] += 1;
@@ -99,7 +102,9 @@ fn check(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldProblem> {
     }
     check_crossings(points, edges)?;
     if let Some(vertex) = degree.iter().position(|&d| d == 1) {
-        return Err(FoldProblem::LooseEnd { vertex });
+        let what = format!("vertex {vertex} is an end of one edge only");
+        let remedy = "connect it to the other edges, or export the file with its faces";
+        return Err(no_drawing(&what, remedy).at(vertex));
     }
     let pieces = (0..points.len())
         .filter(|&v| degree[v] > 0 && piece[v] == v)
@@ -107,8 +112,16 @@ fn check(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldProblem> {
     if pieces == 1 {
         Ok(())
     } else {
-        Err(FoldProblem::Pieces { pieces })
+        let what = format!("its edges make {pieces} separate pieces");
+        let remedy = "split the file, or export it with its faces";
+        Err(no_drawing(&what, remedy))
     }
+}
+
+/// Why edges are no drawing of faces.
+fn no_drawing(what: &str, remedy: &'static str) -> DataError {
+    let message = format!("the file has no `faces_vertices`, and {what}");
+    DataError::new(message, remedy)
 }
 
 /// The representative of a set, with the path to it halved.
@@ -121,7 +134,7 @@ fn root(parent: &mut [usize], mut v: usize) -> usize {
 }
 
 /// Compares all pairs of edges that overlap along x.
-fn check_crossings(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldProblem> {
+fn check_crossings(points: &[Point], edges: &[FileCrease]) -> Result<(), DataError> {
     let ends = |e: usize| edges[e].ends.map(|v| points[v as usize]);
     let extent = |k: usize| {
         let [low, high] = bounds(
@@ -145,7 +158,11 @@ fn check_crossings(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldPro
             let apart = v[0] > y[1] + near || y[0] > v[1] + near;
             if !apart && meet(edges[e].ends, edges[f].ends, points, near) {
                 let (first, second) = (e.min(f), e.max(f));
-                return Err(FoldProblem::Crossing { first, second });
+                let what = format!(
+                    "its edges {first} and {second} meet where they have no vertex in common"
+                );
+                let remedy = "add the vertex, or export the file with its faces";
+                return Err(no_drawing(&what, remedy).at(first));
             }
         }
     }

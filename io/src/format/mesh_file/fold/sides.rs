@@ -1,7 +1,7 @@
 //! Edges and the faces beside them: whether an edge is a mountain or a valley depends on the side of these
 //! that it is seen from.
 
-use super::FoldProblem;
+use crate::format::DataError;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
 use isosheet_mesh::FaceId;
 use std::collections::{HashMap, HashSet};
@@ -34,14 +34,20 @@ pub(super) fn sides_of<C: Copy + TryInto<u32>>(
 }
 
 /// Refuses edges that cannot do what they are meant to because they are sides of no face.
-pub(super) fn check_faces(edges: &[FileCrease], sides: &[Side]) -> Result<(), FoldProblem> {
+pub(super) fn check_faces(edges: &[FileCrease], sides: &[Side]) -> Result<(), DataError> {
     let of_faces: HashSet<[u32; 2]> = sides.iter().map(|side| side.ends).collect();
     let is_lost = |c: &FileCrease| {
         (c.has_sense() || c.assignment == EdgeAssignment::Cut)
             && !of_faces.contains(&sorted(c.ends))
     };
     match edges.iter().position(is_lost) {
-        Some(edge) => Err(FoldProblem::NoFace { edge }),
+        Some(edge) => {
+            let message = format!(
+                "edge {edge} is a crease or a cut, and no face of `faces_vertices` has it as a side"
+            );
+            let remedy = "divide the face along it, or remove the edge";
+            Err(DataError::new(message, remedy).at(edge))
+        }
         None => Ok(()),
     }
 }
@@ -49,9 +55,9 @@ pub(super) fn check_faces(edges: &[FileCrease], sides: &[Side]) -> Result<(), Fo
 /// Turns the edges at faces that were reversed: mountains become valleys, and angles change their sign.
 ///
 /// # Errors
-/// [`FoldProblem::OppositeFaces`] for a fold between a face that was reversed and one that was not, of which
+/// [`DataError`] for a fold between a face that was reversed and one that was not, of which
 /// the file does not say where it leads.
-pub(super) fn turn(edges: &mut [FileCrease], sides: &[Side]) -> Result<(), FoldProblem> {
+pub(super) fn turn(edges: &mut [FileCrease], sides: &[Side]) -> Result<(), DataError> {
     let mut beside: HashMap<[u32; 2], [Option<usize>; 2]> = HashMap::new();
     for side in sides {
         let faces = beside.entry(side.ends).or_default();
@@ -60,11 +66,13 @@ pub(super) fn turn(edges: &mut [FileCrease], sides: &[Side]) -> Result<(), FoldP
     for (edge, crease) in edges.iter_mut().enumerate() {
         match beside.get(&sorted(crease.ends)) {
             Some(&[Some(kept), Some(reversed)]) if crease.has_sense() => {
-                return Err(FoldProblem::OppositeFaces {
-                    edge,
-                    kept,
-                    reversed,
-                });
+                let message = format!(
+                    "edge {edge} folds between face {kept} and face {reversed}, whose vertices are listed in opposite \
+                     directions, so that it is a mountain as seen from one of them and a valley from the other"
+                );
+                let remedy =
+                    "list the vertices of all faces counter-clockwise as seen from the same side";
+                return Err(DataError::new(message, remedy).at(edge));
             }
             Some([None, Some(_)]) => *crease = crease.turned(),
             _ => {}
@@ -101,11 +109,11 @@ impl MeshFile {
     /// Turns the creases between faces that have been reversed.
     ///
     /// # Errors
-    /// [`FoldProblem::OppositeFaces`] for a fold between one of them and another face.
+    /// [`DataError`] for a fold between one of them and another face.
     pub(in crate::format::mesh_file) fn turn_creases(
         &mut self,
         reversed: &[FaceId],
-    ) -> Result<(), FoldProblem> {
+    ) -> Result<(), DataError> {
         let reversed: HashSet<usize> = reversed.iter().map(|f| f.index()).collect();
         let faces = self.faces.iter().enumerate();
         let sides = faces.flat_map(|(k, face)| sides_of(k, face, reversed.contains(&k)));
@@ -118,10 +126,7 @@ impl MeshFile {
     /// # Errors
     /// As [`Self::turn_creases`].
     #[cfg(feature = "scene")]
-    pub(crate) fn orient_creases(
-        &mut self,
-        t: &isosheet_mesh::Topology,
-    ) -> Result<(), FoldProblem> {
+    pub(crate) fn orient_creases(&mut self, t: &isosheet_mesh::Topology) -> Result<(), DataError> {
         let of_topology = t.faces().iter().map(|f| first_least(f.map(|v| v.0)));
         let of_topology: HashSet<[u32; 3]> = of_topology.collect();
         let mut sides = Vec::new();
