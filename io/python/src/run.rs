@@ -247,15 +247,8 @@ impl Run {
             let forces: Vec<[f64; 3]> = steps.iter().map(|row| row.force).collect();
             columns.set_item("time", array(py, &times))?;
             columns.set_item("force", rows(py, &forces)?)?;
-            if steps
-                .iter()
-                .all(|row| row.torque.iter().all(Option::is_some))
-            {
-                let torques = steps
-                    .iter()
-                    .map(|row| row.torque.map(Option::unwrap_or_default));
-                columns.set_item("torque", rows(py, &torques.collect::<Vec<_>>())?)?;
-            }
+            let torques: Vec<[f64; 3]> = steps.iter().map(|row| row.torque).collect();
+            columns.set_item("torque", rows(py, &torques)?)?;
             loads.set_item(format!("{kind}[{number}]"), columns)?;
         }
         Ok(loads)

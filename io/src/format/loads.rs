@@ -9,7 +9,7 @@ use std::path::Path;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LoadKind {
-    /// A support; the force is that of the support on the sheet.
+    /// A support; force and torque are those of the support on the sheet.
     Support,
     /// An obstacle; force and torque are those of the sheet on the obstacle.
     Obstacle,
@@ -28,7 +28,7 @@ pub enum LoadKind {
 ///     on: LoadKind::Support,
 ///     number: 0,
 ///     force: [0.0, 0.0, 0.98],
-///     torque: [None; 3],
+///     torque: [0.0; 3],
 /// };
 /// loads.append(&weight)?;
 /// assert_eq!(read_loads(&path)?, [weight]);
@@ -44,8 +44,9 @@ pub struct LoadRow {
     pub number: usize,
     /// Force, newtons.
     pub force: [f64; 3],
-    /// Torque on an obstacle about the origin of its own frame, newton metres; none of a support.
-    pub torque: [Option<f64>; 3],
+    /// Torque, newton metres: on an obstacle about the origin of its own frame, of a support about the mean of
+    /// the places of its vertices.
+    pub torque: [f64; 3],
 }
 
 /// The columns of the file.
@@ -59,8 +60,8 @@ impl Row for LoadRow {
     }
 
     fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let torque = self.torque.map(|m| m.unwrap_or(0.0));
-        let values = [self.t].into_iter().chain(self.force).chain(torque);
+        let values = [self.t].into_iter();
+        let values = values.chain(self.force).chain(self.torque);
         let columns = ["t", "fx", "fy", "fz", "mx", "my", "mz"];
         columns.into_iter().zip(values)
     }

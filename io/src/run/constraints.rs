@@ -49,7 +49,11 @@ impl HoldingBody {
         let space = Space::of(corners);
         let body = |(support, entry): (usize, &Support)| {
             let (local, shape) = match &entry.hold {
-                Hold::Pin | Hold::MovingPin(_) => return None,
+                Hold::Pin
+                | Hold::MovingPin(_)
+                | Hold::Clamp
+                | Hold::MovingClamp(_)
+                | Hold::SlidingClamp { .. } => return None,
                 Hold::Curve { shape, .. } => {
                     let tube = tube(&points(shape, &space), TUBE * space.radius, TUBE_SIDES);
                     (Isometry3::identity(), tube)

@@ -247,13 +247,13 @@ impl<'a> Stepping<'a> {
             return Ok(());
         };
         let t = self.simulation.state().t;
-        let supports = self.supports.of(&self.simulation).into_iter().enumerate();
-        let on_supports = supports.map(|(number, force)| LoadRow {
+        let supports = self.supports.loads(&self.simulation).enumerate();
+        let on_supports = supports.map(|(number, load)| LoadRow {
             t,
             on: LoadKind::Support,
             number,
-            force,
-            torque: [None; 3],
+            force: load.force,
+            torque: load.torque,
         });
         let bodies = self.simulation.body_loads().into_iter().enumerate();
         let on_obstacles = bodies.map(|(number, load)| LoadRow {
@@ -261,7 +261,7 @@ impl<'a> Stepping<'a> {
             on: LoadKind::Obstacle,
             number,
             force: load.force.into(),
-            torque: [0, 1, 2].map(|k| Some(load.torque[k])),
+            torque: load.torque.into(),
         });
         for row in on_supports.chain(on_obstacles) {
             loads.append(&row)?;

@@ -11,7 +11,7 @@ use super::obstacles;
 use super::placed::{Form, PlacedSheet, PlacedSheets};
 use super::pose::Motion;
 use super::problem::Problem;
-use super::sheet::{Bending, Elasticity, Isometry};
+use super::sheet::{Bending, Elasticity, Isometry, RestShape};
 use super::slots::Slots;
 use super::step_path::check_step;
 use super::supports::{Hold, frame_motion};
@@ -19,11 +19,12 @@ use super::targets::{DrivenCrease, Targets};
 use super::{Air, Measure, Origins, Scene, Setup};
 use isosheet_collide as collide;
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
+use isosheet_dynamics::constraint::Line;
 use isosheet_dynamics::{
-    AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, PAPER_GRAVITY,
-    PlateBending, PlateStiffness, PointMotion, PointProfile, Potential, PotentialOfPart,
-    RigidProfile, SheetModel, SimulationError, State, VertexConstraint, VertexLoad, leave_flat_in,
-    project_positions, start_of_folding,
+    AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, LineClamp,
+    PAPER_GRAVITY, PlateBending, PlateEdges, PlateLaw, PointMotion, PointProfile, Potential,
+    PotentialOfPart, RigidDisplacement, RigidProfile, SheetModel, SimulationError, State,
+    VertexConstraint, VertexLoad, leave_flat_in, project_positions, start_of_folding,
 };
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
@@ -99,8 +100,9 @@ pub(crate) struct Kept {
     pub(crate) files: Files,
     /// Of each sheet, once they have been made.
     forms: Vec<Arc<Form>>,
-    /// The plate of each sheet that does not yield, by stiffness, clamped vertices and creases.
-    plates: Slots<(PlateStiffness, Vec<VertexId>, Vec<EdgeId>), Arc<PlateBending>>,
+    /// The plate of each sheet that is flat without stress and clamped by no line, by law, clamped vertices and
+    /// creases.
+    plates: Slots<(PlateLaw, Vec<VertexId>, Vec<EdgeId>), Arc<PlateBending>>,
     /// Those of the obstacles.
     shapes: Slots<obstacles::Shape, collide::Shape>,
 }
@@ -125,6 +127,8 @@ struct Builder<'a> {
     /// Absent only while it is replaced by a changed one.
     model: Option<SheetModel>,
     origins: Origins,
+    /// The supports that hold slopes, with their vertices.
+    clamps: Vec<(usize, Vec<VertexId>, RigidDisplacement)>,
     modelled: Vec<String>,
     targets: Targets,
 }
@@ -158,6 +162,7 @@ impl<'a> Builder<'a> {
             sheets,
             model: Some(model),
             origins: Origins::default(),
+            clamps: Vec::new(),
             modelled,
             targets: Targets::default(),
         })
@@ -227,13 +232,27 @@ impl<'a> Builder<'a> {
         for (k, support) in self.scene.support.iter().enumerate() {
             let key = Key::root().name("support").entry(k);
             let name = support.sheet.as_deref();
-            let vertices = self.sheets.vertices(name, &support.at, &key)?;
+            let mut vertices = self.sheets.vertices(name, &support.at, &key)?;
+            if let Some(motion) = support.hold.clamp_motion() {
+                let slides = matches!(support.hold, Hold::SlidingClamp { .. });
+                vertices.extend(self.clamped_faces(&vertices, slides, &key)?);
+                let motion = motion.of_body(Isometry3::identity());
+                self.clamps.push((k, vertices.clone(), motion));
+            }
             for &v in &vertices {
                 self.check_free(v, k, &key)?;
             }
             match &support.hold {
-                Hold::Pin => self.change(|m| m.with_pins(&vertices), at(&key))?,
-                Hold::MovingPin(motion) => {
+                Hold::SlidingClamp { direction, motion } => {
+                    for &v in &vertices {
+                        let point = self.position(v);
+                        let line = Line::new(point, *direction).map_err(at(&key))?;
+                        let constraint = VertexConstraint::on_curve(v, line);
+                        self.constrain(constraint, motion, k)?;
+                    }
+                }
+                Hold::Pin | Hold::Clamp => self.change(|m| m.with_pins(&vertices), at(&key))?,
+                Hold::MovingPin(motion) | Hold::MovingClamp(motion) => {
                     for &v in &vertices {
                         let motion = pin_motion(motion, self.position(v));
                         self.change(|m| m.with_moving_pin(v, motion), at(&key))?;
@@ -257,12 +276,52 @@ impl<'a> Builder<'a> {
                     }
                 }
             }
-            if matches!(support.hold, Hold::Pin | Hold::MovingPin(_)) {
+            if support.hold.is_pin() {
                 self.origins.pins.extend(vertices.iter().map(|&v| (v, k)));
             }
         }
         self.count(self.scene.support.len(), "support", "supports");
         Ok(())
+    }
+
+    /// What is pinned besides the vertices of a clamp: of a sheet without a plate the third corners of the faces
+    /// at the edges between them.
+    fn clamped_faces(
+        &self,
+        vertices: &[VertexId],
+        slides: bool,
+        key: &Key,
+    ) -> Result<Vec<VertexId>, Problem> {
+        let topology = self.sheets.union.topology();
+        let held: BTreeSet<VertexId> = vertices.iter().copied().collect();
+        let is_held = |e: &EdgeId| topology.edges()[e.index()].iter().all(|v| held.contains(v));
+        let edges: Vec<EdgeId> = topology.edge_ids().filter(is_held).collect();
+        if edges.is_empty() {
+            return Err(Problem::new(
+                key.name("at"),
+                "a clamp needs an edge of the mesh between two of its vertices",
+                "name neighbours along the line that is clamped, or use `pin`",
+            ));
+        }
+        let mut third = BTreeSet::new();
+        for PlacedSheet { of, part, .. } in &self.sheets.list {
+            let own = edges.iter().filter(|e| part.edges.contains(&e.index()));
+            let faces = own.flat_map(|e| topology.edge_faces(*e)).flatten();
+            let corners = faces.flat_map(|f| topology.faces()[f.index()]);
+            let corners: Vec<VertexId> = corners.filter(|v| !held.contains(v)).collect();
+            if of.plate().is_some() || corners.is_empty() {
+                continue;
+            }
+            if slides {
+                return Err(Problem::new(
+                    key.name("hold"),
+                    "a sliding clamp holds the slope of a plate, and this sheet has none",
+                    "give the sheet `bending` as a `plate`, or a `material`",
+                ));
+            }
+            third.extend(corners);
+        }
+        Ok(third.into_iter().collect())
     }
 
     /// A vertex may be pinned twice at rest; with anything else a pin would decide silently.
@@ -274,11 +333,9 @@ impl<'a> Builder<'a> {
             .iter()
             .position(|c| c.vertex() == v);
         let constrained = constrained.map(|c| self.origins.constraints[c]);
-        let pins = matches!(supports[number].hold, Hold::Pin | Hold::MovingPin(_));
+        let pins = supports[number].hold.is_pin();
         let other = match self.origins.pins.get(&v) {
-            Some(&k) if supports[k].hold != Hold::Pin || supports[number].hold != Hold::Pin => {
-                Some(k)
-            }
+            Some(&k) if [k, number].iter().any(|k| !supports[*k].hold.is_at_rest()) => Some(k),
             _ => constrained.filter(|_| pins),
         };
         match other {
@@ -356,7 +413,7 @@ impl<'a> Builder<'a> {
         } = &self.sheets.list[number];
         let placed = &form.placed;
         let yields = of.yields();
-        let [key, yield_key] = ["bending", "yield"].map(|name| key.name(name));
+        let [key, yield_key, curl_key] = ["bending", "yield", "curl"].map(|name| key.name(name));
         let mut modelled = Vec::new();
         if yields.is_some() {
             modelled.push("bends that stay");
@@ -365,6 +422,9 @@ impl<'a> Builder<'a> {
             (Bending::Hinges { rigidity }, _) => {
                 let springs = CreaseSprings::bending_beside(placed, rigidity, creases);
                 let mut springs = springs.map_err(at(&key))?;
+                if of.rest == RestShape::Mesh {
+                    springs = springs.curved(placed);
+                }
                 if let Some(yields) = yields {
                     let yielding = springs.with_yield(placed, yields);
                     springs = yielding.map_err(at(&yield_key))?;
@@ -373,27 +433,61 @@ impl<'a> Builder<'a> {
                 self.add_potential_of(number, springs);
             }
             (_, None) => {}
-            (_, Some(stiffness)) => {
+            (_, Some(law)) => {
+                let clamps = self
+                    .clamps
+                    .iter()
+                    .filter_map(|(support, vertices, motion)| {
+                        let own = vertices
+                            .iter()
+                            .filter(|v| part.vertices.contains(&v.index()));
+                        let own: Vec<VertexId> = own.map(|v| part.local_vertex(*v)).collect();
+                        let clamp = LineClamp {
+                            vertices: own,
+                            positions: self.x[part.coordinates()].to_vec(),
+                            motion: motion.clone().into(),
+                        };
+                        (!clamp.vertices.is_empty()).then_some((*support, clamp))
+                    });
+                let (supports, clamps): (Vec<usize>, Vec<LineClamp>) = clamps.unzip();
+                self.origins.clamps.extend(supports);
                 let pins = self.model().pins().into_iter();
                 let own = pins.filter(|v| part.vertices.contains(&v.index()));
                 let clamped: Vec<VertexId> = own.map(|v| part.local_vertex(v)).collect();
-                let plate = |clamped: &[VertexId], creases: &[EdgeId]| {
-                    PlateBending::creased(placed, stiffness, clamped, creases).map_err(at(&key))
+                let plate = |law: &PlateLaw, pinned: &[VertexId], creases: &[EdgeId]| {
+                    let edges = PlateEdges {
+                        pinned,
+                        creases,
+                        clamps: &clamps,
+                    };
+                    PlateBending::held(placed, law.clone(), &edges).map_err(at(&key))
                 };
                 modelled.push("bending stiffness of a plate");
-                if let Some(yields) = yields {
-                    let yielding = plate(&clamped, creases)?.with_yield(placed, yields);
-                    self.add_potential_of(number, yielding.map_err(at(&yield_key))?);
-                } else {
-                    let made_of = (stiffness, clamped, creases.to_vec());
-                    let shared = self
-                        .kept
-                        .plates
-                        .get(number, made_of, |(_, clamped, creases)| {
-                            plate(clamped, creases).map(Arc::new)
-                        });
-                    self.add_potential_of(number, shared?);
+                let curl = of.natural_curvature();
+                if curl.is_some() {
+                    modelled.push("curl");
                 }
+                let is_flat = curl.is_none() && of.rest == RestShape::Flat && yields.is_none();
+                if is_flat && clamps.is_empty() {
+                    let made_of = (law, clamped, creases.to_vec());
+                    let make = |(law, clamped, creases): &(PlateLaw, Vec<_>, Vec<_>)| {
+                        plate(law, clamped, creases).map(Arc::new)
+                    };
+                    let shared = self.kept.plates.get(number, made_of, make);
+                    self.add_potential_of(number, shared?);
+                    return Ok(modelled);
+                }
+                let mut own = plate(&law, &clamped, creases)?;
+                if of.rest == RestShape::Mesh {
+                    own = own.curved(placed);
+                }
+                if let Some(curl) = curl {
+                    own = own.with_curl(placed, curl).map_err(at(&curl_key))?;
+                }
+                if let Some(yields) = yields {
+                    own = own.with_yield(placed, yields).map_err(at(&yield_key))?;
+                }
+                self.add_potential_of(number, own);
             }
         }
         Ok(modelled)

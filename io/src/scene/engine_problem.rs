@@ -18,6 +18,8 @@ pub struct Origins {
     pub(crate) pins: HashMap<VertexId, usize>,
     /// The support of each vertex constraint.
     pub(crate) constraints: Vec<usize>,
+    /// The support of each clamp along a line of vertices.
+    pub(crate) clamps: Vec<usize>,
 }
 
 /// Two supports that come closer to each other.
@@ -49,6 +51,20 @@ impl Origins {
             self.constraints.get(index).copied()
         };
         self.pins.get(&vertex).copied().or_else(constrained)
+    }
+
+    /// The vertices of the first `count` supports, in the order of their numbers.
+    pub(crate) fn vertices(&self, model: &SheetModel, count: usize) -> Vec<Vec<VertexId>> {
+        let mut vertices = vec![Vec::new(); count];
+        let constrained = model.constraints().iter().zip(&self.constraints);
+        let constrained = constrained.map(|(constraint, k)| (constraint.vertex(), *k));
+        for (v, k) in self.pins.iter().map(|(v, k)| (*v, *k)).chain(constrained) {
+            if let Some(list) = vertices.get_mut(k) {
+                list.push(v);
+            }
+        }
+        vertices.iter_mut().for_each(|list| list.sort_unstable());
+        vertices
     }
 
     fn support_key(&self, support: Support) -> Key {

@@ -22,8 +22,10 @@ impl Scene {
         }
         for (k, support) in self.support.iter_mut().enumerate() {
             let (place, motion) = match &mut support.hold {
-                Hold::Pin => continue,
+                Hold::Pin | Hold::Clamp => continue,
                 Hold::MovingPin(motion) => ("hold.moving_pin", motion),
+                Hold::MovingClamp(motion) => ("hold.moving_clamp", motion),
+                Hold::SlidingClamp { motion, .. } => ("hold.sliding_clamp.motion", motion),
                 Hold::Curve { motion, .. } => ("hold.curve.motion", motion),
                 Hold::Surface { motion, .. } => ("hold.surface.motion", motion),
             };

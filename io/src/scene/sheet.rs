@@ -5,6 +5,7 @@ use super::material::{Material, typical_poisson};
 use super::mesh::Mesh;
 use super::pose::Pose;
 use super::problem::Checks;
+use super::profile::Profile;
 use super::start::Start;
 use super::unit::Unit;
 use super::yields::SheetYield;
@@ -58,6 +59,12 @@ pub struct Sheet {
     /// What resists bending. If left out, a plate of the rigidity of the material; without one nothing.
     #[serde(default)]
     pub bending: Option<Bending>,
+    /// What bends are measured from.
+    #[serde(default)]
+    pub rest: RestShape,
+    /// The curvature that it has by itself. If left out, none.
+    #[serde(default)]
+    pub curl: Option<Curl>,
     /// When it yields in bending. If left out, never: bends spring back.
     #[serde(default, rename = "yield")]
     pub yields: Option<SheetYield>,
@@ -115,6 +122,65 @@ pub enum Isometry {
     },
 }
 
+/// What bends are measured from: the shape that the sheet has without moments. (Creases have rest angles of their
+/// own.)
+///
+/// ```toml
+/// [sheet]
+/// rest = "mesh"
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RestShape {
+    /// The sheet unbends, however its mesh is curved.
+    #[default]
+    Flat,
+    /// The mesh: a sheet that is curved stays curved. (`start.file` begins with another shape.)
+    Mesh,
+}
+
+/// A curvature that a sheet has by itself: paper that curls, a poster off a roll, a bilayer.
+///
+/// ```toml
+/// [sheet]
+/// material = "office paper"
+/// curl = { along = [1, 0, 0], radius = 0.05 }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Curl {
+    /// The direction along which the sheet is curved, in the frame of the mesh, of any length.
+    pub along: [f64; 3],
+    /// Radius of curvature, metres: positive where the sheet rolls up with the front of its faces inside, from
+    /// which their corners run counter-clockwise.
+    pub radius: f64,
+    /// Radius of curvature across this direction, metres. If left out, the sheet is straight across.
+    #[serde(default)]
+    pub across_radius: Option<f64>,
+    /// A factor of time by which the curvatures are multiplied.
+    #[serde(default = "one")]
+    pub profile: Profile,
+}
+
+fn one() -> Profile {
+    Profile::Constant(1.0)
+}
+
+impl Curl {
+    fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.direction(key.name("along"), &self.along);
+        let radii = [
+            ("radius", Some(self.radius)),
+            ("across_radius", self.across_radius),
+        ];
+        for (name, radius) in radii {
+            let size = radius.map(f64::abs);
+            checks.positive(key.name(name), size, Unit::Metre);
+        }
+        self.profile.check(key.name("profile"), Unit::One, checks);
+    }
+}
+
 /// What resists bending.
 ///
 /// ```toml
@@ -137,6 +203,22 @@ pub enum Bending {
         #[serde(default)]
         poisson: Option<f64>,
     },
+    /// A plate that is stiffer along one direction than across, as paper, wood and laminates are: curvatures `k_1`
+    /// along the direction, `k_2` across and the twist `k_12` store `(along k_1^2 + 2 coupling k_1 k_2 + across
+    /// k_2^2 + 4 twist k_12^2) / 2` per area.
+    Orthotropic {
+        /// The direction, in the frame of the mesh, of any length.
+        direction: [f64; 3],
+        /// Rigidity `D11` along the direction, N m.
+        along: f64,
+        /// Rigidity `D22` across it, N m.
+        across: f64,
+        /// Rigidity `D66` against twist, N m.
+        twist: f64,
+        /// Coupling `D12` of both, N m.
+        #[serde(default)]
+        coupling: f64,
+    },
     /// Springs at the edges: cheaper than a plate, and dependent on the mesh where bends do not follow its
     /// lines. They know no Poisson's ratio.
     Hinges {
@@ -158,6 +240,8 @@ impl Sheet {
             thickness: 0.0,
             isometry: None,
             bending: None,
+            rest: RestShape::Flat,
+            curl: None,
             yields: None,
             damping: 0.0,
             placement: Pose::default(),
@@ -210,14 +294,47 @@ impl Sheet {
 
     /// The stiffness of the plate, if bending is resisted by one: as written, or what follows from the
     /// elasticity and the material.
-    pub fn plate(&self) -> Option<engine::PlateStiffness> {
+    pub fn plate(&self) -> Option<engine::PlateLaw> {
         match self.bending() {
-            Bending::Plate { rigidity, poisson } => Some(engine::PlateStiffness {
-                rigidity,
-                poisson: poisson.unwrap_or_else(|| self.poisson()),
-            }),
+            Bending::Plate { rigidity, poisson } => {
+                let poisson = poisson.unwrap_or_else(|| self.poisson());
+                Some(engine::PlateStiffness { rigidity, poisson }.into())
+            }
+            Bending::Orthotropic {
+                direction,
+                along,
+                across,
+                twist,
+                coupling,
+            } => {
+                let plate = engine::OrthotropicPlate {
+                    along,
+                    across,
+                    coupling,
+                    twist,
+                    direction: engine::MaterialDirection::Uniform(self.placed(direction)),
+                };
+                Some(plate.into())
+            }
             Bending::None | Bending::Hinges { .. } => None,
         }
+    }
+
+    /// The curvature that it has by itself.
+    pub(super) fn natural_curvature(&self) -> Option<engine::Curl> {
+        let curl = self.curl.as_ref()?;
+        Some(engine::Curl {
+            direction: engine::MaterialDirection::Uniform(self.placed(curl.along)),
+            along: 1.0 / curl.radius,
+            across: curl.across_radius.map_or(0.0, |radius| 1.0 / radius),
+            profile: curl.profile.as_given(),
+        })
+    }
+
+    /// A direction in the frame of the mesh, in space.
+    fn placed(&self, direction: [f64; 3]) -> [f64; 3] {
+        let [from, to] = [[0.0; 3], direction].map(|p| self.placement.place(p));
+        std::array::from_fn(|k| to[k] - from[k])
     }
 
     /// When the sheet yields in bending, per metre of its width: as written, or of the material. Nothing if
@@ -281,6 +398,30 @@ impl Sheet {
                 );
             }
         }
+        if let Some(curl) = &self.curl {
+            let key = key.name("curl");
+            curl.check(&key, checks);
+            if matches!(self.bending(), Bending::None | Bending::Hinges { .. }) {
+                let message = "the sheet curls, and no plate resists bending";
+                checks.report(key.clone(), message, PLATE);
+            }
+            if self.rest == RestShape::Mesh {
+                let remedy = "leave out `curl`, or `rest`";
+                checks.report(
+                    key,
+                    "the sheet is curved as its mesh is, and curls besides",
+                    remedy,
+                );
+            }
+        }
+        if self.rest == RestShape::Mesh && self.bending() == Bending::None {
+            let message = "bends are measured from the mesh, and nothing resists bending";
+            checks.report(
+                key.name("rest"),
+                message,
+                "give `sheet.bending`, or `sheet.material`",
+            );
+        }
         let is_elastic = matches!(isometry, Isometry::Elastic { .. });
         if is_elastic && self.material.is_none() && self.elasticity().is_none() {
             checks.report(
@@ -293,6 +434,9 @@ impl Sheet {
         self.start.check(&key.name("start"), checks);
     }
 }
+
+/// What to do where a plate is needed.
+const PLATE: &str = "give `sheet.bending` as a `plate`, or `sheet.material`";
 
 /// Limits of strain. Smaller ones than a millionth come near the rounding of positions; at a strain of -0.5
 /// an edge has no length.
@@ -329,6 +473,8 @@ impl Bending {
         match self {
             Self::None => 0.0,
             Self::Plate { rigidity, .. } | Self::Hinges { rigidity } => *rigidity,
+            // That of the least work: what locks first where a mesh cannot follow a bend.
+            Self::Orthotropic { along, across, .. } => along.min(*across),
         }
     }
 
@@ -342,6 +488,27 @@ impl Bending {
                 "plate.rigidity"
             }
             Self::Hinges { .. } => "hinges.rigidity",
+            Self::Orthotropic {
+                direction,
+                along,
+                across,
+                twist,
+                coupling,
+            } => {
+                let key = key.name("orthotropic");
+                checks.direction(key.name("direction"), direction);
+                let unit = Unit::NewtonMetre;
+                for (name, rigidity) in [("along", along), ("across", across), ("twist", twist)] {
+                    checks.positive(key.name(name), *rigidity, unit);
+                }
+                checks.number(key.name("coupling"), *coupling, unit);
+                if coupling * coupling >= along * across {
+                    let message = "the coupling leaves a bend without resistance";
+                    let remedy = "give one whose square is less than `along across`";
+                    checks.report(key.name("coupling"), message, remedy);
+                }
+                return;
+            }
         };
         checks.positive(key.name(name), self.rigidity(), Unit::NewtonMetre);
     }

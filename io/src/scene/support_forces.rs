@@ -19,6 +19,8 @@ pub struct SupportForces {
     origins: Origins,
     /// Number of supports.
     count: usize,
+    /// The vertices of each support.
+    vertices: Vec<Vec<VertexId>>,
     /// The shares of the supports at each vertex that is kept in place.
     shares: HashMap<VertexId, Vec<f64>>,
 }
@@ -28,6 +30,7 @@ impl SupportForces {
     pub fn new(origins: Origins, simulation: &Simulation, count: usize) -> Self {
         let shares = shares(&origins, simulation, count).unwrap_or_default();
         Self {
+            vertices: origins.vertices(simulation.model(), count),
             origins,
             count,
             shares,
@@ -36,21 +39,59 @@ impl SupportForces {
 
     /// Force of each support on the sheet in the last step, newtons; zero before the first one.
     pub fn of(&self, simulation: &Simulation) -> Vec<[f64; 3]> {
-        let mut forces = vec![Vector3::zeros(); self.count];
+        self.loads(simulation).map(|load| load.force).collect()
+    }
+
+    /// Force and torque of each support on the sheet in the last step.
+    pub fn loads(&self, simulation: &Simulation) -> impl Iterator<Item = SupportLoad> {
+        let x = &simulation.state().x;
+        let place = |v: VertexId| Vector3::from_column_slice(&x[3 * v.index()..3 * v.index() + 3]);
+        // Forces, and torques about the origin.
+        let mut loads = vec![[Vector3::zeros(); 2]; self.count];
+        let mut add = |number: usize, force: Vector3<f64>, at: Vector3<f64>| {
+            let [sum, torque] = &mut loads[number];
+            *sum += force;
+            *torque += at.cross(&force);
+        };
         for Reaction { support, force } in simulation.reactions() {
+            let at = place(support.vertex());
             match (self.origins.support(support), support) {
-                (Some(number), _) if number < self.count => forces[number] += force,
+                (Some(number), _) if number < self.count => add(number, force, at),
                 (None, Support::Pin(vertex)) => {
                     let shares = self.shares.get(&vertex).into_iter().flatten();
-                    for (sum, share) in forces.iter_mut().zip(shares) {
-                        *sum += *share * force;
+                    for (number, share) in shares.enumerate() {
+                        add(number, *share * force, at);
                     }
                 }
                 _ => {}
             }
         }
-        forces.into_iter().map(Into::into).collect()
+        let clamps = self.origins.clamps.iter();
+        for (number, moment) in clamps.zip(simulation.clamp_moments()) {
+            if let Some([_, torque]) = loads.get_mut(*number) {
+                *torque += Vector3::from(moment);
+            }
+        }
+        let means = self.vertices.iter().map(|vertices| {
+            let sum: Vector3<f64> = vertices.iter().map(|v| place(*v)).sum();
+            sum / vertices.len().max(1) as f64
+        });
+        let means: Vec<Vector3<f64>> = means.collect();
+        let loads = loads.into_iter().zip(means);
+        loads.map(|([force, torque], mean)| SupportLoad {
+            force: force.into(),
+            torque: (torque - mean.cross(&force)).into(),
+        })
     }
+}
+
+/// What a support does to the sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupportLoad {
+    /// Force, newtons.
+    pub force: [f64; 3],
+    /// Torque about the mean of the places of its vertices, newton metres.
+    pub torque: [f64; 3],
 }
 
 /// The shares at the immobile vertices; `None` if there are none, or nothing holds some of them.

@@ -52,6 +52,21 @@ pub enum Hold {
     Pin,
     /// In a prescribed motion, which is zero at the start: all vertices move as one rigid body.
     MovingPin(Motion),
+    /// Clamped where they are at the start: the sheet keeps the slope that it has there, along the edges between
+    /// the vertices. Of a plate one line of vertices is enough; of other sheets the faces along the line are
+    /// pinned, which shortens the free part by their height.
+    Clamp,
+    /// Clamped, in a prescribed motion, which is zero at the start: all vertices and the slopes move as one
+    /// rigid body.
+    MovingClamp(Motion),
+    /// Clamped, and free to slide along a direction without friction. For plates.
+    SlidingClamp {
+        /// The direction, of any length.
+        direction: [f64; 3],
+        /// The motion of clamp and direction.
+        #[serde(default)]
+        motion: Motion,
+    },
     /// On a curve, along which they slide without friction. They have to be on it at the start.
     Curve {
         /// The curve.
@@ -252,8 +267,14 @@ impl Support {
         self.at.check(&key.name("at"), checks);
         let hold = key.name("hold");
         match &self.hold {
-            Hold::Pin => {}
+            Hold::Pin | Hold::Clamp => {}
             Hold::MovingPin(motion) => motion.check(&hold.name("moving_pin"), checks),
+            Hold::MovingClamp(motion) => motion.check(&hold.name("moving_clamp"), checks),
+            Hold::SlidingClamp { direction, motion } => {
+                let key = hold.name("sliding_clamp");
+                motion.check(&key.name("motion"), checks);
+                checks.direction(key.name("direction"), direction);
+            }
             Hold::Curve { shape, motion } => {
                 let key = hold.name("curve");
                 motion.check(&key.name("motion"), checks);
@@ -264,6 +285,30 @@ impl Support {
                 motion.check(&key.name("motion"), checks);
                 shape.check(&key.name("shape").name(shape.name()), checks);
             }
+        }
+    }
+}
+
+impl Hold {
+    /// Whether vertices have no motion of their own.
+    pub(super) fn is_pin(&self) -> bool {
+        match self {
+            Self::Pin | Self::MovingPin(_) | Self::Clamp | Self::MovingClamp(_) => true,
+            Self::SlidingClamp { .. } | Self::Curve { .. } | Self::Surface { .. } => false,
+        }
+    }
+
+    /// Whether vertices stay where they are at the start.
+    pub(super) fn is_at_rest(&self) -> bool {
+        matches!(self, Self::Pin | Self::Clamp)
+    }
+
+    /// The motion of the slopes that it holds, if it does.
+    pub(super) fn clamp_motion(&self) -> Option<Motion> {
+        match self {
+            Self::Clamp => Some(Motion::default()),
+            Self::MovingClamp(motion) | Self::SlidingClamp { motion, .. } => Some(motion.clone()),
+            Self::Pin | Self::MovingPin(_) | Self::Curve { .. } | Self::Surface { .. } => None,
         }
     }
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 5] = [
+const ALL_KEYS: [&str; 7] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -222,6 +222,32 @@ const ALL_KEYS: [&str; 5] = [
     flat_stiffness = 0.5
     part = 0.75
     frame = 1"#,
+    r#"version = 1
+    [sheet]
+    mesh = { square = { side = 0.2, level = 1 } }
+    rest = "flat"
+    bending = { orthotropic = { direction = [1, 0, 0], along = 2e-3, across = 1e-3, twist = 1e-3, coupling = 3e-4 } }
+    curl = { along = [1, 0, 0], radius = 0.1, across_radius = 1.0, profile = { ramp = { from = 0, to = 1, begin = 0, end = 1 } } }
+    [[support]]
+    at = { vertices = [0, 1] }
+    hold = "clamp"
+    [[support]]
+    at = { vertices = [2, 3] }
+    hold = { moving_clamp = { z = 0.0 } }
+    [[support]]
+    at = { vertices = [4, 5] }
+    hold = { sliding_clamp = { direction = [1, 0, 0], motion = { z = 0.0 } } }
+    [stop]
+    time = 1
+    "#,
+    r#"version = 1
+    [sheet]
+    mesh = { square = { side = 0.2, level = 1 } }
+    rest = "mesh"
+    bending = { plate = { rigidity = 1e-3, poisson = 0.3 } }
+    [stop]
+    time = 1
+    "#,
 ];
 
 /// Scenes that have every key of the reference between them.

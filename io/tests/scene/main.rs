@@ -1,5 +1,6 @@
 //! Scene files: what they mean, and what is said of wrong ones.
 
+mod bends;
 mod book;
 mod charts;
 mod complete;

@@ -71,6 +71,9 @@ fn a_plate_has_the_poissons_ratio_of_its_sheet() {
     ] {
         let lines = lines.join("\n");
         let found = sheet(&lines).sheet.remove(0).plate().expect("a plate");
+        let dynamics::PlateLaw::Isotropic(found) = found else {
+            panic!("{found:?}");
+        };
         assert_eq!(found.poisson, poisson, "{lines}");
     }
     let wrong = "bending = { plate = { rigidity = 2.0, poisson = 0.6 } }";
@@ -113,7 +116,10 @@ fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
     let mut x = setup.start.x.clone();
     x[2] = 0.01;
     let bent = setup.model.potential_energy(0.0, &x);
-    let stiff = sheet("isometry = \"rods\"\nbending = { plate = { rigidity = 1e-4 } }");
+    let poisson = denim.poisson;
+    let stiff = sheet(&format!(
+        "isometry = \"rods\"\nbending = {{ plate = {{ rigidity = 1e-4, poisson = {poisson} }} }}"
+    ));
     let stiff = stiff.build(Path::new("")).unwrap();
     let ratio = bent / stiff.model.potential_energy(0.0, &x);
     assert!((ratio - denim.rigidity / 1e-4).abs() < 1e-9, "{ratio}");

@@ -53,11 +53,14 @@ fn sheets_that_do_not_meet_move_as_each_does_alone() {
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     };
     let start = simulation(&two_strips()).state().x.clone();
-    assert!(difference(&start[..n], &alone[..n]) > 1e-3, "paper bends");
-    assert!(difference(&start[n..], &alone[n..]) > 1e-3, "film bends");
-    // Steps are solved to a tolerance that follows the size and the mass of the whole.
+    let bends = [
+        difference(&start[..n], &alone[..n]),
+        difference(&start[n..], &alone[n..]),
+    ];
+    assert!(bends.iter().all(|bend| *bend > 1e-3), "{bends:?}");
+    // Steps are solved to a tolerance of 1e-4, which follows the size and the mass of the whole; 20 of them add up.
     let apart = difference(&both.state().x, &alone);
-    assert!(apart < 1e-6, "{apart}");
+    assert!(apart < 20.0 * 1e-4 * bends[0].min(bends[1]), "{apart}");
 }
 
 /// A small sheet on a large one, both tilted by gravity: it stays where friction is larger than the slope,
