@@ -281,7 +281,31 @@ impl<'a> Builder<'a> {
             }
         }
         self.count(self.scene.support.len(), "support", "supports");
+        self.name_hinges();
         Ok(())
+    }
+
+    /// Says which supports are hinges: pins at edges of a sheet with bending stiffness that hold no face, and do
+    /// not turn.
+    fn name_hinges(&mut self) {
+        let topology = self.sheets.union.topology();
+        for (k, support) in self.scene.support.iter().enumerate() {
+            let turns = match &support.hold {
+                Hold::Pin => false,
+                Hold::MovingPin(motion) => motion.rotation.is_some(),
+                _ => continue,
+            };
+            let held = |v: &VertexId| self.origins.pins.get(v) == Some(&k);
+            let bends = self.sheets.list.iter().any(|sheet| {
+                let mut vertices = sheet.part.vertices.clone().map(VertexId::from_index);
+                sheet.of.bending() != Bending::None && vertices.any(|v| held(&v))
+            });
+            let has_edge = || topology.edges().iter().any(|ends| ends.iter().all(held));
+            let has_face = || topology.faces().iter().any(|f| f.iter().all(held));
+            if bends && !turns && has_edge() && !has_face() {
+                self.modelled.push(format!("a hinge at `support[{k}]`"));
+            }
+        }
     }
 
     /// What is pinned besides the vertices of a clamp: of a sheet without a plate the third corners of the faces

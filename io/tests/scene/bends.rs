@@ -82,6 +82,31 @@ fn a_sheet_that_is_clamped_along_a_line_is_the_heavy_elastica() {
     );
 }
 
+/// A line of pins is called what it is to a sheet with bending stiffness.
+#[test]
+fn a_line_of_pins_is_called_a_hinge() {
+    let modelled = |lines: &str| {
+        let text = paper(&format!("{lines}\n[[support]]\n{EDGE}\nhold = "));
+        move |hold: &str| {
+            let setup = parse(&format!("{text}{hold}")).unwrap().build().unwrap();
+            setup
+                .modelled
+                .iter()
+                .any(|what| what == "a hinge at `support[0]`")
+        }
+    };
+    let turning =
+        "{ moving_pin = { rotation = { centre = [0, 0, 0], axis = [0, 1, 0], angle = 0 } } }";
+    let plate = modelled("");
+    assert!(plate("\"pin\"") && plate("{ moving_pin = { z = 0 } }"));
+    assert!(!plate("\"clamp\"") && !plate(turning));
+    let limp = modelled("isometry = \"rods\"\nbending = \"none\"");
+    assert!(
+        !limp("\"pin\""),
+        "without stiffness all supports are hinges"
+    );
+}
+
 /// A clamp that turns by a right angle and moves takes a weightless sheet with it as a rigid body.
 #[test]
 fn a_clamp_that_turns_takes_the_sheet_with_it() {
