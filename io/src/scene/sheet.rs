@@ -127,6 +127,7 @@ pub enum Isometry {
 ///
 /// ```toml
 /// [sheet]
+/// material = "office paper"
 /// rest = "mesh"
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -86,13 +86,12 @@ fn a_sheet_that_is_clamped_along_a_line_is_the_heavy_elastica() {
 #[test]
 fn a_line_of_pins_is_called_a_hinge() {
     let modelled = |lines: &str| {
-        let text = paper(&format!("{lines}\n[[support]]\n{EDGE}\nhold = "));
+        let lines = format!("{lines}\n[[support]]\n{EDGE}\nhold = ");
         move |hold: &str| {
-            let setup = parse(&format!("{text}{hold}")).unwrap().build().unwrap();
-            setup
-                .modelled
-                .iter()
-                .any(|what| what == "a hinge at `support[0]`")
+            let text = paper(&format!("{lines}{hold}"));
+            let setup = parse(&text).unwrap().build().unwrap();
+            let mut modelled = setup.modelled.iter();
+            modelled.any(|what| what == "a hinge at `support[0]`")
         }
     };
     let turning =
