@@ -140,7 +140,7 @@ const fn creasing(paper: Material, thickness: f64) -> Material {
     let yields = Yield {
         moment: 3.0 * paper.rigidity * 5e-3 / thickness,
         hardening: paper.rigidity / 3.0,
-        layers: 1,
+        layers: Yield::LAYERS,
     };
     Material {
         yields: Some(yields),

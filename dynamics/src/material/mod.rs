@@ -119,14 +119,13 @@ impl Material {
 
     /// Makes it yield at a stress (Pa), as a metal of this thickness (metres) does: at the moment `stress
     /// thickness^2 / 4` of a section that has yielded in the whole of its thickness, with the hardening of
-    /// Eurocode 3. (It begins at two thirds of this moment; [`Yield::in_layers`] takes into account what it
-    /// bends in between.)
+    /// Eurocode 3, in [`Yield::LAYERS`] layers: it begins at two thirds of this moment.
     #[must_use]
     pub const fn with_yield_stress(self, thickness: f64, stress: f64) -> Self {
         let yields = Yield {
             moment: stress * thickness * thickness / 4.0,
             hardening: self.rigidity * Self::METAL_HARDENING,
-            layers: 1,
+            layers: Yield::LAYERS,
         };
         Self {
             yields: Some(yields),

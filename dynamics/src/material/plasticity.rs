@@ -174,6 +174,10 @@ impl Layer {
 }
 
 impl Yield {
+    /// The number of layers of a sheet unless another is asked for: its moment has an error of 0.4 % of `M_y`.
+    /// What is left of the bend of a cantilever errs by up to 11 % with 4 layers, and by 0.3 % with this number.
+    pub const LAYERS: usize = 8;
+
     /// The largest number of layers.
     pub const MAX_LAYERS: usize = 100;
 

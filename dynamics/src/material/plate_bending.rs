@@ -1,5 +1,7 @@
 //! Bending stiffness of a thin plate that does not depend on how the mesh runs.
 
+mod direction;
+mod error;
 mod law;
 mod line_clamp;
 #[cfg(test)]
@@ -18,105 +20,23 @@ mod stress_free;
 mod tests;
 
 use super::plasticity::Yield;
-use crate::MotionError;
-use crate::options::OptionsError;
 use crate::potential::At;
 use crate::potential::Reached;
 use crate::potential::Settled;
 use crate::{HessianSink, Potential};
-use isosheet_mesh::wording::given;
-use isosheet_mesh::{Advice, EdgeId, FaceId, Sheet, VertexId};
+pub use direction::{DirectionError, MaterialDirection};
+pub use error::{CurlError, PlateBendingError};
+use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use law::Roots;
-pub use law::{DirectionError, MaterialDirection, OrthotropicPlate, PlateLaw};
-pub use line_clamp::LineClamp;
+pub use law::{OrthotropicPlate, PlateLaw};
+pub use line_clamp::{LineClamp, PlateEdges};
 use nalgebra::{Matrix2, Matrix3, Vector3};
+pub use natural::Curl;
 use natural::NaturalCurvature;
-pub use natural::{Curl, CurlError};
 use std::collections::BTreeMap;
 use stencil::Stencils;
 pub use stiffness::PlateStiffness;
 use stress_free::{Blocks, StressFreeCurvature};
-
-/// Why the bending stiffness of a plate cannot be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PlateBendingError {
-    /// The flexural rigidity is negative or not finite.
-    #[error("the flexural rigidity is {rigidity} N m", rigidity = given(*rigidity))]
-    Rigidity {
-        /// The rigidity given, N m.
-        rigidity: f64,
-    },
-    /// Poisson's ratio is out of range.
-    #[error("Poisson's ratio is {ratio}", ratio = given(*ratio))]
-    Poisson {
-        /// The ratio given.
-        ratio: f64,
-    },
-    /// The coupling of the two directions of an orthotropic plate leaves a bend without resistance.
-    #[error("the coupling D12 of the plate is {coupling} N m", coupling = given(*coupling))]
-    Coupling {
-        /// The coupling, N m.
-        coupling: f64,
-    },
-    /// The direction of the material is none.
-    #[error(transparent)]
-    Direction {
-        /// Why.
-        source: DirectionError,
-    },
-    /// The natural curvature makes no sense.
-    #[error(transparent)]
-    Curl {
-        /// Why.
-        source: CurlError,
-    },
-    /// The motion of a clamp makes no sense.
-    #[error(transparent)]
-    Motion {
-        /// Why.
-        source: MotionError,
-    },
-    /// A clamped vertex does not exist.
-    #[error("{vertex} is named as clamped, but the sheet has {count} vertices")]
-    NoVertex {
-        /// The vertex.
-        vertex: VertexId,
-        /// Number of vertices.
-        count: usize,
-    },
-    /// An edge of a crease does not exist.
-    #[error("{edge} is named as a crease, but the sheet has {count} edges")]
-    NoEdge {
-        /// The edge.
-        edge: EdgeId,
-        /// Number of edges.
-        count: usize,
-    },
-    /// The plate cannot yield as it is to.
-    #[error("the yield of the plate cannot be used: {source}")]
-    Yield {
-        /// What is wrong with it.
-        source: OptionsError,
-    },
-}
-
-impl Advice for PlateBendingError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::Yield { source } => source.advice(),
-            Self::Rigidity { .. } => {
-                Some("give a finite one of at least 0; above 0 if it depends on the direction")
-            }
-            Self::Coupling { .. } => Some("give one whose square is less than D11 D22"),
-            Self::Direction { source } => source.advice(),
-            Self::Curl { source } => source.advice(),
-            Self::Motion { source } => source.advice(),
-            Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
-            Self::NoVertex { .. } | Self::NoEdge { .. } => None,
-        }
-    }
-}
 
 /// Bending energy of a thin plate that is flat at rest,
 ///
@@ -177,18 +97,6 @@ pub struct PlateBending {
     at_vertices: Vec<f64>,
     at_edges: Vec<(EdgeId, f64)>,
     at_pairs: Vec<([VertexId; 2], f64)>,
-}
-
-/// What holds a plate or interrupts it, see [`PlateBending::held`].
-#[derive(Debug, Clone, Copy, Default)]
-pub struct PlateEdges<'a> {
-    /// Pinned vertices: where all three corners of a face are among them, the plate leaves the clamp with the
-    /// slope of that face.
-    pub pinned: &'a [VertexId],
-    /// Edges of creases: the slopes of the two sides are independent there.
-    pub creases: &'a [EdgeId],
-    /// Clamps along lines of vertices.
-    pub clamps: &'a [LineClamp],
 }
 
 impl PlateBending {

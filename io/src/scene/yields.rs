@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// [sheet]
 /// mesh = { rectangle = { width = 0.1, height = 0.02, columns = 20, rows = 4 } }
 /// material = "aluminium sheet"
-/// yield = { layers = 4 }
+/// yield = {}
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -27,9 +27,9 @@ pub struct SheetYield {
     /// Growth of this moment by plastic curvature, N m. If left out, that of the material where `moment` is
     /// left out too, and otherwise 0.
     pub hardening: Option<f64>,
-    /// Number of layers of equal thickness of each half of the sheet, each of which yields by itself. With 1,
-    /// the sheet yields in the whole of its thickness at once; with 4, the moment of a sheet that yields from
-    /// its faces inwards has an error of 1.5 % of `moment`.
+    /// Number of layers of equal thickness of each half of the sheet, each of which yields by itself. With 8, the
+    /// moment of a sheet that yields from its faces inwards has an error of 0.4 % of `moment`; with 1, the sheet
+    /// yields in the whole of its thickness at once.
     pub layers: usize,
 }
 
@@ -38,7 +38,7 @@ impl Default for SheetYield {
         Self {
             moment: None,
             hardening: None,
-            layers: one_layer(),
+            layers: Yield::LAYERS,
         }
     }
 }

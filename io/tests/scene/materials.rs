@@ -193,7 +193,7 @@ fn a_sheet_yields_where_it_says_so() {
     assert_eq!(yields("material = \"steel sheet\"\nyield = {}"), steel);
     let plate = "{ youngs = 2.1e11, thickness = 5e-4, density = 7850, yield_stress = 2.35e8 }";
     assert_eq!(yields(&format!("material = {plate}\nyield = {{}}")), steel);
-    let own = dynamics::Yield::perfect(2.0);
+    let own = dynamics::Yield::perfect(2.0).in_layers(dynamics::Yield::LAYERS);
     assert_eq!(
         yields("material = \"steel sheet\"\nyield = { moment = 2 }"),
         Some(own)
@@ -229,11 +229,15 @@ fn plates_hinges_and_creases_of_a_scene_remember() {
         counts.sum::<usize>()
     };
     let (faces, edges) = (4, 3);
+    let layers = dynamics::Yield::LAYERS;
     let paper = "material = \"office paper\"";
     assert_eq!(remembered(paper, ""), 0);
-    assert_eq!(remembered(&format!("{paper}\nyield = {{}}"), ""), 3 * faces);
+    assert_eq!(
+        remembered(&format!("{paper}\nyield = {{}}"), ""),
+        3 * layers * faces
+    );
     let hinges = "bending = { hinges = { rigidity = 1e-3 } }\nyield = { moment = 0.1 }";
-    assert_eq!(remembered(hinges, ""), edges);
+    assert_eq!(remembered(hinges, ""), layers * edges);
     let layers = format!("{paper}\nyield = {{ layers = 4 }}");
     assert_eq!(remembered(&layers, ""), 4 * 3 * faces);
     let crease = "[[crease]]\nat = { line = { from = [0.1, 0, 0], to = [0.1, 0.1, 0] } }\nstiffness = 0.1\n\

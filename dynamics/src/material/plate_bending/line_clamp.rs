@@ -22,6 +22,18 @@ pub struct LineClamp {
     pub motion: RigidMotion,
 }
 
+/// What holds a plate or interrupts it, see [`PlateBending::held`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PlateEdges<'a> {
+    /// Pinned vertices: where all three corners of a face are among them, the plate leaves the clamp with the
+    /// slope of that face.
+    pub pinned: &'a [VertexId],
+    /// Edges of creases: the slopes of the two sides are independent there.
+    pub creases: &'a [EdgeId],
+    /// Clamps along lines of vertices.
+    pub clamps: &'a [LineClamp],
+}
+
 /// The slope of a face at an edge, held by a clamp: a vector that turns with it.
 #[derive(Debug, Clone)]
 pub(super) struct Director {

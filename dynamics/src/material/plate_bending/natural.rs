@@ -1,9 +1,11 @@
 //! The curvature that a plate has without moments.
 
+use super::direction::{DirectionError, MaterialDirection};
+use super::error::CurlError;
 use super::law::{Roots, turn};
-use super::{DirectionError, MaterialDirection};
-use crate::motion::profile::{Profile, ProfileError};
-use isosheet_mesh::{Advice, FaceId, Sheet};
+
+use crate::motion::profile::Profile;
+use isosheet_mesh::{FaceId, Sheet};
 use nalgebra::Vector3;
 
 /// The curvature that a sheet has by itself, without moments: that of paper which curls along one direction, of
@@ -32,34 +34,6 @@ pub struct Curl {
     pub across: f64,
     /// A factor of time, in seconds: a constant 1 for a curl that is always there.
     pub profile: Profile,
-}
-
-/// Why a curl makes no sense.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CurlError {
-    /// A curvature is not finite.
-    #[error("the natural curvature is {value} 1/m")]
-    Curvature {
-        /// The curvature, 1/m.
-        value: f64,
-    },
-    /// The direction is none.
-    #[error(transparent)]
-    Direction(#[from] DirectionError),
-    /// The profile makes no sense.
-    #[error(transparent)]
-    Profile(#[from] ProfileError),
-}
-
-impl Advice for CurlError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::Curvature { .. } => Some("give finite curvatures, one over a radius"),
-            Self::Direction(error) => error.advice(),
-            Self::Profile(error) => error.advice(),
-        }
-    }
 }
 
 /// Natural curvatures of the faces.

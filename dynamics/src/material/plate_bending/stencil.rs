@@ -1,8 +1,7 @@
 //! Second derivatives of positions on a triangle mesh, from the positions of vertices nearby.
 
-use super::PlateEdges;
 use super::law::Roots;
-use super::line_clamp::{Director, HeldEdges};
+use super::line_clamp::{Director, HeldEdges, PlateEdges};
 use crate::RigidMotion;
 use crate::potential::At;
 use crate::vectors::point;
