@@ -8,8 +8,8 @@ use std::io::{self, Read, Seek, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-use crate::format::atomic::{WriteError, prepare_folder};
-use crate::format::{DataError, FileError, input};
+use crate::format::atomic::prepare_folder;
+use crate::format::{DataError, FileError, WriteError, input};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
