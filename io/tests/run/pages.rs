@@ -328,7 +328,8 @@ fn kinds_of_bodies(page: &Path) -> Vec<String> {
         .collect()
 }
 
-/// The page and what a run returns are made of the rows in memory: here the files of the tables are gone at its end.
+/// The page and what a run returns are made of the rows in memory: here the files of the tables are gone at
+/// its end.
 #[test]
 fn tables_are_not_read_back() {
     let dir = tempfile::tempdir().unwrap();
