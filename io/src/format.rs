@@ -16,7 +16,7 @@ pub(crate) mod memory;
 mod mesh_file;
 mod trajectory;
 
-pub use atomic::{FileWriter, WriteError, write_atomically};
+pub use atomic::{FileWriter, write_atomically};
 #[cfg(feature = "run")]
 pub(crate) use cell::cell;
 pub use data_error::DataError;
@@ -30,7 +30,7 @@ pub use export::{
     SeriesBody, SeriesField, SeriesFormat, SeriesOptions, frame_path, write_frame, write_mesh,
     write_obj, write_series,
 };
-pub use file_error::{FileError, ReadError};
+pub use file_error::{FileError, ReadError, WriteError};
 pub use history::{HistoryRow, HistoryWriter, Row, RowWriter, Written, read_history};
 pub use json::{read_json, write_json};
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};

@@ -17,6 +17,7 @@ mod commit;
 mod error;
 mod materials;
 mod mesh;
+mod recorded;
 mod report;
 mod run;
 mod scene;
@@ -53,7 +54,7 @@ fn _isosheet(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<mesh::Mesh>()?;
     module.add_class::<report::StepReport>()?;
-    module.add_class::<run::Run>()?;
+    module.add_class::<recorded::Run>()?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<simulation::Simulation>()?;
     module.add_function(wrap_pyfunction!(command, module)?)?;

@@ -2,6 +2,7 @@
 
 use crate::arrays::{array, rows, slices};
 use crate::error::{of_run, plain};
+use crate::recorded::Run;
 use crate::scene::Scene;
 use crate::value::to_python;
 use isosheet_io::run::{self, Recording};
@@ -14,17 +15,6 @@ use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toml::Value;
-
-/// What a run has written to a folder, complete or not.
-///
-/// folder: the folder of `isosheet simulate` or of Scene.simulate.
-///
-/// Numbers of frames, vertices, faces and edges are T, V, F and E. In a notebook a run shows its 3D page.
-#[pyclass(frozen, module = "isosheet")]
-pub(crate) struct Run {
-    pub(crate) folder: PathBuf,
-    pub(crate) recording: Recording,
-}
 
 /// A column of the history: its name and its values.
 type Column<T> = (&'static str, fn(&HistoryRow) -> T);

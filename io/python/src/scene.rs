@@ -2,7 +2,7 @@
 
 use crate::error::{of_file, of_run};
 use crate::mesh::Mesh;
-use crate::run::Run;
+use crate::recorded::Run;
 use crate::value::{Remade, edits_as_texts, remade, table, to_python};
 use isosheet_io::run::{self, StepPart, Tick, Watch};
 use isosheet_io::scene::{Key, SceneFile, SceneFileError, StartingPoint};

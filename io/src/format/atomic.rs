@@ -1,78 +1,12 @@
 //! Files that appear only when they are complete.
 
-use super::FileError;
-use isosheet_mesh::Advice;
+use super::file_error::{FileError, WriteError};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use thiserror::Error;
-
 /// What [`write_atomically`] hands to its closure: buffered, and seekable as zip archives need it.
 pub type FileWriter<'a> = BufWriter<&'a File>;
-
-/// A file could not be written; nothing is left under its name that was not there before.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum WriteError {
-    /// The path does not end in a file name.
-    #[error("{} does not name a file", path.display())]
-    NoFileName {
-        /// The path.
-        path: PathBuf,
-    },
-    /// There is a folder of that name.
-    #[error("{} is a folder", path.display())]
-    IsFolder {
-        /// The path.
-        path: PathBuf,
-    },
-    /// The folder of the file could not be made.
-    #[error("cannot create the folder {}: {source}", folder.display())]
-    CreateFolder {
-        /// The folder.
-        folder: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// The folder does not take a new file.
-    #[error("cannot create a file in {}: {source}", folder.display())]
-    CreateFile {
-        /// The folder.
-        folder: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// Writing failed half way.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-    /// The complete file could not be given its name.
-    #[error("cannot put the finished file in place as {}: {source}", path.display())]
-    Persist {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-}
-
-impl Advice for WriteError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::NoFileName { .. } => Some("give a path that ends in a file name"),
-            Self::IsFolder { .. } => Some("choose another file name or move the folder away"),
-            Self::CreateFolder { .. } => Some("check the name and the permissions"),
-            Self::CreateFile { .. } => Some("check the permissions and the free space"),
-            Self::Write { .. } => Some("check the free space"),
-            Self::Persist { .. } => Some("check that no other program holds it"),
-        }
-    }
-}
 
 /// How the names of temporary files begin.
 const PREFIX: &str = ".";

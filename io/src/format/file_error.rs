@@ -1,6 +1,6 @@
 //! Files that cannot be read or written.
 
-use super::{DataError, WriteError};
+use super::DataError;
 use isosheet_mesh::Advice;
 use std::fmt::Display;
 use std::io;
@@ -21,6 +21,69 @@ pub struct ReadError {
 impl Advice for ReadError {
     fn advice(&self) -> Option<&'static str> {
         Some(self.remedy)
+    }
+}
+
+/// A file could not be written; nothing is left under its name that was not there before.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The path does not end in a file name.
+    #[error("{} does not name a file", path.display())]
+    NoFileName {
+        /// The path.
+        path: PathBuf,
+    },
+    /// There is a folder of that name.
+    #[error("{} is a folder", path.display())]
+    IsFolder {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The folder of the file could not be made.
+    #[error("cannot create the folder {}: {source}", folder.display())]
+    CreateFolder {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The folder does not take a new file.
+    #[error("cannot create a file in {}: {source}", folder.display())]
+    CreateFile {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Writing failed half way.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The complete file could not be given its name.
+    #[error("cannot put the finished file in place as {}: {source}", path.display())]
+    Persist {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
+impl Advice for WriteError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoFileName { .. } => Some("give a path that ends in a file name"),
+            Self::IsFolder { .. } => Some("choose another file name or move the folder away"),
+            Self::CreateFolder { .. } => Some("check the name and the permissions"),
+            Self::CreateFile { .. } => Some("check the permissions and the free space"),
+            Self::Write { .. } => Some("check the free space"),
+            Self::Persist { .. } => Some("check that no other program holds it"),
+        }
     }
 }
 

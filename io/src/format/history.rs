@@ -8,8 +8,8 @@ use std::io::{self, Read, Seek, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-use crate::format::atomic::{WriteError, prepare_folder};
-use crate::format::{DataError, FileError, input};
+use crate::format::atomic::prepare_folder;
+use crate::format::{DataError, FileError, WriteError, input};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -248,8 +248,8 @@ impl<R: Row> RowWriter<R> {
     /// Adds a row.
     ///
     /// # Errors
-    /// [`FileError::Data`] naming the column of a number that is not finite, in which case nothing is written;
-    /// [`FileError::Write`].
+    /// [`FileError::Data`] naming the column of a number that is not finite, in which case nothing is
+    /// written; [`FileError::Write`].
     pub fn append(&mut self, row: &R) -> Result<(), FileError> {
         row.check_finite()?;
         self.write_record(|w| w.serialize(row))

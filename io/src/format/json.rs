@@ -17,7 +17,7 @@ pub fn write_json<T: Serialize + ?Sized>(path: &Path, value: &T) -> Result<(), F
     let mut text = serde_json::to_vec_pretty(value)
         .map_err(|e| DataError::plain(format!("cannot write {} as JSON: {e}", path.display())))?;
     text.push(b'\n');
-    Ok(write_atomically(path, |w| w.write_all(&text))?)
+    write_atomically(path, |w| w.write_all(&text))
 }
 
 /// Reads a JSON file.

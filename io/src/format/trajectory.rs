@@ -11,7 +11,8 @@ pub(crate) use motion::{Motion, MotionError, MotionFrame};
 
 use crate::format::atomic::write_atomically;
 use crate::format::{DataError, FileError};
-use archive::{ArchiveReader, ArchiveWriter};
+use archive::{ArchiveReader, ArchiveWriter, wrong_array};
+use data::not_finite;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Sheet, VertexId};
 use std::convert::Infallible;
@@ -459,22 +460,6 @@ impl Trajectory {
             data,
         })
     }
-}
-
-/// An array of a file that is missing or of another type or shape.
-fn wrong_array(path: &Path, name: &str, problem: &str) -> FileError {
-    let problem = format!("array `{name}`: {problem}");
-    let remedy = "give a trajectory that this program wrote, and that memory can hold";
-    FileError::content(path, problem, remedy)
-}
-
-/// A number of a frame that is not finite.
-fn not_finite(what: &str, frame: usize, value: f64) -> DataError {
-    let value_in_words = given(value);
-    let message =
-        format!("{what} in frame {frame} is {value_in_words}, and the frame was not recorded");
-    let error = DataError::new(message, "go back to the last state that was finite");
-    error.at(frame).value(value)
 }
 
 #[cfg(test)]

@@ -10,7 +10,8 @@ use resvg::{tiny_skia, usvg};
 /// files everywhere.
 ///
 /// # Errors
-/// [`PictureError::Svg`] if the document cannot be read, [`PictureError::Options`] if it is empty or too large.
+/// [`PictureError::Svg`] if the document cannot be read, [`PictureError::Options`] if it is empty or too
+/// large.
 pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>, PictureError> {
     let pixels = pixels(svg, scale)?;
     let data: Vec<u8> = pixels

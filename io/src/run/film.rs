@@ -40,8 +40,8 @@ impl FilmOptions {
     /// Whether the values make sense.
     ///
     /// # Errors
-    /// [`PictureError::Options`] for no pixels or more than 16 384 each way, and for angles that are not finite
-    /// or an elevation beyond 90 degrees.
+    /// [`PictureError::Options`] for no pixels or more than 16 384 each way, and for angles that are not
+    /// finite or an elevation beyond 90 degrees.
     pub fn validate(&self) -> Result<(), PictureError> {
         let (width, height) = (self.width.unwrap_or(self.height), self.height);
         if !(1..=LARGEST).contains(&width) || !(1..=LARGEST).contains(&height) {

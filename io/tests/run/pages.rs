@@ -4,12 +4,13 @@ use crate::headless::self_test;
 use crate::skip::data_folder;
 use crate::{code, killed, run, stderr, stdout, summary, with_scene};
 use isosheet_io::mesh::generate;
-use isosheet_io::run::Recording;
-use isosheet_io::scene::StartingPoint;
+use isosheet_io::run::{Recording, Tick, simulate_recorded};
+use isosheet_io::scene::{SceneFile, StartingPoint};
 use isosheet_io::view::{BodyShape, Replay};
 use isosheet_io::write_obj;
 use serde_json::Value;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// The data of a page.
@@ -325,4 +326,60 @@ fn kinds_of_bodies(page: &Path) -> Vec<String> {
     bodies
         .map(|b| b["shape"]["kind"].as_str().unwrap().to_owned())
         .collect()
+}
+
+/// The page and what a run returns are made of the rows in memory: here the files of the tables are gone at
+/// its end.
+#[test]
+fn tables_are_not_read_back() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path().join("run");
+    let text = StartingPoint::Hanging.text().to_owned();
+    let edits = ["stop.time=0.1".to_owned()];
+    let file = SceneFile::parse(text, &dir.path().join("scene.toml"), &edits).unwrap();
+    let mut take_away = |_: &Tick| {
+        for name in ["history.csv", "loads.csv"] {
+            let _ = fs::remove_file(folder.join(name));
+        }
+        ControlFlow::Continue(())
+    };
+    let recorded = simulate_recorded(&file, &folder, &mut take_away).unwrap();
+    let recorded = recorded.expect("the run was not interrupted");
+    let steps = recorded.summary.as_ref().unwrap().steps as usize;
+    assert_eq!(recorded.history.len(), steps + 1);
+    assert_eq!(recorded.loads.len(), steps);
+    assert_eq!(
+        recorded.trajectory.len() as u64,
+        recorded.summary.unwrap().frames
+    );
+    assert!(folder.join("index.html").is_file());
+    assert!(!folder.join("history.csv").exists());
+}
+
+/// A run that is continued in another process returns the rows of both.
+#[test]
+fn a_continued_run_returns_all_rows() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path().join("run");
+    let text = StartingPoint::Hanging.text().to_owned();
+    let edits = ["stop.time=0.1".to_owned()];
+    let file = SceneFile::parse(text, &dir.path().join("scene.toml"), &edits).unwrap();
+    let mut stop = |tick: &Tick| match tick.steps {
+        3 => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
+    assert!(
+        simulate_recorded(&file, &folder, &mut stop)
+            .unwrap()
+            .is_none()
+    );
+    let mut go_on = |_: &Tick| ControlFlow::Continue(());
+    let recorded = simulate_recorded(&file, &folder, &mut go_on)
+        .unwrap()
+        .unwrap();
+    let read = Recording::read(&folder).unwrap();
+    assert_eq!(recorded.history, read.history);
+    assert_eq!(recorded.loads, read.loads);
+    assert_eq!(recorded.summary, read.summary);
+    assert_eq!(recorded.trajectory, read.trajectory);
 }

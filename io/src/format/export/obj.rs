@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 /// Vertices and faces keep their order; numbers have as many digits as are needed to read them back exactly.
 ///
 /// # Errors
-/// [`ExportError::Data`] for another number of coordinates and for one that is not finite, [`ExportError::File`];
-/// nothing is written then.
+/// [`ExportError::Data`] for another number of coordinates and for one that is not finite,
+/// [`ExportError::File`]; nothing is written then.
 pub fn write_obj(path: &Path, topology: &Topology, x: &[f64]) -> Result<(), ExportError> {
     let expected = 3 * topology.vertex_count();
     check_count("coordinates of a mesh", x.len(), expected)?;

@@ -41,8 +41,8 @@ impl SeriesOptions {
     /// Checks the values.
     ///
     /// # Errors
-    /// [`ExportError::Data`] for every 0th frame, [`ExportError::Frames`] for a rate that is not positive and for a
-    /// last frame before the first one.
+    /// [`ExportError::Data`] for every 0th frame, [`ExportError::Frames`] for a rate that is not positive and
+    /// for a last frame before the first one.
     pub fn validate(&self) -> Result<(), ExportError> {
         if self.every == 0 {
             let remedy = "give 1 for all frames, 2 for every second one";

@@ -1,6 +1,5 @@
 //! Arrays in an archive of numpy: a zip file with one `.npy` file for each.
 
-use super::wrong_array;
 use crate::format::FileError;
 use crate::format::{input, memory};
 use npyz::npz::file_name_from_array_name;
@@ -245,4 +244,11 @@ fn whole_header(mut array: impl Read) -> io::Result<impl Read> {
         return Err(io::Error::new(io::ErrorKind::InvalidData, problem));
     }
     Ok(Cursor::new(start).chain(array))
+}
+
+/// An array of a file that is missing or of another type or shape.
+pub(super) fn wrong_array(path: &Path, name: &str, problem: &str) -> FileError {
+    let problem = format!("array `{name}`: {problem}");
+    let remedy = "give a trajectory that this program wrote, and that memory can hold";
+    FileError::content(path, problem, remedy)
 }

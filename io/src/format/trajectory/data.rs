@@ -1,7 +1,7 @@
 //! What frames have besides positions.
 
-use super::not_finite;
 use crate::format::DataError;
+use isosheet_mesh::wording::given;
 
 /// What a frame has besides its positions. An empty slice says that there is nothing of its kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -123,4 +123,13 @@ impl FrameQuantity {
             }
         }
     }
+}
+
+/// A number of a frame that is not finite.
+pub(super) fn not_finite(what: &str, frame: usize, value: f64) -> DataError {
+    let value_in_words = given(value);
+    let message =
+        format!("{what} in frame {frame} is {value_in_words}, and the frame was not recorded");
+    let error = DataError::new(message, "go back to the last state that was finite");
+    error.at(frame).value(value)
 }
