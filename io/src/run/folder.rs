@@ -117,7 +117,15 @@ pub(crate) enum Existing {
 pub(crate) struct RunFolder {
     root: PathBuf,
     /// Held until the end: the lock goes with the file.
-    _lock: File,
+    lock: File,
+}
+
+/// Gives the lock up at once. (A file that is closed keeps it as long as another process has a copy, such as one that
+/// has been forked at that moment and has not yet become another program.)
+impl Drop for RunFolder {
+    fn drop(&mut self) {
+        let _ = self.lock.unlock();
+    }
 }
 
 impl RunFolder {
@@ -204,7 +212,7 @@ impl RunFolder {
         }
         let folder = Self {
             root: root.to_owned(),
-            _lock: lock,
+            lock,
         };
         folder.remove_parts().map_err(unwritable)?;
         if existing == Existing::Delete {

@@ -46,21 +46,24 @@ impl SupportForces {
     pub fn loads(&self, simulation: &Simulation) -> impl Iterator<Item = SupportLoad> {
         let x = &simulation.state().x;
         let place = |v: VertexId| Vector3::from_column_slice(&x[3 * v.index()..3 * v.index() + 3]);
-        // Forces, and torques about the origin.
+        let means = self.vertices.iter().map(|vertices| {
+            let sum: Vector3<f64> = vertices.iter().map(|v| place(*v)).sum();
+            sum / vertices.len().max(1) as f64
+        });
+        let means: Vec<Vector3<f64>> = means.collect();
         let mut loads = vec![[Vector3::zeros(); 2]; self.count];
-        let mut add = |number: usize, force: Vector3<f64>, at: Vector3<f64>| {
-            let [sum, torque] = &mut loads[number];
-            *sum += force;
-            *torque += at.cross(&force);
-        };
         for Reaction { support, force } in simulation.reactions() {
-            let at = place(support.vertex());
             match (self.origins.support(support), support) {
-                (Some(number), _) if number < self.count => add(number, force, at),
+                (Some(number), _) if number < self.count => {
+                    let [sum, torque] = &mut loads[number];
+                    *sum += force;
+                    *torque += (place(support.vertex()) - means[number]).cross(&force);
+                }
                 (None, Support::Pin(vertex)) => {
+                    // Rods hand these forces on to the supports.
                     let shares = self.shares.get(&vertex).into_iter().flatten();
-                    for (number, share) in shares.enumerate() {
-                        add(number, *share * force, at);
+                    for ([sum, _], share) in loads.iter_mut().zip(shares) {
+                        *sum += *share * force;
                     }
                 }
                 _ => {}
@@ -72,15 +75,9 @@ impl SupportForces {
                 *torque += Vector3::from(moment);
             }
         }
-        let means = self.vertices.iter().map(|vertices| {
-            let sum: Vector3<f64> = vertices.iter().map(|v| place(*v)).sum();
-            sum / vertices.len().max(1) as f64
-        });
-        let means: Vec<Vector3<f64>> = means.collect();
-        let loads = loads.into_iter().zip(means);
-        loads.map(|([force, torque], mean)| SupportLoad {
+        loads.into_iter().map(|[force, torque]| SupportLoad {
             force: force.into(),
-            torque: (torque - mean.cross(&force)).into(),
+            torque: torque.into(),
         })
     }
 }

@@ -87,7 +87,8 @@ fn bent(p: f64) -> String {
 mesh = {{ rectangle = {{ width = 0.22, height = 0.02, columns = 22, rows = 2 }} }}
 material = \"office paper\"
 density = 0.0008
-yield = {{ moment = {MOMENT}, hardening = {HARDENING} }}
+bending = {{ plate = {{ rigidity = {D}, poisson = 0 }} }}
+yield = {{ moment = {MOMENT}, hardening = {HARDENING}, layers = 1 }}
 damping = 20
 [[support]]
 at = {{ box = {{ min = [-1, -1, -1], max = [0.0101, 1, 1] }} }}
