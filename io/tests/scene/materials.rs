@@ -113,7 +113,7 @@ fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
     let mut x = setup.start.x.clone();
     x[2] = 0.01;
     let bent = setup.model.potential_energy(0.0, &x);
-    let stiff = sheet("isometry = \"rods\"\nbending = { plate = { rigidity = 1e-4 } }");
+    let stiff = sheet("isometry = \"rods\"\nbending = { plate = { rigidity = 1e-4, poisson = 0.2 } }");
     let stiff = stiff.build(Path::new("")).unwrap();
     let ratio = bent / stiff.model.potential_energy(0.0, &x);
     assert!((ratio - denim.rigidity / 1e-4).abs() < 1e-9, "{ratio}");

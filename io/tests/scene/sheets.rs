@@ -55,9 +55,10 @@ fn sheets_that_do_not_meet_move_as_each_does_alone() {
     let start = simulation(&two_strips()).state().x.clone();
     assert!(difference(&start[..n], &alone[..n]) > 1e-3, "paper bends");
     assert!(difference(&start[n..], &alone[n..]) > 1e-3, "film bends");
-    // Steps are solved to a tolerance that follows the size and the mass of the whole.
+    // Steps are solved to a tolerance that follows the size and the mass of the whole: within a hundredth of
+    // these motions.
     let apart = difference(&both.state().x, &alone);
-    assert!(apart < 1e-6, "{apart}");
+    assert!(apart < 1e-5, "{apart}");
 }
 
 /// A small sheet on a large one, both tilted by gravity: it stays where friction is larger than the slope,
