@@ -111,14 +111,12 @@ fn clamped(number: u64) -> (Simulation, f64, usize) {
     let sheet = generate::delaunay(&outline, 0.025, 2).expect("valid");
     let clamp = sheet.topology().vertex_ids();
     let clamp: Vec<VertexId> = clamp.filter(|v| sheet.position(*v)[0] < 0.03).collect();
+    let plate = PlateBending::clamped(&sheet, 5e-4, &clamp).expect("valid");
+    let elastic = ElasticSheet::new(&sheet, 3e5, 0.3).expect("valid");
     let mut model = model(&sheet)
-        .with_potential(PlateBending::clamped(&sheet, 5e-4, &clamp).expect("valid"))
-        .with_elastic_sheet(
-            ElasticSheet::new(&sheet, 3e5, 0.3)
-                .and_then(|e| e.softened(5e-4))
-                .expect("valid"),
-        )
-        .expect("its own sheet");
+        .with_elastic_sheet(elastic.beside(&sheet, &plate))
+        .expect("its own sheet")
+        .with_potential(plate);
     for &v in &clamp {
         let [x, y, _] = sheet.position(v);
         let turn = move |t: f64| [x * (2.0 * t).cos(), y, x * (2.0 * t).sin()];

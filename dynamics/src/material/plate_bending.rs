@@ -5,6 +5,7 @@ mod plastic;
 mod plastic_tests;
 #[cfg(test)]
 mod poisson_tests;
+mod second_derivatives;
 mod stencil;
 mod stiffness;
 #[cfg(test)]
@@ -20,7 +21,9 @@ use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, FaceId, Sheet, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use plastic::{Blocks, PlasticCurvature};
+pub(crate) use second_derivatives::SecondDerivatives;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use stencil::Stencils;
 pub use stiffness::PlateStiffness;
 
@@ -126,7 +129,7 @@ impl Advice for PlateBendingError {
 #[derive(Debug)]
 pub struct PlateBending {
     stiffness: PlateStiffness,
-    stencils: Stencils,
+    stencils: Arc<Stencils>,
     plastic: Option<PlasticCurvature>,
     /// The Hessian of the elastic plate: one multiple of the identity for each vertex, edge and further pair
     /// of vertices.
@@ -217,12 +220,22 @@ impl PlateBending {
         }
         Ok(Self {
             stiffness,
-            stencils,
+            stencils: Arc::new(stencils),
             plastic: None,
             at_vertices,
             at_edges,
             at_pairs,
         })
+    }
+
+    /// Flexural rigidity, newton metres.
+    pub(crate) fn rigidity(&self) -> f64 {
+        self.stiffness.rigidity
+    }
+
+    /// The second derivatives of positions, of the plate of `sheet`, which has rigidity.
+    pub(crate) fn second_derivatives(&self, sheet: &Sheet) -> SecondDerivatives {
+        SecondDerivatives::new(&self.stencils, self.stiffness, sheet.face_areas())
     }
 
     /// Makes the plate of `sheet` yield, from a state without plastic curvature on. (Without rigidity it has

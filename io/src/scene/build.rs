@@ -28,7 +28,7 @@ use isosheet_dynamics::{
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -127,6 +127,8 @@ struct Builder<'a> {
     origins: Origins,
     modelled: Vec<String>,
     targets: Targets,
+    /// As what sheets bend, by their numbers.
+    plates: BTreeMap<usize, Arc<PlateBending>>,
 }
 
 /// An error of the engine at a key.
@@ -160,6 +162,7 @@ impl<'a> Builder<'a> {
             origins: Origins::default(),
             modelled,
             targets: Targets::default(),
+            plates: BTreeMap::new(),
         })
     }
 
@@ -349,14 +352,8 @@ impl<'a> Builder<'a> {
         number: usize,
         creases: &[EdgeId],
     ) -> Result<Vec<&'static str>, SceneError> {
-        let PlacedSheet {
-            of,
-            key,
-            form,
-            part,
-            ..
-        } = &self.sheets.list[number];
-        let placed = &form.placed;
+        let PlacedSheet { of, key, form, .. } = &self.sheets.list[number];
+        let (of, placed) = (*of, &form.placed);
         let yields = of.yields();
         let [key, yield_key] = ["bending", "yield"].map(|name| key.name(name));
         let mut modelled = Vec::new();
@@ -372,33 +369,54 @@ impl<'a> Builder<'a> {
                     springs = yielding.map_err(at(&yield_key))?;
                 }
                 modelled.push("bending stiffness at edges");
+                if of.elasticity().is_some() {
+                    self.share_plate(number, rigidity.into(), creases)?;
+                }
                 self.add_potential_of(number, springs);
             }
             (_, None) => {}
             (_, Some(stiffness)) => {
-                let pins = self.model().pins().into_iter();
-                let own = pins.filter(|v| part.vertices.contains(&v.index()));
-                let clamped: Vec<VertexId> = own.map(|v| part.local_vertex(v)).collect();
-                let plate = |clamped: &[VertexId], creases: &[EdgeId]| {
-                    PlateBending::creased(placed, stiffness, clamped, creases).map_err(at(&key))
-                };
                 modelled.push("bending stiffness of a plate");
+                let shared = self.share_plate(number, stiffness, creases)?;
                 if let Some(yields) = yields {
-                    let yielding = plate(&clamped, creases)?.with_yield(placed, yields);
+                    let clamped = self.clamped(number);
+                    let placed = &self.sheets.list[number].form.placed;
+                    let plate = PlateBending::creased(placed, stiffness, &clamped, creases);
+                    let yielding = plate.map_err(at(&key))?.with_yield(placed, yields);
                     self.add_potential_of(number, yielding.map_err(at(&yield_key))?);
                 } else {
-                    let made_of = (stiffness, clamped, creases.to_vec());
-                    let shared = self
-                        .kept
-                        .plates
-                        .get(number, made_of, |(_, clamped, creases)| {
-                            plate(clamped, creases).map(Arc::new)
-                        });
-                    self.add_potential_of(number, shared?);
+                    self.add_potential_of(number, shared);
                 }
             }
         }
         Ok(modelled)
+    }
+
+    /// The pinned vertices of one of the sheets, by its own numbers.
+    fn clamped(&self, number: usize) -> Vec<VertexId> {
+        let part = &self.sheets.list[number].part;
+        let pins = self.model().pins().into_iter();
+        let own = pins.filter(|v| part.vertices.contains(&v.index()));
+        own.map(|v| part.local_vertex(v)).collect()
+    }
+
+    /// The plate as which one of the sheets bends, without a yield: a potential, and what the elasticity in the
+    /// plane measures bends by.
+    fn share_plate(
+        &mut self,
+        number: usize,
+        stiffness: PlateStiffness,
+        creases: &[EdgeId],
+    ) -> Result<Arc<PlateBending>, SceneError> {
+        let made_of = (stiffness, self.clamped(number), creases.to_vec());
+        let PlacedSheet { key, form, .. } = &self.sheets.list[number];
+        let plates = &mut self.kept.plates;
+        let shared = plates.get(number, made_of, |(stiffness, clamped, creases)| {
+            let plate = PlateBending::creased(&form.placed, *stiffness, clamped, creases);
+            plate.map(Arc::new).map_err(at(&key.name("bending")))
+        })?;
+        self.plates.insert(number, Arc::clone(&shared));
+        Ok(shared)
     }
 
     /// The springs of the creases and of `[folding]` in one of the sheets, by its own edges.
@@ -455,14 +473,14 @@ impl<'a> Builder<'a> {
 
     fn add_isometry(&mut self) -> Result<(), SceneError> {
         let mut elastic = Vec::new();
-        for PlacedSheet {
-            of,
-            key,
-            form,
-            part,
-            ..
-        } in &self.sheets.list
-        {
+        for (number, placed) in self.sheets.list.iter().enumerate() {
+            let PlacedSheet {
+                of,
+                key,
+                form,
+                part,
+                ..
+            } = placed;
             let Some(elasticity) = of.elasticity() else {
                 continue;
             };
@@ -470,7 +488,8 @@ impl<'a> Builder<'a> {
                 Some(_) => "isometry",
                 None => "material",
             });
-            let sheet = elastic_sheet(&form.placed, elasticity, of.bending().rigidity());
+            let plate = self.plates.get(&number).map(Arc::as_ref);
+            let sheet = elastic_sheet(&form.placed, elasticity, plate);
             let sheet = sheet.map_err(at(&key))?;
             let words = elastic_in_words(&sheet);
             if !self.modelled.contains(&words) {
@@ -677,16 +696,18 @@ impl<'a> Builder<'a> {
 fn elastic_sheet(
     placed: &Sheet,
     elasticity: Elasticity,
-    rigidity: f64,
+    plate: Option<&PlateBending>,
 ) -> Result<ElasticSheet, ElasticSheetError> {
     let Elasticity {
         stiffness,
         poisson,
         limit,
     } = elasticity;
-    ElasticSheet::new(placed, stiffness, poisson)?
-        .softened(rigidity)?
-        .with_limit(limit)
+    let sheet = ElasticSheet::new(placed, stiffness, poisson)?.with_limit(limit)?;
+    Ok(match plate {
+        Some(plate) => sheet.beside(placed, plate),
+        None => sheet,
+    })
 }
 
 fn self_contact_problem(error: &ContactsError) -> Problem {

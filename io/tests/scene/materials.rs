@@ -113,7 +113,8 @@ fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
     let mut x = setup.start.x.clone();
     x[2] = 0.01;
     let bent = setup.model.potential_energy(0.0, &x);
-    let stiff = sheet("isometry = \"rods\"\nbending = { plate = { rigidity = 1e-4, poisson = 0.2 } }");
+    let stiff =
+        sheet("isometry = \"rods\"\nbending = { plate = { rigidity = 1e-4, poisson = 0.2 } }");
     let stiff = stiff.build(Path::new("")).unwrap();
     let ratio = bent / stiff.model.potential_energy(0.0, &x);
     assert!((ratio - denim.rigidity / 1e-4).abs() < 1e-9, "{ratio}");
@@ -121,7 +122,7 @@ fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
 }
 
 #[test]
-fn a_scene_says_what_the_material_gives_and_what_the_mesh_can_bear() {
+fn a_scene_says_what_the_material_gives() {
     let setup = |lines: &str| sheet(lines).build(Path::new("")).unwrap();
     let paper = setup("material = \"office paper\"");
     let said = paper.material.unwrap();
@@ -133,22 +134,9 @@ fn a_scene_says_what_the_material_gives_and_what_the_mesh_can_bear() {
     ] {
         assert!(said.contains(part), "{said}");
     }
-    // Cells of 0.1 m with diagonals: the edges of each face have a mean square of (0.1^2 + 0.1^2 + 0.02) / 3
-    // m2.
-    let used: Vec<f64> = paper
-        .model
-        .elastic_sheet()
-        .unwrap()
-        .face_stiffnesses()
-        .collect();
-    assert!(
-        used.iter()
-            .all(|k| (k / used[0] - 1.0).abs() < 1e-12 && *k < 3e5),
-        "{used:?}"
-    );
     let modelled = paper.modelled.join(", ");
     assert!(
-        modelled.contains("elasticity in the plane (3e5 N/m, softened on this mesh to "),
+        modelled.contains("elasticity in the plane (3e5 N/m; strain below 1 %)"),
         "{modelled}"
     );
     let limp = setup("material = \"office paper\"\nbending = \"none\"");

@@ -1,0 +1,108 @@
+//! How much shorter the chords of a bent sheet are than its arcs.
+
+use super::face::Face;
+use crate::material::plate_bending::PlateBending;
+use crate::material::plate_bending::SecondDerivatives;
+use isosheet_mesh::{FaceId, Part, Sheet};
+use nalgebra::{Matrix3, Vector3};
+use std::ops::Range;
+
+/// Numbers that are remembered of the bend of a face.
+pub(super) const NUMBERS: usize = 4;
+
+/// The bend of a face as its elasticity sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Bend {
+    /// The length errors of its edges as chords of their arcs, m2.
+    pub(super) chords: Vector3<f64>,
+    /// The square of the largest bend of a face around, `(kappa h)^2`.
+    pub(super) squared: f64,
+}
+
+impl Bend {
+    pub(super) const FLAT: Self = Self {
+        chords: Vector3::new(0.0, 0.0, 0.0),
+        squared: 0.0,
+    };
+
+    /// As it is remembered.
+    pub(super) fn remembered(&[a, b, c, squared]: &[f64; NUMBERS]) -> Self {
+        Self {
+            chords: Vector3::new(a, b, c),
+            squared,
+        }
+    }
+
+    fn numbers(&self) -> [f64; NUMBERS] {
+        let [a, b, c] = self.chords.into();
+        [a, b, c, self.squared]
+    }
+}
+
+/// The bends of the faces of a sheet, or of one of the parts of a union.
+#[derive(Debug, Clone)]
+pub(super) struct Arcs {
+    curvatures: SecondDerivatives,
+    /// Where the faces around each face begin, and their numbers.
+    starts: Vec<usize>,
+    around: Vec<u32>,
+    /// The numbers of its coordinates and faces in the union.
+    coordinates: Range<usize>,
+    faces: Range<usize>,
+}
+
+impl Arcs {
+    /// Of a sheet that bends as a plate with rigidity.
+    pub(super) fn new(sheet: &Sheet, plate: &PlateBending) -> Self {
+        let topology = sheet.topology();
+        let (mut starts, mut around) = (vec![0], Vec::new());
+        for face in topology.face_ids() {
+            let corners = topology.faces()[face.index()].iter();
+            let mut faces: Vec<FaceId> = corners
+                .flat_map(|v| topology.vertex_faces(*v))
+                .copied()
+                .collect();
+            faces.sort_unstable();
+            faces.dedup();
+            around.extend(faces.iter().map(|f| f.0));
+            starts.push(around.len());
+        }
+        Self {
+            curvatures: plate.second_derivatives(sheet),
+            starts,
+            around,
+            coordinates: 0..3 * topology.vertex_count(),
+            faces: 0..topology.face_count(),
+        }
+    }
+
+    /// The same of a sheet in a union of several.
+    pub(super) fn in_union(self, part: &Part) -> Self {
+        Self {
+            coordinates: part.coordinates(),
+            faces: part.faces.clone(),
+            ..self
+        }
+    }
+
+    /// Writes the bends at positions of the union to the numbers that are remembered of its faces.
+    pub(super) fn remember(&self, faces: &[Face], x: &[f64], memory: &mut [f64]) {
+        let own = &faces[self.faces.clone()];
+        let curvatures = self.curvatures.at(&x[self.coordinates.clone()]);
+        let curvatures: Vec<Matrix3<f64>> = curvatures.collect();
+        let square =
+            |(face, h): (&Face, &Matrix3<f64>)| h.norm_squared() * face.mean_squared_length();
+        let squares: Vec<f64> = own.iter().zip(&curvatures).map(square).collect();
+        let rows = memory.as_chunks_mut::<NUMBERS>().0;
+        let rows = &mut rows[self.faces.clone()];
+        let around = self.starts.windows(2).map(|w| &self.around[w[0]..w[1]]);
+        for (((row, face), h), around) in rows.iter_mut().zip(own).zip(&curvatures).zip(around) {
+            let largest = around.iter().map(|f| squares[*f as usize]);
+            let bend = Bend {
+                chords: face.chords(h),
+                squared: largest.fold(0.0, f64::max),
+            };
+            *row = bend.numbers();
+        }
+    }
+}
