@@ -1,6 +1,7 @@
 //! A sheet that stretches as its material does, up to a limit.
 
 mod arcs;
+mod bend;
 #[cfg(test)]
 mod bend_tests;
 mod face;
@@ -14,7 +15,8 @@ use crate::potential::{At, Reached, Settled};
 use crate::{HessianSink, Potential};
 
 use super::plate_bending::PlateBending;
-use arcs::{Arcs, Bend, NUMBERS};
+use arcs::Arcs;
+use bend::{Bend, NUMBERS};
 use face::Face;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, FaceId, Part, Sheet};
@@ -81,18 +83,19 @@ impl Advice for ElasticSheetError {
 /// paper, metal, film or cloth: one that bends in every direction on any mesh, and never stretches beyond the
 /// limit.
 ///
-/// The energy is that of St. Venant and Kirchhoff in plane stress, one constant strain for each face, and a
-/// barrier at the limit,
+/// The energy is that of St. Venant and Kirchhoff in plane stress, one constant strain for each face, with the
+/// strain of the chords of bends, with some slack where the sheet bends, and with a barrier at the limit,
 ///
 /// ```text
-/// V(x) = sum_T A_T { K_T/2 [ (1 - nu) |E_T|^2 + nu (tr E_T)^2 ] + kappa b(|E_T| / m) },
-/// K_T = k_T / (1 - nu^2),
+/// V(x) = sum_T A_T { W_T(|E_T - S_T|_nu) + kappa b(|E_T| / m) },
+/// |E|_nu^2 = (1 - nu) |E|^2 + nu (tr E)^2,
+/// W_T(e) = K e^2 / 2  where the sheet is flat,   K = E h / (1 - nu^2),
 /// ```
 ///
-/// with the rest areas `A_T`, Green's strain `E_T` of the face and its Frobenius norm `|E_T|`, the membrane
-/// stiffness `k_T` (newtons per metre), Poisson's ratio `nu` and the limit `m`. Green's strain is linear in
-/// the length errors of the three edges `c_e = (|x_a - x_b|^2 - l_e^2) / 2`: for the vector `e` of an edge at
-/// rest, `e^T E_T e = c_e`.
+/// with the rest areas `A_T`, Green's strain `E_T` of the face and its Frobenius norm `|E_T|`, Young's modulus
+/// times thickness `E h` (newtons per metre), Poisson's ratio `nu` and the limit `m`. Green's strain is linear
+/// in the length errors of the three edges `c_e = (|x_a - x_b|^2 - l_e^2) / 2`: for the vector `e` of an edge
+/// at rest, `e^T E_T e = c_e`.
 ///
 /// *Limit.* With `p = (4 |E|^2 / m^2 - 1) / 3` the barrier is `b = -p^2 ln(1 - p)` for `0 < p < 1`: zero up
 /// to half the limit, twice continuously differentiable, convex in the strain and infinite at the limit. The
@@ -101,9 +104,34 @@ impl Advice for ElasticSheetError {
 /// the barrier (joules per square metre) is set where a simulation starts, from the weight and the kinetic
 /// energy of the sheet, and raised after steps in which it moves faster.
 ///
-/// *Stiffness.* A stiff membrane locks on coarse meshes: bends that the mesh cannot follow by folding stretch
-/// the sheet. With the flexural rigidity `D` of the sheet, [`ElasticSheet::softened`] lowers the stiffness of
-/// each face to what its size can bear.
+/// *Chords.* A stiff membrane locks on coarse meshes, as a face measures chords where the sheet has arcs. Of a
+/// sheet that bends as a plate does ([`ElasticSheet::beside`]) the second derivatives `H_T` of the positions are
+/// known, and `S_T` is the strain of the chords: that with
+///
+/// ```text
+/// e^T S_T e = -|H_T(e, e)|^2 / 24
+/// ```
+///
+/// for the three edges, as a chord of an arc of length `l` and curvature `k` has the squared length `l^2 (1 - (k
+/// l)^2 / 12)` but for terms of fourth order in `k l`.
+///
+/// *Slack.* The curvature is not known better than the mesh resolves it, at clamps and at the tips of cones least
+/// of all, and it changes within a step. The law of a face that bends is therefore a spring in series with a
+/// slack,
+///
+/// ```text
+/// e = s / K + r s / (s_0 + s),   s = W_T',   r = 0.3 (k h)^2,   s_0 = 20 D / h^2,
+/// ```
+///
+/// with the mean square `h^2` of the edge lengths, the largest curvature `k` of a face around and the flexural
+/// rigidity `D`. Its strain is never further from Hooke's than `r`, which goes with the square of the mesh size;
+/// where the sheet is flat there is none, and a sheet that is pulled has the stiffness of its material. `s_0` is a
+/// force at which a wave of the size of a face is pulled flat, or buckles.
+///
+/// `S_T` and `r` are those of the start of a step. What their change does to the energy is counted as work. (The
+/// curvature of patches in the membrane strain, within the step, is that of F. G. Flores and E. Onate, "Improvements
+/// in the membrane behaviour of the three node rotation-free BST shell triangle using an assumed strain approach",
+/// Comput. Methods Appl. Mech. Eng. 194, 2005; it couples all vertices of a patch as stiffly as the membrane.)
 ///
 /// A strain limit by barrier: M. Li, D. M. Kaufman and C. Jiang, "Codimensional incremental potential
 /// contact", ACM Trans. Graph. 40(4), 2021, Sec. 5.

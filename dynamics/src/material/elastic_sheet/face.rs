@@ -1,6 +1,6 @@
 //! One face of an elastic sheet.
 
-use super::arcs::Bend;
+use super::bend::Bend;
 use super::limit::StrainLimit;
 use super::slack::Slack;
 use crate::HessianSink;
