@@ -50,9 +50,11 @@ impl Material {
             Self::Rods => model,
             Self::RodsAndHinges => model.with_potential(CreaseSprings::bending(sheet, RIGIDITY)?),
             Self::RodsAndPlate => model.with_potential(PlateBending::new(sheet, RIGIDITY)?),
-            Self::ElasticSheet => model
-                .with_elastic_sheet(ElasticSheet::new(sheet, MEMBRANE, 0.3)?.softened(RIGIDITY)?)?
-                .with_potential(PlateBending::new(sheet, RIGIDITY)?),
+            Self::ElasticSheet => {
+                let plate = PlateBending::new(sheet, RIGIDITY)?;
+                let elastic = ElasticSheet::new(sheet, MEMBRANE, 0.3)?.beside(sheet, &plate);
+                model.with_elastic_sheet(elastic)?.with_potential(plate)
+            }
         })
     }
 }

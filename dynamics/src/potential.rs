@@ -161,9 +161,9 @@ pub trait Potential: Debug + Send + Sync {
         false
     }
 
-    /// Size of the round-off in the energy where the coordinates are of the given size (metres), joules, if
-    /// it is more than that of the energy itself.
-    fn round_off(&self, _size: f64) -> f64 {
+    /// Size of the round-off in an energy (joules) where the coordinates are of the given size (metres),
+    /// joules, if it is more than that of the energy itself.
+    fn round_off(&self, _size: f64, _energy: f64) -> f64 {
         0.0
     }
 
@@ -337,8 +337,8 @@ impl<P: Potential + ?Sized> Potential for Arc<P> {
         (**self).add_second_order(at, dx, scale, out)
     }
 
-    fn round_off(&self, size: f64) -> f64 {
-        (**self).round_off(size)
+    fn round_off(&self, size: f64, energy: f64) -> f64 {
+        (**self).round_off(size, energy)
     }
 
     fn shape(&self) -> PotentialShape {

@@ -28,18 +28,19 @@ fn hanging(method: Method) -> Simulation {
 /// A flat, elastic square that hangs by a corner, and bends by its weight where it yields.
 fn elastic(yields: Option<Yield>) -> Simulation {
     let sheet = generate::isotropic_square(2, 1.0).expect("valid");
-    let elastic = ElasticSheet::new(&sheet, 3e5, 0.3).and_then(|e| e.softened(5e-4));
     let mut plate = PlateBending::new(&sheet, 5e-4).expect("valid");
     if let Some(yields) = yields {
         plate = plate.with_yield(&sheet, yields).expect("valid");
     }
+    let elastic = ElasticSheet::new(&sheet, 3e5, 0.3).expect("valid");
+    let elastic = elastic.beside(&sheet, &plate);
     let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
         .expect("valid")
         .with_gravity()
         .with_pins(&[VertexId(72)])
         .expect("the corner exists")
         .with_potential(plate)
-        .with_elastic_sheet(elastic.expect("valid"))
+        .with_elastic_sheet(elastic)
         .expect("the same sheet");
     let start = State::at_rest(sheet.positions().to_vec());
     Simulation::new(model, start, Method::default()).expect("valid")

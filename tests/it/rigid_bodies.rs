@@ -86,7 +86,7 @@ impl Scene {
             let (stiffness, poisson, rigidity) = (3e5, 0.3, 5e-4);
             let plate = PlateBending::new(sheet, rigidity).expect("a plate");
             let elastic = ElasticSheet::new(sheet, stiffness, poisson).expect("elastic");
-            let elastic = elastic.softened(rigidity).expect("elastic");
+            let elastic = elastic.beside(sheet, &plate);
             let faces = union.topology().face_count();
             let elastic = ElasticSheet::union(vec![(elastic, parts[0].clone())], faces);
             model = model

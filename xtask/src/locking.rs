@@ -16,7 +16,7 @@ mod model;
 mod nudge;
 mod runs;
 mod scene;
-mod softening;
+mod slack;
 mod strips;
 
 use crate::interrupt;
@@ -76,7 +76,7 @@ impl Yardstick {
             "strips" => strips::runs,
             "d-cone" => cone::runs,
             "e-cone" => excess::runs,
-            "softening" => softening::runs,
+            "slack" => slack::runs,
             "curved-creases" => curved::runs,
             "buckling" => buckling::runs,
             name => panic!("no runs of the yardstick {name}"),
@@ -168,4 +168,4 @@ const CAPTION: &str = "Measured against target. A number is the worst of all run
 const INTRODUCTION: &str = "A triangle mesh whose edges are rigid rods has only B − 3 ways to deform (B: edges on the boundary) and folds only \
     along mesh lines. It is too stiff, or cannot move at all, where a smooth inextensible sheet bends in another direction: it locks. The \
     yardsticks measure by how much, and what two elastic sheets do: one with the membrane stiffness of office paper, 3e5 N/m, on every face (\"real stiffness\"), and the elastic sheet, office paper \
-    that is softened as far as the mesh needs in order to bend (\"elastic\"), both with a limit of the strain of 1 %.";
+    with slack where faces bend (\"elastic\"), both with a limit of the strain of 1 %.";

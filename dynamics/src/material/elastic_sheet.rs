@@ -1,14 +1,22 @@
 //! A sheet that stretches as its material does, up to a limit.
 
+mod arcs;
+mod bend;
+#[cfg(test)]
+mod bend_tests;
 mod face;
 mod limit;
 mod load;
+mod slack;
 #[cfg(test)]
 mod tests;
 
 use crate::potential::{At, Reached, Settled};
 use crate::{HessianSink, Potential};
 
+use super::plate_bending::PlateBending;
+use arcs::Arcs;
+use bend::{Bend, NUMBERS};
 use face::Face;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, FaceId, Part, Sheet};
@@ -30,12 +38,6 @@ pub enum ElasticSheetError {
     Poisson {
         /// The ratio given.
         ratio: f64,
-    },
-    /// The flexural rigidity is negative or not finite.
-    #[error("the flexural rigidity is {rigidity} N m", rigidity = given(*rigidity))]
-    Rigidity {
-        /// The rigidity given, N m.
-        rigidity: f64,
     },
     /// The limit of the strain is not a positive number below one half.
     #[error("the limit of the strain is {limit}", limit = given(*limit))]
@@ -69,7 +71,6 @@ impl Advice for ElasticSheetError {
         match self {
             Self::Stiffness { .. } => Some("give a finite one above 0"),
             Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
-            Self::Rigidity { .. } => Some("give a finite one of at least 0"),
             Self::Limit { .. } => Some("give a value above 0 and below 0.5, for instance 0.01"),
             Self::Limits { .. } => Some("give all sheets the same limit"),
             Self::Face { .. } => Some("remove the face, or mend the mesh"),
@@ -82,18 +83,19 @@ impl Advice for ElasticSheetError {
 /// paper, metal, film or cloth: one that bends in every direction on any mesh, and never stretches beyond the
 /// limit.
 ///
-/// The energy is that of St. Venant and Kirchhoff in plane stress, one constant strain for each face, and a
-/// barrier at the limit,
+/// The energy is that of St. Venant and Kirchhoff in plane stress, one constant strain for each face, with the
+/// strain of the chords of bends, with some slack where the sheet bends, and with a barrier at the limit,
 ///
 /// ```text
-/// V(x) = sum_T A_T { K_T/2 [ (1 - nu) |E_T|^2 + nu (tr E_T)^2 ] + kappa b(|E_T| / m) },
-/// K_T = k_T / (1 - nu^2),
+/// V(x) = sum_T A_T { W_T(|E_T - S_T|_nu) + kappa b(|E_T| / m) },
+/// |E|_nu^2 = (1 - nu) |E|^2 + nu (tr E)^2,
+/// W_T(e) = K e^2 / 2  where the sheet is flat,   K = E h / (1 - nu^2),
 /// ```
 ///
-/// with the rest areas `A_T`, Green's strain `E_T` of the face and its Frobenius norm `|E_T|`, the membrane
-/// stiffness `k_T` (newtons per metre), Poisson's ratio `nu` and the limit `m`. Green's strain is linear in
-/// the length errors of the three edges `c_e = (|x_a - x_b|^2 - l_e^2) / 2`: for the vector `e` of an edge at
-/// rest, `e^T E_T e = c_e`.
+/// with the rest areas `A_T`, Green's strain `E_T` of the face and its Frobenius norm `|E_T|`, Young's modulus
+/// times thickness `E h` (newtons per metre), Poisson's ratio `nu` and the limit `m`. Green's strain is linear
+/// in the length errors of the three edges `c_e = (|x_a - x_b|^2 - l_e^2) / 2`: for the vector `e` of an edge
+/// at rest, `e^T E_T e = c_e`.
 ///
 /// *Limit.* With `p = (4 |E|^2 / m^2 - 1) / 3` the barrier is `b = -p^2 ln(1 - p)` for `0 < p < 1`: zero up
 /// to half the limit, twice continuously differentiable, convex in the strain and infinite at the limit. The
@@ -102,9 +104,34 @@ impl Advice for ElasticSheetError {
 /// the barrier (joules per square metre) is set where a simulation starts, from the weight and the kinetic
 /// energy of the sheet, and raised after steps in which it moves faster.
 ///
-/// *Stiffness.* A stiff membrane locks on coarse meshes: bends that the mesh cannot follow by folding stretch
-/// the sheet. With the flexural rigidity `D` of the sheet, [`ElasticSheet::softened`] lowers the stiffness of
-/// each face to what its size can bear.
+/// *Chords.* A stiff membrane locks on coarse meshes, as a face measures chords where the sheet has arcs. Of a
+/// sheet that bends as a plate does ([`ElasticSheet::beside`]) the second derivatives `H_T` of the positions are
+/// known, and `S_T` is the strain of the chords: that with
+///
+/// ```text
+/// e^T S_T e = -|H_T(e, e)|^2 / 24
+/// ```
+///
+/// for the three edges, as a chord of an arc of length `l` and curvature `k` has the squared length `l^2 (1 - (k
+/// l)^2 / 12)` but for terms of fourth order in `k l`.
+///
+/// *Slack.* The curvature is not known better than the mesh resolves it, at clamps and at the tips of cones least
+/// of all, and it changes within a step. The law of a face that bends is therefore a spring in series with a
+/// slack,
+///
+/// ```text
+/// e = s / K + r s / (s_0 + s),   s = W_T',   r = 0.3 (k h)^2,   s_0 = 20 D / h^2,
+/// ```
+///
+/// with the mean square `h^2` of the edge lengths, the largest curvature `k` of a face around and the flexural
+/// rigidity `D`. Its strain is never further from Hooke's than `r`, which goes with the square of the mesh size;
+/// where the sheet is flat there is none, and a sheet that is pulled has the stiffness of its material. `s_0` is a
+/// force at which a wave of the size of a face is pulled flat, or buckles.
+///
+/// `S_T` and `r` are those of the start of a step. What their change does to the energy is counted as work. (The
+/// curvature of patches in the membrane strain, within the step, is that of F. G. Flores and E. Onate, "Improvements
+/// in the membrane behaviour of the three node rotation-free BST shell triangle using an assumed strain approach",
+/// Comput. Methods Appl. Mech. Eng. 194, 2005; it couples all vertices of a patch as stiffly as the membrane.)
 ///
 /// A strain limit by barrier: M. Li, D. M. Kaufman and C. Jiang, "Codimensional incremental potential
 /// contact", ACM Trans. Graph. 40(4), 2021, Sec. 5.
@@ -116,39 +143,18 @@ pub struct ElasticSheet {
     poisson: f64,
     /// Young's modulus times thickness of the material, N/m.
     stiffness: f64,
-    /// Edge length up to which no face is softened, metres.
-    unsoftened_size: f64,
     /// Kilograms; zero before a simulation has started.
     mass: f64,
     /// Largest acceleration by constant forces, m/s2; zero before a simulation has started.
     acceleration: f64,
     limit: StrainLimit,
+    /// How the sheets bend; nothing of those without a plate.
+    arcs: Vec<Arcs>,
 }
 
 impl ElasticSheet {
     /// The limit of the strain unless another is asked for.
     pub const LIMIT: f64 = 0.01;
-
-    /// How many times the flexural rigidity over the square of the edge lengths the stiffness of a face may
-    /// be: `C` in [`ElasticSheet::softened`].
-    ///
-    /// Two scenes pull in opposite directions. A disk of paper that is pushed into a ring has one fold, and
-    /// stretches to a cone without a fold where `C` is small; strips that bend much on meshes without lines
-    /// across the bend (4 squares wide; two turned and three irregular meshes) are too stiff where `C` is
-    /// large. This value is the largest of those measured for which the shape of the strips is right to 2 %
-    /// (`cargo xtask locking --yardsticks softening`):
-    ///
-    /// | `C` | folds of the disk | its energy over that with the real stiffness | largest error of the strips |
-    /// |---|---|---|---|
-    /// | 100 | 0 | 0.19 | 0.013 |
-    /// | 500 | 1 | 0.48 | 0.014 |
-    /// | 1000 | 1 | 0.58 | 0.015 |
-    /// | 2000 | 1 | 0.69 | 0.018 |
-    /// | 3000 | 1 | 0.74 | 0.021 |
-    /// | 5000 | 1 | 0.80 | 0.026 |
-    /// | 10000 | 1 | 0.85 | 0.033 |
-    /// | real stiffness | 1 | 1 | 0.314 |
-    pub const SOFTENING: f64 = 2000.0;
 
     /// A sheet that is at rest in the shape of `sheet`, with the `stiffness` `E h` (Young's modulus times
     /// thickness, newtons per metre; office paper 3e5), Poisson's ratio and the limit
@@ -173,10 +179,10 @@ impl ElasticSheet {
             face_count: sheet.topology().face_count(),
             poisson,
             stiffness,
-            unsoftened_size: f64::INFINITY,
             mass: 0.0,
             acceleration: 0.0,
             limit: StrainLimit::new(Self::LIMIT),
+            arcs: Vec::new(),
         };
         for face in &mut new.faces {
             face.set_stiffness(stiffness, poisson);
@@ -184,26 +190,23 @@ impl ElasticSheet {
         Ok(new)
     }
 
-    /// With faces as stiff as they can be without locking: `k_T = min(E h, C D / h_T^2)`, with the flexural
-    /// rigidity `rigidity` of the sheet `D` (newton metres), the mean square `h_T^2` of the edge lengths of
-    /// the face, and `C` = 2000. Fine meshes have the stiffness of the material; on coarse ones the sheet is
-    /// softer up to half the limit of its strain. A sheet without bending stiffness is not softened.
+    /// Of a sheet that bends as `plate` does, a plate of the same `sheet`: chords are shorter than their arcs,
+    /// and faces have slack where they bend (see [above](Self)), so that a coarse mesh bends, too. Without, or
+    /// with a plate that has no rigidity, bends that a mesh cannot follow by folding stretch the sheet.
     ///
-    /// # Errors
-    /// [`ElasticSheetError::Rigidity`].
-    pub fn softened(mut self, rigidity: f64) -> Result<Self, ElasticSheetError> {
-        if !(rigidity.is_finite() && rigidity >= 0.0) {
-            return Err(ElasticSheetError::Rigidity { rigidity });
-        }
-        if rigidity > 0.0 {
-            self.unsoftened_size = (Self::SOFTENING * rigidity / self.stiffness).sqrt();
+    /// # Panics
+    /// If the plate is of a sheet with another number of faces.
+    #[must_use]
+    pub fn beside(mut self, sheet: &Sheet, plate: &PlateBending) -> Self {
+        let counts = [self.faces.len(), sheet.topology().face_count()];
+        assert_eq!(counts[0], counts[1], "a plate of the same sheet");
+        if plate.rigidity() > 0.0 {
             for face in &mut self.faces {
-                face.rigidity = rigidity;
-                let bearable = Self::SOFTENING * rigidity / face.mean_squared_length();
-                face.set_stiffness(self.stiffness.min(bearable), self.poisson);
+                face.rigidity = plate.rigidity();
             }
+            self.arcs = vec![Arcs::new(sheet, plate, &self.faces)];
         }
-        Ok(self)
+        self
     }
 
     /// With another limit of the strain, a number above 0 and below 0.5.
@@ -229,20 +232,28 @@ impl ElasticSheet {
     pub fn union(sheets: Vec<(Self, Part)>, face_count: usize) -> Result<Self, ElasticSheetError> {
         let mut sheets = sheets.into_iter();
         let (mut union, part) = sheets.next().expect("at least one sheet");
-        let own = std::mem::take(&mut union.faces).into_iter();
-        union.faces.extend(own.map(|face| face.in_union(&part)));
         union.face_count = face_count;
-        for (sheet, part) in sheets {
+        union.place(&part, 0);
+        for (mut sheet, part) in sheets {
             let (first, other) = (union.limit(), sheet.limit());
             if first != other {
                 return Err(ElasticSheetError::Limits { first, other });
             }
-            let faces = sheet.faces.into_iter();
-            union.faces.extend(faces.map(|face| face.in_union(&part)));
+            sheet.place(&part, union.faces.len());
+            union.faces.append(&mut sheet.faces);
+            union.arcs.append(&mut sheet.arcs);
             union.stiffness = union.stiffness.max(sheet.stiffness);
-            union.unsoftened_size = union.unsoftened_size.min(sheet.unsoftened_size);
         }
         Ok(union)
+    }
+
+    /// Makes it that of a sheet in a union of several, the first of whose faces has this number among those that
+    /// are elastic.
+    fn place(&mut self, part: &Part, first: usize) {
+        let faces = std::mem::take(&mut self.faces).into_iter();
+        self.faces = faces.map(|face| face.in_union(part)).collect();
+        let arcs = std::mem::take(&mut self.arcs).into_iter();
+        self.arcs = arcs.map(|arcs| arcs.in_union(part, first)).collect();
     }
 
     /// The limit of the strain.
@@ -260,23 +271,28 @@ impl ElasticSheet {
         self.faces.iter().map(|face| face.id)
     }
 
-    /// The stiffness `k_T` of each face, newtons per metre: that of the material, or less
-    /// ([`ElasticSheet::softened`]).
-    pub fn face_stiffnesses(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
-        self.faces.iter().map(Face::stiffness)
-    }
-
     /// The norm `|E_T|` of the strain of each face at positions `x` (`3V`, metres).
     pub fn strains<'a>(&'a self, x: &'a [f64]) -> impl ExactSizeIterator<Item = f64> + 'a {
-        self.faces.iter().map(|face| face.at(x).norm())
+        self.faces.iter().map(|face| face.strain(x).norm())
     }
 
     /// The elastic energy of each face, joules, with that of the barrier; infinite beyond the limit.
     pub fn face_energies<'a>(&'a self, at: At<'a>) -> impl ExactSizeIterator<Item = f64> + 'a {
         let limit = self.limit_of(at.memory);
-        self.faces
-            .iter()
-            .map(move |face| face.energy(&face.at(at.x), &limit))
+        self.strained(at)
+            .map(move |(face, strained)| face.energy(&strained, &limit))
+    }
+
+    /// The faces, each with its state.
+    fn strained<'a>(
+        &'a self,
+        at: At<'a>,
+    ) -> impl ExactSizeIterator<Item = (&'a Face, face::Strained)> + 'a {
+        let bends = at.memory.get(1..).unwrap_or_default().as_chunks().0;
+        self.faces.iter().enumerate().map(move |(k, face)| {
+            let bend = bends.get(k).map_or(Bend::FLAT, Bend::remembered);
+            (face, face.at(at.x, &bend))
+        })
     }
 
     /// The limit with the stiffness of the barrier in a memory, none without.
@@ -298,12 +314,6 @@ impl ElasticSheet {
             let curvature = (2.0 * energy / (face.rigidity * face.area())).sqrt();
             curvature * face.mean_squared_length().sqrt()
         })
-    }
-
-    /// Edge length (root mean square of a face, metres) up to which faces of a sheet with this rigidity have
-    /// the stiffness of the material; infinite if faces were not softened. Of several sheets the smallest.
-    pub fn unsoftened_size(&self) -> f64 {
-        self.unsoftened_size
     }
 
     /// The face with the largest strain, and that strain, where it is not below the limit.
@@ -351,23 +361,23 @@ impl Potential for ElasticSheet {
 
     fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
         let limit = self.limit_of(at.memory);
-        for face in &self.faces {
-            face.add_gradient(&face.at(at.x), &limit, gradient);
+        for (face, strained) in self.strained(at) {
+            face.add_gradient(&strained, &limit, gradient);
         }
     }
 
     fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
         let limit = self.limit_of(at.memory);
-        for face in &self.faces {
-            face.add_hessian(&face.at(at.x), &limit, |density| density, hessian);
+        for (face, strained) in self.strained(at) {
+            face.add_hessian(&strained, &limit, |density| density, hessian);
         }
     }
 
     /// With the curvature of edges under tension alone.
     fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
         let limit = self.limit_of(at.memory);
-        for face in &self.faces {
-            face.add_hessian(&face.at(at.x), &limit, |density| density.max(0.0), hessian);
+        for (face, strained) in self.strained(at) {
+            face.add_hessian(&strained, &limit, |density| density.max(0.0), hessian);
         }
     }
 
@@ -392,35 +402,41 @@ impl Potential for ElasticSheet {
     /// The tangent law of each face times the strains of second order, `|dx_a - dx_b|^2 / 2` for each edge.
     fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, gradient: &mut [f64]) -> bool {
         let limit = self.limit_of(at.memory);
-        for face in &self.faces {
-            face.add_second_order(at.x, dx, &limit, scale, gradient);
+        for (face, strained) in self.strained(at) {
+            face.add_second_order(&strained, dx, &limit, scale, gradient);
         }
         true
     }
 
-    /// What the round-off of positions makes of a sheet without strains.
-    fn round_off(&self, size: f64) -> f64 {
-        self.faces.iter().map(|face| face.round_off(size)).sum()
+    /// What the round-off of positions makes of a sheet: strains `d` beside those `e` that it has change the
+    /// energy `K e^2 / 2` by `K d^2 / 2`, and by at most twice the root of the product of the two.
+    fn round_off(&self, size: f64, energy: f64) -> f64 {
+        let unstrained: f64 = self.faces.iter().map(|face| face.round_off(size)).sum();
+        unstrained + 2.0 * (energy * unstrained).sqrt()
     }
 
-    /// The stiffness of the barrier, joules per square metre.
+    /// The stiffness of the barrier, joules per square metre, and the bend of each face.
     fn memory(&self) -> Vec<f64> {
-        vec![0.0]
+        vec![0.0; 1 + NUMBERS * self.faces.len()]
     }
 
     fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
         self.settle(state, memory);
     }
 
-    /// Raises the stiffness of the barrier to what the state asks for, which is work.
+    /// Raises the stiffness of the barrier to what the state asks for, and remembers how the sheet bends,
+    /// which is work.
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
-        let needed = strain_barrier(self.mass / self.area(), self.acceleration, state);
-        if needed <= memory[0] {
-            return Settled::default();
-        }
         let energy = |memory: &[f64]| self.energy(At::new(state.t, state.x).with_memory(memory));
         let before = energy(memory);
-        memory[0] = needed;
+        let [barrier, bends @ ..] = memory else {
+            return Settled::default();
+        };
+        let needed = strain_barrier(self.mass / self.area(), self.acceleration, state);
+        *barrier = barrier.max(needed);
+        for arcs in &self.arcs {
+            arcs.remember(&self.faces, (state.t, state.x), bends);
+        }
         Settled {
             dissipated: 0.0,
             work: energy(memory) - before,

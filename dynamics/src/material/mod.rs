@@ -12,7 +12,7 @@ mod tests;
 pub use catalogue::{NamedMaterial, UnknownMaterial};
 
 use crate::options::OptionsError;
-use crate::{ElasticSheet, ElasticSheetError};
+use crate::{ElasticSheet, ElasticSheetError, PlateBending};
 use isosheet_mesh::Sheet;
 use plasticity::Yield;
 use serde::{Deserialize, Serialize};
@@ -147,15 +147,18 @@ impl Material {
         self.yields.map_or(Ok(()), |yields| yields.validate())
     }
 
-    /// The elasticity in the plane of a sheet of this material: softened as far as the mesh needs
-    /// ([`ElasticSheet::softened`]), with the limit of the strain. The flexural rigidity is not part of it:
-    /// add a [`PlateBending`](crate::PlateBending).
+    /// The elasticity in the plane of a sheet of this material, with the limit of the strain. The flexural
+    /// rigidity is not part of it: `plate` resists bending, and is one more potential of the model
+    /// ([`ElasticSheet::beside`]).
     ///
     /// # Errors
     /// [`ElasticSheetError`].
-    pub fn elastic_sheet(&self, sheet: &Sheet) -> Result<ElasticSheet, ElasticSheetError> {
-        ElasticSheet::new(sheet, self.stiffness, self.poisson)?
-            .softened(self.rigidity)?
-            .with_limit(self.strain_limit)
+    pub fn elastic_sheet(
+        &self,
+        sheet: &Sheet,
+        plate: &PlateBending,
+    ) -> Result<ElasticSheet, ElasticSheetError> {
+        let elastic = ElasticSheet::new(sheet, self.stiffness, self.poisson)?;
+        elastic.beside(sheet, plate).with_limit(self.strain_limit)
     }
 }

@@ -13,6 +13,7 @@ mod natural_tests;
 mod plastic_tests;
 #[cfg(test)]
 mod poisson_tests;
+mod second_derivatives;
 mod stencil;
 mod stiffness;
 mod stress_free;
@@ -33,7 +34,9 @@ pub use line_clamp::{LineClamp, PlateEdges};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 pub use natural::Curl;
 use natural::NaturalCurvature;
+pub(crate) use second_derivatives::SecondDerivatives;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use stencil::Stencils;
 pub use stiffness::PlateStiffness;
 use stress_free::{Blocks, StressFreeCurvature};
@@ -89,9 +92,11 @@ use stress_free::{Blocks, StressFreeCurvature};
 #[derive(Debug)]
 pub struct PlateBending {
     roots: Roots,
-    stencils: Stencils,
+    stencils: Arc<Stencils>,
     /// Nothing for a plate that is flat without stress, and stays so.
     stress_free: Option<StressFreeCurvature>,
+    /// Whether the rest shape is that of the sheet.
+    is_curved: bool,
     /// The Hessian of the elastic plate: one multiple of the identity for each vertex, edge and further pair
     /// of vertices.
     at_vertices: Vec<f64>,
@@ -177,10 +182,10 @@ impl PlateBending {
             return Err(PlateBendingError::NoEdge { edge, count });
         }
         let stencils = Stencils::new(sheet, &roots, edges);
-        Ok(Self::of_stencils(sheet, roots, stencils))
+        Ok(Self::of_stencils(sheet, roots, Arc::new(stencils)))
     }
 
-    fn of_stencils(sheet: &Sheet, roots: Roots, stencils: Stencils) -> Self {
+    fn of_stencils(sheet: &Sheet, roots: Roots, stencils: Arc<Stencils>) -> Self {
         let mut at_vertices = vec![0.0; sheet.topology().vertex_count()];
         let mut others = BTreeMap::<[u32; 2], f64>::new();
         for stencil in stencils.iter() {
@@ -208,6 +213,7 @@ impl PlateBending {
             roots,
             stencils,
             stress_free: None,
+            is_curved: false,
             at_vertices,
             at_edges,
             at_pairs,
@@ -219,11 +225,12 @@ impl PlateBending {
     /// faces, which no bend makes, those of the rest positions are left out.)
     #[must_use]
     pub fn curved(mut self, sheet: &Sheet) -> Self {
-        let natural = self.stencils.straighten(sheet, &self.roots);
+        let natural = Arc::make_mut(&mut self.stencils).straighten(sheet, &self.roots);
         let Self {
             roots, stencils, ..
         } = self;
         self = Self::of_stencils(sheet, roots, stencils);
+        self.is_curved = true;
         self.stress_free(sheet)
             .set_natural(NaturalCurvature::of_faces(natural));
         self
@@ -251,6 +258,21 @@ impl PlateBending {
         self.stress_free.get_or_insert_with(|| {
             StressFreeCurvature::new(sheet, stencils, roots.clone(), at_edges, at_pairs)
         })
+    }
+
+    /// Whether it rests in the positions of its sheet, curved as they are.
+    pub(crate) fn is_curved(&self) -> bool {
+        self.is_curved
+    }
+
+    /// Flexural rigidity, newton metres.
+    pub(crate) fn rigidity(&self) -> f64 {
+        self.roots.rigidity
+    }
+
+    /// The second derivatives of positions, of the plate of `sheet`, which has rigidity.
+    pub(crate) fn second_derivatives(&self, sheet: &Sheet) -> SecondDerivatives {
+        SecondDerivatives::new(&self.stencils, &self.roots, sheet.face_areas())
     }
 
     /// Makes the plate of `sheet` yield, from a state without plastic curvature on. (Without rigidity it has

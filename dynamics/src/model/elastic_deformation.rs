@@ -48,7 +48,7 @@ impl SheetModel {
     /// How an elastic sheet is deformed at positions `x` (`3V`, metres) by what its potentials remember; nothing for a sheet of rods. Bending
     /// is that of the potentials that know it by face
     /// ([`Potential::add_bending_energies`](crate::Potential)), and has an angle if the sheet was told its
-    /// rigidity ([`ElasticSheet::softened`](crate::ElasticSheet::softened)).
+    /// plate ([`ElasticSheet::beside`](crate::ElasticSheet::beside)).
     ///
     /// # Panics
     /// If `x` is not of length `3V`.

@@ -26,6 +26,12 @@ impl SheetModel {
         self.potentials().zip(memories.lists().iter().map(at))
     }
 
+    /// What the potentials remember where a simulation starts at rest at positions `x` (`3V`, metres).
+    pub fn memories_at_rest(&self, t: f64, x: &[f64]) -> Memories {
+        let at_rest = State::at_rest(x.to_vec());
+        self.memories_at_start(&State { t, ..at_rest })
+    }
+
     /// What the potentials remember at the start of a simulation.
     pub(crate) fn memories_at_start(&self, state: &State) -> Memories {
         let mut memories = self.memories();

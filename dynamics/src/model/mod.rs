@@ -162,18 +162,21 @@ impl SheetModel {
     /// and all else that a material needs; by hand:
     ///
     /// ```
-    /// use isosheet_dynamics::{ElasticSheet, Method, PlateBending, SheetModel, Simulation, State};
+    /// use isosheet_dynamics::{ElasticSheet, PlateBending, PlateStiffness};
+    /// use isosheet_dynamics::{Method, SheetModel, Simulation, State};
     /// use isosheet_mesh::{MassKind, VertexId, generate};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let sheet = generate::isotropic_square(2, 0.2)?;
     /// let clamp: Vec<VertexId> = (0..18).map(VertexId).collect(); // two rows of vertices
     /// let (stiffness, poisson, rigidity) = (3e5, 0.3, 5e-4); // office paper
+    /// let plate = PlateBending::clamped(&sheet, PlateStiffness { rigidity, poisson }, &clamp)?;
+    /// let elastic = ElasticSheet::new(&sheet, stiffness, poisson)?.beside(&sheet, &plate);
     /// let model = SheetModel::new(&sheet, 3.2e-3, MassKind::Lumped)?
     ///     .with_gravity()
     ///     .with_pins(&clamp)?
-    ///     .with_potential(PlateBending::clamped(&sheet, rigidity, &clamp)?)
-    ///     .with_elastic_sheet(ElasticSheet::new(&sheet, stiffness, poisson)?.softened(rigidity)?)?;
+    ///     .with_potential(plate)
+    ///     .with_elastic_sheet(elastic)?;
     /// let start = State::at_rest(sheet.positions().to_vec());
     /// let mut simulation = Simulation::new(model, start, Method::default())?;
     /// let report = simulation.step(1.0 / 60.0)?;
@@ -332,9 +335,9 @@ impl SheetModel {
         self.mean_mass
     }
 
-    /// Total potential energy, joules, where nothing has happened yet that a potential remembers.
+    /// Total potential energy, joules, where a simulation starts at rest.
     pub fn potential_energy(&self, t: f64, x: &[f64]) -> f64 {
-        self.energy_with(&self.memories(), t, x)
+        self.energy_with(&self.memories_at_rest(t, x), t, x)
     }
 
     /// Total potential energy with memories, joules.
@@ -371,10 +374,10 @@ impl SheetModel {
         self.mass.kinetic_energy(&self.topology, v)
     }
 
-    /// Conservative force `f = -dV/dx` where nothing has happened yet that a potential remembers, overwriting
-    /// `f`; zero at pinned vertices.
+    /// Conservative force `f = -dV/dx` where a simulation starts at rest, overwriting `f`; zero at pinned
+    /// vertices.
     pub fn potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {
-        self.acting_force(&self.memories(), t, x, f);
+        self.acting_force(&self.memories_at_rest(t, x), t, x, f);
     }
 
     /// Conservative force with memories, overwriting `f`; zero at pinned vertices.

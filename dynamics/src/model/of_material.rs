@@ -166,11 +166,13 @@ impl SheetOfMaterial<'_> {
         if let Some(yields) = yields {
             plate = plate.with_yield(sheet, yields)?;
         }
-        let model = model.with_potential(plate);
-        match isometry {
-            Isometry::Rods => Ok(model),
-            Isometry::Elastic => Ok(model.with_elastic_sheet(material.elastic_sheet(sheet)?)?),
-        }
+        let model = match isometry {
+            Isometry::Rods => model,
+            Isometry::Elastic => {
+                model.with_elastic_sheet(material.elastic_sheet(sheet, &plate)?)?
+            }
+        };
+        Ok(model.with_potential(plate))
     }
 }
 
@@ -203,10 +205,11 @@ mod tests {
         let yields = steel.yields.unwrap().in_layers(2);
         let plate = PlateBending::clamped(&sheet, &steel, &clamp);
         let plate = plate.and_then(|p| p.with_yield(&sheet, yields)).unwrap();
+        let elastic = steel.elastic_sheet(&sheet, &plate).unwrap();
         let by_hand = SheetModel::new(&sheet, steel.density * sheet.area(), MassKind::Lumped)
             .and_then(|m| m.with_pins(&clamp))
             .map(|m| m.with_potential(plate))
-            .and_then(|m| m.with_elastic_sheet(steel.elastic_sheet(&sheet).unwrap()))
+            .and_then(|m| m.with_elastic_sheet(elastic))
             .unwrap();
         let (first, second) = clamp.split_at(2);
         let model = SheetModel::of_material(&sheet, &steel)

@@ -150,8 +150,8 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
             .add_second_order(self.own(at), dx, scale, out)
     }
 
-    fn round_off(&self, size: f64) -> f64 {
-        self.potential.round_off(size)
+    fn round_off(&self, size: f64, energy: f64) -> f64 {
+        self.potential.round_off(size, energy)
     }
 
     fn shape(&self) -> PotentialShape {

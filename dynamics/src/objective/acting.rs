@@ -17,8 +17,9 @@ pub(super) struct Acting {
     applied: Vec<f64>,
     /// The same, zero at pinned vertices.
     applied_free: Vec<f64>,
-    /// Energy of the potentials where it was evaluated last, joules.
+    /// Energy of the potentials where it was evaluated last, and its round-off, joules.
     energy: f64,
+    round_off: f64,
     energy_at: Evaluated,
     /// Conservative forces where they were evaluated last, newtons; zero at pinned vertices.
     force: Vec<f64>,
@@ -63,6 +64,7 @@ impl Acting {
             applied: vec![0.0; n],
             applied_free: vec![0.0; n],
             energy: 0.0,
+            round_off: 0.0,
             energy_at: Evaluated::new(n),
             force: vec![0.0; n],
             force_at: Evaluated::new(n),
@@ -104,15 +106,20 @@ impl Term for Acting {
     fn value(&mut self, at: Iterate<'_>) -> Value {
         let model = &self.model;
         if self.energy_at.moves_to(at) {
-            self.energy = model.energy_with(at.memories, at.t, at.x);
+            let size = norm_inf(at.x);
+            (self.energy, self.round_off) = (0.0, 0.0);
+            for (potential, place) in model.potentials_at(at.t, at.x, at.memories) {
+                let energy = potential.energy(place);
+                self.energy += energy;
+                self.round_off += potential.round_off(size, energy);
+            }
         }
         let moved = at.x.iter().zip(&self.prediction).map(|(x, p)| x - p);
         let work: f64 = self.work(moved);
-        let size = norm_inf(at.x);
         Value {
             energy: self.energy - work,
             size: self.energy.abs() + work.abs(),
-            round_off: model.potentials().map(|p| p.round_off(size)).sum(),
+            round_off: self.round_off,
         }
     }
 

@@ -1,6 +1,6 @@
 //! What a run says of an elastic sheet.
 
-use isosheet_dynamics::{ElasticSheet, SheetModel, Simulation, State};
+use isosheet_dynamics::{SheetModel, Simulation, State};
 use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -10,12 +10,6 @@ use std::fmt;
 pub struct ElasticSummary {
     /// Stiffness of the material, Young's modulus times thickness, N/m.
     pub stiffness: f64,
-    /// Smallest and largest stiffness of a face, N/m: less than that of the material where the mesh is so
-    /// coarse that it would lock ([`ElasticSheet::softened`]).
-    pub used: [f64; 2],
-    /// Edge length up to which faces have the stiffness of the material, metres; none if no face is softened
-    /// however large.
-    pub unsoftened_size: Option<f64>,
     /// Limit of the strain.
     pub limit: f64,
     /// Largest strain of a face in any step, the norm of Green's strain.
@@ -61,11 +55,8 @@ impl ElasticSummary {
     /// Of a model at the start of a run; none for a sheet of rods.
     pub fn of(model: &SheetModel) -> Option<Self> {
         let elastic = model.elastic_sheet()?;
-        let size = elastic.unsoftened_size();
         Some(Self {
             stiffness: elastic.stiffness(),
-            used: used(elastic),
-            unsoftened_size: size.is_finite().then_some(size),
             limit: elastic.limit(),
             strain: 0.0,
             share: 0.0,
@@ -95,24 +86,4 @@ impl ElasticSummary {
             self.sharpest = Some(Bend { angle, t: *t, at });
         }
     }
-
-    /// What was softened, in words.
-    pub(crate) fn stiffness_in_words(&self) -> String {
-        let [least, most] = self.used.map(brief);
-        let material = brief(self.stiffness);
-        match self.unsoftened_size {
-            Some(size) if self.used[0] < self.stiffness => format!(
-                "{least} to {most} N/m on this mesh in place of {material} N/m, which faces of up to {} m would have",
-                brief(size)
-            ),
-            _ => format!("{material} N/m, that of the material"),
-        }
-    }
-}
-
-fn used(elastic: &ElasticSheet) -> [f64; 2] {
-    let stiffnesses = elastic.face_stiffnesses();
-    stiffnesses.fold([f64::INFINITY, 0.0], |[least, most], k| {
-        [least.min(k), most.max(k)]
-    })
 }

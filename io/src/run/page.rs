@@ -9,6 +9,7 @@ use crate::format::atomic::prepare_folder;
 use crate::format::{DataError, FrameQuantity, write_atomically};
 use crate::scene::bounds;
 use crate::view::{PageOptions, Replay, TimeSeries, no_frames};
+use isosheet_mesh::wording::brief;
 use std::io::Write;
 use std::path::Path;
 
@@ -109,7 +110,10 @@ impl Rows {
     }
 
     fn of_elastic(&mut self, elastic: &ElasticSummary) {
-        self.add("stiffness of the sheet", elastic.stiffness_in_words());
+        self.add(
+            "stiffness of the sheet",
+            format!("{} N/m", brief(elastic.stiffness)),
+        );
         self.add(
             "largest strain of a face",
             format!("{:.1e}, limit {}", elastic.strain, elastic.limit),

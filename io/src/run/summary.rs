@@ -47,7 +47,7 @@ pub struct Summary {
     pub factorisations: u64,
     /// Sub-steps that were tried and rejected.
     pub rejected: u64,
-    /// How the sheet was softened, stretched and bent, if it is elastic.
+    /// How the sheet was stretched and bent, if it is elastic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elastic: Option<ElasticSummary>,
     /// What the measures of the scene showed, by their names.

@@ -29,7 +29,7 @@ use isosheet_dynamics::{
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -131,6 +131,8 @@ struct Builder<'a> {
     clamps: Vec<(usize, Vec<VertexId>, RigidDisplacement)>,
     modelled: Vec<String>,
     targets: Targets,
+    /// As what sheets bend, by their numbers.
+    plates: BTreeMap<usize, Arc<PlateBending>>,
 }
 
 /// An error of the engine at a key.
@@ -165,6 +167,7 @@ impl<'a> Builder<'a> {
             clamps: Vec::new(),
             modelled,
             targets: Targets::default(),
+            plates: BTreeMap::new(),
         })
     }
 
@@ -428,16 +431,10 @@ impl<'a> Builder<'a> {
         number: usize,
         creases: &[EdgeId],
     ) -> Result<Vec<&'static str>, SceneError> {
-        let PlacedSheet {
-            of,
-            key,
-            form,
-            part,
-            ..
-        } = &self.sheets.list[number];
-        let placed = &form.placed;
+        let PlacedSheet { of, key, form, .. } = &self.sheets.list[number];
+        let (of, placed) = (*of, &form.placed);
         let yields = of.yields();
-        let [key, yield_key, curl_key] = ["bending", "yield", "curl"].map(|name| key.name(name));
+        let [key, yield_key] = ["bending", "yield"].map(|name| key.name(name));
         let mut modelled = Vec::new();
         if yields.is_some() {
             modelled.push("bends that stay");
@@ -454,67 +451,98 @@ impl<'a> Builder<'a> {
                     springs = yielding.map_err(at(&yield_key))?;
                 }
                 modelled.push("bending stiffness at edges");
+                if of.elasticity().is_some() {
+                    self.plate(number, rigidity.into(), creases, &[])?;
+                }
                 self.add_potential_of(number, springs);
             }
             (_, None) => {}
             (_, Some(law)) => {
-                let clamps = self
-                    .clamps
-                    .iter()
-                    .filter_map(|(support, vertices, motion)| {
-                        let own = vertices
-                            .iter()
-                            .filter(|v| part.vertices.contains(&v.index()));
-                        let own: Vec<VertexId> = own.map(|v| part.local_vertex(*v)).collect();
-                        let clamp = LineClamp {
-                            vertices: own,
-                            positions: self.x[part.coordinates()].to_vec(),
-                            motion: motion.clone().into(),
-                        };
-                        (!clamp.vertices.is_empty()).then_some((*support, clamp))
-                    });
-                let (supports, clamps): (Vec<usize>, Vec<LineClamp>) = clamps.unzip();
-                self.origins.clamps.extend(supports);
-                let pins = self.model().pins().into_iter();
-                let own = pins.filter(|v| part.vertices.contains(&v.index()));
-                let clamped: Vec<VertexId> = own.map(|v| part.local_vertex(v)).collect();
-                let plate = |law: &PlateLaw, pinned: &[VertexId], creases: &[EdgeId]| {
-                    let edges = PlateEdges {
-                        pinned,
-                        creases,
-                        clamps: &clamps,
-                    };
-                    PlateBending::held(placed, law.clone(), &edges).map_err(at(&key))
-                };
                 modelled.push("bending stiffness of a plate");
-                let curl = of.natural_curvature();
-                if curl.is_some() {
+                let curls = of.curl.is_some();
+                let (supports, clamps): (Vec<usize>, Vec<LineClamp>) =
+                    self.line_clamps(number).into_iter().unzip();
+                self.origins.clamps.extend(supports);
+                let own = self.plate(number, law, creases, &clamps)?;
+                if curls {
                     modelled.push("curl");
-                }
-                let is_flat = curl.is_none() && of.rest == RestShape::Flat && yields.is_none();
-                if is_flat && clamps.is_empty() {
-                    let made_of = (law, clamped, creases.to_vec());
-                    let make = |(law, clamped, creases): &(PlateLaw, Vec<_>, Vec<_>)| {
-                        plate(law, clamped, creases).map(Arc::new)
-                    };
-                    let shared = self.kept.plates.get(number, made_of, make);
-                    self.add_potential_of(number, shared?);
-                    return Ok(modelled);
-                }
-                let mut own = plate(&law, &clamped, creases)?;
-                if of.rest == RestShape::Mesh {
-                    own = own.curved(placed);
-                }
-                if let Some(curl) = curl {
-                    own = own.with_curl(placed, curl).map_err(at(&curl_key))?;
-                }
-                if let Some(yields) = yields {
-                    own = own.with_yield(placed, yields).map_err(at(&yield_key))?;
                 }
                 self.add_potential_of(number, own);
             }
         }
         Ok(modelled)
+    }
+
+    /// The pinned vertices of one of the sheets, by its own numbers.
+    fn clamped(&self, number: usize) -> Vec<VertexId> {
+        let part = &self.sheets.list[number].part;
+        let pins = self.model().pins().into_iter();
+        let own = pins.filter(|v| part.vertices.contains(&v.index()));
+        own.map(|v| part.local_vertex(v)).collect()
+    }
+
+    /// The clamps of a sheet along lines of its vertices, each with the number of its support.
+    fn line_clamps(&self, number: usize) -> Vec<(usize, LineClamp)> {
+        let part = &self.sheets.list[number].part;
+        let of_clamp = |(support, vertices, motion): &(usize, Vec<VertexId>, RigidDisplacement)| {
+            let own = vertices
+                .iter()
+                .filter(|v| part.vertices.contains(&v.index()));
+            let clamp = LineClamp {
+                vertices: own.map(|v| part.local_vertex(*v)).collect(),
+                positions: self.x[part.coordinates()].to_vec(),
+                motion: motion.clone().into(),
+            };
+            (!clamp.vertices.is_empty()).then_some((*support, clamp))
+        };
+        self.clamps.iter().filter_map(of_clamp).collect()
+    }
+
+    /// The plate as which a sheet bends, which its elasticity in the plane knows, too. One that is flat without
+    /// stress, stays so, and has no clamps along lines is kept.
+    fn plate(
+        &mut self,
+        number: usize,
+        law: PlateLaw,
+        creases: &[EdgeId],
+        clamps: &[LineClamp],
+    ) -> Result<Arc<PlateBending>, SceneError> {
+        let clamped = self.clamped(number);
+        let PlacedSheet { of, key, form, .. } = &self.sheets.list[number];
+        let placed = &form.placed;
+        let held = |law: &PlateLaw, pinned: &[VertexId], creases: &[EdgeId]| {
+            let edges = PlateEdges {
+                pinned,
+                creases,
+                clamps,
+            };
+            PlateBending::held(placed, law.clone(), &edges).map_err(at(&key.name("bending")))
+        };
+        let (curl, yields) = (of.natural_curvature(), of.yields());
+        let stays_flat = curl.is_none() && of.rest == RestShape::Flat && yields.is_none();
+        let plate = if stays_flat && clamps.is_empty() {
+            let made_of = (law, clamped, creases.to_vec());
+            let make = |(law, clamped, creases): &(PlateLaw, Vec<_>, Vec<_>)| {
+                held(law, clamped, creases).map(Arc::new)
+            };
+            self.kept.plates.get(number, made_of, make)?
+        } else {
+            let mut plate = held(&law, &clamped, creases)?;
+            if of.rest == RestShape::Mesh {
+                plate = plate.curved(placed);
+            }
+            if let Some(curl) = curl {
+                let curled = plate.with_curl(placed, curl);
+                plate = curled.map_err(at(&key.name("curl")))?;
+            }
+            if let Some(yields) = yields {
+                let yielding = plate.with_yield(placed, yields);
+                plate = yielding.map_err(at(&key.name("yield")))?;
+            }
+            Arc::new(plate)
+        };
+        self.plates.insert(number, Arc::clone(&plate));
+        Ok(plate)
     }
 
     /// The springs of the creases and of `[folding]` in one of the sheets, by its own edges.
@@ -571,14 +599,14 @@ impl<'a> Builder<'a> {
 
     fn add_isometry(&mut self) -> Result<(), SceneError> {
         let mut elastic = Vec::new();
-        for PlacedSheet {
-            of,
-            key,
-            form,
-            part,
-            ..
-        } in &self.sheets.list
-        {
+        for (number, placed) in self.sheets.list.iter().enumerate() {
+            let PlacedSheet {
+                of,
+                key,
+                form,
+                part,
+                ..
+            } = placed;
             let Some(elasticity) = of.elasticity() else {
                 continue;
             };
@@ -586,7 +614,8 @@ impl<'a> Builder<'a> {
                 Some(_) => "isometry",
                 None => "material",
             });
-            let sheet = elastic_sheet(&form.placed, elasticity, of.bending().rigidity());
+            let plate = self.plates.get(&number).map(Arc::as_ref);
+            let sheet = elastic_sheet(&form.placed, elasticity, plate);
             let sheet = sheet.map_err(at(&key))?;
             let words = elastic_in_words(&sheet);
             if !self.modelled.contains(&words) {
@@ -792,16 +821,18 @@ impl<'a> Builder<'a> {
 fn elastic_sheet(
     placed: &Sheet,
     elasticity: Elasticity,
-    rigidity: f64,
+    plate: Option<&PlateBending>,
 ) -> Result<ElasticSheet, ElasticSheetError> {
     let Elasticity {
         stiffness,
         poisson,
         limit,
     } = elasticity;
-    ElasticSheet::new(placed, stiffness, poisson)?
-        .softened(rigidity)?
-        .with_limit(limit)
+    let sheet = ElasticSheet::new(placed, stiffness, poisson)?.with_limit(limit)?;
+    Ok(match plate {
+        Some(plate) => sheet.beside(placed, plate),
+        None => sheet,
+    })
 }
 
 fn self_contact_problem(error: &ContactsError) -> Problem {

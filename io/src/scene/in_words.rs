@@ -17,22 +17,10 @@ pub(super) fn materials_in_words(sheets: &[PlacedSheet<'_>]) -> Option<String> {
     (!all.is_empty()).then(|| all.join("; "))
 }
 
-/// What an elastic sheet is on its mesh.
+/// What an elastic sheet is.
 pub(super) fn elastic_in_words(elastic: &ElasticSheet) -> String {
-    let used = elastic.face_stiffnesses();
-    let [least, most] = used.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], k| {
-        [least.min(k), most.max(k)]
-    });
-    let softened = if least == elastic.stiffness() {
-        String::new()
-    } else if brief(least).to_string() == brief(most).to_string() {
-        format!(", softened on this mesh to {} N/m", brief(least))
-    } else {
-        let [least, most] = [brief(least), brief(most)];
-        format!(", softened on this mesh to between {least} and {most} N/m")
-    };
     format!(
-        "elasticity in the plane ({} N/m{softened}; strain below {} %)",
+        "elasticity in the plane ({} N/m; strain below {} %)",
         brief(elastic.stiffness()),
         brief(100.0 * elastic.limit())
     )

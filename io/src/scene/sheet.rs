@@ -106,8 +106,8 @@ pub enum Isometry {
     /// Rigid rods along all edges: exact lengths, folds along the lines of the mesh alone.
     #[default]
     Rods,
-    /// The elasticity of the material, softened where the mesh is too coarse for its bends, and a limit of
-    /// strain that nothing exceeds. For `bdf2` and `implicit_euler`.
+    /// The elasticity of the material, with slack where faces bend, and a limit of strain that nothing
+    /// exceeds. For `bdf2` and `implicit_euler`.
     Elastic {
         /// Young's modulus times thickness, N/m: office paper has 3e5. If left out, that of the material.
         #[serde(default)]

@@ -57,7 +57,7 @@ const HARDENING: f64 = 1e-4;
 
 /// Clamped at both ends, the free part of a strip, 0.2 m long, is bent upwards to an arc of the curvature 5 /
 /// m, within a second, and back to the curvature `p` at which its moment is zero. It is light, so that no
-/// waves bend it further.
+/// waves bend it further. (Without a Poisson's ratio its sides do not curl.)
 fn bent(p: f64) -> String {
     let arc = |k: f64| {
         [
@@ -86,6 +86,7 @@ fn bent(p: f64) -> String {
 [sheet]
 mesh = {{ rectangle = {{ width = 0.22, height = 0.02, columns = 22, rows = 2 }} }}
 material = \"office paper\"
+bending = {{ plate = {{ rigidity = {D}, poisson = 0 }} }}
 density = 0.0008
 bending = {{ plate = {{ rigidity = {D}, poisson = 0 }} }}
 yield = {{ moment = {MOMENT}, hardening = {HARDENING}, layers = 1 }}

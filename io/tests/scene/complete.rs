@@ -16,7 +16,7 @@ const ALL_KEYS: [&str; 7] = [
     mass = 0.01
     thickness = 1e-4
     isometry = { elastic = { stiffness = 1e6, poisson = 0.3, limit = 0.02 } }
-    bending = { plate = { rigidity = 1e-3 } }
+    bending = { plate = { rigidity = 1e-3, poisson = 0.25 } }
     yield = { moment = 0.1, hardening = 1e-4, layers = 4 }
     damping = 1.0
     refine = 1

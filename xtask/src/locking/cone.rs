@@ -84,9 +84,9 @@ fn model(of: Model, sheet: &Sheet, plate: Plate<'_>) -> Result<SheetModel> {
     Ok(sheet.with_moving_pin(tip, motion)?)
 }
 
-fn measure(of: Model, bound: f64, job: DiskJob, plan: &Plan) -> Result<(Ran, Cone)> {
+fn measure(of: Model, force: f64, job: DiskJob, plan: &Plan) -> Result<(Ran, Cone)> {
     let sheet = job.sheet()?;
-    let plate = Plate { bound, ..PAPER };
+    let plate = Plate { force, ..PAPER };
     let (course, end) = run(
         of,
         model(of, &sheet, plate)?,
@@ -127,13 +127,13 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let plan = until_rest(effort.quick_or(2.0, 20.0));
     let beside = |model: Model| {
         records.runs(&format!("reference, {model}"), &[finest], |&job| {
-            let (ran, measured) = measure(model, PAPER.bound, job, &plan)?;
+            let (ran, measured) = measure(model, PAPER.force, job, &plan)?;
             Ok(Sample { job, ran, measured })
         })
     };
     let reference = beside(Model::Material)?;
     let mut all =
-        records.of_models(&jobs, |model, job| measure(model, PAPER.bound, *job, &plan))?;
+        records.of_models(&jobs, |model, job| measure(model, PAPER.force, *job, &plan))?;
     all.extend(beside(Model::Elastic)?);
     if let [
         Sample {
@@ -153,13 +153,13 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     samples(&all)
 }
 
-/// The disk on the irregular mesh with another bound of the stiffness.
-pub(super) fn with_bound(
+/// The disk on the irregular mesh with another force of the slack.
+pub(super) fn with_force(
     model: Model,
-    bound: f64,
+    force: f64,
     rings: usize,
     plan: &Plan,
 ) -> Result<(Ran, Cone)> {
     let mesh = Disk::Delaunay1;
-    measure(model, bound, DiskJob { mesh, rings }, plan)
+    measure(model, force, DiskJob { mesh, rings }, plan)
 }

@@ -234,7 +234,7 @@ fn moment(sheet: &Sheet, end: &End) -> f64 {
     moment / (PAPER.rigidity * CURVATURE * WIDTH)
 }
 
-fn measure(model: Model, bound: f64, job: StripJob, plan: &Plan) -> Result<(Ran, Rested)> {
+fn measure(model: Model, force: f64, job: StripJob, plan: &Plan) -> Result<(Ran, Rested)> {
     let StripJob {
         strip,
         mesh,
@@ -243,7 +243,7 @@ fn measure(model: Model, bound: f64, job: StripJob, plan: &Plan) -> Result<(Ran,
     let sheet = strip.sheet(mesh, across)?;
     let clamped = strip.clamp(&sheet);
     let plate = Plate {
-        bound,
+        force,
         clamped: &clamped,
         ..PAPER
     };
@@ -292,14 +292,14 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
             }));
         }
     }
-    samples(&records.of_models(&jobs, |model, job| measure(model, PAPER.bound, *job, &plan))?)
+    samples(&records.of_models(&jobs, |model, job| measure(model, PAPER.force, *job, &plan))?)
 }
 
-/// Strips that bend much on meshes without lines across the bend, with another bound of the stiffness: the
+/// Strips that bend much on meshes without lines across the bend, with another force of the slack: the
 /// largest errors of energy and place; nothing where one of the strips does not come to rest.
-pub(super) fn with_bound(
+pub(super) fn with_force(
     model: Model,
-    bound: f64,
+    force: f64,
     across: usize,
     plan: &Plan,
 ) -> Result<[Option<f64>; 2]> {
@@ -314,7 +314,7 @@ pub(super) fn with_bound(
                 mesh,
                 across,
             };
-            let (_, rested) = measure(model, bound, job, plan)?;
+            let (_, rested) = measure(model, force, job, plan)?;
             let errors = [rested.energy_error, rested.place_error];
             worst = std::array::from_fn(|k| worst[k].zip(errors[k]).map(|(a, b)| a.max(b)));
         }
@@ -364,7 +364,7 @@ mod tests {
             across: 4,
         };
         let plan = until_rest(20.0);
-        let (ran, rested) = measure(Model::Elastic, PAPER.bound, job, &plan).unwrap();
+        let (ran, rested) = measure(Model::Elastic, PAPER.force, job, &plan).unwrap();
         assert_eq!(ran.is_good, 1, "{ran:?}");
         for error in [rested.energy_error, rested.place_error, rested.moment_error] {
             assert!(error.unwrap() < 0.05, "{rested:?}");

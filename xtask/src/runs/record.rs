@@ -37,7 +37,7 @@ pub(crate) struct RunSummary {
     pub(crate) at_rest_from: Option<f64>,
     /// Kinetic energy at the end as part of the potential energy released.
     pub(crate) motion_left: f64,
-    /// How an elastic sheet was softened and deformed; none for rods.
+    /// How an elastic sheet was deformed; none for rods.
     pub(crate) elastic: Option<ElasticSummary>,
 }
 
@@ -126,12 +126,10 @@ impl RunSummary {
         self.elastic.map_or(self.course.strain, |e| e.strain)
     }
 
-    /// Membrane stiffness of an elastic sheet, softened where the mesh is coarse, and that of its material,
-    /// in words.
+    /// Membrane stiffness of an elastic sheet, in words.
     pub(crate) fn stiffness(&self) -> Option<String> {
         let e = self.elastic?;
-        let [least, most] = e.used.map(brief);
-        Some(format!("{least} to {most} of {} N/m", brief(e.stiffness)))
+        Some(format!("{} N/m", brief(e.stiffness)))
     }
 
     /// What every run has to keep.

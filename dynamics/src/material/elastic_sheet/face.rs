@@ -1,6 +1,8 @@
 //! One face of an elastic sheet.
 
+use super::bend::Bend;
 use super::limit::StrainLimit;
+use super::slack::Slack;
 use crate::HessianSink;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Part, Sheet, VertexId};
@@ -21,11 +23,13 @@ pub(super) struct Face {
     /// The components `(E_11, sqrt(2) E_12, E_22)` of Green's strain, whose Euclidean norm is that of the
     /// strain, by the length errors of the edges; per square metre.
     strains: Matrix3<f64>,
-    /// `k_T`, N/m.
+    /// The inverse of `strains`: rows with the components of `e e^T` of each edge vector `e`.
+    edge_squares: Matrix3<f64>,
+    /// `K`, N/m.
     stiffness: f64,
-    /// Flexural rigidity by which the face was softened, N m; zero if it was not.
+    /// Flexural rigidity of the plate by which its bends are measured, N m; zero if they are not.
     pub(super) rigidity: f64,
-    /// `V_T = c^T law c / 2` without the barrier, newtons per cubic metre.
+    /// The square of the norm of a strain by the length errors, `c^T law c`, per metre to the fourth.
     law: Matrix3<f64>,
 }
 
@@ -33,17 +37,11 @@ pub(super) struct Face {
 pub(super) struct Strained {
     /// Edge vectors, from corner `i + 1` to corner `i + 2`.
     vectors: [Vector3<f64>; 3],
-    /// Length errors `c`, m2.
-    errors: Vector3<f64>,
     /// The strain by the components of [`Face::strains`].
     strain: Vector3<f64>,
-}
-
-impl Strained {
-    /// The Frobenius norm of the strain.
-    pub(super) fn norm(&self) -> f64 {
-        self.strain.norm()
-    }
+    /// Length errors beyond those of the chords of arcs, m2.
+    beyond: Vector3<f64>,
+    slack: Slack,
 }
 
 /// Part of its distance from the limit that a face keeps in one displacement, at least.
@@ -54,6 +52,9 @@ const BISECTION_WIDTH: f64 = 0.02;
 
 /// Parts of a displacement below this count as zero.
 const SMALLEST_PART: f64 = 1e-12;
+
+/// A chord is shorter than its arc of curvature `k` by a part of `(k l)^2 / 24`.
+const ARC: f64 = 1.0 / 24.0;
 
 impl Face {
     /// Without stiffness; nothing if the face has no area.
@@ -89,6 +90,7 @@ impl Face {
             squared_lengths: lengths.map(|l| l * l),
             area,
             strains,
+            edge_squares: errors,
             stiffness: 0.0,
             rigidity: 0.0,
             law: Matrix3::zeros(),
@@ -106,15 +108,27 @@ impl Face {
         }
     }
 
+    /// Sets Young's modulus times thickness (newtons per metre) and Poisson's ratio.
     pub(super) fn set_stiffness(&mut self, stiffness: f64, nu: f64) {
-        self.stiffness = stiffness;
-        let k = self.area * stiffness / (1.0 - nu * nu);
-        let law = k * Matrix3::new(1.0, 0.0, nu, 0.0, 1.0 - nu, 0.0, nu, 0.0, 1.0);
-        self.law = self.strains.transpose() * law * self.strains;
+        self.stiffness = stiffness / (1.0 - nu * nu);
+        let norm = Matrix3::new(1.0, 0.0, nu, 0.0, 1.0 - nu, 0.0, nu, 0.0, 1.0);
+        self.law = self.strains.transpose() * norm * self.strains;
     }
 
-    pub(super) fn stiffness(&self) -> f64 {
-        self.stiffness
+    /// The length errors of the edges as chords of arcs, m2, by the second derivatives of positions `H` (rows
+    /// for the components of the positions): `-|H(e, e)|^2 / 24` with the edge vector `e`.
+    pub(super) fn chords(&self, second: &Matrix3<f64>) -> Vector3<f64> {
+        let along = second * self.edge_squares.transpose();
+        Vector3::from_fn(|i, _| -ARC * along.column(i).norm_squared())
+    }
+
+    /// The law of the face where it bends.
+    fn slack(&self, bend: &Bend) -> Slack {
+        if self.rigidity == 0.0 {
+            return Slack::none(self.stiffness);
+        }
+        let size = self.mean_squared_length();
+        Slack::of_bend(self.stiffness, self.rigidity, size, bend.squared)
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -122,7 +136,7 @@ impl Face {
     }
 
     pub(super) fn mean_squared_length(&self) -> f64 {
-        self.squared_lengths.iter().sum::<f64>() / 3.0
+        self.squared_lengths.iter().sum::<f64>() * (1.0 / 3.0)
     }
 
     /// From corner `i + 1` to corner `i + 2`, of positions or displacements.
@@ -131,48 +145,72 @@ impl Face {
         [c - b, a - c, b - a]
     }
 
-    pub(super) fn at(&self, x: &[f64]) -> Strained {
-        let vectors = self.edge_vectors(x);
+    /// Length errors of edges, m2.
+    fn errors(&self, vectors: &[Vector3<f64>; 3]) -> Vector3<f64> {
         let error = |k: usize| 0.5 * (vectors[k].norm_squared() - self.squared_lengths[k]);
-        let errors = Vector3::new(error(0), error(1), error(2));
+        Vector3::new(error(0), error(1), error(2))
+    }
+
+    /// Green's strain by the components of [`Face::strains`]; its Euclidean norm is Frobenius'.
+    pub(super) fn strain(&self, x: &[f64]) -> Vector3<f64> {
+        self.strains * self.errors(&self.edge_vectors(x))
+    }
+
+    pub(super) fn at(&self, x: &[f64], bend: &Bend) -> Strained {
+        let vectors = self.edge_vectors(x);
+        let errors = self.errors(&vectors);
         Strained {
             strain: self.strains * errors,
             vectors,
-            errors,
+            beyond: errors - bend.chords,
+            slack: self.slack(bend),
         }
+    }
+
+    /// The norm of the strain beyond that of the chords, in which the energy is measured.
+    fn stretch(&self, at: &Strained) -> f64 {
+        at.beyond.dot(&(self.law * at.beyond)).max(0.0).sqrt()
     }
 
     /// Joules; infinite at the limit and beyond.
     pub(super) fn energy(&self, at: &Strained, limit: &StrainLimit) -> f64 {
-        let elastic = 0.5 * at.errors.dot(&(self.law * at.errors));
-        elastic + self.area * limit.value(at.strain.norm_squared())
+        let elastic = at.slack.energy(at.slack.stress(self.stretch(at)));
+        self.area * (elastic + limit.value(at.strain.norm_squared()))
     }
 
-    /// Size of the round-off in the energy of a sheet at rest whose coordinates are of the given size,
+    /// Size of the round-off in the energy of a face at rest whose coordinates are of the given size,
     /// metres.
     pub(super) fn round_off(&self, size: f64) -> f64 {
         let squared = self.mean_squared_length();
         let error = f64::EPSILON * (squared.sqrt() * size + squared);
-        self.law.trace() * error * error
+        self.area * self.stiffness * self.law.trace() * error * error
     }
 
     /// The derivatives of the energy by the length errors, newtons per metre.
     fn densities(&self, at: &Strained, limit: &StrainLimit) -> Vector3<f64> {
         let [slope, _] = limit.derivatives(at.strain.norm_squared());
-        let barrier = 2.0 * self.area * slope * (self.strains.transpose() * at.strain);
-        self.law * at.errors + barrier
+        let barrier = 2.0 * slope * (self.strains.transpose() * at.strain);
+        let secant = at.slack.secant(at.slack.stress(self.stretch(at)));
+        self.area * (secant * self.law * at.beyond + barrier)
     }
 
     /// The second derivatives of the energy by the length errors, newtons per cubic metre.
     fn tangent_law(&self, at: &Strained, limit: &StrainLimit) -> Matrix3<f64> {
-        let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
-        if slope == 0.0 {
-            return self.law;
+        let stretch = self.stretch(at);
+        let stress = at.slack.stress(stretch);
+        let secant = at.slack.secant(stress);
+        let mut law = secant * self.law;
+        if stretch > 0.0 {
+            let along = self.law * at.beyond / stretch;
+            law += (at.slack.slope(stress) - secant) * along * along.transpose();
         }
-        let along = self.strains.transpose() * at.strain;
-        self.law
-            + 2.0 * self.area * slope * self.strains.transpose() * self.strains
-            + 4.0 * self.area * curvature * along * along.transpose()
+        let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
+        if slope != 0.0 {
+            let along = self.strains.transpose() * at.strain;
+            law += 2.0 * slope * self.strains.transpose() * self.strains
+                + 4.0 * curvature * along * along.transpose();
+        }
+        self.area * law
     }
 
     pub(super) fn add_gradient(&self, at: &Strained, limit: &StrainLimit, gradient: &mut [f64]) {
@@ -194,29 +232,28 @@ impl Face {
     /// in the displacement `dx`, `|dx_a - dx_b|^2 / 2`.
     pub(super) fn add_second_order(
         &self,
-        x: &[f64],
+        at: &Strained,
         dx: &[f64],
         limit: &StrainLimit,
         scale: f64,
         gradient: &mut [f64],
     ) {
-        let at = self.at(x);
         let changes = self.edge_vectors(dx);
         let second = Vector3::from(changes.map(|d| 0.5 * d.norm_squared()));
-        let densities = scale * self.tangent_law(&at, limit) * second;
-        self.add_forces(&at, &densities, gradient);
+        let densities = scale * self.tangent_law(at, limit) * second;
+        self.add_forces(at, &densities, gradient);
     }
 
     /// The strain that a displacement from `x` may end with: it keeps its distance from the limit but for
     /// [`KEPT_MARGIN`] of it.
-    fn bound(&self, at: &Strained, limit: f64) -> f64 {
-        limit - KEPT_MARGIN * (limit - at.norm())
+    fn bound(&self, strain: f64, limit: f64) -> f64 {
+        limit - KEPT_MARGIN * (limit - strain)
     }
 
     /// Whether a displacement from `x` to `end` ends within the limit, and keeps a part of the distance from
     /// it.
     pub(super) fn stays_within(&self, x: &[f64], end: &[f64], limit: f64) -> bool {
-        self.at(end).norm() <= self.bound(&self.at(x), limit)
+        self.strain(end).norm() <= self.bound(self.strain(x).norm(), limit)
     }
 
     /// Adds the Hessian; `part` says which part of the force density of an edge counts for its curvature.
@@ -255,12 +292,12 @@ impl Face {
     /// in Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval
     /// is halved.
     pub(super) fn safe_part(&self, x: &[f64], dx: &[f64], limit: f64, most: f64) -> f64 {
-        let at = self.at(x);
+        let vectors = self.edge_vectors(x);
         let changes = self.edge_vectors(dx);
-        let first = Vector3::from_fn(|k, _| at.vectors[k].dot(&changes[k]));
+        let first = Vector3::from_fn(|k, _| vectors[k].dot(&changes[k]));
         let second = Vector3::from_fn(|k, _| 0.5 * changes[k].norm_squared());
-        let (e0, e1, e2) = (at.strain, self.strains * first, self.strains * second);
-        let bound = self.bound(&at, limit);
+        let (e0, e1, e2) = (self.strain(x), self.strains * first, self.strains * second);
+        let bound = self.bound(e0.norm(), limit);
         if e0.norm() + most * (e1.norm() + most * e2.norm()) <= bound {
             return most;
         }

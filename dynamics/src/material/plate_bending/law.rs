@@ -173,6 +173,12 @@ pub(super) struct Roots {
 }
 
 impl Roots {
+    /// The inverse of `R` of a face.
+    pub(super) fn inverse(&self, face: usize) -> Matrix3<f64> {
+        let inverse = self.of(face).try_inverse();
+        inverse.expect("the root of a positive definite law")
+    }
+
     /// `R` of a face.
     pub(super) fn of(&self, face: usize) -> &Matrix3<f64> {
         &self.of_faces[face.min(self.of_faces.len() - 1)]

@@ -21,7 +21,7 @@ const COEFFICIENTS: usize = 6;
 /// For each face the weights `w_v` with `sqrt(D A) R H x = sum_v w_v x_v`, the three components of a weight
 /// being those of the symmetric 2 x 2 matrix, `(11, sqrt(2) 12, 22)`, and `R` the root of the
 /// law of the plate there, see [`Roots`].
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Stencils {
     /// Where the entries of each face begin, and their number.
     starts: Vec<usize>,

@@ -217,9 +217,7 @@ impl StressFreeCurvature {
     pub(super) fn matrices(&self, memory: &[f64]) -> impl Iterator<Item = Matrix2<f64>> {
         let yields = self.yields.into_iter();
         let matrix = move |face, yields: Yield| {
-            let p = yields.plastic(&memory[self.layers(face)]);
-            let solved = self.roots.of(face).lu().solve(&p);
-            let p = solved.expect("the root of a positive definite law");
+            let p = self.roots.inverse(face) * yields.plastic(&memory[self.layers(face)]);
             Matrix2::new(p[0], p[1] / SQRT_2, p[1] / SQRT_2, p[2])
         };
         yields.flat_map(move |yields| (0..self.faces.len()).map(move |face| matrix(face, yields)))

@@ -1,4 +1,4 @@
-//! How stiff the faces of an elastic sheet may be: a disk that must not stretch, strips that must not lock.
+//! How much force the slack of faces may have: a disk that must not stretch, strips that must not lock.
 
 use super::model::{Model, PAPER};
 use super::runs::{EVERY_RUN, Ran, Records};
@@ -8,14 +8,14 @@ use crate::report::Table;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
-/// The bounds that are compared.
-const BOUNDS: [f64; 7] = [100.0, 500.0, 1000.0, 2000.0, 3000.0, 5000.0, 10_000.0];
+/// The forces that are compared, in parts of that of the library.
+const FORCES: [f64; 5] = [0.05, 0.25, 1.0, 4.0, 20.0];
 
-/// A bound, or the stiffness of the material, with the sizes of both meshes.
+/// A force, or nothing for faces without slack, with the sizes of both meshes.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct SofteningJob {
-    #[serde(rename = "C")]
-    bound: Option<f64>,
+struct SlackJob {
+    #[serde(rename = "force")]
+    force: Option<f64>,
     /// Radius of the disk over the spacing.
     #[serde(rename = "R/h")]
     rings: usize,
@@ -36,27 +36,27 @@ struct Strips {
 pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
     let effort = records.store.effort;
     let sizes: &[[usize; 2]] = effort.quick_or(&[[4, 2]], &[[8, 2], [16, 4]]);
-    let bounds = effort.quick_or(vec![PAPER.bound], BOUNDS.to_vec());
+    let forces = effort.quick_or(vec![PAPER.force], FORCES.to_vec());
     let mut jobs = Vec::new();
-    for bound in bounds.into_iter().map(Some).chain([None]) {
-        jobs.extend(sizes.iter().map(|&[rings, across]| SofteningJob {
-            bound,
+    for force in forces.into_iter().map(Some).chain([None]) {
+        jobs.extend(sizes.iter().map(|&[rings, across]| SlackJob {
+            force,
             rings,
             across,
         }));
     }
     let plan = until_rest(effort.quick_or(2.0, 30.0));
-    let found = records.runs("bounds", &jobs, |&job| {
-        let model = job.bound.map_or(Model::Material, |_| Model::Elastic);
-        let bound = job.bound.unwrap_or(PAPER.bound);
-        let (ran, cone) = cone::with_bound(model, bound, job.rings, &plan)?;
-        let [energy, place] = strips::with_bound(model, bound, job.across, &plan)?;
+    let found = records.runs("forces", &jobs, |&job| {
+        let model = job.force.map_or(Model::Material, |_| Model::Elastic);
+        let force = job.force.unwrap_or(PAPER.force);
+        let (ran, cone) = cone::with_force(model, force, job.rings, &plan)?;
+        let [energy, place] = strips::with_force(model, force, job.across, &plan)?;
         Ok((job, ran, cone, Strips { energy, place }))
     })?;
     Table::of_fields(
         EVERY_RUN,
         found.iter().map(
-            |(job, ran, cone, strips): &(SofteningJob, Ran, cone::Cone, Strips)| {
+            |(job, ran, cone, strips): &(SlackJob, Ran, cone::Cone, Strips)| {
                 (job, ran, cone, strips)
             },
         ),

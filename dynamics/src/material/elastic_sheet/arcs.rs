@@ -1,0 +1,97 @@
+//! How much shorter the chords of a bent sheet are than its arcs.
+
+use super::bend::{Bend, NUMBERS};
+use super::face::Face;
+use crate::material::plate_bending::PlateBending;
+use crate::material::plate_bending::SecondDerivatives;
+use crate::potential::At;
+use isosheet_mesh::{FaceId, Part, Sheet};
+use std::ops::Range;
+
+/// The bends of the faces of a sheet, or of one of the parts of a union.
+#[derive(Debug, Clone)]
+pub(super) struct Arcs {
+    curvatures: SecondDerivatives,
+    /// The bends of faces that are curved without stress; nothing where all are flat.
+    at_rest: Vec<Bend>,
+    /// Where the faces around each face begin, and their numbers.
+    starts: Vec<usize>,
+    around: Vec<u32>,
+    /// The numbers of its coordinates in the union, and of its faces among those that are elastic.
+    coordinates: Range<usize>,
+    faces: Range<usize>,
+}
+
+impl Arcs {
+    /// Of a sheet that bends as a plate with rigidity.
+    pub(super) fn new(sheet: &Sheet, plate: &PlateBending, faces: &[Face]) -> Self {
+        let topology = sheet.topology();
+        let (mut starts, mut around) = (vec![0], Vec::new());
+        for face in topology.face_ids() {
+            let corners = topology.faces()[face.index()].iter();
+            let mut faces: Vec<FaceId> = corners
+                .flat_map(|v| topology.vertex_faces(*v))
+                .copied()
+                .collect();
+            faces.sort_unstable();
+            faces.dedup();
+            around.extend(faces.iter().map(|f| f.0));
+            starts.push(around.len());
+        }
+        Self {
+            at_rest: match plate.is_curved() {
+                true => {
+                    let curvatures = plate.second_derivatives(sheet);
+                    bends(&curvatures, faces, At::new(0.0, sheet.positions())).collect()
+                }
+                false => Vec::new(),
+            },
+            curvatures: plate.second_derivatives(sheet),
+            starts,
+            around,
+            coordinates: 0..3 * topology.vertex_count(),
+            faces: 0..topology.face_count(),
+        }
+    }
+
+    /// The same of a sheet in a union of several, among whose elastic faces its first one has the number
+    /// `first`.
+    pub(super) fn in_union(self, part: &Part, first: usize) -> Self {
+        Self {
+            coordinates: part.coordinates(),
+            faces: first..first + self.faces.len(),
+            ..self
+        }
+    }
+
+    /// Writes the bends at a time and positions of the union to the numbers that are remembered of its faces.
+    pub(super) fn remember(&self, faces: &[Face], (t, x): (f64, &[f64]), memory: &mut [f64]) {
+        let own = &faces[self.faces.clone()];
+        let at = At::new(t, &x[self.coordinates.clone()]);
+        let mut own: Vec<Bend> = bends(&self.curvatures, own, at).collect();
+        for (bend, rest) in own.iter_mut().zip(&self.at_rest) {
+            bend.chords -= rest.chords;
+            bend.squared = (bend.squared - rest.squared).abs();
+        }
+        let rows = memory.as_chunks_mut::<NUMBERS>().0;
+        let rows = &mut rows[self.faces.clone()];
+        let around = self.starts.windows(2).map(|w| &self.around[w[0]..w[1]]);
+        for ((row, bend), around) in rows.iter_mut().zip(&own).zip(around) {
+            let largest = around.iter().map(|f| own[*f as usize].squared);
+            let squared = largest.fold(0.0, f64::max);
+            *row = Bend { squared, ..*bend }.numbers();
+        }
+    }
+}
+
+/// The bends of faces, each with its own square.
+fn bends<'a>(
+    curvatures: &'a SecondDerivatives,
+    faces: &'a [Face],
+    at: At<'a>,
+) -> impl Iterator<Item = Bend> + 'a {
+    faces.iter().zip(curvatures.at(at)).map(|(face, h)| Bend {
+        chords: face.chords(&h),
+        squared: h.norm_squared() * face.mean_squared_length(),
+    })
+}

@@ -1,0 +1,223 @@
+//! Elastic sheets that bend, and sheets that are taut, against closed forms.
+
+use super::*;
+use crate::hessian::HessianPart;
+use crate::linear::primal::PrimalMatrix;
+use crate::linear::primal::testing::add_potentials_with;
+use crate::potential::Memories;
+use crate::{Material, Method, PointMotion, Profile, SheetModel, Simulation, State, VertexLoad};
+use isosheet_mesh::MassKind;
+use isosheet_mesh::generate::{self, Diagonals};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const STIFFNESS: f64 = 3e5;
+
+fn mesh(kind: Option<Diagonals>, cells: [usize; 2], size: [f64; 2]) -> Sheet {
+    let [length, width] = size;
+    let corners = [[0.0, 0.0], [length, 0.0], [length, width], [0.0, width]];
+    match kind {
+        Some(diagonals) => generate::grid(cells[0], cells[1], length, width, diagonals).unwrap(),
+        None => generate::delaunay(&corners, width / cells[1] as f64, 5).unwrap(),
+    }
+}
+
+const KINDS: [Option<Diagonals>; 3] = [Some(Diagonals::UnionJack), Some(Diagonals::Falling), None];
+
+/// Rolled to a cylinder of a curvature along a direction, without strain.
+fn rolled(sheet: &Sheet, curvature: f64, direction: f64) -> Vec<f64> {
+    let (sin, cos) = direction.sin_cos();
+    let roll = |p: &[f64; 3]| {
+        let [along, across] = [cos * p[0] + sin * p[1], cos * p[1] - sin * p[0]];
+        let angle = curvature * along;
+        let [x, z] = [angle.sin() / curvature, (1.0 - angle.cos()) / curvature];
+        [cos * x - sin * across, sin * x + cos * across, z]
+    };
+    let points = sheet.positions().as_chunks::<3>().0.iter();
+    points.flat_map(roll).collect()
+}
+
+fn elastic(sheet: &Sheet) -> ElasticSheet {
+    let plate = PlateBending::new(sheet, 5e-4).unwrap();
+    let elastic = ElasticSheet::new(sheet, STIFFNESS, 0.3).unwrap();
+    elastic.beside(sheet, &plate).with_limit(0.1).unwrap()
+}
+
+/// What is remembered of a bend.
+fn remembered(elastic: &ElasticSheet, x: &[f64]) -> Vec<f64> {
+    let mut memory = elastic.memory();
+    let v = vec![0.0; x.len()];
+    elastic.settle(Reached { t: 0.0, x, v: &v }, &mut memory);
+    memory
+}
+
+/// On a cylinder vertices have their places without strain, whatever the mesh: the energy is that of round-off
+/// against the one of chords without arcs. It is of the order of the error of the curvature.
+#[test]
+fn chords_on_a_cylinder_are_those_of_its_arcs() {
+    for kind in KINDS {
+        for direction in [0.0, 0.5, 1.3] {
+            let sheet = mesh(kind, [8, 6], [0.4, 0.3]);
+            let elastic = elastic(&sheet);
+            let x = rolled(&sheet, 2.0, direction);
+            let memory = remembered(&elastic, &x);
+            let bent = elastic.energy(At::new(0.0, &x).with_memory(&memory));
+            let locked = elastic.energy(At::new(0.0, &x).with_memory(&elastic.memory()));
+            assert!(
+                bent < 1e-4 * locked,
+                "{kind:?} {direction}: {bent} {locked}"
+            );
+        }
+    }
+}
+
+/// Away from a cylinder whose bend is remembered.
+#[test]
+fn gradient_and_hessian_of_a_bent_sheet_are_derivatives_of_its_energy() {
+    let sheet = mesh(None, [5, 4], [0.5, 0.4]);
+    let elastic = elastic(&sheet);
+    let base = rolled(&sheet, 2.0, 0.4);
+    let memory = remembered(&elastic, &base);
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    for size in [1e-5, 1e-4, 1e-3] {
+        let x: Vec<f64> = base
+            .iter()
+            .map(|x| x + rng.random_range(-size..size))
+            .collect();
+        let at = |x: &[f64]| elastic.energy(At::new(0.0, x).with_memory(&memory));
+        let gradient = |x: &[f64]| {
+            let mut g = vec![0.0; x.len()];
+            elastic.add_gradient(At::new(0.0, x).with_memory(&memory), &mut g);
+            g
+        };
+        let moved =
+            |d: &[f64], s: f64| -> Vec<f64> { x.iter().zip(d).map(|(x, d)| x + s * d).collect() };
+        let d: Vec<f64> = x.iter().map(|_| rng.random_range(-1.0..1.0)).collect();
+        let step = 1e-3 * size;
+        let slope: f64 = gradient(&x).iter().zip(&d).map(|(g, d)| g * d).sum();
+        let difference = (at(&moved(&d, step)) - at(&moved(&d, -step))) / (2.0 * step);
+        assert!(
+            (slope / difference - 1.0).abs() < 1e-5,
+            "{size}: {slope} {difference}"
+        );
+        let [up, down] = [step, -step].map(|s| gradient(&moved(&d, s)));
+        let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).unwrap();
+        let model = model.with_elastic_sheet(elastic.clone()).unwrap();
+        let none = vec![0.0; model.rods().len()];
+        let memories = Memories::of([memory.clone()].into_iter());
+        let mut matrix = PrimalMatrix::new(&model).unwrap();
+        matrix.assemble(&model, &x, &none, &none);
+        add_potentials_with(
+            &mut matrix,
+            &model,
+            (0.0, &x, &memories),
+            HessianPart::Full,
+            1.0,
+        );
+        let product = matrix.product(&model, &d);
+        let largest = product.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        for i in 0..x.len() {
+            let exact = (up[i] - down[i]) / (2.0 * step);
+            let found = product[i] - model.mass().vertex[i / 3] * d[i];
+            assert!(
+                (found - exact).abs() < 1e-4 * largest,
+                "{size} {i}: {found} {exact}"
+            );
+        }
+    }
+}
+
+/// Moves until it is at rest.
+fn settled(model: SheetModel, sheet: &Sheet, steps: usize) -> Simulation {
+    let start = State::at_rest(sheet.positions().to_vec());
+    let method = Method::ImplicitEuler(Default::default());
+    let model = model.with_damping(4.0).unwrap();
+    let mut run = Simulation::new(model, start, method).unwrap();
+    for _ in 0..steps {
+        run.step(0.05).unwrap();
+    }
+    run
+}
+
+/// `F L / (E h w)`, of a strip that is clamped at one end and pulled by 1 N at the other. (At the clamp the strip
+/// cannot narrow.)
+#[test]
+fn a_strip_that_is_pulled_obeys_hooke() {
+    let (length, width) = (0.3, 0.06);
+    for kind in KINDS {
+        let sheet = mesh(kind, [20, 4], [length, width]);
+        let clamp = sheet.vertices_where(|[x, ..]| x < 1e-9);
+        let end = sheet.vertices_where(|[x, ..]| x > length - 1e-9);
+        let mut heights: Vec<f64> = end.iter().map(|v| sheet.position(*v)[1]).collect();
+        heights.sort_by(f64::total_cmp);
+        let paper = Material::office_paper();
+        let builder = SheetModel::of_material(&sheet, &paper).clamped(&clamp);
+        let mut model = builder.build().unwrap();
+        for v in &end {
+            let y = sheet.position(*v)[1];
+            let k = heights.iter().position(|other| *other == y).unwrap();
+            let middle = |j: usize| heights.get(j).map_or(y, |other| 0.5 * (other + y));
+            let below = k.checked_sub(1).map_or(y, middle);
+            let part = Profile::Constant((middle(k + 1) - below) / width);
+            let load = VertexLoad::new(sheet.topology(), &[*v], [1.0, 0.0, 0.0], part).unwrap();
+            model = model.with_force(load);
+        }
+        let run = settled(model, &sheet, 40);
+        let moved = end.iter().map(|v| run.state().x[3 * v.index()] - length);
+        let mean = moved.sum::<f64>() / end.len() as f64;
+        let hooke = length / (STIFFNESS * width);
+        assert!(
+            (mean / hooke - 1.0).abs() < 0.02,
+            "{kind:?}: {mean} {hooke}"
+        );
+    }
+}
+
+/// A sheet between two lines of pins sags under its weight `q` as far as it stretches: to a parabola of depth
+/// `s`, `s^3 = 3 q L^4 / (64 E h)`.
+#[test]
+fn a_taut_sheet_sags_as_far_as_it_stretches() {
+    let length = 0.2;
+    for kind in KINDS {
+        let sheet = mesh(kind, [20, 2], [length, 0.02]);
+        let ends = sheet.vertices_where(|[x, ..]| !(1e-9..length - 1e-9).contains(&x));
+        let paper = Material::office_paper();
+        let builder = SheetModel::of_material(&sheet, &paper).clamped(&ends);
+        let run = settled(builder.build().unwrap().with_gravity(), &sheet, 60);
+        let lowest = run.state().x.iter().skip(2).step_by(3).copied();
+        let sag = -lowest.fold(0.0, f64::min);
+        let exact = (3.0 * paper.density * 9.8 * length.powi(4) / (64.0 * STIFFNESS)).cbrt();
+        assert!((sag / exact - 1.0).abs() < 0.02, "{kind:?}: {sag} {exact}");
+    }
+}
+
+/// A ribbon that is twisted by the angle `t` per length, its ends at their distance, pulls with `E h t^2 w^3 /
+/// 24`, as its sides are helices.
+#[test]
+fn a_twisted_ribbon_pulls_as_its_sides_are_stretched() {
+    let (length, width, angle) = (0.3, 0.01, std::f64::consts::PI);
+    for kind in [Some(Diagonals::UnionJack), None] {
+        let sheet = mesh(kind, [120, 4], [length, width]);
+        let paper = Material::office_paper();
+        let mut model = SheetModel::of_material(&sheet, &paper).build().unwrap();
+        let start = sheet.vertices_where(|[x, ..]| x < 1e-9);
+        model = model.with_pins(&start).unwrap();
+        for v in sheet.vertices_where(|[x, ..]| x > length - 1e-9) {
+            let y = sheet.position(v)[1] - 0.5 * width;
+            let turn = move |t: f64| -> [f64; 3] {
+                let (sin, cos) = (angle * (0.5 * t).min(1.0)).sin_cos();
+                [length, 0.5 * width + y * cos, y * sin]
+            };
+            model = model.with_moving_pin(v, PointMotion::from(turn)).unwrap();
+        }
+        let run = settled(model, &sheet, 80);
+        let held = run.reactions().into_iter();
+        let held = held.filter(|r| start.contains(&r.support.vertex()));
+        let pull = -held.map(|r| r.force[0]).sum::<f64>();
+        let exact = STIFFNESS * (angle / length).powi(2) * width.powi(3) / 24.0;
+        assert!(
+            (pull / exact - 1.0).abs() < 0.05,
+            "{kind:?}: {pull} {exact}"
+        );
+    }
+}

@@ -1,0 +1,36 @@
+//! How a sheet is curved, face by face.
+
+use super::law::Roots;
+use super::stencil::Stencils;
+use crate::potential::At;
+use nalgebra::Matrix3;
+use std::sync::Arc;
+
+/// The second derivatives of the positions of a plate by its material coordinates.
+#[derive(Debug, Clone)]
+pub(crate) struct SecondDerivatives {
+    stencils: Arc<Stencils>,
+    /// Of each face, the inverse of the root of its law over `sqrt(D A)`.
+    inverses: Vec<Matrix3<f64>>,
+}
+
+impl SecondDerivatives {
+    /// Of a plate with rigidity.
+    pub(super) fn new(stencils: &Arc<Stencils>, roots: &Roots, areas: &[f64]) -> Self {
+        let inverse = |(face, area): (usize, &f64)| {
+            let scale = 1.0 / (roots.rigidity * area).sqrt();
+            roots.inverse(face) * scale
+        };
+        Self {
+            stencils: Arc::clone(stencils),
+            inverses: areas.iter().enumerate().map(inverse).collect(),
+        }
+    }
+
+    /// Of each face at a time and positions: a row for each component of the positions, with the components
+    /// `(11, sqrt(2) 12, 22)`, the first axis along the first edge of the face; 1/m.
+    pub(crate) fn at<'a>(&'a self, at: At<'a>) -> impl Iterator<Item = Matrix3<f64>> + 'a {
+        let faces = self.stencils.iter().zip(&self.inverses);
+        faces.map(move |(stencil, inverse)| stencil.apply(at) * inverse)
+    }
+}
