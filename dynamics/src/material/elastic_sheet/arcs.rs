@@ -5,7 +5,6 @@ use super::face::Face;
 use crate::material::plate_bending::PlateBending;
 use crate::material::plate_bending::SecondDerivatives;
 use isosheet_mesh::{FaceId, Part, Sheet};
-use nalgebra::Matrix3;
 use std::ops::Range;
 
 /// The bends of the faces of a sheet, or of one of the parts of a union.
@@ -58,20 +57,21 @@ impl Arcs {
     pub(super) fn remember(&self, faces: &[Face], x: &[f64], memory: &mut [f64]) {
         let own = &faces[self.faces.clone()];
         let curvatures = self.curvatures.at(&x[self.coordinates.clone()]);
-        let curvatures: Vec<Matrix3<f64>> = curvatures.collect();
-        let square =
-            |(face, h): (&Face, &Matrix3<f64>)| h.norm_squared() * face.mean_squared_length();
-        let squares: Vec<f64> = own.iter().zip(&curvatures).map(square).collect();
-        let rows = memory.as_chunks_mut::<NUMBERS>().0;
-        let rows = &mut rows[self.faces.clone()];
-        let around = self.starts.windows(2).map(|w| &self.around[w[0]..w[1]]);
-        for (((row, face), h), around) in rows.iter_mut().zip(own).zip(&curvatures).zip(around) {
-            let largest = around.iter().map(|f| squares[*f as usize]);
+        let rows = &mut memory.as_chunks_mut::<NUMBERS>().0[self.faces.clone()];
+        for ((row, face), h) in rows.iter_mut().zip(own).zip(curvatures) {
             let bend = Bend {
-                chords: face.chords(h),
-                squared: largest.fold(0.0, f64::max),
+                chords: face.chords(&h),
+                own: h.norm_squared() * face.mean_squared_length(),
+                squared: 0.0,
             };
             *row = bend.numbers();
+        }
+        for (k, range) in self.starts.windows(2).enumerate() {
+            let around = self.around[range[0]..range[1]].iter();
+            let bends = around.map(|f| Bend::remembered(&rows[*f as usize]));
+            let squared = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
+            let bend = Bend::remembered(&rows[k]);
+            rows[k] = Bend { squared, ..bend }.numbers();
         }
     }
 }
