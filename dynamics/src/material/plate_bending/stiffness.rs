@@ -1,6 +1,5 @@
 //! How stiff a plate is.
 
-use crate::material::Material;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -36,15 +35,6 @@ impl From<f64> for PlateStiffness {
     fn from(rigidity: f64) -> Self {
         let poisson = 0.0;
         Self { rigidity, poisson }
-    }
-}
-
-impl From<&Material> for PlateStiffness {
-    fn from(material: &Material) -> Self {
-        Self {
-            rigidity: material.rigidity,
-            poisson: material.poisson,
-        }
     }
 }
 
