@@ -12,7 +12,7 @@ mod tests;
 pub use catalogue::{NamedMaterial, UnknownMaterial};
 
 use crate::options::OptionsError;
-use crate::{ElasticSheet, ElasticSheetError, PlateBending};
+use crate::{ElasticSheet, ElasticSheetError, PlateBending, PlateLaw, PlateStiffness};
 use isosheet_mesh::Sheet;
 use plasticity::Yield;
 use serde::{Deserialize, Serialize};
@@ -160,5 +160,20 @@ impl Material {
     ) -> Result<ElasticSheet, ElasticSheetError> {
         let elastic = ElasticSheet::new(sheet, self.stiffness, self.poisson)?;
         elastic.beside(sheet, plate).with_limit(self.strain_limit)
+    }
+}
+
+impl From<&Material> for PlateLaw {
+    fn from(material: &Material) -> Self {
+        PlateStiffness::from(material).into()
+    }
+}
+
+impl From<&Material> for PlateStiffness {
+    fn from(material: &Material) -> Self {
+        Self {
+            rigidity: material.rigidity,
+            poisson: material.poisson,
+        }
     }
 }

@@ -68,18 +68,24 @@ impl Arcs {
     pub(super) fn remember(&self, faces: &[Face], (t, x): (f64, &[f64]), memory: &mut [f64]) {
         let own = &faces[self.faces.clone()];
         let at = At::new(t, &x[self.coordinates.clone()]);
-        let mut own: Vec<Bend> = bends(&self.curvatures, own, at).collect();
-        for (bend, rest) in own.iter_mut().zip(&self.at_rest) {
-            bend.chords -= rest.chords;
-            bend.squared = (bend.squared - rest.squared).abs();
+        let rows = &mut memory.as_chunks_mut::<NUMBERS>().0[self.faces.clone()];
+        for (k, (row, mut bend)) in rows
+            .iter_mut()
+            .zip(bends(&self.curvatures, own, at))
+            .enumerate()
+        {
+            if let Some(rest) = self.at_rest.get(k) {
+                bend.chords -= rest.chords;
+                bend.own = (bend.own - rest.own).abs();
+            }
+            *row = bend.numbers();
         }
-        let rows = memory.as_chunks_mut::<NUMBERS>().0;
-        let rows = &mut rows[self.faces.clone()];
-        let around = self.starts.windows(2).map(|w| &self.around[w[0]..w[1]]);
-        for ((row, bend), around) in rows.iter_mut().zip(&own).zip(around) {
-            let largest = around.iter().map(|f| own[*f as usize].squared);
-            let squared = largest.fold(0.0, f64::max);
-            *row = Bend { squared, ..*bend }.numbers();
+        for (k, range) in self.starts.windows(2).enumerate() {
+            let around = self.around[range[0]..range[1]].iter();
+            let bends = around.map(|f| Bend::remembered(&rows[*f as usize]));
+            let squared = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
+            let bend = Bend::remembered(&rows[k]);
+            rows[k] = Bend { squared, ..bend }.numbers();
         }
     }
 }
@@ -92,6 +98,7 @@ fn bends<'a>(
 ) -> impl Iterator<Item = Bend> + 'a {
     faces.iter().zip(curvatures.at(at)).map(|(face, h)| Bend {
         chords: face.chords(&h),
-        squared: h.norm_squared() * face.mean_squared_length(),
+        own: h.norm_squared() * face.mean_squared_length(),
+        squared: 0.0,
     })
 }

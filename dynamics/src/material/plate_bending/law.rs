@@ -3,7 +3,6 @@
 use super::direction::{DirectionError, MaterialDirection};
 use super::error::PlateBendingError;
 use super::stiffness::PlateStiffness;
-use crate::material::Material;
 use isosheet_mesh::Sheet;
 use nalgebra::{Matrix3, SymmetricEigen};
 use std::f64::consts::SQRT_2;
@@ -51,12 +50,6 @@ impl From<f64> for PlateLaw {
 impl From<PlateStiffness> for PlateLaw {
     fn from(stiffness: PlateStiffness) -> Self {
         Self::Isotropic(stiffness)
-    }
-}
-
-impl From<&Material> for PlateLaw {
-    fn from(material: &Material) -> Self {
-        Self::Isotropic(material.into())
     }
 }
 

@@ -1,7 +1,5 @@
 //! How stiff a plate is.
 
-use crate::material::Material;
-
 /// The stiffness of an isotropic plate: a curvature `k`, a symmetric 2 x 2 matrix, stores
 ///
 /// ```text
@@ -34,14 +32,5 @@ impl From<f64> for PlateStiffness {
     fn from(rigidity: f64) -> Self {
         let poisson = 0.0;
         Self { rigidity, poisson }
-    }
-}
-
-impl From<&Material> for PlateStiffness {
-    fn from(material: &Material) -> Self {
-        Self {
-            rigidity: material.rigidity,
-            poisson: material.poisson,
-        }
     }
 }
