@@ -33,6 +33,7 @@ mod sources;
 mod store;
 mod threads;
 mod tuning;
+mod validation;
 
 use clap::Parser;
 use std::process::ExitCode;
