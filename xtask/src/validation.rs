@@ -7,8 +7,10 @@ mod experiment;
 mod limitations;
 mod linear;
 mod outcome;
+mod plastic;
 mod plates;
 mod rest;
+mod shells;
 mod specimen;
 mod tension;
 mod vibrations;
@@ -26,8 +28,9 @@ use outcome::{Outcome, SIZES};
 use rayon::prelude::*;
 
 /// All of them.
-static EXPERIMENTS: [&Experiment; 16] = [
+static EXPERIMENTS: [&Experiment; 23] = [
     &cantilevers::END_SHEAR,
+    &shells::ANNULUS,
     &vibrations::PLATES,
     &vibrations::STRIP,
     &vibrations::ON_EDGE,
@@ -40,6 +43,12 @@ static EXPERIMENTS: [&Experiment; 16] = [
     &plates::GRAINED,
     &curls::CURLED,
     &curls::RING,
+    &plastic::YIELDING,
+    &shells::FREE_CYLINDER,
+    &shells::CYLINDER,
+    &shells::HEMISPHERE,
+    &shells::ROOF,
+    &shells::TWISTED,
     &tension::PULLED,
     &tension::SAGGING,
     &tension::TWISTED,

@@ -62,13 +62,13 @@ fn curled(job: Job) -> Result<Measured> {
 /// Radius and width of the ring, and how far it is opened.
 const RADIUS: f64 = 1.0;
 const WIDTH: f64 = 0.5;
-const OPENING: f64 = 1e-3;
+const OPENING: f64 = 1e-2;
 
 /// A ring.
 pub(super) const RING: Experiment = Experiment {
     name: "split-ring",
     title: "Ring with a slit",
-    source: "Bending of curved beams, 3 pi P R^3 / (E I) (Timoshenko 1955, section 80)",
+    source: "Bending of curved beams, 3 pi P R^3 / (E I) (Timoshenko, Strength of Materials)",
     about: "A ring of the radius R and the width R / 2 that is round without stress, Poisson's ratio 0, clamped on one \
             side of its slit: how far a force along the other side opens it.",
     quantities: || vec![Quantity::new("opening E I / (3 pi P R^3)", 1.0)],
@@ -92,7 +92,7 @@ fn ring(job: Job) -> Result<Measured> {
     let material = material(1.0, 0.0, 0.01);
     let model = SheetModel::of_material(&sheet, &material);
     let model = model.clamped(&clamp).curved().build()?;
-    let mut rest = Rest::new(&sheet, OPENING, 10.0);
+    let mut rest = Rest::new(&sheet, OPENING, arc * arc);
     rest.under(model.with_force(end.load(force, [-1.0, 0.0, 0.0])?))?;
     let opened = -end.moved(&sheet, &rest.x, 0);
     Ok(Measured::at_rest(&rest, vec![opened / OPENING]))

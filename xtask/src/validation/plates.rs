@@ -18,8 +18,7 @@ const DEFLECTION: f64 = 1e-5;
 pub(super) const SQUARES: Experiment = Experiment {
     name: "square-plates",
     title: "Square plates under a uniform load",
-    source: "Timoshenko and Woinowsky-Krieger 1959, tables 8 and 35 (0.00406 and 0.00126; more digits by series, \
-             Taylor and Govindjee 2004)",
+    source: "Timoshenko and Woinowsky-Krieger 1959, tables 8 and 35; digits: series, Taylor and Govindjee 2004",
     about: "Plates of the side a with the load q per area, Poisson's ratio 0.3: the deflection of the middle over q \
             a^4 / D, with simply supported and with clamped sides.",
     quantities: || {

@@ -65,8 +65,7 @@ const GRAVITY: f64 = 9.81;
 pub(super) const SAGGING: Experiment = Experiment {
     name: "sagging-paper",
     title: "Paper pinned at two edges",
-    source: "Beam with tension (Timoshenko and Woinowsky-Krieger 1959, section 2, cylindrical bending with built-in \
-             and simply supported edges)",
+    source: "Cylindrical bending with tension (Timoshenko and Woinowsky-Krieger 1959, chapter 1)",
     about: "Office paper, Poisson's ratio 0, 0.2 m long, pinned at two edges that do not approach each other: how far \
             it sags under its weight.",
     quantities: || {

@@ -14,13 +14,13 @@ pub(super) const PLATES: Experiment = Experiment {
     title: "Frequencies of cantilever plates",
     source: "Leissa 1969, chapter 4; 1973",
     about: "Plates clamped at one side, Poisson's ratio 0.3, length a: omega a^2 (rho h / D)^(1/2) of the first two \
-            modes, of a square (bending, torsion) and of a plate five times as long as wide.",
+            modes, of a square (bending, torsion) and of a plate five times as long as wide (both bending).",
     quantities: || {
         let names = [
             "square, first",
-            "square, second",
+            "square, torsion",
             "5 : 1, first",
-            "5 : 1, second",
+            "5 : 1, second bending",
         ];
         let of = |(name, value): (&str, f64)| Quantity::new(name, value);
         names
@@ -72,7 +72,7 @@ fn frequencies(job: Job, widths: &[f64], poisson: f64) -> Result<Measured> {
 pub(super) const ON_EDGE: Experiment = Experiment {
     name: "plate-on-edge",
     title: "Plate on edge under its weight",
-    source: "Ritz's method with polynomials of degree 12 (Prandtl 1899 and Michell 1899 for beams)",
+    source: "Ritz's method for Kirchhoff's plate; narrow: Prandtl 1899, Michell 1899",
     about: "A plate of length L and width w stands on edge, clamped at one end, and bends sidewards from a weight of \
             Gamma = q L^3 / D per area on: the smallest eigenvalue of the bending stiffness against that of the \
             stresses of the sheet at rest under a thousandth of the weight.",
