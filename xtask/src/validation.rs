@@ -23,6 +23,7 @@ use crate::store::{Files, Kept, Store, Unit};
 use anyhow::Result;
 use clap::Args;
 use experiment::{Experiment, Job, MESHES};
+use limitations::Limitations;
 use maud::html;
 use outcome::{Outcome, SIZES};
 use rayon::prelude::*;
@@ -85,12 +86,13 @@ fn make(experiment: &Experiment, store: &Store, files: &mut Files<'_>) -> Result
     let one = |job: &Job| experiment.rows(*job).inspect(|_| bar.step());
     let rows: Result<Vec<_>> = jobs.par_iter().with_max_len(1).map(one).collect();
     bar.finish("measured");
-    Outcome::new(experiment, rows?.concat(), store.effort, files)
+    Outcome::new(experiment, rows?.concat(), files)
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &ValidationArgs) -> Result<()> {
     let store = args.options.open("validation")?;
+    let limitations = Limitations::read()?;
     let mut wanted = args.experiments.clone();
     if wanted.is_empty() {
         wanted.extend(EXPERIMENTS);
@@ -99,22 +101,29 @@ pub(crate) fn run(args: &ValidationArgs) -> Result<()> {
         let outcome = store.keep(&unit(&store, experiment), |files| {
             make(experiment, &store, files)
         })?;
-        let named = outcome.record.findings.iter().map(|f| (experiment.name, f));
+        let found = outcome::findings(experiment, &outcome.rows, store.effort, &limitations);
+        let named = found.iter().map(|f| (experiment.name, f));
         println!("{}", findings(experiment.title, named).text());
         interrupt::check()?;
         Ok(())
     });
-    interrupt::afterwards(made, || write(&store))
+    interrupt::afterwards(made, || write(&store, &limitations))
 }
 
 /// Writes the page and the other files of all experiments done so far.
-fn write(store: &Store) -> Result<()> {
+fn write(store: &Store, limitations: &Limitations) -> Result<()> {
     let units = EXPERIMENTS.iter().map(|e| unit(store, e));
-    let Kept { records, left_out } = store.all_kept::<Outcome>(units.collect());
-    let of = |o: &Outcome| EXPERIMENTS.into_iter().find(|e| e.name == o.record.name);
-    let named: Vec<(&Experiment, &Outcome)> =
-        records.iter().filter_map(|o| Some((of(o)?, o))).collect();
-    let summary = outcome::summary(&named);
+    let mut kept: Kept<Outcome> = store.all_kept(units.collect());
+    for outcome in &mut kept.records {
+        let found = EXPERIMENTS
+            .into_iter()
+            .find(|e| e.name == outcome.record.name);
+        if let Some(experiment) = found {
+            outcome.record.findings =
+                outcome::findings(experiment, &outcome.rows, store.effort, limitations);
+        }
+    }
+    let summary = outcome::summary(&EXPERIMENTS, &kept.records);
     println!("{}", summary.text());
     let report = Report {
         name: "validation",
@@ -127,7 +136,8 @@ fn write(store: &Store) -> Result<()> {
         caption: "The largest error of each quantity on all meshes, against what the book claims",
         excerpt: vec![Part::table("summary", &summary)],
     };
-    let records = records.into_iter().map(|o| o.record).collect();
+    let records = kept.records.into_iter().map(|o| o.record).collect();
+    let left_out = kept.left_out;
     report.write(store, Kept { records, left_out })
 }
 

@@ -1,7 +1,7 @@
 //! What an experiment says: errors by mesh and size, orders, tables, a plot, findings.
 
 use super::experiment::{Experiment, MESHES, Row};
-use super::limitations;
+use super::limitations::Limitations;
 use crate::draw::{Chart, Charts, Series};
 use crate::report::{
     Bound, Effort, Finding, Part, Record, Table, Verdict, columns, exponent, plot,
@@ -56,7 +56,6 @@ impl Outcome {
     pub(super) fn new(
         experiment: &Experiment,
         rows: Vec<Row>,
-        effort: Effort,
         files: &mut Files<'_>,
     ) -> Result<Self> {
         let name = experiment.name;
@@ -79,7 +78,6 @@ impl Outcome {
         };
         let record = Record {
             excerpt: vec![Part::table(name, &summary)],
-            findings: findings(experiment, &rows, effort),
             ..Record::new(name, section)
         };
         Ok(Self { record, rows })
@@ -171,7 +169,12 @@ fn chart(rows: &[Row]) -> Charts {
 }
 
 /// The claim, for each quantity and each size that was run.
-fn findings(experiment: &Experiment, rows: &[Row], effort: Effort) -> Vec<Finding> {
+pub(super) fn findings(
+    experiment: &Experiment,
+    rows: &[Row],
+    effort: Effort,
+    limitations: &Limitations,
+) -> Vec<Finding> {
     let mut all = Vec::new();
     for quantity in (experiment.quantities)() {
         for (across, claim) in SIZES.into_iter().zip(CLAIMS) {
@@ -185,13 +188,8 @@ fn findings(experiment: &Experiment, rows: &[Row], effort: Effort) -> Vec<Findin
             let mut finding = Finding::worst(size, what, Bound::AtMost(claim), &errors);
             let message = own.map(|r| r.message.clone()).find(|m| !m.is_empty());
             finding.remark(message);
-            limitations::declare(
-                &mut finding,
-                experiment.name,
-                &quantity.name,
-                across,
-                effort,
-            );
+            let names = [experiment.name, &quantity.name];
+            limitations.declare(&mut finding, names, across, effort);
             all.push(finding);
         }
     }
@@ -199,7 +197,9 @@ fn findings(experiment: &Experiment, rows: &[Row], effort: Effort) -> Vec<Findin
 }
 
 /// One line for each experiment.
-pub(super) fn summary(outcomes: &[(&Experiment, &Outcome)]) -> Table {
+pub(super) fn summary(experiments: &[&Experiment], outcomes: &[Outcome]) -> Table {
+    let of = |e: &&Experiment| outcomes.iter().find(|o| o.record.name == e.name);
+    let named = experiments.iter().filter_map(|e| Some((*e, of(e)?)));
     let all = |o: &Outcome| worsts(o.rows.iter());
     let quantity = |o: &Outcome| {
         let error = |r: &&Row| r.error.map_or(f64::INFINITY, f64::abs);
@@ -220,7 +220,7 @@ pub(super) fn summary(outcomes: &[(&Experiment, &Outcome)]) -> Table {
     Table::of(
         "The largest errors over all quantities and meshes, %, by squares across; order of convergence; the quantity \
          with the largest error on the finest meshes; CPU time of all runs",
-        outcomes,
+        named,
         columns! { row;
             "experiment" => row.0.title,
             "reference" => row.0.source,

@@ -75,7 +75,8 @@ fn yielding(job: Job) -> Result<Measured> {
         let force = largest * MOMENT * width;
         let course = Profile::Keyframes {
             interpolation: Interpolation::Linear,
-            keys: vec![[0.0, 0.0], [10.0, force], [20.0, 0.0]],
+            // At its largest until the strip has followed.
+            keys: vec![[0.0, 0.0], [10.0, force], [16.0, force], [26.0, 0.0]],
         };
         let model = SheetModel::of_material(&strip.sheet, &material);
         let model = model.clamped(&strip.clamp).yielding(yields).build()?;
