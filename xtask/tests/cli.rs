@@ -366,7 +366,10 @@ fn experiments_of_validation_are_kept() {
     assert!(page.contains("id=\"end-shear\"") && page.contains("id=\"bartels-lifted\""));
     let found = read(out.join("findings.csv"));
     let line = found.lines().find(|l| l.starts_with("end-shear,4 across,"));
-    assert!(line.is_some_and(|l| l.contains(",at_most,12,pass")), "{found}");
+    assert!(
+        line.is_some_and(|l| l.contains(",at_most,12,pass")),
+        "{found}"
+    );
     let (code, text) = run("moon");
     assert_eq!(code, Some(2), "{text}");
 }
