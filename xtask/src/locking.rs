@@ -11,7 +11,6 @@ mod cone;
 mod curved;
 mod disks;
 mod excess;
-mod meshes;
 mod model;
 mod nudge;
 mod runs;

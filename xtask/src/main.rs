@@ -5,6 +5,7 @@
 //! * `cost`: time against errors of all methods and solvers, time and memory of steps against the size of the
 //!   mesh, whole runs at the sizes that people use.
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
+//! * `validation`: published experiments and closed forms with the elastic sheet.
 //! * `hard-cases`: what the solvers do where others break.
 //! * `all`: the figures and all reports, one after another.
 //! * `measured`: what the reports measured, as numbers of the book and the README, and what is out of date.
@@ -33,6 +34,7 @@ mod sources;
 mod store;
 mod threads;
 mod tuning;
+mod validation;
 
 use clap::Parser;
 use std::process::ExitCode;

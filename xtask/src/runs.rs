@@ -5,6 +5,7 @@ mod chart_run;
 mod course;
 mod ensemble;
 mod hanging;
+pub(crate) mod meshes;
 mod record;
 mod scene;
 mod shape;

@@ -37,7 +37,7 @@ pub(crate) struct MeasuredReport {
 }
 
 /// All of them.
-pub(crate) const REPORTS: [MeasuredReport; 6] = [
+pub(crate) const REPORTS: [MeasuredReport; 7] = [
     MeasuredReport {
         name: "condition-table",
         solver: CHARTS,
@@ -67,6 +67,11 @@ pub(crate) const REPORTS: [MeasuredReport; 6] = [
         name: "tuning",
         solver: SOLVER,
         own: &["src/tuning.rs", "src/tuning", "src/runs", "scenes"],
+    },
+    MeasuredReport {
+        name: "validation",
+        solver: SOLVER,
+        own: &["src/validation.rs", "src/validation", "src/runs"],
     },
 ];
 

@@ -352,6 +352,29 @@ fn cost_measures_parts_and_works_and_keeps_them() {
 }
 
 #[test]
+fn experiments_of_validation_are_kept() {
+    let (_keep, out) = folder();
+    let run = |list| run(&["validation", "--quick", "--experiments", list], &out);
+    let (code, text) = run("end-shear");
+    assert_eq!(code, Some(0), "{text}");
+    let files = ["tables/end-shear.csv", "plots/end-shear.svg", "index.html"];
+    assert_written(&out, 200, &files);
+    let (code, text) = run("end-shear,bartels-lifted");
+    assert_eq!(code, Some(0), "{text}");
+    assert_eq!(text.matches("up to date").count(), 1, "{text}");
+    let page = read(out.join("index.html"));
+    assert!(page.contains("id=\"end-shear\"") && page.contains("id=\"bartels-lifted\""));
+    let found = read(out.join("findings.csv"));
+    let line = found.lines().find(|l| l.starts_with("end-shear,4 across,"));
+    assert!(
+        line.is_some_and(|l| l.contains(",at_most,12,pass")),
+        "{found}"
+    );
+    let (code, text) = run("moon");
+    assert_eq!(code, Some(2), "{text}");
+}
+
+#[test]
 fn yardsticks_of_locking_are_kept() {
     let (_keep, out) = folder();
     let run = |list| run(&["locking", "--quick", "--yardsticks", list], &out);
@@ -390,6 +413,7 @@ fn a_report_that_fails_does_not_keep_the_others() {
         "reproduce-figures",
         "hard-cases",
         "locking",
+        "validation",
         "tuning",
         "cost",
     ] {
@@ -403,7 +427,7 @@ fn a_report_that_fails_does_not_keep_the_others() {
         "{said}"
     );
     assert!(
-        said.contains("reproduce-figures, hard-cases, locking, tuning, cost"),
+        said.contains("reproduce-figures, hard-cases, locking, validation, tuning, cost"),
         "{said}"
     );
 }

@@ -1,10 +1,10 @@
 //! Lateral buckling of a strip that is clamped at one end and stands on edge.
 
-use super::meshes::{Grid, vertices, with_line};
 use super::model::{Model, PAPER, Plate};
 use super::runs::{Ran, Records, samples};
 use super::scene::{DAMPING, run};
 use crate::report::Table;
+use crate::runs::meshes::{Grid, vertices, with_line};
 use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_mesh::Sheet;

@@ -1,13 +1,13 @@
 //! A disk that is pushed into a ring: the developable cone.
 
 use super::disks::{Disk, DiskJob, RADIUS, arcs, rim};
-use super::meshes::{nearest, vertices};
 use super::model::{Model, PAPER, Plate};
 use super::nudge::{Nudge, Ring};
 use super::runs::{Ran, Records, Sample, samples};
 use super::scene::{DAMPING, run, until_rest};
 use crate::report::Table;
 use crate::runs::Plan;
+use crate::runs::meshes::{nearest, vertices};
 use anyhow::Result;
 use isosheet_dynamics::{PointProfile, Profile, SheetModel};
 use isosheet_mesh::Sheet;

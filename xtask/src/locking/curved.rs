@@ -1,12 +1,12 @@
 //! An annulus with a curved crease, whose curvature in space is known.
 
-use super::meshes::vertices;
 use super::model::{Model, PAPER, Plate};
 use super::nudge::Nudge;
 use super::runs::{Ran, Records, samples};
 use super::scene::{DAMPING, run, until_rest};
 use crate::report::Table;
 use crate::runs::Plan;
+use crate::runs::meshes::vertices;
 use anyhow::Result;
 use isosheet_dynamics::{CreaseSpring, CreaseSprings, Profile};
 use isosheet_mesh::{EdgeId, Sheet, VertexId, fold_angle, generate};

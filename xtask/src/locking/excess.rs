@@ -1,12 +1,12 @@
 //! A disk with an inserted wedge: the excess cone.
 
 use super::disks::{DiskJob, RADIUS};
-use super::meshes::SNAP;
 use super::model::{Model, PAPER};
 use super::runs::{Ran, Records, samples};
 use super::scene::{DAMPING, run, until_rest};
 use crate::report::Table;
 use crate::runs::Plan;
+use crate::runs::meshes::SNAP;
 use anyhow::Result;
 use isosheet_mesh::{FlatCut, Sheet, fold_angle};
 use isosheet_tests::{ExcessCone, implicit_euler};

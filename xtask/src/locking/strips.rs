@@ -1,12 +1,12 @@
 //! Strips whose shape and energy are known in closed form: loaded, hanging, pushed together, bent.
 
-use super::meshes::{Grid, vertices, with_line};
 use super::model::{Model, PAPER, Plate};
 use super::nudge::Nudge;
 use super::runs::{Ran, Records, samples};
 use super::scene::{DAMPING, End, run, until_rest};
 use crate::report::Table;
 use crate::runs::Plan;
+use crate::runs::meshes::{Grid, vertices, with_line};
 use anyhow::Result;
 use isosheet_dynamics::{PointProfile, Profile, SheetModel, Support};
 use isosheet_mesh::{Sheet, VertexId};

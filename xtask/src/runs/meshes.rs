@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// A kind of mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Grid {
+pub(crate) enum Grid {
     /// Squares with alternating diagonals, with mesh lines across the strip.
     #[serde(rename = "aligned")]
     Aligned,
@@ -36,10 +36,10 @@ const MEAN_ROD: f64 = (2.0 + SQRT_2) / 3.0;
 
 /// Vertices within this part of the cell of a line are moved onto it before triangles are cut: triangles of a
 /// grid are 0.71 cells wide, so that none collapses, and no piece is thinner than this.
-pub(super) const SNAP: f64 = 0.25;
+pub(crate) const SNAP: f64 = 0.25;
 
 impl Grid {
-    pub(super) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 7] = [
         Self::Aligned,
         Self::UnionJack,
         Self::OneWay,
@@ -49,9 +49,22 @@ impl Grid {
         Self::Delaunay3,
     ];
 
+    /// Its name in tables.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Aligned => "aligned",
+            Self::UnionJack => "union jack",
+            Self::OneWay => "one-way",
+            Self::Crossed => "crossed",
+            Self::Delaunay1 => "Delaunay 1",
+            Self::Delaunay2 => "Delaunay 2",
+            Self::Delaunay3 => "Delaunay 3",
+        }
+    }
+
     /// A flat rectangle (corners `low` and `high`, metres) with squares of the side `cell`; an irregular mesh
     /// has edges of the same mean length. A turned grid is cut along the outline, see [`FlatCut::split`].
-    pub(super) fn rectangle(self, low: [f64; 2], high: [f64; 2], cell: f64) -> Result<Sheet> {
+    pub(crate) fn rectangle(self, low: [f64; 2], high: [f64; 2], cell: f64) -> Result<Sheet> {
         let [width, height] = [high[0] - low[0], high[1] - low[1]];
         let irregular = |seed| -> Result<Sheet> {
             let outline = [low, [high[0], low[1]], high, [low[0], high[1]]];
@@ -99,20 +112,20 @@ impl Grid {
 
 /// The mesh cut along the line of the given `x` (metres), parallel to y: it gets vertices on the line and
 /// edges along it; vertices within a quarter of the cell are moved onto the line first.
-pub(super) fn with_line(sheet: &Sheet, x: f64, cell: f64) -> Result<Sheet> {
+pub(crate) fn with_line(sheet: &Sheet, x: f64, cell: f64) -> Result<Sheet> {
     let mut flat = FlatCut::of(sheet);
     flat.split([x, 0.0], [1.0, 0.0], SNAP * cell);
     Ok(flat.sheet()?)
 }
 
 /// The vertices whose positions in the flat sheet pass a test.
-pub(super) fn vertices(sheet: &Sheet, test: impl Fn([f64; 3]) -> bool) -> Vec<VertexId> {
+pub(crate) fn vertices(sheet: &Sheet, test: impl Fn([f64; 3]) -> bool) -> Vec<VertexId> {
     let all = sheet.topology().vertex_ids();
     all.filter(|v| test(sheet.position(*v))).collect()
 }
 
 /// The vertex nearest to a point of a flat sheet.
-pub(super) fn nearest(sheet: &Sheet, target: [f64; 2]) -> VertexId {
+pub(crate) fn nearest(sheet: &Sheet, target: [f64; 2]) -> VertexId {
     let distance = |v: VertexId| {
         let p = sheet.position(v);
         (p[0] - target[0]).hypot(p[1] - target[1])
