@@ -88,7 +88,6 @@ mesh = {{ rectangle = {{ width = 0.22, height = 0.02, columns = 22, rows = 2 }} 
 material = \"office paper\"
 bending = {{ plate = {{ rigidity = {D}, poisson = 0 }} }}
 density = 0.0008
-bending = {{ plate = {{ rigidity = {D}, poisson = 0 }} }}
 yield = {{ moment = {MOMENT}, hardening = {HARDENING}, layers = 1 }}
 damping = 20
 [[support]]

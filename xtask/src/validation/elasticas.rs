@@ -155,7 +155,8 @@ fn pushed(job: Job) -> Result<Measured> {
             moved = moved.with_moving_pin(v, push)?;
         }
         rest.under(moved)?;
-        values.push(middle.mean(&rest.x, 2) / length);
+        // Upwards or downwards: from flat, either may come first.
+        values.push(middle.mean(&rest.x, 2).abs() / length);
         before = part;
     }
     values.push(model()?.potential_energy(0.0, &rest.x));

@@ -42,8 +42,8 @@ fn symmetric(
     };
     let plate = PlateBending::held(sheet, material, &edges)?.curved(sheet);
     let mut model = SheetModel::new(sheet, sheet.area(), MassKind::Lumped)?
-        .with_potential(plate)
-        .with_elastic_sheet(material.elastic_sheet(sheet)?)?;
+        .with_elastic_sheet(material.elastic_sheet(sheet, &plate)?)?
+        .with_potential(plate);
     for (line, normal) in lines {
         for &v in line {
             let plane = Plane::new([0.0; 3], *normal)?;

@@ -135,8 +135,8 @@ pub(super) fn with_plate(
 ) -> Result<SheetModel> {
     let mass = material.density * sheet.area();
     let model = SheetModel::new(sheet, mass, MassKind::Lumped)?.with_pins(pins)?;
-    let model = model.with_potential(plate);
-    Ok(model.with_elastic_sheet(material.elastic_sheet(sheet)?)?)
+    let model = model.with_elastic_sheet(material.elastic_sheet(sheet, &plate)?)?;
+    Ok(model.with_potential(plate))
 }
 
 /// The vertices on the outline.

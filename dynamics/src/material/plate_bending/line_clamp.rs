@@ -4,6 +4,7 @@ use crate::RigidMotion;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use nalgebra::Vector3;
+use std::collections::BTreeSet;
 
 /// A clamp that holds the slope of a plate at the edges between its vertices: each face at such an edge keeps
 /// there the direction that it has at given positions, turned by the rotation of the clamp. The vertices
@@ -54,17 +55,15 @@ pub(super) struct HeldEdges<'a> {
 impl<'a> HeldEdges<'a> {
     pub(super) fn new(sheet: &Sheet, clamps: &'a [LineClamp]) -> Self {
         let topology = sheet.topology();
-        let mut of_vertices = vec![usize::MAX; topology.vertex_count()];
+        let mut of_edges = vec![None; topology.edge_count()];
         for (number, clamp) in clamps.iter().enumerate() {
-            for v in &clamp.vertices {
-                of_vertices[v.index()] = number;
+            let held: BTreeSet<VertexId> = clamp.vertices.iter().copied().collect();
+            for (of_edge, ends) in of_edges.iter_mut().zip(topology.edges()) {
+                if ends.iter().all(|v| held.contains(v)) {
+                    *of_edge = Some(number);
+                }
             }
         }
-        let of_edge = |ends: &[VertexId; 2]| {
-            let [a, b] = ends.map(|v| of_vertices[v.index()]);
-            (a == b && a != usize::MAX).then_some(a)
-        };
-        let of_edges = topology.edges().iter().map(of_edge).collect();
         Self { clamps, of_edges }
     }
 

@@ -158,3 +158,23 @@ fn the_moment_of_a_clamp_balances_the_forces() {
         "{turning} {moment}"
     );
 }
+
+/// Two clamps that meet at a corner hold the slopes at the edges of both.
+#[test]
+fn clamps_with_a_corner_in_common_hold_both_lines() {
+    let sheet = strip([4, 4], [0.1, 0.1], Diagonals::UnionJack, 0.0, 0.0);
+    let first = clamp(&sheet, RigidDisplacement::default());
+    let second = LineClamp {
+        vertices: sheet.vertices_where(|[_, y, _]| y < 1e-9),
+        ..first.clone()
+    };
+    let clamps = [first, second];
+    let held = super::line_clamp::HeldEdges::new(&sheet, &clamps);
+    let directors = |number: usize| {
+        let t = sheet.topology();
+        let sides = t.face_ids().flat_map(|f| t.face_edges(f).map(|e| (f, e)));
+        let found = sides.filter_map(|(f, e)| held.director(&sheet, f, e));
+        found.filter(|(clamp, _)| *clamp == number).count()
+    };
+    assert_eq!([directors(0), directors(1)], [4, 4]);
+}
