@@ -1,5 +1,6 @@
 //! Clamps along a line of vertices, against closed forms and balances.
 
+use super::line_clamp::HeldEdges;
 use super::tests::{Upwards, strip};
 use super::*;
 use crate::{AxisRotation, Profile, RigidDisplacement, SheetModel};
@@ -169,7 +170,7 @@ fn clamps_with_a_corner_in_common_hold_both_lines() {
         ..first.clone()
     };
     let clamps = [first, second];
-    let held = super::line_clamp::HeldEdges::new(&sheet, &clamps);
+    let held = HeldEdges::new(&sheet, &clamps);
     let directors = |number: usize| {
         let t = sheet.topology();
         let sides = t.face_ids().flat_map(|f| t.face_edges(f).map(|e| (f, e)));
