@@ -23,7 +23,7 @@ pub struct LineClamp {
     pub motion: RigidMotion,
 }
 
-/// What holds a plate or interrupts it, see [`PlateBending::held`].
+/// What holds a plate or interrupts it, see [`PlateBending::held`](crate::PlateBending::held).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PlateEdges<'a> {
     /// Pinned vertices: where all three corners of a face are among them, the plate leaves the clamp with the
