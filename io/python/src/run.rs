@@ -218,9 +218,9 @@ impl Run {
     }
 
     /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...: a dict of
-    /// "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and of obstacles "torque" about the
-    /// origin of their own frame of shape (S, 3), newton metres. The force of a support is that on the sheet,
-    /// those of an obstacle are those of the sheet on it.
+    /// "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and "torque" of shape (S, 3), newton
+    /// metres: of a support those on the sheet, the torque about the mean of its vertices; of an obstacle those
+    /// of the sheet on it, the torque about the origin of its own frame.
     #[getter]
     fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         // Supports come first, and bodies by their numbers.
