@@ -79,7 +79,7 @@ impl SurfacePoints {
         );
         for (point, carriers) in (own..).zip(&carried) {
             for &(vertex, weight) in carriers {
-                if weight != 0.0 && vertex.index() >= model_vertices {
+                if is_used(&(vertex, weight)) && vertex.index() >= model_vertices {
                     let count = model_vertices;
                     return Err(SurfacePointsError::Vertex {
                         point,
@@ -118,7 +118,7 @@ impl SurfacePoints {
         out.extend_from_slice(&x[..3 * self.own]);
         for carriers in &self.carried {
             let coordinate = |k: usize| {
-                let parts = carriers.iter().filter(|(_, b)| *b != 0.0);
+                let parts = used(carriers);
                 parts.map(|(v, b)| b * x[3 * v.index() + k]).sum::<f64>()
             };
             out.extend((0..3).map(coordinate));
@@ -132,7 +132,7 @@ impl SurfacePoints {
             *o += f;
         }
         for (carriers, f) in self.carried.iter().zip(carried.as_chunks::<3>().0) {
-            for (v, b) in carriers {
+            for (v, b) in used(carriers) {
                 for (o, f) in out[3 * v.index()..].iter_mut().zip(f) {
                     *o += b * f;
                 }
@@ -147,8 +147,8 @@ impl SurfacePoints {
             None => (itself, 1),
             Some(number) => (self.carried[number], 4),
         };
-        let used = list.into_iter().take(count).filter(|(_, b)| *b != 0.0);
-        used.map(|(v, b)| (v.0, b))
+        let list = list.into_iter().take(count);
+        list.filter(is_used).map(|(v, b)| (v.0, b))
     }
 
     /// The vertex with the largest weight at a point.
@@ -182,6 +182,15 @@ impl SurfacePoints {
             }
         }
     }
+}
+
+/// Whether a place among the carriers of a point is used.
+fn is_used((_, weight): &(VertexId, f64)) -> bool {
+    *weight != 0.0
+}
+
+fn used(carriers: &CarriedPoint) -> impl Iterator<Item = (VertexId, f64)> {
+    carriers.iter().copied().filter(is_used)
 }
 
 /// Positions or displacements of the points that contact acts between, where these are not the vertices.
@@ -292,6 +301,17 @@ mod tests {
         }
         let expected = weights.transpose() * of_points.0 * weights;
         assert!((of_vertices.0 - &expected).norm() < 1e-13 * expected.norm());
+    }
+
+    /// An unused place may name a vertex that there is not.
+    #[test]
+    fn places_without_weight_are_not_used() {
+        let mut point = [(VertexId(9), 0.0); 4];
+        point[0] = (VertexId(1), 1.0);
+        let points = SurfacePoints::new(2, 0, vec![point]).unwrap();
+        let mut forces = vec![0.0; 6];
+        points.add_forces(&[1.0, 2.0, 3.0], &mut forces);
+        assert_eq!(forces, [0.0, 0.0, 0.0, 1.0, 2.0, 3.0]);
     }
 
     #[test]

@@ -387,10 +387,9 @@ impl Term for ContactTerm {
         if gap <= 0.0 || gap.is_nan() {
             return Err(Refusal::Contact { gap });
         }
-        let terms = step.terms();
-        let exchange = terms.exchange(step.start_work, step.start_energy);
         let mut settled = std::mem::take(&mut step.friction_before);
         let terms = step.terms();
+        let exchange = terms.exchange(step.start_work, step.start_energy);
         settled.lag(
             self.geometry.laws(),
             terms.barrier,

@@ -37,7 +37,7 @@ use natural::NaturalCurvature;
 pub(crate) use second_derivatives::SecondDerivatives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use stencil::Stencils;
+use stencil::{Stencil, Stencils};
 pub use stiffness::PlateStiffness;
 use stress_free::{Blocks, StressFreeCurvature};
 
@@ -260,6 +260,14 @@ impl PlateBending {
         })
     }
 
+    /// The second derivatives of positions beyond those without stress, as the stencil of a face has them.
+    fn elastic(&self, face: usize, stencil: &Stencil<'_>, at: At<'_>) -> Matrix3<f64> {
+        match &self.stress_free {
+            None => stencil.apply(at),
+            Some(curvature) => curvature.bent(face, stencil, at).elastic,
+        }
+    }
+
     /// Whether it rests in the positions of its sheet, curved as they are.
     pub(crate) fn is_curved(&self) -> bool {
         self.is_curved
@@ -292,9 +300,9 @@ impl PlateBending {
 
 impl Potential for PlateBending {
     fn energy(&self, at: At<'_>) -> f64 {
-        if let Some(plastic) = &self.stress_free {
+        if let Some(curvature) = &self.stress_free {
             let faces = self.stencils.iter().enumerate();
-            let energy = |(k, s)| plastic.energy(k, &plastic.bent(k, &s, at));
+            let energy = |(k, s)| curvature.energy(k, &curvature.bent(k, &s, at));
             return faces.map(energy).sum();
         }
         let energy = |h: Matrix3<f64>| 0.5 * h.norm_squared();
@@ -303,11 +311,7 @@ impl Potential for PlateBending {
 
     fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
         for (k, (face, stencil)) in faces.iter_mut().zip(self.stencils.iter()).enumerate() {
-            let elastic = match &self.stress_free {
-                None => stencil.apply(at),
-                Some(plastic) => plastic.bent(k, &stencil, at).elastic,
-            };
-            *face += 0.5 * elastic.norm_squared();
+            *face += 0.5 * self.elastic(k, &stencil, at).norm_squared();
         }
     }
 
@@ -320,8 +324,8 @@ impl Potential for PlateBending {
         for (k, stencil) in self.stencils.iter().enumerate() {
             let h = match &self.stress_free {
                 None => stencil.apply(at),
-                Some(plastic) => {
-                    let bent = plastic.bent(k, &stencil, at);
+                Some(curvature) => {
+                    let bent = curvature.bent(k, &stencil, at);
                     for (v, force) in bent.turning_forces() {
                         add(v.index(), force);
                     }
@@ -383,10 +387,7 @@ impl Potential for PlateBending {
             if stencil.clamps().next().is_none() {
                 continue;
             }
-            let elastic = match &self.stress_free {
-                None => stencil.apply(at),
-                Some(curvature) => curvature.bent(k, &stencil, at).elastic,
-            };
+            let elastic = self.elastic(k, &stencil, at);
             for (clamp, (director, weights)) in stencil.clamps().zip(stencil.directors(at.t)) {
                 moments[clamp] += director.cross(&(elastic * weights));
             }

@@ -38,15 +38,14 @@ impl Arcs {
             around.extend(faces.iter().map(|f| f.0));
             starts.push(around.len());
         }
+        let curvatures = plate.second_derivatives(sheet);
+        let at_rest = At::new(0.0, sheet.positions());
         Self {
             at_rest: match plate.is_curved() {
-                true => {
-                    let curvatures = plate.second_derivatives(sheet);
-                    bends(&curvatures, faces, At::new(0.0, sheet.positions())).collect()
-                }
+                true => bends(&curvatures, faces, at_rest).collect(),
                 false => Vec::new(),
             },
-            curvatures: plate.second_derivatives(sheet),
+            curvatures,
             starts,
             around,
             coordinates: 0..3 * topology.vertex_count(),
