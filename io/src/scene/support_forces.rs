@@ -17,8 +17,6 @@ use std::collections::HashMap;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SupportForces {
     origins: Origins,
-    /// Number of supports.
-    count: usize,
     /// The vertices of each support.
     vertices: Vec<Vec<VertexId>>,
     /// The shares of the supports at each vertex that is kept in place.
@@ -32,7 +30,6 @@ impl SupportForces {
         Self {
             vertices: origins.vertices(simulation.model(), count),
             origins,
-            count,
             shares,
         }
     }
@@ -51,10 +48,10 @@ impl SupportForces {
             sum / vertices.len().max(1) as f64
         });
         let means: Vec<Vector3<f64>> = means.collect();
-        let mut loads = vec![[Vector3::zeros(); 2]; self.count];
+        let mut loads = vec![[Vector3::zeros(); 2]; self.vertices.len()];
         for Reaction { support, force } in simulation.reactions() {
             match (self.origins.support(support), support) {
-                (Some(number), _) if number < self.count => {
+                (Some(number), _) if number < loads.len() => {
                     let [sum, torque] = &mut loads[number];
                     *sum += force;
                     *torque += (place(support.vertex()) - means[number]).cross(&force);
