@@ -86,12 +86,15 @@ pub use diagnosis::rank::{RodRank, rod_rank};
 pub use engine::method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use hessian::HessianSink;
 pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, FLAT, RestAngle};
-pub use material::elastic_sheet::{ElasticSheet, ElasticSheetError};
+pub use material::direction::{DirectionError, MaterialDirection};
+pub use material::elastic_sheet::{
+    ElasticSheet, ElasticSheetError, MembraneLaw, OrthotropicMembrane,
+};
 pub use material::glue::{Glue, GlueError};
 pub use material::plasticity::Yield;
 pub use material::plate_bending::{
-    Curl, CurlError, DirectionError, LineClamp, MaterialDirection, OrthotropicPlate, PlateBending,
-    PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
+    Curl, CurlError, LineClamp, OrthotropicPlate, PlateBending, PlateBendingError, PlateEdges,
+    PlateLaw, PlateStiffness,
 };
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};

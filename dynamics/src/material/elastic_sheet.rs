@@ -4,9 +4,13 @@ mod arcs;
 mod bend;
 #[cfg(test)]
 mod bend_tests;
+#[cfg(test)]
+mod direction_tests;
 mod face;
+mod law;
 mod limit;
 mod load;
+mod membrane;
 mod slack;
 #[cfg(test)]
 mod tests;
@@ -14,14 +18,17 @@ mod tests;
 use crate::potential::{At, Reached, Settled};
 use crate::{HessianSink, Potential};
 
+use super::direction::DirectionError;
 use super::plate_bending::PlateBending;
 use arcs::Arcs;
 use bend::{Bend, NUMBERS};
 use face::Face;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, FaceId, Part, Sheet};
+use law::Law;
 use limit::StrainLimit;
 use load::strain_barrier;
+pub use membrane::{MembraneLaw, OrthotropicMembrane};
 
 /// Why an elastic sheet cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -38,6 +45,23 @@ pub enum ElasticSheetError {
     Poisson {
         /// The ratio given.
         ratio: f64,
+    },
+    /// Poisson's ratio of an orthotropic sheet leaves a strain without resistance.
+    #[error(
+        "Poisson's ratio nu12 is {ratio}, and the root of E1 / E2 is {bound}",
+        ratio = given(*ratio), bound = given(*bound)
+    )]
+    Coupling {
+        /// The ratio given.
+        ratio: f64,
+        /// What it has to be less than.
+        bound: f64,
+    },
+    /// The direction of the material is none.
+    #[error(transparent)]
+    Direction {
+        /// Why.
+        source: DirectionError,
     },
     /// The limit of the strain is not a positive number below one half.
     #[error("the limit of the strain is {limit}", limit = given(*limit))]
@@ -71,6 +95,8 @@ impl Advice for ElasticSheetError {
         match self {
             Self::Stiffness { .. } => Some("give a finite one above 0"),
             Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
+            Self::Coupling { .. } => Some("give a ratio whose size is less than this root"),
+            Self::Direction { source } => source.advice(),
             Self::Limit { .. } => Some("give a value above 0 and below 0.5, for instance 0.01"),
             Self::Limits { .. } => Some("give all sheets the same limit"),
             Self::Face { .. } => Some("remove the face, or mend the mesh"),
@@ -128,6 +154,11 @@ impl Advice for ElasticSheetError {
 /// where the sheet is flat there is none, and a sheet that is pulled has the stiffness of its material. `s_0` is a
 /// force at which a wave of the size of a face is pulled flat, or buckles.
 ///
+/// *Directions.* A sheet whose material has two directions ([`OrthotropicMembrane`]) stores `(E_T - S_T) : C (E_T -
+/// S_T) / 2` where it is flat. The slack belongs to the mesh, and has no direction: its range is that of a norm
+/// `|z|_nu` with `nu = C12 / (C11 C22)^(1/2)`, and the strain `z` to which it is pulled out minimises the energy of
+/// spring and slack, `min_z (e - z) : C (e - z) / 2 + psi(|z|_nu)`.
+///
 /// `S_T` and `r` are those of the start of a step. What their change does to the energy is counted as work. (The
 /// curvature of patches in the membrane strain, within the step, is that of F. G. Flores and E. Onate, "Improvements
 /// in the membrane behaviour of the three node rotation-free BST shell triangle using an assumed strain approach",
@@ -140,7 +171,6 @@ pub struct ElasticSheet {
     faces: Vec<Face>,
     /// Number of faces of the sheet that these are of.
     face_count: usize,
-    poisson: f64,
     /// Young's modulus times thickness of the material, N/m.
     stiffness: f64,
     /// Kilograms; zero before a simulation has started.
@@ -163,31 +193,33 @@ impl ElasticSheet {
     /// # Errors
     /// [`ElasticSheetError`].
     pub fn new(sheet: &Sheet, stiffness: f64, poisson: f64) -> Result<Self, ElasticSheetError> {
-        if !(stiffness.is_finite() && stiffness > 0.0) {
-            return Err(ElasticSheetError::Stiffness { stiffness });
-        }
-        if !(0.0..=0.5).contains(&poisson) {
-            return Err(ElasticSheetError::Poisson { ratio: poisson });
-        }
+        Self::of_law(sheet, MembraneLaw::Isotropic { stiffness, poisson })
+    }
+
+    /// As [`ElasticSheet::new`], of a law that may have directions.
+    ///
+    /// # Errors
+    /// [`ElasticSheetError`].
+    pub fn of_law(sheet: &Sheet, law: impl Into<MembraneLaw>) -> Result<Self, ElasticSheetError> {
+        let law = law.into();
+        law.check()?;
         let face = |face: FaceId| {
             let area = sheet.face_areas()[face.index()];
-            Face::new(sheet, face).ok_or(ElasticSheetError::Face { face, area })
+            let own = Face::new(sheet, face).ok_or(ElasticSheetError::Face { face, area });
+            let mut own = own?;
+            own.set_law(law.of_face(sheet, face)?);
+            Ok(own)
         };
         let faces = sheet.topology().face_ids().map(face);
-        let mut new = Self {
+        Ok(Self {
             faces: faces.collect::<Result<_, _>>()?,
             face_count: sheet.topology().face_count(),
-            poisson,
-            stiffness,
+            stiffness: law.stiffness(),
             mass: 0.0,
             acceleration: 0.0,
             limit: StrainLimit::new(Self::LIMIT),
             arcs: Vec::new(),
-        };
-        for face in &mut new.faces {
-            face.set_stiffness(stiffness, poisson);
-        }
-        Ok(new)
+        })
     }
 
     /// Of a sheet that bends as `plate` does, a plate of the same `sheet`: chords are shorter than their arcs,
@@ -261,7 +293,7 @@ impl ElasticSheet {
         self.limit.limit()
     }
 
-    /// The stiffness of the material, `E h`, newtons per metre; of several sheets the largest.
+    /// The stiffness of the material, `E h`, newtons per metre; of several sheets or directions the largest.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
@@ -331,7 +363,7 @@ impl ElasticSheet {
         let mut excess = self.clone();
         excess.limit = self.limit.excess().with_stiffness(stiffness);
         for face in &mut excess.faces {
-            face.set_stiffness(0.0, self.poisson);
+            face.set_law(Law::NONE);
         }
         excess
     }

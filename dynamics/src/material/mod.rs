@@ -2,8 +2,10 @@
 
 mod catalogue;
 pub(crate) mod crease;
+pub(crate) mod direction;
 pub(crate) mod elastic_sheet;
 pub(crate) mod glue;
+mod orthotropy;
 pub(crate) mod plasticity;
 pub(crate) mod plate_bending;
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Bending stiffness of a thin plate that does not depend on how the mesh runs.
 
-mod direction;
 mod error;
 mod law;
 mod line_clamp;
@@ -25,7 +24,6 @@ use crate::potential::At;
 use crate::potential::Reached;
 use crate::potential::Settled;
 use crate::{HessianSink, Potential};
-pub use direction::{DirectionError, MaterialDirection};
 pub use error::{CurlError, PlateBendingError};
 use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use law::Roots;

@@ -1,6 +1,7 @@
 //! One face of an elastic sheet.
 
 use super::bend::Bend;
+use super::law::Law;
 use super::limit::StrainLimit;
 use super::slack::Slack;
 use crate::HessianSink;
@@ -25,12 +26,10 @@ pub(super) struct Face {
     strains: Matrix3<f64>,
     /// The inverse of `strains`: rows with the components of `e e^T` of each edge vector `e`.
     edge_squares: Matrix3<f64>,
-    /// `K`, N/m.
-    stiffness: f64,
     /// Flexural rigidity of the plate by which its bends are measured, N m; zero if they are not.
     pub(super) rigidity: f64,
-    /// The square of the norm of a strain by the length errors, `c^T law c`, per metre to the fourth.
-    law: Matrix3<f64>,
+    /// Its law by the length errors.
+    law: Law,
 }
 
 /// The state of a face.
@@ -91,9 +90,8 @@ impl Face {
             area,
             strains,
             edge_squares: errors,
-            stiffness: 0.0,
             rigidity: 0.0,
-            law: Matrix3::zeros(),
+            law: Law::NONE,
         })
     }
 
@@ -108,11 +106,9 @@ impl Face {
         }
     }
 
-    /// Sets Young's modulus times thickness (newtons per metre) and Poisson's ratio.
-    pub(super) fn set_stiffness(&mut self, stiffness: f64, nu: f64) {
-        self.stiffness = stiffness / (1.0 - nu * nu);
-        let norm = Matrix3::new(1.0, 0.0, nu, 0.0, 1.0 - nu, 0.0, nu, 0.0, 1.0);
-        self.law = self.strains.transpose() * norm * self.strains;
+    /// Sets the law by the components of the strain.
+    pub(super) fn set_law(&mut self, law: Law) {
+        self.law = law.by(&self.strains);
     }
 
     /// The length errors of the edges as chords of arcs, m2, by the second derivatives of positions `H` (rows
@@ -125,10 +121,10 @@ impl Face {
     /// The law of the face where it bends.
     fn slack(&self, bend: &Bend) -> Slack {
         if self.rigidity == 0.0 {
-            return Slack::none(self.stiffness);
+            return Slack::NONE;
         }
         let size = self.mean_squared_length();
-        Slack::of_bend(self.stiffness, self.rigidity, size, bend.squared)
+        Slack::of_bend(self.rigidity, size, bend.squared)
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -167,14 +163,9 @@ impl Face {
         }
     }
 
-    /// The norm of the strain beyond that of the chords, in which the energy is measured.
-    fn stretch(&self, at: &Strained) -> f64 {
-        at.beyond.dot(&(self.law * at.beyond)).max(0.0).sqrt()
-    }
-
     /// Joules; infinite at the limit and beyond.
     pub(super) fn energy(&self, at: &Strained, limit: &StrainLimit) -> f64 {
-        let elastic = at.slack.energy(at.slack.stress(self.stretch(at)));
+        let elastic = self.law.at(&at.beyond, &at.slack).energy();
         self.area * (elastic + limit.value(at.strain.norm_squared()))
     }
 
@@ -183,27 +174,19 @@ impl Face {
     pub(super) fn round_off(&self, size: f64) -> f64 {
         let squared = self.mean_squared_length();
         let error = f64::EPSILON * (squared.sqrt() * size + squared);
-        self.area * self.stiffness * self.law.trace() * error * error
+        self.area * self.law.trace() * error * error
     }
 
     /// The derivatives of the energy by the length errors, newtons per metre.
     fn densities(&self, at: &Strained, limit: &StrainLimit) -> Vector3<f64> {
         let [slope, _] = limit.derivatives(at.strain.norm_squared());
         let barrier = 2.0 * slope * (self.strains.transpose() * at.strain);
-        let secant = at.slack.secant(at.slack.stress(self.stretch(at)));
-        self.area * (secant * self.law * at.beyond + barrier)
+        self.area * (self.law.at(&at.beyond, &at.slack).slope() + barrier)
     }
 
     /// The second derivatives of the energy by the length errors, newtons per cubic metre.
     fn tangent_law(&self, at: &Strained, limit: &StrainLimit) -> Matrix3<f64> {
-        let stretch = self.stretch(at);
-        let stress = at.slack.stress(stretch);
-        let secant = at.slack.secant(stress);
-        let mut law = secant * self.law;
-        if stretch > 0.0 {
-            let along = self.law * at.beyond / stretch;
-            law += (at.slack.slope(stress) - secant) * along * along.transpose();
-        }
+        let mut law = self.law.at(&at.beyond, &at.slack).curvature();
         let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
         if slope != 0.0 {
             let along = self.strains.transpose() * at.strain;

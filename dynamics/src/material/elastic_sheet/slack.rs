@@ -12,8 +12,6 @@
 /// stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Slack {
-    /// `K`, newtons per metre.
-    pub(super) stiffness: f64,
     /// `r`.
     pub(super) range: f64,
     /// `s_0`, newtons per metre.
@@ -50,37 +48,23 @@ const RANGE: f64 = 0.3;
 const FORCE: f64 = 20.0;
 
 impl Slack {
-    /// Of a face of a squared size (m2) whose bend is `squared_bend`, of a sheet with a stiffness in its plane
-    /// (N/m) and a flexural rigidity (N m).
-    pub(super) fn of_bend(
-        stiffness: f64,
-        rigidity: f64,
-        squared_size: f64,
-        squared_bend: f64,
-    ) -> Self {
+    /// None: the spring alone.
+    pub(super) const NONE: Self = Self {
+        range: 0.0,
+        force: 0.0,
+    };
+
+    /// Of a face of a squared size (m2) whose bend is `squared_bend`, of a sheet with a flexural rigidity (N m).
+    pub(super) fn of_bend(rigidity: f64, squared_size: f64, squared_bend: f64) -> Self {
         Self {
-            stiffness,
             range: RANGE * squared_bend,
             force: FORCE * rigidity / squared_size,
         }
     }
 
-    /// The spring alone.
-    pub(super) fn none(stiffness: f64) -> Self {
-        Self {
-            stiffness,
-            range: 0.0,
-            force: 0.0,
-        }
-    }
-
-    /// The stress at a strain, newtons per metre.
-    pub(super) fn stress(&self, strain: f64) -> f64 {
-        let Self {
-            stiffness,
-            range,
-            force,
-        } = *self;
+    /// The stress at a strain, newtons per metre, in series with a spring.
+    pub(super) fn force_at(&self, stiffness: f64, strain: f64) -> f64 {
+        let Self { range, force } = *self;
         // `s^2 + (s_0 - K (e - r)) s - K e s_0 = 0`, without cancellation.
         let linear = stiffness * (strain - range) - force;
         let root = (linear * linear + 4.0 * stiffness * strain * force).sqrt();
@@ -93,34 +77,47 @@ impl Slack {
         }
     }
 
-    /// The energy at a stress, joules per square metre.
-    pub(super) fn energy(&self, stress: f64) -> f64 {
+    /// The energy at a stress with that of a spring, joules per square metre.
+    pub(super) fn energy(&self, stiffness: f64, stress: f64) -> f64 {
         if stress == 0.0 {
             return 0.0;
         }
-        let spring = 0.5 * stress * stress / self.stiffness;
+        0.5 * stress * stress / stiffness + self.stored(stress)
+    }
+
+    /// The energy at a stress, joules per square metre.
+    pub(super) fn stored(&self, stress: f64) -> f64 {
         if self.range == 0.0 {
-            return spring;
+            return 0.0;
         }
         let part = stress / self.force;
-        spring + self.range * self.force * (part.ln_1p() - part / (1.0 + part))
+        self.range * self.force * (part.ln_1p() - part / (1.0 + part))
     }
 
-    /// The slope of the stress at a stress, newtons per metre.
-    pub(super) fn slope(&self, stress: f64) -> f64 {
+    /// What the slack yields at a stress, over that stress: `-d/ds` of its strain over the stress, metres per newton.
+    pub(super) fn yields(&self, stress: f64) -> f64 {
         if self.range == 0.0 {
-            return self.stiffness;
+            return 0.0;
+        }
+        let pulled = self.force + stress;
+        self.range * stress / (pulled * pulled)
+    }
+
+    /// The slope of the stress at a stress with a spring, newtons per metre.
+    pub(super) fn slope(&self, stiffness: f64, stress: f64) -> f64 {
+        if self.range == 0.0 {
+            return stiffness;
         }
         let part = 1.0 + stress / self.force;
-        1.0 / (1.0 / self.stiffness + self.range / (self.force * part * part))
+        1.0 / (1.0 / stiffness + self.range / (self.force * part * part))
     }
 
-    /// Stress over strain, newtons per metre.
-    pub(super) fn secant(&self, stress: f64) -> f64 {
+    /// Stress over strain with a spring, newtons per metre.
+    pub(super) fn secant(&self, stiffness: f64, stress: f64) -> f64 {
         if self.range == 0.0 {
-            return self.stiffness;
+            return stiffness;
         }
-        1.0 / (1.0 / self.stiffness + self.range / (self.force + stress))
+        1.0 / (1.0 / stiffness + self.range / (self.force + stress))
     }
 }
 
@@ -128,8 +125,8 @@ impl Slack {
 mod tests {
     use super::*;
 
+    const STIFFNESS: f64 = 3e3;
     const SLACK: Slack = Slack {
-        stiffness: 3e3,
         range: 0.02,
         force: 0.5,
     };
@@ -139,10 +136,10 @@ mod tests {
         for range in [0.0, 1e-12, 1e-4, 0.02, 0.3] {
             let slack = Slack { range, ..SLACK };
             for strain in [0.0, 1e-12, 1e-6, 1e-3, 0.019, 0.02, 0.021, 0.4] {
-                let s = slack.stress(strain);
-                let back = s / slack.stiffness + range * s / (slack.force + s);
+                let s = slack.force_at(STIFFNESS, strain);
+                let back = s / STIFFNESS + range * s / (slack.force + s);
                 assert!((back - strain).abs() <= 1e-13 * strain, "{range} {strain}");
-                assert!((slack.secant(s) * strain - s).abs() <= 1e-12 * s);
+                assert!((slack.secant(STIFFNESS, s) * strain - s).abs() <= 1e-12 * s);
             }
         }
     }
@@ -151,8 +148,8 @@ mod tests {
     fn stress_and_slope_are_derivatives_of_the_energy() {
         for strain in [1e-4, 5e-3, 0.015, 0.0199, 0.0202, 0.03] {
             let step = 1e-4 * strain;
-            let stress = |e: f64| SLACK.stress(e);
-            let energy = |e: f64| SLACK.energy(SLACK.stress(e));
+            let stress = |e: f64| SLACK.force_at(STIFFNESS, e);
+            let energy = |e: f64| SLACK.energy(STIFFNESS, SLACK.force_at(STIFFNESS, e));
             let difference = |f: &dyn Fn(f64) -> f64| {
                 let far = f(strain + 2.0 * step) - f(strain - 2.0 * step);
                 (8.0 * (f(strain + step) - f(strain - step)) - far) / (12.0 * step)
@@ -160,7 +157,7 @@ mod tests {
             let s = stress(strain);
             assert!((difference(&energy) / s - 1.0).abs() < 1e-6, "{strain}");
             assert!(
-                (difference(&stress) / SLACK.slope(s) - 1.0).abs() < 1e-6,
+                (difference(&stress) / SLACK.slope(STIFFNESS, s) - 1.0).abs() < 1e-6,
                 "{strain}"
             );
         }
@@ -168,10 +165,10 @@ mod tests {
 
     #[test]
     fn a_spring_without_slack_is_linear() {
-        let spring = Slack::none(7.0);
-        assert_eq!((spring.stress(0.3), spring.secant(2.1)), (2.1, 7.0));
-        assert!((spring.energy(2.1) - 0.5 * 7.0 * 0.09).abs() < 1e-15);
-        let nothing = Slack::none(0.0);
-        assert_eq!((nothing.stress(0.3), nothing.energy(0.0)), (0.0, 0.0));
+        let stress = Slack::NONE.force_at(7.0, 0.3);
+        assert_eq!((stress, Slack::NONE.secant(7.0, 2.1)), (2.1, 7.0));
+        assert!((Slack::NONE.energy(7.0, 2.1) - 0.5 * 7.0 * 0.09).abs() < 1e-15);
+        let nothing = [Slack::NONE.force_at(0.0, 0.3), Slack::NONE.energy(0.0, 0.0)];
+        assert_eq!(nothing, [0.0, 0.0]);
     }
 }

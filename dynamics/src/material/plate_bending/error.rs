@@ -1,7 +1,7 @@
 //! Why a plate cannot be made.
 
-use super::direction::DirectionError;
 use crate::MotionError;
+use crate::material::direction::DirectionError;
 use crate::motion::profile::ProfileError;
 use crate::options::OptionsError;
 use isosheet_mesh::wording::given;

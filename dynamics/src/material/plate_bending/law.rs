@@ -1,11 +1,11 @@
 //! The law of a plate: moments by curvatures.
 
-use super::direction::{DirectionError, MaterialDirection};
 use super::error::PlateBendingError;
 use super::stiffness::PlateStiffness;
+use crate::material::direction::{DirectionError, MaterialDirection};
+use crate::material::orthotropy::{PrincipalLaw, first_unusable, root, turn};
 use isosheet_mesh::Sheet;
-use nalgebra::{Matrix3, SymmetricEigen};
-use std::f64::consts::SQRT_2;
+use nalgebra::Matrix3;
 
 /// The stiffness of an orthotropic plate: a curvature with the components `k_1` along a direction of the
 /// material, `k_2` across it and the twist `k_12` stores
@@ -30,6 +30,17 @@ pub struct OrthotropicPlate {
     pub twist: f64,
     /// The direction of the material.
     pub direction: MaterialDirection,
+}
+
+impl OrthotropicPlate {
+    fn law(&self) -> PrincipalLaw {
+        PrincipalLaw {
+            along: self.along,
+            across: self.across,
+            coupling: self.coupling,
+            shear: self.twist,
+        }
+    }
 }
 
 /// Which law a plate has.
@@ -65,7 +76,7 @@ impl PlateLaw {
     pub fn rigidity(&self) -> f64 {
         match self {
             Self::Isotropic(stiffness) => stiffness.rigidity,
-            Self::Orthotropic(plate) => (plate.along * plate.across).sqrt(),
+            Self::Orthotropic(plate) => plate.law().mean(),
         }
     }
 
@@ -81,21 +92,12 @@ impl PlateLaw {
                 }
             }
             Self::Orthotropic(plate) => {
-                let OrthotropicPlate {
-                    along,
-                    across,
-                    coupling,
-                    twist,
-                    ..
-                } = *plate;
-                for rigidity in [along, across, twist] {
-                    if !(rigidity.is_finite() && rigidity > 0.0) {
-                        return Err(PlateBendingError::Rigidity { rigidity });
-                    }
+                let law = plate.law();
+                if let Some(rigidity) = first_unusable([law.along, law.across, law.shear]) {
+                    return Err(PlateBendingError::Rigidity { rigidity });
                 }
-                // (Not a number is refused, too.)
-                let is_definite = coupling * coupling < along * across;
-                if !is_definite {
+                if !law.is_definite() {
+                    let coupling = law.coupling;
                     return Err(PlateBendingError::Coupling { coupling });
                 }
             }
@@ -106,26 +108,10 @@ impl PlateLaw {
     /// The law over the [rigidity](Self::rigidity) by the components `(11, sqrt(2) 12, 22)` of a curvature,
     /// the first axis along the direction of the material.
     fn matrix(&self) -> Matrix3<f64> {
-        let [along, coupling, across, twist] = match self {
-            Self::Isotropic(PlateStiffness { poisson, .. }) => {
-                [1.0, *poisson, 1.0, 0.5 * (1.0 - poisson)]
-            }
-            Self::Orthotropic(plate) => {
-                let all = [plate.along, plate.coupling, plate.across, plate.twist];
-                all.map(|d| d / self.rigidity())
-            }
-        };
-        Matrix3::new(
-            along,
-            0.0,
-            coupling,
-            0.0,
-            2.0 * twist,
-            0.0,
-            coupling,
-            0.0,
-            across,
-        )
+        match self {
+            Self::Isotropic(stiffness) => PrincipalLaw::isotropic(stiffness.poisson).over(1.0),
+            Self::Orthotropic(plate) => plate.law().over(self.rigidity()),
+        }
     }
 
     /// The roots of the law of the faces of a sheet.
@@ -178,37 +164,12 @@ impl Roots {
     }
 }
 
-/// The components `(11, sqrt(2) 12, 22)` of a symmetric matrix along axes that are turned by an angle: an
-/// orthogonal matrix.
-pub(super) fn turn(angle: f64) -> Matrix3<f64> {
-    let (s, c) = angle.sin_cos();
-    Matrix3::new(
-        c * c,
-        SQRT_2 * s * c,
-        s * s,
-        -SQRT_2 * s * c,
-        c * c - s * s,
-        SQRT_2 * s * c,
-        s * s,
-        -SQRT_2 * s * c,
-        c * c,
-    )
-}
-
-/// The symmetric root of a positive definite matrix.
-fn root(matrix: &Matrix3<f64>) -> Matrix3<f64> {
-    let SymmetricEigen {
-        eigenvectors,
-        eigenvalues,
-    } = matrix.symmetric_eigen();
-    eigenvectors * Matrix3::from_diagonal(&eigenvalues.map(f64::sqrt)) * eigenvectors.transpose()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use isosheet_mesh::generate;
     use nalgebra::Vector3;
+    use std::f64::consts::SQRT_2;
 
     fn components(k: [f64; 3]) -> Vector3<f64> {
         Vector3::new(k[0], SQRT_2 * k[1], k[2])

@@ -3,6 +3,7 @@
 use super::line_clamp::HeldEdges;
 use super::tests::{Upwards, strip};
 use super::*;
+use crate::MaterialDirection;
 use crate::{AxisRotation, Profile, RigidDisplacement, SheetModel};
 use isosheet_mesh::MassKind;
 use isosheet_mesh::generate::Diagonals;

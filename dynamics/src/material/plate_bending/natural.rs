@@ -1,9 +1,9 @@
 //! The curvature that a plate has without moments.
 
-use super::direction::{DirectionError, MaterialDirection};
 use super::error::CurlError;
-use super::law::{Roots, turn};
-
+use super::law::Roots;
+use crate::material::direction::{DirectionError, MaterialDirection};
+use crate::material::orthotropy::turn;
 use crate::motion::profile::Profile;
 use isosheet_mesh::{FaceId, Sheet};
 use nalgebra::Vector3;

@@ -1,6 +1,7 @@
 //! Plates that are not flat without stress, against closed forms and differences.
 
 use super::*;
+use crate::MaterialDirection;
 use crate::motion::profile::Profile;
 use isosheet_mesh::generate;
 use nalgebra::Rotation3;
