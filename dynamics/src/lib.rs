@@ -96,7 +96,7 @@ pub use material::plate_bending::{
     Curl, CurlError, LineClamp, OrthotropicPlate, PlateBending, PlateBendingError, PlateEdges,
     PlateLaw, PlateStiffness,
 };
-pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
+pub use material::{Directions, Isotropic, Material, NamedMaterial, Orthotropic, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};
 pub use model::clamps::ClampAcrossMesh;
 pub use model::elastic_deformation::ElasticDeformation;

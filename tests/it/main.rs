@@ -12,6 +12,7 @@ mod constraints;
 mod contact;
 mod contact_forces;
 mod curl;
+mod directions;
 mod effort;
 mod elastic;
 mod flat;

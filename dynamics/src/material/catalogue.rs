@@ -5,7 +5,7 @@
 //! sort by a factor of two, and from direction to direction as well: the numbers are typical ones.
 
 use super::plasticity::Yield;
-use super::{Isotropic, Material};
+use super::{Directions, Isotropic, Material};
 use isosheet_mesh::Advice;
 
 /// A material of the catalogue.
@@ -119,6 +119,7 @@ const fn fibrous(density: f64, stiffness: f64, rigidity: f64, poisson: f64) -> M
         poisson,
         strain_limit: Material::STRAIN_LIMIT,
         yields: None,
+        directions: None,
     }
 }
 
@@ -155,34 +156,42 @@ const fn stretching(material: Material, strain_limit: f64) -> Material {
     }
 }
 
+const fn with_directions(material: Material, directions: Directions) -> Material {
+    Material {
+        directions: Some(directions),
+        ..material
+    }
+}
+
 catalogue! {
     office_paper: "office paper", "uncoated copy paper, 80 g/m2, 0.1 mm",
-        creasing(fibrous(0.08, 3e5, 5e-4, 0.3), 1e-4),
+        with_directions(creasing(fibrous(0.08, 3e5, 5e-4, 0.3), 1e-4), Directions::of_paper(3.16e5, 3.16e-4, 1.58)),
         "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness (ISO 1924-3), between about \
          5e5 N/m in the machine direction and 2e5 N/m across. Rigidity: typical bending stiffness (ISO 5628) in the \
          machine direction, along which A4 sheets are long; across it is about 2e-4 N m. K. Niskanen (ed.), \
          Mechanics of Paper Products, De Gruyter 2012. Poisson's ratio: 0.29 as the geometric mean of both \
          directions, G. A. Baum, D. C. Brennan and C. C. Habeger, Tappi 64(8), 97-101, 1981. Yield: assumed, from typical \
          tensile curves (ISO 1924-3), which bend at 0.5 % to a quarter of their slope, between a sixth across and two \
-         fifths in the machine direction.";
+         fifths in the machine direction. Directions: these ratios of 2.5, with Baum's estimate of the shear modulus, 0.387 \
+         (E1 E2)^(1/2).";
     card: "card", "solid bleached board, 250 g/m2, 0.3 mm",
-        creasing(fibrous(0.25, 1.1e6, 1e-2, 0.3), 3e-4),
+        with_directions(creasing(fibrous(0.25, 1.1e6, 1e-2, 0.3), 3e-4), Directions::of_paper(1.1e6, 1e-2, 1.5)),
         "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 4.5 kN m/g (ISO \
          1924-3) times the grammage. Rigidity: typical bending stiffness (ISO 5628), between about 1.5e-2 N m in the \
          machine direction and 7e-3 N m across. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; \
-         Poisson's ratio and yield as for office paper.";
+         Poisson's ratio, shear and yield as for office paper. Directions: a ratio of 2.25.";
     newsprint: "newsprint", "newspaper, 45 g/m2, 0.07 mm",
-        creasing(fibrous(0.045, 1.6e5, 6e-5, 0.3), 7e-5),
+        with_directions(creasing(fibrous(0.045, 1.6e5, 6e-5, 0.3), 7e-5), Directions::of_paper(1.6e5, 6e-5, 1.7)),
         "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 3.5 kN m/g (ISO \
          1924-3) times the grammage. Rigidity: typical, eight tenths of that of a plate of this stiffness and \
-         thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio and yield as for office \
-         paper.";
+         thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio, shear and yield as for \
+         office paper. Directions: a ratio of 3, typical of fast machines.";
     kraft_paper: "kraft paper", "wrapping paper, 80 g/m2, 0.11 mm",
-        creasing(fibrous(0.08, 4e5, 4e-4, 0.3), 1.1e-4),
+        with_directions(creasing(fibrous(0.08, 4e5, 4e-4, 0.3), 1.1e-4), Directions::of_paper(4e5, 4e-4, 1.4)),
         "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 5 kN m/g (ISO \
          1924-3), long fibres, times the grammage. Rigidity: typical, nine tenths of that of a plate of this \
-         stiffness and thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio and yield as \
-         for office paper.";
+         stiffness and thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio, shear and \
+         yield as for office paper. Directions: a ratio of 2.";
     tissue_paper: "tissue paper", "smooth wrapping tissue, 18 g/m2, 0.03 mm",
         fibrous(0.018, 6e4, 4e-6, 0.3),
         "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 3.5 kN m/g (ISO \
@@ -243,22 +252,23 @@ catalogue! {
         "Young's modulus and density: Olin Brass, C26000 Cartridge Brass, Alloy Data. Poisson's ratio: ASM Handbook \
          Vol. 2, Properties and Selection: Nonferrous Alloys, ASM International 1990.";
     cotton: "cotton", "shirting, plain weave, 120 g/m2",
-        fibrous(0.12, 1.5e4, 7e-6, 0.2),
+        with_directions(fibrous(0.12, 1.5e4, 7e-6, 0.2), Directions::of_cloth([2.2e4, 1e4, 50.0], 0.2, [9e-6, 5.4e-6, 7e-6])),
         "Typical of cotton shirtings on the instruments of Kawabata (KES-F): a bending rigidity of 0.07 gf cm2/cm, \
          and an extension of 3 % by 500 gf/cm. S. Kawabata, The Standardization and Analysis of Hand Evaluation, 2nd \
          ed., Textile Machinery Society of Japan, Osaka 1980; B. P. Saville, Physical Testing of Textiles, Woodhead \
-         1999. Poisson's ratio: assumed.";
+         1999. Poisson's ratio: assumed. Directions: warp and weft by extensions of 2 and 5 %, typical; shear 0.9 gf/cm for \
+         a degree, typical of shirtings in the same books. Twist: assumed.";
     silk: "silk", "habotai, plain weave, 8 momme (35 g/m2)",
         fibrous(0.035, 2e4, 2e-6, 0.2),
         "Typical of light silks on the instruments of Kawabata (KES-F): a bending rigidity of 0.02 gf cm2/cm, and an \
          extension of 2.5 % by 500 gf/cm. S. Kawabata, The Standardization and Analysis of Hand Evaluation, 2nd ed., \
          Textile Machinery Society of Japan, Osaka 1980. Poisson's ratio: assumed.";
     wool: "wool", "worsted suiting, 200 g/m2",
-        fibrous(0.2, 1e4, 1e-5, 0.2),
+        with_directions(fibrous(0.2, 1e4, 1e-5, 0.2), Directions::of_cloth([1.25e4, 8e3, 40.0], 0.2, [1.2e-5, 8.4e-6, 1e-5])),
         "Typical of suitings: a bending rigidity of 1e-5 N m, and an extension of 5 % by 500 gf/cm. S. Kawabata, The \
          Standardization and Analysis of Hand Evaluation, 2nd ed., Textile Machinery Society of Japan, Osaka 1980; A. \
-         De Boos and D. Tester, SiroFAST: Fabric Assurance by Simple Testing, CSIRO Report WT92.02, 1994. Poisson's \
-         ratio: assumed.";
+         De Boos and D. Tester, SiroFAST: Fabric Assurance by Simple Testing, CSIRO Report WT92.02, 1994, whose suitings have \
+         shear rigidities of 30 to 80 N/m. Poisson's ratio, twist and the ratio of warp and weft: assumed.";
     denim: "denim", "washed, twill, 12 oz (400 g/m2)",
         fibrous(0.4, 1.2e4, 5e-5, 0.2),
         "Typical of washed denim: a bending rigidity of 0.5 gf cm2/cm, and an extension of 4 % by 500 gf/cm; light \

@@ -3,6 +3,7 @@
 mod catalogue;
 pub(crate) mod crease;
 pub(crate) mod direction;
+mod directions;
 pub(crate) mod elastic_sheet;
 pub(crate) mod glue;
 mod orthotropy;
@@ -12,6 +13,7 @@ pub(crate) mod plate_bending;
 mod tests;
 
 pub use catalogue::{NamedMaterial, UnknownMaterial};
+pub use directions::{Directions, Orthotropic};
 
 use crate::options::OptionsError;
 use crate::{ElasticSheet, ElasticSheetError, PlateBending, PlateLaw, PlateStiffness};
@@ -29,13 +31,14 @@ use serde::{Deserialize, Serialize};
 /// use isosheet_dynamics::Material;
 ///
 /// let mut paper = Material::named("office paper")?;
-/// paper.rigidity = 2.5e-4; // bent across the direction in which the paper was made
+/// paper.rigidity = 3.2e-4; // the mean of both directions
 /// paper.validate()?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// All of them are isotropic. Paper is about twice as stiff in the direction in which it was made as across,
-/// and woven cloth is many times softer in shear than along its yarns.
+/// Paper is about twice as stiff in the direction in which it was made as across, and woven cloth is many times softer in
+/// shear than along its yarns. A sheet has these [directions](Material::directions) where it names one
+/// ([`SheetOfMaterial::along`](crate::SheetOfMaterial::along)); otherwise it is isotropic.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -56,6 +59,9 @@ pub struct Material {
     /// known.
     #[serde(default)]
     pub yields: Option<Yield>,
+    /// How stiff it is along a direction and across it; nothing of a material that is the same in all.
+    #[serde(default)]
+    pub directions: Option<Directions>,
 }
 
 /// A sheet of one isotropic material, for [`Material::isotropic`].
@@ -89,6 +95,7 @@ impl Isotropic {
             poisson,
             strain_limit: Material::STRAIN_LIMIT,
             yields: None,
+            directions: None,
         }
     }
 }
@@ -146,12 +153,13 @@ impl Material {
         OptionsError::check_range("rigidity", self.rigidity, 0.0, 1e18)?;
         OptionsError::check_range("poisson", self.poisson, 0.0, 0.5)?;
         OptionsError::check_range("strain_limit", self.strain_limit, 1e-6, 0.49)?;
-        self.yields.map_or(Ok(()), |yields| yields.validate())
+        self.yields.map_or(Ok(()), |yields| yields.validate())?;
+        self.directions.map_or(Ok(()), |own| own.validate())
     }
 
     /// The elasticity in the plane of a sheet of this material, with the limit of the strain. The flexural
     /// rigidity is not part of it: `plate` resists bending, and is one more potential of the model
-    /// ([`ElasticSheet::beside`]).
+    /// ([`ElasticSheet::beside`]). It is the same in all directions; [`Material::membrane`] is with a direction.
     ///
     /// # Errors
     /// [`ElasticSheetError`].
@@ -160,7 +168,7 @@ impl Material {
         sheet: &Sheet,
         plate: &PlateBending,
     ) -> Result<ElasticSheet, ElasticSheetError> {
-        let elastic = ElasticSheet::new(sheet, self.stiffness, self.poisson)?;
+        let elastic = ElasticSheet::of_law(sheet, self.membrane(None))?;
         elastic.beside(sheet, plate).with_limit(self.strain_limit)
     }
 }

@@ -1,7 +1,8 @@
 //! The model of a sheet that is of one material.
 
 use crate::material::Material;
-use crate::material::elastic_sheet::ElasticSheetError;
+use crate::material::direction::MaterialDirection;
+use crate::material::elastic_sheet::{ElasticSheet, ElasticSheetError};
 use crate::material::plasticity::Yield;
 use crate::material::plate_bending::{Curl, PlateBending, PlateBendingError};
 use crate::options::OptionsError;
@@ -24,6 +25,9 @@ pub enum SheetOfMaterialError {
     /// The elasticity in the plane cannot be made.
     #[error(transparent)]
     Elasticity(#[from] ElasticSheetError),
+    /// The sheet has a direction, and its material has none.
+    #[error("the sheet has a direction, and its material is the same in all directions")]
+    NoDirections,
 }
 
 impl Advice for SheetOfMaterialError {
@@ -33,6 +37,9 @@ impl Advice for SheetOfMaterialError {
             Self::Model(error) => error.advice(),
             Self::Bending(error) => error.advice(),
             Self::Elasticity(error) => error.advice(),
+            Self::NoDirections => {
+                Some("leave out the direction, or give a material with `directions`")
+            }
         }
     }
 }
@@ -43,6 +50,7 @@ impl Advice for SheetOfMaterialError {
 pub struct SheetOfMaterial<'a> {
     sheet: &'a Sheet,
     material: Material,
+    direction: Option<MaterialDirection>,
     isometry: Isometry,
     clamps: Vec<VertexId>,
     creases: Vec<EdgeId>,
@@ -85,6 +93,7 @@ impl SheetModel {
         SheetOfMaterial {
             sheet,
             material: *material,
+            direction: None,
             isometry: Isometry::Elastic,
             clamps: Vec::new(),
             creases: Vec::new(),
@@ -100,6 +109,13 @@ impl SheetOfMaterial<'_> {
     /// ([`PlateBending::clamped`]). Single vertices and single lines of vertices are hinges.
     pub fn clamped(mut self, vertices: &[VertexId]) -> Self {
         self.clamps.extend(vertices);
+        self
+    }
+
+    /// Lays the material along a direction: the one in which paper was made, the warp of cloth. Without, the sheet is the
+    /// same in all directions.
+    pub fn along(mut self, direction: MaterialDirection) -> Self {
+        self.direction = Some(direction);
         self
     }
 
@@ -144,7 +160,8 @@ impl SheetOfMaterial<'_> {
     pub fn build(self) -> Result<SheetModel, SheetOfMaterialError> {
         let Self {
             sheet,
-            material,
+            mut material,
+            direction,
             isometry,
             clamps,
             creases,
@@ -154,10 +171,17 @@ impl SheetOfMaterial<'_> {
         material
             .validate()
             .map_err(SheetOfMaterialError::Material)?;
+        let direction = direction.as_ref();
+        if direction.is_some() {
+            if material.directions.is_none() {
+                return Err(SheetOfMaterialError::NoDirections);
+            }
+            material = material.directed();
+        }
         let mass = MassMatrix::from_density(sheet, material.density, MassKind::Lumped);
         let mass = mass.map_err(ModelError::from)?;
         let model = SheetModel::with_mass(sheet, mass)?.with_pins(&clamps)?;
-        let mut plate = PlateBending::creased(sheet, &material, &clamps, &creases)?;
+        let mut plate = PlateBending::creased(sheet, material.plate(direction), &clamps, &creases)?;
         plate = match curvature {
             WithoutStress::Flat => plate,
             WithoutStress::AsGiven => plate.curved(sheet),
@@ -169,7 +193,9 @@ impl SheetOfMaterial<'_> {
         let model = match isometry {
             Isometry::Rods => model,
             Isometry::Elastic => {
-                model.with_elastic_sheet(material.elastic_sheet(sheet, &plate)?)?
+                let elastic = ElasticSheet::of_law(sheet, material.membrane(direction))?;
+                let elastic = elastic.beside(sheet, &plate);
+                model.with_elastic_sheet(elastic.with_limit(material.strain_limit)?)?
             }
         };
         Ok(model.with_potential(plate))

@@ -823,12 +823,8 @@ fn elastic_sheet(
     elasticity: Elasticity,
     plate: Option<&PlateBending>,
 ) -> Result<ElasticSheet, ElasticSheetError> {
-    let Elasticity {
-        stiffness,
-        poisson,
-        limit,
-    } = elasticity;
-    let sheet = ElasticSheet::new(placed, stiffness, poisson)?.with_limit(limit)?;
+    let Elasticity { law, limit } = elasticity;
+    let sheet = ElasticSheet::of_law(placed, law)?.with_limit(limit)?;
     Ok(match plate {
         Some(plate) => sheet.beside(placed, plate),
         None => sheet,

@@ -50,6 +50,14 @@ pub struct Plate {
     /// Poisson's ratio, from 0 to 0.5.
     #[serde(default = "typical_poisson")]
     pub poisson: f64,
+    /// Of a material that is stiffer along the `direction` of the sheet than across, as laminates and wood are: Young's
+    /// modulus across it, Pa; `youngs` is that along it, and `poisson` the contraction across it by a pull along it, of
+    /// any sign.
+    #[serde(default)]
+    pub youngs_across: Option<f64>,
+    /// Of the same material the shear modulus, Pa.
+    #[serde(default)]
+    pub shear: Option<f64>,
     /// Stress at which the material yields, Pa: steel has from 2e8. It makes the sheet yield where
     /// `sheet.yield` says so, at the moment `yield_stress thickness^2 / 4`.
     #[serde(default)]
@@ -62,13 +70,38 @@ pub(crate) fn typical_poisson() -> f64 {
 }
 
 impl Plate {
+    /// Whether it is stiffer along a direction.
+    pub(super) fn has_directions(&self) -> bool {
+        self.youngs_across.is_some() || self.shear.is_some()
+    }
+
     fn numbers(&self) -> Result<engine::Material, OptionsError> {
-        let material = engine::Material::isotropic(engine::Isotropic {
-            youngs: self.youngs,
-            thickness: self.thickness,
-            density: self.density,
-            poisson: self.poisson,
-        })?;
+        let Self {
+            youngs,
+            thickness,
+            density,
+            poisson,
+            ..
+        } = *self;
+        let material = match (self.youngs_across, self.shear) {
+            (Some(youngs_across), Some(shear)) => {
+                engine::Material::orthotropic(engine::Orthotropic {
+                    youngs,
+                    youngs_across,
+                    shear,
+                    poisson,
+                    thickness,
+                    density,
+                })
+            }
+            _ => engine::Material::isotropic(engine::Isotropic {
+                youngs,
+                thickness,
+                density,
+                poisson,
+            }),
+        };
+        let material = material?;
         Ok(match self.yield_stress {
             Some(stress) => material.with_yield_stress(self.thickness, stress),
             None => material,
@@ -81,7 +114,19 @@ impl Plate {
         checks.positive(key.name("thickness"), self.thickness, Unit::Metre);
         let unit = Unit::KilogramPerCubicMetre;
         checks.positive(key.name("density"), self.density, unit);
-        checks.within(key.name("poisson"), self.poisson, [0.0, 0.5]);
+        let most = self
+            .youngs_across
+            .map(|across| (self.youngs / across).sqrt());
+        let ratios = most.map_or([0.0, 0.5], |most| [-most, most]);
+        checks.within(key.name("poisson"), self.poisson, ratios);
+        for (name, modulus) in [("youngs_across", self.youngs_across), ("shear", self.shear)] {
+            checks.positive(key.name(name), modulus, Unit::Pascal);
+        }
+        if self.has_directions() && (self.youngs_across.is_none() || self.shear.is_none()) {
+            let message =
+                "`youngs_across` and `shear` belong together, and one of them is left out";
+            checks.report(key.clone(), message, "give both, or none");
+        }
         checks.positive(key.name("yield_stress"), self.yield_stress, Unit::Pascal);
         if checks.problems.len() > before {
             return;
@@ -132,6 +177,8 @@ impl Material {
                 brief(100.0 * numbers.strain_limit)
             ) + &numbers.yields.map_or(String::new(), |yields| {
                 format!(", yields at {} N m/m", brief(yields.moment))
+            }) + &numbers.directions.map_or(String::new(), |_| {
+                ", stiffer along its direction where `sheet.direction` names one".to_owned()
             }),
         )
     }

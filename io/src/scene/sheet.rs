@@ -42,6 +42,11 @@ pub struct Sheet {
     /// What the sheet is made of. Without it, the sheet is one of rigid rods, as in the paper.
     #[serde(default)]
     pub material: Option<Material>,
+    /// The direction of the material, in the frame of the mesh, of any length: along the machine of paper, along the warp
+    /// of cloth, along the fibres of a laminate. A material that has two directions is stiffer along this one than
+    /// across; without the key it is the same in all directions, with the means of both.
+    #[serde(default)]
+    pub direction: Option<[f64; 3]>,
     /// Mass of a square metre, kg/m2: steel of 1 mm has 7.8. If left out, that of the material; without one
     /// 0.08, as office paper has. Not used if `mass` is given.
     #[serde(default)]
@@ -83,12 +88,10 @@ pub struct Sheet {
 const PAPER_DENSITY: f64 = 0.08;
 
 /// Numbers of an elastic sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Elasticity {
-    /// Young's modulus times thickness, N/m.
-    pub stiffness: f64,
-    /// Poisson's ratio.
-    pub poisson: f64,
+    /// How stiff it is in its plane.
+    pub law: engine::MembraneLaw,
     /// The limit of the strain.
     pub limit: f64,
 }
@@ -112,7 +115,14 @@ pub enum Isometry {
         /// Young's modulus times thickness, N/m: office paper has 3e5. If left out, that of the material.
         #[serde(default)]
         stiffness: Option<f64>,
-        /// Poisson's ratio, from 0 to 0.5. If left out, that of the material; without one 0.3.
+        /// Of a sheet with a `direction`, along which `stiffness` is: Young's modulus across it times thickness, N/m.
+        #[serde(default)]
+        across: Option<f64>,
+        /// Of the same sheet the shear modulus times thickness, N/m.
+        #[serde(default)]
+        shear: Option<f64>,
+        /// Poisson's ratio, from 0 to 0.5. If left out, that of the material; without one 0.3. With `across` and `shear`
+        /// it is the contraction across the direction by a pull along it, of any sign, and 0.3 if left out.
         #[serde(default)]
         poisson: Option<f64>,
         /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. If left out, that of
@@ -208,8 +218,9 @@ pub enum Bending {
     /// along the direction, `k_2` across and the twist `k_12` store `(along k_1^2 + 2 coupling k_1 k_2 + across
     /// k_2^2 + 4 twist k_12^2) / 2` per area.
     Orthotropic {
-        /// The direction, in the frame of the mesh, of any length.
-        direction: [f64; 3],
+        /// The direction, in the frame of the mesh, of any length. If left out, that of the sheet.
+        #[serde(default)]
+        direction: Option<[f64; 3]>,
         /// Rigidity `D11` along the direction, N m.
         along: f64,
         /// Rigidity `D22` across it, N m.
@@ -236,6 +247,7 @@ impl Sheet {
             mesh,
             refine: 0,
             material: None,
+            direction: None,
             density: None,
             mass: None,
             thickness: 0.0,
@@ -250,9 +262,19 @@ impl Sheet {
         }
     }
 
-    /// The numbers of the material, if the sheet has one that is known.
-    fn made_of(&self) -> Option<engine::Material> {
-        self.material.as_ref().and_then(Material::numbers)
+    /// The numbers of the material, if the sheet has one that is known; the means of both directions where it names one.
+    pub(super) fn made_of(&self) -> Option<engine::Material> {
+        let material = self.material.as_ref().and_then(Material::numbers)?;
+        Some(match self.direction {
+            Some(_) => material.directed(),
+            None => material,
+        })
+    }
+
+    /// Its direction in space.
+    fn material_direction(&self) -> Option<engine::MaterialDirection> {
+        let direction = self.direction?;
+        Some(engine::MaterialDirection::Uniform(self.placed(direction)))
     }
 
     /// Mass of a square metre, kg/m2, unless `mass` is given: as written, of the material, or of office
@@ -260,6 +282,14 @@ impl Sheet {
     pub fn areal_density(&self) -> f64 {
         let density = self.density.or(self.made_of().map(|m| m.density));
         density.unwrap_or(PAPER_DENSITY)
+    }
+
+    /// The numbers across the direction that are written for the elasticity in the plane.
+    fn written_across(&self) -> Option<[f64; 2]> {
+        match self.isometry {
+            Some(Isometry::Elastic { across, shear, .. }) => Some([across?, shear?]),
+            _ => None,
+        }
     }
 
     /// What keeps the lengths: as written, or what follows from the material.
@@ -296,6 +326,10 @@ impl Sheet {
     /// The stiffness of the plate, if bending is resisted by one: as written, or what follows from the
     /// elasticity and the material.
     pub fn plate(&self) -> Option<engine::PlateLaw> {
+        let direction = self.material_direction();
+        if let (None, Some(material), Some(_)) = (&self.bending, self.made_of(), &direction) {
+            return (material.rigidity > 0.0).then(|| material.plate(direction.as_ref()));
+        }
         match self.bending() {
             Bending::Plate { rigidity, poisson } => {
                 let poisson = poisson.unwrap_or_else(|| self.poisson());
@@ -308,12 +342,13 @@ impl Sheet {
                 twist,
                 coupling,
             } => {
+                let own = direction.or(self.direction).unwrap_or_default();
                 let plate = engine::OrthotropicPlate {
                     along,
                     across,
                     coupling,
                     twist,
-                    direction: engine::MaterialDirection::Uniform(self.placed(direction)),
+                    direction: engine::MaterialDirection::Uniform(self.placed(own)),
                 };
                 Some(plate.into())
             }
@@ -348,19 +383,95 @@ impl Sheet {
     /// without a stiffness.
     pub fn elasticity(&self) -> Option<Elasticity> {
         let Isometry::Elastic {
-            stiffness, limit, ..
+            stiffness,
+            poisson,
+            limit,
+            ..
         } = self.isometry()
         else {
             return None;
         };
-        let material = self.made_of();
+        let (material, direction) = (self.made_of(), self.material_direction());
+        let law = match (stiffness, self.written_across(), &direction, material) {
+            (Some(along), Some([across, shear]), Some(direction), _) => {
+                let membrane = engine::OrthotropicMembrane {
+                    along,
+                    across,
+                    shear,
+                    poisson: poisson.unwrap_or_else(typical_poisson),
+                    direction: direction.clone(),
+                };
+                membrane.into()
+            }
+            (None, _, Some(_), Some(material)) if material.directions.is_some() => {
+                material.membrane(direction.as_ref())
+            }
+            _ => engine::MembraneLaw::Isotropic {
+                stiffness: stiffness.or(material.map(|m| m.stiffness))?,
+                poisson: self.poisson(),
+            },
+        };
         Some(Elasticity {
-            stiffness: stiffness.or(material.map(|m| m.stiffness))?,
-            poisson: self.poisson(),
+            law,
             limit: limit
                 .or(material.map(|m| m.strain_limit))
                 .unwrap_or(engine::Material::STRAIN_LIMIT),
         })
+    }
+
+    /// Checks that the sheet has a direction where its stiffness has, and nowhere else.
+    fn check_direction(&self, key: &Key, checks: &mut Checks) {
+        if let Some(direction) = &self.direction {
+            checks.direction(key.name("direction"), direction);
+        }
+        let of_material = self.made_of().is_some_and(|m| m.directions.is_some());
+        let own = match self.bending {
+            Some(Bending::Orthotropic { direction, .. }) => Some(direction),
+            _ => None,
+        };
+        let across = match self.isometry {
+            Some(Isometry::Elastic { across, shear, .. }) => [across, shear],
+            _ => [None; 2],
+        };
+        let elastic = key.name("isometry.elastic");
+        if let [None, Some(_)] | [Some(_), None] = across {
+            let message = "`across` and `shear` belong together, and one of them is left out";
+            checks.report(elastic.clone(), message, "give both, or none");
+        }
+        let is_written = across[0].is_some();
+        if is_written
+            && matches!(
+                self.isometry,
+                Some(Isometry::Elastic {
+                    stiffness: None,
+                    ..
+                })
+            )
+        {
+            let message = "the stiffness across the direction is given, and not that along it";
+            checks.report(elastic, message, "give `stiffness` as well");
+        }
+        let remedy = "give the sheet its `direction`, for instance [1, 0, 0]";
+        if self.direction.is_none() {
+            if is_written {
+                let message = "the sheet is stiffer along a direction, and has none";
+                checks.report(key.name("isometry.elastic.across"), message, remedy);
+            }
+            if own == Some(None) {
+                let message = "the plate is stiffer along a direction, and the sheet has none";
+                checks.report(key.name("bending.orthotropic"), message, remedy);
+            }
+            if matches!(&self.material, Some(Material::Plate(plate)) if plate.has_directions()) {
+                let message = "the material is stiffer along a direction, and the sheet has none";
+                checks.report(key.name("material"), message, remedy);
+            }
+        } else if !(of_material || is_written || own == Some(None)) {
+            checks.report(
+                key.name("direction"),
+                "nothing of the sheet depends on a direction",
+                "leave it out, or give a material that has two directions (docs/materials.md says which)",
+            );
+        }
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
@@ -368,6 +479,7 @@ impl Sheet {
         if let Some(material) = &self.material {
             material.check(&key.name("material"), checks);
         }
+        self.check_direction(key, checks);
         checks.positive(
             key.name("density"),
             self.density,
@@ -447,6 +559,8 @@ impl Isometry {
     /// Elastic, with the numbers of the material.
     pub const ELASTIC: Self = Self::Elastic {
         stiffness: None,
+        across: None,
+        shear: None,
         poisson: None,
         limit: None,
     };
@@ -455,12 +569,28 @@ impl Isometry {
         match self {
             Self::Elastic {
                 stiffness,
+                across,
+                shear,
                 poisson,
                 limit,
             } => {
                 let key = key.name("elastic");
-                checks.positive(key.name("stiffness"), *stiffness, Unit::NewtonPerMetre);
-                checks.within(key.name("poisson"), *poisson, [0.0, 0.5]);
+                let unit = Unit::NewtonPerMetre;
+                let all = [
+                    ("stiffness", stiffness),
+                    ("across", across),
+                    ("shear", shear),
+                ];
+                for (name, stiffness) in all {
+                    checks.positive(key.name(name), *stiffness, unit);
+                }
+                let most = match (stiffness, across) {
+                    (Some(along), Some(across)) => {
+                        [-(along / across).sqrt(), (along / across).sqrt()]
+                    }
+                    _ => [0.0, 0.5],
+                };
+                checks.within(key.name("poisson"), *poisson, most);
                 checks.within(key.name("limit"), *limit, LIMITS);
             }
             Self::Rods => {}
@@ -497,7 +627,9 @@ impl Bending {
                 coupling,
             } => {
                 let key = key.name("orthotropic");
-                checks.direction(key.name("direction"), direction);
+                if let Some(direction) = direction {
+                    checks.direction(key.name("direction"), direction);
+                }
                 let unit = Unit::NewtonMetre;
                 for (name, rigidity) in [("along", along), ("across", across), ("twist", twist)] {
                     checks.positive(key.name(name), *rigidity, unit);

@@ -38,8 +38,7 @@ fn a_material_gives_mass_stiffness_and_an_elastic_sheet() {
     assert_eq!(scene.plate(), Some((&paper).into()));
     assert_eq!(scene.isometry(), Isometry::ELASTIC);
     let numbers = Elasticity {
-        stiffness: paper.stiffness,
-        poisson: paper.poisson,
+        law: paper.membrane(None),
         limit: paper.strain_limit,
     };
     assert_eq!(scene.elasticity(), Some(numbers));
@@ -102,8 +101,7 @@ fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
         .sheet
         .remove(0);
     let numbers = Elasticity {
-        stiffness: denim.stiffness,
-        poisson: denim.poisson,
+        law: denim.membrane(None),
         limit: 0.03,
     };
     assert_eq!(elastic.elasticity(), Some(numbers));
@@ -159,8 +157,10 @@ fn an_elastic_sheet_needs_no_material() {
         .sheet
         .remove(0);
     let numbers = Elasticity {
-        stiffness: 1e4,
-        poisson: 0.3,
+        law: dynamics::MembraneLaw::Isotropic {
+            stiffness: 1e4,
+            poisson: 0.3,
+        },
         limit: 0.01,
     };
     assert_eq!(scene.elasticity(), Some(numbers));
@@ -251,12 +251,15 @@ fn a_scene_with_a_material_is_written_as_it_is_read() {
         thickness: 2e-4,
         density: 900.0,
         poisson: 0.35,
+        youngs_across: Some(1e9),
+        shear: Some(8e8),
         yield_stress: Some(2e7),
     };
     for material in [Material::named("card"), Material::Plate(plate)] {
         for isometry in [None, Some(Isometry::ELASTIC), Some(Isometry::Rods)] {
             let mut scene = sheet("");
             scene.sheet[0].material = Some(material.clone());
+            scene.sheet[0].direction = Some([0.6, 0.8, 0.0]);
             scene.sheet[0].isometry = isometry;
             let written = SceneFile::of(scene.clone(), Path::new("")).unwrap();
             assert_eq!(parse(&written.text().text).unwrap().scene(), &scene);
@@ -338,5 +341,120 @@ fn wrong_materials_are_told_with_what_to_write() {
     let text = refused(&with("material = \"adamantium\""));
     for name in dynamics::Material::names() {
         assert!(text.contains(name), "{name}: {text}");
+    }
+}
+
+/// A material with two directions has them where the sheet names one, in its plane and in its bends: numbers in words,
+/// of a name, of moduli, and of tests in the plane alone.
+#[test]
+fn a_sheet_has_the_directions_of_its_material_where_it_names_one() {
+    let paper = dynamics::Material::office_paper();
+    let x = dynamics::MaterialDirection::Uniform([0.0, 2.0, 0.0]);
+    let along = "direction = [0, 2, 0]";
+    let named = sheet(&format!("material = \"office paper\"\n{along}"))
+        .sheet
+        .remove(0);
+    assert_eq!(named.plate(), Some(paper.plate(Some(&x))));
+    let elasticity = named.elasticity().unwrap();
+    assert_eq!(elasticity.law, paper.membrane(Some(&x)));
+    let dynamics::MembraneLaw::Orthotropic(law) = elasticity.law else {
+        panic!("a direction");
+    };
+    assert!((law.along / law.across - 2.5).abs() < 0.01 && law.along > 4.9e5);
+    // Yielding at the same curvature of the mean rigidity.
+    let yields = |lines: &str| sheet(lines).sheet[0].yields().unwrap();
+    let isotropic = yields("material = \"office paper\"\nyield = {}");
+    let directed = yields(&format!(
+        "material = \"office paper\"\nyield = {{}}\n{along}"
+    ));
+    let mean = 3.16e-4 / paper.rigidity;
+    assert!((directed.moment / isotropic.moment - mean).abs() < 1e-12);
+    // Cloth that may shear.
+    let cloth = sheet(&format!("material = \"cotton\"\n{along}"))
+        .sheet
+        .remove(0);
+    assert_eq!(cloth.elasticity().unwrap().limit, 0.2);
+    // By moduli: the plate of the same stuff.
+    let moduli = "material = { youngs = 8e9, youngs_across = 2e9, shear = 1e9, poisson = 0.4, thickness = 1e-3, \
+                  density = 700 }";
+    let wood = sheet(&format!("{moduli}\n{along}")).sheet.remove(0);
+    let Some(dynamics::PlateLaw::Orthotropic(plate)) = wood.plate() else {
+        panic!("a direction");
+    };
+    let free = 1.0 - 0.4 * 0.1;
+    assert!((plate.along / (8.0 / 12.0 / free) - 1.0).abs() < 1e-12);
+    assert!((plate.twist / (1.0 / 12.0) - 1.0).abs() < 1e-12);
+    // By tests in the plane, and of the plate; the direction is that of the sheet.
+    let tests = "isometry = { elastic = { stiffness = 4e5, across = 2e5, shear = 1e5 } }\n\
+                 bending = { orthotropic = { along = 4e-4, across = 2e-4, twist = 1e-4 } }";
+    let tested = sheet(&format!("{tests}\n{along}")).sheet.remove(0);
+    let Some(dynamics::PlateLaw::Orthotropic(plate)) = tested.plate() else {
+        panic!("a direction");
+    };
+    assert_eq!(plate.direction, x);
+    let Some(Elasticity {
+        law: dynamics::MembraneLaw::Orthotropic(law),
+        ..
+    }) = tested.elasticity()
+    else {
+        panic!("a direction");
+    };
+    assert_eq!(
+        [law.along, law.across, law.shear, law.poisson],
+        [4e5, 2e5, 1e5, 0.3]
+    );
+    assert_eq!(law.direction, x);
+}
+
+#[test]
+fn directions_that_are_missing_or_mean_nothing_are_refused() {
+    let x = "direction = [1, 0, 0]";
+    let plate = "bending = { orthotropic = { along = 4e-4, across = 2e-4, twist = 1e-4 } }";
+    let moduli = |more: &str| {
+        format!("material = {{ youngs = 8e9, {more}, thickness = 1e-3, density = 700 }}")
+    };
+    let elastic = |more: &str| format!("isometry = {{ elastic = {{ {more} }} }}");
+    for (lines, reason) in [
+        (x.to_owned(), "nothing of the sheet depends on a direction"),
+        (
+            format!("material = \"PET film\"\n{x}"),
+            "nothing of the sheet depends",
+        ),
+        (plate.to_owned(), "the sheet has none"),
+        (
+            moduli("youngs_across = 1e9, shear = 1e9"),
+            "the sheet has none",
+        ),
+        (format!("{}\n{x}", moduli("shear = 1e9")), "belong together"),
+        (elastic("stiffness = 1, across = 1, shear = 1"), "has none"),
+        (
+            format!("{}\n{x}", elastic("stiffness = 1, across = 1")),
+            "belong together",
+        ),
+        (
+            format!("{}\n{x}", elastic("across = 1, shear = 1")),
+            "give `stiffness`",
+        ),
+        (
+            format!(
+                "{}\n{x}",
+                moduli("youngs_across = 1e9, shear = 1e9, poisson = 2.9")
+            ),
+            "poisson",
+        ),
+        (
+            format!(
+                "{}\n{x}",
+                elastic("stiffness = 4, across = 1, shear = 1, poisson = 2.1")
+            ),
+            "poisson",
+        ),
+        (
+            "material = \"cotton\"\ndirection = [0, 0, 0]".to_owned(),
+            "no direction",
+        ),
+    ] {
+        let message = refused(&with(&lines));
+        assert!(message.contains(reason), "{lines}: {message}");
     }
 }

@@ -27,14 +27,19 @@ In Rust, `Material::named(\"office paper\")` and `Material::office_paper()` are 
 `Material::isotropic` computes those of a plate.
 
 **Know before use.** The numbers of metals and films are good to a few per cent for the thickness given,
-which is a common one. Those of paper, cloth and leather are typical: sorts differ by a factor of two, paper
-is about twice as stiff along the direction in which it was made as across, and its stiffness falls with
-moisture. All materials are modelled as isotropic; woven cloth, which is many times softer in shear than
-along its yarns, wraps round bodies more easily than its model. The rigidity of office paper, card, cloth
+which is a common one. Those of paper, cloth and leather are typical: sorts differ by a factor of two, and the
+stiffness of paper falls with moisture. The rigidity of office paper, card, cloth
 and leather is that of bending tests and no function of thickness, as their fibres move against one another;
 that of the other papers is eight to nine tenths of a plate's. The sources say what is typical or assumed.
 The strain limit is not where a material yields or tears. It is a bound that keeps strain invisible where a
 mesh is too coarse for its bends.
+
+**Directions.** Paper is about twice as stiff along the direction in which it was made as across, and woven cloth is
+many times softer in shear than along its yarns. A sheet has this where it names a direction, `direction = [1, 0,
+0]`, in the frame of its mesh: along the machine of paper, along the warp of cloth; the materials of the second table
+have numbers for it. Without the key every sheet is the same in all directions, with the numbers of the first table,
+and cloth wraps round bodies less easily than it should. Cloth with a direction may be strained by 20 %, a shear of 16
+degrees, in place of 1 %. The page [How a sheet bends](bends.md) has the formulas, and materials of your own.
 
 Materials with a moment `M_y` yield in bending where a scene asks for it by `sheet.yield = {}`: bends beyond the
 curvature `M_y / D` stay, and spring back by that curvature. `H` is the hardening. (The page \"The theory\" has the
@@ -68,6 +73,21 @@ pub(super) fn page() -> String {
             brief(m.poisson),
             brief(100.0 * m.strain_limit)
         ));
+    }
+    page.push_str(
+        "\n## Along a direction and across it\n\n\
+         | name | `E1 h`, N/m | `E2 h`, N/m | `G12 h`, N/m | `nu12` | `D11`, N m | `D22`, N m | `D12`, N m | `D66`, N m |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    for named in Material::catalogue() {
+        let Some(own) = named.material.directions else {
+            continue;
+        };
+        let plane = [own.along, own.across, own.shear, own.poisson];
+        let bends = [own.bend_along, own.bend_across, own.coupling, own.twist];
+        let numbers = plane.into_iter().chain(bends);
+        let numbers: Vec<String> = numbers.map(|n| brief(n).to_string()).collect();
+        page.push_str(&format!("| `{}` | {} |\n", named.name, numbers.join(" | ")));
     }
     page.push_str("\n## Sources\n\n");
     for named in Material::catalogue() {

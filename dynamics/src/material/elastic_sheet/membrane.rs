@@ -57,8 +57,8 @@ impl From<OrthotropicMembrane> for MembraneLaw {
 }
 
 impl OrthotropicMembrane {
-    /// The plate of the same material, which is homogeneous over its thickness `h` (metres): `D11 = E1 h^3 / (12 (1
-    /// - nu12 nu21))` with `nu21 = nu12 E2 / E1`, `D22 = D11 E2 / E1`, `D12 = nu12 D22` and `D66 = G12 h^3 / 12`.
+    /// The plate of the same material, which is homogeneous over its thickness (metres); [`OrthotropicPlate`] has its
+    /// rigidities by moduli.
     #[must_use]
     pub fn plate(&self, thickness: f64) -> OrthotropicPlate {
         let PrincipalLaw {
