@@ -91,6 +91,7 @@ pub use material::elastic_sheet::{
     ElasticSheet, ElasticSheetError, MembraneLaw, OrthotropicMembrane,
 };
 pub use material::glue::{Glue, GlueError};
+pub use material::patched::{NoFace, Patched};
 pub use material::plasticity::Yield;
 pub use material::plate_bending::{
     Curl, CurlError, LineClamp, OrthotropicPlate, PlateBending, PlateBendingError, PlateEdges,

@@ -53,6 +53,7 @@ mod method;
 mod obstacles;
 mod outline;
 mod output;
+mod patch;
 mod pattern;
 mod placed;
 mod pose;
@@ -105,6 +106,7 @@ pub use method::{Fallback, Integrator, Method, Taut};
 pub use obstacles::{Obstacle, Shape, Wall};
 pub use outline::{Outline, OutlineShape};
 pub use output::Output;
+pub use patch::Patch;
 pub use pattern::{
     AlikeCreases, DegreeFour, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
 };

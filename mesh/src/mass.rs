@@ -1,6 +1,6 @@
 //! Lumped and consistent mass.
 
-use crate::{MeshError, Sheet, Topology};
+use crate::{FaceId, MeshError, Sheet, Topology};
 use std::collections::BTreeSet;
 
 /// How the mass of a uniform sheet is distributed.
@@ -33,15 +33,26 @@ impl MassMatrix {
     /// # Errors
     /// [`MeshError::NotPositive`] unless the density is positive and finite.
     pub fn from_density(sheet: &Sheet, density: f64, kind: MassKind) -> Result<Self, MeshError> {
-        if !(density > 0.0 && density.is_finite()) {
-            return Err(MeshError::NotPositive {
-                what: "mass per area",
-                value: density,
-            });
+        Self::from_densities(sheet, |_| density, kind)
+    }
+
+    /// Mass matrix for a mass per area of each face, kg/m2.
+    ///
+    /// # Errors
+    /// [`MeshError::NotPositive`].
+    pub fn from_densities(
+        sheet: &Sheet,
+        density: impl Fn(FaceId) -> f64,
+        kind: MassKind,
+    ) -> Result<Self, MeshError> {
+        let mut all = sheet.topology().face_ids().map(&density);
+        if let Some(value) = all.find(|d| !(*d > 0.0 && d.is_finite())) {
+            let what = "mass per area";
+            return Err(MeshError::NotPositive { what, value });
         }
         Ok(Self::from_face_masses(
             sheet.topology(),
-            |f| density * sheet.face_areas()[f],
+            |f| density(FaceId::from_index(f)) * sheet.face_areas()[f],
             kind,
         ))
     }

@@ -19,6 +19,7 @@ use crate::potential::{At, Reached, Settled};
 use crate::{HessianSink, Potential};
 
 use super::direction::DirectionError;
+use super::patched::{NoFace, Patched};
 use super::plate_bending::PlateBending;
 use arcs::Arcs;
 use bend::{Bend, NUMBERS};
@@ -63,6 +64,9 @@ pub enum ElasticSheetError {
         /// Why.
         source: DirectionError,
     },
+    /// A patch has a face that the sheet has not.
+    #[error(transparent)]
+    Patch(#[from] NoFace),
     /// The limit of the strain is not a positive number below one half.
     #[error("the limit of the strain is {limit}", limit = given(*limit))]
     Limit {
@@ -97,6 +101,7 @@ impl Advice for ElasticSheetError {
             Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
             Self::Coupling { .. } => Some("give a ratio whose size is less than this root"),
             Self::Direction { source } => source.advice(),
+            Self::Patch(error) => error.advice(),
             Self::Limit { .. } => Some("give a value above 0 and below 0.5, for instance 0.01"),
             Self::Limits { .. } => Some("give all sheets the same limit"),
             Self::Face { .. } => Some("remove the face, or mend the mesh"),
@@ -201,20 +206,31 @@ impl ElasticSheet {
     /// # Errors
     /// [`ElasticSheetError`].
     pub fn of_law(sheet: &Sheet, law: impl Into<MembraneLaw>) -> Result<Self, ElasticSheetError> {
-        let law = law.into();
-        law.check()?;
-        let face = |face: FaceId| {
+        Self::patched(sheet, &Patched::everywhere(law.into()))
+    }
+
+    /// As [`ElasticSheet::of_law`], with patches that have other laws.
+    ///
+    /// # Errors
+    /// [`ElasticSheetError`].
+    pub fn patched(sheet: &Sheet, laws: &Patched<MembraneLaw>) -> Result<Self, ElasticSheetError> {
+        for law in laws.all() {
+            law.check()?;
+        }
+        let face = |(face, law): (FaceId, &MembraneLaw)| {
             let area = sheet.face_areas()[face.index()];
             let own = Face::new(sheet, face).ok_or(ElasticSheetError::Face { face, area });
             let mut own = own?;
             own.set_law(law.of_face(sheet, face)?);
             Ok(own)
         };
-        let faces = sheet.topology().face_ids().map(face);
+        let topology = sheet.topology();
+        let own = laws.of_faces(topology.face_count())?;
+        let faces = topology.face_ids().zip(own).map(face);
         Ok(Self {
-            faces: faces.collect::<Result<_, _>>()?,
+            faces: faces.collect::<Result<_, ElasticSheetError>>()?,
             face_count: sheet.topology().face_count(),
-            stiffness: law.stiffness(),
+            stiffness: laws.all().map(MembraneLaw::stiffness).fold(0.0, f64::max),
             mass: 0.0,
             acceleration: 0.0,
             limit: StrainLimit::new(Self::LIMIT),
@@ -232,9 +248,9 @@ impl ElasticSheet {
     pub fn beside(mut self, sheet: &Sheet, plate: &PlateBending) -> Self {
         let counts = [self.faces.len(), sheet.topology().face_count()];
         assert_eq!(counts[0], counts[1], "a plate of the same sheet");
-        if plate.rigidity() > 0.0 {
+        if plate.is_stiff() {
             for face in &mut self.faces {
-                face.rigidity = plate.rigidity();
+                face.rigidity = plate.rigidity_of(face.id);
             }
             self.arcs = vec![Arcs::new(sheet, plate, &self.faces)];
         }
@@ -293,7 +309,8 @@ impl ElasticSheet {
         self.limit.limit()
     }
 
-    /// The stiffness of the material, `E h`, newtons per metre; of several sheets or directions the largest.
+    /// The stiffness of the material, `E h`, newtons per metre; of several sheets, patches or directions the
+    /// largest.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }

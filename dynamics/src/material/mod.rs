@@ -7,6 +7,7 @@ mod directions;
 pub(crate) mod elastic_sheet;
 pub(crate) mod glue;
 mod orthotropy;
+pub(crate) mod patched;
 pub(crate) mod plasticity;
 pub(crate) mod plate_bending;
 #[cfg(test)]

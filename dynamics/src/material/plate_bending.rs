@@ -19,6 +19,7 @@ mod stress_free;
 #[cfg(test)]
 mod tests;
 
+use super::patched::Patched;
 use super::plasticity::Yield;
 use crate::potential::At;
 use crate::potential::Reached;
@@ -159,7 +160,22 @@ impl PlateBending {
         law: impl Into<PlateLaw>,
         edges: &PlateEdges<'_>,
     ) -> Result<Self, PlateBendingError> {
-        let roots = law.into().roots(sheet)?;
+        Self::patched(sheet, &Patched::everywhere(law.into()), edges)
+    }
+
+    /// As [`PlateBending::held`], with patches that have other laws. A plate with patches has rigidity everywhere.
+    ///
+    /// # Errors
+    /// [`PlateBendingError`].
+    ///
+    /// # Panics
+    /// If the positions of a clamp are not of length `3V`.
+    pub fn patched(
+        sheet: &Sheet,
+        laws: &Patched<PlateLaw>,
+        edges: &PlateEdges<'_>,
+    ) -> Result<Self, PlateBendingError> {
+        let roots = Roots::new(sheet, laws)?;
         let of_clamps = edges.clamps.iter().flat_map(|clamp| &clamp.vertices);
         let count = sheet.topology().vertex_count();
         let mut named = edges.pinned.iter().chain(of_clamps);
@@ -271,9 +287,14 @@ impl PlateBending {
         self.is_curved
     }
 
-    /// Flexural rigidity, newton metres.
-    pub(crate) fn rigidity(&self) -> f64 {
-        self.roots.rigidity
+    /// Flexural rigidity of a face, newton metres.
+    pub(crate) fn rigidity_of(&self, face: FaceId) -> f64 {
+        self.roots.rigidity(face.index())
+    }
+
+    /// Whether it resists bending.
+    pub(crate) fn is_stiff(&self) -> bool {
+        self.roots.are_stiff()
     }
 
     /// The second derivatives of positions, of the plate of `sheet`, which has rigidity.
@@ -286,11 +307,34 @@ impl PlateBending {
     ///
     /// # Errors
     /// [`PlateBendingError::Yield`].
-    pub fn with_yield(mut self, sheet: &Sheet, yields: Yield) -> Result<Self, PlateBendingError> {
-        let checked = yields.validate();
-        checked.map_err(|source| PlateBendingError::Yield { source })?;
-        if self.roots.rigidity > 0.0 {
-            self.stress_free(sheet).set_yield(yields);
+    pub fn with_yield(self, sheet: &Sheet, yields: Yield) -> Result<Self, PlateBendingError> {
+        self.with_yields(sheet, &Patched::everywhere(yields))
+    }
+
+    /// As [`PlateBending::with_yield`], with patches that yield otherwise, in as many layers as the sheet outside of
+    /// them.
+    ///
+    /// # Errors
+    /// [`PlateBendingError::Yield`] and [`PlateBendingError::Patch`].
+    pub fn with_yields(
+        mut self,
+        sheet: &Sheet,
+        yields: &Patched<Yield>,
+    ) -> Result<Self, PlateBendingError> {
+        for own in yields.all() {
+            let checked = own.validate();
+            checked.map_err(|source| PlateBendingError::Yield { source })?;
+        }
+        let layers = yields.ground().layers;
+        let count = match yields.is_uniform() {
+            true => sheet.topology().face_count().min(1),
+            false => sheet.topology().face_count(),
+        };
+        let own = yields.of_faces(sheet.topology().face_count())?;
+        let own = own.into_iter().take(count);
+        let own = own.map(|yields| yields.in_layers(layers)).collect();
+        if self.is_stiff() {
+            self.stress_free(sheet).set_yields(own);
         }
         Ok(self)
     }

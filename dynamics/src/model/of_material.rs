@@ -3,11 +3,12 @@
 use crate::material::Material;
 use crate::material::direction::MaterialDirection;
 use crate::material::elastic_sheet::{ElasticSheet, ElasticSheetError};
+use crate::material::patched::{NoFace, Patched};
 use crate::material::plasticity::Yield;
-use crate::material::plate_bending::{Curl, PlateBending, PlateBendingError};
+use crate::material::plate_bending::{Curl, PlateBending, PlateBendingError, PlateEdges};
 use crate::options::OptionsError;
 use crate::{Isometry, ModelError, SheetModel};
-use isosheet_mesh::{Advice, EdgeId, MassKind, MassMatrix, Sheet, VertexId};
+use isosheet_mesh::{Advice, EdgeId, FaceId, MassKind, MassMatrix, Sheet, VertexId};
 
 /// Why the model of a sheet of a material cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -25,6 +26,9 @@ pub enum SheetOfMaterialError {
     /// The elasticity in the plane cannot be made.
     #[error(transparent)]
     Elasticity(#[from] ElasticSheetError),
+    /// A patch has a face that the sheet has not.
+    #[error(transparent)]
+    Patch(#[from] NoFace),
     /// The sheet has a direction, and its material has none.
     #[error("the sheet has a direction, and its material is the same in all directions")]
     NoDirections,
@@ -37,6 +41,7 @@ impl Advice for SheetOfMaterialError {
             Self::Model(error) => error.advice(),
             Self::Bending(error) => error.advice(),
             Self::Elasticity(error) => error.advice(),
+            Self::Patch(error) => error.advice(),
             Self::NoDirections => {
                 Some("leave out the direction, or give a material with `directions`")
             }
@@ -49,7 +54,7 @@ impl Advice for SheetOfMaterialError {
 #[must_use = "the model is made by `build`"]
 pub struct SheetOfMaterial<'a> {
     sheet: &'a Sheet,
-    material: Material,
+    materials: Patched<Material>,
     direction: Option<MaterialDirection>,
     isometry: Isometry,
     clamps: Vec<VertexId>,
@@ -86,13 +91,12 @@ impl SheetModel {
     /// # }
     /// ```
     ///
-    /// A sheet of several materials, or one whose mass is known otherwise, is built of the same parts by
-    /// hand: [`SheetModel::with_mass`], [`PlateBending`], [`Material::elastic_sheet`], and
+    /// A sheet whose mass is known otherwise is built of the same parts by hand: [`SheetModel::with_mass`], [`PlateBending`], [`Material::elastic_sheet`], and
     /// [`PotentialOfPart`](crate::PotentialOfPart) for one of several sheets.
     pub fn of_material<'a>(sheet: &'a Sheet, material: &Material) -> SheetOfMaterial<'a> {
         SheetOfMaterial {
             sheet,
-            material: *material,
+            materials: Patched::everywhere(*material),
             direction: None,
             isometry: Isometry::Elastic,
             clamps: Vec::new(),
@@ -116,6 +120,13 @@ impl SheetOfMaterial<'_> {
     /// same in all directions.
     pub fn along(mut self, direction: MaterialDirection) -> Self {
         self.direction = Some(direction);
+        self
+    }
+
+    /// Makes some faces of another material: a label, a reinforcement. The limit of the strain is the largest of all
+    /// materials.
+    pub fn with_patch(mut self, faces: Vec<FaceId>, material: &Material) -> Self {
+        self.materials = self.materials.with_patch(faces, *material);
         self
     }
 
@@ -160,7 +171,7 @@ impl SheetOfMaterial<'_> {
     pub fn build(self) -> Result<SheetModel, SheetOfMaterialError> {
         let Self {
             sheet,
-            mut material,
+            materials,
             direction,
             isometry,
             clamps,
@@ -168,20 +179,31 @@ impl SheetOfMaterial<'_> {
             yields,
             curvature,
         } = self;
-        material
-            .validate()
-            .map_err(SheetOfMaterialError::Material)?;
-        let direction = direction.as_ref();
-        if direction.is_some() {
-            if material.directions.is_none() {
-                return Err(SheetOfMaterialError::NoDirections);
-            }
-            material = material.directed();
+        for material in materials.all() {
+            let checked = material.validate();
+            checked.map_err(SheetOfMaterialError::Material)?;
         }
-        let mass = MassMatrix::from_density(sheet, material.density, MassKind::Lumped);
+        let direction = direction.as_ref();
+        let has_directions = |material: &Material| material.directions.is_some();
+        if direction.is_some() && !materials.all().any(has_directions) {
+            return Err(SheetOfMaterialError::NoDirections);
+        }
+        let materials = materials.map(|material| match direction {
+            Some(_) => material.directed(),
+            None => *material,
+        });
+        let of_faces = materials.of_faces(sheet.topology().face_count())?;
+        let density = |face: FaceId| of_faces[face.index()].density;
+        let mass = MassMatrix::from_densities(sheet, density, MassKind::Lumped);
         let mass = mass.map_err(ModelError::from)?;
         let model = SheetModel::with_mass(sheet, mass)?.with_pins(&clamps)?;
-        let mut plate = PlateBending::creased(sheet, material.plate(direction), &clamps, &creases)?;
+        let laws = materials.map(|material| material.plate(direction));
+        let edges = PlateEdges {
+            pinned: &clamps,
+            creases: &creases,
+            clamps: &[],
+        };
+        let mut plate = PlateBending::patched(sheet, &laws, &edges)?;
         plate = match curvature {
             WithoutStress::Flat => plate,
             WithoutStress::AsGiven => plate.curved(sheet),
@@ -193,9 +215,10 @@ impl SheetOfMaterial<'_> {
         let model = match isometry {
             Isometry::Rods => model,
             Isometry::Elastic => {
-                let elastic = ElasticSheet::of_law(sheet, material.membrane(direction))?;
-                let elastic = elastic.beside(sheet, &plate);
-                model.with_elastic_sheet(elastic.with_limit(material.strain_limit)?)?
+                let laws = materials.map(|material| material.membrane(direction));
+                let limits = materials.all().map(|material| material.strain_limit);
+                let elastic = ElasticSheet::patched(sheet, &laws)?.beside(sheet, &plate);
+                model.with_elastic_sheet(elastic.with_limit(limits.fold(0.0, f64::max))?)?
             }
         };
         Ok(model.with_potential(plate))

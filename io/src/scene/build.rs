@@ -22,12 +22,12 @@ use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::constraint::Line;
 use isosheet_dynamics::{
     AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, LineClamp,
-    PAPER_GRAVITY, PlateBending, PlateEdges, PlateLaw, PointMotion, PointProfile, Potential,
-    PotentialOfPart, RigidDisplacement, RigidProfile, SheetModel, SimulationError, State,
-    VertexConstraint, VertexLoad, leave_flat_in, project_positions, start_of_folding,
+    PAPER_GRAVITY, Patched, PlateBending, PlateEdges, PlateLaw, PointMotion, PointProfile,
+    Potential, PotentialOfPart, RigidDisplacement, RigidProfile, SheetModel, SimulationError,
+    State, VertexConstraint, VertexLoad, leave_flat_in, project_positions, start_of_folding,
 };
 use isosheet_mesh::wording::counted;
-use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
+use isosheet_mesh::{Advice, EdgeId, MassMatrix, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
@@ -93,6 +93,9 @@ const EXACT: f64 = 1e-12;
 /// coordinates of a sheet of size 1 by 5e-7, and edges of a hundredth of the sheet by 1e-4 of their length.
 const ROUNDING: f64 = 1e-4;
 
+/// The laws of a plate, its clamped vertices and its creases.
+type PlateMadeOf = (Patched<PlateLaw>, Vec<VertexId>, Vec<EdgeId>);
+
 /// What is kept of a scene, so that it need not be made again when the scene is built again: while it is the
 /// same, or after changes between which the sheets have the same forms.
 #[derive(Debug, Default)]
@@ -100,9 +103,8 @@ pub(crate) struct Kept {
     pub(crate) files: Files,
     /// Of each sheet, once they have been made.
     forms: Vec<Arc<Form>>,
-    /// The plate of each sheet that is flat without stress and clamped by no line, by law, clamped vertices and
-    /// creases.
-    plates: Slots<(PlateLaw, Vec<VertexId>, Vec<EdgeId>), Arc<PlateBending>>,
+    /// The plate of each sheet that is flat without stress and clamped by no line.
+    plates: Slots<PlateMadeOf, Arc<PlateBending>>,
     /// Those of the obstacles.
     shapes: Slots<obstacles::Shape, collide::Shape>,
 }
@@ -431,9 +433,11 @@ impl<'a> Builder<'a> {
         number: usize,
         creases: &[EdgeId],
     ) -> Result<Vec<&'static str>, SceneError> {
-        let PlacedSheet { of, key, form, .. } = &self.sheets.list[number];
+        let sheet = &self.sheets.list[number];
+        let PlacedSheet { of, key, form, .. } = sheet;
         let (of, placed) = (*of, &form.placed);
         let yields = of.yields();
+        let laws = sheet.patched.map(|own| own.plate());
         let [key, yield_key] = ["bending", "yield"].map(|name| key.name(name));
         let mut modelled = Vec::new();
         if yields.is_some() {
@@ -452,12 +456,14 @@ impl<'a> Builder<'a> {
                 }
                 modelled.push("bending stiffness at edges");
                 if of.elasticity().is_some() {
-                    self.plate(number, rigidity.into(), creases, &[])?;
+                    let law = Patched::everywhere(rigidity.into());
+                    self.plate(number, law, creases, &[])?;
                 }
                 self.add_potential_of(number, springs);
             }
             (_, None) => {}
-            (_, Some(law)) => {
+            (_, Some(ground)) => {
+                let law = laws.map(|law| law.clone().unwrap_or_else(|| ground.clone()));
                 modelled.push("bending stiffness of a plate");
                 let curls = of.curl.is_some();
                 let (supports, clamps): (Vec<usize>, Vec<LineClamp>) =
@@ -503,28 +509,33 @@ impl<'a> Builder<'a> {
     fn plate(
         &mut self,
         number: usize,
-        law: PlateLaw,
+        law: Patched<PlateLaw>,
         creases: &[EdgeId],
         clamps: &[LineClamp],
     ) -> Result<Arc<PlateBending>, SceneError> {
         let clamped = self.clamped(number);
-        let PlacedSheet { of, key, form, .. } = &self.sheets.list[number];
+        let PlacedSheet {
+            of,
+            key,
+            form,
+            patched,
+            ..
+        } = &self.sheets.list[number];
         let placed = &form.placed;
-        let held = |law: &PlateLaw, pinned: &[VertexId], creases: &[EdgeId]| {
+        let held = |law: &Patched<PlateLaw>, pinned: &[VertexId], creases: &[EdgeId]| {
             let edges = PlateEdges {
                 pinned,
                 creases,
                 clamps,
             };
-            PlateBending::held(placed, law.clone(), &edges).map_err(at(&key.name("bending")))
+            PlateBending::patched(placed, law, &edges).map_err(at(&key.name("bending")))
         };
         let (curl, yields) = (of.natural_curvature(), of.yields());
         let stays_flat = curl.is_none() && of.rest == RestShape::Flat && yields.is_none();
         let plate = if stays_flat && clamps.is_empty() {
             let made_of = (law, clamped, creases.to_vec());
-            let make = |(law, clamped, creases): &(PlateLaw, Vec<_>, Vec<_>)| {
-                held(law, clamped, creases).map(Arc::new)
-            };
+            let make =
+                |(law, clamped, creases): &PlateMadeOf| held(law, clamped, creases).map(Arc::new);
             self.kept.plates.get(number, made_of, make)?
         } else {
             let mut plate = held(&law, &clamped, creases)?;
@@ -536,7 +547,8 @@ impl<'a> Builder<'a> {
                 plate = curled.map_err(at(&key.name("curl")))?;
             }
             if let Some(yields) = yields {
-                let yielding = plate.with_yield(placed, yields);
+                let yields = patched.map(|own| own.yields().unwrap_or(yields));
+                let yielding = plate.with_yields(placed, &yields);
                 plate = yielding.map_err(at(&key.name("yield")))?;
             }
             Arc::new(plate)
@@ -600,13 +612,7 @@ impl<'a> Builder<'a> {
     fn add_isometry(&mut self) -> Result<(), SceneError> {
         let mut elastic = Vec::new();
         for (number, placed) in self.sheets.list.iter().enumerate() {
-            let PlacedSheet {
-                of,
-                key,
-                form,
-                part,
-                ..
-            } = placed;
+            let PlacedSheet { of, key, part, .. } = placed;
             let Some(elasticity) = of.elasticity() else {
                 continue;
             };
@@ -615,7 +621,7 @@ impl<'a> Builder<'a> {
                 None => "material",
             });
             let plate = self.plates.get(&number).map(Arc::as_ref);
-            let sheet = elastic_sheet(&form.placed, elasticity, plate);
+            let sheet = elastic_sheet(placed, elasticity, plate);
             let sheet = sheet.map_err(at(&key))?;
             let words = elastic_in_words(&sheet);
             if !self.modelled.contains(&words) {
@@ -819,12 +825,15 @@ impl<'a> Builder<'a> {
 }
 
 fn elastic_sheet(
-    placed: &Sheet,
-    elasticity: Elasticity,
+    sheet: &PlacedSheet<'_>,
+    ground: Elasticity,
     plate: Option<&PlateBending>,
 ) -> Result<ElasticSheet, ElasticSheetError> {
-    let Elasticity { law, limit } = elasticity;
-    let sheet = ElasticSheet::of_law(placed, law)?.with_limit(limit)?;
+    let placed = &sheet.form.placed;
+    let all = sheet.patched.map(|own| own.elasticity());
+    let all = all.map(|own| own.clone().unwrap_or_else(|| ground.clone()));
+    let laws = all.map(|own| own.law.clone());
+    let sheet = ElasticSheet::patched(placed, &laws)?.with_limit(ground.limit)?;
     Ok(match plate {
         Some(plate) => sheet.beside(placed, plate),
         None => sheet,

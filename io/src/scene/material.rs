@@ -69,9 +69,19 @@ pub(crate) fn typical_poisson() -> f64 {
     0.3
 }
 
+/// The range of Poisson's ratio of a material with a stiffness along its direction and one across it, whose root it must
+/// not exceed; that of isotropic ones without.
+pub(super) fn ratios(along: Option<f64>, across: Option<f64>) -> [f64; 2] {
+    let most = along
+        .zip(across)
+        .map(|(along, across)| (along / across).sqrt());
+    let most = most.filter(|most| most.is_normal());
+    most.map_or([0.0, 0.5], |most| [-most, most])
+}
+
 impl Plate {
     /// Whether it is stiffer along a direction.
-    pub(super) fn has_directions(&self) -> bool {
+    fn has_directions(&self) -> bool {
         self.youngs_across.is_some() || self.shear.is_some()
     }
 
@@ -114,10 +124,7 @@ impl Plate {
         checks.positive(key.name("thickness"), self.thickness, Unit::Metre);
         let unit = Unit::KilogramPerCubicMetre;
         checks.positive(key.name("density"), self.density, unit);
-        let most = self
-            .youngs_across
-            .map(|across| (self.youngs / across).sqrt());
-        let ratios = most.map_or([0.0, 0.5], |most| [-most, most]);
+        let ratios = ratios(Some(self.youngs), self.youngs_across);
         checks.within(key.name("poisson"), self.poisson, ratios);
         for (name, modulus) in [("youngs_across", self.youngs_across), ("shear", self.shear)] {
             checks.positive(key.name(name), modulus, Unit::Pascal);
@@ -181,6 +188,11 @@ impl Material {
                 ", stiffer along its direction where `sheet.direction` names one".to_owned()
             }),
         )
+    }
+
+    /// Whether it is given by two moduli, whose direction has to be known.
+    pub(super) fn needs_direction(&self) -> bool {
+        matches!(self, Self::Plate(plate) if plate.has_directions())
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {

@@ -3,6 +3,7 @@
 use super::error::SceneError;
 use super::mesh::RestMesh;
 use super::mesh_file::Files;
+use super::patch::patched;
 use super::pattern::EdgeRoles;
 use super::problem::Problem;
 use super::refined::Refined;
@@ -10,8 +11,9 @@ use super::resolution::check_shape;
 use super::sheets::sheet_key;
 use super::{Key, Selection, Sheet as SheetOfScene, Weight, sheets};
 use crate::format::ReadingChanges;
+use isosheet_dynamics::Patched;
 use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{MassKind, MassMatrix, Part, Sheet, VertexId};
+use isosheet_mesh::{FaceId, MassKind, MassMatrix, MeshError, Part, Sheet, VertexId};
 use std::sync::Arc;
 
 /// What is made of the mesh of a sheet, its division, its place and its start.
@@ -37,6 +39,8 @@ pub(super) struct PlacedSheet<'a> {
     pub(super) form: Arc<Form>,
     /// Where it is in the union.
     pub(super) part: Part,
+    /// What it is, and what its patches are as sheets.
+    pub(super) patched: Patched<SheetOfScene>,
     mass: MassMatrix,
 }
 
@@ -73,15 +77,22 @@ impl<'a> PlacedSheets<'a> {
         let numbered = sheets.iter().zip(&*forms).zip(parts).enumerate();
         let list = numbered.map(|(k, ((of, form), part))| {
             let key = sheet_key(sheets.len(), k);
-            let by_area = of.areal_density() * form.placed.area();
-            let mass = of.mass.unwrap_or(by_area);
-            let mass = MassMatrix::from_total(&form.placed, mass, MassKind::Lumped)
-                .map_err(|e| Problem::from_error(key.clone(), &e))?;
+            let patched = patched(of, form, &key)?;
+            let mass = match (of.mass, &of.patch[..]) {
+                (None, [_, ..]) => of_densities(form, &patched),
+                (mass, _) => {
+                    let by_area = of.areal_density() * form.placed.area();
+                    let mass = mass.unwrap_or(by_area);
+                    MassMatrix::from_total(&form.placed, mass, MassKind::Lumped)
+                }
+            };
+            let mass = mass.map_err(|e| Problem::from_error(key.clone(), &e))?;
             Ok(PlacedSheet {
                 of,
                 key,
                 form: form.clone(),
                 part,
+                patched,
                 mass,
             })
         });
@@ -151,7 +162,21 @@ impl<'a> PlacedSheets<'a> {
     }
 }
 
+/// The masses of a sheet with patches.
+fn of_densities(form: &Form, patched: &Patched<SheetOfScene>) -> Result<MassMatrix, MeshError> {
+    let densities = patched.map(SheetOfScene::areal_density);
+    let of_faces = densities.of_faces(form.placed.topology().face_count());
+    let of_faces = of_faces.expect("patches have faces of their sheet");
+    let density = |face: FaceId| *of_faces[face.index()];
+    MassMatrix::from_densities(&form.placed, density, MassKind::Lumped)
+}
+
 impl Form {
+    /// Positions at the start, `3V`.
+    pub(super) fn start(&self) -> &[f64] {
+        &self.start
+    }
+
     fn new(of: &SheetOfScene, key: &Key, files: &mut Files) -> Result<Self, Problem> {
         let mesh_key = key.name("mesh");
         let RestMesh {

@@ -1,8 +1,9 @@
 //! The sheet: mesh, material, placement and start.
 
 use super::key::Key;
-use super::material::{Material, typical_poisson};
+use super::material::{Material, ratios, typical_poisson};
 use super::mesh::Mesh;
+use super::patch::{self, Patch};
 use super::pose::Pose;
 use super::problem::Checks;
 use super::profile::Profile;
@@ -73,6 +74,9 @@ pub struct Sheet {
     /// When it yields in bending. If left out, never: bends spring back.
     #[serde(default, rename = "yield")]
     pub yields: Option<SheetYield>,
+    /// Parts that are of other materials.
+    #[serde(default)]
+    pub patch: Vec<Patch>,
     /// Rate of the velocity damping `v <- v exp(-damping h)` after each step of `h` seconds, 1/s.
     #[serde(default)]
     pub damping: f64,
@@ -126,7 +130,7 @@ pub enum Isometry {
         #[serde(default)]
         poisson: Option<f64>,
         /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. If left out, that of
-        /// the material; without one 0.01.
+        /// the material, or the largest of those of patches; without one 0.01.
         #[serde(default)]
         limit: Option<f64>,
     },
@@ -256,6 +260,7 @@ impl Sheet {
             rest: RestShape::Flat,
             curl: None,
             yields: None,
+            patch: Vec::new(),
             damping: 0.0,
             placement: Pose::default(),
             start: Start::default(),
@@ -411,11 +416,11 @@ impl Sheet {
                 poisson: self.poisson(),
             },
         };
+        let of_material = material.map_or(engine::Material::STRAIN_LIMIT, |m| m.strain_limit);
+        let of_patches = self.patch.iter().filter_map(|own| own.strain_limit(self));
         Some(Elasticity {
             law,
-            limit: limit
-                .or(material.map(|m| m.strain_limit))
-                .unwrap_or(engine::Material::STRAIN_LIMIT),
+            limit: limit.unwrap_or_else(|| of_patches.fold(of_material, f64::max)),
         })
     }
 
@@ -461,11 +466,15 @@ impl Sheet {
                 let message = "the plate is stiffer along a direction, and the sheet has none";
                 checks.report(key.name("bending.orthotropic"), message, remedy);
             }
-            if matches!(&self.material, Some(Material::Plate(plate)) if plate.has_directions()) {
+            if self
+                .material
+                .as_ref()
+                .is_some_and(Material::needs_direction)
+            {
                 let message = "the material is stiffer along a direction, and the sheet has none";
                 checks.report(key.name("material"), message, remedy);
             }
-        } else if !(of_material || is_written || own == Some(None)) {
+        } else if !(of_material || is_written || own == Some(None)) && self.patch.is_empty() {
             checks.report(
                 key.name("direction"),
                 "nothing of the sheet depends on a direction",
@@ -543,6 +552,7 @@ impl Sheet {
                 "give `stiffness` in N/m, Young's modulus times thickness, or `sheet.material`",
             );
         }
+        patch::check(self, key, checks);
         self.placement.check(&key.name("placement"), checks);
         self.start.check(&key.name("start"), checks);
     }
@@ -584,13 +594,8 @@ impl Isometry {
                 for (name, stiffness) in all {
                     checks.positive(key.name(name), *stiffness, unit);
                 }
-                let most = match (stiffness, across) {
-                    (Some(along), Some(across)) => {
-                        [-(along / across).sqrt(), (along / across).sqrt()]
-                    }
-                    _ => [0.0, 0.5],
-                };
-                checks.within(key.name("poisson"), *poisson, most);
+                let ratios = ratios(*stiffness, *across);
+                checks.within(key.name("poisson"), *poisson, ratios);
                 checks.within(key.name("limit"), *limit, LIMITS);
             }
             Self::Rods => {}

@@ -12,6 +12,7 @@ mod live;
 mod materials;
 mod meaning;
 mod messages;
+mod patches;
 mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;

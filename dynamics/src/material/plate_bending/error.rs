@@ -2,6 +2,7 @@
 
 use crate::MotionError;
 use crate::material::direction::DirectionError;
+use crate::material::patched::NoFace;
 use crate::motion::profile::ProfileError;
 use crate::options::OptionsError;
 use isosheet_mesh::wording::given;
@@ -35,6 +36,9 @@ pub enum PlateBendingError {
         /// Why.
         source: DirectionError,
     },
+    /// A patch has a face that the sheet has not.
+    #[error(transparent)]
+    Patch(#[from] NoFace),
     /// The natural curvature makes no sense.
     #[error(transparent)]
     Curl {
@@ -80,6 +84,7 @@ impl Advice for PlateBendingError {
             }
             Self::Coupling { .. } => Some("give one whose square is less than D11 D22"),
             Self::Direction { source } => source.advice(),
+            Self::Patch(error) => error.advice(),
             Self::Curl { source } => source.advice(),
             Self::Motion { source } => source.advice(),
             Self::Poisson { .. } => Some("give a value from 0 to 0.5"),

@@ -4,7 +4,8 @@ use super::error::PlateBendingError;
 use super::stiffness::PlateStiffness;
 use crate::material::direction::{DirectionError, MaterialDirection};
 use crate::material::orthotropy::{PrincipalLaw, first_unusable, root, turn};
-use isosheet_mesh::Sheet;
+use crate::material::patched::Patched;
+use isosheet_mesh::{FaceId, Sheet};
 use nalgebra::Matrix3;
 
 /// The stiffness of an orthotropic plate: a curvature with the components `k_1` along a direction of the
@@ -114,29 +115,18 @@ impl PlateLaw {
         }
     }
 
-    /// The roots of the law of the faces of a sheet.
-    ///
-    /// # Errors
-    /// [`PlateBendingError`] if the law makes no sense, or a direction is none.
-    pub(super) fn roots(&self, sheet: &Sheet) -> Result<Roots, PlateBendingError> {
-        self.check()?;
+    /// The root of the law of a face of a sheet.
+    fn of_face(&self, sheet: &Sheet, face: FaceId) -> Result<Root, DirectionError> {
         let of_material = root(&self.matrix());
-        let of_faces = match self {
-            Self::Isotropic(_) => vec![of_material],
-            Self::Orthotropic(plate) => {
-                let own = |face| {
-                    let angle = plate.direction.angle(sheet, face)?;
-                    let turn = turn(angle);
-                    Ok(turn.transpose() * of_material * turn)
-                };
-                let own = sheet.topology().face_ids().map(own);
-                own.collect::<Result<_, DirectionError>>()
-                    .map_err(|source| PlateBendingError::Direction { source })?
-            }
-        };
-        Ok(Roots {
+        Ok(Root {
             rigidity: self.rigidity(),
-            of_faces,
+            root: match self {
+                Self::Isotropic(_) => of_material,
+                Self::Orthotropic(plate) => {
+                    let turn = turn(plate.direction.angle(sheet, face)?);
+                    turn.transpose() * of_material * turn
+                }
+            },
         })
     }
 }
@@ -145,13 +135,46 @@ impl PlateLaw {
 /// the first edge of a face, `D |R k|^2 / 2` is the energy per area.
 #[derive(Debug, Clone)]
 pub(super) struct Roots {
+    /// Of each face, or of all.
+    of_faces: Vec<Root>,
+}
+
+/// The law of a face.
+#[derive(Debug, Clone)]
+struct Root {
     /// `D`, newton metres.
-    pub(super) rigidity: f64,
-    /// `R` of each face, or of all.
-    of_faces: Vec<Matrix3<f64>>,
+    rigidity: f64,
+    /// `R`.
+    root: Matrix3<f64>,
 }
 
 impl Roots {
+    /// Of the faces of a sheet. A plate that resists bending does so everywhere.
+    ///
+    /// # Errors
+    /// [`PlateBendingError`] if a law makes no sense, or a direction is none.
+    pub(super) fn new(sheet: &Sheet, laws: &Patched<PlateLaw>) -> Result<Self, PlateBendingError> {
+        for law in laws.all() {
+            law.check()?;
+            let rigidity = law.rigidity();
+            if !laws.is_uniform() && rigidity == 0.0 {
+                return Err(PlateBendingError::Rigidity { rigidity });
+            }
+        }
+        let of_face = |(face, law): (FaceId, &PlateLaw)| law.of_face(sheet, face);
+        let topology = sheet.topology();
+        let is_same = laws.is_uniform() && matches!(laws.ground(), PlateLaw::Isotropic(_));
+        let count = match is_same {
+            true => topology.face_count().min(1),
+            false => topology.face_count(),
+        };
+        let own = laws.of_faces(topology.face_count())?;
+        let own = topology.face_ids().zip(own).take(count).map(of_face);
+        let of_faces = own.collect::<Result<_, DirectionError>>();
+        let of_faces = of_faces.map_err(|source| PlateBendingError::Direction { source })?;
+        Ok(Self { of_faces })
+    }
+
     /// The inverse of `R` of a face.
     pub(super) fn inverse(&self, face: usize) -> Matrix3<f64> {
         let inverse = self.of(face).try_inverse();
@@ -160,6 +183,20 @@ impl Roots {
 
     /// `R` of a face.
     pub(super) fn of(&self, face: usize) -> &Matrix3<f64> {
+        &self.own(face).root
+    }
+
+    /// `D` of a face, newton metres.
+    pub(super) fn rigidity(&self, face: usize) -> f64 {
+        self.own(face).rigidity
+    }
+
+    /// Whether the plate resists bending.
+    pub(super) fn are_stiff(&self) -> bool {
+        self.of_faces.iter().all(|own| own.rigidity > 0.0)
+    }
+
+    fn own(&self, face: usize) -> &Root {
         &self.of_faces[face.min(self.of_faces.len() - 1)]
     }
 }
@@ -185,7 +222,7 @@ mod tests {
                 rigidity: 2.0,
                 poisson,
             });
-            let roots = law.roots(&sheet).unwrap();
+            let roots = Roots::new(&sheet, &Patched::everywhere(law)).unwrap();
             let energy = (roots.of(1) * components([k11, k12, k22])).norm_squared();
             let expected = (1.0 - poisson) * norm + poisson * trace * trace;
             assert!((energy - expected).abs() < 1e-14, "{poisson}");
@@ -205,7 +242,7 @@ mod tests {
         };
         let law = PlateLaw::from(plate);
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
-        let roots = law.roots(&sheet).unwrap();
+        let roots = Roots::new(&sheet, &Patched::everywhere(law)).unwrap();
         // A curvature in space, and its components along the direction and along the first edge.
         let matrix = Matrix3::new(0.7, -0.3, 0.0, -0.3, 0.2, 0.0, 0.0, 0.0, 0.0);
         let by = |first: Vector3<f64>| {
@@ -222,7 +259,7 @@ mod tests {
         for (f, corners) in sheet.topology().faces().iter().enumerate() {
             let [a, b, _] = corners.map(|v| crate::vectors::point(sheet.positions(), v));
             let own = components(by((b - a).normalize()));
-            let energy = roots.rigidity * (roots.of(f) * own).norm_squared();
+            let energy = roots.rigidity(f) * (roots.of(f) * own).norm_squared();
             assert!((energy - expected).abs() < 1e-13, "{energy} {expected}");
         }
     }
@@ -238,7 +275,8 @@ mod tests {
                 twist: 1.0,
                 direction,
             };
-            PlateLaw::from(plate).roots(&sheet).unwrap_err()
+            let law = PlateLaw::from(plate);
+            Roots::new(&sheet, &Patched::everywhere(law)).unwrap_err()
         };
         let x = MaterialDirection::Uniform([1.0, 0.0, 0.0]);
         assert_eq!(plate(2.5, x), PlateBendingError::Coupling { coupling: 2.5 });

@@ -18,7 +18,7 @@ impl SecondDerivatives {
     /// Of a plate with rigidity.
     pub(super) fn new(stencils: &Arc<Stencils>, roots: &Roots, areas: &[f64]) -> Self {
         let inverse = |(face, area): (usize, &f64)| {
-            let scale = 1.0 / (roots.rigidity * area).sqrt();
+            let scale = 1.0 / (roots.rigidity(face) * area).sqrt();
             roots.inverse(face) * scale
         };
         Self {

@@ -103,7 +103,7 @@ impl Stencils {
         }
         let slopes: Vec<_> = topology
             .edge_ids()
-            .map(|e| slope(sheet, &clamps, &is_creased, e))
+            .map(|e| slope(sheet, roots, &clamps, &is_creased, e))
             .collect();
         let mut stencils = Self {
             starts: vec![0],
@@ -113,8 +113,8 @@ impl Stencils {
             directors: BTreeMap::new(),
         };
         for face in topology.face_ids() {
-            let scale =
-                (roots.rigidity * sheet.face_areas()[face.index()]).sqrt() * roots.of(face.index());
+            let scale = (roots.rigidity(face.index()) * sheet.face_areas()[face.index()]).sqrt()
+                * roots.of(face.index());
             let is_clamped = clamps.faces[face.index()];
             let director = |edge| (!is_clamped).then(|| held.director(sheet, face, edge))?;
             let (weights, directors) = face_weights(sheet, &slopes, director, face);
@@ -164,7 +164,7 @@ impl Stencils {
                     _ => Vector3::zeros(),
                 };
             }
-            curvatures.push(bent / (roots.rigidity * area).sqrt());
+            curvatures.push(bent / (roots.rigidity(f) * area).sqrt());
         }
         curvatures
     }
@@ -252,7 +252,16 @@ fn place(
 
 /// The derivative of the positions at the midpoint of an edge along the normal that points out of its left
 /// face; nothing at creases, and at free edges of meshes too small for a fit.
-fn slope(sheet: &Sheet, clamps: &Clamps, is_creased: &[bool], edge: EdgeId) -> Option<Combination> {
+///
+/// Where the rigidity of the plate jumps no fit reaches across, but that of the slope at the very edge: there the
+/// curvature along the normal jumps such that the moment does not.
+fn slope(
+    sheet: &Sheet,
+    roots: &Roots,
+    clamps: &Clamps,
+    is_creased: &[bool],
+    edge: EdgeId,
+) -> Option<Combination> {
     if is_creased[edge.index()] {
         return None;
     }
@@ -271,9 +280,14 @@ fn slope(sheet: &Sheet, clamps: &Clamps, is_creased: &[bool], edge: EdgeId) -> O
         return Some(slope_of_face(face));
     }
     let mean = patch_size(sheet, [left, right]);
+    let rigidities = [left, right].map(|f| f.map(|f| roots.rigidity(f.index())));
+    let softer = match rigidities {
+        [Some(left), Some(right)] if left != right => left / right,
+        _ => 1.0,
+    };
     for _ in 0..MAX_RINGS {
-        grow(sheet, is_creased, &mut patch);
-        if let Some(slope) = fit(&points(&patch, clamps), mean) {
+        grow(sheet, roots, is_creased, &mut patch);
+        if let Some(slope) = fit(&points(&patch, clamps), mean, softer) {
             return Some(slope);
         }
     }
@@ -310,8 +324,8 @@ fn slope_of_face(face: &Unfolded) -> Combination {
     ]
 }
 
-/// Adds the faces that share an edge with the patch which is no crease.
-fn grow(sheet: &Sheet, is_creased: &[bool], patch: &mut Vec<(FaceId, Unfolded)>) {
+/// Adds the faces of the same rigidity that share an edge with the patch which is no crease.
+fn grow(sheet: &Sheet, roots: &Roots, is_creased: &[bool], patch: &mut Vec<(FaceId, Unfolded)>) {
     let topology = sheet.topology();
     for i in 0..patch.len() {
         let (f, corners) = patch[i];
@@ -319,7 +333,8 @@ fn grow(sheet: &Sheet, is_creased: &[bool], patch: &mut Vec<(FaceId, Unfolded)>)
             let (p, q) = (corners[k], corners[(k + 1) % 3]);
             let edge = topology.find_edge(p.0, q.0).expect("an edge of a face");
             let across = topology.edge_faces(edge).into_iter().flatten();
-            let across = across.filter(|g| *g != f && !is_creased[edge.index()]);
+            let is_same = |g: FaceId| roots.rigidity(g.index()) == roots.rigidity(f.index());
+            let across = across.filter(|g| *g != f && !is_creased[edge.index()] && is_same(*g));
             for g in across {
                 if patch.iter().all(|(other, _)| *other != g) {
                     patch.push((g, place(sheet, g, q, p)));
@@ -341,15 +356,17 @@ fn points(patch: &[(FaceId, Unfolded)], clamps: &Clamps) -> Vec<(VertexId, Vecto
 }
 
 /// Derivative along `-y` at the origin of the quadratic polynomial that fits the points by least squares,
-/// with weights that fall off over the length `size`; nothing if the points do not determine a polynomial.
-fn fit(points: &[(VertexId, Vector2<f64>)], size: f64) -> Option<Combination> {
+/// with weights that fall off over the length `size`; nothing if the points do not determine a polynomial. Below the
+/// x-axis its second derivative along `y` is so many times that above.
+fn fit(points: &[(VertexId, Vector2<f64>)], size: f64, softer: f64) -> Option<Combination> {
     if points.len() < COEFFICIENTS {
         return None;
     }
     let weight = |p: Vector2<f64>| (-0.5 * p.norm_squared() / (size * size)).exp();
     let rows = DMatrix::from_fn(points.len(), COEFFICIENTS, |i, k| {
         let p = points[i].1 / size;
-        weight(points[i].1) * [1.0, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y][k]
+        let bent = if p.y < 0.0 { softer } else { 1.0 };
+        weight(points[i].1) * [1.0, p.x, p.y, p.x * p.x, p.x * p.y, bent * p.y * p.y][k]
     });
     let svd = rows.svd(true, true);
     if svd.singular_values.min() <= LEAST_SINGULAR {

@@ -20,7 +20,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub(super) struct StressFreeCurvature {
     roots: Roots,
     natural: Option<NaturalCurvature>,
-    yields: Option<Yield>,
+    /// Of each face, or of all; nothing of a plate that does not yield. All have the same number of layers.
+    yields: Vec<Yield>,
     faces: Vec<FaceOfPlate>,
     /// Of each pair of vertices of each stencil, the second one being before the first, where its block of
     /// the Hessian is.
@@ -170,7 +171,7 @@ impl StressFreeCurvature {
         Self {
             roots,
             natural: None,
-            yields: None,
+            yields: Vec::new(),
             faces,
             slots,
             blocks: Mutex::new(Blocks {
@@ -182,8 +183,13 @@ impl StressFreeCurvature {
         }
     }
 
-    pub(super) fn set_yield(&mut self, yields: Yield) {
-        self.yields = Some(yields);
+    pub(super) fn set_yields(&mut self, yields: Vec<Yield>) {
+        self.yields = yields;
+    }
+
+    /// When a face yields.
+    fn yields_of(&self, face: usize) -> Option<&Yield> {
+        self.yields.get(face).or(self.yields.last())
     }
 
     pub(super) fn set_natural(&mut self, natural: NaturalCurvature) {
@@ -191,7 +197,7 @@ impl StressFreeCurvature {
     }
 
     pub(super) fn yields(&self) -> bool {
-        self.yields.is_some()
+        !self.yields.is_empty()
     }
 
     /// Whether the natural curvature changes with time.
@@ -209,25 +215,25 @@ impl StressFreeCurvature {
 
     /// The plastic curvatures of the layers of a face, in a memory.
     fn layers(&self, face: usize) -> Range<usize> {
-        let count = self.yields.map_or(0, |yields| 3 * yields.layers);
+        let count = self.yields.first().map_or(0, |yields| 3 * yields.layers);
         count * face..count * (face + 1)
     }
 
     /// The plastic curvatures of a memory as matrices, 1/m.
     pub(super) fn matrices(&self, memory: &[f64]) -> impl Iterator<Item = Matrix2<f64>> {
-        let yields = self.yields.into_iter();
-        let matrix = move |face, yields: Yield| {
+        let matrix = move |face| {
+            let yields = self.yields_of(face)?;
             let p = self.roots.inverse(face) * yields.plastic(&memory[self.layers(face)]);
-            Matrix2::new(p[0], p[1] / SQRT_2, p[1] / SQRT_2, p[2])
+            Some(Matrix2::new(p[0], p[1] / SQRT_2, p[1] / SQRT_2, p[2]))
         };
-        yields.flat_map(move |yields| (0..self.faces.len()).map(move |face| matrix(face, yields)))
+        (0..self.faces.len()).filter_map(matrix)
     }
 
     /// A face at positions, with the natural curvature at a time and the plastic ones of a memory.
     pub(super) fn bent(&self, face: usize, stencil: &Stencil<'_>, at: At<'_>) -> BentFace {
         let At { t, x, memory } = at;
         let FaceOfPlate { corners, area, .. } = self.faces[face];
-        let rigidity = self.roots.rigidity;
+        let rigidity = self.roots.rigidity(face);
         let scale = (rigidity * area).sqrt();
         let [a, b, c] = corners.map(|v| point(x, v));
         let normal = (b - a).cross(&(c - a));
@@ -238,11 +244,11 @@ impl StressFreeCurvature {
         let layers = &memory[self.layers(face)];
         let natural = self.natural.as_ref();
         let mut before = natural.map_or(Vector3::zeros(), |natural| natural.at(face, t));
-        if let Some(yields) = &self.yields {
+        if let Some(yields) = self.yields_of(face) {
             before += yields.plastic(layers);
         }
         let trial = derivatives.tr_mul(&normal) / scale - before;
-        let flow = match &self.yields {
+        let flow = match self.yields_of(face) {
             Some(yields) => yields.flow(rigidity, trial, layers),
             None => Flow::none(),
         };
@@ -273,15 +279,15 @@ impl StressFreeCurvature {
         memory: &mut [f64],
     ) -> f64 {
         let mut dissipated = 0.0;
-        let Some(yields) = &self.yields else {
-            return dissipated;
-        };
         for (face, stencil) in stencils.iter().enumerate() {
+            let Some(yields) = self.yields_of(face) else {
+                return dissipated;
+            };
             let at = At::new(t, x).with_memory(memory);
             let trial = self.bent(face, &stencil, at).trial;
             let layers = &mut memory[self.layers(face)];
             let area = self.faces[face].area;
-            dissipated += area * yields.settle(self.roots.rigidity, trial, layers);
+            dissipated += area * yields.settle(self.roots.rigidity(face), trial, layers);
         }
         dissipated
     }

@@ -343,3 +343,74 @@ fn the_smallest_meshes_bend() {
     let plate = PlateBending::new(&triangle, 2.0).unwrap();
     assert!(plate.energy(At::new(0.0, &y[..9])) < 1e-30);
 }
+
+/// A cantilever of length `L` whose outer half is of another stiffness: under a uniform load the tip of a beam of the
+/// pieces `D_1` and `D_2` sinks by `q L^4 / 8 [1 / D_1 + (1 / D_2 - 1 / D_1) / 16]`.
+#[test]
+fn a_cantilever_of_two_stiffnesses_is_a_beam_of_two_pieces() {
+    let (length, overhang) = (0.3, 0.1);
+    for (diagonals, jitter) in [(Diagonals::UnionJack, 0.0), (Diagonals::Rising, 0.2)] {
+        for outer in [0.2, 5.0] {
+            let cells = 8;
+            let size = [length + overhang, 0.1];
+            let sheet = strip([4 * cells, cells], size, diagonals, jitter, overhang);
+            let (t, x) = (sheet.topology(), sheet.positions());
+            let middle = overhang + 0.5 * length;
+            let is_outer = |f: &FaceId| {
+                let corners = t.faces()[f.index()].map(|v| x[3 * v.index()]);
+                corners.iter().sum::<f64>() / 3.0 > middle
+            };
+            let faces: Vec<_> = t.face_ids().filter(is_outer).collect();
+            let laws = Patched::everywhere(PlateLaw::from(1.0)).with_patch(faces, outer.into());
+            let pins = sheet.vertices_where(|[x, ..]| x < overhang + 1e-9);
+            let edges = PlateEdges {
+                pinned: &pins,
+                creases: &[],
+                clamps: &[],
+            };
+            let plate = PlateBending::patched(&sheet, &laws, &edges).unwrap();
+            let count = t.vertex_count();
+            let matrix = DMatrix::zeros(count, count);
+            let mut upwards = Upwards {
+                sheet: &sheet,
+                matrix,
+            };
+            plate.add_hessian(At::new(0.0, x), &mut upwards);
+            let is_free = |v: &usize| x[3 * v] > overhang + 1e-9;
+            let free: Vec<usize> = (0..count).filter(is_free).collect();
+            let k = upwards.matrix.select_rows(&free).select_columns(&free);
+            let model = SheetModel::new(&sheet, sheet.area(), MassKind::Lumped).unwrap();
+            let mass = &model.mass().vertex;
+            let load = DVector::from_iterator(free.len(), free.iter().map(|v| mass[*v]));
+            let deflection = k.cholesky().expect("positive definite").solve(&load);
+            let tip = free.iter().zip(deflection.iter());
+            let tip = tip.filter(|(v, _)| (x[3 * **v] - length - overhang).abs() < 1e-9);
+            let tip: Vec<f64> = tip.map(|(_, d)| *d).collect();
+            let found = tip.iter().sum::<f64>() / tip.len() as f64;
+            let exact = length.powi(4) / 8.0 * (1.0 + (1.0 / outer - 1.0) / 16.0);
+            let error = found / exact - 1.0;
+            assert!(
+                error.abs() < 1e-2,
+                "{diagonals:?} {jitter} {outer}: {error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn patches_that_make_no_sense_are_refused() {
+    let sheet = generate::isotropic_square(0, 1.0).unwrap();
+    let edges = PlateEdges::default();
+    let refused = |face: u32, rigidity: f64| {
+        let laws = Patched::everywhere(PlateLaw::from(1.0));
+        let laws = laws.with_patch(vec![FaceId(face)], rigidity.into());
+        PlateBending::patched(&sheet, &laws, &edges).unwrap_err()
+    };
+    let (face, count) = (FaceId(8), 8);
+    let expected = crate::NoFace { face, count };
+    assert_eq!(refused(8, 1.0), PlateBendingError::Patch(expected));
+    for rigidity in [0.0, -1.0] {
+        let expected = PlateBendingError::Rigidity { rigidity };
+        assert_eq!(refused(0, rigidity), expected);
+    }
+}
