@@ -1,6 +1,7 @@
 //! Bending stiffness of a thin plate that does not depend on how the mesh runs.
 
 mod error;
+mod fit;
 mod law;
 mod line_clamp;
 #[cfg(test)]
@@ -36,14 +37,15 @@ use natural::NaturalCurvature;
 pub(crate) use second_derivatives::SecondDerivatives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use stencil::{Stencil, Stencils};
+use stencil::{Stencil, Stencils, face_of};
 pub use stiffness::PlateStiffness;
 use stress_free::{Blocks, StressFreeCurvature};
 
 /// Bending energy of a thin plate that is flat at rest,
 ///
 /// ```text
-/// V(x) = D/2 sum_T A_T [ (1 - nu) |H_T x|^2 + nu |tr H_T x|^2 ],
+/// V(x) = D/2 sum_T A_T/3 sum_p [ (1 - nu) |H_p x|^2 + nu |tr H_p x|^2 ],
+/// H_p x = H_T x + (5/3)^(1/2) (Q_p x - mean_T Q x),
 /// H_T x = 1/A_T sum_{e in T} l_e [ s_e n n^T + (x_b - x_a) / l_e  sym(t n^T) ],
 /// ```
 ///
@@ -60,7 +62,11 @@ use stress_free::{Blocks, StressFreeCurvature};
 /// two faces and their neighbours by weighted least squares; at free edges it is that of the face and its
 /// neighbours to one side; at the edges of faces with three clamped corners it is the slope of that face.
 /// Second derivatives are exact for quadratic positions, and deflections are of second order in the size of
-/// the faces on any mesh. (Where a mesh has too few vertices for a fit, and at creases, a face is not bent
+/// the faces on any mesh.
+///
+/// Means over faces, of slopes that are fitted, miss part of the energy of bends that vary. The energy is therefore taken
+/// at three points of a face, one for each edge, which differ by the second derivatives `Q_p` of the polynomials
+/// there; the factor is what a wave on a strip needs. (Where a mesh has too few vertices for a fit, and at creases, a face is not bent
 /// across its edge: a strip of one cell across does not curve across, and bends as a wide one does.) (The stiffness of
 /// [`CreaseSprings::bending`](crate::CreaseSprings::bending) depends on how mesh and bend run.)
 ///
@@ -246,7 +252,7 @@ impl PlateBending {
         self = Self::of_stencils(sheet, roots, stencils);
         self.is_curved = true;
         self.stress_free(sheet)
-            .set_natural(NaturalCurvature::of_faces(natural));
+            .set_natural(NaturalCurvature::of_points(natural));
         self
     }
 
@@ -274,11 +280,11 @@ impl PlateBending {
         })
     }
 
-    /// The second derivatives of positions beyond those without stress, as the stencil of a face has them.
-    fn elastic(&self, face: usize, stencil: &Stencil<'_>, at: At<'_>) -> Matrix3<f64> {
+    /// The second derivatives of positions beyond those without stress, as the stencil of a point has them.
+    fn elastic(&self, point: usize, stencil: &Stencil<'_>, at: At<'_>) -> Matrix3<f64> {
         match &self.stress_free {
             None => stencil.apply(at),
-            Some(curvature) => curvature.bent(face, stencil, at).elastic,
+            Some(curvature) => curvature.bent(point, stencil, at).elastic,
         }
     }
 
@@ -343,17 +349,17 @@ impl PlateBending {
 impl Potential for PlateBending {
     fn energy(&self, at: At<'_>) -> f64 {
         if let Some(curvature) = &self.stress_free {
-            let faces = self.stencils.iter().enumerate();
+            let points = self.stencils.iter().enumerate();
             let energy = |(k, s)| curvature.energy(k, &curvature.bent(k, &s, at));
-            return faces.map(energy).sum();
+            return points.map(energy).sum();
         }
         let energy = |h: Matrix3<f64>| 0.5 * h.norm_squared();
         self.stencils.iter().map(|s| energy(s.apply(at))).sum()
     }
 
     fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
-        for (k, (face, stencil)) in faces.iter_mut().zip(self.stencils.iter()).enumerate() {
-            *face += 0.5 * self.elastic(k, &stencil, at).norm_squared();
+        for (k, stencil) in self.stencils.iter().enumerate() {
+            faces[face_of(k)] += 0.5 * self.elastic(k, &stencil, at).norm_squared();
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::error::CurlError;
 use super::law::Roots;
+use super::stencil::POINTS;
 use crate::material::direction::{DirectionError, MaterialDirection};
 use crate::material::orthotropy::turn;
 use crate::motion::profile::Profile;
@@ -36,20 +37,20 @@ pub struct Curl {
     pub profile: Profile,
 }
 
-/// Natural curvatures of the faces.
+/// Natural curvatures of the points of a plate.
 #[derive(Debug)]
 pub(super) struct NaturalCurvature {
-    /// `R k_0` of each face, 1/m.
-    faces: Vec<Vector3<f64>>,
+    /// `R k_0` of each point, 1/m.
+    points: Vec<Vector3<f64>>,
     /// Its factor, unless that is always one.
     profile: Option<Profile>,
 }
 
 impl NaturalCurvature {
-    /// Of curvatures `R k` of the faces, 1/m.
-    pub(super) fn of_faces(faces: Vec<Vector3<f64>>) -> Self {
+    /// Of curvatures `R k` of the points, 1/m.
+    pub(super) fn of_points(points: Vec<Vector3<f64>>) -> Self {
         let profile = None;
-        Self { faces, profile }
+        Self { points, profile }
     }
 
     /// # Errors
@@ -64,11 +65,14 @@ impl NaturalCurvature {
         let own = Vector3::new(curl.along, 0.0, curl.across);
         let of_face = |face: FaceId| {
             let angle = curl.direction.angle(sheet, face)?;
-            Ok(roots.of(face.index()) * turn(angle).tr_mul(&own))
+            Ok::<_, DirectionError>(roots.of(face.index()) * turn(angle).tr_mul(&own))
         };
-        let faces = sheet.topology().face_ids().map(of_face);
+        let mut points = Vec::with_capacity(POINTS * sheet.topology().face_count());
+        for face in sheet.topology().face_ids() {
+            points.extend([of_face(face)?; POINTS]);
+        }
         Ok(Self {
-            faces: faces.collect::<Result<_, DirectionError>>()?,
+            points,
             profile: Some(curl.profile),
         })
     }
@@ -78,9 +82,9 @@ impl NaturalCurvature {
         profile.is_some_and(|profile| !profile.is_constant())
     }
 
-    /// `R k_0` of a face at a time, 1/m.
-    pub(super) fn at(&self, face: usize, t: f64) -> Vector3<f64> {
+    /// `R k_0` of a point at a time, 1/m.
+    pub(super) fn at(&self, point: usize, t: f64) -> Vector3<f64> {
         let factor = self.profile.as_ref().map_or(1.0, |p| p.value(t));
-        factor * self.faces[face]
+        factor * self.points[point]
     }
 }

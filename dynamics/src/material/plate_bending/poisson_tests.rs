@@ -157,8 +157,9 @@ fn a_cantilever_plate_has_the_frequencies_of_the_literature() {
     }
 }
 
-/// `P L^3 / (3 E I)` with `E I / w = D (1 - nu^2)`: the tip of a narrow strip under a load at its end. (The
-/// clamp, where the strip cannot narrow, adds some thousandths to its stiffness.)
+/// `P L^3 / (3 E I)` with `E I / w = D (1 - nu^2)`: the tip of a narrow strip under a load at its end. (At the clamp
+/// the strip cannot narrow: there, along about half of its width, it is stiffer by `nu^2`, under thrice the mean squared
+/// moment.)
 #[test]
 fn a_narrow_strip_bends_as_a_beam_does() {
     let (length, width) = (1.0, 0.05);
@@ -184,7 +185,8 @@ fn a_narrow_strip_bends_as_a_beam_does() {
                 moved.dot(&parts) / exact - 1.0
             });
             let what = format!("{pattern:?}, {poisson}: {errors:?}");
-            assert!(errors.iter().all(|e| e.abs() < 0.015), "{what}");
+            let of_clamp = 3.0 * poisson * poisson * 0.5 * width / length;
+            assert!(errors.iter().all(|e| e.abs() < of_clamp + 0.005), "{what}");
         }
     }
 }

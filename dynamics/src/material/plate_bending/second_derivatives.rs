@@ -1,7 +1,7 @@
 //! How a sheet is curved, face by face.
 
 use super::law::Roots;
-use super::stencil::Stencils;
+use super::stencil::{POINTS, Stencils};
 use crate::potential::At;
 use nalgebra::Matrix3;
 use std::sync::Arc;
@@ -18,7 +18,8 @@ impl SecondDerivatives {
     /// Of a plate with rigidity.
     pub(super) fn new(stencils: &Arc<Stencils>, roots: &Roots, areas: &[f64]) -> Self {
         let inverse = |(face, area): (usize, &f64)| {
-            let scale = 1.0 / (roots.rigidity(face) * area).sqrt();
+            // The mean of the points, each with its part of the area.
+            let scale = 1.0 / (roots.rigidity(face) * area * POINTS as f64).sqrt();
             roots.inverse(face) * scale
         };
         Self {
@@ -30,7 +31,11 @@ impl SecondDerivatives {
     /// Of each face at a time and positions: a row for each component of the positions, with the components
     /// `(11, sqrt(2) 12, 22)`, the first axis along the first edge of the face; 1/m.
     pub(crate) fn at<'a>(&'a self, at: At<'a>) -> impl Iterator<Item = Matrix3<f64>> + 'a {
-        let faces = self.stencils.iter().zip(&self.inverses);
-        faces.map(move |(stencil, inverse)| stencil.apply(at) * inverse)
+        let mut points = self.stencils.iter();
+        self.inverses.iter().map(move |inverse| {
+            let of_face = points.by_ref().take(POINTS);
+            let sum: Matrix3<f64> = of_face.map(|stencil| stencil.apply(at)).sum();
+            sum * inverse
+        })
     }
 }

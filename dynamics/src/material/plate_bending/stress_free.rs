@@ -2,10 +2,10 @@
 
 use super::law::Roots;
 use super::natural::NaturalCurvature;
-use super::stencil::{Stencil, Stencils};
+use super::stencil::{POINTS, Stencil, Stencils, face_of};
 use crate::material::plasticity::{Flow, Yield};
 use crate::potential::At;
-use crate::vectors::point;
+use crate::vectors::point as position;
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use std::f64::consts::SQRT_2;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The curvatures that the faces of a plate have without moments, natural ones and the plastic ones of a plate
+/// The curvatures that the points of a plate have without moments, natural ones and the plastic ones of a plate
 /// that yields. Curvatures are those of the stencils, `R k` with the root `R` of the law ([`Roots`]), so that
 /// a norm is that of the elastic energy.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ pub(super) struct StressFreeCurvature {
     natural: Option<NaturalCurvature>,
     /// Of each face, or of all; nothing of a plate that does not yield. All have the same number of layers.
     yields: Vec<Yield>,
-    faces: Vec<FaceOfPlate>,
+    points: Vec<PointOfPlate>,
     /// Of each pair of vertices of each stencil, the second one being before the first, where its block of
     /// the Hessian is.
     slots: Vec<Slot>,
@@ -30,12 +30,12 @@ pub(super) struct StressFreeCurvature {
     blocks: Mutex<Blocks>,
 }
 
-/// What does not change of a face.
+/// What does not change of a point.
 #[derive(Debug)]
-struct FaceOfPlate {
-    /// Counter-clockwise.
+struct PointOfPlate {
+    /// Those of its face, counter-clockwise.
     corners: [VertexId; 3],
-    /// In square metres.
+    /// Its part of the area of the face, m2.
     area: f64,
     /// Where its slots begin.
     slots: usize,
@@ -68,18 +68,18 @@ pub(super) struct Blocks {
     pub(super) at_vertices: Vec<Matrix3<f64>>,
     pub(super) at_edges: Vec<Matrix3<f64>>,
     pub(super) at_pairs: Vec<Matrix3<f64>>,
-    /// The vertices of the face whose blocks are computed.
+    /// The vertices of the point whose blocks are computed.
     vertices: Vec<BentVertex>,
 }
 
-/// What the Hessian of a face needs of one of the vertices of its stencil.
+/// What the Hessian of a point needs of one of the vertices of its stencil.
 #[derive(Debug)]
 struct BentVertex {
     index: usize,
     /// Its weights `w`, and `slope w`.
     weights: Vector3<f64>,
     yielded: Vector3<f64>,
-    /// `w . p`, the curvature without stress as [`BentFace::stress_free`] has it.
+    /// `w . p`, the curvature without stress as [`BentPoint::stress_free`] has it.
     along: f64,
     /// Gradient of the linear function that is one here, zero where the vertex is no corner.
     hat: Vector3<f64>,
@@ -97,9 +97,9 @@ impl Blocks {
     }
 }
 
-/// A face at positions, `B` being the second derivatives of the positions, `n` the unit normal and `p` the
+/// A point at positions, `B` being the second derivatives of the positions, `n` the unit normal and `p` the
 /// curvature without stress at the end of the step, both times the root of the law.
-pub(super) struct BentFace {
+pub(super) struct BentPoint {
     corners: [VertexId; 3],
     normal: Vector3<f64>,
     /// Gradients on the face of the linear functions that are one at a corner and zero at the other two, 1/m.
@@ -113,7 +113,7 @@ pub(super) struct BentFace {
     flow: Flow<3>,
 }
 
-impl BentFace {
+impl BentPoint {
     /// The derivatives of the energy by the corners, as far as they are those of the normal: with the hats
     /// `g_j` it is `dn = -sum_j g_j (n . dx_j)`.
     pub(super) fn turning_forces(&self) -> [(VertexId, Vector3<f64>); 3] {
@@ -122,7 +122,7 @@ impl BentFace {
         [0, 1, 2].map(|k| (self.corners[k], force(k)))
     }
 
-    /// Whether it bends as a face that is flat without stress.
+    /// Whether it bends as one that is flat without stress.
     fn is_flat(&self) -> bool {
         self.stress_free == Vector3::zeros() && self.flow.slope == Matrix3::zeros()
     }
@@ -154,12 +154,11 @@ impl StressFreeCurvature {
         };
         let counts = [topology.vertex_count(), edges.len(), pairs.len()];
         let [at_vertices, at_edges, at_pairs] = counts.map(|n| vec![Matrix3::zeros(); n]);
-        let (mut slots, mut faces, mut most) = (Vec::new(), Vec::new(), 0);
-        let corners = topology.faces().iter().zip(sheet.face_areas());
-        for ((corners, area), stencil) in corners.zip(stencils.iter()) {
-            faces.push(FaceOfPlate {
-                corners: *corners,
-                area: *area,
+        let (mut slots, mut points, mut most) = (Vec::new(), Vec::new(), 0);
+        for (k, stencil) in stencils.iter().enumerate() {
+            points.push(PointOfPlate {
+                corners: topology.faces()[face_of(k)],
+                area: sheet.face_areas()[face_of(k)] / POINTS as f64,
                 slots: slots.len(),
             });
             let vertices: Vec<_> = stencil.map(|(v, _)| VertexId::from_index(v)).collect();
@@ -172,7 +171,7 @@ impl StressFreeCurvature {
             roots,
             natural: None,
             yields: Vec::new(),
-            faces,
+            points,
             slots,
             blocks: Mutex::new(Blocks {
                 at_vertices,
@@ -187,9 +186,9 @@ impl StressFreeCurvature {
         self.yields = yields;
     }
 
-    /// When a face yields.
-    fn yields_of(&self, face: usize) -> Option<&Yield> {
-        self.yields.get(face).or(self.yields.last())
+    /// When the face of a point yields.
+    fn yields_of(&self, point: usize) -> Option<&Yield> {
+        self.yields.get(face_of(point)).or(self.yields.last())
     }
 
     pub(super) fn set_natural(&mut self, natural: NaturalCurvature) {
@@ -207,53 +206,55 @@ impl StressFreeCurvature {
             .is_some_and(NaturalCurvature::is_driven)
     }
 
-    /// No plastic curvature. A memory has one for each layer of each face, 1/m: `R p` with the components
+    /// No plastic curvature. A memory has one for each layer of each point, 1/m: `R p` with the components
     /// `(11, sqrt(2) 12, 22)` of `p`, the first axis along the first edge of the face.
     pub(super) fn memory(&self) -> Vec<f64> {
-        vec![0.0; self.layers(0).len() * self.faces.len()]
+        vec![0.0; self.layers(0).len() * self.points.len()]
     }
 
-    /// The plastic curvatures of the layers of a face, in a memory.
-    fn layers(&self, face: usize) -> Range<usize> {
+    /// The plastic curvatures of the layers of a point, in a memory.
+    fn layers(&self, point: usize) -> Range<usize> {
         let count = self.yields.first().map_or(0, |yields| 3 * yields.layers);
-        count * face..count * (face + 1)
+        count * point..count * (point + 1)
     }
 
-    /// The plastic curvatures of a memory as matrices, 1/m.
+    /// The plastic curvatures of the faces as matrices, means of those of their points in a memory, 1/m.
     pub(super) fn matrices(&self, memory: &[f64]) -> impl Iterator<Item = Matrix2<f64>> {
         let matrix = move |face| {
-            let yields = self.yields_of(face)?;
-            let p = self.roots.inverse(face) * yields.plastic(&memory[self.layers(face)]);
+            let yields = self.yields_of(POINTS * face)?;
+            let points = POINTS * face..POINTS * (face + 1);
+            let plastic = points.map(|point| yields.plastic(&memory[self.layers(point)]));
+            let p = self.roots.inverse(face) * plastic.sum::<Vector3<f64>>() / POINTS as f64;
             Some(Matrix2::new(p[0], p[1] / SQRT_2, p[1] / SQRT_2, p[2]))
         };
-        (0..self.faces.len()).filter_map(matrix)
+        (0..self.points.len() / POINTS).filter_map(matrix)
     }
 
-    /// A face at positions, with the natural curvature at a time and the plastic ones of a memory.
-    pub(super) fn bent(&self, face: usize, stencil: &Stencil<'_>, at: At<'_>) -> BentFace {
+    /// A point at positions, with the natural curvature at a time and the plastic ones of a memory.
+    pub(super) fn bent(&self, point: usize, stencil: &Stencil<'_>, at: At<'_>) -> BentPoint {
         let At { t, x, memory } = at;
-        let FaceOfPlate { corners, area, .. } = self.faces[face];
-        let rigidity = self.roots.rigidity(face);
+        let PointOfPlate { corners, area, .. } = self.points[point];
+        let rigidity = self.roots.rigidity(face_of(point));
         let scale = (rigidity * area).sqrt();
-        let [a, b, c] = corners.map(|v| point(x, v));
+        let [a, b, c] = corners.map(|v| position(x, v));
         let normal = (b - a).cross(&(c - a));
         let double_area = normal.norm();
         let normal = normal / double_area;
         let hats = [c - b, a - c, b - a].map(|opposite| normal.cross(&opposite) / double_area);
         let derivatives = stencil.apply(at);
-        let layers = &memory[self.layers(face)];
+        let layers = &memory[self.layers(point)];
         let natural = self.natural.as_ref();
-        let mut before = natural.map_or(Vector3::zeros(), |natural| natural.at(face, t));
-        if let Some(yields) = self.yields_of(face) {
+        let mut before = natural.map_or(Vector3::zeros(), |natural| natural.at(point, t));
+        if let Some(yields) = self.yields_of(point) {
             before += yields.plastic(layers);
         }
         let trial = derivatives.tr_mul(&normal) / scale - before;
-        let flow = match self.yields_of(face) {
+        let flow = match self.yields_of(point) {
             Some(yields) => yields.flow(rigidity, trial, layers),
             None => Flow::none(),
         };
         let stress_free = scale * (before + flow.step);
-        BentFace {
+        BentPoint {
             corners,
             normal,
             hats,
@@ -264,10 +265,10 @@ impl StressFreeCurvature {
         }
     }
 
-    /// The energy of a face, joules: of what is bent elastically, of hardening, of the stresses between
+    /// The energy of a point, joules: of what is bent elastically, of hardening, of the stresses between
     /// layers, and what is dissipated in the step.
-    pub(super) fn energy(&self, face: usize, bent: &BentFace) -> f64 {
-        0.5 * bent.elastic.norm_squared() + self.faces[face].area * bent.flow.energy
+    pub(super) fn energy(&self, point: usize, bent: &BentPoint) -> f64 {
+        0.5 * bent.elastic.norm_squared() + self.points[point].area * bent.flow.energy
     }
 
     /// Makes the curvatures of a memory those at the end of a step; the energy that has been dissipated,
@@ -279,15 +280,15 @@ impl StressFreeCurvature {
         memory: &mut [f64],
     ) -> f64 {
         let mut dissipated = 0.0;
-        for (face, stencil) in stencils.iter().enumerate() {
-            let Some(yields) = self.yields_of(face) else {
+        for (point, stencil) in stencils.iter().enumerate() {
+            let Some(yields) = self.yields_of(point) else {
                 return dissipated;
             };
             let at = At::new(t, x).with_memory(memory);
-            let trial = self.bent(face, &stencil, at).trial;
-            let layers = &mut memory[self.layers(face)];
-            let area = self.faces[face].area;
-            dissipated += area * yields.settle(self.roots.rigidity(face), trial, layers);
+            let trial = self.bent(point, &stencil, at).trial;
+            let layers = &mut memory[self.layers(point)];
+            let area = self.points[point].area;
+            dissipated += area * yields.settle(self.roots.rigidity(face_of(point)), trial, layers);
         }
         dissipated
     }
@@ -302,8 +303,8 @@ impl StressFreeCurvature {
     pub(super) fn blocks(&self, stencils: &Stencils, at: At<'_>) -> Option<MutexGuard<'_, Blocks>> {
         let mut blocks = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
         let mut is_flat = true;
-        for (face, stencil) in stencils.iter().enumerate() {
-            let bent = self.bent(face, &stencil, at);
+        for (point, stencil) in stencils.iter().enumerate() {
+            let bent = self.bent(point, &stencil, at);
             if bent.is_flat() {
                 continue;
             }
@@ -311,12 +312,18 @@ impl StressFreeCurvature {
                 blocks.zero();
                 is_flat = false;
             }
-            self.add_blocks(&bent, face, stencil, &mut blocks);
+            self.add_blocks(&bent, point, stencil, &mut blocks);
         }
         (!is_flat).then_some(blocks)
     }
 
-    fn add_blocks(&self, bent: &BentFace, face: usize, stencil: Stencil<'_>, blocks: &mut Blocks) {
+    fn add_blocks(
+        &self,
+        bent: &BentPoint,
+        point: usize,
+        stencil: Stencil<'_>,
+        blocks: &mut Blocks,
+    ) {
         let (n, p) = (bent.normal, bent.stress_free);
         let turning = p.norm_squared() + (bent.elastic * p).dot(&n).max(0.0);
         let Blocks {
@@ -340,7 +347,7 @@ impl StressFreeCurvature {
             let normal = turning * i.hat.dot(&j.hat) - i.yielded.dot(&j.weights);
             (n * normal + i.along * j.hat) * n.transpose() + j.along * n * i.hat.transpose()
         };
-        let mut slots = self.slots[self.faces[face].slots..].iter();
+        let mut slots = self.slots[self.points[point].slots..].iter();
         for (k, i) in vertices.iter().enumerate() {
             at_vertices[i.index] += block(i, i);
             for (j, Slot { list, index, rows }) in vertices[..k].iter().zip(&mut slots) {
