@@ -79,7 +79,7 @@ impl Scene {
             }
             None => Vec::new(),
         };
-        masses.extend(block.body.point_masses());
+        masses.extend(block.body.mass_matrix().vertex);
         let masses = MassMatrix::from_vertex_masses(masses).expect("masses");
         let mut model = SheetModel::with_mass(&union, masses).expect("a model");
         if let Some((sheet, _)) = sheet {
