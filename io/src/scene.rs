@@ -28,8 +28,10 @@
 //! ```
 
 mod air;
+mod bodies;
 mod build;
 mod bytes;
+mod carried;
 mod changed;
 mod chart;
 mod contact;
@@ -55,6 +57,7 @@ mod outline;
 mod output;
 mod pattern;
 mod placed;
+mod placed_bodies;
 mod pose;
 mod problem;
 mod profile;
@@ -83,6 +86,8 @@ mod weight;
 mod yields;
 
 pub use air::Air;
+pub use bodies::Body;
+pub use carried::{BodyLoad, CarriedBody};
 pub use chart::{
     Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
     Substep,
@@ -138,7 +143,7 @@ pub(crate) use resolution::check_positions;
 #[cfg(feature = "run")]
 pub(crate) use selection::bounds;
 #[cfg(feature = "run")]
-pub(crate) use setup::Facts;
+pub(crate) use setup::{Facts, shown};
 #[cfg(feature = "run")]
 pub(crate) use size::MEMORY_OF_FACE;
 #[cfg(feature = "run")]
@@ -194,6 +199,9 @@ pub struct Scene {
     /// Bodies that the sheet meets.
     #[serde(default)]
     pub obstacle: Vec<Obstacle>,
+    /// Rigid bodies that respond.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub body: Vec<Body>,
     /// Forces on the sheet.
     #[serde(default)]
     pub forces: Forces,
@@ -229,6 +237,7 @@ impl Scene {
             weight: Vec::new(),
             support: Vec::new(),
             obstacle: Vec::new(),
+            body: Vec::new(),
             forces: Forces::default(),
             air: None,
             contact: Contact::default(),
@@ -281,20 +290,24 @@ impl Scene {
         for (key, obstacle) in root.name("obstacle").entries(&self.obstacle) {
             obstacle.check(&key, &mut checks);
         }
+        bodies::check(&self.body, &self.sheet, &mut checks);
         self.forces.check(&root.name("forces"), &mut checks);
         if let Some(air) = &self.air {
             air.check(&root.name("air"), &mut checks);
         }
-        self.contact.check(&root.name("contact"), &mut checks);
+        let contact = root.name("contact");
+        self.contact.check(&self.body, &contact, &mut checks);
         for (k, pair) in self.contact.pair.iter().enumerate() {
             let key = root.name("contact.pair").entry(k).name("sheets");
             for (i, name) in pair.sheets.iter().enumerate() {
-                sheets::check_reference(&self.sheet, Some(name), &key.entry(i), &mut checks);
+                let key = key.entry(i);
+                bodies::check_reference(&self.sheet, &self.body, Some(name), &key, &mut checks);
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
             measure.check(&key, &mut checks);
-            is_known(&measure.sheet, &key, &mut checks);
+            let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
+            bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }
         measure::check_names(&self.measure, &root, &mut checks);
         self.method.check(&root.name("method"), &mut checks);
@@ -312,6 +325,10 @@ impl Scene {
         }
         let key = Key::root().name("method.integrator");
         let remedy = "choose `bdf2` or `implicit_euler`";
+        if !self.body.is_empty() {
+            checks.report(key, "this integrator has no place for bodies", remedy);
+            return;
+        }
         if self.has_contact() && self.method.integrator != Integrator::Chart {
             checks.report(
                 key.clone(),
@@ -336,7 +353,7 @@ impl Scene {
 
     /// Whether contact is modelled.
     pub fn has_contact(&self) -> bool {
-        !self.obstacle.is_empty() || self.contact.self_contact
+        !self.obstacle.is_empty() || !self.body.is_empty() || self.contact.self_contact
     }
 
     /// The mesh files that the scene names, in the order of the scene.
@@ -362,6 +379,11 @@ impl Scene {
         for (k, obstacle) in self.obstacle.iter_mut().enumerate() {
             if let Shape::File(file) = &mut obstacle.shape {
                 files.push((root.name("obstacle").entry(k).name("shape.file"), file));
+            }
+        }
+        for (k, body) in self.body.iter_mut().enumerate() {
+            if let Shape::File(file) = &mut body.shape {
+                files.push((root.name("body").entry(k).name("shape.file"), file));
             }
         }
         files

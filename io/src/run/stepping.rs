@@ -10,13 +10,15 @@ use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::format::{MeasureRow, MeasureWriter};
-use crate::scene::{Facts, Scene, SceneError, SceneFile, SupportForces, check_positions};
+use crate::scene::{CarriedBody, Facts, Scene, SceneError, SceneFile, SupportForces};
+use crate::scene::{check_positions, shown};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::contact::ActiveContacts;
 use isosheet_dynamics::{
     Checkpoint, SheetModel, Simulation, State, StepError, StepProgress, StepReport,
 };
 use nalgebra::Vector3;
+use std::borrow::Cow;
 use std::time::Instant;
 
 /// What is known of a run before its first step.
@@ -35,6 +37,15 @@ pub(crate) enum Rows {
     InFiles,
     /// In its files, and in memory for what is made of them at the end.
     InMemory,
+}
+
+/// What values of a frame belong to.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// Each edge has one.
+    Edge,
+    /// Each face has two.
+    Face,
 }
 
 /// A run between two steps.
@@ -138,7 +149,8 @@ impl<'a> Stepping<'a> {
         clock: Instant,
     ) -> Result<Self, RunError> {
         let (scene, facts) = (plan.file.scene(), &plan.facts);
-        let bears_loads = !scene.support.is_empty() || !scene.obstacle.is_empty();
+        let bears_loads =
+            !scene.support.is_empty() || !scene.obstacle.is_empty() || !scene.body.is_empty();
         let path = |name| folder.path(name);
         let [history, loads, measures, frames] = [
             RunFolder::HISTORY,
@@ -224,21 +236,49 @@ impl<'a> Stepping<'a> {
         Ok(())
     }
 
+    /// What is seen of the state: positions of the model or velocities as those of sheets and surfaces.
+    fn shown<'x>(&self, x: &'x [f64]) -> Cow<'x, [f64]> {
+        shown(self.plan.facts.points.as_ref(), x)
+    }
+
+    /// Values of edges or faces of the model as those of the sheets and surfaces, so many for each: bodies have
+    /// none.
+    fn of_sheets(&self, values: Option<Vec<f64>>, of: Place) -> Vec<f64> {
+        let mut values = values.unwrap_or_default();
+        let facts = &self.plan.facts;
+        if values.is_empty() || facts.bodies.is_empty() {
+            return values;
+        }
+        let [model, all] = [self.simulation.model().topology(), facts.sheet.topology()];
+        let bodies = facts.bodies.len();
+        let (sheets, count, each) = match of {
+            Place::Edge => (model.edge_count() - 6 * bodies, all.edge_count(), 1),
+            Place::Face => (model.face_count() - 4 * bodies, all.face_count(), 2),
+        };
+        values.truncate(each * sheets);
+        values.resize(each * count, 0.0);
+        values
+    }
+
     fn record_frame(&mut self) -> Result<(), RunError> {
-        let state = self.simulation.state();
-        let rod_forces = self.simulation.rod_forces().unwrap_or_default();
-        let contact_forces = self.simulation.contact_forces().unwrap_or_default();
-        let gaps = self.simulation.vertex_gaps().unwrap_or_default();
-        let plastic_angles = self.simulation.plastic_angles().unwrap_or_default();
-        let plastic_curvatures = self.simulation.plastic_curvatures().unwrap_or_default();
+        let simulation = &self.simulation;
+        let state = simulation.state();
+        let rod_forces = self.of_sheets(simulation.rod_forces(), Place::Edge);
+        let contact_forces = simulation.surface_forces().unwrap_or_default();
+        let gaps = simulation.vertex_gaps().unwrap_or_default();
+        let plastic_angles = self.of_sheets(simulation.plastic_angles(), Place::Edge);
+        let curvatures = simulation.plastic_curvatures();
+        let curvatures = curvatures.map(|pairs| pairs.into_flattened());
+        let plastic_curvatures = self.of_sheets(curvatures, Place::Face);
         let data = FrameData {
             rod_forces: &rod_forces,
             contact_forces: &contact_forces,
             gaps: &gaps,
             plastic_angles: &plastic_angles,
-            plastic_curvatures: plastic_curvatures.as_flattened(),
+            plastic_curvatures: &plastic_curvatures,
         };
-        Ok(self.frames.append(state.t, &state.x, &data)?)
+        let (t, x) = (state.t, self.shown(&state.x));
+        Ok(self.frames.append(t, &x, &data)?)
     }
 
     /// Records the loads at the end of a step.
@@ -263,7 +303,18 @@ impl<'a> Stepping<'a> {
             force: load.force.into(),
             torque: load.torque.into(),
         });
-        for row in on_supports.chain(on_obstacles) {
+        let on_bodies = CarriedBody::contact_loads(&self.plan.facts.bodies, &self.simulation);
+        let on_bodies = on_bodies
+            .into_iter()
+            .enumerate()
+            .map(|(number, load)| LoadRow {
+                t,
+                on: LoadKind::Body,
+                number,
+                force: load.force,
+                torque: load.torque,
+            });
+        for row in on_supports.chain(on_obstacles).chain(on_bodies) {
             loads.append(&row)?;
             if let Some(tables) = &mut self.tables {
                 tables.loads.push(row);
@@ -278,11 +329,12 @@ impl<'a> Stepping<'a> {
             return Ok(());
         };
         let state = self.simulation.state();
+        let x = shown(self.plan.facts.points.as_ref(), &state.x);
         for gauge in &self.plan.facts.measures {
             let row = MeasureRow {
                 t: state.t,
                 name: gauge.name.clone(),
-                value: gauge.value(&state.x),
+                value: gauge.value(&x),
             };
             measures.append(&row)?;
             if let Some(tables) = &mut self.tables {
@@ -428,15 +480,23 @@ impl<'a> Stepping<'a> {
 
     /// Largest distance of a vertex from its place at the start, metres.
     fn displacement(&self) -> f64 {
-        let now = self.simulation.state().x.as_chunks::<3>().0;
-        let pairs = now.iter().zip(self.plan.facts.start.as_chunks::<3>().0);
+        let now = self.shown(&self.simulation.state().x);
+        let pairs = now
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .zip(self.plan.facts.start.as_chunks::<3>().0);
         let distances = pairs.map(|(p, q)| (Vector3::from(*p) - Vector3::from(*q)).norm());
         distances.fold(0.0, f64::max)
     }
 
     fn largest_speed(&self) -> f64 {
-        let velocities = self.simulation.state().v.as_chunks::<3>().0.iter();
-        let speeds = velocities.map(|v| Vector3::from(*v).norm());
+        let velocities = self.shown(&self.simulation.state().v);
+        let speeds = velocities
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .map(|v| Vector3::from(*v).norm());
         speeds.fold(0.0, f64::max)
     }
 
@@ -457,6 +517,10 @@ impl<'a> Stepping<'a> {
             largest_speed: self.largest_speed(),
             supports: self.support_forces(),
             obstacles: loads.iter().map(|load| load.force.into()).collect(),
+            bodies: CarriedBody::contact_loads(&self.plan.facts.bodies, &self.simulation)
+                .iter()
+                .map(|load| load.force)
+                .collect(),
             taut: report.taut.as_ref().map(|demand| demand.to_string()),
             residuals: {
                 let State { t, x, .. } = self.simulation.state();

@@ -9,6 +9,7 @@ use super::mesh::Mesh;
 use super::mesh_file::Files;
 use super::obstacles;
 use super::placed::{Form, PlacedSheet, PlacedSheets};
+use super::placed_bodies::{PlacedBodies, Surface};
 use super::pose::Motion;
 use super::problem::Problem;
 use super::sheet::{Bending, Elasticity, Isometry, RestShape};
@@ -18,7 +19,7 @@ use super::supports::{Hold, frame_motion};
 use super::targets::{DrivenCrease, Targets};
 use super::{Air, Measure, Origins, Scene, Setup};
 use isosheet_collide as collide;
-use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::constraint::Line;
 use isosheet_dynamics::{
     AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, LineClamp,
@@ -26,10 +27,11 @@ use isosheet_dynamics::{
     PotentialOfPart, RigidDisplacement, RigidProfile, SheetModel, SimulationError, State,
     VertexConstraint, VertexLoad, leave_flat_in, project_positions, start_of_folding,
 };
-use isosheet_mesh::wording::counted;
+use isosheet_mesh::wording::{brief, counted};
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -57,7 +59,7 @@ impl Scene {
         let (contacts, obstacles) = builder.contacts()?;
         let gauge = |(k, measure): (usize, &Measure)| {
             let key = Key::root().name("measure").entry(k);
-            measure.gauge(&key, &builder.sheets)
+            measure.gauge(&key, &builder.sheets, &builder.bodies)
         };
         let measures = self.measure.iter().enumerate().map(gauge);
         let measures = measures.collect::<Result<_, _>>()?;
@@ -122,6 +124,9 @@ struct Builder<'a> {
     scene: &'a Scene,
     kept: &'a mut Kept,
     sheets: PlacedSheets<'a>,
+    bodies: PlacedBodies<'a>,
+    /// What is seen and touches, where it is more than the sheets.
+    surface: Option<Surface>,
     /// Positions at the start, `3V`.
     x: Vec<f64>,
     /// Absent only while it is replaced by a changed one.
@@ -145,11 +150,15 @@ impl<'a> Builder<'a> {
     fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Self, SceneError> {
         let key = Key::root().name("sheet");
         let sheets = PlacedSheets::new(&scene.sheet, &mut kept.forms, &mut kept.files)?;
+        let bodies = PlacedBodies::new(&scene.body, &sheets, &mut kept.files)?;
         let damping = scene.sheet[0].damping;
-        let mass = sheets.mass(&scene.weight)?;
-        let model = SheetModel::with_mass(&sheets.union, mass)
+        let mass = bodies.mass(&sheets.union, sheets.mass(&scene.weight)?);
+        let mut model = SheetModel::with_mass(&bodies.mesh(&sheets.union)?, mass)
             .and_then(|m| m.with_damping(damping))
             .map_err(at(&key))?;
+        if let Some(first) = bodies.list.first() {
+            model = model.with_bodies_from(first.first);
+        }
         let mut modelled = Vec::new();
         if damping > 0.0 {
             modelled.push("velocity damping".to_owned());
@@ -157,13 +166,23 @@ impl<'a> Builder<'a> {
         if !scene.weight.is_empty() {
             modelled.push(counted(scene.weight.len(), "weight", "weights"));
         }
+        if !scene.body.is_empty() {
+            modelled.push(counted(scene.body.len(), "rigid body", "rigid bodies"));
+        }
+        let surfaces = bodies.list.iter().map(|body| body.part.vertices.clone());
+        let origins = Origins {
+            bodies: surfaces.collect(),
+            ..Origins::default()
+        };
         Ok(Self {
             scene,
             kept,
-            x: sheets.start.clone(),
+            x: sheets.start.iter().copied().chain(bodies.start()).collect(),
+            surface: bodies.surface(&sheets.union)?,
             sheets,
+            bodies,
             model: Some(model),
-            origins: Origins::default(),
+            origins,
             clamps: Vec::new(),
             modelled,
             targets: Targets::default(),
@@ -202,13 +221,13 @@ impl<'a> Builder<'a> {
                 .sheets
                 .vertices(load.sheet.as_deref(), &load.at, &key)?;
             let size = load.size.scaled(1.0 / vertices.len() as f64);
-            let topology = self.sheets.union.topology();
+            let topology = self.model().topology();
             let load = VertexLoad::new(topology, &vertices, load.direction, size);
             let load = load.map_err(at(&key))?;
             self.change(|m| Ok(m.with_force(load)), at::<SimulationError>(&key))?;
         }
         for (key, field) in key.name("acceleration").entries(&forces.acceleration) {
-            let weights = self.model().mass().row_sums(self.sheets.union.topology());
+            let weights = self.model().mass().row_sums(self.model().topology());
             let size = field.size.as_given();
             let field = AccelerationField::new(weights, field.direction, size);
             let field = field.map_err(at(&key))?;
@@ -678,7 +697,7 @@ impl<'a> Builder<'a> {
         for (key, seam) in Key::root().name("glue").entries(&self.scene.glue) {
             let pairs = seam.pairs(&self.sheets, &key)?;
             let model = self.model();
-            let (mass, length) = (model.mass().total(), model.mean_length());
+            let (mass, length) = (model.mass().total(), self.sheets.union.mean_length());
             let stiffness = seam.stiffness(mass, gravity, rigidity, length);
             let closing = seam.closing.as_given();
             let glue = Glue::new(model.topology(), &pairs, stiffness, closing, &self.x);
@@ -707,6 +726,10 @@ impl<'a> Builder<'a> {
             let velocities = of.start.velocities(points, centre);
             v[part.coordinates()].copy_from_slice(velocities.as_flattened());
         }
+        for body in &self.bodies.list {
+            let first = 3 * body.first.index();
+            v[first..first + 12].copy_from_slice(body.velocities().as_flattened());
+        }
         for pin in self.model().pins() {
             v[3 * pin.index()..3 * pin.index() + 3].fill(0.0);
         }
@@ -721,20 +744,31 @@ impl<'a> Builder<'a> {
         let model = self.model.take();
         let sheets = &self.sheets.list;
         let part = |sheet: &PlacedSheet<'_>| {
-            let name = sheet.of.name.clone()?;
-            Some((name, sheet.part.clone()))
+            let name = sheet.of.name.clone();
+            (name.unwrap_or_else(|| "sheet".into()), sheet.part.clone())
         };
-        let parts = match &sheets[..] {
-            [_] => Vec::new(),
-            several => several.iter().filter_map(part).collect(),
+        let of_bodies = self.bodies.list.iter().enumerate();
+        let of_bodies = of_bodies.map(|(k, body)| (body.of.name(k), body.part.clone()));
+        let parts: Vec<_> = match &sheets[..] {
+            [_] if self.bodies.list.is_empty() => Vec::new(),
+            several => several.iter().map(part).chain(of_bodies).collect(),
         };
         let of_sheets = self.sheets.warnings(self.scene);
-        let fold_assignments = self.sheets.fold_assignments();
+        let mut fold_assignments = self.sheets.fold_assignments();
+        let (sheet, points) = match self.surface {
+            None => (self.sheets.union, None),
+            Some(Surface { sheet, points }) => (sheet, Some(points)),
+        };
+        if let Some(of_edges) = &mut fold_assignments {
+            of_edges.resize(sheet.topology().edge_count(), None);
+        }
         Setup {
             start,
             parts,
             material: materials_in_words(sheets),
-            sheet: self.sheets.union,
+            sheet,
+            points,
+            bodies: self.bodies.carried(),
             model: model.expect("a change that fails ends the building"),
             contacts,
             obstacles,
@@ -778,12 +812,24 @@ impl<'a> Builder<'a> {
         if !scene.has_contact() {
             return Ok((None, Vec::new()));
         }
-        let options = scene
-            .contact
-            .options(self.model(), scene.sheet[0].thickness);
-        let mut contacts = Contacts::new(self.model(), options)
-            .map_err(at(&key.name("contact")))?
-            .with_glue(&[self.targets.glued(), self.cuts()].concat());
+        let automatic = match &self.surface {
+            None => ContactOptions::for_sheet(self.model()),
+            Some(surface) => ContactOptions::for_surface(&surface.sheet),
+        };
+        let options = scene.contact.options(automatic, scene.sheet[0].thickness);
+        let contacts = match &self.surface {
+            None => Contacts::new(self.model(), options),
+            Some(Surface { sheet, points }) => Contacts::on_surface(sheet, points.clone(), options),
+        };
+        let mut glued = [self.targets.glued(), self.cuts()].concat();
+        glued.extend(self.bodies.own_points());
+        if !scene.contact.self_contact && !self.bodies.list.is_empty() {
+            // Sheets meet bodies, and not one another.
+            let of_sheets = self.sheets.union.topology().vertex_ids();
+            glued.extend(of_sheets.map(|v| [VertexId(0), v]));
+        }
+        let contacts = contacts.map_err(at(&key.name("contact")))?;
+        let mut contacts = contacts.with_glue(&glued);
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);
@@ -797,24 +843,34 @@ impl<'a> Builder<'a> {
             contacts = contacts.with_body(body, coefficients).map_err(at(&key))?;
         }
         self.count(obstacles.len(), "obstacle", "obstacles");
-        if scene.contact.self_contact {
+        self.bodies.check_empty(&self.sheets, &obstacles)?;
+        if scene.contact.self_contact || !self.bodies.list.is_empty() {
             let coefficients = Coefficients::equal(scene.contact.friction);
             contacts = contacts
                 .with_self_contact(coefficients)
-                .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
+                .map_err(|e| SceneError::from(self_contact_problem(&e, &self.bodies)))?;
             for (key, pair) in key.name("contact.pair").entries(&scene.contact.pair) {
                 let [first, second] = &pair.sheets;
-                let first = self.sheets.one(Some(first), &key, "the contacts")?;
-                let second = self.sheets.one(Some(second), &key, "the contacts")?;
-                let vertices = [first, second].map(|sheet| sheet.part.vertices.clone());
+                let vertices = [self.points_of(first, &key)?, self.points_of(second, &key)?];
                 let coefficients = Coefficients::equal(pair.friction);
                 contacts = contacts
                     .with_friction_between(vertices, coefficients)
                     .map_err(at(&key))?;
             }
+        }
+        if scene.contact.self_contact {
             self.modelled.push("self-contact".into());
         }
         Ok((Some(contacts), obstacles))
+    }
+
+    /// The vertices of the sheet or of the surface of the body of a name.
+    fn points_of(&self, name: &str, key: &Key) -> Result<Range<usize>, Problem> {
+        let part = match self.bodies.named(name) {
+            Some(body) => &body.part,
+            None => &self.sheets.one(Some(name), key, "the contacts")?.part,
+        };
+        Ok(part.vertices.clone())
     }
 }
 
@@ -835,7 +891,26 @@ fn elastic_sheet(
     })
 }
 
-fn self_contact_problem(error: &ContactsError) -> Problem {
+fn self_contact_problem(error: &ContactsError, bodies: &PlacedBodies<'_>) -> Problem {
+    if let ContactsError::Reach {
+        face,
+        height,
+        reach,
+    } = error
+        && let Some(body) = bodies
+            .list
+            .iter()
+            .find(|body| body.part.faces.contains(&(*face as usize)))
+    {
+        let message = format!(
+            "a face of the body is only {} m high, and contact acts up to {} m (activation and thickness)",
+            brief(*height),
+            brief(*reach)
+        );
+        let remedy = "give the body fewer `sides` or a mesh without narrow faces, or choose a smaller \
+                      `sheet.thickness` or `contact.activation`";
+        return Problem::new(body.key.name("shape"), message, remedy);
+    }
     let key = Key::root().name("contact.self_contact");
     let remedy = "choose a smaller `sheet.thickness` or `contact.activation`, or a mesh without narrow faces";
     Problem::new(key, error.to_string(), remedy)

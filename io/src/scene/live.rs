@@ -9,14 +9,16 @@ use super::changed::edited;
 use super::edit::{Edit, EditError, no_function};
 use super::key::Key;
 use super::profile::{Change, Course};
-use super::setup::Facts;
+use super::setup::{Facts, shown};
 use super::sheets::sheet_key;
 use super::{
-    Method, Problem, Profile, Scene, SceneError, SceneFile, SceneFileError, Setup, SupportForces,
+    BodyLoad, CarriedBody, Method, Problem, Profile, Scene, SceneError, SceneFile, SceneFileError,
+    Setup, SupportForces,
 };
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
-use isosheet_mesh::{Advice, Part, Sheet};
+use isosheet_mesh::{Advice, Part, Sheet, VertexId};
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -125,17 +127,46 @@ impl LiveScene {
         &self.simulation
     }
 
-    /// The sheet in its rest shape, placed in space; the union of several.
+    /// Positions of the vertices of [`LiveScene::sheet`], metres (`3V`).
+    pub fn positions(&self) -> Cow<'_, [f64]> {
+        shown(self.facts.points.as_ref(), &self.simulation.state().x)
+    }
+
+    /// Their velocities, m/s.
+    pub fn velocities(&self) -> Cow<'_, [f64]> {
+        shown(self.facts.points.as_ref(), &self.simulation.state().v)
+    }
+
+    /// The pinned vertices of sheets, at rest or in motion.
+    pub fn pins(&self) -> Vec<VertexId> {
+        let bodies = self.facts.bodies.iter();
+        let carriers: Vec<VertexId> = bodies.flat_map(|body| body.vertices).collect();
+        let mut pins = self.simulation.model().pins();
+        pins.retain(|v| !carriers.contains(v));
+        pins
+    }
+
+    /// The bodies that respond, in the order of the scene.
+    pub fn bodies(&self) -> &[CarriedBody] {
+        &self.facts.bodies
+    }
+
+    /// What touches bodies, does to each of them at the end of the last step.
+    pub fn body_loads(&self) -> Vec<BodyLoad> {
+        CarriedBody::contact_loads(&self.facts.bodies, &self.simulation)
+    }
+
+    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
     pub fn sheet(&self) -> &Sheet {
         &self.facts.sheet
     }
 
-    /// Of several sheets the name of each, and where it is in their union.
+    /// Of several sheets and bodies the name of each, and where it is in their union.
     pub fn parts(&self) -> &[(String, Part)] {
         &self.facts.parts
     }
 
-    /// The bodies, in the order of the scene.
+    /// The obstacles, in the order of the scene.
     pub fn obstacles(&self) -> &[Obstacle] {
         &self.facts.obstacles
     }
@@ -277,7 +308,10 @@ fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
         let key = Key::root().name("sheet");
         return vec![Problem::new(key, message, "begin a new simulation")];
     }
-    let mut checks = vec![(Key::root().name("method"), method(before) == method(after))];
+    let mut checks = vec![
+        (Key::root().name("method"), method(before) == method(after)),
+        (Key::root().name("body"), before.body == after.body),
+    ];
     for (k, (old, new)) in old.iter().zip(new).enumerate() {
         let key = sheet_key(before.sheet.len(), k);
         checks.push((key.name("mesh"), old.mesh == new.mesh));

@@ -1,5 +1,6 @@
 //! Everything that a simulation is made of.
 
+use super::carried::CarriedBody;
 use super::chart::Chart;
 use super::error::{SceneError, SceneText};
 use super::key::Key;
@@ -9,12 +10,13 @@ use super::warning::Warning;
 use super::{Gauge, Origins};
 use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
-use isosheet_dynamics::contact::Contact;
+use isosheet_dynamics::contact::{Contact, SurfacePoints};
 use isosheet_dynamics::{
     Checkpoint, Isometry, Method, SheetModel, Simulation, SimulationError, State, StepControl,
 };
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Part, Sheet};
+use std::borrow::Cow;
 
 /// How the motion is computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,12 +39,16 @@ pub enum Integration {
     expect(dead_code, reason = "runs read what a simulation does not need")
 )]
 pub(crate) struct Facts {
-    /// The sheet in its rest shape, placed in space; the union of several.
+    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
     pub(crate) sheet: Sheet,
-    /// Of several sheets the name of each, and where it is in the union.
+    /// The vertices of `sheet` by those of the model, where they are not the same.
+    pub(crate) points: Option<SurfacePoints>,
+    /// Of several sheets and bodies the name of each, and where it is in the union.
     pub(crate) parts: Vec<(String, Part)>,
-    /// The positions at the start.
+    /// The positions of its vertices at the start.
     pub(crate) start: Vec<f64>,
+    /// The bodies that respond, in the order of the scene.
+    pub(crate) bodies: Vec<CarriedBody>,
     pub(crate) obstacles: Vec<Obstacle>,
     pub(crate) modelled: Vec<String>,
     pub(crate) targets: Targets,
@@ -53,9 +59,12 @@ pub(crate) struct Facts {
 /// Everything that a simulation is made of.
 #[derive(Debug)]
 pub struct Setup {
-    /// The sheet in its rest shape, placed in space; the union of several.
+    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
     pub sheet: Sheet,
-    /// Of several sheets the name of each, and where it is in the union.
+    /// The vertices of `sheet` as the model carries them, in scenes with bodies; otherwise they are those of the
+    /// model.
+    pub points: Option<SurfacePoints>,
+    /// Of several sheets and bodies the name of each, and where it is in the union.
     pub parts: Vec<(String, Part)>,
     /// The state at the start.
     pub start: State,
@@ -63,7 +72,9 @@ pub struct Setup {
     pub model: SheetModel,
     /// What it meets, in scenes with contact.
     pub contacts: Option<Contacts>,
-    /// The bodies, in the order of the scene.
+    /// The bodies that respond, in the order of the scene.
+    pub bodies: Vec<CarriedBody>,
+    /// The obstacles, in the order of the scene.
     pub obstacles: Vec<Obstacle>,
     /// How the motion is computed.
     pub integration: Integration,
@@ -91,8 +102,10 @@ impl Setup {
     pub(crate) fn facts(&self) -> Facts {
         Facts {
             sheet: self.sheet.clone(),
+            points: self.points.clone(),
             parts: self.parts.clone(),
-            start: self.start.x.clone(),
+            start: shown(self.points.as_ref(), &self.start.x).into_owned(),
+            bodies: self.bodies.clone(),
             obstacles: self.obstacles.clone(),
             modelled: self.modelled.clone(),
             targets: self.targets.clone(),
@@ -171,6 +184,18 @@ impl Setup {
             }
         };
         resumed.map_err(|e| placed(problem(&self.origins, &e), self.text.as_ref()))
+    }
+}
+
+/// Positions or velocities of what is seen of a scene, by those of the vertices of its model (`3V`).
+pub(crate) fn shown<'a>(points: Option<&SurfacePoints>, x: &'a [f64]) -> Cow<'a, [f64]> {
+    match points {
+        None => Cow::Borrowed(x),
+        Some(points) => {
+            let mut placed = Vec::new();
+            points.place(x, &mut placed);
+            Cow::Owned(placed)
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Scene files: what they mean, and what is said of wrong ones.
 
 mod bends;
+mod bodies;
 mod book;
 mod charts;
 mod complete;

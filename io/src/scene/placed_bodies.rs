@@ -1,0 +1,274 @@
+//! The bodies of a scene in their places.
+
+use super::bodies::Body;
+use super::carried::CarriedBody;
+use super::key::Key;
+use super::mesh_file::Files;
+use super::obstacles::Shape;
+use super::placed::PlacedSheets;
+use super::problem::Problem;
+use super::resolution::check_shape;
+use super::selection::Selection;
+use super::start::velocities;
+use crate::body_mesh::BodyMesh;
+use isosheet_collide as collide;
+use isosheet_dynamics::contact::SurfacePoints;
+use isosheet_dynamics::{RigidBody, Solid, SolidError};
+use isosheet_mesh::{MassMatrix, Part, Sheet, VertexId};
+use nalgebra::Point3;
+
+/// A body in its place.
+pub(super) struct PlacedBody<'a> {
+    /// What the scene says of it.
+    pub(super) of: &'a Body,
+    pub(super) key: Key,
+    pub(super) solid: Solid,
+    pub(super) body: RigidBody,
+    /// The four vertices that carry it.
+    tetrahedron: Sheet,
+    /// Its first vertex in the model.
+    pub(super) first: VertexId,
+    /// Where its surface is among the sheets and the surfaces of all bodies.
+    pub(super) part: Part,
+}
+
+/// All bodies.
+pub(super) struct PlacedBodies<'a> {
+    pub(super) list: Vec<PlacedBody<'a>>,
+}
+
+/// What is seen of sheets and bodies, and what touches: the sheets, and after them the surfaces of the bodies,
+/// whose vertices are points that the model carries.
+pub(super) struct Surface {
+    pub(super) sheet: Sheet,
+    pub(super) points: SurfacePoints,
+}
+
+impl<'a> PlacedBodies<'a> {
+    /// Puts bodies in their places beside sheets.
+    pub(super) fn new(
+        bodies: &'a [Body],
+        sheets: &PlacedSheets<'_>,
+        files: &mut Files,
+    ) -> Result<Self, Problem> {
+        let t = sheets.union.topology();
+        let mut end = [t.vertex_count(), t.edge_count(), t.face_count()];
+        let mut list = Vec::new();
+        for (k, (key, of)) in Key::root().name("body").entries(bodies).enumerate() {
+            let solid = of.solid(&key, files)?;
+            let mass = of
+                .mass
+                .unwrap_or(of.density.unwrap_or_default() * solid.volume());
+            let body = RigidBody::of_solid(&solid, mass)
+                .map_err(|e| Problem::from_error(key.clone(), &e))?;
+            let own = solid.surface().topology();
+            let counts = [own.vertex_count(), own.edge_count(), own.face_count()];
+            let [vertices, edges, faces] = [0, 1, 2].map(|i| end[i]..end[i] + counts[i]);
+            end = [vertices.end, edges.end, faces.end];
+            list.push(PlacedBody {
+                of,
+                key,
+                tetrahedron: body.tetrahedron(),
+                body,
+                solid,
+                first: VertexId::from_index(t.vertex_count() + 4 * k),
+                part: Part {
+                    vertices,
+                    edges,
+                    faces,
+                },
+            });
+        }
+        Ok(Self { list })
+    }
+
+    /// The mesh of the model: the sheets, and after them what carries the bodies.
+    pub(super) fn mesh(&self, sheets: &Sheet) -> Result<Sheet, Problem> {
+        self.beside(sheets, |body| &body.tetrahedron)
+    }
+
+    /// The sheets, and after them something of each body.
+    fn beside(
+        &self,
+        sheets: &Sheet,
+        of: impl for<'b> Fn(&'b PlacedBody<'a>) -> &'b Sheet,
+    ) -> Result<Sheet, Problem> {
+        if self.list.is_empty() {
+            return Ok(sheets.clone());
+        }
+        let all: Vec<&Sheet> = [sheets]
+            .into_iter()
+            .chain(self.list.iter().map(of))
+            .collect();
+        Sheet::union(&all).map_err(|e| Problem::from_error(Key::root().name("body"), &e))
+    }
+
+    /// The masses of the model, of those of the sheets.
+    pub(super) fn mass(&self, sheets: &Sheet, of_sheets: MassMatrix) -> MassMatrix {
+        if self.list.is_empty() {
+            return of_sheets;
+        }
+        let bodies = self.list.iter().map(|body| body.body.mass_matrix());
+        let mut all: Vec<MassMatrix> = [of_sheets].into_iter().chain(bodies).collect();
+        if all.iter().any(|mass| mass.edge.is_some()) {
+            // The others have couplings of zero.
+            let own = self.list.iter().map(|body| &body.tetrahedron);
+            let meshes = [sheets].into_iter().chain(own);
+            for (mass, mesh) in all.iter_mut().zip(meshes) {
+                let count = mesh.topology().edge_count();
+                mass.edge.get_or_insert_with(|| vec![0.0; count]);
+            }
+        }
+        MassMatrix::union(&all)
+    }
+
+    /// The positions at the start of the vertices of the model, after those of the sheets.
+    pub(super) fn start(&self) -> impl Iterator<Item = f64> {
+        let bodies = self.list.iter();
+        bodies.flat_map(|body| body.tetrahedron.positions().iter().copied())
+    }
+
+    /// What is seen and touches; none if that is the sheets alone.
+    pub(super) fn surface(&self, sheets: &Sheet) -> Result<Option<Surface>, Problem> {
+        if self.list.is_empty() {
+            return Ok(None);
+        }
+        let sheet = self.beside(sheets, |body| body.solid.surface())?;
+        let own = sheets.topology().vertex_count();
+        let carried = self.list.iter().flat_map(|body| {
+            let points = body.solid.surface().positions().as_chunks::<3>().0.iter();
+            points.map(|p| body.body.carried(*p, body.first))
+        });
+        let vertices = own + 4 * self.list.len();
+        let points = SurfacePoints::new(vertices, own, carried.collect());
+        let points = points.map_err(|e| Problem::from_error(Key::root().name("body"), &e))?;
+        Ok(Some(Surface { sheet, points }))
+    }
+
+    /// The positions at the start of the vertices of their surfaces.
+    pub(super) fn surface_positions(&self) -> Vec<f64> {
+        let bodies = self.list.iter();
+        bodies
+            .flat_map(|body| body.solid.surface().positions().iter().copied())
+            .collect()
+    }
+
+    /// The body of a name.
+    pub(super) fn named(&self, name: &str) -> Option<&PlacedBody<'a>> {
+        let mut numbered = self.list.iter().enumerate();
+        let found = numbered.find(|(k, body)| body.of.name(*k) == name);
+        found.map(|(_, body)| body)
+    }
+
+    /// As the model carries them.
+    pub(super) fn carried(&self) -> Vec<CarriedBody> {
+        let bodies = self.list.iter().map(|body| CarriedBody {
+            vertices: body.vertices(),
+            centre: body.body.carried(body.body.centre(), body.first),
+            surface: body.part.vertices.clone(),
+        });
+        bodies.collect()
+    }
+
+    /// Pairs of points that do not touch each other: those of each body.
+    pub(super) fn own_points(&self) -> impl Iterator<Item = [VertexId; 2]> {
+        let parts = self.list.iter().map(|body| body.part.vertices.clone());
+        parts.flat_map(|range| {
+            let first = VertexId::from_index(range.start);
+            range.skip(1).map(move |v| [first, VertexId::from_index(v)])
+        })
+    }
+
+    /// Refuses bodies in which something else is at the start. (What passes through their surface is found with
+    /// the gaps of contact.)
+    pub(super) fn check_empty(
+        &self,
+        sheets: &PlacedSheets<'_>,
+        obstacles: &[collide::Obstacle],
+    ) -> Result<(), Problem> {
+        let point_of_part = |mesh: &Sheet, x: &[f64]| -> Vec<[f64; 3]> {
+            let parts = mesh.topology().components();
+            let firsts = parts.iter().filter_map(|part| part.first());
+            firsts.map(|v| x.as_chunks::<3>().0[v.index()]).collect()
+        };
+        let of_sheets = point_of_part(&sheets.union, &sheets.start).into_iter();
+        let mut points: Vec<(Key, [f64; 3])> =
+            of_sheets.map(|p| (Key::root().name("sheet"), p)).collect();
+        for body in &self.list {
+            let surface = body.solid.surface();
+            let own = point_of_part(surface, surface.positions()).into_iter();
+            points.extend(own.map(|p| (body.key.clone(), p)));
+        }
+        for (k, obstacle) in obstacles.iter().enumerate() {
+            let mesh = BodyMesh::of(obstacle.shape(), 4).ok().flatten();
+            let corner = mesh.and_then(|mesh| mesh.points.first().copied());
+            if let Some(p) = corner {
+                let place = obstacle.motion().pose(0.0) * Point3::from(p);
+                points.push((Key::root().name("obstacle").entry(k), place.coords.into()));
+            }
+        }
+        for body in &self.list {
+            let others = points.iter().filter(|(key, _)| *key != body.key);
+            for (key, point) in others {
+                if body.solid.contains(*point) {
+                    let message = format!("`{key}` is inside of this body at the start");
+                    let remedy = "move one of them: bodies are solid, and nothing passes through their surfaces";
+                    return Err(Problem::new(body.key.name("pose"), message, remedy));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl PlacedBody<'_> {
+    /// The vertices of the model that carry it.
+    pub(super) fn vertices(&self) -> [VertexId; 4] {
+        [0, 1, 2, 3].map(|k| VertexId::from_index(self.first.index() + k))
+    }
+
+    /// The vertices of its surface at a selection, by their numbers among those of all surfaces.
+    pub(super) fn vertices_at(
+        &self,
+        selection: &Selection,
+        at: &Key,
+    ) -> Result<Vec<VertexId>, Problem> {
+        let surface = self.solid.surface();
+        let found = selection.resolve(at, surface.topology(), surface.positions())?;
+        Ok(found.into_iter().map(|v| self.part.vertex(v)).collect())
+    }
+
+    /// The velocities of these at the start, m/s.
+    pub(super) fn velocities(&self) -> Vec<[f64; 3]> {
+        let points = self.tetrahedron.positions().as_chunks::<3>().0;
+        velocities(
+            points,
+            self.of.velocity,
+            self.of.spin,
+            self.body.centre().into(),
+        )
+    }
+}
+
+impl Body {
+    /// What its surface encloses, in its place.
+    fn solid(&self, key: &Key, files: &mut Files) -> Result<Solid, Problem> {
+        let key = key.name("shape");
+        let shape = self.shape.build(&key, files)?;
+        let at = match self.shape {
+            Shape::File(_) => key.name("file.path"),
+            _ => key.name(self.shape.name()),
+        };
+        let mesh = BodyMesh::of(&shape, self.sides);
+        let mesh = mesh.map_err(|e| Problem::from_error(at.clone(), &e))?;
+        let mesh = mesh.ok_or_else(|| {
+            let message = "the shape encloses no volume";
+            Problem::new(at.clone(), message, "choose another one")
+        })?;
+        let positions = mesh.points.iter().flat_map(|p| self.pose.place(*p));
+        let surface = Sheet::new(positions.collect(), &mesh.faces);
+        let surface = surface.map_err(|e| Problem::from_error(at.clone(), &e))?;
+        check_shape(&surface, &at)?;
+        Solid::new(surface).map_err(|e: SolidError| Problem::from_error(at.clone(), &e))
+    }
+}
