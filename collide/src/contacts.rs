@@ -136,7 +136,7 @@ pub struct Contacts {
     /// Squared rest lengths of the edges.
     lengths2: Vec<f64>,
     mean_length: f64,
-    /// The face with the smallest height, and that height.
+    /// The face of a sheet with the smallest height, and that height.
     smallest_height: (u32, f64),
     bodies: Vec<Body>,
     has_self_contact: bool,
@@ -154,7 +154,7 @@ impl Contacts {
     /// [`ContactsError`] naming the option that makes no sense.
     pub fn new(model: &SheetModel, options: ContactOptions) -> Result<Self, ContactsError> {
         let (topology, lengths) = (model.topology(), model.edges().lengths());
-        Self::between(topology, lengths, options)
+        Self::between(topology, lengths, topology.vertex_count(), options)
     }
 
     /// Contact of a surface whose points are combinations of the vertices of a model, with nothing yet: sheets
@@ -174,7 +174,8 @@ impl Contacts {
     ) -> Result<Self, ContactsError> {
         let count = surface.topology().vertex_count();
         assert_eq!(points.count(), count, "a point for each vertex");
-        let contacts = Self::between(surface.topology(), surface.lengths(), options)?;
+        let contacts =
+            Self::between(surface.topology(), surface.lengths(), points.own(), options)?;
         Ok(Self {
             points: Some(points),
             ..contacts
@@ -184,6 +185,7 @@ impl Contacts {
     fn between(
         topology: &Topology,
         lengths: &[f64],
+        own: usize,
         options: ContactOptions,
     ) -> Result<Self, ContactsError> {
         options.validate()?;
@@ -194,7 +196,7 @@ impl Contacts {
             mesh: ContactMesh::from_topology(topology),
             points: None,
             lengths2: lengths.iter().map(|l| l * l).collect(),
-            smallest_height: smallest_height(topology, lengths),
+            smallest_height: smallest_height(topology, lengths, own),
             bodies: Vec::new(),
             has_self_contact: false,
             mean_length: lengths.iter().sum::<f64>() / lengths.len() as f64,

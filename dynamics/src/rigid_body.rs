@@ -1,7 +1,13 @@
 //! Rigid bodies as tetrahedra.
 
+mod attachment;
+mod force;
+mod joint;
 mod solid;
 
+pub use attachment::Attachment;
+pub use force::{BodyForce, BodyTorque};
+pub use joint::{JointCoordinate, JointError, JointSpring};
 pub use solid::{Solid, SolidError};
 
 use crate::contact::CarriedPoint;

@@ -101,7 +101,7 @@ impl Scene {
         let points = SurfacePoints::new(count, first, carried.collect()).expect("points");
         let surface = Sheet::union(&surfaces).expect("a surface");
         let glued = (1..8).map(|k| [first, first + k].map(VertexId::from_index));
-        let options = ContactOptions::for_surface(&surface);
+        let options = ContactOptions::for_surface(&surface, &points);
         let contacts = Contacts::on_surface(&surface, points, options)
             .expect("contact")
             .with_self_contact(Coefficients::equal(friction))

@@ -27,7 +27,7 @@ use isosheet_dynamics::{
     PotentialOfPart, RigidDisplacement, RigidProfile, SheetModel, SimulationError, State,
     VertexConstraint, VertexLoad, leave_flat_in, project_positions, start_of_folding,
 };
-use isosheet_mesh::wording::{brief, counted};
+use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -814,7 +814,7 @@ impl<'a> Builder<'a> {
         }
         let automatic = match &self.surface {
             None => ContactOptions::for_sheet(self.model()),
-            Some(surface) => ContactOptions::for_surface(&surface.sheet),
+            Some(surface) => ContactOptions::for_surface(&surface.sheet, &surface.points),
         };
         let options = scene.contact.options(automatic, scene.sheet[0].thickness);
         let contacts = match &self.surface {
@@ -848,7 +848,7 @@ impl<'a> Builder<'a> {
             let coefficients = Coefficients::equal(scene.contact.friction);
             contacts = contacts
                 .with_self_contact(coefficients)
-                .map_err(|e| SceneError::from(self_contact_problem(&e, &self.bodies)))?;
+                .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
             for (key, pair) in key.name("contact.pair").entries(&scene.contact.pair) {
                 let [first, second] = &pair.sheets;
                 let vertices = [self.points_of(first, &key)?, self.points_of(second, &key)?];
@@ -891,26 +891,7 @@ fn elastic_sheet(
     })
 }
 
-fn self_contact_problem(error: &ContactsError, bodies: &PlacedBodies<'_>) -> Problem {
-    if let ContactsError::Reach {
-        face,
-        height,
-        reach,
-    } = error
-        && let Some(body) = bodies
-            .list
-            .iter()
-            .find(|body| body.part.faces.contains(&(*face as usize)))
-    {
-        let message = format!(
-            "a face of the body is only {} m high, and contact acts up to {} m (activation and thickness)",
-            brief(*height),
-            brief(*reach)
-        );
-        let remedy = "give the body fewer `sides` or a mesh without narrow faces, or choose a smaller \
-                      `sheet.thickness` or `contact.activation`";
-        return Problem::new(body.key.name("shape"), message, remedy);
-    }
+fn self_contact_problem(error: &ContactsError) -> Problem {
     let key = Key::root().name("contact.self_contact");
     let remedy = "choose a smaller `sheet.thickness` or `contact.activation`, or a mesh without narrow faces";
     Problem::new(key, error.to_string(), remedy)
