@@ -159,8 +159,8 @@ impl Contacts {
 
     /// Contact of a surface whose points are combinations of the vertices of a model, with nothing yet: sheets
     /// whose vertices these are, and surfaces of [rigid bodies](isosheet_dynamics::RigidBody). The `points`
-    /// are the vertices of `surface`, in this order. What belongs to one body does not touch itself if its
-    /// vertices are told to be [glued](Contacts::with_glue) to one another.
+    /// are the vertices of `surface`, in this order. What belongs to one body does not touch itself if it is
+    /// [named](Contacts::with_parts).
     ///
     /// # Errors
     /// [`ContactsError`] naming the option that makes no sense.
@@ -174,8 +174,7 @@ impl Contacts {
     ) -> Result<Self, ContactsError> {
         let count = surface.topology().vertex_count();
         assert_eq!(points.count(), count, "a point for each vertex");
-        let contacts =
-            Self::between(surface.topology(), surface.lengths(), points.own(), options)?;
+        let contacts = Self::between(surface.topology(), surface.lengths(), points.own(), options)?;
         Ok(Self {
             points: Some(points),
             ..contacts
@@ -275,6 +274,24 @@ impl Contacts {
     pub fn with_glue(mut self, pairs: &[[VertexId; 2]]) -> Self {
         let pairs: Vec<[u32; 2]> = pairs.iter().map(|pair| pair.map(|v| v.0)).collect();
         self.mesh = self.mesh.with_glue(&pairs);
+        self.neighbours = None;
+        self
+    }
+
+    /// Tells of parts of the surface, by ranges of their points, that do not touch themselves, such as rigid
+    /// bodies; and of points outside of a part that are attached to it, each with the number of the part: what
+    /// has them as corners does not touch the part.
+    ///
+    /// # Panics
+    /// If a point does not exist.
+    #[must_use]
+    pub fn with_parts(
+        mut self,
+        parts: &[Range<usize>],
+        attached: impl IntoIterator<Item = (VertexId, usize)>,
+    ) -> Self {
+        let attached = attached.into_iter().map(|(v, part)| (v.0, part as u32));
+        self.mesh = self.mesh.with_parts(parts, attached);
         self.neighbours = None;
         self
     }

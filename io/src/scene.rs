@@ -44,6 +44,7 @@ mod forces;
 mod form;
 mod functions;
 mod glue;
+mod guides;
 mod in_words;
 mod key;
 mod live;
@@ -100,6 +101,7 @@ pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use forces::{Acceleration, Forces, Load};
 pub use glue::{Glue, SeamSide};
+pub use guides::{BodyForce, BodyTorque, Guide};
 pub use key::{Key, KeyError, KeyPart};
 pub use live::{FailedStep, HoldError, LiveScene};
 pub use material::{Material, Plate};
@@ -274,7 +276,7 @@ impl Scene {
             }
         }
         for (key, glue) in root.name("glue").entries(&self.glue) {
-            glue.check(&self.sheet, &key, &mut checks);
+            glue.check(&self.sheet, &self.body, &key, &mut checks);
         }
         for (key, weight) in root.name("weight").entries(&self.weight) {
             weight.check(&key, &mut checks);

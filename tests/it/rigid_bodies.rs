@@ -100,13 +100,12 @@ impl Scene {
         let count = union.topology().vertex_count();
         let points = SurfacePoints::new(count, first, carried.collect()).expect("points");
         let surface = Sheet::union(&surfaces).expect("a surface");
-        let glued = (1..8).map(|k| [first, first + k].map(VertexId::from_index));
         let options = ContactOptions::for_surface(&surface, &points);
         let contacts = Contacts::on_surface(&surface, points, options)
             .expect("contact")
             .with_self_contact(Coefficients::equal(friction))
             .expect("friction")
-            .with_glue(&glued.collect::<Vec<_>>());
+            .with_parts(&[first..first + 8], []);
         let state = State::at_rest(union.positions().to_vec());
         Self {
             model,

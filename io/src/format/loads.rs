@@ -15,6 +15,8 @@ pub enum LoadKind {
     Obstacle,
     /// A body that responds; force and torque are those of all that touches it.
     Body,
+    /// The guide of a body; force and torque are those of the guide on the body.
+    Guide,
 }
 
 /// The load of a support, an obstacle or a body at the end of a step. The field order is the column order of the
@@ -47,7 +49,8 @@ pub struct LoadRow {
     /// Force, newtons.
     pub force: [f64; 3],
     /// Torque, newton metres: on an obstacle about the origin of its own frame, on a body about its centre of
-    /// mass, of a support about the mean of the places of its vertices.
+    /// mass, of a guide about the point of the hinge or the joint or on a slider about the centre of mass, of a
+    /// support about the mean of the places of its vertices.
     pub torque: [f64; 3],
 }
 

@@ -314,7 +314,22 @@ impl<'a> Stepping<'a> {
                 force: load.force,
                 torque: load.torque,
             });
-        for row in on_supports.chain(on_obstacles).chain(on_bodies) {
+        let guided = self.plan.facts.bodies.iter().enumerate();
+        let of_guides = guided.filter_map(|(number, body)| {
+            let load = body.guide_load(&self.simulation)?;
+            Some(LoadRow {
+                t,
+                on: LoadKind::Guide,
+                number,
+                force: load.force,
+                torque: load.torque,
+            })
+        });
+        for row in on_supports
+            .chain(on_obstacles)
+            .chain(on_bodies)
+            .chain(of_guides)
+        {
             loads.append(&row)?;
             if let Some(tables) = &mut self.tables {
                 tables.loads.push(row);

@@ -1,9 +1,11 @@
 //! Rigid bodies that respond.
 
+use super::guides::{BodyForce, BodyTorque, Guide};
 use super::key::Key;
 use super::obstacles::Shape;
 use super::pose::Pose;
 use super::problem::Checks;
+use super::profile::Profile;
 use super::start::Spin;
 use super::unit::Unit;
 use super::{Sheet, sheets};
@@ -46,9 +48,19 @@ pub struct Body {
     /// Velocity of its centre of mass at the start, m/s.
     #[serde(default)]
     pub velocity: [f64; 3],
-    /// Rotation at the start beside the velocity.
+    /// Rotation at the start beside the velocity, of a guided body about a point of the guide if no other is
+    /// given.
     #[serde(default)]
     pub spin: Option<Spin>,
+    /// A joint that guides it; without one it is free.
+    #[serde(default)]
+    pub guide: Option<Guide>,
+    /// Forces on it besides gravity, contact and the guide.
+    #[serde(default)]
+    pub force: Vec<BodyForce>,
+    /// Torques on it.
+    #[serde(default)]
+    pub torque: Vec<BodyTorque>,
 }
 
 fn sides() -> usize {
@@ -70,6 +82,9 @@ impl Body {
             pose: Pose::default(),
             velocity: [0.0; 3],
             spin: None,
+            guide: None,
+            force: Vec::new(),
+            torque: Vec::new(),
         }
     }
 
@@ -111,6 +126,40 @@ impl Body {
         if let Some(spin) = &self.spin {
             spin.check(&key.name("spin"), checks);
         }
+        if let Some(guide) = &self.guide {
+            guide.check(&key.name("guide"), checks);
+        }
+        for (key, force) in key.name("force").entries(&self.force) {
+            force.check(&key, checks);
+        }
+        for (key, torque) in key.name("torque").entries(&self.torque) {
+            torque.check(&key, checks);
+        }
+    }
+
+    /// Its functions of time.
+    pub(super) fn functions_mut(&mut self, key: &Key) -> Vec<(Key, &mut Profile)> {
+        let guide = self.guide.as_mut().and_then(Guide::rest_mut);
+        let mut all: Vec<_> = guide
+            .map(|(name, rest)| (key.name("guide").name(name), rest))
+            .into_iter()
+            .collect();
+        for (k, force) in self.force.iter_mut().enumerate() {
+            all.push((key.name("force").entry(k).name("size"), &mut force.size));
+        }
+        for (k, torque) in self.torque.iter_mut().enumerate() {
+            all.push((key.name("torque").entry(k).name("size"), &mut torque.size));
+        }
+        all
+    }
+
+    /// What of it does not change during a simulation: all but its functions of time.
+    pub(super) fn lasting(&self) -> Self {
+        let mut lasting = self.clone();
+        for (_, function) in lasting.functions_mut(&Key::root()) {
+            *function = Profile::default();
+        }
+        lasting
     }
 
     /// Its name as the body of a number.

@@ -1,15 +1,17 @@
 //! From a scene to a simulation.
 
+use super::bodies;
 use super::creases::{EdgeFolds, FoldSprings};
 use super::error::SceneError;
 use super::folding::{FLAT_STIFFNESS, FoldTargets};
+use super::guides::Guide;
 use super::in_words::{elastic_in_words, materials_in_words};
 use super::key::Key;
 use super::mesh::Mesh;
 use super::mesh_file::Files;
 use super::obstacles;
 use super::placed::{Form, PlacedSheet, PlacedSheets};
-use super::placed_bodies::{PlacedBodies, Surface};
+use super::placed_bodies::{JointMotion, PlacedBodies, Surface};
 use super::pose::Motion;
 use super::problem::Problem;
 use super::sheet::{Bending, Elasticity, Isometry, RestShape};
@@ -20,12 +22,13 @@ use super::targets::{DrivenCrease, Targets};
 use super::{Air, Measure, Origins, Scene, Setup};
 use isosheet_collide as collide;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, ContactsError, Obstacle};
-use isosheet_dynamics::constraint::Line;
+use isosheet_dynamics::constraint::{Line, Plane, Side};
 use isosheet_dynamics::{
-    AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, LineClamp,
-    PAPER_GRAVITY, PlateBending, PlateEdges, PlateLaw, PointMotion, PointProfile, Potential,
-    PotentialOfPart, RigidDisplacement, RigidProfile, SheetModel, SimulationError, State,
-    VertexConstraint, VertexLoad, leave_flat_in, project_positions, start_of_folding,
+    AccelerationField, Attachment, CreaseSprings, ElasticSheet, ElasticSheetError, Glue,
+    JointSpring, LineClamp, PAPER_GRAVITY, PlateBending, PlateEdges, PlateLaw, PointMotion,
+    PointProfile, Potential, PotentialOfPart, RigidDisplacement, RigidProfile, SheetModel,
+    SimulationError, State, VertexConstraint, VertexLoad, leave_flat_in, project_positions,
+    start_of_folding,
 };
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, Sheet, VertexId};
@@ -51,6 +54,8 @@ impl Scene {
         let mut builder = Builder::new(self, kept)?;
         builder.add_forces()?;
         builder.add_supports()?;
+        builder.add_guides()?;
+        builder.add_body_forces()?;
         builder.mend_lengths();
         builder.add_folds()?;
         builder.add_isometry()?;
@@ -127,6 +132,8 @@ struct Builder<'a> {
     bodies: PlacedBodies<'a>,
     /// What is seen and touches, where it is more than the sheets.
     surface: Option<Surface>,
+    /// Vertices that are glued to bodies, each with the number of the body.
+    glued_to_bodies: Vec<(VertexId, usize)>,
     /// Positions at the start, `3V`.
     x: Vec<f64>,
     /// Absent only while it is replaced by a changed one.
@@ -179,6 +186,7 @@ impl<'a> Builder<'a> {
             kept,
             x: sheets.start.iter().copied().chain(bodies.start()).collect(),
             surface: bodies.surface(&sheets.union)?,
+            glued_to_bodies: Vec::new(),
             sheets,
             bodies,
             model: Some(model),
@@ -368,6 +376,82 @@ impl<'a> Builder<'a> {
             third.extend(corners);
         }
         Ok(third.into_iter().collect())
+    }
+
+    /// Holds the corners of guided bodies.
+    fn add_guides(&mut self) -> Result<(), SceneError> {
+        for k in 0..self.bodies.list.len() {
+            let body = &self.bodies.list[k];
+            let Some(guide) = &body.of.guide else {
+                continue;
+            };
+            let (key, vertices) = (body.key.name("guide").name(guide.name()), body.vertices());
+            let motion = body.guided_motion(guide, &self.x)?;
+            self.origins.guides.extend(vertices.map(|v| (v, k)));
+            match guide {
+                Guide::Ball { .. } => self.change(|m| m.with_pins(&vertices[..1]), at(&key))?,
+                Guide::Hinge { .. } => self.change(|m| m.with_pins(&vertices[..2]), at(&key))?,
+                Guide::Slider { direction, .. } => {
+                    for v in [vertices[0], vertices[1]] {
+                        let line = Line::new(self.position(v), *direction).map_err(at(&key))?;
+                        let constraint = VertexConstraint::on_curve(v, line);
+                        self.change(|m| m.with_constraint(constraint), at(&key))?;
+                    }
+                    // The third corner is beside the line of the other two.
+                    let [a, b, c] = [0, 1, 2].map(|i| Vector3::from(self.position(vertices[i])));
+                    let normal = (b - a).cross(&(c - a));
+                    let plane = Plane::new(c.into(), normal.into()).map_err(at(&key))?;
+                    let constraint = VertexConstraint::on_surface(vertices[2], plane, Side::On);
+                    self.change(|m| m.with_constraint(constraint), at(&key))?;
+                }
+            }
+            if let Some(JointMotion {
+                coordinate,
+                stiffness,
+                rest,
+                damping,
+            }) = motion
+            {
+                if stiffness > 0.0 {
+                    let spring = JointSpring::new(coordinate.clone(), stiffness, rest);
+                    let spring = spring.map_err(at(&key))?;
+                    self.change(
+                        |m| Ok(m.with_potential(spring)),
+                        at::<SimulationError>(&key),
+                    )?;
+                }
+                if damping > 0.0 {
+                    self.change(|m| m.with_joint_damper(coordinate, damping), at(&key))?;
+                }
+            }
+        }
+        let guided = self
+            .bodies
+            .list
+            .iter()
+            .filter(|body| body.of.guide.is_some());
+        self.count(guided.count(), "guide of a body", "guides of bodies");
+        Ok(())
+    }
+
+    fn add_body_forces(&mut self) -> Result<(), SceneError> {
+        let (mut forces, mut torques) = (0, 0);
+        for k in 0..self.bodies.list.len() {
+            let of = self.bodies.list[k].of;
+            for (i, force) in of.force.iter().enumerate() {
+                let (key, force) = self.bodies.list[k].force(i, force)?;
+                self.change(|m| Ok(m.with_force(force)), at::<SimulationError>(&key))?;
+            }
+            for (i, torque) in of.torque.iter().enumerate() {
+                let (key, torque) = self.bodies.list[k].torque(i, torque)?;
+                self.change(|m| Ok(m.with_force(torque)), at::<SimulationError>(&key))?;
+            }
+            forces += of.force.len();
+            torques += of.torque.len();
+        }
+        self.count(forces, "force on a body", "forces on bodies");
+        self.count(torques, "torque on a body", "torques on bodies");
+        Ok(())
     }
 
     /// A vertex may be pinned twice at rest; with anything else a pin would decide silently.
@@ -695,10 +779,28 @@ impl<'a> Builder<'a> {
         let gravity = self.scene.forces.gravity.map(norm).filter(|g| *g > 0.0);
         let gravity = gravity.unwrap_or(norm(PAPER_GRAVITY));
         for (key, seam) in Key::root().name("glue").entries(&self.scene.glue) {
-            let pairs = seam.pairs(&self.sheets, &key)?;
             let model = self.model();
             let (mass, length) = (model.mass().total(), self.sheets.union.mean_length());
             let stiffness = seam.stiffness(mass, gravity, rigidity, length);
+            let number = seam
+                .body()
+                .and_then(|name| bodies::number_of(&self.scene.body, name));
+            if let Some(number) = number {
+                let body = &self.bodies.list[number];
+                let vertices = seam.first_vertices(&self.sheets, &key)?;
+                let glued = vertices.iter().map(|v| (*v, number));
+                self.glued_to_bodies.extend(glued);
+                let carried = |v: VertexId| (v, body.body.carried(self.position(v), body.first));
+                let pairs = vertices.into_iter().map(carried).collect();
+                let attachment = Attachment::new(pairs, stiffness).map_err(at(&key))?;
+                self.change(
+                    |m| Ok(m.with_potential(attachment)),
+                    at::<SimulationError>(&key),
+                )?;
+                continue;
+            }
+            let pairs = seam.pairs(&self.sheets, &key)?;
+            let model = self.model();
             let closing = seam.closing.as_given();
             let glue = Glue::new(model.topology(), &pairs, stiffness, closing, &self.x);
             let glue = glue.map_err(at(&key))?;
@@ -821,15 +923,17 @@ impl<'a> Builder<'a> {
             None => Contacts::new(self.model(), options),
             Some(Surface { sheet, points }) => Contacts::on_surface(sheet, points.clone(), options),
         };
-        let mut glued = [self.targets.glued(), self.cuts()].concat();
-        glued.extend(self.bodies.own_points());
-        if !scene.contact.self_contact && !self.bodies.list.is_empty() {
-            // Sheets meet bodies, and not one another.
-            let of_sheets = self.sheets.union.topology().vertex_ids();
-            glued.extend(of_sheets.map(|v| [VertexId(0), v]));
+        let mut contacts = contacts
+            .map_err(at(&key.name("contact")))?
+            .with_glue(&[self.targets.glued(), self.cuts()].concat());
+        if !self.bodies.list.is_empty() {
+            let mut parts: Vec<_> = self.origins.bodies.clone();
+            if !scene.contact.self_contact {
+                // Sheets meet bodies, and not one another.
+                parts.push(0..self.sheets.union.topology().vertex_count());
+            }
+            contacts = contacts.with_parts(&parts, self.glued_to_bodies.iter().copied());
         }
-        let contacts = contacts.map_err(at(&key.name("contact")))?;
-        let mut contacts = contacts.with_glue(&glued);
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);

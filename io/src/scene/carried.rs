@@ -13,6 +13,8 @@ pub struct CarriedBody {
     pub(crate) vertices: [VertexId; 4],
     /// The weights of these at its centre of mass.
     pub(crate) centre: CarriedPoint,
+    /// The weights at the point about which torques of its guide are given, if it has one.
+    pub(crate) pivot: Option<CarriedPoint>,
     /// The vertices of its surface, by their numbers among those of the sheets and of all surfaces.
     pub(crate) surface: Range<usize>,
 }
@@ -22,31 +24,54 @@ pub struct CarriedBody {
 pub struct BodyLoad {
     /// Force, newtons.
     pub force: [f64; 3],
-    /// Torque about its centre of mass, newton metres.
+    /// Torque, newton metres: of contact about its centre of mass, of a guide about the point of that.
     pub torque: [f64; 3],
+}
+
+impl BodyLoad {
+    /// The sum of forces on vertices at positions `x`, with its torque about a point.
+    fn sum(
+        forces: impl IntoIterator<Item = (VertexId, Vector3<f64>)>,
+        x: &[f64],
+        about: Vector3<f64>,
+    ) -> Self {
+        let (mut sum, mut torque) = (Vector3::zeros(), Vector3::zeros());
+        for (v, force) in forces {
+            sum += force;
+            torque += (of_vertex(x, v) - about).cross(&force);
+        }
+        Self {
+            force: sum.into(),
+            torque: torque.into(),
+        }
+    }
 }
 
 impl CarriedBody {
     /// Its mean by the weights of its centre of mass: the place of the centre of positions, its velocity of
     /// velocities (`3V`).
     pub fn centre(&self, x: &[f64]) -> [f64; 3] {
-        let parts = self.centre.iter().map(|(v, b)| *b * of_vertex(x, *v));
-        parts.sum::<Vector3<f64>>().into()
+        of_point(x, &self.centre).into()
     }
 
-    /// The sum of forces on the vertices of the model (`3V`, newtons).
-    fn load(&self, x: &[f64], forces: &[f64]) -> BodyLoad {
-        let centre = Vector3::from(self.centre(x));
-        let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
-        for v in self.vertices {
-            let own = of_vertex(forces, v);
-            force += own;
-            torque += (of_vertex(x, v) - centre).cross(&own);
-        }
-        BodyLoad {
-            force: force.into(),
-            torque: torque.into(),
-        }
+    /// The vertices of its surface, by their numbers among those of the sheets and of all surfaces.
+    pub fn surface(&self) -> Range<usize> {
+        self.surface.clone()
+    }
+
+    /// What its guide does to it, if it has one: the torque about the point of a hinge or a ball joint, or about
+    /// the centre of mass on a slider.
+    pub(crate) fn guide_load(&self, simulation: &Simulation) -> Option<BodyLoad> {
+        let x = &simulation.state().x;
+        let pivot = of_point(x, self.pivot.as_ref()?);
+        let reactions = simulation.reactions().into_iter();
+        let own = reactions.filter_map(|reaction| {
+            let vertex = reaction.support.vertex();
+            self.vertices
+                .contains(&vertex)
+                .then_some((vertex, reaction.force))
+        });
+        Some(BodyLoad::sum(own, x, pivot))
     }
 
     /// What touches bodies, does to each of them at the end of the last step. (The forces on its vertices have
@@ -57,12 +82,20 @@ impl CarriedBody {
             _ => simulation.contact_forces(),
         };
         let x = &simulation.state().x;
-        let load = |body: &Self| forces.as_ref().map(|forces| body.load(x, forces));
+        let load = |body: &Self| {
+            let forces = forces.as_ref()?;
+            let own = body.vertices.map(|v| (v, of_vertex(forces, v)));
+            Some(BodyLoad::sum(own, x, of_point(x, &body.centre)))
+        };
         bodies
             .iter()
             .map(|body| load(body).unwrap_or_default())
             .collect()
     }
+}
+
+fn of_point(values: &[f64], at: &CarriedPoint) -> Vector3<f64> {
+    at.iter().map(|(v, b)| *b * of_vertex(values, *v)).sum()
 }
 
 fn of_vertex(values: &[f64], v: VertexId) -> Vector3<f64> {

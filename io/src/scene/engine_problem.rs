@@ -21,6 +21,8 @@ pub struct Origins {
     pub(crate) constraints: Vec<usize>,
     /// The support of each clamp along a line of vertices.
     pub(crate) clamps: Vec<usize>,
+    /// The body that a vertex carries, if it has a guide.
+    pub(crate) guides: HashMap<VertexId, usize>,
     /// The points of the surface of each body that responds.
     pub(crate) bodies: Vec<Range<usize>>,
 }
@@ -70,10 +72,14 @@ impl Origins {
         vertices
     }
 
+    /// What holds a vertex: `hold` of a support, or the guide of a body.
     fn support_key(&self, support: Support) -> Key {
+        if let Some(body) = self.guides.get(&support.vertex()) {
+            return Key::root().name("body").entry(*body).name("guide");
+        }
         let number = self.support(support);
         let list = Key::root().name("support");
-        number.map_or(list.clone(), |k| list.entry(k))
+        number.map_or(list.clone(), |k| list.entry(k)).name("hold")
     }
 
     /// A step of a simulation that failed. Supports that leave the sheet no room are named.
@@ -171,16 +177,16 @@ impl Origins {
                  edges along each clamp, or allow more `method.max_factorisations`",
             ),
             StepError::OffSupport { support, .. } => (
-                self.support_key(*support).name("hold"),
+                self.support_key(*support),
                 "a motion has to be zero at the start, and a curve or surface has to go through the vertex",
             ),
             StepError::NonFiniteMotion { support, .. } => (
-                self.support_key(*support).name("hold"),
+                self.support_key(*support),
                 "check the profiles of the motion",
             ),
             StepError::Unsatisfiable { infeasibility, .. } => {
                 let key = match infeasibility.by {
-                    Driver::Support(support) => self.support_key(support).name("hold"),
+                    Driver::Support(support) => self.support_key(support),
                     Driver::Body(body) => root.name("obstacle").entry(body).name("motion"),
                 };
                 let remedy = match infeasibility.strain_limit {

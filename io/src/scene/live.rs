@@ -12,8 +12,8 @@ use super::profile::{Change, Course};
 use super::setup::{Facts, shown};
 use super::sheets::sheet_key;
 use super::{
-    BodyLoad, CarriedBody, Method, Problem, Profile, Scene, SceneError, SceneFile, SceneFileError,
-    Setup, SupportForces,
+    Body, BodyLoad, CarriedBody, Method, Problem, Profile, Scene, SceneError, SceneFile,
+    SceneFileError, Setup, SupportForces,
 };
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
@@ -154,6 +154,13 @@ impl LiveScene {
     /// What touches bodies, does to each of them at the end of the last step.
     pub fn body_loads(&self) -> Vec<BodyLoad> {
         CarriedBody::contact_loads(&self.facts.bodies, &self.simulation)
+    }
+
+    /// What its guide does to each body that has one, in the last step, by the number of the body.
+    pub fn guide_loads(&self) -> Vec<(usize, BodyLoad)> {
+        let bodies = self.facts.bodies.iter().enumerate();
+        let loads = bodies.filter_map(|(k, body)| Some((k, body.guide_load(&self.simulation)?)));
+        loads.collect()
     }
 
     /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
@@ -302,6 +309,7 @@ fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
         step: before.method.step,
         ..scene.method.clone()
     };
+    let bodies = |scene: &Scene| -> Vec<Body> { scene.body.iter().map(Body::lasting).collect() };
     let (old, new) = (&before.sheet, &after.sheet);
     if old.len() != new.len() {
         let message = "the number of sheets does not change during a simulation";
@@ -310,7 +318,7 @@ fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
     }
     let mut checks = vec![
         (Key::root().name("method"), method(before) == method(after)),
-        (Key::root().name("body"), before.body == after.body),
+        (Key::root().name("body"), bodies(before) == bodies(after)),
     ];
     for (k, (old, new)) in old.iter().zip(new).enumerate() {
         let key = sheet_key(before.sheet.len(), k);

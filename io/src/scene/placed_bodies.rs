@@ -2,6 +2,7 @@
 
 use super::bodies::Body;
 use super::carried::CarriedBody;
+use super::guides::{self, Guide};
 use super::key::Key;
 use super::mesh_file::Files;
 use super::obstacles::Shape;
@@ -13,9 +14,11 @@ use super::start::velocities;
 use crate::body_mesh::BodyMesh;
 use isosheet_collide as collide;
 use isosheet_dynamics::contact::SurfacePoints;
-use isosheet_dynamics::{RigidBody, Solid, SolidError};
+use isosheet_dynamics::{
+    BodyForce, BodyTorque, JointCoordinate, Profile, RigidBody, Solid, SolidError,
+};
 use isosheet_mesh::{MassMatrix, Part, Sheet, VertexId};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 /// A body in its place.
 pub(super) struct PlacedBody<'a> {
@@ -61,6 +64,7 @@ impl<'a> PlacedBodies<'a> {
                 .unwrap_or(of.density.unwrap_or_default() * solid.volume());
             let body = RigidBody::of_solid(&solid, mass)
                 .map_err(|e| Problem::from_error(key.clone(), &e))?;
+            let body = of.guided(body, &key)?;
             let own = solid.surface().topology();
             let counts = [own.vertex_count(), own.edge_count(), own.face_count()];
             let [vertices, edges, faces] = [0, 1, 2].map(|i| end[i]..end[i] + counts[i]);
@@ -165,18 +169,14 @@ impl<'a> PlacedBodies<'a> {
         let bodies = self.list.iter().map(|body| CarriedBody {
             vertices: body.vertices(),
             centre: body.body.carried(body.body.centre(), body.first),
+            pivot: body.of.guide.as_ref().map(|guide| {
+                let centre = body.body.centre();
+                body.body
+                    .carried(guide.point().unwrap_or(centre), body.first)
+            }),
             surface: body.part.vertices.clone(),
         });
         bodies.collect()
-    }
-
-    /// Pairs of points that do not touch each other: those of each body.
-    pub(super) fn own_points(&self) -> impl Iterator<Item = [VertexId; 2]> {
-        let parts = self.list.iter().map(|body| body.part.vertices.clone());
-        parts.flat_map(|range| {
-            let first = VertexId::from_index(range.start);
-            range.skip(1).map(move |v| [first, VertexId::from_index(v)])
-        })
     }
 
     /// Refuses bodies in which something else is at the start. (What passes through their surface is found with
@@ -221,7 +221,107 @@ impl<'a> PlacedBodies<'a> {
     }
 }
 
+/// What a joint leaves free, with its spring and its damper.
+pub(super) struct JointMotion {
+    pub(super) coordinate: JointCoordinate,
+    pub(super) stiffness: f64,
+    pub(super) rest: Profile,
+    pub(super) damping: f64,
+}
+
+/// Part of the largest speed of a corner that a guide may not let it have, and that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
 impl PlacedBody<'_> {
+    /// What its guide leaves free, with the vertices at positions `x`; nothing of a ball joint.
+    ///
+    /// # Errors
+    /// If it starts with a velocity that the guide does not allow.
+    pub(super) fn guided_motion(
+        &self,
+        guide: &Guide,
+        x: &[f64],
+    ) -> Result<Option<JointMotion>, Problem> {
+        let velocities = self.velocities().into_iter().map(Vector3::from);
+        let velocities: Vec<Vector3<f64>> = velocities.collect();
+        let largest = velocities.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let (forbidden, motion) = match guide {
+            Guide::Ball { .. } => (velocities[..1].to_vec(), None),
+            Guide::Hinge {
+                stiffness,
+                rest,
+                damping,
+                ..
+            } => {
+                let motion = JointMotion {
+                    coordinate: JointCoordinate::angle(self.vertices(), x),
+                    stiffness: *stiffness,
+                    rest: rest.as_angle(),
+                    damping: *damping,
+                };
+                (velocities[..2].to_vec(), Some(motion))
+            }
+            Guide::Slider {
+                direction,
+                stiffness,
+                rest,
+                damping,
+            } => {
+                let along = Vector3::from(*direction).normalize();
+                let motion = JointMotion {
+                    coordinate: JointCoordinate::distance(self.first, along.into(), x),
+                    stiffness: *stiffness,
+                    rest: rest.as_given(),
+                    damping: *damping,
+                };
+                let across = velocities.iter().map(|v| v - v.dot(&along) * along);
+                (across.collect(), Some(motion))
+            }
+        };
+        if forbidden.iter().any(|v| v.norm() > ROUND_OFF * largest) {
+            let key = match self.of.spin.is_some() {
+                true => self.key.name("spin"),
+                false => self.key.name("velocity"),
+            };
+            let message = format!(
+                "the body starts with a velocity that its {} does not allow",
+                guide.name()
+            );
+            let remedy = "on a hinge give a `spin` about its axis alone, on a ball joint any `spin`, and on a slider a \
+                          `velocity` along its direction";
+            return Err(Problem::new(key, message, remedy));
+        }
+        Ok(motion)
+    }
+
+    /// One of the forces on it, with its key.
+    pub(super) fn force(
+        &self,
+        number: usize,
+        force: &guides::BodyForce,
+    ) -> Result<(Key, BodyForce), Problem> {
+        let key = self.key.name("force").entry(number);
+        let at = force.at.unwrap_or_else(|| self.body.centre());
+        let at = self.body.carried(at, self.first);
+        match BodyForce::new(at, force.direction, force.size.as_given()) {
+            Ok(made) => Ok((key, made)),
+            Err(error) => Err(Problem::from_error(key, &error)),
+        }
+    }
+
+    /// One of the torques on it, with its key.
+    pub(super) fn torque(
+        &self,
+        number: usize,
+        torque: &guides::BodyTorque,
+    ) -> Result<(Key, BodyTorque), Problem> {
+        let key = self.key.name("torque").entry(number);
+        match BodyTorque::new(self.vertices(), torque.axis, torque.size.as_given()) {
+            Ok(made) => Ok((key, made)),
+            Err(error) => Err(Problem::from_error(key, &error)),
+        }
+    }
+
     /// The vertices of the model that carry it.
     pub(super) fn vertices(&self) -> [VertexId; 4] {
         [0, 1, 2, 3].map(|k| VertexId::from_index(self.first.index() + k))
@@ -241,16 +341,27 @@ impl PlacedBody<'_> {
     /// The velocities of these at the start, m/s.
     pub(super) fn velocities(&self) -> Vec<[f64; 3]> {
         let points = self.tetrahedron.positions().as_chunks::<3>().0;
-        velocities(
-            points,
-            self.of.velocity,
-            self.of.spin,
-            self.body.centre().into(),
-        )
+        let pivot = self.of.guide.as_ref().and_then(Guide::point);
+        let centre = pivot.unwrap_or_else(|| self.body.centre());
+        velocities(points, self.of.velocity, self.of.spin, centre.into())
     }
 }
 
 impl Body {
+    /// A rigid body whose corners its guide can hold.
+    fn guided(&self, body: RigidBody, key: &Key) -> Result<RigidBody, Problem> {
+        let guided = match &self.guide {
+            None => Ok(body),
+            Some(Guide::Ball { point }) => body.with_corner(*point),
+            Some(Guide::Hinge { point, axis, .. }) => body.with_edge(*point, *axis),
+            Some(Guide::Slider { direction, .. }) => {
+                let centre = body.centre();
+                body.with_edge(centre, *direction)
+            }
+        };
+        guided.map_err(|e| Problem::from_error(key.name("guide"), &e))
+    }
+
     /// What its surface encloses, in its place.
     fn solid(&self, key: &Key, files: &mut Files) -> Result<Solid, Problem> {
         let key = key.name("shape");
