@@ -314,9 +314,9 @@ fn a_ball_lies_in_a_hammock() {
         mass = 3.2e-3
         damping = 8
         [[support]]
-        at = {{ half_space = {{ point = [1e-6, 0, 0], normal = [1, 0, 0] }} }}
+        at = {{ half_space = {{ point = [1e-6, 0, 0], normal = [-1, 0, 0] }} }}
         [[support]]
-        at = {{ half_space = {{ point = [0.199999, 0, 0], normal = [-1, 0, 0] }} }}
+        at = {{ half_space = {{ point = [0.199999, 0, 0], normal = [1, 0, 0] }} }}
         [[body]]
         name = \"ball\"
         shape = {{ sphere = {{ radius = 0.025 }} }}
@@ -744,10 +744,10 @@ fn a_pulled_strip_drives_a_roller() {
         damping = 4
         placement = {{ position = [-0.15, -0.02, 0] }}
         [[support]]
-        at = {{ half_space = {{ point = [0.1499, 0, 0], normal = [-1, 0, 0] }} }}
+        at = {{ half_space = {{ point = [0.1499, 0, 0], normal = [1, 0, 0] }} }}
         hold = {{ moving_pin = {{ x = {{ run_up = {{ rate = {speed}, begin = 0.3, end = 0.6 }} }} }} }}
         [[support]]
-        at = {{ half_space = {{ point = [-0.1499, 0, 0], normal = [1, 0, 0] }} }}
+        at = {{ half_space = {{ point = [-0.1499, 0, 0], normal = [-1, 0, 0] }} }}
         hold = {{ moving_pin = {{ x = {{ run_up = {{ rate = {speed}, begin = 0.3, end = 0.6 }} }} }} }}
         [[body]]
         shape = {{ cylinder = {{ radius = {radius}, height = 0.06 }} }}
