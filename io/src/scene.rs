@@ -145,7 +145,7 @@ pub(crate) use resolution::check_positions;
 #[cfg(feature = "run")]
 pub(crate) use selection::bounds;
 #[cfg(feature = "run")]
-pub(crate) use setup::{Facts, shown};
+pub(crate) use setup::Facts;
 #[cfg(feature = "run")]
 pub(crate) use size::MEMORY_OF_FACE;
 #[cfg(feature = "run")]

@@ -10,15 +10,14 @@ use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::format::{MeasureRow, MeasureWriter};
+use crate::scene::check_positions;
 use crate::scene::{CarriedBody, Facts, Scene, SceneError, SceneFile, SupportForces};
-use crate::scene::{check_positions, shown};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::contact::ActiveContacts;
 use isosheet_dynamics::{
     Checkpoint, SheetModel, Simulation, State, StepError, StepProgress, StepReport,
 };
 use nalgebra::Vector3;
-use std::borrow::Cow;
 use std::time::Instant;
 
 /// What is known of a run before its first step.
@@ -37,15 +36,6 @@ pub(crate) enum Rows {
     InFiles,
     /// In its files, and in memory for what is made of them at the end.
     InMemory,
-}
-
-/// What values of a frame belong to.
-#[derive(Clone, Copy, Debug)]
-enum Place {
-    /// Each edge has one.
-    Edge,
-    /// Each face has two.
-    Face,
 }
 
 /// A run between two steps.
@@ -236,40 +226,16 @@ impl<'a> Stepping<'a> {
         Ok(())
     }
 
-    /// What is seen of the state: positions of the model or velocities as those of sheets and surfaces.
-    fn shown<'x>(&self, x: &'x [f64]) -> Cow<'x, [f64]> {
-        shown(self.plan.facts.points.as_ref(), x)
-    }
-
-    /// Values of edges or faces of the model as those of the sheets and surfaces, so many for each: bodies have
-    /// none.
-    fn of_sheets(&self, values: Option<Vec<f64>>, of: Place) -> Vec<f64> {
-        let mut values = values.unwrap_or_default();
-        let facts = &self.plan.facts;
-        if values.is_empty() || facts.bodies.is_empty() {
-            return values;
-        }
-        let [model, all] = [self.simulation.model().topology(), facts.sheet.topology()];
-        let bodies = facts.bodies.len();
-        let (sheets, count, each) = match of {
-            Place::Edge => (model.edge_count() - 6 * bodies, all.edge_count(), 1),
-            Place::Face => (model.face_count() - 4 * bodies, all.face_count(), 2),
-        };
-        values.truncate(each * sheets);
-        values.resize(each * count, 0.0);
-        values
-    }
-
     fn record_frame(&mut self) -> Result<(), RunError> {
         let simulation = &self.simulation;
         let state = simulation.state();
-        let rod_forces = self.of_sheets(simulation.rod_forces(), Place::Edge);
+        let facts = &self.plan.facts;
+        let rod_forces = facts.of_edges(simulation.rod_forces().unwrap_or_default());
         let contact_forces = simulation.surface_forces().unwrap_or_default();
         let gaps = simulation.vertex_gaps().unwrap_or_default();
-        let plastic_angles = self.of_sheets(simulation.plastic_angles(), Place::Edge);
-        let curvatures = simulation.plastic_curvatures();
-        let curvatures = curvatures.map(|pairs| pairs.into_flattened());
-        let plastic_curvatures = self.of_sheets(curvatures, Place::Face);
+        let plastic_angles = facts.of_edges(simulation.plastic_angles().unwrap_or_default());
+        let curvatures = simulation.plastic_curvatures().unwrap_or_default();
+        let plastic_curvatures = facts.of_faces(curvatures.into_flattened());
         let data = FrameData {
             rod_forces: &rod_forces,
             contact_forces: &contact_forces,
@@ -277,7 +243,7 @@ impl<'a> Stepping<'a> {
             plastic_angles: &plastic_angles,
             plastic_curvatures: &plastic_curvatures,
         };
-        let (t, x) = (state.t, self.shown(&state.x));
+        let (t, x) = (state.t, self.plan.facts.shown(&state.x));
         Ok(self.frames.append(t, &x, &data)?)
     }
 
@@ -344,7 +310,7 @@ impl<'a> Stepping<'a> {
             return Ok(());
         };
         let state = self.simulation.state();
-        let x = shown(self.plan.facts.points.as_ref(), &state.x);
+        let x = self.plan.facts.shown(&state.x);
         for gauge in &self.plan.facts.measures {
             let row = MeasureRow {
                 t: state.t,
@@ -495,7 +461,7 @@ impl<'a> Stepping<'a> {
 
     /// Largest distance of a vertex from its place at the start, metres.
     fn displacement(&self) -> f64 {
-        let now = self.shown(&self.simulation.state().x);
+        let now = self.plan.facts.shown(&self.simulation.state().x);
         let pairs = now
             .as_chunks::<3>()
             .0
@@ -506,7 +472,7 @@ impl<'a> Stepping<'a> {
     }
 
     fn largest_speed(&self) -> f64 {
-        let velocities = self.shown(&self.simulation.state().v);
+        let velocities = self.plan.facts.shown(&self.simulation.state().v);
         let speeds = velocities
             .as_chunks::<3>()
             .0

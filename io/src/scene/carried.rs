@@ -2,7 +2,7 @@
 
 use isosheet_dynamics::Simulation;
 use isosheet_dynamics::contact::CarriedPoint;
-use isosheet_mesh::VertexId;
+use isosheet_mesh::{Part, VertexId};
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -15,8 +15,8 @@ pub struct CarriedBody {
     pub(crate) centre: CarriedPoint,
     /// The weights at the point about which torques of its guide are given, if it has one.
     pub(crate) pivot: Option<CarriedPoint>,
-    /// The vertices of its surface, by their numbers among those of the sheets and of all surfaces.
-    pub(crate) surface: Range<usize>,
+    /// Where its surface is among the sheets and the surfaces of all bodies.
+    pub(crate) part: Part,
 }
 
 /// What acts on a body.
@@ -54,9 +54,14 @@ impl CarriedBody {
         of_point(x, &self.centre).into()
     }
 
+    /// The vertices of the model that carry it.
+    pub fn vertices(&self) -> [VertexId; 4] {
+        self.vertices
+    }
+
     /// The vertices of its surface, by their numbers among those of the sheets and of all surfaces.
     pub fn surface(&self) -> Range<usize> {
-        self.surface.clone()
+        self.part.vertices.clone()
     }
 
     /// What its guide does to it, if it has one: the torque about the point of a hinge or a ball joint, or about

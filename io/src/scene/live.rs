@@ -9,7 +9,7 @@ use super::changed::edited;
 use super::edit::{Edit, EditError, no_function};
 use super::key::Key;
 use super::profile::{Change, Course};
-use super::setup::{Facts, shown};
+use super::setup::Facts;
 use super::sheets::sheet_key;
 use super::{
     Body, BodyLoad, CarriedBody, Method, Problem, Profile, Scene, SceneError, SceneFile,
@@ -129,12 +129,37 @@ impl LiveScene {
 
     /// Positions of the vertices of [`LiveScene::sheet`], metres (`3V`).
     pub fn positions(&self) -> Cow<'_, [f64]> {
-        shown(self.facts.points.as_ref(), &self.simulation.state().x)
+        self.facts.shown(&self.simulation.state().x)
     }
 
     /// Their velocities, m/s.
     pub fn velocities(&self) -> Cow<'_, [f64]> {
-        shown(self.facts.points.as_ref(), &self.simulation.state().v)
+        self.facts.shown(&self.simulation.state().v)
+    }
+
+    /// Their masses, kilograms: zero of those of bodies, whose mass is not on their surface.
+    pub fn masses(&self) -> Vec<f64> {
+        let masses = self.simulation.model().mass().vertex.clone();
+        self.facts.of_vertices(masses, 1)
+    }
+
+    /// Forces of supports on the sheets in the last step at the vertices that they hold (`3V`), newtons.
+    pub fn reactions(&self) -> Vec<f64> {
+        let mut forces = vec![0.0; self.simulation.state().x.len()];
+        for reaction in self.simulation.reactions() {
+            let vertex = reaction.support.vertex().index();
+            for k in 0..3 {
+                forces[3 * vertex + k] += reaction.force[k];
+            }
+        }
+        self.facts.of_vertices(forces, 3)
+    }
+
+    /// Forces of the rods in the last step, newtons, see [`Simulation::rod_forces`]: zero of the edges of bodies.
+    pub fn rod_forces(&self) -> Option<Vec<f64>> {
+        self.simulation
+            .rod_forces()
+            .map(|forces| self.facts.of_edges(forces))
     }
 
     /// The pinned vertices of sheets, at rest or in motion.

@@ -174,7 +174,7 @@ impl<'a> PlacedBodies<'a> {
                 body.body
                     .carried(guide.point().unwrap_or(centre), body.first)
             }),
-            surface: body.part.vertices.clone(),
+            part: body.part.clone(),
         });
         bodies.collect()
     }

@@ -17,6 +17,7 @@ use isosheet_dynamics::{
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Part, Sheet};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// How the motion is computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +55,43 @@ pub(crate) struct Facts {
     pub(crate) targets: Targets,
     pub(crate) measures: Vec<Gauge>,
     pub(crate) origins: Origins,
+}
+
+impl Facts {
+    /// Positions or velocities of what is seen, by those of the vertices of the model (`3V`).
+    pub(crate) fn shown<'a>(&self, x: &'a [f64]) -> Cow<'a, [f64]> {
+        shown(self.points.as_ref(), x)
+    }
+
+    /// Values of what is seen by those of the model, so many for each: those of the sheets, and zero of bodies.
+    fn of_sheets(
+        &self,
+        mut values: Vec<f64>,
+        each: usize,
+        range: fn(&Part) -> &Range<usize>,
+    ) -> Vec<f64> {
+        let parts = self.bodies.first().zip(self.bodies.last());
+        if let Some((first, last)) = parts.filter(|_| !values.is_empty()) {
+            values.truncate(each * range(&first.part).start);
+            values.resize(each * range(&last.part).end, 0.0);
+        }
+        values
+    }
+
+    /// Values of the edges of what is seen by those of the model.
+    pub(crate) fn of_edges(&self, values: Vec<f64>) -> Vec<f64> {
+        self.of_sheets(values, 1, |part| &part.edges)
+    }
+
+    /// Pairs of values of the faces of what is seen by those of the model.
+    pub(crate) fn of_faces(&self, pairs: Vec<f64>) -> Vec<f64> {
+        self.of_sheets(pairs, 2, |part| &part.faces)
+    }
+
+    /// So many values of the vertices of what is seen by those of the model.
+    pub(crate) fn of_vertices(&self, values: Vec<f64>, each: usize) -> Vec<f64> {
+        self.of_sheets(values, each, |part| &part.vertices)
+    }
 }
 
 /// Everything that a simulation is made of.
@@ -112,6 +150,17 @@ impl Setup {
             measures: self.measures.clone(),
             origins: self.origins.clone(),
         }
+    }
+
+    /// The mesh of the model: the sheets, and after them four vertices for each body.
+    pub fn mesh(&self) -> Cow<'_, Sheet> {
+        let Some(points) = &self.points else {
+            return Cow::Borrowed(&self.sheet);
+        };
+        let own = 3 * points.own();
+        let x = [&self.sheet.positions()[..own], &self.start.x[own..]].concat();
+        let mesh = Sheet::from_topology(self.model.topology().clone(), x);
+        mesh.map_or(Cow::Borrowed(&self.sheet), Cow::Owned)
     }
 
     /// Whether the simulation gives the forces of the rods ([`Simulation::rod_forces`]).
