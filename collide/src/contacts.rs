@@ -280,7 +280,7 @@ impl Contacts {
 
     /// Tells of parts of the surface, by ranges of their points, that do not touch themselves, such as rigid
     /// bodies; and of points outside of a part that are attached to it, each with the number of the part: what
-    /// has them as corners does not touch the part.
+    /// has them as corners does not touch the part. Comes before [`Contacts::with_self_contact`].
     ///
     /// # Panics
     /// If a point does not exist.
@@ -290,6 +290,12 @@ impl Contacts {
         parts: &[Range<usize>],
         attached: impl IntoIterator<Item = (VertexId, usize)>,
     ) -> Self {
+        let (face, _) = self.smallest_height;
+        let corner = self.mesh.faces().get(face as usize).map(|f| f[0] as usize);
+        if corner.is_some_and(|v| parts.iter().any(|part| part.contains(&v))) {
+            // Its neighbours do not repel it.
+            self.smallest_height = (face, f64::INFINITY);
+        }
         let attached = attached.into_iter().map(|(v, part)| (v.0, part as u32));
         self.mesh = self.mesh.with_parts(parts, attached);
         self.neighbours = None;

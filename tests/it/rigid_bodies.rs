@@ -105,7 +105,7 @@ impl Scene {
             .expect("contact")
             .with_self_contact(Coefficients::equal(friction))
             .expect("friction")
-            .with_parts(&[first..first + 8], []);
+            .with_parts(std::slice::from_ref(&(first..first + 8)), []);
         let state = State::at_rest(union.positions().to_vec());
         Self {
             model,

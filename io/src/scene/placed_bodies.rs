@@ -13,6 +13,7 @@ use super::selection::Selection;
 use super::start::velocities;
 use crate::body_mesh::BodyMesh;
 use isosheet_collide as collide;
+use isosheet_collide::{BroadPhase, ContactMesh};
 use isosheet_dynamics::contact::SurfacePoints;
 use isosheet_dynamics::{
     BodyForce, BodyTorque, JointCoordinate, Profile, RigidBody, Solid, SolidError,
@@ -380,6 +381,13 @@ impl Body {
         let surface = Sheet::new(positions.collect(), &mesh.faces);
         let surface = surface.map_err(|e| Problem::from_error(at.clone(), &e))?;
         check_shape(&surface, &at)?;
+        let touching = ContactMesh::from_topology(surface.topology());
+        let x = surface.positions();
+        if let Some([edge, face]) = BroadPhase::new(touching, x).self_crossing(x) {
+            let message = format!("edge {edge} of the surface passes through its face {face}");
+            let remedy = "make a surface that does not cut itself, or several bodies";
+            return Err(Problem::new(at, message, remedy));
+        }
         Solid::new(surface).map_err(|e: SolidError| Problem::from_error(at.clone(), &e))
     }
 }

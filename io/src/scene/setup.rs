@@ -84,6 +84,7 @@ impl Facts {
     }
 
     /// Pairs of values of the faces of what is seen by those of the model.
+    #[cfg(feature = "run")]
     pub(crate) fn of_faces(&self, pairs: Vec<f64>) -> Vec<f64> {
         self.of_sheets(pairs, 2, |part| &part.faces)
     }

@@ -455,6 +455,11 @@ fn bodies_that_cannot_be_are_refused_with_the_cause() {
     for (text, says) in [
         (cut[..cut.len() - 1].join("\n"), "the surface is open"),
         (corner_piece(1.0, true), "inwards"),
+        // The inner corner of the L is pulled out through the outer one.
+        (
+            whole.replace("v 1 1 1\n", "v -1 -1 1\n"),
+            "passes through its face",
+        ),
     ] {
         std::fs::write(folder.path().join("piece.obj"), text).unwrap();
         let problem = in_folder(folder.path(), &with(file)).err().unwrap();
