@@ -1,6 +1,8 @@
 //! Which primitives may meet during a step: a bounding-volume hierarchy over swept boxes.
 
 use crate::contact_mesh::{ContactMesh, Element};
+use crate::crossings::pierces;
+use crate::vectors::gather;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
@@ -243,6 +245,18 @@ impl BroadPhase {
                 }
             }
         });
+    }
+
+    /// An edge that passes through a face of the mesh at positions `x` (`3V`) of the last update, and the face, of
+    /// those that are not joined.
+    pub fn self_crossing(&mut self, x: &[f64]) -> Option<[u32; 2]> {
+        let mut pairs = Vec::new();
+        self.self_edge_faces(&mut pairs);
+        let mesh = self.mesh();
+        pairs.into_iter().find(|&[e, f]| {
+            let (edge, face) = (mesh.edges()[e as usize], mesh.faces()[f as usize]);
+            pierces(gather(x, edge), gather(x, face))
+        })
     }
 
     /// Pairs of an edge and a face of the mesh without a common vertex since the last update; `out` is

@@ -1,10 +1,13 @@
 //! What of a mesh can touch: its vertices, edges and faces.
 
 mod glued;
+mod parts;
 
 use glued::Glued;
 use isosheet_mesh::{Advice, Topology};
+use parts::Parts;
 use std::collections::HashMap;
+use std::ops::Range;
 use thiserror::Error;
 
 /// Vertices, edges and faces that take part in contact, without coordinates.
@@ -18,6 +21,7 @@ pub struct ContactMesh {
     faces: Vec<[u32; 3]>,
     elements: Vec<Element>,
     glued: Option<Glued>,
+    parts: Option<Parts>,
 }
 
 /// A face, a free edge or a free vertex together with the vertices and edges that it represents.
@@ -212,6 +216,7 @@ impl ContactMesh {
             faces,
             elements,
             glued: None,
+            parts: None,
         }
     }
 
@@ -227,12 +232,30 @@ impl ContactMesh {
         self
     }
 
-    /// Whether two primitives have a vertex in common or are glued to each other.
+    /// Names parts, by ranges of vertices, that do not repel themselves, and vertices outside of a part that do
+    /// not repel it, each with the number of the part. Replaces what was named before.
+    ///
+    /// # Panics
+    /// If a vertex does not exist.
+    #[must_use]
+    pub fn with_parts(
+        mut self,
+        parts: &[Range<usize>],
+        attached: impl IntoIterator<Item = (u32, u32)>,
+    ) -> Self {
+        let named = || Parts::new(self.vertex_count, parts, attached);
+        self.parts = (!parts.is_empty()).then(named);
+        self
+    }
+
+    /// Whether two primitives have a vertex in common, are glued to each other or belong together.
     pub(crate) fn are_joined(&self, first: &[u32], second: &[u32]) -> bool {
-        match &self.glued {
-            None => first.iter().any(|v| second.contains(v)),
-            Some(glued) => glued.are_joined(first, second),
-        }
+        let parts = self.parts.as_ref();
+        parts.is_some_and(|parts| parts.are_joined(first, second))
+            || match &self.glued {
+                None => first.iter().any(|v| second.contains(v)),
+                Some(glued) => glued.are_joined(first, second),
+            }
     }
 
     /// Number of vertices.

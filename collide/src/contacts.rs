@@ -136,7 +136,7 @@ pub struct Contacts {
     /// Squared rest lengths of the edges.
     lengths2: Vec<f64>,
     mean_length: f64,
-    /// The face with the smallest height, and that height.
+    /// The face of a sheet with the smallest height, and that height.
     smallest_height: (u32, f64),
     bodies: Vec<Body>,
     has_self_contact: bool,
@@ -154,13 +154,13 @@ impl Contacts {
     /// [`ContactsError`] naming the option that makes no sense.
     pub fn new(model: &SheetModel, options: ContactOptions) -> Result<Self, ContactsError> {
         let (topology, lengths) = (model.topology(), model.edges().lengths());
-        Self::between(topology, lengths, options)
+        Self::between(topology, lengths, topology.vertex_count(), options)
     }
 
     /// Contact of a surface whose points are combinations of the vertices of a model, with nothing yet: sheets
     /// whose vertices these are, and surfaces of [rigid bodies](isosheet_dynamics::RigidBody). The `points`
-    /// are the vertices of `surface`, in this order. What belongs to one body does not touch itself if its
-    /// vertices are told to be [glued](Contacts::with_glue) to one another.
+    /// are the vertices of `surface`, in this order. What belongs to one body does not touch itself if it is
+    /// [named](Contacts::with_parts).
     ///
     /// # Errors
     /// [`ContactsError`] naming the option that makes no sense.
@@ -174,7 +174,7 @@ impl Contacts {
     ) -> Result<Self, ContactsError> {
         let count = surface.topology().vertex_count();
         assert_eq!(points.count(), count, "a point for each vertex");
-        let contacts = Self::between(surface.topology(), surface.lengths(), options)?;
+        let contacts = Self::between(surface.topology(), surface.lengths(), points.own(), options)?;
         Ok(Self {
             points: Some(points),
             ..contacts
@@ -184,6 +184,7 @@ impl Contacts {
     fn between(
         topology: &Topology,
         lengths: &[f64],
+        own: usize,
         options: ContactOptions,
     ) -> Result<Self, ContactsError> {
         options.validate()?;
@@ -194,7 +195,7 @@ impl Contacts {
             mesh: ContactMesh::from_topology(topology),
             points: None,
             lengths2: lengths.iter().map(|l| l * l).collect(),
-            smallest_height: smallest_height(topology, lengths),
+            smallest_height: smallest_height(topology, lengths, own),
             bodies: Vec::new(),
             has_self_contact: false,
             mean_length: lengths.iter().sum::<f64>() / lengths.len() as f64,
@@ -273,6 +274,30 @@ impl Contacts {
     pub fn with_glue(mut self, pairs: &[[VertexId; 2]]) -> Self {
         let pairs: Vec<[u32; 2]> = pairs.iter().map(|pair| pair.map(|v| v.0)).collect();
         self.mesh = self.mesh.with_glue(&pairs);
+        self.neighbours = None;
+        self
+    }
+
+    /// Tells of parts of the surface, by ranges of their points, that do not touch themselves, such as rigid
+    /// bodies; and of points outside of a part that are attached to it, each with the number of the part: what
+    /// has them as corners does not touch the part. Comes before [`Contacts::with_self_contact`].
+    ///
+    /// # Panics
+    /// If a point does not exist.
+    #[must_use]
+    pub fn with_parts(
+        mut self,
+        parts: &[Range<usize>],
+        attached: impl IntoIterator<Item = (VertexId, usize)>,
+    ) -> Self {
+        let (face, _) = self.smallest_height;
+        let corner = self.mesh.faces().get(face as usize).map(|f| f[0] as usize);
+        if corner.is_some_and(|v| parts.iter().any(|part| part.contains(&v))) {
+            // Its neighbours do not repel it.
+            self.smallest_height = (face, f64::INFINITY);
+        }
+        let attached = attached.into_iter().map(|(v, part)| (v.0, part as u32));
+        self.mesh = self.mesh.with_parts(parts, attached);
         self.neighbours = None;
         self
     }

@@ -126,7 +126,10 @@ pub use report::reason::Reason;
 pub use report::simulation_error::SimulationError;
 pub use report::step_error::{StepError, StepOutcome, StepReport};
 pub use report::trace::{Continuation, Cut, TraceEvent};
-pub use rigid_body::{RigidBody, RigidBodyError};
+pub use rigid_body::{
+    Attachment, BodyForce, BodyTorque, JointCoordinate, JointError, JointSpring, RigidBody,
+    RigidBodyError, Solid, SolidError,
+};
 pub use run::checkpoint::Checkpoint;
 pub use run::fold_start::start_of_folding;
 pub use run::observe::{Frames, History, Observer, RunEnd};

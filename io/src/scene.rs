@@ -28,8 +28,10 @@
 //! ```
 
 mod air;
+mod bodies;
 mod build;
 mod bytes;
+mod carried;
 mod changed;
 mod chart;
 mod contact;
@@ -42,6 +44,7 @@ mod forces;
 mod form;
 mod functions;
 mod glue;
+mod guides;
 mod in_words;
 mod key;
 mod live;
@@ -56,6 +59,7 @@ mod output;
 mod patch;
 mod pattern;
 mod placed;
+mod placed_bodies;
 mod pose;
 mod problem;
 mod profile;
@@ -84,6 +88,8 @@ mod weight;
 mod yields;
 
 pub use air::Air;
+pub use bodies::Body;
+pub use carried::{BodyLoad, CarriedBody};
 pub use chart::{
     Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
     Substep,
@@ -96,6 +102,7 @@ pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use forces::{Acceleration, Forces, Load};
 pub use glue::{Glue, SeamSide};
+pub use guides::{BodyForce, BodyTorque, Guide};
 pub use key::{Key, KeyError, KeyPart};
 pub use live::{FailedStep, HoldError, LiveScene};
 pub use material::{Material, Plate};
@@ -196,6 +203,9 @@ pub struct Scene {
     /// Bodies that the sheet meets.
     #[serde(default)]
     pub obstacle: Vec<Obstacle>,
+    /// Rigid bodies that respond.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub body: Vec<Body>,
     /// Forces on the sheet.
     #[serde(default)]
     pub forces: Forces,
@@ -231,6 +241,7 @@ impl Scene {
             weight: Vec::new(),
             support: Vec::new(),
             obstacle: Vec::new(),
+            body: Vec::new(),
             forces: Forces::default(),
             air: None,
             contact: Contact::default(),
@@ -267,7 +278,7 @@ impl Scene {
             }
         }
         for (key, glue) in root.name("glue").entries(&self.glue) {
-            glue.check(&self.sheet, &key, &mut checks);
+            glue.check(&self.sheet, &self.body, &key, &mut checks);
         }
         for (key, weight) in root.name("weight").entries(&self.weight) {
             weight.check(&key, &mut checks);
@@ -283,20 +294,24 @@ impl Scene {
         for (key, obstacle) in root.name("obstacle").entries(&self.obstacle) {
             obstacle.check(&key, &mut checks);
         }
+        bodies::check(&self.body, &self.sheet, &mut checks);
         self.forces.check(&root.name("forces"), &mut checks);
         if let Some(air) = &self.air {
             air.check(&root.name("air"), &mut checks);
         }
-        self.contact.check(&root.name("contact"), &mut checks);
+        let contact = root.name("contact");
+        self.contact.check(&self.body, &contact, &mut checks);
         for (k, pair) in self.contact.pair.iter().enumerate() {
             let key = root.name("contact.pair").entry(k).name("sheets");
             for (i, name) in pair.sheets.iter().enumerate() {
-                sheets::check_reference(&self.sheet, Some(name), &key.entry(i), &mut checks);
+                let key = key.entry(i);
+                bodies::check_reference(&self.sheet, &self.body, Some(name), &key, &mut checks);
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
             measure.check(&key, &mut checks);
-            is_known(&measure.sheet, &key, &mut checks);
+            let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
+            bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }
         measure::check_names(&self.measure, &root, &mut checks);
         self.method.check(&root.name("method"), &mut checks);
@@ -314,6 +329,10 @@ impl Scene {
         }
         let key = Key::root().name("method.integrator");
         let remedy = "choose `bdf2` or `implicit_euler`";
+        if !self.body.is_empty() {
+            checks.report(key, "this integrator has no place for bodies", remedy);
+            return;
+        }
         if self.has_contact() && self.method.integrator != Integrator::Chart {
             checks.report(
                 key.clone(),
@@ -338,7 +357,7 @@ impl Scene {
 
     /// Whether contact is modelled.
     pub fn has_contact(&self) -> bool {
-        !self.obstacle.is_empty() || self.contact.self_contact
+        !self.obstacle.is_empty() || !self.body.is_empty() || self.contact.self_contact
     }
 
     /// The mesh files that the scene names, in the order of the scene.
@@ -364,6 +383,11 @@ impl Scene {
         for (k, obstacle) in self.obstacle.iter_mut().enumerate() {
             if let Shape::File(file) = &mut obstacle.shape {
                 files.push((root.name("obstacle").entry(k).name("shape.file"), file));
+            }
+        }
+        for (k, body) in self.body.iter_mut().enumerate() {
+            if let Shape::File(file) = &mut body.shape {
+                files.push((root.name("body").entry(k).name("shape.file"), file));
             }
         }
         files

@@ -79,7 +79,7 @@ impl Scene {
             }
             None => Vec::new(),
         };
-        masses.extend(block.body.point_masses());
+        masses.extend(block.body.mass_matrix().vertex);
         let masses = MassMatrix::from_vertex_masses(masses).expect("masses");
         let mut model = SheetModel::with_mass(&union, masses).expect("a model");
         if let Some((sheet, _)) = sheet {
@@ -100,13 +100,12 @@ impl Scene {
         let count = union.topology().vertex_count();
         let points = SurfacePoints::new(count, first, carried.collect()).expect("points");
         let surface = Sheet::union(&surfaces).expect("a surface");
-        let glued = (1..8).map(|k| [first, first + k].map(VertexId::from_index));
-        let options = ContactOptions::for_surface(&surface);
+        let options = ContactOptions::for_surface(&surface, &points);
         let contacts = Contacts::on_surface(&surface, points, options)
             .expect("contact")
             .with_self_contact(Coefficients::equal(friction))
             .expect("friction")
-            .with_glue(&glued.collect::<Vec<_>>());
+            .with_parts(std::slice::from_ref(&(first..first + 8)), []);
         let state = State::at_rest(union.positions().to_vec());
         Self {
             model,

@@ -14,15 +14,19 @@ pub(super) struct Glued {
 impl Glued {
     /// Of pairs of vertices, in a mesh of so many vertices with the given edges.
     pub(super) fn new(vertex_count: usize, edges: &[[u32; 2]], pairs: &[[u32; 2]]) -> Self {
+        // Each vertex names a lower one that it is glued to, or itself.
         let mut lowest: Vec<u32> = (0..).take(vertex_count).collect();
         for pair in pairs {
-            let [a, b] = pair.map(|v| lowest[v as usize]);
-            let (low, high) = (a.min(b), a.max(b));
-            for vertex in &mut lowest {
-                if *vertex == high {
-                    *vertex = low;
+            let [a, b] = pair.map(|mut v| {
+                while lowest[v as usize] != v {
+                    v = lowest[v as usize];
                 }
-            }
+                v
+            });
+            lowest[a.max(b) as usize] = a.min(b);
+        }
+        for v in 0..vertex_count {
+            lowest[v] = lowest[lowest[v] as usize];
         }
         let (mut seen, mut shared) = (BTreeSet::new(), BTreeSet::new());
         for edge in edges {

@@ -3,9 +3,11 @@
 use crate::{CcdOptions, CcdOptionsError, ObstacleError};
 use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::contact::internals::BarrierPotential;
-use isosheet_dynamics::contact::{BarrierError, ContactLaws, FrictionError, Stiffness};
+use isosheet_dynamics::contact::{
+    BarrierError, ContactLaws, FrictionError, Stiffness, SurfacePoints,
+};
 use isosheet_mesh::wording::{brief, given};
-use isosheet_mesh::{Advice, Sheet, Topology, area_from_lengths};
+use isosheet_mesh::{Advice, FaceId, Sheet, Topology, area_from_lengths};
 use thiserror::Error;
 
 /// Options of [`super::Contacts`]. Start from [`ContactOptions::for_sheet`].
@@ -118,18 +120,20 @@ const APPROACH: f64 = 0.5;
 impl ContactOptions {
     /// The defaults for a sheet.
     pub fn for_sheet(model: &SheetModel) -> Self {
-        Self::between(model.topology(), model.edges().lengths())
+        let topology = model.topology();
+        Self::between(topology, model.edges().lengths(), topology.vertex_count())
     }
 
     /// The defaults for a surface that is not that of the model, see
-    /// [`Contacts::on_surface`](crate::Contacts::on_surface).
-    pub fn for_surface(surface: &Sheet) -> Self {
-        Self::between(surface.topology(), surface.lengths())
+    /// [`Contacts::on_surface`](crate::Contacts::on_surface). The faces of bodies may be as narrow as they are:
+    /// a body does not touch itself.
+    pub fn for_surface(surface: &Sheet, points: &SurfacePoints) -> Self {
+        Self::between(surface.topology(), surface.lengths(), points.own())
     }
 
-    fn between(topology: &Topology, lengths: &[f64]) -> Self {
+    fn between(topology: &Topology, lengths: &[f64], own: usize) -> Self {
         let length = lengths.iter().sum::<f64>() / lengths.len() as f64;
-        let (_, height) = smallest_height(topology, lengths);
+        let (_, height) = smallest_height(topology, lengths, own);
         Self {
             activation: (RELATIVE_ACTIVATION * length).min(0.5 * height),
             thickness: 0.0,
@@ -189,12 +193,13 @@ impl ContactOptions {
     }
 }
 
-/// The face with the smallest height and that height, metres. In the flat sheet no vertex is closer
+/// The face with the smallest height and that height, metres, of those between the first `own` vertices. In the flat sheet no vertex is closer
 /// than this to an edge or face that it does not belong to, nor are two edges without a common end,
 /// except across slits and at re-entrant corners of the outline.
-pub(super) fn smallest_height(topology: &Topology, lengths: &[f64]) -> (u32, f64) {
+pub(super) fn smallest_height(topology: &Topology, lengths: &[f64], own: usize) -> (u32, f64) {
     let mut best = (0, f64::INFINITY);
-    for (number, face) in (0..).zip(topology.face_ids()) {
+    let is_own = |(_, face): &(u32, FaceId)| topology.faces()[face.index()][0].index() < own;
+    for (number, face) in (0..).zip(topology.face_ids()).filter(is_own) {
         let sides = topology.face_edges(face).map(|e| lengths[e.index()]);
         let longest = sides.iter().fold(0.0, |longest, side| side.max(longest));
         let height = 2.0 * area_from_lengths(sides) / longest;

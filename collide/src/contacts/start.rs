@@ -51,19 +51,14 @@ fn name(contact: &ActiveContact) -> ContactPair {
 
 /// Refuses edges of the sheet that pass through its faces, with the pair.
 pub(super) fn check_itself(boxes: &mut BroadPhase, x: &[f64]) -> Result<(), ContactPair> {
-    let mut pairs = Vec::new();
-    boxes.self_edge_faces(&mut pairs);
+    let Some([edge, face]) = boxes.self_crossing(x) else {
+        return Ok(());
+    };
     let mesh = boxes.mesh();
-    for [e, f] in pairs {
-        let (edge, face) = (mesh.edges()[e as usize], mesh.faces()[f as usize]);
-        if pierces(gather(x, edge), gather(x, face)) {
-            return Err(ContactPair::Sheet {
-                first: edge[0],
-                second: face[0],
-            });
-        }
-    }
-    Ok(())
+    Err(ContactPair::Sheet {
+        first: mesh.edges()[edge as usize][0],
+        second: mesh.faces()[face as usize][0],
+    })
 }
 
 /// Refuses a sheet that is inside a solid or passes through its surface, with the pair and its gap. Inside a

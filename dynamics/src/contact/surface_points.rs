@@ -107,6 +107,11 @@ impl SurfacePoints {
         self.own + self.carried.len()
     }
 
+    /// Number of points that are vertices, before those that are carried.
+    pub fn own(&self) -> usize {
+        self.own
+    }
+
     /// Number of vertices of the model.
     pub fn model_vertices(&self) -> usize {
         self.model_vertices

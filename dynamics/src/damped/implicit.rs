@@ -57,14 +57,14 @@ impl Integrator for Implicit {
         let previous = attempt
             .previous()
             .filter(|before| h <= MAX_STEP_RATIO * (state.t - before.t));
-        let damping = (-scene.model.damping() * h).exp();
+        let model = scene.model;
         two_step(minimiser, scene, attempt, previous, proposal, effort)?;
         let history = &mut proposal.motion.history;
         history.set_previous(Some(state));
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
         // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
         if let Some(before) = &mut history.previous {
-            before.v.iter_mut().for_each(|v| *v *= damping);
+            model.damp(&mut before.v, h);
         }
         Ok(())
     }

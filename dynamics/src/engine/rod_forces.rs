@@ -3,7 +3,7 @@
 use crate::linear::rod_least_squares::RodLeastSquares;
 use crate::model::PINNED;
 use crate::step::history::Multipliers;
-use crate::{Method, SheetModel};
+use crate::{Isometry, Method, SheetModel};
 
 impl Method {
     /// Force density (tension over length, N/m) of a unit multiplier: BDF2 and implicit Euler have
@@ -31,7 +31,7 @@ pub(crate) fn rod_forces(
     multipliers: &Multipliers,
     x: &[f64],
 ) -> Option<Vec<f64>> {
-    if model.rods().is_empty() {
+    if model.isometry() != Isometry::Rods {
         return None;
     }
     let rods = model.rods();

@@ -650,10 +650,11 @@ fn damp(model: &SheetModel, state: &mut State, h: f64) -> f64 {
     if model.damping() == 0.0 {
         return 0.0;
     }
-    let before = model.kinetic_energy(&state.v);
     let factor = (-model.damping() * h).exp();
-    state.v.iter_mut().for_each(|v| *v *= factor);
-    before * (1.0 - factor * factor)
+    let mut of_sheets = state.v.clone();
+    of_sheets[3 * model.sheet_vertices()..].fill(0.0);
+    model.damp(&mut state.v, h);
+    model.kinetic_energy(&of_sheets) * (1.0 - factor * factor)
 }
 
 #[cfg(test)]

@@ -203,7 +203,8 @@ impl SheetModel {
     /// [`AirError`] if density, a coefficient or a profile makes no sense.
     pub fn with_air(self, air: Air) -> Result<Self, AirError> {
         air.validate()?;
-        let faces = on_faces(&air, self.topology(), self.edges().lengths());
+        let mut faces = on_faces(&air, self.topology(), self.edges().lengths());
+        faces.retain(|face| face.vertices[0].index() < self.sheet_vertices());
         let wind = air.wind;
         Ok(self.with_implicit_force(Drag(Arc::new(OnFaces { wind, faces }))))
     }

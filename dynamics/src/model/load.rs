@@ -55,7 +55,7 @@ impl Advice for LoadError {
     }
 }
 
-fn direction(direction: [f64; 3]) -> Result<Vector3<f64>, LoadError> {
+pub(crate) fn direction(direction: [f64; 3]) -> Result<Vector3<f64>, LoadError> {
     let [x, y, z] = direction;
     let unit = Vector3::from(direction).try_normalize(0.0);
     unit.filter(|d| d.iter().all(|c| c.is_finite()))

@@ -62,6 +62,8 @@ pub struct SheetModel {
     /// Forces that damped steps take as terms of their objective.
     implicit: Vec<Box<dyn ImplicitForce>>,
     damping: f64,
+    /// The vertices of sheets; those after them belong to rigid bodies.
+    sheet_vertices: usize,
     free_index: Vec<u32>,
     free_count: usize,
     moving_pins: Vec<MovingPin>,
@@ -127,6 +129,7 @@ impl SheetModel {
             forces: Vec::new(),
             implicit: Vec::new(),
             damping: 0.0,
+            sheet_vertices: n,
             free_index: (0..n as u32).collect(),
             free_count: n,
             moving_pins: Vec::new(),
@@ -224,6 +227,24 @@ impl SheetModel {
         self.implicit.iter().map(Box::as_ref)
     }
 
+    /// Says that the vertices from this one on are those of [rigid bodies](crate::RigidBody): neither the velocity
+    /// damping nor [air](crate::Air) that is added later acts on them, and their edges say nothing about the
+    /// lengths of the sheets.
+    ///
+    /// # Panics
+    /// If no vertex is before it.
+    #[must_use]
+    pub fn with_bodies_from(mut self, first: VertexId) -> Self {
+        let of_sheets = |ends: &&[usize; 2]| ends.iter().all(|v| *v < first.index());
+        let edges = self.edges.edges().iter().zip(self.edges.lengths());
+        let lengths = edges.filter(|(ends, _)| of_sheets(ends)).map(|(_, l)| *l);
+        let lengths: Vec<f64> = lengths.collect();
+        assert!(!lengths.is_empty(), "there are sheets before the bodies");
+        self.mean_length = lengths.iter().sum::<f64>() / lengths.len() as f64;
+        self.sheet_vertices = first.index();
+        self
+    }
+
     /// Sets the rate `gamma` (1/s) of the velocity damping `v <- v exp(-gamma h)` that follows
     /// every step: the paper's "we add this damping force to the velocity" (Sec. 6).
     ///
@@ -302,6 +323,18 @@ impl SheetModel {
     /// Rate of the velocity damping, 1/s.
     pub fn damping(&self) -> f64 {
         self.damping
+    }
+
+    /// The part of velocities (`3V`) that damping over `h` seconds leaves, in place of them.
+    pub(crate) fn damp(&self, v: &mut [f64], h: f64) {
+        let factor = (-self.damping * h).exp();
+        let of_sheets = &mut v[..3 * self.sheet_vertices];
+        of_sheets.iter_mut().for_each(|v| *v *= factor);
+    }
+
+    /// The number of vertices of sheets, before those of rigid bodies.
+    pub(crate) fn sheet_vertices(&self) -> usize {
+        self.sheet_vertices
     }
 
     /// Number of vertices that are not pinned.

@@ -308,6 +308,18 @@ impl Simulation {
         }
     }
 
+    /// The same on the points of the surface where that is not the sheet ([`SurfacePoints`]), newtons: three
+    /// for each point.
+    pub fn surface_forces(&self) -> Option<Vec<f64>> {
+        match &self.engine {
+            Engine::Free(engine) => {
+                let x = on_surface(self.surface_points(), &self.state().x);
+                Some(ContactTerms::of(engine.contacts()?, &x).vertex_forces(None))
+            }
+            Engine::Chart(chart) => chart.contact_forces(),
+        }
+    }
+
     /// Smallest gap of each vertex, or of each point of the surface where that is not the sheet
     /// ([`SurfacePoints`]), and of its edges and faces, metres: a distance less the thickness of the
     /// sheet and the radius of a rounded body, and at most the activation distance of the barrier. `None`

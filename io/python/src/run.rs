@@ -217,21 +217,27 @@ impl Run {
         Ok(columns)
     }
 
-    /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...: a dict of
+    /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ..., "body[0]", ...
+    /// and "guide[0]", ... with the numbers of bodies: a dict of
     /// "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and "torque" of shape (S, 3), newton
     /// metres: of a support those on the sheet, the torque about the mean of its vertices; of an obstacle those
-    /// of the sheet on it, the torque about the origin of its own frame.
+    /// of the sheet on it, the torque about the origin of its own frame; of a body those of all that touches it,
+    /// the torque about its centre of mass; of its guide those on the body.
     #[getter]
     fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        // Supports come first, and bodies by their numbers.
-        let mut bodies: BTreeMap<(bool, usize), Vec<&LoadRow>> = BTreeMap::new();
+        // Supports come first, then obstacles, bodies and guides, by their numbers.
+        let mut bodies: BTreeMap<(LoadKind, usize), Vec<&LoadRow>> = BTreeMap::new();
         for row in &self.recording.loads {
-            let body = (row.on == LoadKind::Obstacle, row.number);
-            bodies.entry(body).or_default().push(row);
+            bodies.entry((row.on, row.number)).or_default().push(row);
         }
         let loads = PyDict::new(py);
-        for ((is_obstacle, number), steps) in bodies {
-            let kind = if is_obstacle { "obstacle" } else { "support" };
+        for ((on, number), steps) in bodies {
+            let kind = match on {
+                LoadKind::Support => "support",
+                LoadKind::Obstacle => "obstacle",
+                LoadKind::Body => "body",
+                LoadKind::Guide => "guide",
+            };
             let columns = PyDict::new(py);
             let times: Vec<f64> = steps.iter().map(|row| row.t).collect();
             let forces: Vec<[f64; 3]> = steps.iter().map(|row| row.force).collect();

@@ -6,7 +6,7 @@ use crate::mesh::{Mesh, edges};
 use crate::report::StepReport;
 use crate::scene::{Scene, Signals};
 use crate::value::{Remade, edits as edits_of, remade};
-use isosheet_io::dynamics::{self, Checkpoint, Support};
+use isosheet_io::dynamics::{self, Checkpoint};
 use isosheet_io::mesh::VertexId;
 use isosheet_io::scene::{Key, KeyError, LiveScene};
 use numpy::{PyArray1, PyArray2};
@@ -217,13 +217,13 @@ impl Simulation {
     /// Positions of the vertices, metres: a copy of shape (V, 3).
     #[getter]
     fn x<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        vectors(py, &self.copied(py, |s| s.state().x.clone()))
+        vectors(py, &self.with(py, |live| live.positions().into_owned()))
     }
 
     /// Velocities of the vertices, m/s: a copy of shape (V, 3).
     #[getter]
     fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        vectors(py, &self.copied(py, |s| s.state().v.clone()))
+        vectors(py, &self.with(py, |live| live.velocities().into_owned()))
     }
 
     /// Corners of the triangles, of shape (F, 3).
@@ -244,16 +244,16 @@ impl Simulation {
         array(py, &self.with(py, |live| live.sheet().lengths().to_vec()))
     }
 
-    /// Masses of the vertices, kg, of shape (V,).
+    /// Masses of the vertices, kg, of shape (V,); zero of those of rigid bodies.
     #[getter]
     fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, &self.copied(py, |s| s.model().mass().vertex.clone()))
+        array(py, &self.with(py, |live| live.masses()))
     }
 
     /// Numbers of the pinned vertices, at rest or in motion.
     #[getter]
     fn pins<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        let pins: Vec<VertexId> = self.copied(py, |s| s.model().pins());
+        let pins: Vec<VertexId> = self.with(py, |live| live.pins());
         array(py, &pins.iter().map(|v| v.0).collect::<Vec<_>>())
     }
 
@@ -261,17 +261,7 @@ impl Simulation {
     /// hold, of shape (V, 3); zero before the first step.
     #[getter]
     fn reactions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let forces = self.copied(py, |s| {
-            let mut forces = vec![0.0; s.state().x.len()];
-            for reaction in s.reactions() {
-                let (Support::Pin(vertex) | Support::Constraint { vertex, .. }) = reaction.support;
-                for k in 0..3 {
-                    forces[3 * vertex.index() + k] += reaction.force[k];
-                }
-            }
-            forces
-        });
-        vectors(py, &forces)
+        vectors(py, &self.with(py, |live| live.reactions()))
     }
 
     /// Force of each support of the scene on the sheet in the last step, newtons, of shape (supports, 3).
@@ -293,10 +283,28 @@ impl Simulation {
         )
     }
 
+    /// Force of contact on each rigid body of the scene, newtons, of shape (bodies, 3).
+    #[getter]
+    fn body_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let loads = self.with(py, |live| live.body_loads());
+        rows(py, &loads.iter().map(|load| load.force).collect::<Vec<[f64; 3]>>())
+    }
+
+    /// Centre of mass of each rigid body of the scene, metres, of shape (bodies, 3).
+    #[getter]
+    fn body_centres<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let centres = self.with(py, |live| {
+            let x = &live.simulation().state().x;
+            let bodies = live.bodies().iter();
+            bodies.map(|body| body.centre(x)).collect::<Vec<[f64; 3]>>()
+        });
+        rows(py, &centres)
+    }
+
     /// Forces of contact on the vertices, newtons, of shape (V, 3); None without contact.
     #[getter]
     fn contact_forces<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        let forces = self.copied(py, |s| s.contact_forces());
+        let forces = self.copied(py, |s| s.surface_forces());
         forces.map(|f| vectors(py, &f)).transpose()
     }
 
@@ -304,7 +312,7 @@ impl Simulation {
     /// rods.
     #[getter]
     fn rod_forces<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        let forces = self.copied(py, |s| s.rod_forces());
+        let forces = self.with(py, |live| live.rod_forces());
         forces.map(|f| array(py, &f))
     }
 

@@ -5,9 +5,9 @@ use super::message::print_warnings;
 use super::reading::what_reading_did;
 use super::write::to_stdout;
 use crate::dynamics::{SheetModel, rod_rank};
-use crate::mesh::{Dof, MassKind, Sheet};
+use crate::mesh::{Dof, MassKind, Sheet, VertexId};
 use crate::run::Recording;
-use crate::scene::{SceneFile, Setup, bounds};
+use crate::scene::{CarriedBody, SceneFile, Setup, bounds};
 use crate::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -116,15 +116,27 @@ fn describe_run(folder: &Path) -> Done {
 
 /// A scene in a few lines.
 pub(crate) fn describe_scene(setup: &Setup) -> String {
-    let sheet = describe_sheet(&setup.sheet, &setup.model, &setup.start.x);
-    let pins = setup.model.pins().len();
+    let sheet = describe_sheet(&setup.mesh(), &setup.model, &setup.start.x);
+    let carriers: Vec<VertexId> = setup
+        .bodies
+        .iter()
+        .flat_map(CarriedBody::vertices)
+        .collect();
+    let pins = setup.model.pins().into_iter();
+    let pins = pins.filter(|v| !carriers.contains(v)).count();
     let mass = setup.model.mass().total();
     let modelled = setup.modelled.join(", ");
+    let bodies = setup.bodies.iter().map(|body| body.surface());
+    let bodies: Vec<_> = bodies.collect();
     let sheets = setup.parts.iter().map(|(name, part)| {
+        let kind = match bodies.contains(&part.vertices) {
+            true => "body ",
+            false => "sheet",
+        };
         let (v, f) = (&part.vertices, &part.faces);
         let last = [v.end - 1, f.end - 1];
         format!(
-            "sheet            {name}: vertices {} to {}, faces {} to {}\n",
+            "{kind}            {name}: vertices {} to {}, faces {} to {}\n",
             v.start, last[0], f.start, last[1]
         )
     });

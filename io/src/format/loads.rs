@@ -1,4 +1,4 @@
-//! The loads of supports and bodies in a run.
+//! The loads of supports, obstacles and bodies in a run.
 
 use super::FileError;
 use super::history::{Row, RowWriter, read_rows};
@@ -6,16 +6,20 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// What a load is on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LoadKind {
     /// A support; force and torque are those of the support on the sheet.
     Support,
     /// An obstacle; force and torque are those of the sheet on the obstacle.
     Obstacle,
+    /// A body that responds; force and torque are those of all that touches it.
+    Body,
+    /// The guide of a body; force and torque are those of the guide on the body.
+    Guide,
 }
 
-/// The load of a support or an obstacle at the end of a step. The field order is the column order of the
+/// The load of a support, an obstacle or a body at the end of a step. The field order is the column order of the
 /// file.
 ///
 /// ```
@@ -40,12 +44,13 @@ pub struct LoadRow {
     pub t: f64,
     /// What it is on.
     pub on: LoadKind,
-    /// The number of the support or of the obstacle in the scene, from 0.
+    /// The number of the support, the obstacle or the body in the scene, from 0.
     pub number: usize,
     /// Force, newtons.
     pub force: [f64; 3],
-    /// Torque, newton metres: on an obstacle about the origin of its own frame, of a support about the mean of
-    /// the places of its vertices.
+    /// Torque, newton metres: on an obstacle about the origin of its own frame, on a body about its centre of
+    /// mass, of a guide about the point of the hinge or the joint or on a slider about the centre of mass, of a
+    /// support about the mean of the places of its vertices.
     pub torque: [f64; 3],
 }
 

@@ -43,7 +43,7 @@ pub struct Estimate {
 impl Estimate {
     /// What the run of a scene needs.
     pub fn of(scene: &Scene, setup: &Setup) -> Self {
-        let topology = setup.model.topology();
+        let topology = setup.sheet.topology();
         let (vertices, faces) = (topology.vertex_count(), topology.face_count());
         let steps = step_count(scene);
         let frames = 2 + steps / scene.output.steps_per_frame(scene.method.step);

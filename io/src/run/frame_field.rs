@@ -6,6 +6,7 @@ use isosheet_collide::Obstacle;
 use isosheet_dynamics::{ElasticDeformation, SheetModel};
 use isosheet_mesh::Sheet;
 use nalgebra::Point3;
+use std::borrow::Cow;
 
 /// A field whose values are made of each frame of a motion.
 pub(super) struct FrameField<'a> {
@@ -144,9 +145,9 @@ impl<'a> FrameField<'a> {
         })
     }
 
-    /// The strain of each face of an elastic sheet, and the part of stretching in its elastic energy; none for
-    /// sheets of rods.
-    pub(super) fn elastic(model: &'a SheetModel) -> Vec<Self> {
+    /// The strain of each face of an elastic sheet, and the part of stretching in its elastic energy, of so many
+    /// faces of sheets and bodies; none for sheets of rods.
+    pub(super) fn elastic(model: &'a SheetModel, faces: usize) -> Vec<Self> {
         if model.elastic_sheet().is_none() {
             return Vec::new();
         }
@@ -170,18 +171,30 @@ impl<'a> FrameField<'a> {
              enough, a sheet that carries no load in its plane has little of it.",
         );
         let shares = |d: ElasticDeformation| (0..d.strain.len()).map(|f| d.share(f)).collect();
+        // Bodies do not deform.
+        let of_all = move |mut values: Vec<f64>| {
+            values.resize(faces, 0.0);
+            values
+        };
         // What is plastic, and the barrier at the limit, are not in the frames.
         let memories = model.memories();
-        let deformed = move |x: &[f64]| model.elastic_deformation(x, &memories);
+        let deformed = move |x: &[f64]| {
+            let mut x = Cow::Borrowed(x);
+            if x.len() != model.coordinate_count() {
+                // After the vertices of sheets those of bodies, wherever they are.
+                x.to_mut().resize(model.coordinate_count(), 0.0);
+            }
+            model.elastic_deformation(&x, &memories)
+        };
         let strains = deformed.clone();
         vec![
             Self::new(strain, move |frame| {
                 let deformation = strains(frame.x);
-                deformation.map(|d| d.strain).unwrap_or_default()
+                of_all(deformation.map(|d| d.strain).unwrap_or_default())
             }),
             Self::new(share, move |frame| {
                 let deformation = deformed(frame.x);
-                deformation.map(shares).unwrap_or_default()
+                of_all(deformation.map(shares).unwrap_or_default())
             }),
         ]
     }

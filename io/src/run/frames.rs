@@ -71,7 +71,7 @@ impl FrameShape {
     /// That of the frames of a run.
     pub(crate) fn of(setup: &Setup) -> Self {
         let model = &setup.model;
-        let topology = model.topology();
+        let topology = setup.sheet.topology();
         let counts = MeshCounts {
             vertices: topology.vertex_count(),
             edges: topology.edge_count(),
@@ -87,7 +87,7 @@ impl FrameShape {
         };
         let size = |q: FrameQuantity| if is_there(q) { q.size(counts) } else { 0 };
         Self {
-            coordinates: setup.start.x.len(),
+            coordinates: 3 * counts.vertices,
             data: FrameQuantity::ALL.map(size),
         }
     }

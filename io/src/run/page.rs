@@ -34,7 +34,10 @@ impl Recording {
     fn fields(&self) -> Vec<FrameField<'_>> {
         let has = |quantity: FrameQuantity| self.shape.has(quantity);
         let mut fields = FrameField::all(&self.sheet, &self.obstacles, has);
-        fields.extend(FrameField::elastic(&self.model));
+        fields.extend(FrameField::elastic(
+            &self.model,
+            self.sheet.topology().face_count(),
+        ));
         fields
     }
 
@@ -184,6 +187,10 @@ impl Rows {
         }
         for (k, force) in ending.obstacles.iter().enumerate() {
             let name = format!("force of the sheet on obstacle[{k}] at the end");
+            self.add(&name, vector(force));
+        }
+        for (k, force) in ending.bodies.iter().enumerate() {
+            let name = format!("force of contact on body[{k}] at the end");
             self.add(&name, vector(force));
         }
     }

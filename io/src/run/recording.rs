@@ -23,9 +23,9 @@ pub struct Recording {
     pub name: String,
     /// The scene as it was run.
     pub scene: SceneFile,
-    /// The sheet in its rest shape, placed in space.
+    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
     pub sheet: Sheet,
-    /// Of several sheets the name of each, and where it is in their union.
+    /// Of several sheets and bodies the name of each, and where it is in their union.
     pub parts: Vec<(String, Part)>,
     /// What is modelled, in words.
     pub modelled: Vec<String>,
@@ -37,7 +37,7 @@ pub struct Recording {
     pub immobile: Vec<VertexId>,
     /// The model at its start.
     pub(crate) model: SheetModel,
-    /// The bodies, in the order of the scene.
+    /// The obstacles, in the order of the scene.
     pub obstacles: Vec<Obstacle>,
     /// How many numbers a frame has.
     pub(crate) shape: FrameShape,
@@ -102,12 +102,17 @@ impl Recording {
         tables: Tables,
     ) -> (Self, RunFrames) {
         let shape = FrameShape::of(&setup);
+        let bodies: Vec<VertexId> = setup.bodies.iter().flat_map(|body| body.vertices).collect();
+        let of_sheets = |mut vertices: Vec<VertexId>| {
+            vertices.retain(|v| !bodies.contains(v));
+            vertices
+        };
         let path = folder.join(RunFolder::FRAMES);
         let frames = RunFrames::Stored(StoredFrames { path, shape });
         let recording = Self {
             name: name_of(folder),
-            immobile: immobile_vertices(&setup.model, &setup.start.x),
-            pins: setup.model.pins(),
+            immobile: of_sheets(immobile_vertices(&setup.model, &setup.start.x)),
+            pins: of_sheets(setup.model.pins()),
             model: setup.model,
             parts: setup.parts,
             modelled: setup.modelled,
@@ -125,7 +130,7 @@ impl Recording {
         (recording, frames)
     }
 
-    /// The bodies for files of other programs, `obstacle_0` and so on in the order of the scene, with their
+    /// The obstacles for files of other programs, `obstacle_0` and so on in the order of the scene, with their
     /// poses in the frames of the trajectory. Of a half-space there is a square that is larger than what the
     /// sheet passes through.
     pub fn exported_bodies(&self) -> Vec<SeriesBody> {
@@ -143,7 +148,7 @@ impl Recording {
         self.obstacles.iter().enumerate().map(body).collect()
     }
 
-    /// The pose of each body at time `t` (seconds), in the order of the scene.
+    /// The pose of each obstacle at time `t` (seconds), in the order of the scene.
     pub fn poses(&self, t: f64) -> Vec<Isometry3<f64>> {
         let bodies = self.obstacles.iter();
         bodies.map(|body| body.motion().pose(t)).collect()

@@ -10,7 +10,8 @@ use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::format::{MeasureRow, MeasureWriter};
-use crate::scene::{Facts, Scene, SceneError, SceneFile, SupportForces, check_positions};
+use crate::scene::check_positions;
+use crate::scene::{CarriedBody, Facts, Scene, SceneError, SceneFile, SupportForces};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::contact::ActiveContacts;
 use isosheet_dynamics::{
@@ -138,7 +139,8 @@ impl<'a> Stepping<'a> {
         clock: Instant,
     ) -> Result<Self, RunError> {
         let (scene, facts) = (plan.file.scene(), &plan.facts);
-        let bears_loads = !scene.support.is_empty() || !scene.obstacle.is_empty();
+        let bears_loads =
+            !scene.support.is_empty() || !scene.obstacle.is_empty() || !scene.body.is_empty();
         let path = |name| folder.path(name);
         let [history, loads, measures, frames] = [
             RunFolder::HISTORY,
@@ -225,20 +227,24 @@ impl<'a> Stepping<'a> {
     }
 
     fn record_frame(&mut self) -> Result<(), RunError> {
-        let state = self.simulation.state();
-        let rod_forces = self.simulation.rod_forces().unwrap_or_default();
-        let contact_forces = self.simulation.contact_forces().unwrap_or_default();
-        let gaps = self.simulation.vertex_gaps().unwrap_or_default();
-        let plastic_angles = self.simulation.plastic_angles().unwrap_or_default();
-        let plastic_curvatures = self.simulation.plastic_curvatures().unwrap_or_default();
+        let simulation = &self.simulation;
+        let state = simulation.state();
+        let facts = &self.plan.facts;
+        let rod_forces = facts.of_edges(simulation.rod_forces().unwrap_or_default());
+        let contact_forces = simulation.surface_forces().unwrap_or_default();
+        let gaps = simulation.vertex_gaps().unwrap_or_default();
+        let plastic_angles = facts.of_edges(simulation.plastic_angles().unwrap_or_default());
+        let curvatures = simulation.plastic_curvatures().unwrap_or_default();
+        let plastic_curvatures = facts.of_faces(curvatures.into_flattened());
         let data = FrameData {
             rod_forces: &rod_forces,
             contact_forces: &contact_forces,
             gaps: &gaps,
             plastic_angles: &plastic_angles,
-            plastic_curvatures: plastic_curvatures.as_flattened(),
+            plastic_curvatures: &plastic_curvatures,
         };
-        Ok(self.frames.append(state.t, &state.x, &data)?)
+        let (t, x) = (state.t, self.plan.facts.shown(&state.x));
+        Ok(self.frames.append(t, &x, &data)?)
     }
 
     /// Records the loads at the end of a step.
@@ -263,7 +269,33 @@ impl<'a> Stepping<'a> {
             force: load.force.into(),
             torque: load.torque.into(),
         });
-        for row in on_supports.chain(on_obstacles) {
+        let on_bodies = CarriedBody::contact_loads(&self.plan.facts.bodies, &self.simulation);
+        let on_bodies = on_bodies
+            .into_iter()
+            .enumerate()
+            .map(|(number, load)| LoadRow {
+                t,
+                on: LoadKind::Body,
+                number,
+                force: load.force,
+                torque: load.torque,
+            });
+        let guided = self.plan.facts.bodies.iter().enumerate();
+        let of_guides = guided.filter_map(|(number, body)| {
+            let load = body.guide_load(&self.simulation)?;
+            Some(LoadRow {
+                t,
+                on: LoadKind::Guide,
+                number,
+                force: load.force,
+                torque: load.torque,
+            })
+        });
+        for row in on_supports
+            .chain(on_obstacles)
+            .chain(on_bodies)
+            .chain(of_guides)
+        {
             loads.append(&row)?;
             if let Some(tables) = &mut self.tables {
                 tables.loads.push(row);
@@ -278,11 +310,12 @@ impl<'a> Stepping<'a> {
             return Ok(());
         };
         let state = self.simulation.state();
+        let x = self.plan.facts.shown(&state.x);
         for gauge in &self.plan.facts.measures {
             let row = MeasureRow {
                 t: state.t,
                 name: gauge.name.clone(),
-                value: gauge.value(&state.x),
+                value: gauge.value(&x),
             };
             measures.append(&row)?;
             if let Some(tables) = &mut self.tables {
@@ -428,15 +461,23 @@ impl<'a> Stepping<'a> {
 
     /// Largest distance of a vertex from its place at the start, metres.
     fn displacement(&self) -> f64 {
-        let now = self.simulation.state().x.as_chunks::<3>().0;
-        let pairs = now.iter().zip(self.plan.facts.start.as_chunks::<3>().0);
+        let now = self.plan.facts.shown(&self.simulation.state().x);
+        let pairs = now
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .zip(self.plan.facts.start.as_chunks::<3>().0);
         let distances = pairs.map(|(p, q)| (Vector3::from(*p) - Vector3::from(*q)).norm());
         distances.fold(0.0, f64::max)
     }
 
     fn largest_speed(&self) -> f64 {
-        let velocities = self.simulation.state().v.as_chunks::<3>().0.iter();
-        let speeds = velocities.map(|v| Vector3::from(*v).norm());
+        let velocities = self.plan.facts.shown(&self.simulation.state().v);
+        let speeds = velocities
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .map(|v| Vector3::from(*v).norm());
         speeds.fold(0.0, f64::max)
     }
 
@@ -457,6 +498,10 @@ impl<'a> Stepping<'a> {
             largest_speed: self.largest_speed(),
             supports: self.support_forces(),
             obstacles: loads.iter().map(|load| load.force.into()).collect(),
+            bodies: CarriedBody::contact_loads(&self.plan.facts.bodies, &self.simulation)
+                .iter()
+                .map(|load| load.force)
+                .collect(),
             taut: report.taut.as_ref().map(|demand| demand.to_string()),
             residuals: {
                 let State { t, x, .. } = self.simulation.state();

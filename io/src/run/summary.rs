@@ -22,7 +22,7 @@ pub struct Summary {
     pub wall_time: f64,
     /// What was modelled, in words.
     pub modelled: Vec<String>,
-    /// Of several sheets the name and the place of each.
+    /// Of several sheets and bodies the name and the place of each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sheets: Vec<SheetPlace>,
     /// Number of vertices.
@@ -91,6 +91,9 @@ pub struct Ending {
     pub supports: Vec<[f64; 3]>,
     /// Force of the sheet on each obstacle of the scene, newtons.
     pub obstacles: Vec<[f64; 3]>,
+    /// Force of all that touches each body of the scene on it, newtons.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<[f64; 3]>,
     /// What asked for more than the lengths allow, where the run ended for that reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taut: Option<String>,
@@ -99,7 +102,7 @@ pub struct Ending {
     pub residuals: Residuals,
 }
 
-/// One of several sheets in the arrays of a run.
+/// One of several sheets and bodies in the arrays of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SheetPlace {
     /// Its name.

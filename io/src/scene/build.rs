@@ -1,14 +1,17 @@
 //! From a scene to a simulation.
 
+use super::bodies;
 use super::creases::{EdgeFolds, FoldSprings};
 use super::error::SceneError;
 use super::folding::{FLAT_STIFFNESS, FoldTargets};
+use super::guides::Guide;
 use super::in_words::{elastic_in_words, materials_in_words};
 use super::key::Key;
 use super::mesh::Mesh;
 use super::mesh_file::Files;
 use super::obstacles;
 use super::placed::{Form, PlacedSheet, PlacedSheets};
+use super::placed_bodies::{JointMotion, PlacedBodies, Surface};
 use super::pose::Motion;
 use super::problem::Problem;
 use super::sheet::{Bending, Elasticity, Isometry, RestShape};
@@ -18,18 +21,20 @@ use super::supports::{Hold, frame_motion};
 use super::targets::{DrivenCrease, Targets};
 use super::{Air, Measure, Origins, Scene, Setup};
 use isosheet_collide as collide;
-use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
-use isosheet_dynamics::constraint::Line;
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, ContactsError, Obstacle};
+use isosheet_dynamics::constraint::{Line, Plane, Side};
 use isosheet_dynamics::{
-    AccelerationField, CreaseSprings, ElasticSheet, ElasticSheetError, Glue, LineClamp,
-    PAPER_GRAVITY, Patched, PlateBending, PlateEdges, PlateLaw, PointMotion, PointProfile,
-    Potential, PotentialOfPart, RigidDisplacement, RigidProfile, SheetModel, SimulationError,
-    State, VertexConstraint, VertexLoad, leave_flat_in, project_positions, start_of_folding,
+    AccelerationField, Attachment, CreaseSprings, ElasticSheet, ElasticSheetError, Glue,
+    JointSpring, LineClamp, PAPER_GRAVITY, Patched, PlateBending, PlateEdges, PlateLaw,
+    PointMotion, PointProfile, Potential, PotentialOfPart, RigidDisplacement, RigidProfile,
+    SheetModel, SimulationError, State, VertexConstraint, VertexLoad, leave_flat_in,
+    project_positions, start_of_folding,
 };
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, MassMatrix, VertexId};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -49,6 +54,8 @@ impl Scene {
         let mut builder = Builder::new(self, kept)?;
         builder.add_forces()?;
         builder.add_supports()?;
+        builder.add_guides()?;
+        builder.add_body_forces()?;
         builder.mend_lengths();
         builder.add_folds()?;
         builder.add_isometry()?;
@@ -57,7 +64,7 @@ impl Scene {
         let (contacts, obstacles) = builder.contacts()?;
         let gauge = |(k, measure): (usize, &Measure)| {
             let key = Key::root().name("measure").entry(k);
-            measure.gauge(&key, &builder.sheets)
+            measure.gauge(&key, &builder.sheets, &builder.bodies)
         };
         let measures = self.measure.iter().enumerate().map(gauge);
         let measures = measures.collect::<Result<_, _>>()?;
@@ -124,6 +131,11 @@ struct Builder<'a> {
     scene: &'a Scene,
     kept: &'a mut Kept,
     sheets: PlacedSheets<'a>,
+    bodies: PlacedBodies<'a>,
+    /// What is seen and touches, where it is more than the sheets.
+    surface: Option<Surface>,
+    /// Vertices that are glued to bodies, each with the number of the body.
+    glued_to_bodies: Vec<(VertexId, usize)>,
     /// Positions at the start, `3V`.
     x: Vec<f64>,
     /// Absent only while it is replaced by a changed one.
@@ -147,11 +159,15 @@ impl<'a> Builder<'a> {
     fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Self, SceneError> {
         let key = Key::root().name("sheet");
         let sheets = PlacedSheets::new(&scene.sheet, &mut kept.forms, &mut kept.files)?;
+        let bodies = PlacedBodies::new(&scene.body, &sheets, &mut kept.files)?;
         let damping = scene.sheet[0].damping;
-        let mass = sheets.mass(&scene.weight)?;
-        let model = SheetModel::with_mass(&sheets.union, mass)
+        let mass = bodies.mass(&sheets.union, sheets.mass(&scene.weight)?);
+        let mut model = SheetModel::with_mass(&bodies.mesh(&sheets.union)?, mass)
             .and_then(|m| m.with_damping(damping))
             .map_err(at(&key))?;
+        if let Some(first) = bodies.list.first() {
+            model = model.with_bodies_from(first.first);
+        }
         let mut modelled = Vec::new();
         if damping > 0.0 {
             modelled.push("velocity damping".to_owned());
@@ -159,13 +175,24 @@ impl<'a> Builder<'a> {
         if !scene.weight.is_empty() {
             modelled.push(counted(scene.weight.len(), "weight", "weights"));
         }
+        if !scene.body.is_empty() {
+            modelled.push(counted(scene.body.len(), "rigid body", "rigid bodies"));
+        }
+        let surfaces = bodies.list.iter().map(|body| body.part.vertices.clone());
+        let origins = Origins {
+            bodies: surfaces.collect(),
+            ..Origins::default()
+        };
         Ok(Self {
             scene,
             kept,
-            x: sheets.start.clone(),
+            x: sheets.start.iter().copied().chain(bodies.start()).collect(),
+            surface: bodies.surface(&sheets.union)?,
+            glued_to_bodies: Vec::new(),
             sheets,
+            bodies,
             model: Some(model),
-            origins: Origins::default(),
+            origins,
             clamps: Vec::new(),
             modelled,
             targets: Targets::default(),
@@ -204,13 +231,13 @@ impl<'a> Builder<'a> {
                 .sheets
                 .vertices(load.sheet.as_deref(), &load.at, &key)?;
             let size = load.size.scaled(1.0 / vertices.len() as f64);
-            let topology = self.sheets.union.topology();
+            let topology = self.model().topology();
             let load = VertexLoad::new(topology, &vertices, load.direction, size);
             let load = load.map_err(at(&key))?;
             self.change(|m| Ok(m.with_force(load)), at::<SimulationError>(&key))?;
         }
         for (key, field) in key.name("acceleration").entries(&forces.acceleration) {
-            let weights = self.model().mass().row_sums(self.sheets.union.topology());
+            let weights = self.model().mass().row_sums(self.model().topology());
             let size = field.size.as_given();
             let field = AccelerationField::new(weights, field.direction, size);
             let field = field.map_err(at(&key))?;
@@ -351,6 +378,82 @@ impl<'a> Builder<'a> {
             third.extend(corners);
         }
         Ok(third.into_iter().collect())
+    }
+
+    /// Holds the corners of guided bodies.
+    fn add_guides(&mut self) -> Result<(), SceneError> {
+        for k in 0..self.bodies.list.len() {
+            let body = &self.bodies.list[k];
+            let Some(guide) = &body.of.guide else {
+                continue;
+            };
+            let (key, vertices) = (body.key.name("guide").name(guide.name()), body.vertices());
+            let motion = body.guided_motion(guide, &self.x)?;
+            self.origins.guides.extend(vertices.map(|v| (v, k)));
+            match guide {
+                Guide::Ball { .. } => self.change(|m| m.with_pins(&vertices[..1]), at(&key))?,
+                Guide::Hinge { .. } => self.change(|m| m.with_pins(&vertices[..2]), at(&key))?,
+                Guide::Slider { direction, .. } => {
+                    for v in [vertices[0], vertices[1]] {
+                        let line = Line::new(self.position(v), *direction).map_err(at(&key))?;
+                        let constraint = VertexConstraint::on_curve(v, line);
+                        self.change(|m| m.with_constraint(constraint), at(&key))?;
+                    }
+                    // The third corner is beside the line of the other two.
+                    let [a, b, c] = [0, 1, 2].map(|i| Vector3::from(self.position(vertices[i])));
+                    let normal = (b - a).cross(&(c - a));
+                    let plane = Plane::new(c.into(), normal.into()).map_err(at(&key))?;
+                    let constraint = VertexConstraint::on_surface(vertices[2], plane, Side::On);
+                    self.change(|m| m.with_constraint(constraint), at(&key))?;
+                }
+            }
+            if let Some(JointMotion {
+                coordinate,
+                stiffness,
+                rest,
+                damping,
+            }) = motion
+            {
+                if stiffness > 0.0 {
+                    let spring = JointSpring::new(coordinate.clone(), stiffness, rest);
+                    let spring = spring.map_err(at(&key))?;
+                    self.change(
+                        |m| Ok(m.with_potential(spring)),
+                        at::<SimulationError>(&key),
+                    )?;
+                }
+                if damping > 0.0 {
+                    self.change(|m| m.with_joint_damper(coordinate, damping), at(&key))?;
+                }
+            }
+        }
+        let guided = self
+            .bodies
+            .list
+            .iter()
+            .filter(|body| body.of.guide.is_some());
+        self.count(guided.count(), "guide of a body", "guides of bodies");
+        Ok(())
+    }
+
+    fn add_body_forces(&mut self) -> Result<(), SceneError> {
+        let (mut forces, mut torques) = (0, 0);
+        for k in 0..self.bodies.list.len() {
+            let of = self.bodies.list[k].of;
+            for (i, force) in of.force.iter().enumerate() {
+                let (key, force) = self.bodies.list[k].force(i, force)?;
+                self.change(|m| Ok(m.with_force(force)), at::<SimulationError>(&key))?;
+            }
+            for (i, torque) in of.torque.iter().enumerate() {
+                let (key, torque) = self.bodies.list[k].torque(i, torque)?;
+                self.change(|m| Ok(m.with_force(torque)), at::<SimulationError>(&key))?;
+            }
+            forces += of.force.len();
+            torques += of.torque.len();
+        }
+        self.count(forces, "force on a body", "forces on bodies");
+        self.count(torques, "torque on a body", "torques on bodies");
+        Ok(())
     }
 
     /// A vertex may be pinned twice at rest; with anything else a pin would decide silently.
@@ -682,10 +785,28 @@ impl<'a> Builder<'a> {
         let gravity = self.scene.forces.gravity.map(norm).filter(|g| *g > 0.0);
         let gravity = gravity.unwrap_or(norm(PAPER_GRAVITY));
         for (key, seam) in Key::root().name("glue").entries(&self.scene.glue) {
+            let model = self.model();
+            let (mass, length) = (model.mass().total(), self.sheets.union.mean_length());
+            let stiffness = seam.stiffness(mass, gravity, rigidity, length);
+            let number = seam
+                .body()
+                .and_then(|name| bodies::number_of(&self.scene.body, name));
+            if let Some(number) = number {
+                let body = &self.bodies.list[number];
+                let vertices = seam.first_vertices(&self.sheets, &key)?;
+                let glued = vertices.iter().map(|v| (*v, number));
+                self.glued_to_bodies.extend(glued);
+                let carried = |v: VertexId| (v, body.body.carried(self.position(v), body.first));
+                let pairs = vertices.into_iter().map(carried).collect();
+                let attachment = Attachment::new(pairs, stiffness).map_err(at(&key))?;
+                self.change(
+                    |m| Ok(m.with_potential(attachment)),
+                    at::<SimulationError>(&key),
+                )?;
+                continue;
+            }
             let pairs = seam.pairs(&self.sheets, &key)?;
             let model = self.model();
-            let (mass, length) = (model.mass().total(), model.mean_length());
-            let stiffness = seam.stiffness(mass, gravity, rigidity, length);
             let closing = seam.closing.as_given();
             let glue = Glue::new(model.topology(), &pairs, stiffness, closing, &self.x);
             let glue = glue.map_err(at(&key))?;
@@ -713,6 +834,10 @@ impl<'a> Builder<'a> {
             let velocities = of.start.velocities(points, centre);
             v[part.coordinates()].copy_from_slice(velocities.as_flattened());
         }
+        for body in &self.bodies.list {
+            let first = 3 * body.first.index();
+            v[first..first + 12].copy_from_slice(body.velocities().as_flattened());
+        }
         for pin in self.model().pins() {
             v[3 * pin.index()..3 * pin.index() + 3].fill(0.0);
         }
@@ -727,20 +852,31 @@ impl<'a> Builder<'a> {
         let model = self.model.take();
         let sheets = &self.sheets.list;
         let part = |sheet: &PlacedSheet<'_>| {
-            let name = sheet.of.name.clone()?;
-            Some((name, sheet.part.clone()))
+            let name = sheet.of.name.clone();
+            (name.unwrap_or_else(|| "sheet".into()), sheet.part.clone())
         };
-        let parts = match &sheets[..] {
-            [_] => Vec::new(),
-            several => several.iter().filter_map(part).collect(),
+        let of_bodies = self.bodies.list.iter().enumerate();
+        let of_bodies = of_bodies.map(|(k, body)| (body.of.name(k), body.part.clone()));
+        let parts: Vec<_> = match &sheets[..] {
+            [_] if self.bodies.list.is_empty() => Vec::new(),
+            several => several.iter().map(part).chain(of_bodies).collect(),
         };
         let of_sheets = self.sheets.warnings(self.scene);
-        let fold_assignments = self.sheets.fold_assignments();
+        let mut fold_assignments = self.sheets.fold_assignments();
+        let (sheet, points) = match self.surface {
+            None => (self.sheets.union, None),
+            Some(Surface { sheet, points }) => (sheet, Some(points)),
+        };
+        if let Some(of_edges) = &mut fold_assignments {
+            of_edges.resize(sheet.topology().edge_count(), None);
+        }
         Setup {
             start,
             parts,
             material: materials_in_words(sheets),
-            sheet: self.sheets.union,
+            sheet,
+            points,
+            bodies: self.bodies.carried(),
             model: model.expect("a change that fails ends the building"),
             contacts,
             obstacles,
@@ -784,12 +920,26 @@ impl<'a> Builder<'a> {
         if !scene.has_contact() {
             return Ok((None, Vec::new()));
         }
-        let options = scene
-            .contact
-            .options(self.model(), scene.sheet[0].thickness);
-        let mut contacts = Contacts::new(self.model(), options)
+        let automatic = match &self.surface {
+            None => ContactOptions::for_sheet(self.model()),
+            Some(surface) => ContactOptions::for_surface(&surface.sheet, &surface.points),
+        };
+        let options = scene.contact.options(automatic, scene.sheet[0].thickness);
+        let contacts = match &self.surface {
+            None => Contacts::new(self.model(), options),
+            Some(Surface { sheet, points }) => Contacts::on_surface(sheet, points.clone(), options),
+        };
+        let mut contacts = contacts
             .map_err(at(&key.name("contact")))?
             .with_glue(&[self.targets.glued(), self.cuts()].concat());
+        if !self.bodies.list.is_empty() {
+            let mut parts: Vec<_> = self.origins.bodies.clone();
+            if !scene.contact.self_contact {
+                // Sheets meet bodies, and not one another.
+                parts.push(0..self.sheets.union.topology().vertex_count());
+            }
+            contacts = contacts.with_parts(&parts, self.glued_to_bodies.iter().copied());
+        }
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);
@@ -803,24 +953,34 @@ impl<'a> Builder<'a> {
             contacts = contacts.with_body(body, coefficients).map_err(at(&key))?;
         }
         self.count(obstacles.len(), "obstacle", "obstacles");
-        if scene.contact.self_contact {
+        self.bodies.check_empty(&self.sheets, &obstacles)?;
+        if scene.contact.self_contact || !self.bodies.list.is_empty() {
             let coefficients = Coefficients::equal(scene.contact.friction);
             contacts = contacts
                 .with_self_contact(coefficients)
                 .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
             for (key, pair) in key.name("contact.pair").entries(&scene.contact.pair) {
                 let [first, second] = &pair.sheets;
-                let first = self.sheets.one(Some(first), &key, "the contacts")?;
-                let second = self.sheets.one(Some(second), &key, "the contacts")?;
-                let vertices = [first, second].map(|sheet| sheet.part.vertices.clone());
+                let vertices = [self.points_of(first, &key)?, self.points_of(second, &key)?];
                 let coefficients = Coefficients::equal(pair.friction);
                 contacts = contacts
                     .with_friction_between(vertices, coefficients)
                     .map_err(at(&key))?;
             }
+        }
+        if scene.contact.self_contact {
             self.modelled.push("self-contact".into());
         }
         Ok((Some(contacts), obstacles))
+    }
+
+    /// The vertices of the sheet or of the surface of the body of a name.
+    fn points_of(&self, name: &str, key: &Key) -> Result<Range<usize>, Problem> {
+        let part = match self.bodies.named(name) {
+            Some(body) => &body.part,
+            None => &self.sheets.one(Some(name), key, "the contacts")?.part,
+        };
+        Ok(part.vertices.clone())
     }
 }
 

@@ -3,12 +3,12 @@
 use super::key::Key;
 use super::problem::Checks;
 use super::unit::Unit;
+use super::{Body, bodies};
 use isosheet_collide::{ContactOptions, Stiffness};
-use isosheet_dynamics::SheetModel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Contact. Without obstacles and without self-contact nothing of it is modelled.
+/// Contact. Without obstacles, bodies and self-contact nothing of it is modelled.
 ///
 /// ```toml
 /// [contact]
@@ -21,10 +21,10 @@ use serde::{Deserialize, Serialize};
 pub struct Contact {
     /// Whether the sheet meets itself; of several sheets, whether they meet themselves and one another.
     pub self_contact: bool,
-    /// Coefficient of friction of sheets with themselves and one another. (That of an obstacle is given with
-    /// the obstacle.)
+    /// Coefficient of friction of sheets and bodies with themselves and one another. (That of an obstacle is
+    /// given with the obstacle.)
     pub friction: f64,
-    /// Friction between two of several sheets, where it is another.
+    /// Friction between two of several sheets and bodies, where it is another.
     pub pair: Vec<SheetPair>,
     /// Gap below which contact acts, metres; if left out, 1 % of the mean edge length and at most half the
     /// smallest height of a face.
@@ -35,7 +35,7 @@ pub struct Contact {
     pub rest_speed: Option<f64>,
 }
 
-/// Friction between two of several sheets, or of one of them with itself.
+/// Friction between two of several sheets and bodies, or of a sheet with itself.
 ///
 /// ```toml
 /// [[sheet]]
@@ -57,18 +57,19 @@ pub struct Contact {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheetPair {
-    /// The names of the two sheets.
+    /// The names of the two sheets or bodies.
     pub sheets: [String; 2],
     /// Coefficient of friction.
     pub friction: f64,
 }
 
 impl Contact {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+    pub(crate) fn check(&self, bodies: &[Body], key: &Key, checks: &mut Checks) {
         checks.not_negative(key.name("friction"), self.friction, Unit::One);
         for (key, pair) in key.name("pair").entries(&self.pair) {
             checks.not_negative(key.name("friction"), pair.friction, Unit::One);
-            if !self.self_contact {
+            let is_body = |name: &String| bodies::number_of(bodies, name).is_some();
+            if !self.self_contact && !pair.sheets.iter().any(is_body) {
                 let remedy = "write `self_contact = true`, or leave the pair out";
                 checks.report(key, "sheets do not meet one another", remedy);
             }
@@ -85,9 +86,8 @@ impl Contact {
         }
     }
 
-    /// The options of the engine for a sheet of some thickness (metres).
-    pub(crate) fn options(&self, model: &SheetModel, thickness: f64) -> ContactOptions {
-        let automatic = ContactOptions::for_sheet(model);
+    /// The options of the engine for a sheet of some thickness (metres), with those that it has by itself.
+    pub(crate) fn options(&self, automatic: ContactOptions, thickness: f64) -> ContactOptions {
         ContactOptions {
             activation: self.activation.unwrap_or(automatic.activation),
             thickness,

@@ -10,6 +10,7 @@ use isosheet_mesh::VertexId;
 use isosheet_mesh::wording::brief;
 use nalgebra::Vector3;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Which entry of the scene made what in the engine.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -20,6 +21,10 @@ pub struct Origins {
     pub(crate) constraints: Vec<usize>,
     /// The support of each clamp along a line of vertices.
     pub(crate) clamps: Vec<usize>,
+    /// The body that a vertex carries, if it has a guide.
+    pub(crate) guides: HashMap<VertexId, usize>,
+    /// The points of the surface of each body that responds.
+    pub(crate) bodies: Vec<Range<usize>>,
 }
 
 /// Two supports that come closer to each other.
@@ -67,10 +72,14 @@ impl Origins {
         vertices
     }
 
+    /// What holds a vertex: `hold` of a support, or the guide of a body.
     fn support_key(&self, support: Support) -> Key {
+        if let Some(body) = self.guides.get(&support.vertex()) {
+            return Key::root().name("body").entry(*body).name("guide");
+        }
         let number = self.support(support);
         let list = Key::root().name("support");
-        number.map_or(list.clone(), |k| list.entry(k))
+        number.map_or(list.clone(), |k| list.entry(k)).name("hold")
     }
 
     /// A step of a simulation that failed. Supports that leave the sheet no room are named.
@@ -168,16 +177,16 @@ impl Origins {
                  edges along each clamp, or allow more `method.max_factorisations`",
             ),
             StepError::OffSupport { support, .. } => (
-                self.support_key(*support).name("hold"),
+                self.support_key(*support),
                 "a motion has to be zero at the start, and a curve or surface has to go through the vertex",
             ),
             StepError::NonFiniteMotion { support, .. } => (
-                self.support_key(*support).name("hold"),
+                self.support_key(*support),
                 "check the profiles of the motion",
             ),
             StepError::Unsatisfiable { infeasibility, .. } => {
                 let key = match infeasibility.by {
-                    Driver::Support(support) => self.support_key(support).name("hold"),
+                    Driver::Support(support) => self.support_key(support),
                     Driver::Body(body) => root.name("obstacle").entry(body).name("motion"),
                 };
                 let remedy = match infeasibility.strain_limit {
@@ -258,7 +267,7 @@ impl Origins {
         let root = Key::root();
         match error {
             SimulationError::Start(error) => self.of_step(error),
-            SimulationError::Contact(error) => of_contact(error),
+            SimulationError::Contact(error) => self.of_contact(error),
             SimulationError::OneSided { index } => {
                 let number = self.constraints.get(*index).copied().unwrap_or(0);
                 let key = root.name("support").entry(number).name("hold.surface.side");
@@ -269,6 +278,76 @@ impl Origins {
             SimulationError::Options(_) => Problem::from_error(root.name("method"), error),
             SimulationError::Chart(_) => Problem::from_error(root.name("method.chart"), error),
             _ => Problem::from_error(root, error),
+        }
+    }
+
+    /// The number of the body whose surface has a point.
+    fn body_of(&self, point: u32) -> Option<usize> {
+        let surfaces = &mut self.bodies.iter();
+        surfaces.position(|surface| surface.contains(&(point as usize)))
+    }
+
+    /// A point of what touches, in words.
+    fn point_in_words(&self, point: u32) -> String {
+        match self.body_of(point) {
+            None => format!("the sheet at vertex {point}"),
+            Some(k) => format!("`body[{k}]`"),
+        }
+    }
+
+    fn of_contact(&self, error: &ContactError) -> Problem {
+        let root = Key::root();
+        match error {
+            ContactError::Motion(error) => of_body_motion(error),
+            ContactError::Touching {
+                pair: ContactPair::Body { vertex, body },
+                gap,
+                ..
+            } => Problem::new(
+                root.name("obstacle").entry(*body),
+                format!(
+                    "the obstacle touches {} at the start (gap {} m, thickness of the \
+                     sheet taken off)",
+                    self.point_in_words(*vertex),
+                    brief(*gap)
+                ),
+                "move the obstacle or the sheet (`sheet.placement`): contact keeps a gap, it does not make one",
+            ),
+            ContactError::Touching {
+                pair: ContactPair::Sheet { first, second },
+                gap,
+                ..
+            } if self.body_of(*first).or(self.body_of(*second)).is_some() => {
+                let (body, other) = match self.body_of(*first) {
+                    Some(body) => (body, second),
+                    None => (self.body_of(*second).unwrap_or_default(), first),
+                };
+                Problem::new(
+                    root.name("body").entry(body).name("pose"),
+                    format!(
+                        "the body touches {} at the start (gap {} m, thickness of the sheet taken off)",
+                        self.point_in_words(*other),
+                        brief(*gap)
+                    ),
+                    "move one of them: contact keeps a gap, it does not make one",
+                )
+            }
+            ContactError::Touching {
+                pair: ContactPair::Sheet { first, second },
+                gap,
+                ..
+            } => Problem::new(
+                root.name("contact.self_contact"),
+                format!(
+                    "the sheet touches itself at the vertices {first} and {second} at the start (gap {} m, \
+                     thickness taken off)",
+                    brief(*gap)
+                ),
+                "open the sheet there, give it less `sheet.thickness`, or leave out self-contact",
+            ),
+            ContactError::Method => Problem::from_error(root.name("method.integrator"), error),
+            // The barrier, or another sheet.
+            _ => Problem::from_error(root.name("contact"), error),
         }
     }
 }
@@ -317,40 +396,4 @@ fn remedy_of(reason: Reason) -> (Key, &'static str) {
 fn of_body_motion(error: &BodyMotionError) -> Problem {
     let key = Key::root().name("obstacle").entry(error.body);
     Problem::from_error(key.name("motion"), error)
-}
-
-fn of_contact(error: &ContactError) -> Problem {
-    let root = Key::root();
-    match error {
-        ContactError::Motion(error) => of_body_motion(error),
-        ContactError::Touching {
-            pair: ContactPair::Body { vertex, body },
-            gap,
-            ..
-        } => Problem::new(
-            root.name("obstacle").entry(*body),
-            format!(
-                "the obstacle touches the sheet at vertex {vertex} at the start (gap {} m, thickness of the \
-                 sheet taken off)",
-                brief(*gap)
-            ),
-            "move the obstacle or the sheet (`sheet.placement`): contact keeps a gap, it does not make one",
-        ),
-        ContactError::Touching {
-            pair: ContactPair::Sheet { first, second },
-            gap,
-            ..
-        } => Problem::new(
-            root.name("contact.self_contact"),
-            format!(
-                "the sheet touches itself at the vertices {first} and {second} at the start (gap {} m, \
-                 thickness taken off)",
-                brief(*gap)
-            ),
-            "open the sheet there, give it less `sheet.thickness`, or leave out self-contact",
-        ),
-        ContactError::Method => Problem::from_error(root.name("method.integrator"), error),
-        // The barrier, or another sheet.
-        _ => Problem::from_error(root.name("contact"), error),
-    }
 }

@@ -35,6 +35,9 @@ impl Scene {
             let key = root.name("obstacle").entry(k).name("motion");
             all.extend(obstacle.motion.functions_mut(&key));
         }
+        for (k, body) in self.body.iter_mut().enumerate() {
+            all.extend(body.functions_mut(&root.name("body").entry(k)));
+        }
         for (k, load) in self.forces.load.iter_mut().enumerate() {
             let key = root.name("forces.load").entry(k).name("size");
             all.push((key, &mut load.size));

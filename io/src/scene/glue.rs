@@ -6,7 +6,7 @@ use super::problem::{Checks, Problem};
 use super::profile::Profile;
 use super::selection::{ON_LINE, by_number, place_on_line, size};
 use super::unit::Unit;
-use super::{Sheet, sheets};
+use super::{Body, Sheet, bodies, sheets};
 use isosheet_mesh::wording::brief;
 use isosheet_mesh::{Sheet as Mesh, VertexId};
 use schemars::JsonSchema;
@@ -31,13 +31,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Glue {
-    /// The names of the sheets of the two sides, if there are several.
+    /// The names of the sheets of the two sides, if there are several; of a seam with a body the name of the
+    /// sheet and then that of the body.
     #[serde(default)]
     pub sheets: Option<[String; 2]>,
     /// The vertices of one side.
     pub first: SeamSide,
-    /// Those of the other side, as many.
-    pub second: SeamSide,
+    /// Those of the other side, as many. Left out of a seam with a body, which holds the vertices of the sheet
+    /// where they are at the start: it carries them.
+    #[serde(default)]
+    pub second: Option<SeamSide>,
     /// How far the glue has drawn the two sides together: from 0, as at the start, to 1, closed.
     #[serde(default = "closed")]
     pub closing: Profile,
@@ -78,12 +81,47 @@ pub enum SeamSide {
 const STIFFNESS: f64 = 1e4;
 
 impl Glue {
-    pub(crate) fn check(&self, all: &[Sheet], key: &Key, checks: &mut Checks) {
+    pub(crate) fn check(&self, all: &[Sheet], bodies: &[Body], key: &Key, checks: &mut Checks) {
+        let body = self
+            .body()
+            .filter(|name| bodies::number_of(bodies, name).is_some());
         for (i, name) in self.sheets.iter().flatten().enumerate() {
             let key = key.name("sheets").entry(i);
-            sheets::check_reference(all, Some(name), &key, checks);
+            // A scene of one sheet need not name it.
+            let is_only = i == 0 && body.is_some() && all.len() == 1 && name == "sheet";
+            if (i == 0 || body.is_none()) && !is_only {
+                sheets::check_reference(all, Some(name), &key, checks);
+            }
         }
-        for (name, side) in [("first", &self.first), ("second", &self.second)] {
+        match (&self.second, body) {
+            (Some(_), Some(_)) => checks.report(
+                key.name("second"),
+                "the second side of the seam is a body",
+                "leave the key out: the vertices of the sheet are held where they are at the start",
+            ),
+            (None, None) => checks.report(
+                key.clone(),
+                "the seam has no second side",
+                "give `second`, or the names of a sheet and a body, `sheets = [\"flag\", \"pole\"]`",
+            ),
+            _ => {}
+        }
+        if body.is_some() && self.closing != closed() {
+            let remedy = "leave the key out";
+            checks.report(
+                key.name("closing"),
+                "a seam with a body is closed at all times",
+                remedy,
+            );
+        }
+        let sides = [
+            ("first", Some(&self.first)),
+            ("second", self.second.as_ref()),
+        ];
+        for (name, side) in sides
+            .into_iter()
+            .filter_map(|(name, side)| Some((name, side?)))
+        {
             let key = key.name(name);
             if let SeamSide::Line { from, to } = side {
                 checks.line(&key.name("line"), from, to);
@@ -91,6 +129,26 @@ impl Glue {
         }
         self.closing.check(key.name("closing"), Unit::One, checks);
         checks.positive(key.name("stiffness"), self.stiffness, Unit::NewtonPerMetre);
+    }
+
+    /// The name of the body that is the second side, if one is.
+    pub(super) fn body(&self) -> Option<&str> {
+        self.sheets.as_ref().map(|[_, name]| name.as_str())
+    }
+
+    /// The vertices of the first side, by their numbers in the union of all sheets.
+    pub(super) fn first_vertices(
+        &self,
+        all: &PlacedSheets<'_>,
+        key: &Key,
+    ) -> Result<Vec<VertexId>, Problem> {
+        let name = self.sheets.as_ref().map(|[name, _]| name.as_str());
+        let name = name.filter(|_| all.list.len() > 1);
+        let sheet = all.one(name, key, "the vertices of the seam")?;
+        let found = self
+            .first
+            .vertices(sheet.form.unplaced.sheet(), &key.name("first"))?;
+        Ok(found.into_iter().map(|v| sheet.part.vertex(v)).collect())
     }
 
     /// The pairs of vertices, by their numbers in the union of all sheets.
@@ -107,7 +165,10 @@ impl Glue {
             Ok::<_, Problem>(found.collect::<Vec<_>>())
         };
         let first = side(0, "first", &self.first)?;
-        let second = side(1, "second", &self.second)?;
+        let second = match &self.second {
+            Some(second) => side(1, "second", second)?,
+            None => Vec::new(),
+        };
         if first.len() != second.len() {
             return Err(Problem::new(
                 key.name("second"),

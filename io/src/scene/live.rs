@@ -12,11 +12,13 @@ use super::profile::{Change, Course};
 use super::setup::Facts;
 use super::sheets::sheet_key;
 use super::{
-    Method, Problem, Profile, Scene, SceneError, SceneFile, SceneFileError, Setup, SupportForces,
+    Body, BodyLoad, CarriedBody, Method, Problem, Profile, Scene, SceneError, SceneFile,
+    SceneFileError, Setup, SupportForces,
 };
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
-use isosheet_mesh::{Advice, Part, Sheet};
+use isosheet_mesh::{Advice, Part, Sheet, VertexId};
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -125,17 +127,78 @@ impl LiveScene {
         &self.simulation
     }
 
-    /// The sheet in its rest shape, placed in space; the union of several.
+    /// Positions of the vertices of [`LiveScene::sheet`], metres (`3V`).
+    pub fn positions(&self) -> Cow<'_, [f64]> {
+        self.facts.shown(&self.simulation.state().x)
+    }
+
+    /// Their velocities, m/s.
+    pub fn velocities(&self) -> Cow<'_, [f64]> {
+        self.facts.shown(&self.simulation.state().v)
+    }
+
+    /// Their masses, kilograms: zero of those of bodies, whose mass is not on their surface.
+    pub fn masses(&self) -> Vec<f64> {
+        let masses = self.simulation.model().mass().vertex.clone();
+        self.facts.of_vertices(masses, 1)
+    }
+
+    /// Forces of supports on the sheets in the last step at the vertices that they hold (`3V`), newtons.
+    pub fn reactions(&self) -> Vec<f64> {
+        let mut forces = vec![0.0; self.simulation.state().x.len()];
+        for reaction in self.simulation.reactions() {
+            let vertex = reaction.support.vertex().index();
+            for k in 0..3 {
+                forces[3 * vertex + k] += reaction.force[k];
+            }
+        }
+        self.facts.of_vertices(forces, 3)
+    }
+
+    /// Forces of the rods in the last step, newtons, see [`Simulation::rod_forces`]: zero of the edges of bodies.
+    pub fn rod_forces(&self) -> Option<Vec<f64>> {
+        self.simulation
+            .rod_forces()
+            .map(|forces| self.facts.of_edges(forces))
+    }
+
+    /// The pinned vertices of sheets, at rest or in motion.
+    pub fn pins(&self) -> Vec<VertexId> {
+        let bodies = self.facts.bodies.iter();
+        let carriers: Vec<VertexId> = bodies.flat_map(|body| body.vertices).collect();
+        let mut pins = self.simulation.model().pins();
+        pins.retain(|v| !carriers.contains(v));
+        pins
+    }
+
+    /// The bodies that respond, in the order of the scene.
+    pub fn bodies(&self) -> &[CarriedBody] {
+        &self.facts.bodies
+    }
+
+    /// What touches bodies, does to each of them at the end of the last step.
+    pub fn body_loads(&self) -> Vec<BodyLoad> {
+        CarriedBody::contact_loads(&self.facts.bodies, &self.simulation)
+    }
+
+    /// What its guide does to each body that has one, in the last step, by the number of the body.
+    pub fn guide_loads(&self) -> Vec<(usize, BodyLoad)> {
+        let bodies = self.facts.bodies.iter().enumerate();
+        let loads = bodies.filter_map(|(k, body)| Some((k, body.guide_load(&self.simulation)?)));
+        loads.collect()
+    }
+
+    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
     pub fn sheet(&self) -> &Sheet {
         &self.facts.sheet
     }
 
-    /// Of several sheets the name of each, and where it is in their union.
+    /// Of several sheets and bodies the name of each, and where it is in their union.
     pub fn parts(&self) -> &[(String, Part)] {
         &self.facts.parts
     }
 
-    /// The bodies, in the order of the scene.
+    /// The obstacles, in the order of the scene.
     pub fn obstacles(&self) -> &[Obstacle] {
         &self.facts.obstacles
     }
@@ -271,13 +334,17 @@ fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
         step: before.method.step,
         ..scene.method.clone()
     };
+    let bodies = |scene: &Scene| -> Vec<Body> { scene.body.iter().map(Body::lasting).collect() };
     let (old, new) = (&before.sheet, &after.sheet);
     if old.len() != new.len() {
         let message = "the number of sheets does not change during a simulation";
         let key = Key::root().name("sheet");
         return vec![Problem::new(key, message, "begin a new simulation")];
     }
-    let mut checks = vec![(Key::root().name("method"), method(before) == method(after))];
+    let mut checks = vec![
+        (Key::root().name("method"), method(before) == method(after)),
+        (Key::root().name("body"), bodies(before) == bodies(after)),
+    ];
     for (k, (old, new)) in old.iter().zip(new).enumerate() {
         let key = sheet_key(before.sheet.len(), k);
         checks.push((key.name("mesh"), old.mesh == new.mesh));

@@ -2,6 +2,7 @@
 
 use super::key::Key;
 use super::placed::PlacedSheets;
+use super::placed_bodies::PlacedBodies;
 use super::problem::{Checks, Problem};
 use super::selection::Selection;
 use super::unit::Unit;
@@ -31,7 +32,8 @@ use std::collections::HashSet;
 pub struct Measure {
     /// Its name, of letters, digits, `_` and `-`.
     pub name: String,
-    /// The name of the sheet, if there are several and not the vertices of all are meant.
+    /// The name of the sheet, if there are several and not the vertices of all are meant; or of a body, whose
+    /// vertices are those of its surface.
     #[serde(default)]
     pub sheet: Option<String>,
     /// Which vertices. What is measured is their mean place.
@@ -89,18 +91,29 @@ impl Measure {
     }
 
     /// With the vertices that it is of.
-    pub(super) fn gauge(&self, key: &Key, sheets: &PlacedSheets<'_>) -> Result<Gauge, Problem> {
+    pub(super) fn gauge(
+        &self,
+        key: &Key,
+        sheets: &PlacedSheets<'_>,
+        bodies: &PlacedBodies<'_>,
+    ) -> Result<Gauge, Problem> {
         let sheet = self.sheet.as_deref();
-        let vertices = sheets.vertices(sheet, &self.at, key)?;
+        let start = [&sheets.start[..], &bodies.surface_positions()].concat();
+        let find =
+            |selection: &Selection, key: &Key| match sheet.and_then(|name| bodies.named(name)) {
+                Some(body) => body.vertices_at(selection, &key.name("at")),
+                None => sheets.vertices(sheet, selection, key),
+            };
+        let vertices = find(&self.at, key)?;
         let of = match &self.quantity {
             Quantity::X => Reading::Coordinate(0),
             Quantity::Y => Reading::Coordinate(1),
             Quantity::Z => Reading::Coordinate(2),
-            Quantity::Displacement => Reading::Point(mean(&vertices, &sheets.start)),
+            Quantity::Displacement => Reading::Point(mean(&vertices, &start)),
             Quantity::DistanceToPoint(point) => Reading::Point((*point).into()),
             Quantity::DistanceTo(others) => {
                 let key = key.name("quantity.distance_to");
-                Reading::Vertices(sheets.vertices(sheet, others, &key)?)
+                Reading::Vertices(find(others, &key)?)
             }
         };
         let name = self.name.clone();
@@ -140,7 +153,7 @@ enum Reading {
 }
 
 impl Gauge {
-    /// What it shows of positions `x` (`3V`, metres), metres.
+    /// What it shows of positions `x` (`3V`, metres) of the sheets and of the surfaces of bodies, metres.
     pub fn value(&self, x: &[f64]) -> f64 {
         let place = mean(&self.vertices, x);
         match &self.of {

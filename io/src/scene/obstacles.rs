@@ -142,10 +142,30 @@ impl Obstacle {
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        let shape = key.name("shape").name(self.shape.name());
+        self.shape.check(&key.name("shape"), checks);
+        self.pose.check(&key.name("pose"), checks);
+        self.motion.check(&key.name("motion"), checks);
+        checks.not_negative(key.name("friction"), self.friction, Unit::One);
+    }
+
+    /// The body of a shape that has been made.
+    pub(crate) fn body(
+        &self,
+        shape: collide::Shape,
+        key: &Key,
+    ) -> Result<collide::Obstacle, Problem> {
+        let motion = self.motion.of_body(self.pose.isometry());
+        let motion = isosheet_dynamics::RigidProfile::from(motion);
+        collide::Obstacle::new(shape, motion).map_err(|e| Problem::from_error(key.clone(), &e))
+    }
+}
+
+impl Shape {
+    pub(super) fn check(&self, key: &Key, checks: &mut Checks) {
+        let shape = key.name(self.name());
         let mut length =
             |name: &str, value: f64| checks.positive(shape.name(name), value, Unit::Metre);
-        match &self.shape {
+        match self {
             Shape::HalfSpace => {}
             Shape::Box { size } => {
                 for (k, extent) in size.iter().enumerate() {
@@ -187,25 +207,9 @@ impl Obstacle {
             }
             Shape::File(file) => file.check(&shape, checks),
         }
-        self.pose.check(&key.name("pose"), checks);
-        self.motion.check(&key.name("motion"), checks);
-        checks.not_negative(key.name("friction"), self.friction, Unit::One);
     }
 
-    /// The body of a shape that has been made.
-    pub(crate) fn body(
-        &self,
-        shape: collide::Shape,
-        key: &Key,
-    ) -> Result<collide::Obstacle, Problem> {
-        let motion = self.motion.of_body(self.pose.isometry());
-        let motion = isosheet_dynamics::RigidProfile::from(motion);
-        collide::Obstacle::new(shape, motion).map_err(|e| Problem::from_error(key.clone(), &e))
-    }
-}
-
-impl Shape {
-    fn name(&self) -> &'static str {
+    pub(super) fn name(&self) -> &'static str {
         match self {
             Self::HalfSpace => "half_space",
             Self::Box { .. } => "box",

@@ -1,5 +1,6 @@
 //! Everything that a simulation is made of.
 
+use super::carried::CarriedBody;
 use super::chart::Chart;
 use super::error::{SceneError, SceneText};
 use super::key::Key;
@@ -9,12 +10,14 @@ use super::warning::Warning;
 use super::{Gauge, Origins};
 use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
-use isosheet_dynamics::contact::Contact;
+use isosheet_dynamics::contact::{Contact, SurfacePoints};
 use isosheet_dynamics::{
     Checkpoint, Isometry, Method, SheetModel, Simulation, SimulationError, State, StepControl,
 };
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Part, Sheet};
+use std::borrow::Cow;
+use std::ops::Range;
 
 /// How the motion is computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,12 +40,16 @@ pub enum Integration {
     expect(dead_code, reason = "runs read what a simulation does not need")
 )]
 pub(crate) struct Facts {
-    /// The sheet in its rest shape, placed in space; the union of several.
+    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
     pub(crate) sheet: Sheet,
-    /// Of several sheets the name of each, and where it is in the union.
+    /// The vertices of `sheet` by those of the model, where they are not the same.
+    pub(crate) points: Option<SurfacePoints>,
+    /// Of several sheets and bodies the name of each, and where it is in the union.
     pub(crate) parts: Vec<(String, Part)>,
-    /// The positions at the start.
+    /// The positions of its vertices at the start.
     pub(crate) start: Vec<f64>,
+    /// The bodies that respond, in the order of the scene.
+    pub(crate) bodies: Vec<CarriedBody>,
     pub(crate) obstacles: Vec<Obstacle>,
     pub(crate) modelled: Vec<String>,
     pub(crate) targets: Targets,
@@ -50,12 +57,53 @@ pub(crate) struct Facts {
     pub(crate) origins: Origins,
 }
 
+impl Facts {
+    /// Positions or velocities of what is seen, by those of the vertices of the model (`3V`).
+    pub(crate) fn shown<'a>(&self, x: &'a [f64]) -> Cow<'a, [f64]> {
+        shown(self.points.as_ref(), x)
+    }
+
+    /// Values of what is seen by those of the model, so many for each: those of the sheets, and zero of bodies.
+    fn of_sheets(
+        &self,
+        mut values: Vec<f64>,
+        each: usize,
+        range: fn(&Part) -> &Range<usize>,
+    ) -> Vec<f64> {
+        let parts = self.bodies.first().zip(self.bodies.last());
+        if let Some((first, last)) = parts.filter(|_| !values.is_empty()) {
+            values.truncate(each * range(&first.part).start);
+            values.resize(each * range(&last.part).end, 0.0);
+        }
+        values
+    }
+
+    /// Values of the edges of what is seen by those of the model.
+    pub(crate) fn of_edges(&self, values: Vec<f64>) -> Vec<f64> {
+        self.of_sheets(values, 1, |part| &part.edges)
+    }
+
+    /// Pairs of values of the faces of what is seen by those of the model.
+    #[cfg(feature = "run")]
+    pub(crate) fn of_faces(&self, pairs: Vec<f64>) -> Vec<f64> {
+        self.of_sheets(pairs, 2, |part| &part.faces)
+    }
+
+    /// So many values of the vertices of what is seen by those of the model.
+    pub(crate) fn of_vertices(&self, values: Vec<f64>, each: usize) -> Vec<f64> {
+        self.of_sheets(values, each, |part| &part.vertices)
+    }
+}
+
 /// Everything that a simulation is made of.
 #[derive(Debug)]
 pub struct Setup {
-    /// The sheet in its rest shape, placed in space; the union of several.
+    /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
     pub sheet: Sheet,
-    /// Of several sheets the name of each, and where it is in the union.
+    /// The vertices of `sheet` as the model carries them, in scenes with bodies; otherwise they are those of the
+    /// model.
+    pub points: Option<SurfacePoints>,
+    /// Of several sheets and bodies the name of each, and where it is in the union.
     pub parts: Vec<(String, Part)>,
     /// The state at the start.
     pub start: State,
@@ -63,7 +111,9 @@ pub struct Setup {
     pub model: SheetModel,
     /// What it meets, in scenes with contact.
     pub contacts: Option<Contacts>,
-    /// The bodies, in the order of the scene.
+    /// The bodies that respond, in the order of the scene.
+    pub bodies: Vec<CarriedBody>,
+    /// The obstacles, in the order of the scene.
     pub obstacles: Vec<Obstacle>,
     /// How the motion is computed.
     pub integration: Integration,
@@ -91,14 +141,27 @@ impl Setup {
     pub(crate) fn facts(&self) -> Facts {
         Facts {
             sheet: self.sheet.clone(),
+            points: self.points.clone(),
             parts: self.parts.clone(),
-            start: self.start.x.clone(),
+            start: shown(self.points.as_ref(), &self.start.x).into_owned(),
+            bodies: self.bodies.clone(),
             obstacles: self.obstacles.clone(),
             modelled: self.modelled.clone(),
             targets: self.targets.clone(),
             measures: self.measures.clone(),
             origins: self.origins.clone(),
         }
+    }
+
+    /// The mesh of the model: the sheets, and after them four vertices for each body.
+    pub fn mesh(&self) -> Cow<'_, Sheet> {
+        let Some(points) = &self.points else {
+            return Cow::Borrowed(&self.sheet);
+        };
+        let own = 3 * points.own();
+        let x = [&self.sheet.positions()[..own], &self.start.x[own..]].concat();
+        let mesh = Sheet::from_topology(self.model.topology().clone(), x);
+        mesh.map_or(Cow::Borrowed(&self.sheet), Cow::Owned)
     }
 
     /// Whether the simulation gives the forces of the rods ([`Simulation::rod_forces`]).
@@ -171,6 +234,18 @@ impl Setup {
             }
         };
         resumed.map_err(|e| placed(problem(&self.origins, &e), self.text.as_ref()))
+    }
+}
+
+/// Positions or velocities of what is seen of a scene, by those of the vertices of its model (`3V`).
+pub(crate) fn shown<'a>(points: Option<&SurfacePoints>, x: &'a [f64]) -> Cow<'a, [f64]> {
+    match points {
+        None => Cow::Borrowed(x),
+        Some(points) => {
+            let mut placed = Vec::new();
+            points.place(x, &mut placed);
+            Cow::Owned(placed)
+        }
     }
 }
 

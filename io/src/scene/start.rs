@@ -32,7 +32,7 @@ pub struct Start {
     pub spin: Option<Spin>,
 }
 
-/// A rotation with which a sheet starts: `v(x) = velocity + w × (x - centre)`.
+/// A rotation with which a sheet or a body starts: `v(x) = velocity + w × (x - centre)`.
 ///
 /// ```toml
 /// [sheet.start]
@@ -46,7 +46,7 @@ pub struct Spin {
     pub axis: [f64; 3],
     /// Angular velocity, degrees/s.
     pub rate: f64,
-    /// A point of the axis, metres. If left out, the centre of mass of the sheet.
+    /// A point of the axis, metres. If left out, the centre of mass.
     #[serde(default)]
     pub centre: Option<[f64; 3]>,
 }
@@ -61,12 +61,7 @@ impl Start {
         checks.count(key.name("seed"), self.seed, 0);
         checks.finite(key.name("velocity"), &self.velocity, Unit::MetrePerSecond);
         if let Some(spin) = &self.spin {
-            let key = key.name("spin");
-            checks.direction(key.name("axis"), &spin.axis);
-            checks.number(key.name("rate"), spin.rate, Unit::Degree);
-            if let Some(centre) = &spin.centre {
-                checks.finite(key.name("centre"), centre, Unit::Metre);
-            }
+            spin.check(&key.name("spin"), checks);
         }
     }
 
@@ -77,13 +72,34 @@ impl Start {
 
     /// The velocities of points (metres) whose centre of mass is given, m/s.
     pub(super) fn velocities(&self, points: &[[f64; 3]], centre: Vector3<f64>) -> Vec<[f64; 3]> {
-        let linear = Vector3::from(self.velocity);
-        let Some(spin) = self.spin else {
-            return vec![self.velocity; points.len()];
-        };
-        let angular = spin.rate.to_radians() * Vector3::from(spin.axis).normalize();
-        let centre = spin.centre.map_or(centre, Vector3::from);
-        let of = |p: &[f64; 3]| (linear + angular.cross(&(Vector3::from(*p) - centre))).into();
-        points.iter().map(of).collect()
+        velocities(points, self.velocity, self.spin, centre)
     }
+}
+
+impl Spin {
+    pub(super) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.direction(key.name("axis"), &self.axis);
+        checks.number(key.name("rate"), self.rate, Unit::Degree);
+        if let Some(centre) = &self.centre {
+            checks.finite(key.name("centre"), centre, Unit::Metre);
+        }
+    }
+}
+
+/// The velocities of points (metres) of what moves with a velocity (m/s) and a spin, and whose centre of mass is
+/// given, m/s.
+pub(super) fn velocities(
+    points: &[[f64; 3]],
+    velocity: [f64; 3],
+    spin: Option<Spin>,
+    centre: Vector3<f64>,
+) -> Vec<[f64; 3]> {
+    let linear = Vector3::from(velocity);
+    let Some(spin) = spin else {
+        return vec![velocity; points.len()];
+    };
+    let angular = spin.rate.to_radians() * Vector3::from(spin.axis).normalize();
+    let centre = spin.centre.map_or(centre, Vector3::from);
+    let of = |p: &[f64; 3]| (linear + angular.cross(&(Vector3::from(*p) - centre))).into();
+    points.iter().map(of).collect()
 }

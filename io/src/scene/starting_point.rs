@@ -25,11 +25,13 @@ pub enum StartingPoint {
     Moebius,
     /// Pleated paper whose creases bend its panels to a hyperbolic paraboloid.
     Hypar,
+    /// A ball and a box that fall into a hammock of film, and a flap that swings beside it.
+    Hammock,
 }
 
 impl StartingPoint {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Hanging,
         Self::Clamp,
         Self::Drape,
@@ -41,6 +43,7 @@ impl StartingPoint {
         Self::Stack,
         Self::Moebius,
         Self::Hypar,
+        Self::Hammock,
     ];
 
     /// Its name.
@@ -57,6 +60,7 @@ impl StartingPoint {
             Self::Stack => "stack",
             Self::Moebius => "moebius",
             Self::Hypar => "hypar",
+            Self::Hammock => "hammock",
         }
     }
 
@@ -74,6 +78,7 @@ impl StartingPoint {
             Self::Stack => "Three sheets of paper, of which a roller feeds the uppermost",
             Self::Moebius => "A strip of paper whose ends are glued after half a turn",
             Self::Hypar => "Pleated paper whose creases bend its panels to a hyperbolic paraboloid",
+            Self::Hammock => "Rigid bodies that fall into a hammock of film",
         }
     }
 
@@ -91,6 +96,7 @@ impl StartingPoint {
             Self::Stack => include_str!("starting_point/stack.toml"),
             Self::Moebius => include_str!("starting_point/moebius.toml"),
             Self::Hypar => include_str!("starting_point/hypar.toml"),
+            Self::Hammock => include_str!("starting_point/hammock.toml"),
         }
     }
 }

@@ -4,8 +4,7 @@ use super::placed::PlacedSheets;
 use super::selection::{self, Selection};
 use super::setup::Setup;
 use super::warning::Warning;
-use super::{Key, Mesh, Quantity, Scene};
-use isosheet_dynamics::Isometry;
+use super::{Isometry, Key, Mesh, Quantity, Scene, bodies};
 use isosheet_mesh::wording::{brief, counted};
 use isosheet_mesh::{Sheet, VertexId};
 
@@ -77,7 +76,14 @@ impl PlacedSheets<'_> {
             };
             wide.into_iter().chain(reversed)
         });
-        of_sheets.chain(self.far_points(scene)).collect()
+        let closed = match scene.sheet[0].isometry() {
+            Isometry::Rods => Warning::closed(&self.union),
+            Isometry::Elastic { .. } => None,
+        };
+        of_sheets
+            .chain(self.far_points(scene))
+            .chain(closed)
+            .collect()
     }
 
     /// Points that choose vertices which are far away.
@@ -98,6 +104,9 @@ impl PlacedSheets<'_> {
         }
         for (k, measure) in scene.measure.iter().enumerate() {
             let (key, sheet) = (entry("measure", k), measure.sheet.as_ref());
+            if sheet.is_some_and(|name| bodies::number_of(&scene.body, name).is_some()) {
+                continue;
+            }
             selections.push((key.name("at"), sheet, &measure.at));
             if let Quantity::DistanceTo(others) = &measure.quantity {
                 selections.push((key.name("quantity.distance_to"), sheet, others));
@@ -137,9 +146,6 @@ impl Setup {
     /// What to know before the scene is run.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = self.of_sheets.clone();
-        if self.model.isometry() == Isometry::Rods {
-            warnings.extend(Warning::closed(&self.sheet));
-        }
         for clamp in self.model.clamps_across_the_mesh(&self.start.x) {
             let pins = clamp.edge.iter().filter_map(|v| self.origins.pins.get(v));
             let mut supports: Vec<usize> = pins.copied().collect();

@@ -1,6 +1,7 @@
 //! The command: runs that are killed and continued, folders in use, exit codes.
 
 mod asked_too_much;
+mod bodies;
 mod command_line;
 mod contact_data;
 mod continuing;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 8] = [
+const ALL_KEYS: [&str; 9] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -259,6 +259,38 @@ const ALL_KEYS: [&str; 8] = [
     material = "cotton"
     direction = [0, 1, 0]
     density = 0.3
+    [stop]
+    time = 1
+    "#,
+    r#"version = 1
+    [sheet]
+    name = "cover"
+    mesh = { square = { side = 0.2, level = 1 } }
+    density = 0.1
+    [[body]]
+    name = "wheel"
+    shape = { cylinder = { radius = 0.1, height = 0.1 } }
+    sides = 16
+    density = 1000
+    pose = { position = [0, 0, 3], turn = { axis = [1, 0, 0], angle = 90 } }
+    spin = { axis = [0, 1, 0], rate = 360 }
+    guide = { hinge = { point = [0, 0, 3], axis = [0, 1, 0], stiffness = 0.1, rest = { ramp = { to = 90, end = 1 } }, damping = 0.01 } }
+    torque = [{ axis = [0, 1, 0], size = 0.1 }]
+    [[body]]
+    shape = { box = { size = [0.1, 0.1, 0.1] } }
+    mass = 0.1
+    pose = { position = [0, 0, 2] }
+    velocity = [1, 0, 0]
+    guide = { slider = { direction = [1, 0, 0], stiffness = 10, rest = 0.1, damping = 1 } }
+    force = [{ direction = [1, 0, 0], size = { sine = { amplitude = 1, frequency = 1 } }, at = [0, 0, 2] }]
+    [[body]]
+    shape = { sphere = { radius = 0.1 } }
+    mass = 0.1
+    pose = { position = [0, 0, 4] }
+    guide = { ball = { point = [0, 0, 4.2] } }
+    [[glue]]
+    sheets = ["cover", "wheel"]
+    first = { vertices = [0, 1] }
     [stop]
     time = 1
     "#,

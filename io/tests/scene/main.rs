@@ -1,12 +1,14 @@
 //! Scene files: what they mean, and what is said of wrong ones.
 
 mod bends;
+mod bodies;
 mod book;
 mod charts;
 mod complete;
 mod files;
 mod folding;
 mod formulas;
+mod guides;
 mod keys;
 mod live;
 mod materials;

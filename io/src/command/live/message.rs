@@ -3,6 +3,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize, Serializer};
+use std::borrow::Cow;
 
 /// What a page posts.
 #[derive(Debug, PartialEq, Deserialize)]
@@ -45,7 +46,7 @@ pub(super) struct LiveFrame<'a> {
     pub(super) pace: Option<f64>,
     /// Positions, `3V`: doubles in little-endian order, as base64.
     #[serde(serialize_with = "as_base64")]
-    pub(super) x: &'a [f64],
+    pub(super) x: Cow<'a, [f64]>,
     /// Quaternion and translation of each body.
     pub(super) poses: Vec<[f64; 7]>,
     /// A value for each of the plotted series.

@@ -54,8 +54,8 @@ impl Session {
     pub(super) fn start(file: SceneFile) -> Result<Self, SceneError> {
         let live = LiveScene::start(file)?;
         let scene = live.file().scene();
-        let x = &live.simulation().state().x;
-        let holding = HoldingBody::all(scene, bounds(x.as_chunks::<3>().0));
+        let corners = bounds(live.positions().as_chunks::<3>().0);
+        let holding = HoldingBody::all(scene, corners);
         let row = HistoryRow::of_start(live.simulation());
         let mut session = Self {
             sliders: Slider::all(scene),
@@ -248,7 +248,7 @@ impl Session {
             t: state.t,
             playing: self.is_playing,
             pace: pace.filter(|_| self.is_playing),
-            x: &state.x,
+            x: self.live.positions(),
             poses: bodies.chain(holding).map(|p| numbers(p.into())).collect(),
             series: self.series.iter().map(value).collect(),
             hand: self.live.hand().map(|(vertex, at)| HandFrame {

@@ -23,6 +23,12 @@ pub enum HoldError {
         /// The vertex.
         vertex: VertexId,
     },
+    /// It is one of the surface of a body.
+    #[error("vertex {} is one of a body", vertex.index())]
+    Body {
+        /// The vertex.
+        vertex: VertexId,
+    },
     /// The hand.
     #[error(transparent)]
     Hand(#[from] HandError),
@@ -35,6 +41,7 @@ impl Advice for HoldError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Held { .. } => Some("pull at another vertex"),
+            Self::Body { .. } => Some("pull at a vertex of a sheet"),
             Self::Hand(error) => error.advice(),
             Self::Scene(error) => error.advice(),
         }
@@ -68,6 +75,10 @@ impl LiveScene {
     /// # Errors
     /// [`HoldError`]; then nothing has changed.
     pub fn hold(&mut self, vertex: VertexId) -> Result<[f64; 3], HoldError> {
+        let surfaces = &mut self.facts.bodies.iter();
+        if surfaces.any(|body| body.surface().contains(&vertex.index())) {
+            return Err(HoldError::Body { vertex });
+        }
         let model = self.simulation.model();
         let immobile = self.simulation.immobile_vertices();
         if model.pins().contains(&vertex) || immobile.contains(&vertex) {

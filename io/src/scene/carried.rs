@@ -1,0 +1,108 @@
+//! The bodies of a scene in its simulation.
+
+use isosheet_dynamics::Simulation;
+use isosheet_dynamics::contact::CarriedPoint;
+use isosheet_mesh::{Part, VertexId};
+use nalgebra::Vector3;
+use std::ops::Range;
+
+/// A body as the vertices of a model carry it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CarriedBody {
+    /// Its vertices.
+    pub(crate) vertices: [VertexId; 4],
+    /// The weights of these at its centre of mass.
+    pub(crate) centre: CarriedPoint,
+    /// The weights at the point about which torques of its guide are given, if it has one.
+    pub(crate) pivot: Option<CarriedPoint>,
+    /// Where its surface is among the sheets and the surfaces of all bodies.
+    pub(crate) part: Part,
+}
+
+/// What acts on a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyLoad {
+    /// Force, newtons.
+    pub force: [f64; 3],
+    /// Torque, newton metres: of contact about its centre of mass, of a guide about the point of that.
+    pub torque: [f64; 3],
+}
+
+impl BodyLoad {
+    /// The sum of forces on vertices at positions `x`, with its torque about a point.
+    fn sum(
+        forces: impl IntoIterator<Item = (VertexId, Vector3<f64>)>,
+        x: &[f64],
+        about: Vector3<f64>,
+    ) -> Self {
+        let (mut sum, mut torque) = (Vector3::zeros(), Vector3::zeros());
+        for (v, force) in forces {
+            sum += force;
+            torque += (of_vertex(x, v) - about).cross(&force);
+        }
+        Self {
+            force: sum.into(),
+            torque: torque.into(),
+        }
+    }
+}
+
+impl CarriedBody {
+    /// Its mean by the weights of its centre of mass: the place of the centre of positions, its velocity of
+    /// velocities (`3V`).
+    pub fn centre(&self, x: &[f64]) -> [f64; 3] {
+        of_point(x, &self.centre).into()
+    }
+
+    /// The vertices of the model that carry it.
+    pub fn vertices(&self) -> [VertexId; 4] {
+        self.vertices
+    }
+
+    /// The vertices of its surface, by their numbers among those of the sheets and of all surfaces.
+    pub fn surface(&self) -> Range<usize> {
+        self.part.vertices.clone()
+    }
+
+    /// What its guide does to it, if it has one: the torque about the point of a hinge or a ball joint, or about
+    /// the centre of mass on a slider.
+    pub(crate) fn guide_load(&self, simulation: &Simulation) -> Option<BodyLoad> {
+        let x = &simulation.state().x;
+        let pivot = of_point(x, self.pivot.as_ref()?);
+        let reactions = simulation.reactions().into_iter();
+        let own = reactions.filter_map(|reaction| {
+            let vertex = reaction.support.vertex();
+            self.vertices
+                .contains(&vertex)
+                .then_some((vertex, reaction.force))
+        });
+        Some(BodyLoad::sum(own, x, pivot))
+    }
+
+    /// What touches bodies, does to each of them at the end of the last step. (The forces on its vertices have
+    /// the sum and the torque of those on its surface.)
+    pub(crate) fn contact_loads(bodies: &[Self], simulation: &Simulation) -> Vec<BodyLoad> {
+        let forces = match bodies {
+            [] => None,
+            _ => simulation.contact_forces(),
+        };
+        let x = &simulation.state().x;
+        let load = |body: &Self| {
+            let forces = forces.as_ref()?;
+            let own = body.vertices.map(|v| (v, of_vertex(forces, v)));
+            Some(BodyLoad::sum(own, x, of_point(x, &body.centre)))
+        };
+        bodies
+            .iter()
+            .map(|body| load(body).unwrap_or_default())
+            .collect()
+    }
+}
+
+fn of_point(values: &[f64], at: &CarriedPoint) -> Vector3<f64> {
+    at.iter().map(|(v, b)| *b * of_vertex(values, *v)).sum()
+}
+
+fn of_vertex(values: &[f64], v: VertexId) -> Vector3<f64> {
+    Vector3::from(values.as_chunks::<3>().0[v.index()])
+}
