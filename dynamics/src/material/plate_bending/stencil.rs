@@ -138,23 +138,11 @@ impl Stencils {
     /// faces: by that part, as a multiple of two edges of each face, which stay edges wherever it goes. The
     /// curvatures `R k` that are left, 1/m.
     pub(super) fn straighten(&mut self, sheet: &Sheet, roots: &Roots) -> Vec<Vector3<f64>> {
-        let x = sheet.positions();
         let faces = sheet.topology().faces().iter().zip(sheet.face_areas());
         let mut curvatures = Vec::new();
         for (f, (corners, area)) in faces.enumerate() {
-            let mut derivatives = self.of(f).apply_to_positions(x);
-            for d in self.directors.get(&(f as u32)).into_iter().flatten() {
-                derivatives += d.rest * d.weights.transpose();
-            }
-            let range = self.starts[f]..self.starts[f + 1];
-            let [a, b, c] = corners.map(|v| point(x, v));
-            let normal = (b - a).cross(&(c - a)).normalize();
-            let axes = Matrix3::from_columns(&[b - a, c - a, normal]);
-            let inverse = axes.try_inverse().unwrap_or_else(Matrix3::zeros);
-            // Rows: multiples of both edges and of the normal.
-            let parts = inverse * derivatives;
-            let [along_b, along_c, bent] = [0, 1, 2].map(|k| parts.row(k).transpose());
-            for k in range {
+            let [along_b, along_c, bent] = self.parts(f, corners, sheet.positions());
+            for k in self.starts[f]..self.starts[f + 1] {
                 let v = VertexId(self.vertices[k]);
                 let place = corners.iter().position(|corner| *corner == v);
                 self.weights[k] += match place {
@@ -167,6 +155,31 @@ impl Stencils {
             curvatures.push(bent / (roots.rigidity(f) * area).sqrt());
         }
         curvatures
+    }
+
+    /// The curvatures `R k` of the faces of `sheet` at positions `x`, 1/m.
+    pub(super) fn curvatures(&self, sheet: &Sheet, roots: &Roots, x: &[f64]) -> Vec<Vector3<f64>> {
+        let faces = sheet.topology().faces().iter().zip(sheet.face_areas());
+        let bent = faces.enumerate().map(|(f, (corners, area))| {
+            let [_, _, bent] = self.parts(f, corners, x);
+            bent / (roots.rigidity(f) * area).sqrt()
+        });
+        bent.collect()
+    }
+
+    /// The second derivatives of a face at positions `x` as multiples of the edges from its first corner to the second
+    /// and to the third one, and of its normal.
+    fn parts(&self, f: usize, corners: &[VertexId; 3], x: &[f64]) -> [Vector3<f64>; 3] {
+        let mut derivatives = self.of(f).apply_to_positions(x);
+        for d in self.directors.get(&(f as u32)).into_iter().flatten() {
+            derivatives += d.rest * d.weights.transpose();
+        }
+        let [a, b, c] = corners.map(|v| point(x, v));
+        let normal = (b - a).cross(&(c - a)).normalize();
+        let axes = Matrix3::from_columns(&[b - a, c - a, normal]);
+        let inverse = axes.try_inverse().unwrap_or_else(Matrix3::zeros);
+        let parts = inverse * derivatives;
+        [0, 1, 2].map(|k| parts.row(k).transpose())
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = Stencil<'_>> {
