@@ -55,6 +55,7 @@ mod obstacles;
 mod outline;
 mod output;
 mod patch;
+mod patched;
 mod pattern;
 mod placed;
 mod pose;

@@ -113,9 +113,9 @@ fn a_ring_with_a_slit_opens_as_a_curved_beam() {
 /// A narrow strip that wants to be twisted alone becomes a helicoid: its end has turned by the twist times its length.
 #[test]
 fn a_narrow_strip_with_a_twist_is_a_helicoid() {
-    let (length, width, twist) = (0.1, 0.004, 8.0);
-    let sheet = generate::anisotropic_grid(50, 2, length, width).expect("a strip");
-    let clamp = sheet.vertices_where(|[x, ..]| x < 0.003);
+    let (length, width, twist) = (0.1, 0.004, 4.0);
+    let sheet = generate::anisotropic_grid(100, 4, length, width).expect("a strip");
+    let clamp = sheet.vertices_where(|[x, ..]| x < 0.0015);
     let none = Curvature::default();
     let curl = Curl {
         direction: MaterialDirection::Uniform([1.0, 0.0, 0.0]),

@@ -182,7 +182,7 @@ impl Yield {
     pub const LAYERS: usize = 11;
 
     /// The largest number of layers.
-    pub const MAX_LAYERS: usize = 100;
+    pub const MAX_LAYERS: usize = points::MOST;
 
     /// Without hardening, at one moment.
     pub const fn perfect(moment: f64) -> Self {

@@ -3,7 +3,7 @@
 use super::error::SceneError;
 use super::mesh::RestMesh;
 use super::mesh_file::{Files, MeshFile};
-use super::patch::patched;
+use super::patched::patched;
 use super::pattern::EdgeRoles;
 use super::problem::Problem;
 use super::refined::Refined;
@@ -79,7 +79,7 @@ impl<'a> PlacedSheets<'a> {
         let numbered = sheets.iter().zip(&*forms).zip(parts).enumerate();
         let list = numbered.map(|(k, ((of, form), part))| {
             let key = sheet_key(sheets.len(), k);
-            let patched = patched(of, form, &key)?;
+            let patched = patched(of, form.placed.topology(), &form.start, &key)?;
             let mass = match (of.mass, &of.patch[..]) {
                 (None, [_, ..]) => of_densities(form, &patched),
                 (mass, _) => {
@@ -174,11 +174,6 @@ fn of_densities(form: &Form, patched: &Patched<SheetOfScene>) -> Result<MassMatr
 }
 
 impl Form {
-    /// Positions at the start, `3V`.
-    pub(super) fn start(&self) -> &[f64] {
-        &self.start
-    }
-
     fn new(of: &SheetOfScene, key: &Key, files: &mut Files) -> Result<Self, Problem> {
         let mesh_key = key.name("mesh");
         let RestMesh {

@@ -4,7 +4,7 @@ use super::curl::Curl;
 use super::key::Key;
 use super::material::{Material, ratios, typical_poisson};
 use super::mesh::Mesh;
-use super::patch::{self, Patch};
+use super::patch::Patch;
 use super::pose::Pose;
 use super::problem::Checks;
 use super::start::Start;
@@ -234,6 +234,22 @@ impl Sheet {
         })
     }
 
+    /// A sheet that is as one of its patches all over.
+    pub(super) fn of_patch(&self, patch: &Patch) -> Self {
+        Self {
+            material: Some(patch.material.clone()),
+            direction: patch.direction.or(self.direction),
+            density: patch.density,
+            isometry: match self.isometry() {
+                Isometry::Rods => Some(Isometry::Rods),
+                Isometry::Elastic { .. } => None,
+            },
+            bending: None,
+            patch: Vec::new(),
+            ..self.clone()
+        }
+    }
+
     /// Its direction in space.
     fn material_direction(&self) -> Option<engine::MaterialDirection> {
         let direction = self.direction?;
@@ -375,7 +391,11 @@ impl Sheet {
             },
         };
         let of_material = material.map_or(engine::Material::STRAIN_LIMIT, |m| m.strain_limit);
-        let of_patches = self.patch.iter().filter_map(|own| own.strain_limit(self));
+        let of_patches = self
+            .patch
+            .iter()
+            .filter_map(|own| self.of_patch(own).made_of());
+        let of_patches = of_patches.map(|material| material.strain_limit);
         Some(Elasticity {
             law,
             limit: limit.unwrap_or_else(|| of_patches.fold(of_material, f64::max)),
@@ -510,7 +530,6 @@ impl Sheet {
                 "give `stiffness` in N/m, Young's modulus times thickness, or `sheet.material`",
             );
         }
-        patch::check(self, key, checks);
         self.placement.check(&key.name("placement"), checks);
         self.start.check(&key.name("start"), checks);
     }

@@ -61,10 +61,7 @@ fn yielding(job: Job) -> Result<Measured> {
     let material = material(1.0, 0.0, 0.01 * width);
     let tip = Line::at(&strip.sheet, 0, 1.0);
     let mut all = Measured::default();
-    for (layers, largest, hardening) in [
-        (1, LOADS[0], HARDENING),
-        (Yield::LAYERS, LOADS[1], 0.0),
-    ] {
+    for (layers, largest, hardening) in [(1, LOADS[0], HARDENING), (Yield::LAYERS, LOADS[1], 0.0)] {
         let yields = Yield {
             moment: MOMENT,
             hardening,

@@ -1,6 +1,6 @@
 //! How stiff a sheet is in its plane.
 
-use super::ElasticSheetError;
+use super::error::ElasticSheetError;
 use super::law::Law;
 use crate::OrthotropicPlate;
 use crate::material::direction::MaterialDirection;

@@ -1,6 +1,5 @@
 //! The layers of half a section: the points of Gauss and Legendre.
 
-use super::Yield;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
@@ -13,11 +12,13 @@ pub(super) struct Point {
     pub(super) moment: f64,
 }
 
-/// Those of all numbers of layers that have been asked for.
-static KNOWN: [OnceLock<Box<[Point]>>; Yield::MAX_LAYERS + 1] =
-    [const { OnceLock::new() }; Yield::MAX_LAYERS + 1];
+/// The largest number of layers.
+pub(super) const MOST: usize = 100;
 
-/// The layers of a section in so many, the innermost first; at most [`Yield::MAX_LAYERS`].
+/// Those of all numbers of layers that have been asked for.
+static KNOWN: [OnceLock<Box<[Point]>>; MOST + 1] = [const { OnceLock::new() }; MOST + 1];
+
+/// The layers of a section in so many, the innermost first; at most [`MOST`].
 pub(super) fn points(count: usize) -> &'static [Point] {
     KNOWN[count].get_or_init(|| of_gauss(count))
 }
