@@ -70,8 +70,8 @@ fn legendre(degree: usize, x: f64) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// Of degree `2 n - 1`: two thirds of the rigidity over the moment are the place `z`, and a third of the rigidity over
-    /// `z^2` the weight; the integral of `z^m` over the half is `1 / (m + 1)`.
+    /// Of degree `2 n - 1`: two thirds of the rigidity over the moment are the place `z`, and a third of the
+    /// rigidity over `z^2` the weight; the integral of `z^m` over the half is `1 / (m + 1)`.
     #[test]
     fn polynomials_are_integrated_exactly() {
         for count in [2, 3, 11, 40] {

@@ -279,9 +279,9 @@ fn numbers_that_make_no_sense_are_refused() {
     assert_eq!(Yield::perfect(1.0).validate(), Ok(()));
 }
 
-/// A cantilever under a force at its end, whose largest moment is `m M_y` at the clamp: what is left of the deflection of its
-/// end is the integral of what is left of the curvature times the distance from the end. Of the whole section that is `k_y /
-/// (3 (1 - m))^(1/2) - m M_y / D` beyond two thirds of `M_y`.
+/// A cantilever under a force at its end, whose largest moment is `m M_y` at the clamp: what is left of the
+/// deflection of its end is the integral of what is left of the curvature times the distance from the end. Of
+/// the whole section that is `k_y / (3 (1 - m))^(1/2) - m M_y / D` beyond two thirds of `M_y`.
 #[test]
 fn a_cantilever_in_the_default_number_of_layers_keeps_what_it_should() {
     let section = Yield::perfect(1.0).in_layers(Yield::LAYERS);

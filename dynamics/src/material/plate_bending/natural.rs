@@ -9,12 +9,13 @@ use isosheet_mesh::{FaceId, Sheet};
 use nalgebra::Vector3;
 use std::f64::consts::SQRT_2;
 
-/// The curvature that a sheet has by itself, without moments: that of paper which curls along one direction, of
-/// a poster off a roll, of a bilayer or a bimetal.
+/// The curvature that a sheet has by itself, without moments: that of paper which curls along one direction,
+/// of a poster off a roll, of a bilayer or a bimetal.
 ///
-/// With the curvature `k_1` along a direction of the material, `k_2` across it and the twist `k_12`, times a profile of
-/// time, `V` is the energy of what a face is bent beyond, `k_T - k_0`. Curvatures are positive towards the front of the
-/// faces, from which their corners run counter-clockwise: the sheet rolls up with its front inside.
+/// With the curvature `k_1` along a direction of the material, `k_2` across it and the twist `k_12`, times a
+/// profile of time, `V` is the energy of what a face is bent beyond, `k_T - k_0`. Curvatures are positive
+/// towards the front of the faces, from which their corners run counter-clockwise: the sheet rolls up with
+/// its front inside.
 ///
 /// A strip whose two layers want strains that differ by `e` has the curvature
 ///
@@ -22,9 +23,9 @@ use std::f64::consts::SQRT_2;
 /// 6 e (1 + m)^2 / (h [3 (1 + m)^2 + (1 + m n) (m^2 + 1 / (m n))])
 /// ```
 ///
-/// with the thickness `h` of both together, the ratio `m` of their thicknesses and `n` of their moduli: `1.5 e /
-/// h` for equal layers (S. Timoshenko, "Analysis of bi-metal thermostats", J. Opt. Soc. Am. 11, 1925). A wide
-/// plate with `k_0` in both directions rolls up along one, to the curvature `(1 + nu) k_0`.
+/// with the thickness `h` of both together, the ratio `m` of their thicknesses and `n` of their moduli: `1.5
+/// e / h` for equal layers (S. Timoshenko, "Analysis of bi-metal thermostats", J. Opt. Soc. Am. 11, 1925). A
+/// wide plate with `k_0` in both directions rolls up along one, to the curvature `(1 + nu) k_0`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curl {
     /// The direction along which the sheet is curved.
@@ -42,8 +43,8 @@ pub struct Curvature {
     pub along: f64,
     /// `k_2`, across it.
     pub across: f64,
-    /// `k_12`, the angle by which a line across the direction turns about it in a metre: a narrow strip with this alone is a
-    /// helicoid.
+    /// `k_12`, the angle by which a line across the direction turns about it in a metre: a narrow strip with
+    /// this alone is a helicoid.
     pub twist: f64,
 }
 

@@ -111,8 +111,8 @@ fn a_curl_about_both_axes_is_a_tighter_cylinder() {
     }
 }
 
-/// A mesh that is curved at rest, as a bowl which no flat sheet makes, is in equilibrium there, without energy,
-/// wherever it is placed.
+/// A mesh that is curved at rest, as a bowl which no flat sheet makes, is in equilibrium there, without
+/// energy, wherever it is placed.
 #[test]
 fn a_sheet_that_is_curved_at_rest_stays_so() {
     let flat = sheet(8);
@@ -192,7 +192,8 @@ fn gradients_are_differences_of_energies() {
     }
 }
 
-/// A twist alone: of the surfaces `z = c x y`, whose twist is `c`, the one with `c = k_12` has no energy, to fourth order.
+/// A twist alone: of the surfaces `z = c x y`, whose twist is `c`, the one with `c = k_12` has no energy, to
+/// fourth order.
 #[test]
 fn a_twist_is_that_of_a_saddle() {
     let sheet = sheet(3);
