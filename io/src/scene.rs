@@ -36,6 +36,7 @@ mod changed;
 mod chart;
 mod contact;
 mod creases;
+mod curl;
 mod edit;
 mod engine_problem;
 mod error;
@@ -57,6 +58,7 @@ mod obstacles;
 mod outline;
 mod output;
 mod patch;
+mod patched;
 mod pattern;
 mod placed;
 mod placed_bodies;
@@ -96,6 +98,7 @@ pub use chart::{
 };
 pub use contact::{Contact, SheetPair};
 pub use creases::{Crease, CreaseEdges, PatternEdges};
+pub use curl::Curl;
 pub use edit::{Edit, EditError};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
@@ -123,7 +126,7 @@ pub use profile::{Change, Course, Interpolation, Profile};
 pub use schema::{as_written, documented_schema, schema};
 pub use selection::Selection;
 pub use setup::{Integration, Setup};
-pub use sheet::{Bending, Curl, Elasticity, Isometry, RestShape, Sheet};
+pub use sheet::{Bending, Elasticity, Isometry, RestShape, Sheet};
 pub use source::{SceneFile, SceneFileError};
 pub use start::{Spin, Start};
 pub use starting_point::StartingPoint;
@@ -378,6 +381,10 @@ impl Scene {
             }
             if let Some(file) = &mut sheet.start.file {
                 files.push((key.name("start.file"), file));
+            }
+            let curl = sheet.curl.as_mut();
+            if let Some(file) = curl.and_then(|curl| curl.shape.as_mut()) {
+                files.push((key.name("curl.shape"), file));
             }
         }
         for (k, obstacle) in self.obstacle.iter_mut().enumerate() {

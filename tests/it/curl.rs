@@ -1,10 +1,15 @@
 //! Sheets that are not flat without stress, in motion: against closed forms.
 
 use isosheet_dynamics::{
-    Curl, Isometry, Material, MaterialDirection, Method, PlateBending, Profile, SheetModel,
-    Simulation, State, VertexLoad,
+    Curl, Curvature, Isometry, Material, MaterialDirection, Method, NaturalTensor, PlateBending,
+    Profile, SheetModel, Simulation, State, VertexLoad,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, fold_angle, generate};
+
+fn along(along: f64) -> NaturalTensor {
+    let none = Curvature::default();
+    Curvature { along, ..none }.into()
+}
 
 /// Until nothing moves: without the energy of motion that a step of a second would notice.
 fn at_rest(model: SheetModel, sheet: &Sheet, seconds: f64) -> Simulation {
@@ -28,8 +33,7 @@ fn a_poster_curls_to_its_roll() {
     let clamp = sheet.vertices_where(|[x, ..]| x < 0.015);
     let curl = Curl {
         direction: MaterialDirection::Uniform([1.0, 0.0, 0.0]),
-        along: 1.0 / radius,
-        across: 0.0,
+        curvature: along(1.0 / radius),
         profile: Profile::Ramp {
             from: 0.0,
             to: 1.0,
@@ -104,4 +108,40 @@ fn a_ring_with_a_slit_opens_as_a_curved_beam() {
         .map(|v| ring.positions()[3 * v.index()] - run.state().x[3 * v.index()]);
     let moved = moved.sum::<f64>() / count;
     assert!((moved / opening - 1.0).abs() < 0.03, "{moved} {opening}");
+}
+
+/// A narrow strip that wants to be twisted alone becomes a helicoid: its end has turned by the twist times its length.
+#[test]
+fn a_narrow_strip_with_a_twist_is_a_helicoid() {
+    let (length, width, twist) = (0.1, 0.004, 4.0);
+    let sheet = generate::anisotropic_grid(100, 4, length, width).expect("a strip");
+    let clamp = sheet.vertices_where(|[x, ..]| x < 0.0015);
+    let none = Curvature::default();
+    let curl = Curl {
+        direction: MaterialDirection::Uniform([1.0, 0.0, 0.0]),
+        curvature: Curvature { twist, ..none }.into(),
+        profile: Profile::Ramp {
+            from: 0.0,
+            to: 1.0,
+            begin: 0.0,
+            end: 0.5,
+        },
+    };
+    let model = SheetModel::of_material(&sheet, &Material::office_paper())
+        .clamped(&clamp)
+        .curled(curl)
+        .build()
+        .and_then(|model| Ok(model.with_damping(20.0)?))
+        .expect("a model");
+    let run = at_rest(model, &sheet, 3.0);
+    let turned = |from: f64| {
+        let line = sheet.vertices_where(|[x, ..]| (x - from).abs() < 1e-9);
+        let at = |v: &VertexId| run.state().vertex_positions()[v.index()];
+        let (first, last) = (at(&line[0]), at(&line[line.len() - 1]));
+        (last[2] - first[2]).atan2(last[1] - first[1])
+    };
+    // Between two lines away from the ends.
+    let (from, to) = (0.02, 0.09);
+    let found = (turned(to) - turned(from)) / (to - from);
+    assert!((found / twist - 1.0).abs() < 0.02, "{found} {twist}");
 }

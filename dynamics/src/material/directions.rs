@@ -7,8 +7,8 @@ use crate::options::OptionsError;
 use crate::{MembraneLaw, OrthotropicMembrane, OrthotropicPlate, PlateLaw, PlateStiffness};
 use serde::{Deserialize, Serialize};
 
-/// How stiff a material is along a direction and across it: along and across the direction in which paper was made, the
-/// warp and the weft of cloth.
+/// How stiff a material is along a direction and across it: along and across the direction in which paper was
+/// made, the warp and the weft of cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Directions {
@@ -32,7 +32,8 @@ pub struct Directions {
     pub strain_limit: f64,
 }
 
-/// A sheet of one material with two directions, homogeneous over its thickness, for [`Material::orthotropic`].
+/// A sheet of one material with two directions, homogeneous over its thickness, for
+/// [`Material::orthotropic`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Orthotropic {
@@ -50,15 +51,16 @@ pub struct Orthotropic {
     pub density: f64,
 }
 
-/// Geometric mean of the Poisson's ratios of paper, and its shear modulus in parts of the geometric mean of Young's
-/// moduli (G. A. Baum, D. C. Brennan and C. C. Habeger, "Orthotropic elastic constants of paper", Tappi 64(8), 97-101,
-/// 1981).
+/// Geometric mean of the Poisson's ratios of paper, and its shear modulus in parts of the geometric mean of
+/// Young's moduli (G. A. Baum, D. C. Brennan and C. C. Habeger, "Orthotropic elastic constants of paper",
+/// Tappi 64(8), 97-101, 1981).
 const PAPER_POISSON: f64 = 0.293;
 const PAPER_SHEAR: f64 = 0.387;
 
 impl Directions {
-    /// Those of paper, from the geometric means `stiffness` of the `E h` (newtons per metre) and `rigidity` of the `D`
-    /// (newton metres) of both directions: along the machine so many times the mean, across it the mean over as much.
+    /// Those of paper, from the geometric means `stiffness` of the `E h` (newtons per metre) and `rigidity`
+    /// of the `D` (newton metres) of both directions: along the machine so many times the mean, across it the
+    /// mean over as much.
     pub(super) const fn of_paper(stiffness: f64, rigidity: f64, times: f64) -> Self {
         Self {
             along: stiffness * times,
@@ -73,9 +75,9 @@ impl Directions {
         }
     }
 
-    /// Those of woven cloth, from `E h` of warp and weft and the shear modulus (newtons per metre), and the rigidities of
-    /// warp and weft (newton metres), whose geometric mean is given, too. Twist is resisted so much that a strip that is
-    /// cut at 45 degrees is about as stiff as the mean of the others.
+    /// Those of woven cloth, from `E h` of warp and weft and the shear modulus (newtons per metre), and the
+    /// rigidities of warp and weft (newton metres), whose geometric mean is given, too. Twist is resisted so
+    /// much that a strip that is cut at 45 degrees is about as stiff as the mean of the others.
     pub(super) const fn of_cloth(
         [along, across, shear]: [f64; 3],
         poisson: f64,
@@ -94,7 +96,8 @@ impl Directions {
         }
     }
 
-    /// The limit of the strain of woven cloth: of a shear of 16 degrees. Cloth that hangs shears by some degrees.
+    /// The limit of the strain of woven cloth: of a shear of 16 degrees. Cloth that hangs shears by some
+    /// degrees.
     const CLOTH_LIMIT: f64 = 0.2;
 
     fn membrane(&self, direction: MaterialDirection) -> OrthotropicMembrane {
@@ -150,8 +153,8 @@ impl Directions {
 }
 
 impl Material {
-    /// The sheet of a material with two directions, of constant thickness: laminates, wood. Where no direction is named
-    /// it has the geometric means of both.
+    /// The sheet of a material with two directions, of constant thickness: laminates, wood. Where no
+    /// direction is named it has the geometric means of both.
     ///
     /// # Errors
     /// [`OptionsError`] naming the number that makes no sense.
@@ -208,9 +211,9 @@ impl Material {
         Ok(sheet)
     }
 
-    /// The same material where its direction is named: stiffness, rigidity and Poisson's ratio are the geometric means
-    /// of both directions, the limit of the strain is that of [`Directions`], and the sheet yields at the same
-    /// curvature of the mean rigidity. Of a material without directions this is itself.
+    /// The same material where its direction is named: stiffness, rigidity and Poisson's ratio are the
+    /// geometric means of both directions, the limit of the strain is that of [`Directions`], and the sheet
+    /// yields at the same curvature of the mean rigidity. Of a material without directions this is itself.
     #[must_use]
     pub fn directed(self) -> Self {
         let Some(directions) = self.directions else {

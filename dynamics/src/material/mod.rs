@@ -37,9 +37,9 @@ use serde::{Deserialize, Serialize};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Paper is about twice as stiff in the direction in which it was made as across, and woven cloth is many times softer in
-/// shear than along its yarns. A sheet has these [directions](Material::directions) where it names one
-/// ([`SheetOfMaterial::along`](crate::SheetOfMaterial::along)); otherwise it is isotropic.
+/// Paper is about twice as stiff in the direction in which it was made as across, and woven cloth is many
+/// times softer in shear than along its yarns. A sheet has these [directions](Material::directions) where it
+/// names one ([`SheetOfMaterial::along`](crate::SheetOfMaterial::along)); otherwise it is isotropic.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -160,7 +160,8 @@ impl Material {
 
     /// The elasticity in the plane of a sheet of this material, with the limit of the strain. The flexural
     /// rigidity is not part of it: `plate` resists bending, and is one more potential of the model
-    /// ([`ElasticSheet::beside`]). It is the same in all directions; [`Material::membrane`] is with a direction.
+    /// ([`ElasticSheet::beside`]). It is the same in all directions; [`Material::membrane`] is with a
+    /// direction.
     ///
     /// # Errors
     /// [`ElasticSheetError`].

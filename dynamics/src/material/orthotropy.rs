@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, SymmetricEigen};
 use std::f64::consts::SQRT_2;
 
-/// A symmetric 2 x 2 matrix `e`, with the components `e_1` along a direction of the material, `e_2` across it and
-/// `e_12`, stores
+/// A symmetric 2 x 2 matrix `e`, with the components `e_1` along a direction of the material, `e_2` across it
+/// and `e_12`, stores
 ///
 /// ```text
 /// 1/2 [ along e_1^2 + 2 coupling e_1 e_2 + across e_2^2 + 4 shear e_12^2 ].
@@ -24,8 +24,8 @@ pub(super) fn first_unusable(stiffnesses: [f64; 3]) -> Option<f64> {
 }
 
 impl PrincipalLaw {
-    /// Whether the coupling leaves no matrix without resistance, the stiffnesses being positive. (A coupling that is
-    /// not a number does.)
+    /// Whether the coupling leaves no matrix without resistance, the stiffnesses being positive. (A coupling
+    /// that is not a number does.)
     pub(super) fn is_definite(&self) -> bool {
         self.coupling * self.coupling < self.along * self.across
     }
@@ -35,7 +35,8 @@ impl PrincipalLaw {
         (self.along * self.across).sqrt()
     }
 
-    /// The law over a stiffness, by the components `(11, sqrt(2) 12, 22)`, the first axis along the direction.
+    /// The law over a stiffness, by the components `(11, sqrt(2) 12, 22)`, the first axis along the
+    /// direction.
     pub(super) fn over(&self, stiffness: f64) -> Matrix3<f64> {
         let all = [self.along, self.coupling, self.across, self.shear];
         let [along, coupling, across, shear] = all.map(|c| c / stiffness);

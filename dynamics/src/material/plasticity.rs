@@ -2,6 +2,7 @@
 
 use crate::options::OptionsError;
 use nalgebra::{SMatrix, SVector};
+use points::points;
 use serde::{Deserialize, Serialize};
 
 /// When a section yields in bending, and how it hardens: rate-independent plasticity with linear kinematic
@@ -28,15 +29,15 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Layers
 ///
-/// A real section yields from its faces inwards. With `n` [layers](Yield::layers) each half of it is cut into
-/// layers of equal thickness, from `(i - 1) / n` to `i / n` of the way from the middle to a face, whose parts
-/// of the rigidity, the moment and the hardening are
+/// A real section yields from its faces inwards. With `n` [layers](Yield::layers) the integral over each half of it is
+/// that of Gauss and Legendre: the layers are at the points `z_i`, in parts of the way from the middle to a face, with the
+/// thicknesses `w_i`, and their parts of the rigidity, the moment and the hardening are
 ///
 /// ```text
-/// D_i = D (3 i^2 - 3 i + 1) / n^3,    M_i = M_y (2 i - 1) / n^2,    H_i = H D_i / D,    i = 1 .. n,
+/// D_i = 3 D w_i z_i^2,    M_i = 2 M_y w_i z_i,    H_i = H D_i / D,    i = 1 .. n,
 /// ```
 ///
-/// the integrals of `3 z^2` and of `2 z` over it. All layers have the curvature `k` of the section, each has
+/// so that each yields at the curvature `k_y / z_i`. (One layer is the whole section.) All layers have the curvature `k` of the section, each has
 /// a plastic curvature `p_i` and yields by itself; `M = sum_i M_i(k)`, and `p` is the mean of the `p_i`
 /// weighted by the `D_i`. The moment grows from `2/3 M_y` on, about, to `M_y` (or beyond, by hardening), and
 /// is that of an elastic-perfectly plastic material,
@@ -46,7 +47,7 @@ use serde::{Deserialize, Serialize};
 /// ```
 ///
 /// with an error of second order in `1 / n`: at most 15 % of `M_y` for `n = 1`, where the section yields at
-/// once as above, 6 % for `n = 2`, and `0.25 / n^2` beyond, 1.5 % for `n = 4`. Between the layers stresses
+/// once as above, and `0.4 / n^2` beyond, of either sign. Between the layers stresses
 /// stay when the moment is gone. (F. J. Gardiner, "The spring back of metals", Trans. ASME 79, 1957; J. F.
 /// Besseling, "A theory of elastic, plastic, and creep deformations of an initially isotropic material", J.
 /// Appl. Mech. 25, 1958.)
@@ -78,7 +79,8 @@ pub struct Yield {
     /// The hardening `H`, what `M_y` is shifted by per plastic curvature: newton metres per radian for a
     /// spring, newton metres for a sheet. Zero for a section that yields without hardening.
     pub hardening: f64,
-    /// The number of layers of each half of the section. With one, all of it yields at the same moment.
+    /// The number of layers of each half of the section, at the points of Gauss and Legendre. With one, all of it yields at
+    /// the same moment.
     #[serde(default = "one")]
     pub layers: usize,
 }
@@ -174,12 +176,13 @@ impl Layer {
 }
 
 impl Yield {
-    /// The number of layers of a sheet unless another is asked for: its moment has an error of 0.4 % of `M_y`.
-    /// What is left of the bend of a cantilever errs by up to 11 % with 4 layers, and by 0.3 % with this number.
-    pub const LAYERS: usize = 8;
+    /// The number of layers of a sheet unless another is asked for: the smallest with which what is left of the bend of a
+    /// cantilever errs by less than 1 % wherever the largest moment was 0.75 to 0.99 of [`Yield::moment`]. (In layers of
+    /// equal thickness 16 err by up to 6 %, as all of them have too large a moment.)
+    pub const LAYERS: usize = 11;
 
     /// The largest number of layers.
-    pub const MAX_LAYERS: usize = 100;
+    pub const MAX_LAYERS: usize = points::MOST;
 
     /// Without hardening, at one moment.
     pub const fn perfect(moment: f64) -> Self {
@@ -214,16 +217,11 @@ impl Yield {
             hardening,
             layers,
         } = *self;
-        let count = layers as f64;
-        (0..layers).map(move |k| {
-            let i = k as f64;
-            let share = (3.0 * i * (i + 1.0) + 1.0) / count.powi(3);
-            Layer {
-                share,
-                rigidity: share * rigidity,
-                moment: moment * ((2.0 * i + 1.0) / count.powi(2)),
-                hardening: share * hardening,
-            }
+        points(layers).iter().map(move |point| Layer {
+            share: point.rigidity,
+            rigidity: point.rigidity * rigidity,
+            moment: point.moment * moment,
+            hardening: point.rigidity * hardening,
         })
     }
 
@@ -290,5 +288,6 @@ impl Yield {
     }
 }
 
+mod points;
 #[cfg(test)]
 mod tests;

@@ -22,6 +22,7 @@ mod tests;
 
 use super::patched::Patched;
 use super::plasticity::Yield;
+use crate::motion::profile::Profile;
 use crate::potential::At;
 use crate::potential::Reached;
 use crate::potential::Settled;
@@ -32,8 +33,8 @@ use law::Roots;
 pub use law::{OrthotropicPlate, PlateLaw};
 pub use line_clamp::{LineClamp, PlateEdges};
 use nalgebra::{Matrix2, Matrix3, Vector3};
-pub use natural::Curl;
 use natural::NaturalCurvature;
+pub use natural::{Curl, Curvature, NaturalTensor};
 pub(crate) use second_derivatives::SecondDerivatives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -262,6 +263,35 @@ impl PlateBending {
     /// [`PlateBendingError::Curl`].
     pub fn with_curl(mut self, sheet: &Sheet, curl: Curl) -> Result<Self, PlateBendingError> {
         let natural = NaturalCurvature::of_curl(sheet, &self.roots, curl);
+        let natural = natural.map_err(|source| PlateBendingError::Curl { source })?;
+        self.stress_free(sheet).set_natural(natural);
+        Ok(self)
+    }
+
+    /// The plate of `sheet` with the natural curvature that it has in another shape, with positions `shape` (`3V`,
+    /// metres) of its vertices, times a profile of time; in place of the one that it had. Lengths stay those of the sheet.
+    ///
+    /// # Errors
+    /// [`PlateBendingError::Curl`].
+    ///
+    /// # Panics
+    /// If there are not as many positions.
+    pub fn curled_as(
+        mut self,
+        sheet: &Sheet,
+        shape: &[f64],
+        profile: Profile,
+    ) -> Result<Self, PlateBendingError> {
+        assert_eq!(
+            shape.len(),
+            sheet.positions().len(),
+            "a position for each vertex"
+        );
+        let faces = match self.is_stiff() {
+            true => self.stencils.curvatures(sheet, &self.roots, shape),
+            false => return Ok(self),
+        };
+        let natural = NaturalCurvature::of_shape(faces, profile);
         let natural = natural.map_err(|source| PlateBendingError::Curl { source })?;
         self.stress_free(sheet).set_natural(natural);
         Ok(self)

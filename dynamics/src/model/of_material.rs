@@ -91,8 +91,9 @@ impl SheetModel {
     /// # }
     /// ```
     ///
-    /// A sheet whose mass is known otherwise is built of the same parts by hand: [`SheetModel::with_mass`], [`PlateBending`], [`Material::elastic_sheet`], and
-    /// [`PotentialOfPart`](crate::PotentialOfPart) for one of several sheets.
+    /// A sheet whose mass is known otherwise is built of the same parts by hand: [`SheetModel::with_mass`],
+    /// [`PlateBending`], [`Material::elastic_sheet`], and [`PotentialOfPart`](crate::PotentialOfPart) for one
+    /// of several sheets.
     pub fn of_material<'a>(sheet: &'a Sheet, material: &Material) -> SheetOfMaterial<'a> {
         SheetOfMaterial {
             sheet,
@@ -116,15 +117,15 @@ impl SheetOfMaterial<'_> {
         self
     }
 
-    /// Lays the material along a direction: the one in which paper was made, the warp of cloth. Without, the sheet is the
-    /// same in all directions.
+    /// Lays the material along a direction: the one in which paper was made, the warp of cloth. Without, the
+    /// sheet is the same in all directions.
     pub fn along(mut self, direction: MaterialDirection) -> Self {
         self.direction = Some(direction);
         self
     }
 
-    /// Makes some faces of another material: a label, a reinforcement. The limit of the strain is the largest of all
-    /// materials.
+    /// Makes some faces of another material: a label, a reinforcement. The limit of the strain is the largest
+    /// of all materials.
     pub fn with_patch(mut self, faces: Vec<FaceId>, material: &Material) -> Self {
         self.materials = self.materials.with_patch(faces, *material);
         self

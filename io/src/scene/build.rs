@@ -646,7 +646,10 @@ impl<'a> Builder<'a> {
                 plate = plate.curved(placed);
             }
             if let Some(curl) = curl {
-                let curled = plate.with_curl(placed, curl);
+                let curled = match &form.curled {
+                    Some(shape) => plate.curled_as(placed, shape, curl.profile),
+                    None => plate.with_curl(placed, curl),
+                };
                 plate = curled.map_err(at(&key.name("curl")))?;
             }
             if let Some(yields) = yields {

@@ -351,6 +351,8 @@ fn lasting(before: &Scene, after: &Scene) -> Vec<Problem> {
         checks.push((key.name("refine"), old.refine == new.refine));
         checks.push((key.name("placement"), old.placement == new.placement));
         checks.push((key.name("start"), old.start == new.start));
+        let shape = |sheet: &super::Sheet| sheet.curl.as_ref().and_then(|curl| curl.shape.clone());
+        checks.push((key.name("curl.shape"), shape(old) == shape(new)));
     }
     let changed = checks.into_iter().filter(|(_, same)| !same);
     let problem = |(key, _): (Key, bool)| {

@@ -2,8 +2,8 @@
 
 use super::error::SceneError;
 use super::mesh::RestMesh;
-use super::mesh_file::Files;
-use super::patch::patched;
+use super::mesh_file::{Files, MeshFile};
+use super::patched::patched;
 use super::pattern::EdgeRoles;
 use super::problem::Problem;
 use super::refined::Refined;
@@ -29,6 +29,8 @@ pub(crate) struct Form {
     pub(super) changes: ReadingChanges,
     /// Positions at the start, `3V`.
     start: Vec<f64>,
+    /// Positions of the shape whose curvature it has.
+    pub(super) curled: Option<Vec<f64>>,
 }
 
 /// A sheet in its place.
@@ -77,7 +79,7 @@ impl<'a> PlacedSheets<'a> {
         let numbered = sheets.iter().zip(&*forms).zip(parts).enumerate();
         let list = numbered.map(|(k, ((of, form), part))| {
             let key = sheet_key(sheets.len(), k);
-            let patched = patched(of, form, &key)?;
+            let patched = patched(of, form.placed.topology(), &form.start, &key)?;
             let mass = match (of.mass, &of.patch[..]) {
                 (None, [_, ..]) => of_densities(form, &patched),
                 (mass, _) => {
@@ -172,11 +174,6 @@ fn of_densities(form: &Form, patched: &Patched<SheetOfScene>) -> Result<MassMatr
 }
 
 impl Form {
-    /// Positions at the start, `3V`.
-    pub(super) fn start(&self) -> &[f64] {
-        &self.start
-    }
-
     fn new(of: &SheetOfScene, key: &Key, files: &mut Files) -> Result<Self, Problem> {
         let mesh_key = key.name("mesh");
         let RestMesh {
@@ -191,27 +188,32 @@ impl Form {
             .map_positions(|p| pose.place(p))
             .map_err(|e| Problem::from_error(mesh_key.clone(), &e))?;
         check_shape(&placed, &mesh_key.name(of.mesh.name()))?;
+        // Positions of a file with the same mesh, in space.
+        let mut shape = |file: &MeshFile, key: Key| {
+            let shape = files.read(file, &key)?;
+            if triangles(&shape.faces) != triangles(&unplaced.mesh().face_indices()) {
+                let message = "the file does not have the vertices and faces of `sheet.mesh`";
+                let remedy = "export both shapes from the same mesh, without reordering";
+                return Err(Problem::new(key.name("path"), message, remedy));
+            }
+            let x = unplaced.positions(shape.positions.clone());
+            let points = x.as_chunks::<3>().0.iter();
+            Ok(points.flat_map(|&p| pose.place(p)).collect())
+        };
         let start = match &of.start.file {
             None => placed.positions().to_vec(),
-            Some(file) => {
-                let key = key.name("start.file");
-                let start = files.read(file, &key)?;
-                if triangles(&start.faces) != triangles(&unplaced.mesh().face_indices()) {
-                    let message = "the file does not have the vertices and faces of `sheet.mesh`";
-                    let remedy = "export both shapes from the same mesh, without reordering";
-                    return Err(Problem::new(key.name("path"), message, remedy));
-                }
-                let x = unplaced.positions(start.positions.clone());
-                let points = x.as_chunks::<3>().0.iter();
-                points.flat_map(|&p| pose.place(p)).collect()
-            }
+            Some(file) => shape(file, key.name("start.file"))?,
         };
+        let curled = of.curl.as_ref().and_then(|curl| curl.shape.as_ref());
+        let curled = curled.map(|file| shape(file, key.name("curl.shape")));
+        let curled = curled.transpose()?;
         Ok(Self {
             roles: roles.map(|roles| unplaced.roles(roles)),
             placed,
             unplaced,
             changes,
             start,
+            curled,
         })
     }
 }

@@ -1,12 +1,12 @@
 //! The sheet: mesh, material, placement and start.
 
+use super::curl::Curl;
 use super::key::Key;
 use super::material::{Material, ratios, typical_poisson};
 use super::mesh::Mesh;
-use super::patch::{self, Patch};
+use super::patch::Patch;
 use super::pose::Pose;
 use super::problem::Checks;
-use super::profile::Profile;
 use super::start::Start;
 use super::unit::Unit;
 use super::yields::SheetYield;
@@ -154,48 +154,6 @@ pub enum RestShape {
     Mesh,
 }
 
-/// A curvature that a sheet has by itself: paper that curls, a poster off a roll, a bilayer.
-///
-/// ```toml
-/// [sheet]
-/// material = "office paper"
-/// curl = { along = [1, 0, 0], radius = 0.05 }
-/// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Curl {
-    /// The direction along which the sheet is curved, in the frame of the mesh, of any length.
-    pub along: [f64; 3],
-    /// Radius of curvature, metres: positive where the sheet rolls up with the front of its faces inside, from
-    /// which their corners run counter-clockwise.
-    pub radius: f64,
-    /// Radius of curvature across this direction, metres. If left out, the sheet is straight across.
-    #[serde(default)]
-    pub across_radius: Option<f64>,
-    /// A factor of time by which the curvatures are multiplied.
-    #[serde(default = "one")]
-    pub profile: Profile,
-}
-
-fn one() -> Profile {
-    Profile::Constant(1.0)
-}
-
-impl Curl {
-    fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.direction(key.name("along"), &self.along);
-        let radii = [
-            ("radius", Some(self.radius)),
-            ("across_radius", self.across_radius),
-        ];
-        for (name, radius) in radii {
-            let size = radius.map(f64::abs);
-            checks.positive(key.name(name), size, Unit::Metre);
-        }
-        self.profile.check(key.name("profile"), Unit::One, checks);
-    }
-}
-
 /// What resists bending.
 ///
 /// ```toml
@@ -274,6 +232,22 @@ impl Sheet {
             Some(_) => material.directed(),
             None => material,
         })
+    }
+
+    /// A sheet that is as one of its patches all over.
+    pub(super) fn of_patch(&self, patch: &Patch) -> Self {
+        Self {
+            material: Some(patch.material.clone()),
+            direction: patch.direction.or(self.direction),
+            density: patch.density,
+            isometry: match self.isometry() {
+                Isometry::Rods => Some(Isometry::Rods),
+                Isometry::Elastic { .. } => None,
+            },
+            bending: None,
+            patch: Vec::new(),
+            ..self.clone()
+        }
     }
 
     /// Its direction in space.
@@ -361,13 +335,13 @@ impl Sheet {
         }
     }
 
-    /// The curvature that it has by itself.
+    /// The curvature that it has by itself, unless that is of another shape.
     pub(super) fn natural_curvature(&self) -> Option<engine::Curl> {
         let curl = self.curl.as_ref()?;
+        let along = curl.along.or(self.direction).unwrap_or_default();
         Some(engine::Curl {
-            direction: engine::MaterialDirection::Uniform(self.placed(curl.along)),
-            along: 1.0 / curl.radius,
-            across: curl.across_radius.map_or(0.0, |radius| 1.0 / radius),
+            direction: engine::MaterialDirection::Uniform(self.placed(along)),
+            curvature: curl.tensor().into(),
             profile: curl.profile.as_given(),
         })
     }
@@ -417,7 +391,11 @@ impl Sheet {
             },
         };
         let of_material = material.map_or(engine::Material::STRAIN_LIMIT, |m| m.strain_limit);
-        let of_patches = self.patch.iter().filter_map(|own| own.strain_limit(self));
+        let of_patches = self
+            .patch
+            .iter()
+            .filter_map(|own| self.of_patch(own).made_of());
+        let of_patches = of_patches.map(|material| material.strain_limit);
         Some(Elasticity {
             law,
             limit: limit.unwrap_or_else(|| of_patches.fold(of_material, f64::max)),
@@ -522,7 +500,7 @@ impl Sheet {
         }
         if let Some(curl) = &self.curl {
             let key = key.name("curl");
-            curl.check(&key, checks);
+            curl.check(self.direction, &key, checks);
             if matches!(self.bending(), Bending::None | Bending::Hinges { .. }) {
                 let message = "the sheet curls, and no plate resists bending";
                 checks.report(key.clone(), message, PLATE);
@@ -552,7 +530,6 @@ impl Sheet {
                 "give `stiffness` in N/m, Young's modulus times thickness, or `sheet.material`",
             );
         }
-        patch::check(self, key, checks);
         self.placement.check(&key.name("placement"), checks);
         self.start.check(&key.name("start"), checks);
     }

@@ -1,6 +1,7 @@
 //! One sheet, or several.
 
 use super::key::Key;
+use super::patched;
 use super::problem::{Checks, Problem};
 use super::sheet::{Isometry, Sheet};
 use super::size;
@@ -69,6 +70,7 @@ pub(super) fn check(sheets: &[Sheet], checks: &mut Checks) {
     for (k, sheet) in sheets.iter().enumerate() {
         let key = sheet_key(sheets.len(), k);
         sheet.check(&key, checks);
+        patched::check(sheet, &key, checks);
         if sheets.len() > 1 {
             check_name(sheets, k, &key, checks);
             check_common(&sheets[0], sheet, &key, checks);

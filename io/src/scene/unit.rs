@@ -4,6 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unit {
     Metre,
+    PerMetre,
     Second,
     Kilogram,
     KilogramPerSquareMetre,
@@ -43,8 +44,9 @@ impl UnitRange {
 }
 
 impl Unit {
-    pub(crate) const ALL: [Self; 15] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::Metre,
+        Self::PerMetre,
         Self::Second,
         Self::Kilogram,
         Self::KilogramPerSquareMetre,
@@ -73,6 +75,12 @@ impl Unit {
                 1e-12,
                 1e12,
                 "an atom measures 1e-10 m, the orbit of the earth 1e11 m",
+            ),
+            Self::PerMetre => (
+                "1/m",
+                1e-12,
+                1e12,
+                "as for lengths, whose inverses these are",
             ),
             Self::Second => (
                 "s",

@@ -213,6 +213,54 @@ fn a_poster_curls_to_its_roll() {
     assert!((x - expected_x).hypot(z - expected_z) < 2e-3, "{x} {z}");
 }
 
+/// The same curl by its components, and by another shape of the mesh, which is given by a file.
+#[test]
+fn a_curl_may_be_a_tensor_or_a_shape() {
+    let folder = tempfile::tempdir().unwrap();
+    let rectangle = isosheet_io::mesh::generate::anisotropic_grid(20, 4, 0.2, 0.04).unwrap();
+    let write = |name: &str, place: &dyn Fn(&[f64; 3]) -> [f64; 3]| {
+        let points = rectangle.positions().as_chunks::<3>().0.iter();
+        let vertices = points.map(|p| {
+            let [x, y, z] = place(p);
+            format!("v {x} {y} {z}\n")
+        });
+        let faces = rectangle.face_indices().into_iter();
+        let faces = faces.map(|f| {
+            let [a, b, c] = f.map(|v| v + 1);
+            format!("f {a} {b} {c}\n")
+        });
+        let text: String = vertices.chain(faces).collect();
+        std::fs::write(folder.path().join(name), text).unwrap();
+    };
+    write("flat.obj", &|p| *p);
+    write("roll.obj", &|[x, y, _]| {
+        let angle = x / 0.1;
+        [0.1 * angle.sin(), *y, 0.1 * (1.0 - angle.cos())]
+    });
+    let energy = |curl: &str| {
+        let text = format!(
+            "version = 1\n[sheet]\nmaterial = \"office paper\"\ndirection = [1, 0, 0]\n\
+             mesh = {{ file = {{ path = \"flat.obj\" }} }}\ncurl = {{ {curl} }}\n[stop]\ntime = 1\n"
+        );
+        let path = folder.path().join("scene.toml");
+        let setup = isosheet_io::scene::SceneFile::parse(text, &path, &[]);
+        let setup = setup.unwrap().build().unwrap();
+        setup.model.potential_energy(0.0, &setup.start.x)
+    };
+    let radius = energy("along = [1, 0, 0], radius = 0.1");
+    let expected = 0.5 * 5e-4 * 100.0 * 0.2 * 0.04;
+    assert!(
+        (radius / expected - 1.0).abs() < 0.05,
+        "{radius} {expected}"
+    );
+    let tensor = energy("curvature = 10");
+    assert!((tensor / radius - 1.0).abs() < 1e-12, "{tensor} {radius}");
+    let shape = energy("shape = { path = \"roll.obj\" }");
+    assert!((shape / radius - 1.0).abs() < 0.1, "{shape} {radius}");
+    let halved = energy("shape = { path = \"roll.obj\" }, profile = 0.5");
+    assert!((halved / shape - 0.25).abs() < 1e-9, "{halved} {shape}");
+}
+
 /// A strip of an orthotropic plate bends by the rigidity along it: 1 along, 4 across, at 0, 45 and 90 degrees
 /// under a small load. (At 45 degrees a wide one bends by the law in the turned axes.)
 #[test]
@@ -253,6 +301,13 @@ fn what_makes_no_sense_is_refused_with_a_reason() {
         ("curl = { along = [1, 0, 0], radius = 0 }".to_owned(), "sheet.curl.radius"),
         ("curl = { along = [0, 0, 0], radius = 1 }".to_owned(), "sheet.curl.along"),
         ("curl = { along = [0, 0, 1], radius = 1 }".to_owned(), "no part in the plane of face 0"),
+        ("curl = { along = [1, 0, 0] }".to_owned(), "how the sheet is curved"),
+        ("curl = { twist = 1 }".to_owned(), "no direction"),
+        ("curl = { along = [1, 0, 0], curvature = 1, radius = 1 }".to_owned(), "the same curvature"),
+        (
+            "curl = { twist = 1, shape = { path = \"a.obj\" } }".to_owned(),
+            "by numbers besides",
+        ),
         (
             "bending = \"none\"\ncurl = { along = [1, 0, 0], radius = 1 }".to_owned(),
             "no plate resists bending",

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 9] = [
+const ALL_KEYS: [&str; 10] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -250,9 +250,18 @@ const ALL_KEYS: [&str; 9] = [
     "#,
     r#"version = 1
     [sheet]
+    mesh = { file = { path = "flat.obj" } }
+    bending = { plate = { rigidity = 1e-3 } }
+    curl = { shape = { path = "bowl.obj", scale = 0.001, up = "y", polygons = "refuse", frame = "folded", mesh = "bowl" } }
+    [stop]
+    time = 1
+    "#,
+    r#"version = 1
+    [sheet]
     mesh = { square = { side = 0.2, level = 1 } }
     material = { youngs = 1e9, youngs_across = 5e8, shear = 3e8, thickness = 1e-3, density = 800 }
     direction = [1, 0, 0]
+    curl = { curvature = 5.0, across_curvature = -2.0, twist = 3.0 }
     isometry = { elastic = { stiffness = 4e5, across = 2e5, shear = 1e5 } }
     [[sheet.patch]]
     at = { half_space = { point = [0.05, 0, 0], normal = [1, 0, 0] } }

@@ -342,12 +342,14 @@ fn every_path_to_a_file_that_cannot_be_read_is_refused_at_its_place() {
     let square = isosheet_io::mesh::generate::isotropic_square(1, 0.2).unwrap();
     let good = folder.path().join("good.obj");
     isosheet_io::write_obj(&good, square.topology(), square.positions()).unwrap();
-    let scene = |sheet: &str, start: &str, body: &str| {
+    let scene = |sheet: &str, start: &str, curl: &str, body: &str| {
         format!(
             "version = 1
 [sheet]
 mesh = {{ file = {{ path = {sheet:?} }} }}
 start = {{ file = {{ path = {start:?} }} }}
+bending = {{ plate = {{ rigidity = 1e-3 }} }}
+curl = {{ shape = {{ path = {curl:?} }} }}
 [[obstacle]]
 shape = {{ file = {{ path = {body:?} }} }}
 pose = {{ position = [0, 0, -1] }}
@@ -366,13 +368,14 @@ pose = {{ position = [0, 0, -1] }}
         for (k, key) in [
             "sheet.mesh.file.path",
             "sheet.start.file.path",
+            "sheet.curl.shape.path",
             "obstacle[0].shape.file.path",
         ]
         .into_iter()
         .enumerate()
         {
             let name = |place: usize| if place == k { wrong } else { "good.obj" };
-            let text = scene(name(0), name(1), name(2));
+            let text = scene(name(0), name(1), name(2), name(3));
             let path = folder.path().join("test.toml");
             let file = SceneFile::parse(text.clone(), &path, &[]);
             let error = match file.map(|file| file.build()) {
@@ -383,7 +386,7 @@ pose = {{ position = [0, 0, -1] }}
             let placed = error.placed();
             assert_eq!(
                 (placed[0].line, placed[0].key.as_str()),
-                (Some([3, 4, 6][k]), key),
+                (Some([3, 4, 6, 8][k]), key),
                 "{shown}"
             );
             assert!(
@@ -403,5 +406,5 @@ pose = {{ position = [0, 0, -1] }}
         .filter(|name| name.ends_with(".path"));
     assert_eq!(paths.collect::<Vec<_>>(), ["MeshFile.path"]);
     let users = schema().to_string().matches("#/$defs/MeshFile").count();
-    assert_eq!(users, 3, "a path was added to scenes: try it here");
+    assert_eq!(users, 4, "a path was added to scenes: try it here");
 }

@@ -5,7 +5,7 @@ use super::rest::Rest;
 use super::specimen::{Line, material};
 use crate::runs::meshes::{vertices, with_line};
 use anyhow::Result;
-use isosheet_dynamics::{Curl, MaterialDirection, Profile, SheetModel};
+use isosheet_dynamics::{Curl, Curvature, MaterialDirection, Profile, SheetModel};
 use std::f64::consts::{PI, TAU};
 
 const POISSON: f64 = 0.3;
@@ -38,8 +38,12 @@ fn curled(job: Job) -> Result<Measured> {
     for across in [0.0, ALPHA] {
         let curl = Curl {
             direction: MaterialDirection::Uniform([1.0, 0.0, 0.0]),
-            along: ALPHA,
-            across,
+            curvature: Curvature {
+                along: ALPHA,
+                across,
+                twist: 0.0,
+            }
+            .into(),
             profile: Profile::Ramp {
                 from: 0.0,
                 to: 1.0,

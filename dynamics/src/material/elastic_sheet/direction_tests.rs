@@ -4,7 +4,7 @@ use super::*;
 use crate::linear::primal::PrimalMatrix;
 use crate::linear::primal::testing::add_potentials;
 use crate::{MaterialDirection, PlateLaw, SheetModel};
-use isosheet_mesh::{MassKind, VertexId, generate};
+use isosheet_mesh::{Advice, MassKind, VertexId, generate};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

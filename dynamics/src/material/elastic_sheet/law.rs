@@ -4,20 +4,20 @@ use super::slack::Slack;
 use crate::material::orthotropy::{PrincipalLaw, root};
 use nalgebra::{Matrix3, Vector3};
 
-/// A spring in the plane of a face, in series with a slack. Strains are given by three numbers, of which the law is a
-/// quadratic form.
+/// A spring in the plane of a face, in series with a slack. Strains are given by three numbers, of which the
+/// law is a quadratic form.
 ///
-/// The slack has no direction: its size is measured by a norm of the strain that does not depend on the direction,
-/// and so is the force that pulls it out. An isotropic spring has the law of [`Slack`] in this norm. An orthotropic
-/// one has it in no norm: what the slack is pulled out to is then the minimum of the energy of both over the strain
-/// `z` of the slack,
+/// The slack has no direction: its size is measured by a norm of the strain that does not depend on the
+/// direction, and so is the force that pulls it out. An isotropic spring has the law of [`Slack`] in this
+/// norm. An orthotropic one has it in no norm: what the slack is pulled out to is then the minimum of the
+/// energy of both over the strain `z` of the slack,
 ///
 /// ```text
 /// min_z  1/2 (e - z) : C (e - z) + psi(|z|),   psi'(r s / (s_0 + s)) = s.
 /// ```
 ///
-/// In components `y` in which `C` is diagonal, `c_i`, and the norm Euclidean the forces are `s_i = y_i / (1 / c_i + r
-/// / (s_0 + s))` with `s = |(s_i)|`, one equation for `s`.
+/// In components `y` in which `C` is diagonal, `c_i`, and the norm Euclidean the forces are `s_i = y_i / (1 /
+/// c_i + r / (s_0 + s))` with `s = |(s_i)|`, one equation for `s`.
 #[derive(Debug, Clone)]
 pub(super) enum Law {
     Isotropic {
@@ -34,12 +34,13 @@ pub(super) enum Law {
     },
 }
 
-/// Steps after which a root is as exact as numbers are: each halves an interval at least, and most do much more.
+/// Steps after which a root is as exact as numbers are: each halves an interval at least, and most do much
+/// more.
 const MOST_STEPS: usize = 80;
 
 impl Law {
-    /// Of Young's modulus times thickness (newtons per metre) and Poisson's ratio, by the components `(E_11, sqrt(2)
-    /// E_12, E_22)` of Green's strain.
+    /// Of Young's modulus times thickness (newtons per metre) and Poisson's ratio, by the components `(E_11,
+    /// sqrt(2) E_12, E_22)` of Green's strain.
     pub(super) fn isotropic(stiffness: f64, poisson: f64) -> Self {
         Self::Isotropic {
             stiffness: stiffness / (1.0 - poisson * poisson),
@@ -47,9 +48,9 @@ impl Law {
         }
     }
 
-    /// Of forces by strains (newtons per metre), by the same components of Green's strain; `turn` gives those along
-    /// the direction of the material. The norm of the slack is that of the isotropic law whose Poisson's ratio is the
-    /// geometric mean of both, `C12^2 / (C11 C22)`.
+    /// Of forces by strains (newtons per metre), by the same components of Green's strain; `turn` gives those
+    /// along the direction of the material. The norm of the slack is that of the isotropic law whose
+    /// Poisson's ratio is the geometric mean of both, `C12^2 / (C11 C22)`.
     pub(super) fn orthotropic(law: PrincipalLaw, turn: &Matrix3<f64>) -> Self {
         let norm = root(&PrincipalLaw::isotropic(law.coupling / law.mean()).over(1.0));
         let inverse = norm.try_inverse();
@@ -190,9 +191,9 @@ impl At<'_> {
     }
 }
 
-/// The force `s` of a spring with the stiffnesses `c_i` along the components `y` of a strain of a size: the root of
-/// `|(y_i / (1 / c_i + r / (s_0 + s)))| = s`, between those for the smallest and the largest `c_i` alone, by
-/// Newton's method and bisection.
+/// The force `s` of a spring with the stiffnesses `c_i` along the components `y` of a strain of a size: the
+/// root of `|(y_i / (1 / c_i + r / (s_0 + s)))| = s`, between those for the smallest and the largest `c_i`
+/// alone, by Newton's method and bisection.
 fn force(stiffnesses: &Vector3<f64>, components: &Vector3<f64>, size: f64, slack: &Slack) -> f64 {
     let bound = |c: f64| slack.force_at(c, size);
     let (mut low, mut high) = (bound(stiffnesses.min()), bound(stiffnesses.max()));

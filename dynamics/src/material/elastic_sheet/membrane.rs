@@ -1,22 +1,22 @@
 //! How stiff a sheet is in its plane.
 
-use super::ElasticSheetError;
+use super::error::ElasticSheetError;
 use super::law::Law;
 use crate::OrthotropicPlate;
 use crate::material::direction::MaterialDirection;
 use crate::material::orthotropy::{PrincipalLaw, first_unusable, turn};
 use isosheet_mesh::{FaceId, Sheet};
 
-/// The stiffness of a sheet in its plane whose material has two perpendicular directions, in plane stress: the
-/// strains `e_1` along a direction of the material, `e_2` across it and the shear `2 e_12` follow from the forces
-/// per width by
+/// The stiffness of a sheet in its plane whose material has two perpendicular directions, in plane stress:
+/// the strains `e_1` along a direction of the material, `e_2` across it and the shear `2 e_12` follow from
+/// the forces per width by
 ///
 /// ```text
 /// e_1 = (s_1 - nu12 s_2) / (E1 h),   e_2 = s_2 / (E2 h) - nu12 s_1 / (E1 h),   2 e_12 = s_12 / (G12 h)
 /// ```
 ///
-/// (S. G. Lekhnitskii, *Anisotropic Plates*, 1968, sections 2 and 9). A strip that is cut at an angle `t` to the
-/// direction and pulled has Young's modulus
+/// (S. G. Lekhnitskii, *Anisotropic Plates*, 1968, sections 2 and 9). A strip that is cut at an angle `t` to
+/// the direction and pulled has Young's modulus
 ///
 /// ```text
 /// 1 / E(t) = cos^4 t / E1 + (1 / G12 - 2 nu12 / E1) sin^2 t cos^2 t + sin^4 t / E2.
@@ -29,8 +29,8 @@ pub struct OrthotropicMembrane {
     pub across: f64,
     /// Shear modulus times thickness, `G12 h`, N/m.
     pub shear: f64,
-    /// Poisson's ratio `nu12`: how much the sheet contracts across the direction where it is pulled along it. Its
-    /// square has to be less than `E1 / E2`.
+    /// Poisson's ratio `nu12`: how much the sheet contracts across the direction where it is pulled along it.
+    /// Its square has to be less than `E1 / E2`.
     pub poisson: f64,
     /// The direction of the material.
     pub direction: MaterialDirection,
@@ -57,8 +57,8 @@ impl From<OrthotropicMembrane> for MembraneLaw {
 }
 
 impl OrthotropicMembrane {
-    /// The plate of the same material, which is homogeneous over its thickness (metres); [`OrthotropicPlate`] has its
-    /// rigidities by moduli.
+    /// The plate of the same material, which is homogeneous over its thickness (metres); [`OrthotropicPlate`]
+    /// has its rigidities by moduli.
     #[must_use]
     pub fn plate(&self, thickness: f64) -> OrthotropicPlate {
         let PrincipalLaw {

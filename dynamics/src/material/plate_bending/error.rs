@@ -103,6 +103,14 @@ pub enum CurlError {
         /// The curvature, 1/m.
         value: f64,
     },
+    /// There are not as many curvatures as faces.
+    #[error("{found} natural curvatures are given for {expected} faces")]
+    Count {
+        /// How many there are.
+        found: usize,
+        /// Number of faces.
+        expected: usize,
+    },
     /// The direction is none.
     #[error(transparent)]
     Direction(#[from] DirectionError),
@@ -114,6 +122,7 @@ pub enum CurlError {
 impl Advice for CurlError {
     fn advice(&self) -> Option<&'static str> {
         match self {
+            Self::Count { .. } => Some("give one for each face"),
             Self::Curvature { .. } => Some("give finite curvatures, one over a radius"),
             Self::Direction(error) => error.advice(),
             Self::Profile(error) => error.advice(),

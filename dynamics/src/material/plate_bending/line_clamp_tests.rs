@@ -122,8 +122,12 @@ fn the_moment_of_a_clamp_balances_the_forces() {
     let clamp = clamp(&sheet, RigidDisplacement::default());
     let curl = Curl {
         direction: MaterialDirection::Uniform([1.0, 0.4, 0.0]),
-        along: 3.0,
-        across: -1.0,
+        curvature: Curvature {
+            along: 3.0,
+            across: -1.0,
+            twist: 0.5,
+        }
+        .into(),
         profile: Profile::Constant(1.0),
     };
     let plate = plate(&sheet, &[clamp]).with_curl(&sheet, curl).unwrap();

@@ -8,13 +8,15 @@ use crate::material::orthotropy::turn;
 use crate::motion::profile::Profile;
 use isosheet_mesh::{FaceId, Sheet};
 use nalgebra::Vector3;
+use std::f64::consts::SQRT_2;
 
-/// The curvature that a sheet has by itself, without moments: that of paper which curls along one direction, of
-/// a poster off a roll, of a bilayer or a bimetal.
+/// The curvature that a sheet has by itself, without moments: that of paper which curls along one direction,
+/// of a poster off a roll, of a bilayer or a bimetal.
 ///
-/// With the curvature `k_1` along a direction of the material and `k_2` across it, times a profile of time, `V`
-/// is the energy of what a face is bent beyond, `k_T - k_0`. Curvatures are positive towards the front of the
-/// faces, from which their corners run counter-clockwise: the sheet rolls up with its front inside.
+/// With the curvature `k_1` along a direction of the material, `k_2` across it and the twist `k_12`, times a
+/// profile of time, `V` is the energy of what a face is bent beyond, `k_T - k_0`. Curvatures are positive
+/// towards the front of the faces, from which their corners run counter-clockwise: the sheet rolls up with
+/// its front inside.
 ///
 /// A strip whose two layers want strains that differ by `e` has the curvature
 ///
@@ -22,19 +24,44 @@ use nalgebra::Vector3;
 /// 6 e (1 + m)^2 / (h [3 (1 + m)^2 + (1 + m n) (m^2 + 1 / (m n))])
 /// ```
 ///
-/// with the thickness `h` of both together, the ratio `m` of their thicknesses and `n` of their moduli: `1.5 e /
-/// h` for equal layers (S. Timoshenko, "Analysis of bi-metal thermostats", J. Opt. Soc. Am. 11, 1925). A wide
-/// plate with `k_0` in both directions rolls up along one, to the curvature `(1 + nu) k_0`.
+/// with the thickness `h` of both together, the ratio `m` of their thicknesses and `n` of their moduli: `1.5
+/// e / h` for equal layers (S. Timoshenko, "Analysis of bi-metal thermostats", J. Opt. Soc. Am. 11, 1925). A
+/// wide plate with `k_0` in both directions rolls up along one, to the curvature `(1 + nu) k_0`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curl {
     /// The direction along which the sheet is curved.
     pub direction: MaterialDirection,
-    /// Curvature along the direction, 1/m.
-    pub along: f64,
-    /// Curvature across it, 1/m.
-    pub across: f64,
+    /// How much.
+    pub curvature: NaturalTensor,
     /// A factor of time, in seconds: a constant 1 for a curl that is always there.
     pub profile: Profile,
+}
+
+/// The components of a curvature by a direction of the material, 1/m.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Curvature {
+    /// `k_1`, along the direction.
+    pub along: f64,
+    /// `k_2`, across it.
+    pub across: f64,
+    /// `k_12`, the angle by which a line across the direction turns about it in a metre: a narrow strip with
+    /// this alone is a helicoid.
+    pub twist: f64,
+}
+
+/// A natural curvature of all faces, or of each.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NaturalTensor {
+    /// The same everywhere.
+    Uniform(Curvature),
+    /// One for each face.
+    Faces(Vec<Curvature>),
+}
+
+impl From<Curvature> for NaturalTensor {
+    fn from(curvature: Curvature) -> Self {
+        Self::Uniform(curvature)
+    }
 }
 
 /// Natural curvatures of the points of a plate.
@@ -53,17 +80,39 @@ impl NaturalCurvature {
         Self { points, profile }
     }
 
+    /// Of curvatures `R k` of the points at a time when the profile is one, 1/m.
+    ///
+    /// # Errors
+    /// [`CurlError`].
+    pub(super) fn of_shape(points: Vec<Vector3<f64>>, profile: Profile) -> Result<Self, CurlError> {
+        profile.validate()?;
+        let mut numbers = points.iter().flat_map(|k| k.iter());
+        if let Some(value) = numbers.find(|k| !k.is_finite()) {
+            return Err(CurlError::Curvature { value: *value });
+        }
+        let profile = Some(profile);
+        Ok(Self { points, profile })
+    }
+
     /// # Errors
     /// [`CurlError`].
     pub(super) fn of_curl(sheet: &Sheet, roots: &Roots, curl: Curl) -> Result<Self, CurlError> {
         curl.profile.validate()?;
-        for value in [curl.along, curl.across] {
-            if !value.is_finite() {
-                return Err(CurlError::Curvature { value });
-            }
+        let all = match &curl.curvature {
+            NaturalTensor::Uniform(own) => std::slice::from_ref(own),
+            NaturalTensor::Faces(all) => all,
+        };
+        let (found, expected) = (all.len(), sheet.topology().face_count());
+        if matches!(&curl.curvature, NaturalTensor::Faces(_)) && found != expected {
+            return Err(CurlError::Count { found, expected });
         }
-        let own = Vector3::new(curl.along, 0.0, curl.across);
+        let numbers = all.iter().flat_map(|k| [k.along, k.across, k.twist]);
+        if let Some(value) = numbers.into_iter().find(|k| !k.is_finite()) {
+            return Err(CurlError::Curvature { value });
+        }
         let of_face = |face: FaceId| {
+            let k = all[face.index().min(found - 1)];
+            let own = Vector3::new(k.along, SQRT_2 * k.twist, k.across);
             let angle = curl.direction.angle(sheet, face)?;
             Ok::<_, DirectionError>(roots.of(face.index()) * turn(angle).tr_mul(&own))
         };

@@ -35,11 +35,18 @@ fn plate(poisson: f64) -> PlateStiffness {
     PlateStiffness { rigidity, poisson }
 }
 
+fn bent(along: f64, across: f64) -> Curvature {
+    Curvature {
+        along,
+        across,
+        ..Curvature::default()
+    }
+}
+
 fn curl(angle: f64, along: f64, across: f64) -> Curl {
     Curl {
         direction: MaterialDirection::Uniform([angle.cos(), angle.sin(), 0.0]),
-        along,
-        across,
+        curvature: bent(along, across).into(),
         profile: Profile::Constant(1.0),
     }
 }
@@ -104,8 +111,8 @@ fn a_curl_about_both_axes_is_a_tighter_cylinder() {
     }
 }
 
-/// A mesh that is curved at rest, as a bowl which no flat sheet makes, is in equilibrium there, without energy,
-/// wherever it is placed.
+/// A mesh that is curved at rest, as a bowl which no flat sheet makes, is in equilibrium there, without
+/// energy, wherever it is placed.
 #[test]
 fn a_sheet_that_is_curved_at_rest_stays_so() {
     let flat = sheet(8);
@@ -150,8 +157,11 @@ fn gradients_are_differences_of_energies() {
     };
     let curl = Curl {
         direction,
-        along: 1.5,
-        across: -0.5,
+        curvature: Curvature {
+            twist: 0.4,
+            ..bent(1.5, -0.5)
+        }
+        .into(),
         profile: ramp,
     };
     let plate = PlateBending::new(&sheet, law).unwrap();
@@ -182,6 +192,66 @@ fn gradients_are_differences_of_energies() {
     }
 }
 
+/// A twist alone: of the surfaces `z = c x y`, whose twist is `c`, the one with `c = k_12` has no energy, to
+/// fourth order.
+#[test]
+fn a_twist_is_that_of_a_saddle() {
+    let sheet = sheet(3);
+    let area: f64 = sheet.face_areas().iter().sum();
+    let (k, poisson, angle) = (1e-3, 0.3, 0.4_f64);
+    let twist = Curvature {
+        twist: k,
+        ..Curvature::default()
+    };
+    let each = vec![twist; sheet.topology().face_count()];
+    for curvature in [twist.into(), NaturalTensor::Faces(each)] {
+        let curl = Curl {
+            curvature,
+            ..curl(angle, 0.0, 0.0)
+        };
+        let plate = PlateBending::new(&sheet, plate(poisson)).unwrap();
+        let plate = plate.with_curl(&sheet, curl).unwrap();
+        let saddle = |c: f64| {
+            map(sheet.positions(), |p| {
+                let (s, t) = (angle.cos(), angle.sin());
+                let [along, across] = [s * p.x + t * p.y, s * p.y - t * p.x];
+                Vector3::new(p.x, p.y, c * along * across)
+            })
+        };
+        // `D (1 - nu) (c - k)^2` per area, with `D = 2`.
+        for factor in [-1.0, 0.0, 1.0, 2.0] {
+            let found = energy(&plate, &saddle(factor * k)) / (area * k * k);
+            let expected = 2.0 * (1.0 - poisson) * (factor - 1.0).powi(2);
+            assert!((found - expected).abs() < 5e-3, "{factor}: {found}");
+        }
+    }
+}
+
+/// The curvature of a bowl on a flat sheet: bent to the bowl there are no moments, with its profile at one.
+#[test]
+fn a_sheet_may_be_curled_as_another_shape_is() {
+    let sheet = sheet(8);
+    let bowl = map(sheet.positions(), |p| {
+        Vector3::new(
+            p.x,
+            p.y,
+            1e-3 * (0.8 * p.x * p.x + 0.5 * p.y * p.y - 0.3 * p.x * p.y),
+        )
+    });
+    let plate = || PlateBending::new(&sheet, plate(0.3)).unwrap();
+    let curled = |factor| plate().curled_as(&sheet, &bowl, Profile::Constant(factor));
+    let flat = energy(&plate(), &bowl);
+    assert!(energy(&curled(1.0).unwrap(), &bowl) < 1e-5 * flat);
+    let doubled = energy(&curled(2.0).unwrap(), &bowl);
+    assert!((doubled / flat - 1.0).abs() < 1e-3, "{doubled} {flat}");
+    let nan = vec![f64::NAN; bowl.len()];
+    assert!(
+        plate()
+            .curled_as(&sheet, &nan, Profile::Constant(1.0))
+            .is_err()
+    );
+}
+
 #[test]
 fn curls_that_make_no_sense_are_refused() {
     let sheet = sheet(1);
@@ -196,6 +266,13 @@ fn curls_that_make_no_sense_are_refused() {
         error(curl(0.0, f64::INFINITY, 0.0)),
         PlateBendingError::Curl { source }
     );
+    let few = Curl {
+        curvature: NaturalTensor::Faces(vec![bent(1.0, 0.0)]),
+        ..curl(0.0, 0.0, 0.0)
+    };
+    let expected = sheet.topology().face_count();
+    let source = CurlError::Count { found: 1, expected };
+    assert_eq!(error(few), PlateBendingError::Curl { source });
     let normal = Curl {
         direction: MaterialDirection::Uniform([0.0, 0.0, 1.0]),
         ..curl(0.0, 1.0, 0.0)

@@ -158,24 +158,11 @@ impl Stencils {
     /// faces: by that part, as a multiple of two edges of each face, which stay edges wherever it goes. The
     /// curvatures `R k` that are left, 1/m.
     pub(super) fn straighten(&mut self, sheet: &Sheet, roots: &Roots) -> Vec<Vector3<f64>> {
-        let x = sheet.positions();
         let mut curvatures = Vec::new();
-        for k in 0..self.starts.len() - 1 {
-            let corners = sheet.topology().faces()[face_of(k)];
-            let area = sheet.face_areas()[face_of(k)] / POINTS as f64;
-            let mut derivatives = self.of(k).apply_to_positions(x);
-            for d in self.directors.get(&(k as u32)).into_iter().flatten() {
-                derivatives += d.rest * d.weights.transpose();
-            }
-            let range = self.starts[k]..self.starts[k + 1];
-            let [a, b, c] = corners.map(|v| point(x, v));
-            let normal = (b - a).cross(&(c - a)).normalize();
-            let axes = Matrix3::from_columns(&[b - a, c - a, normal]);
-            let inverse = axes.try_inverse().unwrap_or_else(Matrix3::zeros);
-            // Rows: multiples of both edges and of the normal.
-            let parts = inverse * derivatives;
-            let [along_b, along_c, bent] = [0, 1, 2].map(|k| parts.row(k).transpose());
-            for entry in range {
+        for point in 0..self.starts.len() - 1 {
+            let corners = sheet.topology().faces()[face_of(point)];
+            let [along_b, along_c, bent] = self.parts(point, &corners, sheet.positions());
+            for entry in self.starts[point]..self.starts[point + 1] {
                 let v = VertexId(self.vertices[entry]);
                 let place = corners.iter().position(|corner| *corner == v);
                 self.weights[entry] += match place {
@@ -185,9 +172,34 @@ impl Stencils {
                     _ => Vector3::zeros(),
                 };
             }
-            curvatures.push(bent / (roots.rigidity(face_of(k)) * area).sqrt());
+            curvatures.push(bent / scale(sheet, roots, point));
         }
         curvatures
+    }
+
+    /// The curvatures `R k` of the points of `sheet` at positions `x`, 1/m.
+    pub(super) fn curvatures(&self, sheet: &Sheet, roots: &Roots, x: &[f64]) -> Vec<Vector3<f64>> {
+        let bent = (0..self.starts.len() - 1).map(|point| {
+            let corners = &sheet.topology().faces()[face_of(point)];
+            let [_, _, bent] = self.parts(point, corners, x);
+            bent / scale(sheet, roots, point)
+        });
+        bent.collect()
+    }
+
+    /// The second derivatives of a point at positions `x` as multiples of the edges from the first corner of its face to
+    /// the second and to the third one, and of the normal.
+    fn parts(&self, number: usize, corners: &[VertexId; 3], x: &[f64]) -> [Vector3<f64>; 3] {
+        let mut derivatives = self.of(number).apply_to_positions(x);
+        for d in self.directors.get(&(number as u32)).into_iter().flatten() {
+            derivatives += d.rest * d.weights.transpose();
+        }
+        let [a, b, c] = corners.map(|v| point(x, v));
+        let normal = (b - a).cross(&(c - a)).normalize();
+        let axes = Matrix3::from_columns(&[b - a, c - a, normal]);
+        let inverse = axes.try_inverse().unwrap_or_else(Matrix3::zeros);
+        let parts = inverse * derivatives;
+        [0, 1, 2].map(|k| parts.row(k).transpose())
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = Stencil<'_>> {
@@ -215,6 +227,12 @@ impl Stencils {
     pub(super) fn is_driven(&self) -> bool {
         self.clamps.iter().any(|motion| !motion.is_fixed())
     }
+}
+
+/// `sqrt(D A)` of a point.
+fn scale(sheet: &Sheet, roots: &Roots, point: usize) -> f64 {
+    let face = face_of(point);
+    (roots.rigidity(face) * sheet.face_areas()[face] / POINTS as f64).sqrt()
 }
 
 /// The second derivatives at the points of a face, whose mean is that over the face, from the slopes at its edges; those
