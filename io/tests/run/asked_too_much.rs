@@ -214,7 +214,8 @@ fn pressed_tube(dir: &Path, friction: f64) {
     fs::write(dir.join("scene.toml"), scene).unwrap();
 }
 
-/// With friction it jams between the plates; without it folds flat, and stores some joules.
+/// With friction it jams between the plates; without it folds flat, and stores some joules (its nine faces are strained
+/// to the limit).
 #[test]
 fn friction_that_does_not_settle_is_no_step() {
     let dir = tempfile::tempdir().unwrap();
@@ -240,7 +241,7 @@ fn friction_that_does_not_settle_is_no_step() {
         energy.largest_gain < 0.02 * energy.largest_exchange,
         "{energy:?}"
     );
-    assert!(energy.largest_exchange < 5.0, "{energy:?}");
+    assert!(energy.largest_exchange < 100.0, "{energy:?}");
 }
 
 /// Two pins that are glued to each other, and a crease between vertices that are held.

@@ -215,18 +215,19 @@ fn plates_hinges_and_creases_of_a_scene_remember() {
         let counts = yielding.map(|p| p.memory().len());
         counts.sum::<usize>()
     };
-    let (faces, edges) = (4, 3);
+    // A plate has three points in each face.
+    let (faces, points, edges) = (4, 3, 3);
     let layers = dynamics::Yield::LAYERS;
     let paper = "material = \"office paper\"";
     assert_eq!(remembered(paper, ""), 0);
     assert_eq!(
         remembered(&format!("{paper}\nyield = {{}}"), ""),
-        3 * layers * faces
+        3 * layers * points * faces
     );
     let hinges = "bending = { hinges = { rigidity = 1e-3 } }\nyield = { moment = 0.1 }";
     assert_eq!(remembered(hinges, ""), layers * edges);
     let layers = format!("{paper}\nyield = {{ layers = 4 }}");
-    assert_eq!(remembered(&layers, ""), 4 * 3 * faces);
+    assert_eq!(remembered(&layers, ""), 4 * 3 * points * faces);
     let crease = "[[crease]]\nat = { line = { from = [0.1, 0, 0], to = [0.1, 0.1, 0] } }\nstiffness = 0.1\n\
                   yield = { moment = 0.01 }";
     assert_eq!(remembered("", crease), 1);
