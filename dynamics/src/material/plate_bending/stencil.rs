@@ -229,6 +229,9 @@ impl Stencils {
     }
 }
 
+/// The weights of vertices at the points of a face.
+type PointWeights = Vec<(VertexId, [Vector3<f64>; POINTS])>;
+
 /// `sqrt(D A)` of a point.
 fn scale(sheet: &Sheet, roots: &Roots, point: usize) -> f64 {
     let face = face_of(point);
@@ -242,14 +245,14 @@ fn face_weights(
     fits: &[Option<Fit>],
     director: impl Fn(EdgeId) -> Option<(usize, Vector3<f64>)>,
     face: FaceId,
-) -> (Vec<(VertexId, [Vector3<f64>; POINTS])>, Vec<Director>) {
+) -> (PointWeights, Vec<Director>) {
     let topology = sheet.topology();
     let [a, b, _] = topology.faces()[face.index()];
     let base = topology.find_edge(a, b).expect("an edge of a face");
     let base = Vector2::new(sheet.lengths()[base.index()], 0.0);
     let corners = place(sheet, face, (a, Vector2::zeros()), (b, base));
     let area = sheet.face_areas()[face.index()];
-    let mut weights: Vec<(VertexId, [Vector3<f64>; POINTS])> = Vec::new();
+    let mut weights = PointWeights::new();
     let mut add = |points: Range<usize>, v: VertexId, w: Vector3<f64>| {
         let known = weights.iter().position(|(other, _)| *other == v);
         let place = known.unwrap_or_else(|| {

@@ -1,0 +1,145 @@
+//! A model on its way from a scene.
+
+use crate::scene::error::SceneError;
+use crate::scene::key::Key;
+use crate::scene::mesh_file::Files;
+use crate::scene::obstacles;
+use crate::scene::placed::{Form, PlacedSheets};
+use crate::scene::placed_bodies::{PlacedBodies, Surface};
+use crate::scene::problem::Problem;
+use crate::scene::slots::Slots;
+use crate::scene::targets::Targets;
+use crate::scene::{Origins, Scene};
+use isosheet_collide as collide;
+use isosheet_dynamics::{Patched, PlateBending, PlateLaw, RigidDisplacement, SheetModel};
+use isosheet_mesh::wording::counted;
+use isosheet_mesh::{Advice, EdgeId, VertexId};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The laws of a plate, its clamped vertices and its creases.
+pub(super) type PlateMadeOf = (Patched<PlateLaw>, Vec<VertexId>, Vec<EdgeId>);
+
+/// What is kept of a scene, so that it need not be made again when the scene is built again: while it is the
+/// same, or after changes between which the sheets have the same forms.
+#[derive(Debug, Default)]
+pub(crate) struct Kept {
+    pub(crate) files: Files,
+    /// Of each sheet, once they have been made.
+    pub(super) forms: Vec<Arc<Form>>,
+    /// The plate of each sheet that is flat without stress and clamped by no line.
+    pub(super) plates: Slots<PlateMadeOf, Arc<PlateBending>>,
+    /// Those of the obstacles.
+    pub(super) shapes: Slots<obstacles::Shape, collide::Shape>,
+}
+
+impl Kept {
+    /// Nothing yet; paths of files are relative to `folder`.
+    pub(crate) fn in_folder(folder: &Path) -> Self {
+        Self {
+            files: Files::in_folder(folder),
+            ..Self::default()
+        }
+    }
+}
+
+/// A model on its way.
+pub(super) struct Builder<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) kept: &'a mut Kept,
+    pub(super) sheets: PlacedSheets<'a>,
+    pub(super) bodies: PlacedBodies<'a>,
+    /// What is seen and touches, where it is more than the sheets.
+    pub(super) surface: Option<Surface>,
+    /// Vertices that are glued to bodies, each with the number of the body.
+    pub(super) glued_to_bodies: Vec<(VertexId, usize)>,
+    /// Positions at the start, `3V`.
+    pub(super) x: Vec<f64>,
+    /// Absent only while it is replaced by a changed one.
+    pub(super) model: Option<SheetModel>,
+    pub(super) origins: Origins,
+    /// The supports that hold slopes, with their vertices.
+    pub(super) clamps: Vec<(usize, Vec<VertexId>, RigidDisplacement)>,
+    pub(super) modelled: Vec<String>,
+    pub(super) targets: Targets,
+    /// As what sheets bend, by their numbers.
+    pub(super) plates: BTreeMap<usize, Arc<PlateBending>>,
+}
+
+/// An error of the engine at a key.
+pub(super) fn at<E: Advice>(key: &Key) -> impl Fn(E) -> SceneError {
+    let key = key.clone();
+    move |error| Problem::from_error(key.clone(), &error).into()
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Self, SceneError> {
+        let key = Key::root().name("sheet");
+        let sheets = PlacedSheets::new(&scene.sheet, &mut kept.forms, &mut kept.files)?;
+        let bodies = PlacedBodies::new(&scene.body, &sheets, &mut kept.files)?;
+        let damping = scene.sheet[0].damping;
+        let mass = bodies.mass(&sheets.union, sheets.mass(&scene.weight)?);
+        let mut model = SheetModel::with_mass(&bodies.mesh(&sheets.union)?, mass)
+            .and_then(|m| m.with_damping(damping))
+            .map_err(at(&key))?;
+        if let Some(first) = bodies.list.first() {
+            model = model.with_bodies_from(first.first);
+        }
+        let mut modelled = Vec::new();
+        if damping > 0.0 {
+            modelled.push("velocity damping".to_owned());
+        }
+        if !scene.weight.is_empty() {
+            modelled.push(counted(scene.weight.len(), "weight", "weights"));
+        }
+        if !scene.body.is_empty() {
+            modelled.push(counted(scene.body.len(), "rigid body", "rigid bodies"));
+        }
+        let surfaces = bodies.list.iter().map(|body| body.part.vertices.clone());
+        let origins = Origins {
+            bodies: surfaces.collect(),
+            ..Origins::default()
+        };
+        Ok(Self {
+            scene,
+            kept,
+            x: sheets.start.iter().copied().chain(bodies.start()).collect(),
+            surface: bodies.surface(&sheets.union)?,
+            glued_to_bodies: Vec::new(),
+            sheets,
+            bodies,
+            model: Some(model),
+            origins,
+            clamps: Vec::new(),
+            modelled,
+            targets: Targets::default(),
+            plates: BTreeMap::new(),
+        })
+    }
+
+    pub(super) fn change<E>(
+        &mut self,
+        change: impl FnOnce(SheetModel) -> Result<SheetModel, E>,
+        error: impl Fn(E) -> SceneError,
+    ) -> Result<(), SceneError> {
+        let model = self.model.take().map(change).transpose();
+        self.model = model.map_err(error)?;
+        Ok(())
+    }
+
+    pub(super) fn model(&self) -> &SheetModel {
+        let model = self.model.as_ref();
+        model.expect("a change that fails ends the building")
+    }
+
+    pub(super) fn count(&mut self, number: usize, one: &str, more: &str) {
+        if number > 0 {
+            self.modelled.push(counted(number, one, more));
+        }
+    }
+
+    pub(super) fn position(&self, v: VertexId) -> [f64; 3] {
+        self.x.as_chunks::<3>().0[v.index()]
+    }
+}

@@ -1,0 +1,109 @@
+//! Contact, and obstacles.
+
+use super::builder::{Builder, Kept, at};
+use crate::scene::error::SceneError;
+use crate::scene::key::Key;
+use crate::scene::placed::PlacedSheet;
+use crate::scene::placed_bodies::Surface;
+use crate::scene::problem::Problem;
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, ContactsError, Obstacle};
+use isosheet_mesh::VertexId;
+use std::collections::HashMap;
+use std::ops::Range;
+
+impl Builder<'_> {
+    pub(super) fn cuts(&self) -> Vec<[VertexId; 2]> {
+        let mut pairs = Vec::new();
+        for PlacedSheet { form, part, .. } in &self.sheets.list {
+            let placed = &form.placed;
+            let start = self.x[part.coordinates()].as_chunks::<3>().0;
+            let rest = placed.positions().as_chunks::<3>().0;
+            let mut first_there = HashMap::new();
+            let t = placed.topology();
+            for v in t.vertex_ids().filter(|v| t.is_boundary_vertex(*v)) {
+                // (A zero may have either sign.)
+                let bits = |p: [f64; 3]| p.map(|c| (c + 0.0).to_bits());
+                let place = [rest, start].map(|x| bits(x[v.index()]));
+                if let Some(first) = first_there.get(&place) {
+                    pairs.push([part.vertex(*first), part.vertex(v)]);
+                } else {
+                    first_there.insert(place, v);
+                }
+            }
+        }
+        pairs
+    }
+
+    pub(super) fn contacts(&mut self) -> Result<(Option<Contacts>, Vec<Obstacle>), SceneError> {
+        let (scene, key) = (self.scene, Key::root());
+        if !scene.has_contact() {
+            return Ok((None, Vec::new()));
+        }
+        let automatic = match &self.surface {
+            None => ContactOptions::for_sheet(self.model()),
+            Some(surface) => ContactOptions::for_surface(&surface.sheet, &surface.points),
+        };
+        let options = scene.contact.options(automatic, scene.sheet[0].thickness);
+        let contacts = match &self.surface {
+            None => Contacts::new(self.model(), options),
+            Some(Surface { sheet, points }) => Contacts::on_surface(sheet, points.clone(), options),
+        };
+        let mut contacts = contacts
+            .map_err(at(&key.name("contact")))?
+            .with_glue(&[self.targets.glued(), self.cuts()].concat());
+        if !self.bodies.list.is_empty() {
+            let mut parts: Vec<_> = self.origins.bodies.clone();
+            if !scene.contact.self_contact {
+                // Sheets meet bodies, and not one another.
+                parts.push(0..self.sheets.union.topology().vertex_count());
+            }
+            contacts = contacts.with_parts(&parts, self.glued_to_bodies.iter().copied());
+        }
+        let mut obstacles = Vec::new();
+        for (k, obstacle) in scene.obstacle.iter().enumerate() {
+            let key = key.name("obstacle").entry(k);
+            let Kept { files, shapes, .. } = &mut *self.kept;
+            let shape = shapes.get(k, obstacle.shape.clone(), |shape| {
+                shape.build(&key.name("shape"), files)
+            });
+            let body = obstacle.body(shape?, &key)?;
+            obstacles.push(body.clone());
+            let coefficients = Coefficients::equal(obstacle.friction);
+            contacts = contacts.with_body(body, coefficients).map_err(at(&key))?;
+        }
+        self.count(obstacles.len(), "obstacle", "obstacles");
+        self.bodies.check_empty(&self.sheets, &obstacles)?;
+        if scene.contact.self_contact || !self.bodies.list.is_empty() {
+            let coefficients = Coefficients::equal(scene.contact.friction);
+            contacts = contacts
+                .with_self_contact(coefficients)
+                .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
+            for (key, pair) in key.name("contact.pair").entries(&scene.contact.pair) {
+                let [first, second] = &pair.sheets;
+                let vertices = [self.points_of(first, &key)?, self.points_of(second, &key)?];
+                let coefficients = Coefficients::equal(pair.friction);
+                contacts = contacts
+                    .with_friction_between(vertices, coefficients)
+                    .map_err(at(&key))?;
+            }
+        }
+        if scene.contact.self_contact {
+            self.modelled.push("self-contact".into());
+        }
+        Ok((Some(contacts), obstacles))
+    }
+
+    pub(super) fn points_of(&self, name: &str, key: &Key) -> Result<Range<usize>, Problem> {
+        let part = match self.bodies.named(name) {
+            Some(body) => &body.part,
+            None => &self.sheets.one(Some(name), key, "the contacts")?.part,
+        };
+        Ok(part.vertices.clone())
+    }
+}
+
+fn self_contact_problem(error: &ContactsError) -> Problem {
+    let key = Key::root().name("contact.self_contact");
+    let remedy = "choose a smaller `sheet.thickness` or `contact.activation`, or a mesh without narrow faces";
+    Problem::new(key, error.to_string(), remedy)
+}

@@ -1,0 +1,79 @@
+//! Where sheets and bodies are at the start, and how they move.
+
+use super::builder::Builder;
+use crate::scene::error::SceneError;
+use crate::scene::placed::PlacedSheet;
+use crate::scene::sheet::Isometry;
+use isosheet_dynamics::{State, leave_flat_in, project_positions};
+use nalgebra::Vector3;
+
+/// Relative error of edge lengths to which positions are projected: that of accepted steps.
+const EXACT: f64 = 1e-12;
+
+/// Largest relative error of an edge length that is taken for rounding. A file of six digits rounds the
+/// coordinates of a sheet of size 1 by 5e-7, and edges of a hundredth of the sheet by 1e-4 of their length.
+const ROUNDING: f64 = 1e-4;
+
+impl Builder<'_> {
+    pub(super) fn mend_lengths(&mut self) {
+        let sheets = &self.scene.sheet;
+        let is_rigid = sheets[0].isometry() == Isometry::Rods;
+        if !is_rigid || sheets.iter().all(|sheet| sheet.start.file.is_none()) {
+            return;
+        }
+        if (EXACT..=ROUNDING).contains(&self.model().rods().max_strain(&self.x)) {
+            let mut mended = self.x.clone();
+            if project_positions(self.model(), &mut mended, EXACT).is_ok() {
+                self.x = mended;
+            }
+        }
+    }
+
+    pub(super) fn perturb(&mut self) -> Result<(), SceneError> {
+        let mut x = std::mem::take(&mut self.x);
+        let mut is_perturbed = false;
+        for PlacedSheet { of, part, .. } in &self.sheets.list {
+            let (size, seed) = (of.start.perturbation, of.start.seed);
+            if size > 0.0 {
+                leave_flat_in(self.model(), part.vertices.clone(), &mut x, size, seed)
+                    .map_err(|e| SceneError::from(self.origins.of_start(&e)))?;
+                is_perturbed = true;
+            }
+        }
+        self.x = x;
+        if is_perturbed {
+            self.modelled
+                .push("random displacement at the start".into());
+        }
+        Ok(())
+    }
+
+    pub(super) fn start(&mut self) -> State {
+        let mut v = vec![0.0; self.x.len()];
+        for PlacedSheet { of, part, .. } in &self.sheets.list {
+            if !of.start.is_moving() {
+                continue;
+            }
+            let points = self.x[part.coordinates()].as_chunks::<3>().0;
+            let masses = &self.model().mass().vertex[part.vertices.clone()];
+            let moment = points
+                .iter()
+                .zip(masses)
+                .map(|(p, m)| *m * Vector3::from(*p));
+            let centre = moment.sum::<Vector3<f64>>() / masses.iter().sum::<f64>();
+            let velocities = of.start.velocities(points, centre);
+            v[part.coordinates()].copy_from_slice(velocities.as_flattened());
+        }
+        for body in &self.bodies.list {
+            let first = 3 * body.first.index();
+            v[first..first + 12].copy_from_slice(body.velocities().as_flattened());
+        }
+        for pin in self.model().pins() {
+            v[3 * pin.index()..3 * pin.index() + 3].fill(0.0);
+        }
+        if v.iter().any(|v| *v != 0.0) {
+            self.modelled.push("velocities at the start".into());
+        }
+        State::moving(std::mem::take(&mut self.x), v)
+    }
+}
