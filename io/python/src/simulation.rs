@@ -287,7 +287,13 @@ impl Simulation {
     #[getter]
     fn body_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let loads = self.with(py, |live| live.body_loads());
-        rows(py, &loads.iter().map(|load| load.force).collect::<Vec<[f64; 3]>>())
+        rows(
+            py,
+            &loads
+                .iter()
+                .map(|load| load.force)
+                .collect::<Vec<[f64; 3]>>(),
+        )
     }
 
     /// Centre of mass of each rigid body of the scene, metres, of shape (bodies, 3).
