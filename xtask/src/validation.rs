@@ -29,8 +29,9 @@ use outcome::{Outcome, SIZES};
 use rayon::prelude::*;
 
 /// All of them.
-static EXPERIMENTS: [&Experiment; 23] = [
+static EXPERIMENTS: [&Experiment; 24] = [
     &cantilevers::END_SHEAR,
+    &cantilevers::END_MOMENT,
     &shells::ANNULUS,
     &vibrations::PLATES,
     &vibrations::STRIP,

@@ -2,9 +2,12 @@
 
 use super::experiment::{Experiment, Job, Measured, Quantity};
 use super::rest::Rest;
-use super::specimen::{Line, material};
+use super::specimen::{Line, material, with_plate};
+use crate::runs::meshes::vertices;
 use anyhow::Result;
-use isosheet_dynamics::SheetModel;
+use isosheet_dynamics::{LineClamp, PlateBending, PlateEdges, RigidDisplacement, SheetModel};
+use nalgebra::{Isometry3, Rotation3, Translation3, Vector3};
+use std::f64::consts::TAU;
 
 /// Table 1.
 pub(super) const END_SHEAR: Experiment = Experiment {
@@ -47,6 +50,79 @@ fn end_shear(job: Job) -> Result<Measured> {
         rest.under(model.with_force(load))?;
         let [u, w] = [0, 2].map(|k| tip.moved(&strip.sheet, &rest.x, k));
         values.extend([-u, w]);
+    }
+    Ok(Measured::at_rest(&rest, values))
+}
+
+/// A circle.
+pub(super) const END_MOMENT: Experiment = Experiment {
+    name: "end-moment",
+    title: "Cantilever under end moment",
+    source: "Exact: an arc of a circle (Sze, Liu and Lo 2004, section 3.2)",
+    about: "A strip of 12 x 1 x 0.1, E = 1.2e6, Poisson's ratio 0, clamped at one end; the slope of the other, whose             vertices are free, is turned: how far that end moves back (u) and aside (w), parts of the length, and the             moment over that of the arc.",
+    quantities: || {
+        let of = |turns: &f64| {
+            let angle = TAU * turns;
+            [
+                Quantity::of_scale(
+                    format!("u after {turns} turns"),
+                    1.0 - angle.sin() / angle,
+                    1.0,
+                ),
+                Quantity::of_scale(
+                    format!("w after {turns} turns"),
+                    (1.0 - angle.cos()) / angle,
+                    1.0,
+                ),
+                Quantity::new(format!("moment after {turns} turns"), 1.0),
+            ]
+        };
+        TURNS.iter().flat_map(of).collect()
+    },
+    measure: end_moment,
+};
+
+const TURNS: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+
+/// Of a turn, between states of rest.
+const PART_OF_TURN: f64 = 0.125;
+
+fn end_moment(job: Job) -> Result<Measured> {
+    let [length, width] = [12.0, 1.0];
+    let strip = job.cantilever([length, width])?;
+    let sheet = &strip.sheet;
+    let material = material(100.0, 0.0, 0.1);
+    let tip = Line::at(sheet, 0, length);
+    let mut rest = Rest::new(sheet, length, length * length / 10.0);
+    let (mut values, mut turned) = (Vec::new(), 0.0);
+    for turns in TURNS {
+        let mut moment = 0.0;
+        while turned < turns {
+            turned += PART_OF_TURN;
+            let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), -TAU * turned);
+            let end = LineClamp {
+                vertices: vertices(sheet, |[x, ..]| x > length - 1e-9),
+                positions: sheet.positions().to_vec(),
+                motion: RigidDisplacement {
+                    pose: Isometry3::from_parts(Translation3::identity(), turn.into()),
+                    ..RigidDisplacement::default()
+                }
+                .into(),
+            };
+            let edges = PlateEdges {
+                pinned: &strip.clamp,
+                clamps: &[end],
+                ..PlateEdges::default()
+            };
+            let plate = PlateBending::held(sheet, &material, &edges)?;
+            let model = with_plate(sheet, &material, &strip.clamp, plate)?;
+            rest.then(model, |simulation| {
+                moment = simulation.clamp_moments()[0][1]
+            })?;
+        }
+        let [u, w] = [0, 2].map(|k| tip.moved(sheet, &rest.x, k) / length);
+        let exact = material.rigidity * width * TAU * turns / length;
+        values.extend([-u, w, moment.abs() / exact]);
     }
     Ok(Measured::at_rest(&rest, values))
 }
