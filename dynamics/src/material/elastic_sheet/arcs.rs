@@ -77,14 +77,20 @@ impl Arcs {
                 bend.chords -= rest.chords;
                 bend.own = (bend.own - rest.own).abs();
             }
-            *row = bend.numbers();
+            let before = Bend::remembered(row);
+            *row = Bend {
+                squared: before.squared,
+                credit: before.credit,
+                ..bend
+            }
+            .numbers();
         }
         for (k, range) in self.starts.windows(2).enumerate() {
             let around = self.around[range[0]..range[1]].iter();
             let bends = around.map(|f| Bend::remembered(&rows[*f as usize]));
-            let squared = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
+            let wanted = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
             let bend = Bend::remembered(&rows[k]);
-            rows[k] = Bend { squared, ..bend }.numbers();
+            rows[k] = own[k].with_slack(x, bend, wanted).numbers();
         }
     }
 }
@@ -99,5 +105,6 @@ fn bends<'a>(
         chords: face.chords(&h),
         own: h.norm_squared() * face.mean_squared_length(),
         squared: 0.0,
+        credit: 0.0,
     })
 }

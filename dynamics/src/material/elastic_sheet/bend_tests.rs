@@ -1,13 +1,17 @@
 //! Elastic sheets that bend, and sheets that are taut, against closed forms.
 
+use super::bend::NUMBERS;
 use super::*;
 use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;
 use crate::linear::primal::testing::add_potentials_with;
 use crate::potential::Memories;
-use crate::{Material, Method, PointMotion, Profile, SheetModel, Simulation, State, VertexLoad};
-use isosheet_mesh::MassKind;
+use crate::{
+    ImplicitOptions, Material, Method, PointMotion, Profile, SheetModel, Simulation, State,
+    VertexLoad,
+};
 use isosheet_mesh::generate::{self, Diagonals};
+use isosheet_mesh::{MassKind, VertexId};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -219,5 +223,102 @@ fn a_twisted_ribbon_pulls_as_its_sides_are_stretched() {
             (pull / exact - 1.0).abs() < 0.05,
             "{kind:?}: {pull} {exact}"
         );
+    }
+}
+
+/// However a sheet is bent and stretched, the slack of its faces gives no more energy than it has taken.
+#[test]
+fn slack_drives_nothing() {
+    let sheet = mesh(None, [5, 4], [0.5, 0.4]);
+    let elastic = elastic(&sheet);
+    let mut memory = remembered(&elastic, sheet.positions());
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let (mut given, mut exchanged, mut most) = (0.0, 0.0, 0.0_f64);
+    for round in 0..200 {
+        let curvature = rng.random_range(0.1..4.0);
+        let stretch = rng.random_range(0.995..1.005);
+        let x = rolled(&sheet, curvature, 0.4);
+        let x: Vec<f64> = x.iter().map(|x| stretch * x).collect();
+        // Chords first, which do work of their own.
+        let mut chords = memory.clone();
+        for arcs in &elastic.arcs {
+            arcs.remember(&elastic.faces, (0.0, &x), &mut chords[1..]);
+        }
+        let mut slack = chords.clone();
+        for (new, old) in slack[1..]
+            .as_chunks_mut::<NUMBERS>()
+            .0
+            .iter_mut()
+            .zip(memory[1..].as_chunks().0)
+        {
+            let mut bend = Bend::remembered(new);
+            bend.squared = Bend::remembered(old).squared;
+            *new = bend.numbers();
+        }
+        let energy = |memory: &[f64]| elastic.energy(At::new(0.0, &x).with_memory(memory));
+        let change = energy(&chords) - energy(&slack);
+        given += change;
+        exchanged += change.abs();
+        most = most.max(energy(&chords));
+        assert!(given <= 1e-12 * most, "{round}: {given}");
+        memory = chords;
+    }
+    assert!(
+        exchanged > most,
+        "the slack was at work: {exchanged} {most}"
+    );
+}
+
+/// A film that is held at its corners under a weight comes to rest, and its supports carry what it weighs. (With slack
+/// that follows the bends freely it flipped between two states, and the supports carried a fifth.)
+#[test]
+fn a_loaded_film_comes_to_rest() {
+    let sheet = generate::isotropic_square(2, 0.2).unwrap();
+    let material = Material::office_paper();
+    let corner = |v: &VertexId| {
+        let p = sheet.position(*v);
+        p[..2]
+            .iter()
+            .all(|c| c.abs() < 1e-9 || (c - 0.2).abs() < 1e-9)
+    };
+    let corners: Vec<VertexId> = sheet.topology().vertex_ids().filter(corner).collect();
+    let middle: Vec<VertexId> = sheet
+        .topology()
+        .vertex_ids()
+        .filter(|v| {
+            sheet.position(*v)[..2]
+                .iter()
+                .all(|c| (0.06..0.14).contains(c))
+        })
+        .collect();
+    let load = || {
+        let each = Profile::Constant(0.06 / middle.len() as f64);
+        VertexLoad::new(sheet.topology(), &middle, [0.0, 0.0, -1.0], each).unwrap()
+    };
+    let model = || {
+        let model = SheetModel::of_material(&sheet, &material).build().unwrap();
+        let model = model
+            .with_pins(&corners)
+            .unwrap()
+            .with_damping(5.0)
+            .unwrap();
+        model
+            .with_acceleration([0.0, 0.0, -9.81])
+            .with_force(load())
+    };
+    let weight = 0.06 + 9.81 * model().mass().total();
+    for method in [
+        Method::ImplicitEuler(ImplicitOptions::default()),
+        Method::default(),
+    ] {
+        let start = State::at_rest(sheet.positions().to_vec());
+        let mut run = Simulation::new(model(), start, method).unwrap();
+        for _ in 0..300 {
+            run.step(1.0 / 60.0).unwrap();
+        }
+        let speed = run.state().v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        assert!(speed < 1e-4, "{speed}");
+        let held: f64 = run.reactions().iter().map(|r| r.force.z).sum();
+        assert!((held / weight - 1.0).abs() < 1e-3, "{held} {weight}");
     }
 }

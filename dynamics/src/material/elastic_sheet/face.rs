@@ -49,6 +49,9 @@ const KEPT_MARGIN: f64 = 0.1;
 /// The part of a displacement that is safe is found up to this part of itself.
 const BISECTION_WIDTH: f64 = 0.02;
 
+/// The slack that can be paid for is found up to this part of itself.
+const SLACK_WIDTH: f64 = 1e-3;
+
 /// Parts of a displacement below this count as zero.
 const SMALLEST_PART: f64 = 1e-12;
 
@@ -125,6 +128,39 @@ impl Face {
         }
         let size = self.mean_squared_length();
         Slack::of_bend(self.rigidity, size, bend.squared)
+    }
+
+    /// The bend with slack for a squared bend of `wanted`, or as near to it as energy allows: slack that grows lets
+    /// energy go, and slack that closes takes up what it had let go, and no more. So the slack of a face gives
+    /// nothing to the motion, however the sheet bends to and fro.
+    pub(super) fn with_slack(&self, x: &[f64], bend: Bend, wanted: f64) -> Bend {
+        let energy = |squared: f64| {
+            let at = self.at(x, &Bend { squared, ..bend });
+            self.area * self.law.at(&at.beyond, &at.slack).energy()
+        };
+        let before = energy(bend.squared);
+        let cost = energy(wanted) - before;
+        if cost <= bend.credit {
+            return Bend {
+                squared: wanted,
+                credit: bend.credit - cost,
+                ..bend
+            };
+        }
+        // The energy falls with the slack: the least slack that can be paid for.
+        let (mut dear, mut paid) = (wanted, bend.squared);
+        while paid - dear > SLACK_WIDTH * paid {
+            let middle = 0.5 * (dear + paid);
+            match energy(middle) - before <= bend.credit {
+                true => paid = middle,
+                false => dear = middle,
+            }
+        }
+        Bend {
+            squared: paid,
+            credit: bend.credit - (energy(paid) - before),
+            ..bend
+        }
     }
 
     pub(super) fn area(&self) -> f64 {
