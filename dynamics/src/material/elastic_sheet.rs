@@ -86,7 +86,9 @@ pub use membrane::{MembraneLaw, OrthotropicMembrane};
 /// `|z|_nu` with `nu = C12 / (C11 C22)^(1/2)`, and the strain `z` to which it is pulled out minimises the energy of
 /// spring and slack, `min_z (e - z) : C (e - z) / 2 + psi(|z|_nu)`.
 ///
-/// `S_T` and `r` are those of the start of a step. What their change does to the energy is counted as work. (The
+/// `S_T` and `r` are those of the start of a step. What their change does to the energy is counted as work. Slack that
+/// grows lets energy of its face go; where it closes it takes up as much at most, and stays open by as much as that does
+/// not pay for. So slack never drives a motion; a face that was bent may keep some slack until it is unloaded. (The
 /// curvature of patches in the membrane strain, within the step, is that of F. G. Flores and E. Onate, "Improvements
 /// in the membrane behaviour of the three node rotation-free BST shell triangle using an assumed strain approach",
 /// Comput. Methods Appl. Mech. Eng. 194, 2005; it couples all vertices of a patch as stiffly as the membrane.)
