@@ -117,7 +117,7 @@ fn end_moment(job: Job) -> Result<Measured> {
             let plate = PlateBending::held(sheet, &material, &edges)?;
             let model = with_plate(sheet, &material, &strip.clamp, plate)?;
             rest.then(model, |simulation| {
-                moment = simulation.clamp_moments()[0][1]
+                moment = simulation.clamp_moments()[0][1];
             })?;
         }
         let [u, w] = [0, 2].map(|k| tip.moved(sheet, &rest.x, k) / length);
