@@ -58,7 +58,6 @@ pub use laws::{ContactLaws, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;
 pub(crate) use set::ContactSet;
 pub use set::{ContactKey, ContactKind, JointMotion};
-pub(crate) use surface_points::on_surface;
 pub use surface_points::{CarriedPoint, SurfacePoints, SurfacePointsError};
 pub(crate) use term::{ContactTerm, check_start};
 pub use terms::BodyLoad;

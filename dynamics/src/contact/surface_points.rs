@@ -130,6 +130,19 @@ impl SurfacePoints {
         }
     }
 
+    /// Positions or displacements of the points, by those of the vertices (`3V`), where the points are not the vertices
+    /// themselves.
+    pub fn placed<'a>(points: Option<&Self>, x: &'a [f64]) -> Cow<'a, [f64]> {
+        match points {
+            None => Cow::Borrowed(x),
+            Some(points) => {
+                let mut placed = Vec::new();
+                points.place(x, &mut placed);
+                Cow::Owned(placed)
+            }
+        }
+    }
+
     /// Adds the forces on the vertices (`3V`) that belong to forces on the points.
     pub fn add_forces(&self, forces: &[f64], out: &mut [f64]) {
         let (own, carried) = forces.split_at(3 * self.own);
@@ -196,18 +209,6 @@ fn is_used((_, weight): &(VertexId, f64)) -> bool {
 
 fn used(carriers: &CarriedPoint) -> impl Iterator<Item = (VertexId, f64)> {
     carriers.iter().copied().filter(is_used)
-}
-
-/// Positions or displacements of the points that contact acts between, where these are not the vertices.
-pub(crate) fn on_surface<'a>(points: Option<&SurfacePoints>, x: &'a [f64]) -> Cow<'a, [f64]> {
-    match points {
-        None => Cow::Borrowed(x),
-        Some(points) => {
-            let mut placed = Vec::new();
-            points.place(x, &mut placed);
-            Cow::Owned(placed)
-        }
-    }
 }
 
 /// Receives blocks of points, and hands them on to the vertices that carry these.

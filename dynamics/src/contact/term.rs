@@ -4,7 +4,7 @@ use super::surface_points::CarriedSink;
 use super::{
     ActiveContacts, BarrierPotential, BodyMotionError, BodyMotions, Contact, ContactError,
     ContactSet, ContactState, ContactTerms, JointMotion, LaggedFriction, StepSpan, SurfacePoints,
-    advanced, on_surface,
+    advanced,
 };
 use crate::hessian::{BlockSink, HessianPart, HessianProduct};
 use crate::term::{Barrier, Exchange, Iterate, Refusal, StepStart, Term, Value};
@@ -60,7 +60,7 @@ impl ContactTerm {
     ) -> Result<(Self, ContactState), ContactError> {
         let bodies = check_start(geometry.as_mut(), model, state)?;
         let barrier = BarrierPotential::at_start(geometry.laws(), model, state)?;
-        let x = on_surface(geometry.points(), &state.x).into_owned();
+        let x = SurfacePoints::placed(geometry.points(), &state.x).into_owned();
         let contacts = ContactState {
             barrier,
             active: ActiveContacts::at_rest(geometry.as_mut(), state.t, &x),
@@ -143,7 +143,7 @@ impl ContactTerm {
 impl InStep {
     fn new(geometry: &mut dyn Contact, barrier: BarrierPotential, start: &StepStart<'_>) -> Self {
         let points = geometry.points().cloned().map(Arc::new);
-        let x0 = on_surface(points.as_deref(), &start.state.x).into_owned();
+        let x0 = SurfacePoints::placed(points.as_deref(), &start.state.x).into_owned();
         let bodies = BodyMotions::over(geometry, span(start));
         let progress = bodies.first_progress();
         let zeros = vec![0.0; x0.len()];
@@ -302,8 +302,8 @@ impl Term for ContactTerm {
         let motion = JointMotion {
             bodies: &step.bodies,
             progress: [step.progress, 1.0],
-            x: &on_surface(points, at.x),
-            dx: &on_surface(points, dx),
+            x: &SurfacePoints::placed(points, at.x),
+            dx: &SurfacePoints::placed(points, dx),
         };
         step.set.update(self.geometry.as_mut(), motion);
         step.forget();
@@ -316,7 +316,7 @@ impl Term for ContactTerm {
         self.at(at.x);
         let step = self.step.as_mut().expect("a step has begun");
         let points = step.points.clone();
-        let dx = on_surface(points.as_deref(), dx);
+        let dx = SurfacePoints::placed(points.as_deref(), dx);
         let mut end = std::mem::take(&mut step.end);
         for ((end, x), d) in end.iter_mut().zip(step.places()).zip(dx.iter()) {
             *end = x + d;

@@ -3,7 +3,7 @@
 use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
 use crate::contact::{
-    ActiveContacts, BodyLoad, Contact, ContactState, ContactTerms, SurfacePoints, on_surface,
+    ActiveContacts, BodyLoad, Contact, ContactState, ContactTerms, SurfacePoints,
 };
 use crate::damped::start::{check_finite, check_motions, check_state};
 use crate::engine::substeps::Engine as FreeEngine;
@@ -282,7 +282,7 @@ impl Simulation {
     /// impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
         self.barrier().map_or_else(Vec::new, |contacts| {
-            let x = on_surface(self.surface_points(), &self.state().x);
+            let x = SurfacePoints::placed(self.surface_points(), &self.state().x);
             ContactTerms::of(contacts, &x).loads()
         })
     }
@@ -301,7 +301,7 @@ impl Simulation {
         match &self.engine {
             Engine::Free(engine) => {
                 let points = self.surface_points();
-                let x = on_surface(points, &self.state().x);
+                let x = SurfacePoints::placed(points, &self.state().x);
                 Some(ContactTerms::of(engine.contacts()?, &x).vertex_forces(points))
             }
             Engine::Chart(chart) => chart.contact_forces(),
@@ -313,7 +313,7 @@ impl Simulation {
     pub fn surface_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => {
-                let x = on_surface(self.surface_points(), &self.state().x);
+                let x = SurfacePoints::placed(self.surface_points(), &self.state().x);
                 Some(ContactTerms::of(engine.contacts()?, &x).vertex_forces(None))
             }
             Engine::Chart(chart) => chart.contact_forces(),

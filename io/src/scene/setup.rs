@@ -60,7 +60,7 @@ pub(crate) struct Facts {
 impl Facts {
     /// Positions or velocities of what is seen, by those of the vertices of the model (`3V`).
     pub(crate) fn shown<'a>(&self, x: &'a [f64]) -> Cow<'a, [f64]> {
-        shown(self.points.as_ref(), x)
+        SurfacePoints::placed(self.points.as_ref(), x)
     }
 
     /// Values of what is seen by those of the model, so many for each: those of the sheets, and zero of bodies.
@@ -143,7 +143,7 @@ impl Setup {
             sheet: self.sheet.clone(),
             points: self.points.clone(),
             parts: self.parts.clone(),
-            start: shown(self.points.as_ref(), &self.start.x).into_owned(),
+            start: SurfacePoints::placed(self.points.as_ref(), &self.start.x).into_owned(),
             bodies: self.bodies.clone(),
             obstacles: self.obstacles.clone(),
             modelled: self.modelled.clone(),
@@ -234,18 +234,6 @@ impl Setup {
             }
         };
         resumed.map_err(|e| placed(problem(&self.origins, &e), self.text.as_ref()))
-    }
-}
-
-/// Positions or velocities of what is seen of a scene, by those of the vertices of its model (`3V`).
-pub(crate) fn shown<'a>(points: Option<&SurfacePoints>, x: &'a [f64]) -> Cow<'a, [f64]> {
-    match points {
-        None => Cow::Borrowed(x),
-        Some(points) => {
-            let mut placed = Vec::new();
-            points.place(x, &mut placed);
-            Cow::Owned(placed)
-        }
     }
 }
 

@@ -134,6 +134,9 @@ impl Face {
     /// energy go, and slack that closes takes up what it had let go, and no more. So the slack of a face gives
     /// nothing to the motion, however the sheet bends to and fro.
     pub(super) fn with_slack(&self, x: &[f64], bend: Bend, wanted: f64) -> Bend {
+        if wanted == bend.squared {
+            return bend;
+        }
         let energy = |squared: f64| {
             let at = self.at(x, &Bend { squared, ..bend });
             self.area * self.law.at(&at.beyond, &at.slack).energy()

@@ -130,8 +130,7 @@ impl Stencils {
             directors: BTreeMap::new(),
         };
         for face in topology.face_ids() {
-            let area = sheet.face_areas()[face.index()] / POINTS as f64;
-            let scale = (roots.rigidity(face.index()) * area).sqrt() * roots.of(face.index());
+            let scale = scale(sheet, roots, POINTS * face.index()) * roots.of(face.index());
             let is_clamped = clamps.faces[face.index()];
             let director = |edge| (!is_clamped).then(|| held.director(sheet, face, edge))?;
             let (weights, directors) = face_weights(sheet, &fits, director, face);
@@ -235,7 +234,8 @@ type PointWeights = Vec<(VertexId, [Vector3<f64>; POINTS])>;
 /// `sqrt(D A)` of a point.
 fn scale(sheet: &Sheet, roots: &Roots, point: usize) -> f64 {
     let face = face_of(point);
-    (roots.rigidity(face) * sheet.face_areas()[face] / POINTS as f64).sqrt()
+    let area = sheet.face_areas()[face] / POINTS as f64;
+    (roots.rigidity(face) * area).sqrt()
 }
 
 /// The second derivatives at the points of a face, whose mean is that over the face, from the slopes at its edges; those
