@@ -49,6 +49,7 @@ mod summary;
 mod sweep;
 #[cfg(feature = "picture")]
 mod viewpoint;
+mod vibration;
 mod warning;
 mod watch;
 
@@ -58,6 +59,7 @@ pub use commit::note_commit;
 pub(crate) use constraints::HoldingBody;
 pub use elastic::{Bend, ElasticSummary};
 pub use energy::EnergySummary;
+pub use vibration::Vibration;
 pub use error::RunError;
 pub use estimate::Estimate;
 #[cfg(feature = "picture")]
@@ -408,6 +410,7 @@ fn finish(
         largest_strain: progress.strain,
         largest_displacement: progress.displacement,
         energy: progress.energy,
+        vibration: progress.vibrations.fastest(progress.energy.round_off),
         smallest_gap: progress.gap,
         iterations: progress.iterations,
         factorisations: progress.factorisations,

@@ -12,6 +12,7 @@ mod plates;
 mod rest;
 mod shells;
 mod specimen;
+mod squeezed;
 mod tension;
 mod vibrations;
 
@@ -29,7 +30,7 @@ use outcome::{Outcome, SIZES};
 use rayon::prelude::*;
 
 /// All of them.
-static EXPERIMENTS: [&Experiment; 24] = [
+static EXPERIMENTS: [&Experiment; 25] = [
     &cantilevers::END_SHEAR,
     &cantilevers::END_MOMENT,
     &shells::ANNULUS,
@@ -41,6 +42,7 @@ static EXPERIMENTS: [&Experiment; 24] = [
     &elasticas::OFFICE,
     &elasticas::PUSHED,
     &elasticas::LIFTED,
+    &squeezed::SQUEEZED,
     &plates::SQUARES,
     &plates::GRAINED,
     &curls::CURLED,

@@ -256,6 +256,15 @@ impl ElasticSheet {
             .map(move |(face, strained)| face.energy(&strained, &limit))
     }
 
+    /// The part of the slack in these energies, joules.
+    pub(crate) fn slack_energies<'a>(
+        &'a self,
+        at: At<'a>,
+    ) -> impl ExactSizeIterator<Item = f64> + 'a {
+        let strained = self.strained(at);
+        strained.map(|(face, strained)| face.slack_energy(&strained))
+    }
+
     /// The faces, each with its state.
     fn strained<'a>(
         &'a self,

@@ -12,6 +12,9 @@ pub struct ElasticDeformation {
     pub strain: Vec<f64>,
     /// Energy of stretching, with that of the barrier at the limit, joules.
     pub stretching: Vec<f64>,
+    /// The part of it that is in the slack of faces that bend, joules: a sheet that is pulled yields by it as its
+    /// material would not.
+    pub slack: Vec<f64>,
     /// Energy of bending, joules.
     pub bending: Vec<f64>,
     /// The angle by which the sheet bends over the size of the face, radians: `sqrt(2 V / (D A)) h`, with the
@@ -32,6 +35,13 @@ impl ElasticDeformation {
         share(self.stretching.iter().sum(), self.bending.iter().sum())
     }
 
+    /// The part of the slack in the elastic energy of the whole sheet, from 0 to 1; 0 where there is no energy.
+    pub fn slack_share(&self) -> f64 {
+        let slack: f64 = self.slack.iter().sum();
+        let stretching: f64 = self.stretching.iter().sum();
+        share(slack, stretching - slack + self.bending.iter().sum::<f64>())
+    }
+
     /// The face that bends by the largest angle, and that angle.
     pub fn sharpest(&self) -> Option<(usize, f64)> {
         let angles = self.angle.iter().copied().enumerate();
@@ -39,9 +49,10 @@ impl ElasticDeformation {
     }
 }
 
-fn share(stretching: f64, bending: f64) -> f64 {
-    let sum = stretching + bending;
-    if sum > 0.0 { stretching / sum } else { 0.0 }
+/// The part of an energy in the sum of it and others.
+fn share(energy: f64, others: f64) -> f64 {
+    let sum = energy + others;
+    if sum > 0.0 { energy / sum } else { 0.0 }
 }
 
 impl SheetModel {
@@ -76,6 +87,7 @@ impl SheetModel {
         Some(ElasticDeformation {
             strain: of_faces(&mut elastic.strains(x)),
             stretching: of_faces(&mut elastic.face_energies(own)),
+            slack: of_faces(&mut elastic.slack_energies(own)),
             angle,
             bending,
         })

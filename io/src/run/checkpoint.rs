@@ -5,6 +5,7 @@ use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::error::BEGIN_ANEW;
 use super::summary::{Ending, Measured};
+use super::vibration::Vibrations;
 use crate::format::{FileError, Written, input, write_atomically};
 use crc::{CRC_64_XZ, Crc};
 use isosheet_dynamics::Checkpoint;
@@ -48,6 +49,9 @@ pub(crate) struct RunProgress {
     pub(crate) displacement: f64,
     /// Extremes of the energies so far.
     pub(crate) energy: EnergySummary,
+    /// Vibrations so far.
+    #[serde(default)]
+    pub(crate) vibrations: Vibrations,
     /// Smallest gap so far, metres.
     pub(crate) gap: Option<f64>,
     /// Newton iterations so far.

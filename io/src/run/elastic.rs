@@ -16,6 +16,10 @@ pub struct ElasticSummary {
     pub strain: f64,
     /// Part of the stretching in the elastic energy at the end, from 0 to 1.
     pub share: f64,
+    /// Part of the slack of bends in the elastic energy at the end, from 0 to 1: the error of the energy that comes of
+    /// the mesh where a sheet bends and is pulled.
+    #[serde(default)]
+    pub slack: f64,
     /// Where the sheet bent most over the size of a face, if it bends.
     pub sharpest: Option<Bend>,
 }
@@ -49,6 +53,12 @@ impl Bend {
     pub fn shortening(&self) -> f64 {
         self.angle * self.angle / 24.0
     }
+
+    /// Part by which forces are wrong that such a bend balances, at most: a quarter of the square of the angle, as in
+    /// `cargo xtask validation` (a strip between two plates, and one that is pushed together).
+    pub fn force_error(&self) -> f64 {
+        0.25 * self.angle * self.angle
+    }
 }
 
 impl ElasticSummary {
@@ -60,6 +70,7 @@ impl ElasticSummary {
             limit: elastic.limit(),
             strain: 0.0,
             share: 0.0,
+            slack: 0.0,
             sharpest: None,
         })
     }
@@ -76,6 +87,7 @@ impl ElasticSummary {
             .copied()
             .fold(self.strain, f64::max);
         self.share = deformation.total_share();
+        self.slack = deformation.slack_share();
         let before = self.sharpest.map_or(0.0, |bend| bend.angle);
         if let Some((face, angle)) = deformation.sharpest()
             && angle > before

@@ -1,7 +1,8 @@
 //! What a run says of its energies.
 
-use isosheet_dynamics::StepReport;
+use isosheet_dynamics::{Simulation, State, StepReport};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::SQRT_2;
 
 /// The extremes of the energies in a run, the start included, and the largest errors of their balance.
 ///
@@ -22,7 +23,8 @@ pub struct EnergySummary {
     /// Largest energy that was exchanged: kinetic energy, change of the potential energy, work, or what
     /// damping, friction and yielding took, joules.
     pub largest_exchange: f64,
-    /// Largest kinetic energy that the round-off of the positions looks like over a step, joules.
+    /// Largest energy that the round-off of the positions looks like, joules: the change of the potential energy at the
+    /// start by changes of the last bit, with the kinetic energy of such changes over a step.
     pub round_off: f64,
     /// `largest_error` over `largest_kinetic`; none if the sheet never moved.
     pub relative_error: Option<f64>,
@@ -31,13 +33,22 @@ pub struct EnergySummary {
 }
 
 impl EnergySummary {
-    /// Of a run at its start, with its energies in joules.
-    pub(crate) fn of_start(kinetic: f64, potential: f64) -> Self {
+    /// Of a run at its start.
+    pub(crate) fn of_start(simulation: &Simulation) -> Self {
+        let (model, State { t, x, v }) = (simulation.model(), simulation.state());
+        let kinetic = model.kinetic_energy(v);
+        let potential = simulation.energy() - kinetic;
+        let bit = f64::EPSILON * x.iter().fold(0.0, |size: f64, c| size.max(c.abs()));
+        // Multiples of an irrational number have no period, as round-off has none.
+        let change = |k: usize| bit * (2.0 * (k as f64 * SQRT_2).fract() - 1.0);
+        let changed: Vec<f64> = x.iter().enumerate().map(|(k, c)| c + change(k)).collect();
+        let round_off = model.potential_energy(*t, &changed) - model.potential_energy(*t, x);
         let mut start = Self {
             largest_kinetic: kinetic,
             least_potential: potential,
             start_potential: potential,
             largest_exchange: kinetic,
+            round_off: round_off.abs(),
             ..Self::default()
         };
         start.compare();

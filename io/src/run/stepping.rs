@@ -11,7 +11,7 @@ use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
 use crate::format::{MeasureRow, MeasureWriter};
 use crate::scene::check_positions;
-use crate::scene::{CarriedBody, Facts, Scene, SceneError, SceneFile, SupportForces};
+use crate::scene::{CarriedBody, Facts, Integrator, Scene, SceneError, SceneFile, SupportForces};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::contact::ActiveContacts;
 use isosheet_dynamics::{
@@ -209,7 +209,7 @@ impl<'a> Stepping<'a> {
         self.observe_elastic();
         self.progress.start_energy = self.simulation.energy();
         let row = HistoryRow::of_start(&self.simulation);
-        self.progress.energy = EnergySummary::of_start(row.kinetic, row.potential);
+        self.progress.energy = EnergySummary::of_start(&self.simulation);
         self.progress.strain = row.strain;
         self.progress.gap = row.gap;
         self.record_row(row)?;
@@ -417,6 +417,12 @@ impl<'a> Stepping<'a> {
         progress.strain = progress.strain.max(report.strain);
         progress.displacement = progress.displacement.max(displacement);
         progress.energy.observe(report, mass, size);
+        let scene = self.plan.file.scene();
+        // Whoever looks for a state of rest needs no vibrations on the way.
+        if scene.method.integrator == Integrator::Bdf2 && scene.stop.rest.is_none() {
+            let (t, h) = (report.t, report.h);
+            progress.vibrations.observe(t, h, report.kinetic);
+        }
         progress.iterations += report.iterations as u64;
         progress.factorisations += report.factorisations as u64;
         progress.rejected += report.rejected as u64;

@@ -2,8 +2,10 @@
 
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
+use super::vibration::Vibration;
 use crate::scene::Residuals;
 use isosheet_mesh::Part;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -39,6 +41,10 @@ pub struct Summary {
     pub largest_displacement: f64,
     /// Extremes of the energies, and the largest errors of their balance.
     pub energy: EnergySummary,
+    /// The fastest vibration with a tenth of the largest kinetic energy, where steps are of the second-order backward
+    /// differentiation formula and no state of rest is asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vibration: Option<Vibration>,
     /// Smallest gap in any step, metres; none without contact, or if nothing ever came close.
     pub smallest_gap: Option<f64>,
     /// Newton iterations.
@@ -100,6 +106,20 @@ pub struct Ending {
     /// How far the sheets are from what the scene asks for.
     #[serde(flatten)]
     pub residuals: Residuals,
+}
+
+impl Ending {
+    /// Whether supports and obstacles pull or push against each other with more than what they hold: then their forces
+    /// are those of the stiffness of the sheets.
+    pub(crate) fn is_squeezed(&self) -> bool {
+        let on_obstacles = self.obstacles.iter().map(|f| -Vector3::from(*f));
+        let supports = self.supports.iter().map(|f| Vector3::from(*f));
+        let forces = supports.chain(on_obstacles);
+        let (sizes, sum) = forces.fold((0.0, Vector3::zeros()), |(sizes, sum), f| {
+            (sizes + f.norm(), sum + f)
+        });
+        sizes > 2.0 * sum.norm()
+    }
 }
 
 /// One of several sheets and bodies in the arrays of a run.

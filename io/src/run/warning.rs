@@ -13,6 +13,15 @@ impl Summary {
     /// err by about that at the longest steps that resolve a motion.
     pub const ENERGY_GAIN: f64 = 0.02;
 
+    /// Part by which the mesh may change the forces of bends.
+    pub const FORCE_ERROR: f64 = 0.03;
+
+    /// Part of the elastic energy that the slack of bends may have.
+    pub const SLACK: f64 = 0.05;
+
+    /// Part by which steps may make a vibration slower.
+    pub const SLOWING: f64 = 0.03;
+
     /// What to know before the results are used.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
@@ -27,6 +36,26 @@ impl Summary {
                           faces by their strain and by the share of stretching in their energy";
             warnings.push(Warning::new(message, remedy));
         }
+        let slack = self.elastic.filter(|e| e.slack > Self::SLACK);
+        if let Some(elastic) = slack.filter(|_| self.ending.is_squeezed()) {
+            let message = format!(
+                "the mesh is too coarse for forces of supports that pull against each other: {} % of the elastic energy \
+                 at the end is in the slack that faces have where they bend",
+                brief(100.0 * elastic.slack)
+            );
+            let remedy = "refine the mesh: with half the edge length the slack is a quarter";
+            warnings.push(Warning::new(message, remedy));
+        }
+        let bend = sharpest.filter(|bend| bend.shortening() <= Self::CHORD_ERROR);
+        let bend = bend.filter(|bend| bend.force_error() > Self::FORCE_ERROR);
+        if let Some(bend) = bend.filter(|_| self.ending.is_squeezed()) {
+            let message = format!(
+                "forces of bends err by up to {} %: the sheet bends over a single face by {bend}",
+                brief(100.0 * bend.force_error())
+            );
+            let remedy = "refine the mesh there if forces matter: with half the edge length the error is a quarter";
+            warnings.push(Warning::new(message, remedy));
+        }
         let (gain, exchanged) = (self.energy.largest_gain, self.energy.largest_exchange);
         if gain > Self::ENERGY_GAIN * exchanged + self.energy.round_off {
             let message = format!(
@@ -36,6 +65,18 @@ impl Summary {
             );
             let remedy = "take a smaller `method.step`: forces that change within a step do work that is known roughly; \
                           the history says when energy is gained";
+            warnings.push(Warning::new(message, remedy));
+        }
+        let vibration = self.vibration.filter(|v| v.slowing() > Self::SLOWING);
+        if let Some(vibration) = vibration {
+            let message = format!(
+                "steps of {} s are long for a vibration of {vibration}: they make it about {} % slower and damp it; with \
+                 `method.step = {}` it is right to 1 %",
+                brief(vibration.step),
+                brief(100.0 * vibration.slowing()),
+                brief(vibration.step_for(0.01)),
+            );
+            let remedy = "take a smaller `method.step` if vibrations matter; states of rest do not depend on it";
             warnings.push(Warning::new(message, remedy));
         }
         if let Some(f) = self.ending.residuals.folding.filter(|f| f.wrong_side > 0) {

@@ -299,6 +299,7 @@ fn what_makes_no_sense_is_refused_with_a_reason() {
     let edge = format!("[[support]]\n{EDGE}\nhold = ");
     for (lines, reason) in [
         ("curl = { along = [1, 0, 0], radius = 0 }".to_owned(), "sheet.curl.radius"),
+        ("curl = { along = [1, 0, 0], radius = 1e-4 }".to_owned(), "would roll up to the radius 1e-4 m"),
         ("curl = { along = [0, 0, 0], radius = 1 }".to_owned(), "sheet.curl.along"),
         ("curl = { along = [0, 0, 1], radius = 1 }".to_owned(), "no part in the plane of face 0"),
         ("curl = { along = [1, 0, 0] }".to_owned(), "how the sheet is curved"),

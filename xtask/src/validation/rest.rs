@@ -2,7 +2,8 @@
 
 use crate::interrupt::Interrupted;
 use crate::runs::{Course, Ending, Plan, unseen};
-use isosheet_dynamics::{SheetModel, Simulation, State};
+use isosheet_collide::Contacts;
+use isosheet_dynamics::{SheetModel, Simulation, SimulationError, State};
 use isosheet_mesh::Sheet;
 use isosheet_tests::implicit_euler;
 
@@ -56,6 +57,28 @@ impl Rest {
         model: SheetModel,
         look: impl FnOnce(&Simulation),
     ) -> Result<(), Interrupted> {
+        self.simulated(model, Ok, look)
+    }
+
+    /// As [`Rest::then`], among bodies.
+    ///
+    /// # Errors
+    /// [`Interrupted`].
+    pub(super) fn among(
+        &mut self,
+        model: SheetModel,
+        contacts: Contacts,
+        look: impl FnOnce(&Simulation),
+    ) -> Result<(), Interrupted> {
+        self.simulated(model, |simulation| simulation.with_contact(contacts), look)
+    }
+
+    fn simulated(
+        &mut self,
+        model: SheetModel,
+        with: impl FnOnce(Simulation) -> Result<Simulation, SimulationError>,
+        look: impl FnOnce(&Simulation),
+    ) -> Result<(), Interrupted> {
         if !self.course.is_good() {
             return Ok(());
         }
@@ -68,7 +91,7 @@ impl Rest {
             }
         };
         let start = State::at_rest(self.x.clone());
-        match Simulation::new(model, start, implicit_euler()) {
+        match Simulation::new(model, start, implicit_euler()).and_then(with) {
             Err(error) => self.course.ending = Ending::of(&error, &error),
             Ok(mut simulation) => {
                 let plan = Plan::new(self.step, STEPS * self.step);

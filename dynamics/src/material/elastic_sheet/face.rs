@@ -208,6 +208,11 @@ impl Face {
         self.area * (elastic + limit.value(at.strain.norm_squared()))
     }
 
+    /// What the slack has of it, joules.
+    pub(super) fn slack_energy(&self, at: &Strained) -> f64 {
+        self.area * self.law.at(&at.beyond, &at.slack).stored()
+    }
+
     /// Size of the round-off in the energy of a face at rest whose coordinates are of the given size,
     /// metres.
     pub(super) fn round_off(&self, size: f64) -> f64 {

@@ -139,9 +139,14 @@ impl At<'_> {
                     let force = secant * components[k];
                     0.5 * force * force / stiffnesses[k]
                 };
-                spring(0) + spring(1) + spring(2) + self.slack.stored(self.force)
+                spring(0) + spring(1) + spring(2) + self.stored()
             }
         }
+    }
+
+    /// What the slack has of it, joules per square metre.
+    pub(super) fn stored(&self) -> f64 {
+        self.slack.stored(self.force)
     }
 
     /// The derivatives of the energy by the strain.

@@ -6,7 +6,7 @@ use crate::material::patched::NoFace;
 use crate::motion::profile::ProfileError;
 use crate::options::OptionsError;
 use isosheet_mesh::wording::given;
-use isosheet_mesh::{Advice, EdgeId, VertexId};
+use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
 
 /// Why the bending stiffness of a plate cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -111,6 +111,19 @@ pub enum CurlError {
         /// Number of faces.
         expected: usize,
     },
+    /// An edge is longer than the diameter of the circle that it would be a chord of.
+    #[error(
+        "{face} would roll up to the radius {radius} m, and has an edge of {length} m",
+        radius = given(*radius), length = given(*length)
+    )]
+    Sharp {
+        /// The face.
+        face: FaceId,
+        /// The smallest radius of curvature, metres.
+        radius: f64,
+        /// Its longest edge, metres.
+        length: f64,
+    },
     /// The direction is none.
     #[error(transparent)]
     Direction(#[from] DirectionError),
@@ -123,6 +136,9 @@ impl Advice for CurlError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Count { .. } => Some("give one for each face"),
+            Self::Sharp { .. } => Some(
+                "make the mesh finer, with edges below half the radius, or the radius larger",
+            ),
             Self::Curvature { .. } => Some("give finite curvatures, one over a radius"),
             Self::Direction(error) => error.advice(),
             Self::Profile(error) => error.advice(),

@@ -49,6 +49,14 @@ pub struct Curvature {
     pub twist: f64,
 }
 
+impl Curvature {
+    /// The larger of its principal curvatures, without its sign.
+    fn sharpest(&self) -> f64 {
+        let half = 0.5 * (self.along - self.across);
+        (0.5 * (self.along + self.across)).abs() + half.hypot(self.twist)
+    }
+}
+
 /// A natural curvature of all faces, or of each.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NaturalTensor {
@@ -109,6 +117,21 @@ impl NaturalCurvature {
         let numbers = all.iter().flat_map(|k| [k.along, k.across, k.twist]);
         if let Some(value) = numbers.into_iter().find(|k| !k.is_finite()) {
             return Err(CurlError::Curvature { value });
+        }
+        for face in sheet.topology().face_ids() {
+            let sharpest = all[face.index().min(found - 1)].sharpest();
+            let edges = sheet.topology().face_edges(face);
+            let lengths = edges.map(|e| sheet.lengths()[e.index()]);
+            let length = lengths.into_iter().fold(0.0, f64::max);
+            // A chord of a circle is not longer than its diameter.
+            if sharpest * length > 2.0 {
+                let radius = 1.0 / sharpest;
+                return Err(CurlError::Sharp {
+                    face,
+                    radius,
+                    length,
+                });
+            }
         }
         let of_face = |face: FaceId| {
             let k = all[face.index().min(found - 1)];
