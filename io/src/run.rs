@@ -47,9 +47,9 @@ mod spool;
 mod stepping;
 mod summary;
 mod sweep;
+mod vibration;
 #[cfg(feature = "picture")]
 mod viewpoint;
-mod vibration;
 mod warning;
 mod watch;
 
@@ -59,7 +59,6 @@ pub use commit::note_commit;
 pub(crate) use constraints::HoldingBody;
 pub use elastic::{Bend, ElasticSummary};
 pub use energy::EnergySummary;
-pub use vibration::Vibration;
 pub use error::RunError;
 pub use estimate::Estimate;
 #[cfg(feature = "picture")]
@@ -71,6 +70,7 @@ pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
+pub use vibration::Vibration;
 #[cfg(feature = "picture")]
 pub use viewpoint::Viewpoint;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};

@@ -96,7 +96,8 @@ const AROUND: usize = 4;
 /// the ring.
 fn ring_under_load(plate: &OrthotropicPlate, radii: [f64; 2], load: f64, angle: f64) -> f64 {
     let width = radii[1] - radii[0];
-    let functions = || (0..ALONG).flat_map(|i| (0..AROUND).map(move |j| (i as i32 + 2, 2.0 * j as f64)));
+    let functions =
+        || (0..ALONG).flat_map(|i| (0..AROUND).map(move |j| (i as i32 + 2, 2.0 * j as f64)));
     let count = ALONG * AROUND;
     let (mut stiffness, mut force) = (DMatrix::zeros(count, count), DVector::zeros(count));
     // Midpoints: 200 across and 64 around, where cosines are integrated exactly.
@@ -137,7 +138,10 @@ fn ring_under_load(plate: &OrthotropicPlate, radii: [f64; 2], load: f64, angle: 
             stiffness += area * curvatures.transpose() * law * &curvatures;
         }
     }
-    let solved = stiffness.cholesky().expect("positive definite").solve(&force);
+    let solved = stiffness
+        .cholesky()
+        .expect("positive definite")
+        .solve(&force);
     let at_rim = functions().zip(solved.iter());
     at_rim.map(|((_, wave), c)| c * (wave * angle).cos()).sum()
 }
@@ -159,11 +163,16 @@ fn a_disk_on_a_pedestal_hangs_down_least_along_its_direction() {
         let [x, y, _] = sheet.position(v);
         x.hypot(y)
     };
-    let inside = sheet.topology().vertex_ids().filter(|v| distance(*v) < pedestal * (1.0 + 1e-9));
+    let inside = sheet
+        .topology()
+        .vertex_ids()
+        .filter(|v| distance(*v) < pedestal * (1.0 + 1e-9));
     let held: Vec<VertexId> = inside.collect();
     // So small a weight that nothing stretches.
     let load = 1e-3 * plate.along / radius.powi(3);
-    let model = SheetModel::of_material(&sheet, &material).along(direction).clamped(&held);
+    let model = SheetModel::of_material(&sheet, &material)
+        .along(direction)
+        .clamped(&held);
     let model = model.build().unwrap();
     let model = model.with_acceleration([0.0, 0.0, -load / material.density]);
     let slowest = (radius - pedestal).powi(2) * (material.density / plate.across).sqrt();

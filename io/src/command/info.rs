@@ -116,7 +116,7 @@ fn describe_run(folder: &Path) -> Done {
 
 /// A scene in a few lines.
 pub(crate) fn describe_scene(setup: &Setup) -> String {
-    let sheet = describe_sheet(&setup.mesh(), &setup.model, &setup.start.x);
+    let sheet = describe_sheet(&setup.sheets_alone(), &setup.model, &setup.start.x);
     let carriers: Vec<VertexId> = setup
         .bodies
         .iter()
@@ -172,7 +172,8 @@ fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
             .fold(f64::INFINITY, f64::min),
         sheet.lengths().iter().copied().fold(0.0, f64::max),
     ];
-    let [low, high] = bounds(x.as_chunks::<3>().0).map(|corner| corner.map(number));
+    let [low, high] =
+        bounds(&x.as_chunks::<3>().0[..t.vertex_count()]).map(|corner| corner.map(number));
     format!(
         "vertices         {}, of these {} on the boundary\n\
          edges            {}, {} to {} m long, {} m in the mean\n\

@@ -128,7 +128,10 @@ mod tests {
             let half = 0.5 / found.frequency;
             // Peaks are found at whole steps.
             let expected = PI / (angle * (1.0 - angle * angle / 3.0));
-            assert!((half - expected).abs() < 1.0 + 0.1 * angle * expected, "{half} {expected}");
+            assert!(
+                (half - expected).abs() < 1.0 + 0.1 * angle * expected,
+                "{half} {expected}"
+            );
             assert!((found.slowing() / (angle * angle / 3.0) - 1.0).abs() < 0.3);
         }
     }

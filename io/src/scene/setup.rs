@@ -15,7 +15,7 @@ use isosheet_dynamics::{
     Checkpoint, Isometry, Method, SheetModel, Simulation, SimulationError, State, StepControl,
 };
 use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{Part, Sheet};
+use isosheet_mesh::{Part, Sheet, VertexId};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -153,15 +153,17 @@ impl Setup {
         }
     }
 
-    /// The mesh of the model: the sheets, and after them four vertices for each body.
-    pub fn mesh(&self) -> Cow<'_, Sheet> {
+    /// The sheets without the bodies beside them, in their rest shape, placed in space.
+    pub fn sheets_alone(&self) -> Cow<'_, Sheet> {
         let Some(points) = &self.points else {
             return Cow::Borrowed(&self.sheet);
         };
-        let own = 3 * points.own();
-        let x = [&self.sheet.positions()[..own], &self.start.x[own..]].concat();
-        let mesh = Sheet::from_topology(self.model.topology().clone(), x);
-        mesh.map_or(Cow::Borrowed(&self.sheet), Cow::Owned)
+        let own = points.own();
+        let faces = self.sheet.topology().faces().iter();
+        let is_own = |face: &&[VertexId; 3]| face.iter().all(|v| v.index() < own);
+        let faces: Vec<[u32; 3]> = faces.filter(is_own).map(|f| f.map(|v| v.0)).collect();
+        let sheets = Sheet::new(self.sheet.positions()[..3 * own].to_vec(), &faces);
+        sheets.map_or(Cow::Borrowed(&self.sheet), Cow::Owned)
     }
 
     /// Whether the simulation gives the forces of the rods ([`Simulation::rod_forces`]).

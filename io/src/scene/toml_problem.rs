@@ -42,6 +42,15 @@ fn in_words(full: &str) -> (String, String) {
             format!("the key `{missing}` is missing here"),
             "add it; docs/scene.md describes all keys".to_owned(),
         ),
+        // Of a choice whose names have tables of their own.
+        _ if message.starts_with("wanted exactly 1 element, more") => (
+            "this is one choice among several, and more than one is given".to_owned(),
+            "keep one of them".to_owned(),
+        ),
+        _ if message.starts_with("wanted exactly 1 element, found 0") => (
+            "this is one choice among several, and none is given".to_owned(),
+            "docs/scene.md has the choices".to_owned(),
+        ),
         _ => (
             message.to_owned(),
             "docs/scene.md describes all keys, https://toml.io the syntax".to_owned(),

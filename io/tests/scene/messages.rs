@@ -39,7 +39,7 @@ fn problems(text: &str) -> Vec<PlacedProblem> {
 /// What is replaced by what; line and column, parts of message and remedy.
 type Wrong<'a> = (&'a str, &'a str, [usize; 2], &'a str, &'a str);
 
-const WRONG: [Wrong<'_>; 20] = [
+const WRONG: [Wrong<'_>; 21] = [
     (
         "density = 0.1",
         "densty = 0.1",
@@ -60,6 +60,13 @@ const WRONG: [Wrong<'_>; 20] = [
         [8, 11],
         "unknown choice `sphre`",
         "did you mean `sphere`?",
+    ),
+    (
+        "sphere = { radius = 0.1 }",
+        "sphere = { radius = 0.1 }, box = { size = [1, 1, 1] }",
+        [8, 9],
+        "more than one is given",
+        "keep one",
     ),
     (
         "density = 0.1",

@@ -105,6 +105,10 @@ mod tests {
             h / 6.0 * (integrand(u) + 4.0 * integrand(u + 0.5 * h) + integrand(u + h))
         });
         let distance = 2.0 * sum.sum::<f64>();
-        assert!((distance * distance - FORCE).abs() < 1e-6, "{}", distance * distance);
+        assert!(
+            (distance * distance - FORCE).abs() < 1e-6,
+            "{}",
+            distance * distance
+        );
     }
 }

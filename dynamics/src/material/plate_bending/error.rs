@@ -136,9 +136,9 @@ impl Advice for CurlError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Count { .. } => Some("give one for each face"),
-            Self::Sharp { .. } => Some(
-                "make the mesh finer, with edges below half the radius, or the radius larger",
-            ),
+            Self::Sharp { .. } => {
+                Some("make the mesh finer, with edges below half the radius, or the radius larger")
+            }
             Self::Curvature { .. } => Some("give finite curvatures, one over a radius"),
             Self::Direction(error) => error.advice(),
             Self::Profile(error) => error.advice(),
