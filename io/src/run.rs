@@ -410,7 +410,9 @@ fn finish(
         largest_strain: progress.strain,
         largest_displacement: progress.displacement,
         energy: progress.energy,
-        vibration: progress.vibrations.fastest(progress.energy.round_off),
+        vibration: progress
+            .vibrations
+            .fastest(facts.mass, facts.sheet.mean_length()),
         smallest_gap: progress.gap,
         iterations: progress.iterations,
         factorisations: progress.factorisations,

@@ -41,7 +41,7 @@ pub struct Summary {
     pub largest_displacement: f64,
     /// Extremes of the energies, and the largest errors of their balance.
     pub energy: EnergySummary,
-    /// The fastest vibration with a tenth of the largest kinetic energy, where steps are of the second-order backward
+    /// The fastest vibration with a tenth of the largest kinetic energy, and a hundredth of the mean edge length to and fro, where steps are of the second-order backward
     /// differentiation formula and no state of rest is asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vibration: Option<Vibration>,

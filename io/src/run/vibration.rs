@@ -8,6 +8,9 @@ use std::fmt;
 /// Part of the largest kinetic energy before it that a peak has to reach to count.
 const MUCH: f64 = 0.1;
 
+/// Part of a length that a vibration has to move to and fro to count.
+const SMALL: f64 = 0.01;
+
 /// A vibration: half a period of it lies between two peaks of the kinetic energy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vibration {
@@ -95,10 +98,12 @@ impl Vibrations {
         }
     }
 
-    /// The fastest vibration that had a tenth of the largest kinetic energy and more than some energy, joules.
-    pub(crate) fn fastest(&self, least: f64) -> Option<Vibration> {
+    /// The fastest vibration that had a tenth of the largest kinetic energy and moved a mass (kilograms) by more than a
+    /// hundredth of some length (metres).
+    pub(crate) fn fastest(&self, mass: f64, length: f64) -> Option<Vibration> {
         let (fastest, energy) = self.fastest?;
-        (energy >= MUCH * self.largest && energy > least).then_some(fastest)
+        let amplitude = (2.0 * energy / mass).sqrt() / (2.0 * PI * fastest.frequency);
+        (energy >= MUCH * self.largest && amplitude > SMALL * length).then_some(fastest)
     }
 }
 
@@ -118,7 +123,7 @@ mod tests {
             (x, v) = ([x[1], next], [v[1], b - c * next]);
             vibrations.observe(f64::from(k), 1.0, v[1] * v[1]);
         }
-        vibrations.fastest(0.0)
+        vibrations.fastest(2.0, 1.0)
     }
 
     #[test]
@@ -147,6 +152,6 @@ mod tests {
             let t = f64::from(k) * 0.01;
             vibrations.observe(1.0 + t, 0.01, 0.05 * (40.0 * t).sin().powi(2));
         }
-        assert_eq!(vibrations.fastest(0.0), None);
+        assert_eq!(vibrations.fastest(2.0, 1.0), None);
     }
 }

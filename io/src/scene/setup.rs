@@ -46,6 +46,8 @@ pub(crate) struct Facts {
     pub(crate) points: Option<SurfacePoints>,
     /// Of several sheets and bodies the name of each, and where it is in the union.
     pub(crate) parts: Vec<(String, Part)>,
+    /// Mass of all that moves, kilograms.
+    pub(crate) mass: f64,
     /// The positions of its vertices at the start.
     pub(crate) start: Vec<f64>,
     /// The bodies that respond, in the order of the scene.
@@ -143,6 +145,7 @@ impl Setup {
             sheet: self.sheet.clone(),
             points: self.points.clone(),
             parts: self.parts.clone(),
+            mass: self.model.mass().total(),
             start: SurfacePoints::placed(self.points.as_ref(), &self.start.x).into_owned(),
             bodies: self.bodies.clone(),
             obstacles: self.obstacles.clone(),
