@@ -5,6 +5,7 @@ mod bodies;
 mod book;
 mod charts;
 mod complete;
+mod everyday;
 mod files;
 mod folding;
 mod formulas;
@@ -15,6 +16,7 @@ mod materials;
 mod meaning;
 mod messages;
 mod patches;
+mod random_bodies;
 mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;
