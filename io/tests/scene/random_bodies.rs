@@ -96,7 +96,7 @@ impl RandomScene {
             friction = {}
             self_contact = true
             [[obstacle]]
-            shape = {{ box = {{ size = [2, 2, 0.1] }} }}
+            shape = {{ box = {{ size = [20, 20, 0.1] }} }}
             pose = {{ position = [0, 0, -0.15] }}
             friction = {}
             [forces]
