@@ -15,10 +15,12 @@ mod materials;
 mod meaning;
 mod messages;
 mod patches;
+mod peel;
 mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;
 mod starts;
+mod switches;
 mod values;
 mod wrong;
 

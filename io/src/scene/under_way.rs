@@ -1,0 +1,107 @@
+//! A simulation of a scene in which things are taken up and released.
+
+use super::build::Kept;
+use super::setup::Facts;
+use super::switches::{Reached, Switches, not_taken_up};
+use super::{Scene, SceneError, Setup, SupportForces};
+use crate::format::EventRow;
+use isosheet_dynamics::contact::Contact;
+use isosheet_dynamics::{Hand, Simulation};
+
+/// A simulation between two steps, with what is known of its scene as it is held now.
+pub(crate) struct UnderWay {
+    pub(crate) facts: Facts,
+    pub(crate) switches: Switches,
+    pub(crate) supports: SupportForces,
+    pub(crate) simulation: Simulation,
+}
+
+impl UnderWay {
+    /// The simulation that begins with what a scene was built to.
+    pub(crate) fn begin(
+        scene: &Scene,
+        setup: Setup,
+        begin: impl FnOnce(Setup) -> Result<Simulation, SceneError>,
+    ) -> Result<Self, SceneError> {
+        let (facts, switches) = (setup.facts(), setup.switches.clone());
+        Ok(Self::new(scene, facts, switches, begin(setup)?))
+    }
+
+    pub(crate) fn new(
+        scene: &Scene,
+        facts: Facts,
+        switches: Switches,
+        simulation: Simulation,
+    ) -> Self {
+        let count = scene.support.len();
+        Self {
+            supports: SupportForces::new(facts.origins.clone(), &simulation, count),
+            facts,
+            switches,
+            simulation,
+        }
+    }
+
+    /// Takes up and releases what the step that has ended asks for, and goes on with it; what has happened. `hand`
+    /// is what somebody holds.
+    ///
+    /// # Errors
+    /// [`SceneError`] if something cannot be taken up; then nothing has changed.
+    pub(crate) fn switch(
+        &mut self,
+        scene: &Scene,
+        kept: &mut Kept,
+        hand: Option<&Hand>,
+    ) -> Result<Vec<EventRow>, SceneError> {
+        if !self.switches.wait() {
+            return Ok(Vec::new());
+        }
+        let mut switches = self.switches.clone();
+        let events = self.changes(scene, &mut switches);
+        if events.is_empty() {
+            return Ok(events);
+        }
+        let mut setup = scene.build_switched(kept, &switches)?;
+        let facts = setup.facts();
+        if let Some(hand) = hand {
+            setup.model = setup.model.with_hand(hand.clone());
+        }
+        let Setup {
+            model,
+            contacts,
+            origins,
+            ..
+        } = setup;
+        let contact = contacts.map(|c| Box::new(c) as Box<dyn Contact>);
+        self.simulation
+            .hold_by(model, contact)
+            .map_err(|e| not_taken_up(&events, &e, origins.of_change(&e)))?;
+        self.simulation.set_note(switches.note());
+        let count = scene.support.len();
+        self.supports = SupportForces::new(facts.origins.clone(), &self.simulation, count);
+        (self.facts, self.switches) = (facts, switches);
+        Ok(events)
+    }
+
+    /// What the present state takes up and releases.
+    fn changes(&self, scene: &Scene, switches: &mut Switches) -> Vec<EventRow> {
+        let state = self.simulation.state();
+        let seen = self.facts.shown(&state.x);
+        let measure = |name: &str| {
+            let mut gauges = self.facts.measures.iter();
+            let gauge = gauges.find(|gauge| gauge.name == name)?;
+            Some(gauge.value(&seen))
+        };
+        let forces = self.supports.of(&self.simulation);
+        let size = |f: &[f64; 3]| f.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let supports: Vec<f64> = forces.iter().map(size).collect();
+        let reached = Reached {
+            t: state.t,
+            x: &state.x,
+            measure: &measure,
+            supports: &supports,
+            bonds: &self.facts.bonds,
+        };
+        switches.after_step(scene, &reached)
+    }
+}
