@@ -34,6 +34,7 @@ mod elastic;
 mod energy;
 mod error;
 mod estimate;
+mod extend;
 #[cfg(feature = "picture")]
 mod film;
 mod folder;
@@ -61,6 +62,7 @@ pub use elastic::{Bend, ElasticSummary};
 pub use energy::EnergySummary;
 pub use error::RunError;
 pub use estimate::Estimate;
+pub use extend::{ExtensionError, extend_folder};
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
@@ -243,7 +245,7 @@ fn simulate_in(
         FolderState::Empty(open) => (open, None),
         FolderState::Partial(open) => {
             let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
-            check_origin(&open, &saved.0, hash)?;
+            check_origin(&open, &saved.0, &hash.to_string())?;
             (open, Some(saved))
         }
     };
@@ -360,13 +362,9 @@ fn started(file: &SceneFile, setup: Setup) -> Result<UnderWay, RunError> {
 
 /// Refuses a checkpoint of another scene, where the one in the folder was changed since, or of another
 /// version.
-fn check_origin(
-    folder: &RunFolder,
-    progress: &RunProgress,
-    hash: SceneHash,
-) -> Result<(), RunError> {
+fn check_origin(folder: &RunFolder, progress: &RunProgress, hash: &str) -> Result<(), RunError> {
     let root = folder.root().to_owned();
-    if progress.scene != hash.to_string() {
+    if progress.scene != hash {
         return Err(RunError::OtherScene { folder: root });
     }
     if progress.version != env!("CARGO_PKG_VERSION") {

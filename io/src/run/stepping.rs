@@ -70,14 +70,22 @@ pub(crate) fn step_count(scene: &Scene) -> u64 {
     steps.max(1.0) as u64
 }
 
+/// Length of the last step that the time asks for, seconds.
+fn last_length(scene: &Scene) -> f64 {
+    scene.stop.time - (step_count(scene) - 1) as f64 * scene.method.step
+}
+
+/// Whether the last step of a run is shorter than the others.
+pub(super) fn has_short_step(scene: &Scene) -> bool {
+    let h = scene.method.step;
+    (last_length(scene) - h).abs() > ROUND_OFF * h
+}
+
 /// Length of a step, from 1 to the number of steps: the last one is as short as the time asks for.
 fn step_length(scene: &Scene, number: u64) -> f64 {
-    let (h, count) = (scene.method.step, step_count(scene));
-    let rest = scene.stop.time - (count - 1) as f64 * h;
-    if number == count && (rest - h).abs() > ROUND_OFF * h {
-        rest
-    } else {
-        h
+    match number == step_count(scene) && has_short_step(scene) {
+        true => last_length(scene),
+        false => scene.method.step,
     }
 }
 
@@ -535,7 +543,7 @@ impl<'a> Stepping<'a> {
 
     /// Force of each support of the scene on the sheet, newtons.
     fn support_forces(&self) -> Vec<[f64; 3]> {
-        self.under_way.supports.of(&self.under_way.simulation)
+        self.under_way.support_forces()
     }
 
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {

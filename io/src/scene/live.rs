@@ -218,7 +218,7 @@ impl LiveScene {
 
     /// Force of each support of the scene on the sheet in the last step, newtons; zero before the first one.
     pub fn support_forces(&self) -> Vec<[f64; 3]> {
-        self.under_way.supports.of(&self.under_way.simulation)
+        self.under_way.support_forces()
     }
 
     /// The length of the next step of a run until time `until` (seconds): that of the scene, the rest of the

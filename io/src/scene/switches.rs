@@ -42,8 +42,8 @@ pub(crate) struct Reached<'a> {
     pub(crate) x: &'a [f64],
     /// What a measure shows, metres.
     pub(crate) measure: &'a dyn Fn(&str) -> Option<f64>,
-    /// Sizes of the forces of the supports, newtons.
-    pub(crate) supports: &'a [f64],
+    /// Size of the force of a support, newtons.
+    pub(crate) support: &'a dyn Fn(usize) -> f64,
     /// The seams of the scene.
     pub(crate) bonds: &'a [Option<Bond>],
 }
@@ -178,7 +178,7 @@ impl Switch {
         let largest = |forces: &[f64]| forces.iter().copied().reduce(f64::max);
         match self.of {
             Holder::Support(k) => {
-                let force = reached.supports.get(k).copied().unwrap_or(0.0);
+                let force = (reached.support)(k);
                 if force < limit {
                     return None;
                 }

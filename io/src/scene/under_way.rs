@@ -7,6 +7,7 @@ use super::{Scene, SceneError, Setup, SupportForces};
 use crate::format::EventRow;
 use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{Hand, Simulation};
+use std::cell::OnceCell;
 
 /// A simulation between two steps, with what is known of its scene as it is held now.
 pub(crate) struct UnderWay {
@@ -14,6 +15,8 @@ pub(crate) struct UnderWay {
     pub(crate) switches: Switches,
     pub(crate) supports: SupportForces,
     pub(crate) simulation: Simulation,
+    /// Forces of the supports in the last step (newtons), where something has been taken up or released since.
+    before: Option<Vec<[f64; 3]>>,
 }
 
 impl UnderWay {
@@ -39,6 +42,7 @@ impl UnderWay {
             facts,
             switches,
             simulation,
+            before: None,
         }
     }
 
@@ -53,6 +57,7 @@ impl UnderWay {
         kept: &mut Kept,
         hand: Option<&Hand>,
     ) -> Result<Vec<EventRow>, SceneError> {
+        self.before = None;
         if !self.switches.wait() {
             return Ok(Vec::new());
         }
@@ -73,14 +78,23 @@ impl UnderWay {
             ..
         } = setup;
         let contact = contacts.map(|c| Box::new(c) as Box<dyn Contact>);
+        let before = self.support_forces();
         self.simulation
             .hold_by(model, contact)
             .map_err(|e| not_taken_up(&events, &e, origins.of_change(&e)))?;
         self.simulation.set_note(switches.note());
         let count = scene.support.len();
         self.supports = SupportForces::new(facts.origins.clone(), &self.simulation, count);
-        (self.facts, self.switches) = (facts, switches);
+        (self.facts, self.switches, self.before) = (facts, switches, Some(before));
         Ok(events)
+    }
+
+    /// Force of each support of the scene on the sheet in the last step, newtons; zero before the first one.
+    pub(crate) fn support_forces(&self) -> Vec<[f64; 3]> {
+        match &self.before {
+            Some(forces) => forces.clone(),
+            None => self.supports.of(&self.simulation),
+        }
     }
 
     /// What the present state takes up and releases.
@@ -92,14 +106,18 @@ impl UnderWay {
             let gauge = gauges.find(|gauge| gauge.name == name)?;
             Some(gauge.value(&seen))
         };
-        let forces = self.supports.of(&self.simulation);
-        let size = |f: &[f64; 3]| f.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let supports: Vec<f64> = forces.iter().map(size).collect();
+        // They cost a factorisation, and are asked for where something depends on them.
+        let forces = OnceCell::new();
+        let support = |k: usize| {
+            let forces = forces.get_or_init(|| self.supports.of(&self.simulation));
+            let force = forces.get(k).copied().unwrap_or_default();
+            force.iter().map(|c| c * c).sum::<f64>().sqrt()
+        };
         let reached = Reached {
             t: state.t,
             x: &state.x,
             measure: &measure,
-            supports: &supports,
+            support: &support,
             bonds: &self.facts.bonds,
         };
         switches.after_step(scene, &reached)

@@ -10,6 +10,7 @@ mod convert;
 mod devtools;
 mod ends;
 mod events;
+mod extending;
 mod folders;
 mod folding;
 mod gallery;

@@ -149,6 +149,8 @@ fn supports_are_released_by_a_measure_and_by_their_force() {
         (0.01..0.01 + mass * 10.0 * 0.01).contains(&force),
         "{event:?}"
     );
+    assert!((scene.support_forces()[0][2] - force).abs() < 1e-15);
+    scene.step(0.01).expect("accepted");
     assert_eq!(scene.support_forces(), [[0.0; 3]]);
 }
 
