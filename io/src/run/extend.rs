@@ -18,6 +18,9 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ExtensionError {
+    /// The time is not finite.
+    #[error("that is no time")]
+    NotFinite,
     /// It goes as far already.
     #[error("it goes until {time} s already", time = given(*time))]
     Earlier {
@@ -50,6 +53,7 @@ fn in_words(reason: EndReason) -> &'static str {
 impl Advice for ExtensionError {
     fn advice(&self) -> Option<&'static str> {
         Some(match self {
+            Self::NotFinite => "give a finite time in seconds",
             Self::Earlier { .. } => "give a later time",
             Self::Ended { .. } => {
                 "run the scene without that condition, in a folder of its own: `isosheet simulate SCENE --out DIR`"
@@ -78,6 +82,9 @@ pub fn extend_folder(
         until,
         cause,
     };
+    if !until.is_finite() {
+        return Err(refuse(ExtensionError::NotFinite));
+    }
     let text = stored.text();
     let edit = format!("stop.time={until}");
     let longer = SceneFile::parse(text.text.clone(), &text.path, &[edit])?;

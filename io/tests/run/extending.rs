@@ -1,7 +1,7 @@
 //! Runs that go on beyond their end.
 
 use crate::events::{LETS_GO, with_text};
-use crate::{assert_same, code, run, stderr, summary};
+use crate::{assert_same, code, run, stderr, stdout, summary};
 use isosheet_io::read_events;
 use std::fs;
 
@@ -37,9 +37,9 @@ fn a_run_that_goes_on_beyond_its_end_has_the_bits_of_a_longer_one() {
     // The scene in the folder is that of the longer run, so that there is nothing left to do.
     let done = run(dir, &["resume", "part"]);
     assert!(
-        stderr(&done).contains("already complete"),
+        stdout(&done).contains("already complete"),
         "{}",
-        stderr(&done)
+        stdout(&done)
     );
 }
 
@@ -69,7 +69,7 @@ fn a_run_does_not_go_on_where_that_makes_no_sense() {
             "0.2",
             "the sheet was at rest",
         ),
-        ("nan", vec!["stop.time=0.1"], "nan", "stop.time"),
+        ("nan", vec!["stop.time=0.1"], "nan", "that is no time"),
     ] {
         let mut arguments = vec!["simulate", "scene.toml", "--out", out];
         arguments.extend(edits.iter().flat_map(|edit| ["--set", edit]));

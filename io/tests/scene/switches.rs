@@ -224,3 +224,42 @@ fn contact_begins_and_ends() {
     );
     assert!(text.contains("let them be apart"), "{text}");
 }
+
+/// A strip that two clamps hold in turn, elastic and yielding: the second one holds place and slope where they are.
+#[test]
+fn a_clamp_is_taken_up_where_the_sheet_is_and_the_other_one_released() {
+    for yields in ["", "yield = { moment = 1e-3 }"] {
+        let mut scene = live(&format!(
+            "version = 1
+            [sheet]
+            mesh = {{ rectangle = {{ width = 0.1, height = 0.02, columns = 10, rows = 2 }} }}
+            material = \"PET film\"\ndamping = 2.0\n{yields}
+            [[support]]\nat = {{ vertices = [0, 11, 22] }}\nhold = \"clamp\"\nuntil = 0.2
+            [[support]]\nat = {{ vertices = [10, 21, 32] }}\nhold = \"clamp\"\nfrom = 0.1
+            [forces]\ngravity = [0, 0, -9.81]
+            [method]\nstep = 0.01"
+        ));
+        let tip = |scene: &LiveScene| scene.positions()[3 * 10..3 * 11].to_vec();
+        for _ in 0..10 {
+            scene.step(0.01).expect("accepted");
+        }
+        assert_eq!(scene.events()[0].change, EventChange::TakenUp);
+        let caught = tip(&scene);
+        assert!(caught[2] < -0.005, "{caught:?}");
+        for _ in 0..10 {
+            scene.step(0.01).expect("accepted");
+            assert_eq!(tip(&scene), caught);
+        }
+        assert_eq!(scene.events()[0].change, EventChange::Released);
+        for _ in 0..10 {
+            scene.step(0.01).expect("accepted");
+            assert_eq!(tip(&scene), caught);
+        }
+        // The end that was let go hangs, and the other clamp carries it all.
+        assert!(scene.positions()[2] < -0.001);
+        let checkpoint = scene.simulation().checkpoint();
+        let mut resumed = LiveScene::resume(scene.file().clone(), checkpoint).expect("the same");
+        let reports = [resumed.step(0.01), scene.step(0.01)].map(|r| r.expect("accepted"));
+        assert_eq!(reports[0], reports[1]);
+    }
+}
