@@ -2,10 +2,12 @@
 
 mod glued;
 mod parts;
+mod passing;
 
 use glued::Glued;
 use isosheet_mesh::{Advice, Topology};
 use parts::Parts;
+use passing::Passing;
 use std::collections::HashMap;
 use std::ops::Range;
 use thiserror::Error;
@@ -22,6 +24,7 @@ pub struct ContactMesh {
     elements: Vec<Element>,
     glued: Option<Glued>,
     parts: Option<Parts>,
+    passing: Passing,
 }
 
 /// A face, a free edge or a free vertex together with the vertices and edges that it represents.
@@ -217,6 +220,7 @@ impl ContactMesh {
             elements,
             glued: None,
             parts: None,
+            passing: Passing::default(),
         }
     }
 
@@ -248,10 +252,19 @@ impl ContactMesh {
         self
     }
 
-    /// Whether two primitives have a vertex in common, are glued to each other or belong together.
+    /// Lets what has its vertices in one range pass through what has them in the other.
+    #[must_use]
+    pub fn with_passing(mut self, vertices: [Range<usize>; 2]) -> Self {
+        self.passing.add(vertices);
+        self
+    }
+
+    /// Whether two primitives have a vertex in common, are glued to each other, belong together or pass through
+    /// each other.
     pub(crate) fn are_joined(&self, first: &[u32], second: &[u32]) -> bool {
         let parts = self.parts.as_ref();
-        parts.is_some_and(|parts| parts.are_joined(first, second))
+        self.passing.pass(first, second)
+            || parts.is_some_and(|parts| parts.are_joined(first, second))
             || match &self.glued {
                 None => first.iter().any(|v| second.contains(v)),
                 Some(glued) => glued.are_joined(first, second),

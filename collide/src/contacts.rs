@@ -320,6 +320,14 @@ impl Contacts {
         Ok(self)
     }
 
+    /// Lets two of several sheets, whose vertices these are, or one of them and itself, pass through each other.
+    #[must_use]
+    pub fn without_contact_between(mut self, vertices: [Range<usize>; 2]) -> Self {
+        self.mesh = self.mesh.with_passing(vertices);
+        self.neighbours = None;
+        self
+    }
+
     /// The options.
     pub fn options(&self) -> &ContactOptions {
         &self.options

@@ -4,6 +4,7 @@ pub(crate) mod atomic;
 #[cfg(feature = "run")]
 mod cell;
 mod data_error;
+mod events;
 mod export;
 mod file_error;
 mod finite;
@@ -23,6 +24,7 @@ pub use data_error::DataError;
 #[cfg(feature = "run")]
 pub(crate) use finite::check_finite;
 
+pub use events::{EventChange, EventKind, EventRow, EventWriter, read_events};
 #[cfg(feature = "run")]
 pub(crate) use export::frame_number;
 pub use export::{

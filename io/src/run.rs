@@ -8,6 +8,7 @@
 //! | `history.csv` | one row for each step ([`HistoryRow`]) |
 //! | `loads.csv` | the loads of each support and obstacle at each step ([`LoadRow`](crate::LoadRow)), if there are any |
 //! | `measures.csv` | what each measure of the scene shows at the start and at each step ([`MeasureRow`](crate::MeasureRow)), if there are any |
+//! | `events.csv` | what was taken up and released ([`EventRow`](crate::EventRow)), if anything can be |
 //! | `trajectory.npz` | the frames ([`Trajectory`]), when the run ends, fails or is stopped |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
 //! | `index.html` | the 3D page of the run ([`view`](crate::view)), unless the scene says `page = false` |
@@ -33,6 +34,7 @@ mod elastic;
 mod energy;
 mod error;
 mod estimate;
+mod extend;
 #[cfg(feature = "picture")]
 mod film;
 mod folder;
@@ -61,6 +63,7 @@ pub use elastic::{Bend, ElasticSummary};
 pub use energy::EnergySummary;
 pub use error::RunError;
 pub use estimate::Estimate;
+pub use extend::{ExtensionError, extend_folder};
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
@@ -79,12 +82,11 @@ use crate::format::{
     FileError, HistoryRow, Motion, MotionError, Row, Trajectory, frame_path, read_json, write_json,
     write_obj,
 };
-use crate::scene::{Kept, SceneFile, Setup};
+use crate::scene::{Kept, SceneFile, Setup, UnderWay};
 use crate::view::PageOptions;
 use checkpoint::RunProgress;
 use folder::{Existing, FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
-use isosheet_dynamics::Simulation;
 use page::write_page_of;
 use recording::RunFrames;
 use std::io::ErrorKind;
@@ -231,7 +233,7 @@ fn simulate_in(
         true => None,
         false => {
             estimate.check(file, folder)?;
-            Some(started(setup)?)
+            Some(started(file, setup)?)
         }
     };
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
@@ -245,19 +247,21 @@ fn simulate_in(
         FolderState::Empty(open) => (open, None),
         FolderState::Partial(open) => {
             let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
-            check_origin(&open, &saved.0, hash)?;
+            check_origin(&open, &saved.0, &hash.to_string())?;
             (open, Some(saved))
         }
     };
-    let (simulation, saved) = match (saved, start) {
+    let (under_way, saved) = match (saved, start) {
         (Some((progress, checkpoint)), _) => {
-            let setup = file.build_with(&mut kept)?;
-            (setup.resume(checkpoint)?, Some(progress))
+            let setup = file.build_at_with(&mut kept, &checkpoint)?;
+            let resume = |setup: Setup| setup.resume(checkpoint);
+            let under_way = UnderWay::begin(file.scene(), setup, resume)?;
+            (under_way, Some(progress))
         }
-        (None, Some(simulation)) => (simulation, None),
-        (None, None) => (started(file.build_with(&mut kept)?)?, None),
+        (None, Some(under_way)) => (under_way, None),
+        (None, None) => (started(file, file.build_with(&mut kept)?)?, None),
     };
-    let mut stepping = Stepping::begin(&plan, &open, simulation, saved, clock)?;
+    let mut stepping = Stepping::begin(&plan, &open, &mut kept, under_way, saved, clock)?;
     watch.begin(&Beginning {
         steps: stepping.progress.steps,
         of: step_count(file.scene()),
@@ -266,7 +270,7 @@ fn simulate_in(
         warnings,
     });
     if let Some(sink) = watch.trace() {
-        stepping.simulation.set_trace(sink);
+        stepping.under_way.simulation.set_trace(sink);
     }
     let interval = file.scene().output.checkpoint_interval;
     let advanced = advance(&mut stepping, interval, watch);
@@ -351,22 +355,18 @@ fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError>
 }
 
 /// The simulation at the start, whose energies can be written.
-fn started(setup: Setup) -> Result<Simulation, RunError> {
-    let simulation = setup.start()?;
-    let start = HistoryRow::of_start(&simulation).check_finite();
+fn started(file: &SceneFile, setup: Setup) -> Result<UnderWay, RunError> {
+    let started = UnderWay::begin(file.scene(), setup, Setup::start)?;
+    let start = HistoryRow::of_start(&started.simulation).check_finite();
     start.map_err(FileError::from)?;
-    Ok(simulation)
+    Ok(started)
 }
 
 /// Refuses a checkpoint of another scene, where the one in the folder was changed since, or of another
 /// version.
-fn check_origin(
-    folder: &RunFolder,
-    progress: &RunProgress,
-    hash: SceneHash,
-) -> Result<(), RunError> {
+fn check_origin(folder: &RunFolder, progress: &RunProgress, hash: &str) -> Result<(), RunError> {
     let root = folder.root().to_owned();
-    if progress.scene != hash.to_string() {
+    if progress.scene != hash {
         return Err(RunError::OtherScene { folder: root });
     }
     if progress.version != env!("CARGO_PKG_VERSION") {

@@ -29,6 +29,7 @@
 
 mod air;
 mod bodies;
+mod bond;
 mod build;
 mod bytes;
 mod carried;
@@ -81,8 +82,11 @@ mod step_path;
 mod stop;
 mod support_forces;
 mod supports;
+mod switch;
+mod switches;
 mod targets;
 mod toml_problem;
+mod under_way;
 mod unit;
 mod warning;
 mod warnings;
@@ -133,6 +137,7 @@ pub use starting_point::StartingPoint;
 pub use stop::{Rest, Stop};
 pub use support_forces::{SupportForces, SupportLoad};
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
+pub use switch::{Condition, Threshold, When};
 pub use targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
 pub use unit::UnitRange;
 pub use warning::Warning;
@@ -155,6 +160,8 @@ pub(crate) use setup::Facts;
 pub(crate) use size::MEMORY_OF_FACE;
 #[cfg(feature = "run")]
 pub(crate) use supports::frame_motion;
+#[cfg(feature = "run")]
+pub(crate) use under_way::UnderWay;
 
 use problem::Checks;
 use schemars::JsonSchema;
@@ -317,6 +324,7 @@ impl Scene {
             bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }
         measure::check_names(&self.measure, &root, &mut checks);
+        self.check_periods(&mut checks);
         self.method.check(&root.name("method"), &mut checks);
         self.check_method_fits(&mut checks);
         let step = self.method.step;

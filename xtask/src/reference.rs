@@ -153,7 +153,7 @@ Where a key has several choices, a choice with keys of its own is a table with o
 (`shape = { sphere = { radius = 0.1 } }`), and one without keys is its name (`shape = \"half_space\"`).
 
 `isosheet simulate` writes the folder `NAME-run` (`--out` names another one): `scene.toml` as it was run, `meshes/`
-with the mesh files, `history.csv`, `loads.csv`, `measures.csv`, `trajectory.npz`, `obj/` if it is asked for, `index.html`, and
+with the mesh files, `history.csv`, `loads.csv`, `measures.csv`, `events.csv`, `trajectory.npz`, `obj/` if it is asked for, `index.html`, and
 last `summary.json`. The page `index.html` shows the run in 3D and plays it, in any browser and without a connection;
 `isosheet page DIR` makes it anew, of a run that is not complete too, and `isosheet info DIR` says what came of the run.
 A run that was stopped is continued by the same command, or by `isosheet resume DIR`. After an edit of the scene

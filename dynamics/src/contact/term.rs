@@ -60,13 +60,37 @@ impl ContactTerm {
     ) -> Result<(Self, ContactState), ContactError> {
         let bodies = check_start(geometry.as_mut(), model, state)?;
         let barrier = BarrierPotential::at_start(geometry.laws(), model, state)?;
+        Ok(Self::at_rest_with(geometry, barrier, bodies, state))
+    }
+
+    /// Goes on with the barrier of an earlier run, where other things touch; with the contacts there, of which
+    /// friction knows nothing yet.
+    ///
+    /// # Errors
+    /// As [`ContactTerm::resume`].
+    pub(crate) fn anew(
+        mut geometry: Box<dyn Contact>,
+        barrier: BarrierPotential,
+        model: &SheetModel,
+        state: &State,
+    ) -> Result<(Self, ContactState), ContactError> {
+        let bodies = check_start(geometry.as_mut(), model, state)?;
+        Ok(Self::at_rest_with(geometry, barrier, bodies, state))
+    }
+
+    fn at_rest_with(
+        mut geometry: Box<dyn Contact>,
+        barrier: BarrierPotential,
+        bodies: BodyMotions,
+        state: &State,
+    ) -> (Self, ContactState) {
         let x = SurfacePoints::placed(geometry.points(), &state.x).into_owned();
         let contacts = ContactState {
             barrier,
             active: ActiveContacts::at_rest(geometry.as_mut(), state.t, &x),
             friction: LaggedFriction::none(),
         };
-        Ok((Self::with(geometry, barrier, bodies), contacts))
+        (Self::with(geometry, barrier, bodies), contacts)
     }
 
     /// Goes on with the barrier of an earlier run.

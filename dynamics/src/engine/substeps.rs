@@ -1,5 +1,7 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
+mod held;
+
 use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan, SurfacePoints};
 use crate::damped::implicit::Implicit;
 use crate::diagnosis::blocked::{blocked_vertices, dependent_vertices};

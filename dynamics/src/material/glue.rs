@@ -154,6 +154,12 @@ impl Glue {
         pairs.fold(0.0, |most, p| most.max(self.gap(p, t, x).norm()))
     }
 
+    /// The force that each pair carries at time `t` (seconds) and positions `x` (`3V`, metres), newtons.
+    pub fn pair_forces(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        let pairs = 0..self.pairs.len();
+        pairs.map(|p| self.stiffness * self.gap(p, t, x).norm()).collect()
+    }
+
     /// What is left between the vertices of a pair, less what they are meant to be apart at time `t`, metres.
     fn gap(&self, number: usize, t: f64, x: &[f64]) -> Vector3<f64> {
         let [a, b] = self.pairs[number];

@@ -60,6 +60,12 @@ pub enum SimulationError {
     /// The checkpoint is invalid or of another model.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// The method has no place for supports that come and go.
+    #[error(
+        "supports, glue and contacts change during the simulation, and the method has no place for what that \
+         loses"
+    )]
+    Held,
     /// Charts do not use [`StepControl`](crate::StepControl).
     #[error("a simulation in a chart controls its steps by `ChartOptions::control`")]
     ChartControl,
@@ -73,7 +79,7 @@ impl Advice for SimulationError {
             Self::Chart(error) => error.advice(),
             Self::Contact(error) => error.advice(),
             Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
-            Self::Elastic | Self::Plastic => Some("use BDF2 or implicit Euler"),
+            Self::Elastic | Self::Plastic | Self::Held => Some("use BDF2 or implicit Euler"),
             Self::Checkpoint(error) => error.advice(),
             Self::ChartControl => Some("leave `StepControl` out"),
             Self::StateLength { .. } | Self::Linalg(..) => None,

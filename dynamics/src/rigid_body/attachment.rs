@@ -34,6 +34,12 @@ impl Attachment {
         }
     }
 
+    /// The force that each pair carries at positions `x` (`3V`, metres), newtons.
+    pub fn pair_forces(&self, x: &[f64]) -> Vec<f64> {
+        let pairs = self.pairs.iter();
+        pairs.map(|pair| self.stiffness * Self::gap(pair, x).norm()).collect()
+    }
+
     /// The vertices of a pair with their weights in what is between them.
     fn weights((vertex, carriers): &(VertexId, CarriedPoint)) -> [(VertexId, f64); 5] {
         let [a, b, c, d] = carriers.map(|(v, b)| (v, -b));

@@ -8,7 +8,7 @@ use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use serde::{Deserialize, Serialize};
 
 /// Format version; it grows with every change of the fields.
-const VERSION: u32 = 16;
+const VERSION: u32 = 17;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
@@ -47,6 +47,7 @@ pub struct Checkpoint {
     pub(crate) sheet: SheetFingerprint,
     pub(crate) energy: EnergySums,
     pub(crate) motion: EngineState,
+    pub(crate) note: Vec<u8>,
 }
 
 /// State of the engine.
@@ -130,6 +131,17 @@ impl SheetFingerprint {
 
     /// Refuses another model.
     fn check(&self, found: &Self) -> Result<(), CheckpointError> {
+        self.check_sheet(found)?;
+        match self.supports == found.supports {
+            true => Ok(()),
+            false => Err(CheckpointError::OtherSheet {
+                what: "pins or vertex constraints",
+            }),
+        }
+    }
+
+    /// Refuses the model of another sheet, whatever holds it.
+    pub(super) fn check_sheet(&self, found: &Self) -> Result<(), CheckpointError> {
         let differs = |what| Err(CheckpointError::OtherSheet { what });
         if (self.vertices, self.edges) != (found.vertices, found.edges) {
             Err(CheckpointError::OtherSize {
@@ -142,8 +154,6 @@ impl SheetFingerprint {
             differs("rest lengths or isometry")
         } else if self.masses != found.masses {
             differs("masses")
-        } else if self.supports != found.supports {
-            differs("pins or vertex constraints")
         } else {
             Ok(())
         }
@@ -151,13 +161,24 @@ impl SheetFingerprint {
 }
 
 impl Checkpoint {
-    pub(crate) fn new(sheet: SheetFingerprint, energy: EnergySums, motion: EngineState) -> Self {
+    pub(crate) fn new(
+        sheet: SheetFingerprint,
+        energy: EnergySums,
+        motion: EngineState,
+        note: Vec<u8>,
+    ) -> Self {
         Self {
             version: VERSION,
             sheet,
             energy,
             motion,
+            note,
         }
+    }
+
+    /// The note that the program kept with the simulation ([`Simulation::set_note`](crate::Simulation::set_note)).
+    pub fn note(&self) -> &[u8] {
+        &self.note
     }
 
     /// Refuses a model other than the one that the checkpoint was made with.

@@ -4,5 +4,6 @@ mod arrays;
 mod change;
 pub(crate) mod checkpoint;
 pub(crate) mod fold_start;
+mod held;
 pub(crate) mod observe;
 pub(crate) mod simulation;

@@ -40,10 +40,12 @@ use std::ops::ControlFlow;
 /// # }
 /// ```
 pub struct Simulation {
-    engine: Engine,
+    pub(super) engine: Engine,
     /// Identifies the model that its user built.
-    sheet: SheetFingerprint,
+    pub(super) sheet: SheetFingerprint,
     energy: EnergySums,
+    /// What the program that runs it keeps with it.
+    note: Vec<u8>,
     /// Scratch, `3V`.
     force: Vec<f64>,
     /// Receives trace events.
@@ -56,7 +58,7 @@ const _: fn() = || {
     is_send::<Simulation>();
 };
 
-enum Engine {
+pub(super) enum Engine {
     Free(Box<FreeEngine>),
     Chart(Box<ChartEngine>),
 }
@@ -114,6 +116,7 @@ impl Simulation {
             engine,
             sheet,
             energy: EnergySums::default(),
+            note: Vec::new(),
             force: Vec::new(),
             trace: None,
         };
@@ -128,7 +131,13 @@ impl Simulation {
             Engine::Free(engine) => EngineState::Free(Box::new(engine.kept())),
             Engine::Chart(chart) => EngineState::Chart(Box::new(chart.motion())),
         };
-        Checkpoint::new(self.sheet, self.energy, motion)
+        Checkpoint::new(self.sheet, self.energy, motion, self.note.clone())
+    }
+
+    /// Keeps a note with the simulation, which its checkpoints have too: what the program that runs it needs to
+    /// build the model and the contact again ([`Checkpoint::note`]).
+    pub fn set_note(&mut self, note: Vec<u8>) {
+        self.note = note;
     }
 
     /// Resumes a chart-free simulation from a checkpoint bit for bit, with the model and the contact of its
@@ -149,7 +158,13 @@ impl Simulation {
         };
         let engine = FreeEngine::resume(model, contact, *kept)?;
         let engine = Engine::Free(Box::new(engine));
-        Ok(Self::resumed(engine, checkpoint.sheet, checkpoint.energy))
+        let Checkpoint {
+            sheet,
+            energy,
+            note,
+            ..
+        } = checkpoint;
+        Ok(Self::resumed(engine, sheet, energy, note))
     }
 
     /// Resumes a simulation in a chart from a checkpoint bit for bit, with the model, the chart and the
@@ -171,14 +186,21 @@ impl Simulation {
         };
         let engine = ChartEngine::resume(model, chart, contact, *motion)?;
         let engine = Engine::Chart(Box::new(engine));
-        Ok(Self::resumed(engine, checkpoint.sheet, checkpoint.energy))
+        let Checkpoint {
+            sheet,
+            energy,
+            note,
+            ..
+        } = checkpoint;
+        Ok(Self::resumed(engine, sheet, energy, note))
     }
 
-    fn resumed(engine: Engine, sheet: SheetFingerprint, energy: EnergySums) -> Self {
+    fn resumed(engine: Engine, sheet: SheetFingerprint, energy: EnergySums, note: Vec<u8>) -> Self {
         let mut simulation = Self {
             engine,
             sheet,
             energy,
+            note,
             force: Vec::new(),
             trace: None,
         };
@@ -656,7 +678,7 @@ impl Simulation {
 }
 
 /// Time over which initial velocities of moving pins are differences, seconds.
-const MOTION_SPAN: f64 = 1e-2;
+pub(super) const MOTION_SPAN: f64 = 1e-2;
 
 fn check_length(model: &SheetModel, state: &State) -> Result<(), SimulationError> {
     let expected = model.coordinate_count();

@@ -126,8 +126,8 @@ pub(crate) fn of_file(py: Python<'_>, error: &SceneFileError) -> PyErr {
 
 /// An error of a step at a time, seconds.
 pub(crate) fn of_step(py: Python<'_>, error: &FailedStep, time: f64) -> PyErr {
-    if matches!(error.step, StepError::Interrupted { .. }) {
-        return PyKeyboardInterrupt::new_err(error.step.to_string());
+    if let Some(step @ StepError::Interrupted { .. }) = &error.step {
+        return PyKeyboardInterrupt::new_err(step.to_string());
     }
     let exception = StepFailed::new_err(error.to_string());
     of_problems(py, exception, &error.scene, Some(time))

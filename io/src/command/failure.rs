@@ -113,7 +113,7 @@ impl From<RunError> for Failure {
             | RunError::Foreign { .. }
             | RunError::NotOwn { .. } => Code::OtherScene,
             RunError::Busy { .. } => Code::Busy,
-            RunError::NoFolder => Code::CommandLine,
+            RunError::NoFolder | RunError::Extension { .. } => Code::CommandLine,
             RunError::SceneFile(SceneFileError::Edit(_)) => Code::CommandLine,
             RunError::Scene(_)
             | RunError::SceneFile(_)

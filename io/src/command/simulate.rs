@@ -6,7 +6,9 @@ use super::message::{counted, print_message, print_result, print_warnings, with_
 use super::open::open_page;
 use super::progress::{Progress, event};
 use super::trace::TraceFile;
-use crate::run::{Outcome, RunError, Summary, resume_folder, simulate, simulate_anew};
+use crate::run::{
+    Outcome, RunError, Summary, extend_folder, resume_folder, simulate, simulate_anew,
+};
 use crate::scene::SceneFile;
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
@@ -45,7 +47,8 @@ pub(crate) struct Simulate {
 
 const RESUME_EXAMPLES: &str = "\
 Examples:
-  isosheet resume cloth-run                    continue a run that was stopped, without its scene file";
+  isosheet resume cloth-run                    continue a run that was stopped, without its scene file
+  isosheet resume cloth-run --until 2          let it go on beyond its end, until t = 2 s";
 
 /// Continue a run
 #[derive(Debug, Args)]
@@ -53,6 +56,10 @@ Examples:
 pub(crate) struct Resume {
     /// The folder of the run
     dir: PathBuf,
+    /// Let the run go on until this time (seconds), beyond the `stop.time` of its scene, as if the scene had had
+    /// it from the start
+    #[arg(long, value_name = "T")]
+    until: Option<f64>,
     #[command(flatten)]
     how: How,
 }
@@ -216,7 +223,9 @@ impl Resume {
 
     fn resume(&self) -> Done {
         self.how.prepare()?;
-        self.how
-            .show(&self.dir, |progress| resume_folder(&self.dir, progress))
+        self.how.show(&self.dir, |progress| match self.until {
+            Some(until) => extend_folder(&self.dir, until, progress),
+            None => resume_folder(&self.dir, progress),
+        })
     }
 }

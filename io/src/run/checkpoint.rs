@@ -32,6 +32,9 @@ pub(crate) struct RunProgress {
     /// What is written of the table of measures; none if the scene names none.
     #[serde(default)]
     pub(crate) measures: Option<Written>,
+    /// What is written of the table of events; none if all holds at all times.
+    #[serde(default)]
+    pub(crate) events: Option<Written>,
     /// What the measures showed so far.
     #[serde(default)]
     pub(crate) measured: BTreeMap<String, Measured>,

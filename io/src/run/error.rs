@@ -1,8 +1,10 @@
 //! Why a run cannot go on.
 
+use super::ExtensionError;
 use crate::format::{DataError, ExportError, FileError};
 use crate::scene::{SceneError, SceneFileError};
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -86,6 +88,16 @@ pub enum RunError {
         /// The version that began the run.
         begun: String,
     },
+    /// The run cannot go on until a later time.
+    #[error("the run in {} cannot go on until {} s: {cause}", folder.display(), given(*until))]
+    Extension {
+        /// The folder.
+        folder: PathBuf,
+        /// The time, seconds.
+        until: f64,
+        /// Why.
+        cause: ExtensionError,
+    },
     /// A file of the run cannot be read or written, or is damaged.
     #[error(transparent)]
     File(#[from] FileError),
@@ -122,6 +134,7 @@ impl Advice for RunError {
             Self::OtherVersion { .. } => Some(
                 "continue it with that version, replace it with --force, or choose another folder with --out",
             ),
+            Self::Extension { cause, .. } => cause.advice(),
             Self::File(error) => error.advice(),
             Self::Page(error) => error.advice(),
             Self::Obj(error) => error.advice(),

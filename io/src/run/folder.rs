@@ -136,13 +136,14 @@ impl RunFolder {
     pub(crate) const HISTORY: &'static str = "history.csv";
     pub(crate) const LOADS: &'static str = "loads.csv";
     pub(crate) const MEASURES: &'static str = "measures.csv";
+    pub(crate) const EVENTS: &'static str = "events.csv";
     pub(crate) const TRAJECTORY: &'static str = "trajectory.npz";
     pub(crate) const PAGE: &'static str = "index.html";
     pub(crate) const OBJ: &'static str = "obj";
 
     /// The files of a run in its folder. The summary is the first to be deleted, so that what is left after a
     /// kill is not taken for a complete run.
-    const FILES: [&'static str; 9] = [
+    const FILES: [&'static str; 10] = [
         Self::SUMMARY,
         Self::CHECKPOINT,
         Self::PAGE,
@@ -151,6 +152,7 @@ impl RunFolder {
         Self::HISTORY,
         Self::LOADS,
         Self::MEASURES,
+        Self::EVENTS,
         Self::SCENE,
     ];
 

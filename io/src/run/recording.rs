@@ -4,8 +4,8 @@ use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, StoredFrames};
 use super::{RunError, Summary};
 use crate::format::{
-    FileError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, SeriesBody, Trajectory,
-    read_history, read_json, read_loads, read_measures,
+    EventRow, FileError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, SeriesBody,
+    Trajectory, read_events, read_history, read_json, read_loads, read_measures,
 };
 use crate::scene::{SceneFile, Setup};
 use isosheet_collide::Obstacle;
@@ -49,6 +49,8 @@ pub struct Recording {
     pub loads: Vec<LoadRow>,
     /// What the measures of the scene show at the start and at the end of each step.
     pub measures: Vec<MeasureRow>,
+    /// What was taken up and released.
+    pub events: Vec<EventRow>,
     /// What came of the run, if it is complete.
     pub summary: Option<Summary>,
 }
@@ -124,6 +126,7 @@ impl Recording {
             history: tables.history,
             loads: tables.loads,
             measures: tables.measures,
+            events: tables.events,
             scene,
             summary: None,
         };
@@ -161,6 +164,7 @@ pub(crate) struct Tables {
     pub(crate) history: Vec<HistoryRow>,
     pub(crate) loads: Vec<LoadRow>,
     pub(crate) measures: Vec<MeasureRow>,
+    pub(crate) events: Vec<EventRow>,
 }
 
 impl Tables {
@@ -170,6 +174,7 @@ impl Tables {
             history: read_history(&folder.join(RunFolder::HISTORY))?,
             loads: rows(&folder.join(RunFolder::LOADS), read_loads)?,
             measures: rows(&folder.join(RunFolder::MEASURES), read_measures)?,
+            events: rows(&folder.join(RunFolder::EVENTS), read_events)?,
         })
     }
 }

@@ -8,10 +8,14 @@ use super::frames::{FrameFile, FrameShape};
 use super::recording::Tables;
 use super::summary::{EndReason, Ending, Measured};
 use super::{RunError, StepPart, Tick, Watch};
-use crate::format::{FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter};
+use crate::format::{
+    EventWriter, FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter,
+};
 use crate::format::{MeasureRow, MeasureWriter};
 use crate::scene::check_positions;
-use crate::scene::{CarriedBody, Facts, Integrator, Scene, SceneError, SceneFile, SupportForces};
+use crate::scene::{
+    CarriedBody, Facts, Integrator, Kept, Scene, SceneError, SceneFile, UnderWay,
+};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::contact::ActiveContacts;
 use isosheet_dynamics::{
@@ -42,13 +46,15 @@ pub(crate) enum Rows {
 pub(crate) struct Stepping<'a> {
     plan: &'a Plan<'a>,
     folder: &'a RunFolder,
-    pub(crate) simulation: Simulation,
-    supports: SupportForces,
+    kept: &'a mut Kept,
+    pub(crate) under_way: UnderWay,
     history: HistoryWriter,
     /// The loads of supports and obstacles, if there are any.
     loads: Option<LoadWriter>,
     /// What the measures of the scene show, if there are any.
     measures: Option<MeasureWriter>,
+    /// What is taken up and released, if anything is.
+    events: Option<EventWriter>,
     frames: FrameFile,
     /// The rows of these tables, where they are kept in memory.
     pub(crate) tables: Option<Tables>,
@@ -66,14 +72,22 @@ pub(crate) fn step_count(scene: &Scene) -> u64 {
     steps.max(1.0) as u64
 }
 
+/// Length of the last step that the time asks for, seconds.
+fn last_length(scene: &Scene) -> f64 {
+    scene.stop.time - (step_count(scene) - 1) as f64 * scene.method.step
+}
+
+/// Whether the last step of a run is shorter than the others.
+pub(super) fn has_short_step(scene: &Scene) -> bool {
+    let h = scene.method.step;
+    (last_length(scene) - h).abs() > ROUND_OFF * h
+}
+
 /// Length of a step, from 1 to the number of steps: the last one is as short as the time asks for.
 fn step_length(scene: &Scene, number: u64) -> f64 {
-    let (h, count) = (scene.method.step, step_count(scene));
-    let rest = scene.stop.time - (count - 1) as f64 * h;
-    if number == count && (rest - h).abs() > ROUND_OFF * h {
-        rest
-    } else {
-        h
+    match number == step_count(scene) && has_short_step(scene) {
+        true => last_length(scene),
+        false => scene.method.step,
     }
 }
 
@@ -134,7 +148,8 @@ impl<'a> Stepping<'a> {
     pub(crate) fn begin(
         plan: &'a Plan<'a>,
         folder: &'a RunFolder,
-        simulation: Simulation,
+        kept: &'a mut Kept,
+        under_way: UnderWay,
         saved: Option<RunProgress>,
         clock: Instant,
     ) -> Result<Self, RunError> {
@@ -142,16 +157,17 @@ impl<'a> Stepping<'a> {
         let bears_loads =
             !scene.support.is_empty() || !scene.obstacle.is_empty() || !scene.body.is_empty();
         let path = |name| folder.path(name);
-        let [history, loads, measures, frames] = [
+        let [history, loads, measures, events, frames] = [
             RunFolder::HISTORY,
             RunFolder::LOADS,
             RunFolder::MEASURES,
+            RunFolder::EVENTS,
             RunFolder::FRAMES,
         ]
         .map(path);
         let is_new = saved.is_none();
         let keeps = plan.rows == Rows::InMemory;
-        let (history, loads, measures, frames) = match &saved {
+        let (history, loads, measures, events, frames) = match &saved {
             None => (
                 HistoryWriter::create(&history)?,
                 bears_loads
@@ -159,6 +175,9 @@ impl<'a> Stepping<'a> {
                     .transpose()?,
                 (!facts.measures.is_empty())
                     .then(|| MeasureWriter::create(&measures))
+                    .transpose()?,
+                (scene.periods().next().is_some())
+                    .then(|| EventWriter::create(&events))
                     .transpose()?,
                 FrameFile::create(&frames)?,
             ),
@@ -172,6 +191,10 @@ impl<'a> Stepping<'a> {
                     .measures
                     .map(|of| MeasureWriter::resume(&measures, of))
                     .transpose()?,
+                saved
+                    .events
+                    .map(|of| EventWriter::resume(&events, of))
+                    .transpose()?,
                 FrameFile::resume(&frames, saved.frames, plan.shape)?,
             ),
         };
@@ -182,10 +205,10 @@ impl<'a> Stepping<'a> {
         };
         let mut stepping = Self {
             tables,
-            supports: SupportForces::new(facts.origins.clone(), &simulation, scene.support.len()),
             history,
             loads,
             measures,
+            events,
             frames,
             progress: saved.unwrap_or_else(|| RunProgress {
                 scene: plan.hash.to_string(),
@@ -194,7 +217,8 @@ impl<'a> Stepping<'a> {
             }),
             plan,
             folder,
-            simulation,
+            kept,
+            under_way,
             clock,
         };
         if is_new {
@@ -205,11 +229,11 @@ impl<'a> Stepping<'a> {
 
     /// Records the state at the start.
     fn record_start(&mut self) -> Result<(), RunError> {
-        self.progress.elastic = ElasticSummary::of(self.simulation.model());
+        self.progress.elastic = ElasticSummary::of(self.under_way.simulation.model());
         self.observe_elastic();
-        self.progress.start_energy = self.simulation.energy();
-        let row = HistoryRow::of_start(&self.simulation);
-        self.progress.energy = EnergySummary::of_start(&self.simulation);
+        self.progress.start_energy = self.under_way.simulation.energy();
+        let row = HistoryRow::of_start(&self.under_way.simulation);
+        self.progress.energy = EnergySummary::of_start(&self.under_way.simulation);
         self.progress.strain = row.strain;
         self.progress.gap = row.gap;
         self.record_row(row)?;
@@ -227,9 +251,9 @@ impl<'a> Stepping<'a> {
     }
 
     fn record_frame(&mut self) -> Result<(), RunError> {
-        let simulation = &self.simulation;
+        let simulation = &self.under_way.simulation;
         let state = simulation.state();
-        let facts = &self.plan.facts;
+        let facts = &self.under_way.facts;
         let rod_forces = facts.of_edges(simulation.rod_forces().unwrap_or_default());
         let contact_forces = simulation.surface_forces().unwrap_or_default();
         let gaps = simulation.vertex_gaps().unwrap_or_default();
@@ -243,7 +267,7 @@ impl<'a> Stepping<'a> {
             plastic_angles: &plastic_angles,
             plastic_curvatures: &plastic_curvatures,
         };
-        let (t, x) = (state.t, self.plan.facts.shown(&state.x));
+        let (t, x) = (state.t, self.under_way.facts.shown(&state.x));
         Ok(self.frames.append(t, &x, &data)?)
     }
 
@@ -252,8 +276,12 @@ impl<'a> Stepping<'a> {
         let Some(loads) = &mut self.loads else {
             return Ok(());
         };
-        let t = self.simulation.state().t;
-        let supports = self.supports.loads(&self.simulation).enumerate();
+        let t = self.under_way.simulation.state().t;
+        let supports = self
+            .under_way
+            .supports
+            .loads(&self.under_way.simulation)
+            .enumerate();
         let on_supports = supports.map(|(number, load)| LoadRow {
             t,
             on: LoadKind::Support,
@@ -261,7 +289,12 @@ impl<'a> Stepping<'a> {
             force: load.force,
             torque: load.torque,
         });
-        let bodies = self.simulation.body_loads().into_iter().enumerate();
+        let bodies = self
+            .under_way
+            .simulation
+            .body_loads()
+            .into_iter()
+            .enumerate();
         let on_obstacles = bodies.map(|(number, load)| LoadRow {
             t,
             on: LoadKind::Obstacle,
@@ -269,7 +302,8 @@ impl<'a> Stepping<'a> {
             force: load.force.into(),
             torque: load.torque.into(),
         });
-        let on_bodies = CarriedBody::contact_loads(&self.plan.facts.bodies, &self.simulation);
+        let on_bodies =
+            CarriedBody::contact_loads(&self.under_way.facts.bodies, &self.under_way.simulation);
         let on_bodies = on_bodies
             .into_iter()
             .enumerate()
@@ -280,9 +314,9 @@ impl<'a> Stepping<'a> {
                 force: load.force,
                 torque: load.torque,
             });
-        let guided = self.plan.facts.bodies.iter().enumerate();
+        let guided = self.under_way.facts.bodies.iter().enumerate();
         let of_guides = guided.filter_map(|(number, body)| {
-            let load = body.guide_load(&self.simulation)?;
+            let load = body.guide_load(&self.under_way.simulation)?;
             Some(LoadRow {
                 t,
                 on: LoadKind::Guide,
@@ -309,9 +343,9 @@ impl<'a> Stepping<'a> {
         let Some(measures) = &mut self.measures else {
             return Ok(());
         };
-        let state = self.simulation.state();
-        let x = self.plan.facts.shown(&state.x);
-        for gauge in &self.plan.facts.measures {
+        let state = self.under_way.simulation.state();
+        let x = self.under_way.facts.shown(&state.x);
+        for gauge in &self.under_way.facts.measures {
             let row = MeasureRow {
                 t: state.t,
                 name: gauge.name.clone(),
@@ -340,8 +374,9 @@ impl<'a> Stepping<'a> {
         let scene = self.plan.file.scene();
         let number = self.progress.steps + 1;
         let h = step_length(scene, number);
-        let before = self.simulation.checkpoint();
-        let start = self.simulation.state().t;
+        self.switch()?;
+        let before = self.under_way.simulation.checkpoint();
+        let start = self.under_way.simulation.state().t;
         let mut part = StepPart {
             step: number,
             of: step_count(scene),
@@ -360,7 +395,7 @@ impl<'a> Stepping<'a> {
             watch.within_step(&part)
         };
         let (wall, cpu) = (Instant::now(), ThreadTime::now());
-        let stepped = self.simulation.step_watched(h, &mut ask);
+        let stepped = self.under_way.simulation.step_watched(h, &mut ask);
         let (wall, cpu) = (wall.elapsed(), cpu.elapsed());
         let report = match stepped {
             Ok(report) => report,
@@ -370,15 +405,18 @@ impl<'a> Stepping<'a> {
             }
             Err(error) => {
                 let problem = SceneError::from(
-                    self.plan
+                    self.under_way
                         .facts
                         .origins
-                        .of_failed_step(&error, &self.simulation),
+                        .of_failed_step(&error, &self.under_way.simulation),
                 );
                 return Err(RunError::Step(problem.in_text(self.plan.file.text())));
             }
         };
-        let (model, x) = (self.simulation.model(), &self.simulation.state().x);
+        let (model, x) = (
+            self.under_way.simulation.model(),
+            &self.under_way.simulation.state().x,
+        );
         if let Err(problem) = check_positions(model, x) {
             let problem = SceneError::from(problem).in_text(self.plan.file.text());
             return Err(RunError::Step(problem));
@@ -408,10 +446,28 @@ impl<'a> Stepping<'a> {
         }))
     }
 
+    /// Takes up and releases what the last step asks for. (Not at its end, where a run may stop that is continued
+    /// later.)
+    fn switch(&mut self) -> Result<(), RunError> {
+        let Some(events) = self.events.as_mut().filter(|_| self.progress.steps > 0) else {
+            return Ok(());
+        };
+        let scene = self.plan.file.scene();
+        let switched = self.under_way.switch(scene, self.kept, None);
+        let rows = switched.map_err(|e| RunError::Step(e.in_text(self.plan.file.text())))?;
+        for row in rows {
+            events.append(&row)?;
+            if let Some(tables) = &mut self.tables {
+                tables.events.push(row);
+            }
+        }
+        Ok(())
+    }
+
     fn count(&mut self, report: &StepReport) {
         let displacement = self.displacement();
-        let mass = self.simulation.model().mass().total();
-        let coordinates = self.simulation.state().x.iter();
+        let mass = self.under_way.simulation.model().mass().total();
+        let coordinates = self.under_way.simulation.state().x.iter();
         let size = coordinates.fold(0.0, |size: f64, c| size.max(c.abs()));
         let progress = &mut self.progress;
         progress.strain = progress.strain.max(report.strain);
@@ -434,12 +490,12 @@ impl<'a> Stepping<'a> {
 
     fn observe_elastic(&mut self) {
         if let Some(elastic) = &mut self.progress.elastic {
-            elastic.observe(&self.simulation);
+            elastic.observe(&self.under_way.simulation);
         }
     }
 
     fn row(&self, report: &StepReport) -> HistoryRow {
-        let model = self.simulation.model();
+        let model = self.under_way.simulation.model();
         HistoryRow::of_step(report, model, self.progress.start_energy)
     }
 
@@ -467,18 +523,24 @@ impl<'a> Stepping<'a> {
 
     /// Largest distance of a vertex from its place at the start, metres.
     fn displacement(&self) -> f64 {
-        let now = self.plan.facts.shown(&self.simulation.state().x);
+        let now = self
+            .under_way
+            .facts
+            .shown(&self.under_way.simulation.state().x);
         let pairs = now
             .as_chunks::<3>()
             .0
             .iter()
-            .zip(self.plan.facts.start.as_chunks::<3>().0);
+            .zip(self.under_way.facts.start.as_chunks::<3>().0);
         let distances = pairs.map(|(p, q)| (Vector3::from(*p) - Vector3::from(*q)).norm());
         distances.fold(0.0, f64::max)
     }
 
     fn largest_speed(&self) -> f64 {
-        let velocities = self.plan.facts.shown(&self.simulation.state().v);
+        let velocities = self
+            .under_way
+            .facts
+            .shown(&self.under_way.simulation.state().v);
         let speeds = velocities
             .as_chunks::<3>()
             .0
@@ -489,39 +551,43 @@ impl<'a> Stepping<'a> {
 
     /// Force of each support of the scene on the sheet, newtons.
     fn support_forces(&self) -> Vec<[f64; 3]> {
-        self.supports.of(&self.simulation)
+        self.under_way.support_forces()
     }
 
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {
-        let loads = self.simulation.body_loads();
+        let loads = self.under_way.simulation.body_loads();
         Ending {
             reason,
             t: report.t,
             kinetic: report.kinetic,
             potential: report.potential,
-            plastic: dissipated(self.simulation.model(), report.plastic),
+            plastic: dissipated(self.under_way.simulation.model(), report.plastic),
             energy_drift: report.energy_drift,
             largest_speed: self.largest_speed(),
             supports: self.support_forces(),
             obstacles: loads.iter().map(|load| load.force.into()).collect(),
-            bodies: CarriedBody::contact_loads(&self.plan.facts.bodies, &self.simulation)
-                .iter()
-                .map(|load| load.force)
-                .collect(),
+            bodies: CarriedBody::contact_loads(
+                &self.under_way.facts.bodies,
+                &self.under_way.simulation,
+            )
+            .iter()
+            .map(|load| load.force)
+            .collect(),
             taut: report.taut.as_ref().map(|demand| demand.to_string()),
             residuals: {
-                let State { t, x, .. } = self.simulation.state();
-                self.plan
-                    .facts
-                    .targets
-                    .residuals(self.simulation.model().topology(), *t, x)
+                let State { t, x, .. } = self.under_way.simulation.state();
+                self.under_way.facts.targets.residuals(
+                    self.under_way.simulation.model().topology(),
+                    *t,
+                    x,
+                )
             },
         }
     }
 
     /// Writes a checkpoint, after everything that it counts is on the disk.
     pub(crate) fn save(&mut self) -> Result<(), RunError> {
-        self.write_checkpoint(&self.simulation.checkpoint())
+        self.write_checkpoint(&self.under_way.simulation.checkpoint())
     }
 
     /// Writes a checkpoint of the simulation after the steps that are recorded.
@@ -536,6 +602,10 @@ impl<'a> Stepping<'a> {
         if let Some(measures) = &self.measures {
             measures.sync()?;
             self.progress.measures = Some(measures.written());
+        }
+        if let Some(events) = &self.events {
+            events.sync()?;
+            self.progress.events = Some(events.written());
         }
         self.progress.frames = self.frames.count();
         self.progress.wall += self.clock.elapsed().as_secs_f64();

@@ -15,6 +15,7 @@ use super::key::Key;
 use super::placed::PlacedSheet;
 use super::placed_bodies::Surface;
 use super::step_path::check_step;
+use super::switches::Switches;
 use super::{Measure, Scene, Setup};
 use builder::Builder;
 pub(crate) use builder::Kept;
@@ -34,15 +35,32 @@ impl Scene {
 
     /// The same for a scene that has been checked, with what is kept of it.
     pub(super) fn build_with(&self, kept: &mut Kept) -> Result<Setup, SceneError> {
-        let mut builder = Builder::new(self, kept)?;
+        self.build_held(kept, &Switches::at_start(self))
+    }
+
+    /// The same for a simulation that is under way, in which something has been taken up or released.
+    pub(super) fn build_switched(
+        &self,
+        kept: &mut Kept,
+        switches: &Switches,
+    ) -> Result<Setup, SceneError> {
+        if kept.start.is_none() {
+            self.build_with(kept)?;
+        }
+        self.build_held(kept, switches)
+    }
+
+    fn build_held(&self, kept: &mut Kept, switches: &Switches) -> Result<Setup, SceneError> {
+        let mut builder = Builder::new(self, kept, switches)?;
+        switches.check(builder.x.len())?;
         builder.add_forces()?;
         builder.add_supports()?;
         builder.add_guides()?;
         builder.add_body_forces()?;
-        builder.mend_lengths();
+        builder.mend_start();
         builder.add_folds()?;
         builder.add_isometry()?;
-        builder.perturb()?;
+        builder.perturb_start()?;
         builder.add_glue()?;
         let (contacts, obstacles) = builder.contacts()?;
         let gauge = |(k, measure): (usize, &Measure)| {
@@ -95,6 +113,8 @@ impl Builder<'_> {
             modelled: self.modelled,
             targets: self.targets,
             measures: Vec::new(),
+            bonds: self.bonds,
+            switches: self.switches.clone(),
             fold_assignments,
             of_sheets,
             origins: self.origins,

@@ -2,6 +2,7 @@
 
 use super::key::Key;
 use super::problem::Checks;
+use super::switch::When;
 use super::unit::Unit;
 use super::{Body, bodies};
 use isosheet_collide::{ContactOptions, Stiffness};
@@ -61,6 +62,13 @@ pub struct SheetPair {
     pub sheets: [String; 2],
     /// Coefficient of friction.
     pub friction: f64,
+    /// When they begin to meet; if left out, at the start. Before, they pass through each other. They must not touch
+    /// at that moment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<When>,
+    /// When they cease to meet; if left out, never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<When>,
 }
 
 impl Contact {

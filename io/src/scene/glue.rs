@@ -5,6 +5,7 @@ use super::placed::PlacedSheets;
 use super::problem::{Checks, Problem};
 use super::profile::Profile;
 use super::selection::{ON_LINE, by_number, place_on_line, size};
+use super::switch::When;
 use super::unit::Unit;
 use super::{Body, Sheet, bodies, sheets};
 use isosheet_mesh::wording::brief;
@@ -49,6 +50,14 @@ pub struct Glue {
     /// `L`: a pair that carries all of that is apart by a ten-thousandth of an edge.
     #[serde(default)]
     pub stiffness: Option<f64>,
+    /// When the glue sets; if left out, at the start. It then holds the vertices of each pair as far apart as they
+    /// are at that moment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<When>,
+    /// When the seam opens; if left out, never. By a force each pair tears for itself, as a peeled film does. The
+    /// sides of a seam that was glued at the start do not meet in contact where they were glued.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<When>,
 }
 
 fn closed() -> Profile {
@@ -112,6 +121,20 @@ impl Glue {
                 key.name("closing"),
                 "a seam with a body is closed at all times",
                 remedy,
+            );
+        }
+        if self.from.is_some() && self.closing != closed() {
+            checks.report(
+                key.name("closing"),
+                "glue that sets later holds the sides as far apart as they are then",
+                "leave out `closing` or `from`",
+            );
+        }
+        if self.from.is_some() && body.is_some() {
+            checks.report(
+                key.name("from"),
+                "a seam with a body holds from the start on",
+                "leave the key out",
             );
         }
         let sides = [
@@ -183,7 +206,9 @@ impl Glue {
         let pairs = first.into_iter().zip(second).map(|(a, b)| [a, b]);
         // (The tip of a cone is on both sides of its seam.)
         let pairs: Vec<[VertexId; 2]> = pairs.filter(|[a, b]| a != b).collect();
-        self.check_apart(&pairs, all, key)?;
+        if self.from.is_none() {
+            self.check_apart(&pairs, all, key)?;
+        }
         Ok(pairs)
     }
 

@@ -9,12 +9,13 @@ use super::changed::edited;
 use super::edit::{Edit, EditError, no_function};
 use super::key::Key;
 use super::profile::{Change, Course};
-use super::setup::Facts;
 use super::sheets::sheet_key;
+use super::under_way::UnderWay;
 use super::{
     Body, BodyLoad, CarriedBody, Method, Problem, Profile, Scene, SceneError, SceneFile,
-    SceneFileError, Setup, SupportForces,
+    SceneFileError, Setup,
 };
+use crate::format::EventRow;
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
 use isosheet_mesh::{Advice, Part, Sheet, VertexId};
@@ -53,9 +54,9 @@ use thiserror::Error;
 pub struct LiveScene {
     file: SceneFile,
     kept: Kept,
-    facts: Facts,
-    supports: SupportForces,
-    simulation: Simulation,
+    under_way: UnderWay,
+    /// What was taken up and released at the end of the last step.
+    events: Vec<EventRow>,
     /// What somebody holds.
     hand: Option<Hand>,
 }
@@ -68,8 +69,8 @@ const ROUND_OFF: f64 = 1e-9;
 #[derive(Debug, Error)]
 #[error("{scene}")]
 pub struct FailedStep {
-    /// What failed.
-    pub step: StepError,
+    /// What failed; nothing where the step was taken, and what had to be taken up after it could not be.
+    pub step: Option<StepError>,
     /// The same in words of the scene.
     pub scene: SceneError,
 }
@@ -87,7 +88,9 @@ impl LiveScene {
     /// # Errors
     /// [`SceneError`], shown at its place in the text.
     pub fn start(file: SceneFile) -> Result<Self, SceneError> {
-        Self::begin(file, Setup::start)
+        let mut kept = Kept::in_folder(file.folder());
+        let setup = file.build_with(&mut kept)?;
+        Self::begin(file, kept, setup, Setup::start)
     }
 
     /// The scene at a checkpoint of its simulation, bit for bit. A scene that was changed is resumed with the
@@ -96,23 +99,22 @@ impl LiveScene {
     /// # Errors
     /// [`SceneError`] if the checkpoint belongs to another scene.
     pub fn resume(file: SceneFile, checkpoint: Checkpoint) -> Result<Self, SceneError> {
-        Self::begin(file, |setup| setup.resume(checkpoint))
+        let mut kept = Kept::in_folder(file.folder());
+        let setup = file.build_at_with(&mut kept, &checkpoint)?;
+        Self::begin(file, kept, setup, |setup| setup.resume(checkpoint))
     }
 
     fn begin(
         file: SceneFile,
+        kept: Kept,
+        setup: Setup,
         begin: impl FnOnce(Setup) -> Result<Simulation, SceneError>,
     ) -> Result<Self, SceneError> {
-        let mut kept = Kept::in_folder(file.folder());
-        let setup = file.build_with(&mut kept)?;
-        let facts = setup.facts();
-        let simulation = begin(setup)?;
         Ok(Self {
-            supports: supports(file.scene(), &facts, &simulation),
+            under_way: UnderWay::begin(file.scene(), setup, begin)?,
+            events: Vec::new(),
             file,
             kept,
-            facts,
-            simulation,
             hand: None,
         })
     }
@@ -124,100 +126,106 @@ impl LiveScene {
 
     /// The simulation.
     pub fn simulation(&self) -> &Simulation {
-        &self.simulation
+        &self.under_way.simulation
     }
 
     /// Positions of the vertices of [`LiveScene::sheet`], metres (`3V`).
     pub fn positions(&self) -> Cow<'_, [f64]> {
-        self.facts.shown(&self.simulation.state().x)
+        self.under_way
+            .facts
+            .shown(&self.under_way.simulation.state().x)
     }
 
     /// Their velocities, m/s.
     pub fn velocities(&self) -> Cow<'_, [f64]> {
-        self.facts.shown(&self.simulation.state().v)
+        self.under_way
+            .facts
+            .shown(&self.under_way.simulation.state().v)
     }
 
     /// Their masses, kilograms: zero of those of bodies, whose mass is not on their surface.
     pub fn masses(&self) -> Vec<f64> {
-        let masses = self.simulation.model().mass().vertex.clone();
-        self.facts.of_vertices(masses, 1)
+        let masses = self.under_way.simulation.model().mass().vertex.clone();
+        self.under_way.facts.of_vertices(masses, 1)
     }
 
     /// Forces of supports on the sheets in the last step at the vertices that they hold (`3V`), newtons.
     pub fn reactions(&self) -> Vec<f64> {
-        let mut forces = vec![0.0; self.simulation.state().x.len()];
-        for reaction in self.simulation.reactions() {
+        let mut forces = vec![0.0; self.under_way.simulation.state().x.len()];
+        for reaction in self.under_way.simulation.reactions() {
             let vertex = reaction.support.vertex().index();
             for k in 0..3 {
                 forces[3 * vertex + k] += reaction.force[k];
             }
         }
-        self.facts.of_vertices(forces, 3)
+        self.under_way.facts.of_vertices(forces, 3)
     }
 
     /// Forces of the rods in the last step, newtons, see [`Simulation::rod_forces`]: zero of the edges of bodies.
     pub fn rod_forces(&self) -> Option<Vec<f64>> {
-        self.simulation
+        self.under_way
+            .simulation
             .rod_forces()
-            .map(|forces| self.facts.of_edges(forces))
+            .map(|forces| self.under_way.facts.of_edges(forces))
     }
 
     /// The pinned vertices of sheets, at rest or in motion.
     pub fn pins(&self) -> Vec<VertexId> {
-        let bodies = self.facts.bodies.iter();
+        let bodies = self.under_way.facts.bodies.iter();
         let carriers: Vec<VertexId> = bodies.flat_map(|body| body.vertices).collect();
-        let mut pins = self.simulation.model().pins();
+        let mut pins = self.under_way.simulation.model().pins();
         pins.retain(|v| !carriers.contains(v));
         pins
     }
 
     /// The bodies that respond, in the order of the scene.
     pub fn bodies(&self) -> &[CarriedBody] {
-        &self.facts.bodies
+        &self.under_way.facts.bodies
     }
 
     /// What touches bodies, does to each of them at the end of the last step.
     pub fn body_loads(&self) -> Vec<BodyLoad> {
-        CarriedBody::contact_loads(&self.facts.bodies, &self.simulation)
+        CarriedBody::contact_loads(&self.under_way.facts.bodies, &self.under_way.simulation)
     }
 
     /// What its guide does to each body that has one, in the last step, by the number of the body.
     pub fn guide_loads(&self) -> Vec<(usize, BodyLoad)> {
-        let bodies = self.facts.bodies.iter().enumerate();
-        let loads = bodies.filter_map(|(k, body)| Some((k, body.guide_load(&self.simulation)?)));
+        let bodies = self.under_way.facts.bodies.iter().enumerate();
+        let loads =
+            bodies.filter_map(|(k, body)| Some((k, body.guide_load(&self.under_way.simulation)?)));
         loads.collect()
     }
 
     /// The sheet in its rest shape, placed in space; the union of several, and of the surfaces of bodies.
     pub fn sheet(&self) -> &Sheet {
-        &self.facts.sheet
+        &self.under_way.facts.sheet
     }
 
     /// Of several sheets and bodies the name of each, and where it is in their union.
     pub fn parts(&self) -> &[(String, Part)] {
-        &self.facts.parts
+        &self.under_way.facts.parts
     }
 
     /// The obstacles, in the order of the scene.
     pub fn obstacles(&self) -> &[Obstacle] {
-        &self.facts.obstacles
+        &self.under_way.facts.obstacles
     }
 
     /// What is modelled, in words.
     pub fn modelled(&self) -> &[String] {
-        &self.facts.modelled
+        &self.under_way.facts.modelled
     }
 
     /// Force of each support of the scene on the sheet in the last step, newtons; zero before the first one.
     pub fn support_forces(&self) -> Vec<[f64; 3]> {
-        self.supports.of(&self.simulation)
+        self.under_way.support_forces()
     }
 
     /// The length of the next step of a run until time `until` (seconds): that of the scene, the rest of the
     /// time where that is less, and nothing at the end. A rest that is round-off is no step.
     pub fn next_step(&self, until: f64) -> Option<f64> {
         let h = self.file.scene().method.step;
-        let rest = until - self.simulation.state().t;
+        let rest = until - self.under_way.simulation.state().t;
         let parts = rest / h;
         let length = if parts < 1.0 - ROUND_OFF { rest } else { h };
         (parts > ROUND_OFF).then_some(length)
@@ -226,7 +234,8 @@ impl LiveScene {
     /// Advances by `h` seconds, see [`Simulation::step`].
     ///
     /// # Errors
-    /// [`FailedStep`]; the state is that of the last accepted sub-step.
+    /// [`FailedStep`]; the state is that of the last accepted sub-step, or that of the end of the step where
+    /// something cannot be taken up.
     pub fn step(&mut self, h: f64) -> Result<StepReport, FailedStep> {
         self.step_watched(h, &mut |_| ControlFlow::Continue(()))
     }
@@ -240,12 +249,30 @@ impl LiveScene {
         h: f64,
         watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,
     ) -> Result<StepReport, FailedStep> {
-        let stepped = self.simulation.step_watched(h, watch);
-        stepped.map_err(|step| {
-            let problem = self.facts.origins.of_failed_step(&step, &self.simulation);
+        self.events.clear();
+        let stepped = self.under_way.simulation.step_watched(h, watch);
+        let report = stepped.map_err(|step| {
+            let problem = self
+                .under_way
+                .facts
+                .origins
+                .of_failed_step(&step, &self.under_way.simulation);
             let scene = SceneError::from(problem).in_text(self.file.text());
+            let step = Some(step);
             FailedStep { step, scene }
-        })
+        })?;
+        let (scene, hand) = (self.file.scene(), self.hand.as_ref());
+        let events = self.under_way.switch(scene, &mut self.kept, hand);
+        self.events = events.map_err(|error| FailedStep {
+            step: None,
+            scene: error.in_text(self.file.text()),
+        })?;
+        Ok(report)
+    }
+
+    /// What was taken up and released at the end of the last step.
+    pub fn events(&self) -> &[EventRow] {
+        &self.events
     }
 
     /// Changes the scene between two steps by edits, in force from now on. What acts on the sheet may change:
@@ -277,7 +304,7 @@ impl LiveScene {
     /// # Errors
     /// As [`LiveScene::change`]; [`EditError`] at a key that is no function of time.
     pub fn drive(&mut self, targets: &[(Key, f64)], until: f64) -> Result<(), SceneFileError> {
-        let begin = self.simulation.state().t;
+        let begin = self.under_way.simulation.state().t;
         let mut scene = self.file.scene().clone();
         let mut functions = scene.functions_mut();
         for (key, to) in targets {
@@ -301,6 +328,10 @@ impl LiveScene {
     /// Goes on with a changed scene.
     fn go_on_with(&mut self, file: SceneFile) -> Result<(), SceneError> {
         SceneError::of(lasting(self.file.scene(), file.scene()))
+            .and_then(|()| match self.under_way.switches.fit(file.scene()) {
+                true => Ok(()),
+                false => Err(other_periods().into()),
+            })
             .and_then(|()| self.rebuild(file.scene(), self.hand.clone()))
             .map_err(|e| e.in_text(file.text()))?;
         self.file = file;
@@ -309,23 +340,24 @@ impl LiveScene {
 
     /// Goes on with the simulation of a scene and with a hand from the present state.
     fn rebuild(&mut self, scene: &Scene, hand: Option<Hand>) -> Result<(), SceneError> {
-        let mut setup = scene.build_with(&mut self.kept)?;
+        let mut setup = scene.build_switched(&mut self.kept, &self.under_way.switches)?;
         let facts = setup.facts();
         if let Some(hand) = &hand {
             setup.model = setup.model.with_hand(hand.clone());
         }
-        let resumed = setup.resume_changed(self.simulation.checkpoint())?;
-        let changed = resumed.changed_from(&self.simulation);
+        let resumed = setup.resume_changed(self.under_way.simulation.checkpoint())?;
+        let changed = resumed.changed_from(&self.under_way.simulation);
         let changed = changed.map_err(|e| SceneError::from(facts.origins.of_change(&e)))?;
-        self.supports = supports(scene, &facts, &changed);
-        (self.facts, self.simulation, self.hand) = (facts, changed, hand);
+        let switches = self.under_way.switches.clone();
+        self.under_way = UnderWay::new(scene, facts, switches, changed);
+        self.hand = hand;
         Ok(())
     }
 }
 
-/// How the forces of a simulation are those of the supports of its scene.
-fn supports(scene: &Scene, facts: &Facts, simulation: &Simulation) -> SupportForces {
-    SupportForces::new(facts.origins.clone(), simulation, scene.support.len())
+fn other_periods() -> Problem {
+    let message = "what is taken up and released does not change during a simulation";
+    Problem::new(Key::root(), message, "begin a new simulation")
 }
 
 /// What a change must not change: where the sheet starts and how the motion is computed.

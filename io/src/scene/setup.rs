@@ -1,10 +1,12 @@
 //! Everything that a simulation is made of.
 
+use super::bond::Bond;
 use super::carried::CarriedBody;
 use super::chart::Chart;
 use super::error::{SceneError, SceneText};
 use super::key::Key;
 use super::problem::Problem;
+use super::switches::{Switches, other_switches};
 use super::targets::Targets;
 use super::warning::Warning;
 use super::{Gauge, Origins};
@@ -57,6 +59,8 @@ pub(crate) struct Facts {
     pub(crate) targets: Targets,
     pub(crate) measures: Vec<Gauge>,
     pub(crate) origins: Origins,
+    /// The seams of the scene that hold, in its order.
+    pub(crate) bonds: Vec<Option<Bond>>,
 }
 
 impl Facts {
@@ -134,6 +138,10 @@ pub struct Setup {
     pub(crate) of_sheets: Vec<Warning>,
     /// Which entry of the scene made what.
     pub origins: Origins,
+    /// The seams of the scene that hold, in its order.
+    pub(crate) bonds: Vec<Option<Bond>>,
+    /// What holds.
+    pub(crate) switches: Switches,
     /// The text of the scene, if it is a file.
     pub(crate) text: Option<SceneText>,
 }
@@ -153,6 +161,7 @@ impl Setup {
             targets: self.targets.clone(),
             measures: self.measures.clone(),
             origins: self.origins.clone(),
+            bonds: self.bonds.clone(),
         }
     }
 
@@ -187,6 +196,7 @@ impl Setup {
             contacts,
             integration,
             origins,
+            switches,
             text,
             ..
         } = self;
@@ -202,16 +212,21 @@ impl Setup {
             }
         };
         let simulation = simulation.map_err(place)?;
-        match contacts {
-            Some(contacts) => simulation.with_contact(contacts).map_err(place),
-            None => Ok(simulation),
-        }
+        let mut simulation = match contacts {
+            Some(contacts) => simulation.with_contact(contacts).map_err(place)?,
+            None => simulation,
+        };
+        simulation.set_note(switches.note());
+        Ok(simulation)
     }
 
-    /// The simulation at a checkpoint.
+    /// The simulation at a checkpoint, for which the scene was built ([`SceneFile::build_at`]) where it takes up
+    /// or releases something.
+    ///
+    /// [`SceneFile::build_at`]: super::SceneFile::build_at
     ///
     /// # Errors
-    /// [`SceneError`] if the checkpoint belongs to another scene.
+    /// [`SceneError`] if the checkpoint belongs to another scene, or to another one of its phases.
     pub fn resume(self, checkpoint: Checkpoint) -> Result<Simulation, SceneError> {
         self.resume_or(checkpoint, Origins::of_start)
     }
@@ -229,6 +244,9 @@ impl Setup {
         checkpoint: Checkpoint,
         problem: fn(&Origins, &SimulationError) -> Problem,
     ) -> Result<Simulation, SceneError> {
+        if checkpoint.note() != self.switches.note() {
+            return Err(placed(other_switches(), self.text.as_ref()));
+        }
         let contact = self.contacts.map(|c| Box::new(c) as Box<dyn Contact>);
         let resumed = match self.integration {
             Integration::Free { .. } => Simulation::resume(self.model, contact, checkpoint),

@@ -7,9 +7,11 @@ use super::error::{SceneError, SceneText};
 use super::form::form_problems;
 use super::key::Key;
 use super::problem::Problem;
+use super::switches::Switches;
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
 use crate::format::{FileError, MeshFormat, input};
+use isosheet_dynamics::Checkpoint;
 use isosheet_mesh::Advice;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -197,7 +199,30 @@ impl SceneFile {
 
     /// The same with what is kept of it.
     pub(crate) fn build_with(&self, kept: &mut Kept) -> Result<Setup, SceneError> {
-        let setup = self.scene.build_with(kept);
+        self.with_text(self.scene.build_with(kept))
+    }
+
+    /// Makes everything that a simulation needs which goes on from a checkpoint: what holds is what held there.
+    ///
+    /// # Errors
+    /// As [`SceneFile::build`]; [`SceneError`] if the checkpoint is that of another scene.
+    pub fn build_at(&self, checkpoint: &Checkpoint) -> Result<Setup, SceneError> {
+        self.build_at_with(&mut Kept::in_folder(&self.folder), checkpoint)
+    }
+
+    /// The same with what is kept of the scene.
+    pub(crate) fn build_at_with(
+        &self,
+        kept: &mut Kept,
+        checkpoint: &Checkpoint,
+    ) -> Result<Setup, SceneError> {
+        let switches = Switches::of_note(&self.scene, checkpoint.note());
+        let setup = switches.and_then(|switches| self.scene.build_switched(kept, &switches));
+        self.with_text(setup)
+    }
+
+    /// What was built of the scene, with the text for its errors.
+    fn with_text(&self, setup: Result<Setup, SceneError>) -> Result<Setup, SceneError> {
         let mut setup = setup.map_err(|e| e.in_text(self.text()))?;
         setup.text = Some(self.text().clone());
         Ok(setup)

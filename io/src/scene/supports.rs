@@ -4,13 +4,14 @@ use super::key::Key;
 use super::pose::Motion;
 use super::problem::{Checks, Problem};
 use super::selection::Selection;
+use super::switch::When;
 use super::unit::Unit;
 use isosheet_dynamics::constraint::{
     Circle, ConstraintError, Cylinder, Line, Plane, Polyline, Side, Sphere, Spline,
 };
 use isosheet_dynamics::{RigidMotion, VertexConstraint};
 use isosheet_mesh::VertexId;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Point3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +36,13 @@ pub struct Support {
     /// How they are held.
     #[serde(default)]
     pub hold: Hold,
+    /// When it is taken up; if left out, at the start. It then holds the vertices where they are at that moment, and
+    /// its motion is counted from there; a curve or a surface has to be where they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<When>,
+    /// When it is released; if left out, never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<When>,
 }
 
 /// How vertices are held.
@@ -260,6 +268,8 @@ impl Support {
             sheet: None,
             at,
             hold: Hold::Pin,
+            from: None,
+            until: None,
         }
     }
 
@@ -301,6 +311,29 @@ impl Hold {
     /// Whether vertices stay where they are at the start.
     pub(super) fn is_at_rest(&self) -> bool {
         matches!(self, Self::Pin | Self::Clamp)
+    }
+
+    /// Its motion, if it has one.
+    fn motion(&self) -> Option<&Motion> {
+        match self {
+            Self::Pin | Self::Clamp => None,
+            Self::MovingPin(motion)
+            | Self::MovingClamp(motion)
+            | Self::SlidingClamp { motion, .. }
+            | Self::Curve { motion, .. }
+            | Self::Surface { motion, .. } => Some(motion),
+        }
+    }
+
+    /// Where vertices are while its motion is zero, of positions `x` (`3V`, metres) at time `t`, seconds.
+    pub(super) fn at_rest(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        let Some(motion) = self.motion().and_then(frame_motion) else {
+            return x.to_vec();
+        };
+        let back = motion.pose(t).inverse();
+        let points = x.as_chunks::<3>().0.iter();
+        let moved = points.map(|p| <[f64; 3]>::from((back * Point3::from(*p)).coords));
+        moved.flatten().collect()
     }
 
     /// The motion of the slopes that it holds, if it does.

@@ -9,6 +9,8 @@ mod convert;
 #[path = "../shared/devtools.rs"]
 mod devtools;
 mod ends;
+mod events;
+mod extending;
 mod folders;
 mod folding;
 mod gallery;
@@ -108,7 +110,7 @@ fn summary(folder: &Path) -> Summary {
 /// Everything but the wall time is the same, to the bit.
 fn assert_same(one: &Path, other: &Path) {
     // Only scenes with supports or obstacles have loads, and only those that name measures have some.
-    for file in ["loads.csv", "measures.csv"] {
+    for file in ["loads.csv", "measures.csv", "events.csv"] {
         let [a, b] = [one, other].map(|folder| fs::read(folder.join(file)).ok());
         assert!(a == b, "{file} differs in {}", other.display());
     }

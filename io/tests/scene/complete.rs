@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 10] = [
+const ALL_KEYS: [&str; 11] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -302,6 +302,41 @@ const ALL_KEYS: [&str; 10] = [
     first = { vertices = [0, 1] }
     [stop]
     time = 1
+    "#,
+    r#"version = 1
+    [[sheet]]
+    name = "film"
+    mesh = { square = { side = 0.2, level = 1 } }
+    [[sheet]]
+    name = "plate"
+    mesh = { square = { side = 0.2, level = 1 } }
+    placement = { position = [0, 0, 0.01] }
+    [[glue]]
+    sheets = ["film", "plate"]
+    first = { vertices = [0, 1] }
+    second = { vertices = [0, 1] }
+    from = 0.1
+    until = { force = 2.0 }
+    [[support]]
+    sheet = "film"
+    at = "all"
+    until = { measure = { name = "height", above = 0.1 } }
+    [[support]]
+    sheet = "plate"
+    at = "all"
+    from = { measure = { name = "height", below = -0.1 } }
+    until = 0.5
+    [[measure]]
+    name = "height"
+    at = { vertices = [0] }
+    quantity = "z"
+    [contact]
+    self_contact = true
+    [[contact.pair]]
+    sheets = ["film", "plate"]
+    friction = 0.1
+    from = 0.2
+    until = 0.4
     "#,
 ];
 

@@ -176,7 +176,7 @@ fn what_cannot_change_is_refused() {
 fn a_step_that_fails_names_error_and_key() {
     let mut live = live(HANGING);
     let failed = live.step(-1.0).expect_err("no step");
-    assert_eq!(failed.step, StepError::StepSize { h: -1.0, t: 0.0 });
+    assert_eq!(failed.step, Some(StepError::StepSize { h: -1.0, t: 0.0 }));
     assert!(failed.to_string().contains("step size"), "{failed}");
 }
 

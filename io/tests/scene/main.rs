@@ -16,11 +16,13 @@ mod materials;
 mod meaning;
 mod messages;
 mod patches;
+mod peel;
 mod random_bodies;
 mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;
 mod starts;
+mod switches;
 mod values;
 mod wrong;
 

@@ -183,7 +183,7 @@ impl Session {
                 }
                 Stepped::By(h)
             }
-            Err(error) if matches!(error.step, StepError::Interrupted { .. }) => {
+            Err(error) if matches!(error.step, Some(StepError::Interrupted { .. })) => {
                 Stepped::Interrupted
             }
             Err(error) => {

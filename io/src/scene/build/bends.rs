@@ -132,7 +132,7 @@ impl Builder<'_> {
                 .filter(|v| part.vertices.contains(&v.index()));
             let clamp = LineClamp {
                 vertices: own.map(|v| part.local_vertex(*v)).collect(),
-                positions: self.x[part.coordinates()].to_vec(),
+                positions: self.held_positions(*support)[part.coordinates()].to_vec(),
                 motion: motion.clone().into(),
             };
             (!clamp.vertices.is_empty()).then_some((*support, clamp))

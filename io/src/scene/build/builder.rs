@@ -1,5 +1,6 @@
 //! A model on its way from a scene.
 
+use crate::scene::bond::Bond;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
 use crate::scene::mesh_file::Files;
@@ -8,6 +9,8 @@ use crate::scene::placed::{Form, PlacedSheets};
 use crate::scene::placed_bodies::{PlacedBodies, Surface};
 use crate::scene::problem::Problem;
 use crate::scene::slots::Slots;
+use crate::scene::switch::Holder;
+use crate::scene::switches::Switches;
 use crate::scene::targets::Targets;
 use crate::scene::{Origins, Scene};
 use isosheet_collide as collide;
@@ -32,6 +35,17 @@ pub(crate) struct Kept {
     pub(super) plates: Slots<PlateMadeOf, Arc<PlateBending>>,
     /// Those of the obstacles.
     pub(super) shapes: Slots<obstacles::Shape, collide::Shape>,
+    /// Where the simulation starts, once that is known.
+    pub(super) start: Option<StartPlaces>,
+}
+
+/// Where the vertices are at the start, `3V`, metres.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StartPlaces {
+    /// With the lengths that a file rounded.
+    pub(super) mended: Vec<f64>,
+    /// With the random displacements.
+    pub(super) perturbed: Vec<f64>,
 }
 
 impl Kept {
@@ -48,12 +62,18 @@ impl Kept {
 pub(super) struct Builder<'a> {
     pub(super) scene: &'a Scene,
     pub(super) kept: &'a mut Kept,
+    /// What holds.
+    pub(super) switches: &'a Switches,
     pub(super) sheets: PlacedSheets<'a>,
     pub(super) bodies: PlacedBodies<'a>,
     /// What is seen and touches, where it is more than the sheets.
     pub(super) surface: Option<Surface>,
     /// Vertices that are glued to bodies, each with the number of the body.
     pub(super) glued_to_bodies: Vec<(VertexId, usize)>,
+    /// Pairs of vertices that are glued to each other at the start.
+    pub(super) glued: Vec<[VertexId; 2]>,
+    /// The pairs of each seam that hold.
+    pub(super) bonds: Vec<Option<Bond>>,
     /// Positions at the start, `3V`.
     pub(super) x: Vec<f64>,
     /// Absent only while it is replaced by a changed one.
@@ -74,7 +94,11 @@ pub(super) fn at<E: Advice>(key: &Key) -> impl Fn(E) -> SceneError {
 }
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Self, SceneError> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        kept: &'a mut Kept,
+        switches: &'a Switches,
+    ) -> Result<Self, SceneError> {
         let key = Key::root().name("sheet");
         let sheets = PlacedSheets::new(&scene.sheet, &mut kept.forms, &mut kept.files)?;
         let bodies = PlacedBodies::new(&scene.body, &sheets, &mut kept.files)?;
@@ -104,9 +128,12 @@ impl<'a> Builder<'a> {
         Ok(Self {
             scene,
             kept,
+            switches,
             x: sheets.start.iter().copied().chain(bodies.start()).collect(),
             surface: bodies.surface(&sheets.union)?,
             glued_to_bodies: Vec::new(),
+            glued: Vec::new(),
+            bonds: Vec::new(),
             sheets,
             bodies,
             model: Some(model),
@@ -141,5 +168,16 @@ impl<'a> Builder<'a> {
 
     pub(super) fn position(&self, v: VertexId) -> [f64; 3] {
         self.x.as_chunks::<3>().0[v.index()]
+    }
+
+    /// The positions that a support holds, as they are where its motion is zero.
+    pub(super) fn held_positions(&self, number: usize) -> &[f64] {
+        let of = Holder::Support(number);
+        self.switches.rest(of).unwrap_or(&self.x)
+    }
+
+    /// That of a vertex.
+    pub(super) fn held_position(&self, number: usize, v: VertexId) -> [f64; 3] {
+        self.held_positions(number).as_chunks::<3>().0[v.index()]
     }
 }

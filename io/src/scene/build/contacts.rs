@@ -6,6 +6,7 @@ use crate::scene::key::Key;
 use crate::scene::placed::PlacedSheet;
 use crate::scene::placed_bodies::Surface;
 use crate::scene::problem::Problem;
+use crate::scene::switch::Holder;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, ContactsError, Obstacle};
 use isosheet_mesh::VertexId;
 use std::collections::HashMap;
@@ -50,7 +51,7 @@ impl Builder<'_> {
         };
         let mut contacts = contacts
             .map_err(at(&key.name("contact")))?
-            .with_glue(&[self.targets.glued(), self.cuts()].concat());
+            .with_glue(&[&self.glued[..], &self.cuts()].concat());
         if !self.bodies.list.is_empty() {
             let mut parts: Vec<_> = self.origins.bodies.clone();
             if !scene.contact.self_contact {
@@ -78,13 +79,18 @@ impl Builder<'_> {
             contacts = contacts
                 .with_self_contact(coefficients)
                 .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
-            for (key, pair) in key.name("contact.pair").entries(&scene.contact.pair) {
+            let list = key.name("contact.pair");
+            for (k, pair) in scene.contact.pair.iter().enumerate() {
+                let key = list.entry(k);
                 let [first, second] = &pair.sheets;
                 let vertices = [self.points_of(first, &key)?, self.points_of(second, &key)?];
                 let coefficients = Coefficients::equal(pair.friction);
-                contacts = contacts
-                    .with_friction_between(vertices, coefficients)
-                    .map_err(at(&key))?;
+                contacts = match self.switches.holds(Holder::Contact(k)) {
+                    true => contacts
+                        .with_friction_between(vertices, coefficients)
+                        .map_err(at(&key))?,
+                    false => contacts.without_contact_between(vertices),
+                };
             }
         }
         if scene.contact.self_contact {

@@ -1,6 +1,6 @@
 //! Where sheets and bodies are at the start, and how they move.
 
-use super::builder::Builder;
+use super::builder::{Builder, StartPlaces};
 use crate::scene::error::SceneError;
 use crate::scene::placed::PlacedSheet;
 use crate::scene::sheet::Isometry;
@@ -15,7 +15,23 @@ const EXACT: f64 = 1e-12;
 const ROUNDING: f64 = 1e-4;
 
 impl Builder<'_> {
-    pub(super) fn mend_lengths(&mut self) {
+    /// The start is that of the scene as it was, whatever holds the sheets now.
+    pub(super) fn mend_start(&mut self) {
+        match &self.kept.start {
+            Some(start) if !self.switches.are_at_start(self.scene) => {
+                self.x.clone_from(&start.mended);
+            }
+            _ => {
+                self.mend_lengths();
+                self.kept.start = Some(StartPlaces {
+                    mended: self.x.clone(),
+                    perturbed: Vec::new(),
+                });
+            }
+        }
+    }
+
+    fn mend_lengths(&mut self) {
         let sheets = &self.scene.sheet;
         let is_rigid = sheets[0].isometry() == Isometry::Rods;
         if !is_rigid || sheets.iter().all(|sheet| sheet.start.file.is_none()) {
@@ -29,7 +45,22 @@ impl Builder<'_> {
         }
     }
 
-    pub(super) fn perturb(&mut self) -> Result<(), SceneError> {
+    /// The same of the random displacements.
+    pub(super) fn perturb_start(&mut self) -> Result<(), SceneError> {
+        if !self.switches.are_at_start(self.scene)
+            && let Some(start) = &self.kept.start
+        {
+            self.x.clone_from(&start.perturbed);
+            return Ok(());
+        }
+        self.perturb()?;
+        if let Some(start) = &mut self.kept.start {
+            start.perturbed.clone_from(&self.x);
+        }
+        Ok(())
+    }
+
+    fn perturb(&mut self) -> Result<(), SceneError> {
         let mut x = std::mem::take(&mut self.x);
         let mut is_perturbed = false;
         for PlacedSheet { of, part, .. } in &self.sheets.list {

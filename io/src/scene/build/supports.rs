@@ -8,6 +8,7 @@ use crate::scene::pose::Motion;
 use crate::scene::problem::Problem;
 use crate::scene::sheet::Bending;
 use crate::scene::supports::{Hold, frame_motion};
+use crate::scene::switch::Holder;
 use isosheet_dynamics::constraint::Line;
 use isosheet_dynamics::{PointMotion, PointProfile, RigidProfile, VertexConstraint};
 use isosheet_mesh::{EdgeId, VertexId};
@@ -23,8 +24,14 @@ impl Builder<'_> {
             if let Some(motion) = support.hold.clamp_motion() {
                 let slides = matches!(support.hold, Hold::SlidingClamp { .. });
                 vertices.extend(self.clamped_faces(&vertices, slides, &key)?);
+                if !self.switches.holds(Holder::Support(k)) {
+                    continue;
+                }
                 let motion = motion.of_body(Isometry3::identity());
                 self.clamps.push((k, vertices.clone(), motion));
+            }
+            if !self.switches.holds(Holder::Support(k)) {
+                continue;
             }
             for &v in &vertices {
                 self.check_free(v, k, &key)?;
@@ -32,7 +39,7 @@ impl Builder<'_> {
             match &support.hold {
                 Hold::SlidingClamp { direction, motion } => {
                     for &v in &vertices {
-                        let point = self.position(v);
+                        let point = self.held_position(k, v);
                         let line = Line::new(point, *direction).map_err(at(&key))?;
                         let constraint = VertexConstraint::on_curve(v, line);
                         self.constrain(constraint, motion, k)?;
@@ -41,7 +48,7 @@ impl Builder<'_> {
                 Hold::Pin | Hold::Clamp => self.change(|m| m.with_pins(&vertices), at(&key))?,
                 Hold::MovingPin(motion) | Hold::MovingClamp(motion) => {
                     for &v in &vertices {
-                        let motion = pin_motion(motion, self.position(v));
+                        let motion = pin_motion(motion, self.held_position(k, v));
                         self.change(|m| m.with_moving_pin(v, motion), at(&key))?;
                     }
                 }

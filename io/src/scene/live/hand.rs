@@ -75,16 +75,16 @@ impl LiveScene {
     /// # Errors
     /// [`HoldError`]; then nothing has changed.
     pub fn hold(&mut self, vertex: VertexId) -> Result<[f64; 3], HoldError> {
-        let surfaces = &mut self.facts.bodies.iter();
+        let surfaces = &mut self.under_way.facts.bodies.iter();
         if surfaces.any(|body| body.surface().contains(&vertex.index())) {
             return Err(HoldError::Body { vertex });
         }
-        let model = self.simulation.model();
-        let immobile = self.simulation.immobile_vertices();
+        let model = self.under_way.simulation.model();
+        let immobile = self.under_way.simulation.immobile_vertices();
         if model.pins().contains(&vertex) || immobile.contains(&vertex) {
             return Err(HoldError::Held { vertex });
         }
-        let positions = self.simulation.state().x.as_chunks::<3>().0;
+        let positions = self.under_way.simulation.state().x.as_chunks::<3>().0;
         let at = positions.get(vertex.index()).copied().unwrap_or_default();
         let hand = Hand::new(model.topology(), vertex, self.firmness(), at)?;
         if self.hand().is_some_and(|(held, _)| held == vertex) {
@@ -104,7 +104,7 @@ impl LiveScene {
     /// [`HandError::Target`], [`HandError::End`]; then nothing has changed.
     pub fn lead(&mut self, to: [f64; 3], end: f64) -> Result<(), HandError> {
         match &self.hand {
-            Some(hand) => self.simulation.lead_hand(hand.vertex(), to, end),
+            Some(hand) => self.under_way.simulation.lead_hand(hand.vertex(), to, end),
             None => Ok(()),
         }
     }
@@ -130,15 +130,15 @@ impl LiveScene {
     /// The vertex that a hand holds, and where the hand is, metres.
     pub fn hand(&self) -> Option<(VertexId, [f64; 3])> {
         let vertex = self.hand.as_ref()?.vertex();
-        let at = self.simulation.hand_target(vertex).ok()?;
+        let at = self.under_way.simulation.hand_target(vertex).ok()?;
         Some((vertex, at))
     }
 
     /// The stiffness of the spring of a hand, N/m.
     fn firmness(&self) -> f64 {
-        let [low, high] = bounds(self.facts.sheet.positions().as_chunks::<3>().0);
+        let [low, high] = bounds(self.under_way.facts.sheet.positions().as_chunks::<3>().0);
         let sides = (0..3).map(|k| high[k] - low[k]);
         let size = sides.map(|side| side * side).sum::<f64>().sqrt();
-        self.simulation.model().mass().total() * GRAVITY / (STRETCH * size)
+        self.under_way.simulation.model().mass().total() * GRAVITY / (STRETCH * size)
     }
 }

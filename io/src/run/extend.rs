@@ -1,0 +1,163 @@
+//! Runs that go on beyond the end that their scene named.
+
+use super::checkpoint::{self, RunProgress};
+use super::folder::{Existing, FolderState, RunFolder, RunInputs, stored_scene};
+use super::stepping::{has_short_step, step_count};
+use super::summary::EndReason;
+use super::{Outcome, RunError, Watch, check_origin, simulate};
+use crate::format::{FileError, write_atomically};
+use crate::scene::{Files, SceneFile};
+use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+use thiserror::Error;
+
+/// Why a run does not go on until a later time.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ExtensionError {
+    /// The time is not finite.
+    #[error("that is no time")]
+    NotFinite,
+    /// It goes as far already.
+    #[error("it goes until {time} s already", time = given(*time))]
+    Earlier {
+        /// The time in its scene, seconds.
+        time: f64,
+    },
+    /// It did not end because its time had passed.
+    #[error("it ended because {}", in_words(*reason))]
+    Ended {
+        /// Why it ended.
+        reason: EndReason,
+    },
+    /// Its last step was shorter than the others, so that a run of the longer time has other steps.
+    #[error("its last step was shorter than `method.step`, to end at {time} s", time = given(*time))]
+    ShortStep {
+        /// The time in its scene, seconds.
+        time: f64,
+    },
+}
+
+fn in_words(reason: EndReason) -> &'static str {
+    match reason {
+        EndReason::Time => "its time had passed",
+        EndReason::Rest => "the sheet was at rest (`stop.rest`)",
+        EndReason::SupportForce => "the force at a support was reached (`stop.support_force`)",
+        EndReason::Taut => "the lengths did not allow more (`method.taut`)",
+    }
+}
+
+impl Advice for ExtensionError {
+    fn advice(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::NotFinite => "give a finite time in seconds",
+            Self::Earlier { .. } => "give a later time",
+            Self::Ended { .. } => {
+                "run the scene without that condition, in a folder of its own: `isosheet simulate SCENE --out DIR`"
+            }
+            Self::ShortStep { .. } => {
+                "run the scene with the later `stop.time`, in a folder of its own: `isosheet simulate SCENE --out DIR`"
+            }
+        })
+    }
+}
+
+/// Continues the run in a folder until time `until` (seconds), later than the `stop.time` of its scene, with the same
+/// bits as a run of a scene with that `stop.time`; the scene in the folder is changed to it.
+///
+/// # Errors
+/// As [`simulate`]; [`RunError::NoRun`] if the folder is not that of a run, [`RunError::Extension`] if the run cannot
+/// go on like that. Then nothing has changed.
+pub fn extend_folder(
+    folder: &Path,
+    until: f64,
+    watch: &mut dyn Watch,
+) -> Result<Outcome, RunError> {
+    let stored = stored_scene(folder)?;
+    let refuse = |cause| RunError::Extension {
+        folder: folder.to_owned(),
+        until,
+        cause,
+    };
+    if !until.is_finite() {
+        return Err(refuse(ExtensionError::NotFinite));
+    }
+    let text = stored.text();
+    let edit = format!("stop.time={until}");
+    let longer = SceneFile::parse(text.text.clone(), &text.path, &[edit])?;
+    let mut files = Files::in_folder(folder);
+    let inputs = RunInputs::read(&stored, &mut files)?;
+    let hash = RunInputs::read(&longer, &mut files)?.hash.to_string();
+    let open = match RunFolder::open(folder, &inputs, Existing::Continue)? {
+        FolderState::Complete(open) | FolderState::Partial(open) | FolderState::Empty(open) => open,
+    };
+    let checkpoint = open.path(RunFolder::CHECKPOINT);
+    let saved = match checkpoint.is_file() {
+        true => Some(checkpoint::read(&checkpoint)?),
+        false => None,
+    };
+    let begun = inputs.hash.to_string();
+    // A process that was killed here may have left the checkpoint of the longer run.
+    let is_known = hash != begun && saved.as_ref().is_some_and(|(p, _)| p.scene == hash);
+    if !is_known {
+        may_go_on(&stored, saved.as_ref().map(|(progress, _)| progress), until).map_err(refuse)?;
+    }
+    if let Some((mut progress, simulation)) = saved {
+        let expected = match is_known {
+            true => &hash,
+            false => &begun,
+        };
+        check_origin(&open, &progress, expected)?;
+        reopen(&mut progress, &stored);
+        progress.scene = hash;
+        let summary = open.path(RunFolder::SUMMARY);
+        match fs::remove_file(&summary) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                return Err(RunError::Unwritable {
+                    folder: folder.to_owned(),
+                    source: error,
+                });
+            }
+            _ => {}
+        }
+        checkpoint::write(&checkpoint, &progress, &simulation)?;
+    }
+    let scene = open.path(RunFolder::SCENE);
+    write_atomically(&scene, |w| w.write_all(longer.text().text.as_bytes()))
+        .map_err(FileError::from)?;
+    drop(open);
+    simulate(&longer, folder, watch)
+}
+
+/// Whether a run of a scene can go on until a later time.
+fn may_go_on(
+    file: &SceneFile,
+    progress: Option<&RunProgress>,
+    until: f64,
+) -> Result<(), ExtensionError> {
+    let scene = file.scene();
+    let time = scene.stop.time;
+    if until <= time {
+        return Err(ExtensionError::Earlier { time });
+    }
+    match progress.and_then(|progress| progress.ending.as_ref()) {
+        Some(ending) if ending.reason != EndReason::Time => Err(ExtensionError::Ended {
+            reason: ending.reason,
+        }),
+        Some(_) if has_short_step(scene) => Err(ExtensionError::ShortStep { time }),
+        _ => Ok(()),
+    }
+}
+
+/// Takes back what belongs to the end of a run alone: the ending, and a frame beside the regular ones.
+fn reopen(progress: &mut RunProgress, file: &SceneFile) {
+    let scene = file.scene();
+    let regular = scene.output.steps_per_frame(scene.method.step);
+    let is_last = progress.ending.take().is_some() && progress.steps == step_count(scene);
+    if is_last && !progress.steps.is_multiple_of(regular) {
+        progress.frames -= 1;
+    }
+}
