@@ -125,6 +125,30 @@ impl Corners {
 pub struct LoadedFaces {
     pub(super) corners: Vec<Corners>,
     pub(super) rim: Vec<[VertexId; 2]>,
+    pub(super) seams: Vec<Seam>,
+}
+
+/// Two edges of rims that are joined: one in the direction of its face, and the ends of the other one in the same order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Seam {
+    pub(super) one: [VertexId; 2],
+    pub(super) other: [VertexId; 2],
+}
+
+impl Seam {
+    /// Two triangles that close the gap between the edges, with the front of the faces.
+    pub(super) fn strip(&self) -> [[VertexId; 3]; 2] {
+        let ([a, b], [c, d]) = (self.one, self.other);
+        [[b, a, c], [b, c, d]]
+    }
+
+    fn turned_over(self) -> Self {
+        let back = |[a, b]: [VertexId; 2]| [b, a];
+        Self {
+            one: back(self.one),
+            other: back(self.other),
+        }
+    }
 }
 
 impl LoadedFaces {
@@ -165,6 +189,7 @@ impl LoadedFaces {
         Ok(Self {
             corners: parts.faces.iter().map(oriented).collect(),
             rim: seams.free.iter().map(|k| rims[*k].ends).collect(),
+            seams: seams.oriented(&rims, &is_turned),
         })
     }
 
@@ -181,6 +206,7 @@ impl LoadedFaces {
     #[must_use]
     pub fn turned_over(mut self) -> Self {
         self.corners = self.corners.into_iter().map(Corners::turned_over).collect();
+        self.seams = self.seams.into_iter().map(Seam::turned_over).collect();
         self
     }
 
@@ -300,6 +326,20 @@ impl Seams {
         }
         free.sort_unstable();
         Ok(Self { pairs, free })
+    }
+
+    /// The seams, by which parts are turned over.
+    fn oriented(&self, rims: &[RimEdge], is_turned: &[bool]) -> Vec<Seam> {
+        let seam = |&([k, l], is_same): &([usize; 2], bool)| {
+            let (one, [c, d]) = (rims[k].ends, rims[l].ends);
+            let other = if is_same { [c, d] } else { [d, c] };
+            let seam = Seam { one, other };
+            match is_turned[rims[k].part] {
+                true => seam.turned_over(),
+                false => seam,
+            }
+        };
+        self.pairs.iter().map(seam).collect()
     }
 
     /// Which parts have to be turned over for a common front.

@@ -10,14 +10,14 @@ use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
-/// The volume `V = sum_f det(x_a - c, x_b - c, x_d - c) / 6` that faces enclose, with the mean `c` of all corners,
-/// positive where the faces have it behind them.
+/// The volume `V = sum_f det(x_a - c, x_b - c, x_d - c) / 6` that faces enclose, positive where they have it behind them.
+/// It does not depend on the point `c`; the mean of all corners costs the fewest digits.
 ///
 /// Its gradient at a vertex is a third of the sum of the areas of the faces around it, as vectors along their normals:
-/// the resultants of a pressure of one. Where a seam stands open, cones from its edges to `c` close the surface.
+/// the resultants of a pressure of one. Where a seam stands open, a strip of triangles closes the surface.
 #[derive(Debug, Clone)]
 pub(super) struct Volume {
-    /// The vertices of the faces, and of each face their numbers in this list.
+    /// The vertices of the faces, and of each face and each triangle of a strip their numbers in this list.
     vertices: Vec<VertexId>,
     faces: Vec<[usize; 3]>,
     hinges: Vec<Hinge>,
@@ -40,8 +40,10 @@ impl Volume {
         vertices.sort_unstable();
         vertices.dedup();
         let number = |v: VertexId| vertices.partition_point(|w| *w < v);
+        let strips = loaded.seams.iter().flat_map(|seam| seam.strip());
+        let faces = corners.iter().map(|c| c.vertices).chain(strips);
         Self {
-            faces: corners.iter().map(|c| c.vertices.map(number)).collect(),
+            faces: faces.map(|vertices| vertices.map(number)).collect(),
             hinges: hinges(corners),
             vertices,
         }
@@ -80,13 +82,10 @@ impl Volume {
                 sums[own] += arms[next].cross(&arms[last]) / 6.0;
             }
         }
-        // What the centre takes part in, nothing but round-off where seams are closed.
-        let mean = sums.iter().sum::<Vector3<f64>>() / sums.len() as f64;
-        let own = sums.into_iter().map(|sum| sum - mean);
-        self.vertices.iter().copied().zip(own).collect()
+        self.vertices.iter().copied().zip(sums).collect()
     }
 
-    /// Adds `scale` times a part of the second derivatives, with the centre at rest.
+    /// Adds `scale` times a part of the second derivatives, which are those of closed seams.
     ///
     /// The block of an edge from `a` to `b` is that of the cross product with `w = s (r - l) / 6`, between what is
     /// opposite to it on both sides. Its eigenvalues are `|w|`, `-|w|` and zero, each of them twice: the matrices

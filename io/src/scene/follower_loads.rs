@@ -1,26 +1,15 @@
 //! Loads that follow the sheet: pressure, enclosed gas, moments.
 
+use super::Sheet;
 use super::key::Key;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::selection::Selection;
 use super::sheets;
 use super::unit::Unit;
-use super::{Load, Sheet};
 use isosheet_dynamics as engine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// What the direction of a load turns with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Frame {
-    /// Nothing: it is fixed in space.
-    #[default]
-    Space,
-    /// The faces around each vertex: the direction is that at the start.
-    Sheet,
-}
 
 /// A pressure on one side of faces, which stays along their normals: positive towards the side from which they are
 /// counter-clockwise, their front.
@@ -106,13 +95,6 @@ pub struct Moment {
     pub axis: [f64; 3],
     /// Size of the whole moment, newton metres.
     pub size: Profile,
-}
-
-impl Load {
-    /// Whether it turns with the sheet.
-    pub(super) fn turns(&self) -> bool {
-        self.frame == Frame::Sheet
-    }
 }
 
 impl Pressure {

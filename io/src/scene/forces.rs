@@ -1,6 +1,6 @@
 //! Forces on the sheet.
 
-use super::follower_loads::{Frame, Gas, Moment, Pressure};
+use super::follower_loads::{Gas, Moment, Pressure};
 use super::key::Key;
 use super::problem::Checks;
 use super::profile::Profile;
@@ -66,6 +66,17 @@ pub struct Load {
     pub frame: Frame,
     /// Size of the whole load, newtons.
     pub size: Profile,
+}
+
+/// What the direction of a load turns with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Frame {
+    /// Nothing: it is fixed in space.
+    #[default]
+    Space,
+    /// The faces around each vertex: the direction is that at the start.
+    Sheet,
 }
 
 /// A uniform acceleration of the whole sheet.

@@ -27,11 +27,13 @@ pub enum StartingPoint {
     Hypar,
     /// A ball and a box that fall into a hammock of film, and a flap that swings beside it.
     Hammock,
+    /// Two squares of film that are glued along their edges and blown up.
+    Pillow,
 }
 
 impl StartingPoint {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Hanging,
         Self::Clamp,
         Self::Drape,
@@ -44,6 +46,7 @@ impl StartingPoint {
         Self::Moebius,
         Self::Hypar,
         Self::Hammock,
+        Self::Pillow,
     ];
 
     /// Its name.
@@ -61,6 +64,7 @@ impl StartingPoint {
             Self::Moebius => "moebius",
             Self::Hypar => "hypar",
             Self::Hammock => "hammock",
+            Self::Pillow => "pillow",
         }
     }
 
@@ -79,6 +83,7 @@ impl StartingPoint {
             Self::Moebius => "A strip of paper whose ends are glued after half a turn",
             Self::Hypar => "Pleated paper whose creases bend its panels to a hyperbolic paraboloid",
             Self::Hammock => "Rigid bodies that fall into a hammock of film",
+            Self::Pillow => "Two squares of film that are glued to a pillow and blown up",
         }
     }
 
@@ -97,6 +102,7 @@ impl StartingPoint {
             Self::Moebius => include_str!("starting_point/moebius.toml"),
             Self::Hypar => include_str!("starting_point/hypar.toml"),
             Self::Hammock => include_str!("starting_point/hammock.toml"),
+            Self::Pillow => include_str!("starting_point/pillow.toml"),
         }
     }
 }

@@ -11,6 +11,7 @@ mod formulas;
 mod guides;
 mod keys;
 mod live;
+mod loads;
 mod materials;
 mod meaning;
 mod messages;

@@ -101,3 +101,37 @@ fn the_semidefinite_part_is_the_positive_one() {
         );
     }
 }
+
+/// The volume between two squares whose rims are joined, and stand apart, is that of the box, whichever way their fronts
+/// point; its gradient is that of differences.
+#[test]
+fn strips_close_open_seams() {
+    let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+    let lower = square.iter().flat_map(|[x, y]| [*x, *y, 0.3]);
+    let x: Vec<f64> = lower
+        .chain(square.iter().flat_map(|[x, y]| [*x, *y, 0.8]))
+        .collect();
+    let pairs: Vec<[VertexId; 2]> = (0..4).map(|k| [VertexId(k), VertexId(k + 4)]).collect();
+    for second in [[[4, 5, 6], [4, 6, 7]], [[4, 6, 5], [4, 7, 6]]] {
+        let faces = [[0, 1, 2], [0, 2, 3]]
+            .into_iter()
+            .chain(second)
+            .collect::<Vec<_>>();
+        let topology = Topology::from_faces(8, &faces).expect("two squares");
+        let faces: Vec<_> = topology.face_ids().collect();
+        let loaded = LoadedFaces::new(&topology, &faces, &pairs).expect("faces");
+        for (loaded, sign) in [(loaded.clone(), -1.0), (loaded.turned_over(), 1.0)] {
+            let volume = Volume::new(&loaded);
+            assert!((volume.value(&x) - sign * 2.0).abs() < 1e-14);
+            let slopes = gradient(&volume, &x);
+            for (i, slope) in slopes.iter().enumerate() {
+                let at = |d: f64| {
+                    let mut x = x.clone();
+                    x[i] += d;
+                    volume.value(&x)
+                };
+                assert!(((at(1e-5) - at(-1e-5)) / 2e-5 - slope).abs() < 1e-9, "{i}");
+            }
+        }
+    }
+}

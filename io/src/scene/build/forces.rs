@@ -1,9 +1,9 @@
 //! Loads, accelerations and the air.
 
 use super::builder::{Builder, at};
-use crate::scene::Air;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
+use crate::scene::{Air, Frame};
 use isosheet_dynamics::{AccelerationField, SimulationError, TurningLoad, VertexLoad};
 
 impl Builder<'_> {
@@ -25,14 +25,17 @@ impl Builder<'_> {
             let topology = self.model().topology();
             let direction = load.direction;
             let error = at::<SimulationError>(&key);
-            if load.turns() {
-                let load = TurningLoad::new(topology, &vertices, direction, size, &self.x);
-                let load = load.map_err(at(&key))?;
-                self.change(|m| Ok(m.with_turning_load(load)), error)?;
-            } else {
-                let load = VertexLoad::new(topology, &vertices, direction, size);
-                let load = load.map_err(at(&key))?;
-                self.change(|m| Ok(m.with_force(load)), error)?;
+            match load.frame {
+                Frame::Space => {
+                    let load = VertexLoad::new(topology, &vertices, direction, size);
+                    let load = load.map_err(at(&key))?;
+                    self.change(|m| Ok(m.with_force(load)), error)?;
+                }
+                Frame::Sheet => {
+                    let load = TurningLoad::new(topology, &vertices, direction, size, &self.x);
+                    let load = load.map_err(at(&key))?;
+                    self.change(|m| Ok(m.with_turning_load(load)), error)?;
+                }
             }
         }
         for (key, field) in key.name("acceleration").entries(&forces.acceleration) {
