@@ -14,12 +14,12 @@ use isosheet_mesh::{EdgeId, Topology};
 use nalgebra::{Matrix3, RowVector3, Vector3};
 use std::sync::Arc;
 
-/// A moment on a line of edges, `M(t)` in newton metres in all, which turns with the sheet: it acts about each edge,
-/// in the sense that is that about an axis at the start, by a share like its length.
+/// A moment on a line of edges, `M(t)` in newton metres in all, which turns with the sheet: it acts about
+/// each edge, in the sense that is that about an axis at the start, by a share like its length.
 ///
-/// The faces beside an edge bear its share `m`, the two of an interior edge half of it each, as the forces of a couple
-/// along their unit normal: at the corner opposite to the edge, which is the height `h` away from it, `m / h`, and its
-/// opposite at the point of the edge that is nearest to that corner.
+/// The faces beside an edge bear its share `m`, the two of an interior edge half of it each, as the forces of
+/// a couple along their unit normal: at the corner opposite to the edge, which is the height `h` away from
+/// it, `m / h`, and its opposite at the point of the edge that is nearest to that corner.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EdgeMoment {
     size: Profile,
@@ -30,8 +30,8 @@ pub struct EdgeMoment {
 }
 
 impl EdgeMoment {
-    /// A moment on edges of a mesh at positions `x` (`3V`, metres) about an axis of any length; the profile gives its
-    /// size, newton metres, right-handed about the axis.
+    /// A moment on edges of a mesh at positions `x` (`3V`, metres) about an axis of any length; the profile
+    /// gives its size, newton metres, right-handed about the axis.
     ///
     /// # Errors
     /// [`LoadError`] naming the first argument that cannot be used.
@@ -91,8 +91,8 @@ const ACROSS: f64 = 1e-6;
 
 impl SheetModel {
     /// Adds a moment that turns with the sheet. Its work is a part of
-    /// [`StepReport::work`](crate::StepReport::work); BDF2 and implicit Euler take it at the end of a step, all other
-    /// methods as it is.
+    /// [`StepReport::work`](crate::StepReport::work); BDF2 and implicit Euler take it at the end of a step,
+    /// all other methods as it is.
     #[must_use]
     pub fn with_edge_moment(self, moment: EdgeMoment) -> Self {
         self.with_implicit_force(Follower(Arc::new(moment)))
@@ -104,9 +104,9 @@ impl FaceLoad for EdgeMoment {
         &self.corners
     }
 
-    /// With the edge `e = b - a`, the area vector `N = e x (c - a)` of the face and the place `s` on the edge of the
-    /// point that is nearest to `c`, the forces are `m w`, `w = |e| N / |N|^2`, at `c`, and `-m (1 - s) w` and `-m s w`
-    /// at `a` and `b`.
+    /// With the edge `e = b - a`, the area vector `N = e x (c - a)` of the face and the place `s` on the edge
+    /// of the point that is nearest to `c`, the forces are `m w`, `w = |e| N / |N|^2`, at `c`, and `-m (1 -
+    /// s) w` and `-m s w` at `a` and `b`.
     fn forces(&self, number: usize, t: f64, x: &OfCorners) -> OfCorners {
         let moment = self.parts[number] * self.size.value(t);
         let [a, b, c] = x;

@@ -12,7 +12,8 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Part of the largest load by which loads may differ from those of the place of the sheet before they are renewed.
+/// Part of the largest load by which loads may differ from those of the place of the sheet before they are
+/// renewed.
 const SETTLED: f64 = 1e-3;
 /// The same at the end of a step that is refused: it takes more than the updates that a step has.
 const UNSETTLED: f64 = 0.05;
@@ -28,8 +29,8 @@ pub(super) trait FaceLoad: Debug + Send + Sync + 'static {
     /// The forces on the corners of the face of this number at a time (seconds), newtons.
     fn forces(&self, number: usize, t: f64, x: &OfCorners) -> OfCorners;
 
-    /// The derivatives of the forces, newtons per metre: of that on the corner of the first index by the place of
-    /// the corner of the second one.
+    /// The derivatives of the forces, newtons per metre: of that on the corner of the first index by the
+    /// place of the corner of the second one.
     fn derivatives(&self, number: usize, t: f64, x: &OfCorners) -> [[Matrix3<f64>; 3]; 3];
 }
 
@@ -70,10 +71,10 @@ impl<L: FaceLoad> ImplicitForce for Follower<L> {
 /// U(x) = -sum_f (f . d + d . S d / 2),   d = x - y,   S = (J + J^T) / 2,
 /// ```
 ///
-/// less that at the start of the step, with the forces `f` on the corners of each face and their derivative `J` at
-/// lagged positions `y`. Loads that follow a sheet have no energy as a rule: the part of `J` that has none lags
-/// behind. The positions `y` are those that the velocities at the start lead to, and are renewed where the
-/// minimisation has converged until `U` has the forces of the end of the step.
+/// less that at the start of the step, with the forces `f` on the corners of each face and their derivative
+/// `J` at lagged positions `y`. Loads that follow a sheet have no energy as a rule: the part of `J` that has
+/// none lags behind. The positions `y` are those that the velocities at the start lead to, and are renewed
+/// where the minimisation has converged until `U` has the forces of the end of the step.
 #[derive(Debug)]
 struct FollowerStep<L> {
     load: Follower<L>,

@@ -61,10 +61,10 @@ impl Advice for GasError {
 /// p = p_1 (V_1 / V)^n,   V_1 = V_0 + a(t),
 /// ```
 ///
-/// with the exponent `n`, the volume `V_0` at the start and the pressure `p_1` there. What is let in, `a`, is counted
-/// by the volume that it would take at the pressure `p_1`; what is let out, with a negative sign, leaves a thousandth. The
-/// surface feels the difference of `p` and the ambient
-/// pressure. (The weight of the gas is left out, which for air are 1.2 g a litre.)
+/// with the exponent `n`, the volume `V_0` at the start and the pressure `p_1` there. What is let in, `a`, is
+/// counted by the volume that it would take at the pressure `p_1`; what is let out, with a negative sign,
+/// leaves a thousandth. The surface feels the difference of `p` and the ambient pressure. (The weight of the
+/// gas is left out, which for air are 1.2 g a litre.)
 ///
 /// ```
 /// use isosheet_dynamics::{Gas, LoadedFaces, SheetModel};
@@ -85,7 +85,8 @@ pub struct Gas {
     pub ambient: f64,
     /// Pressure `p_1` of the gas at the start, pascals. Default 101325.
     pub pressure: f64,
-    /// Exponent `n`. Default 1: the temperature stays the same. Air that is compressed too fast to give heat away has
+    /// Exponent `n`. Default 1: the temperature stays the same. Air that is compressed too fast to give heat
+    /// away has
     /// 1.4.
     pub exponent: f64,
     /// What is let in, `a`, cubic metres. Default: nothing.
@@ -103,15 +104,15 @@ impl Default for Gas {
     }
 }
 
-/// Part of the volume that the gas would take at its first pressure below which its pressure goes on along a straight
-/// line: what no iterate of a step may reach, but not what it has to avoid.
+/// Part of the volume that the gas would take at its first pressure below which its pressure goes on along a
+/// straight line: what no iterate of a step may reach, but not what it has to avoid.
 const SMALLEST: f64 = 1e-3;
 /// Relative change of the volume up to which the energy is a series.
 const NEAR: f64 = 0.1;
 
 impl SheetModel {
-    /// Fills closed faces with gas. Their front has to be outside, or inside for all of them; `x` are the positions at
-    /// the start, `3V`, metres.
+    /// Fills closed faces with gas. Their front has to be outside, or inside for all of them; `x` are the
+    /// positions at the start, `3V`, metres.
     ///
     /// # Errors
     /// [`GasError`].
@@ -164,7 +165,8 @@ struct OfVolume {
 }
 
 impl EnclosedGas {
-    /// The energy where the gas fills a volume (cubic metres), less that where it would have its first pressure.
+    /// The energy where the gas fills a volume (cubic metres), less that where it would have its first
+    /// pressure.
     fn at_volume(&self, t: f64, volume: f64) -> OfVolume {
         let Gas {
             ambient,

@@ -118,9 +118,9 @@ impl Corners {
 
 /// Some faces of a mesh that a pressure or a gas acts on, with one side that is their front.
 ///
-/// The front of a face is the side from which its corners are counter-clockwise. Vertices of rims may be joined in
-/// pairs, as by [`Glue`](crate::Glue): then the faces on both sides of such a seam get a common front, that of the
-/// first face. Edges of rims that are joined to no other are free.
+/// The front of a face is the side from which its corners are counter-clockwise. Vertices of rims may be
+/// joined in pairs, as by [`Glue`](crate::Glue): then the faces on both sides of such a seam get a common
+/// front, that of the first face. Edges of rims that are joined to no other are free.
 #[derive(Debug, Clone)]
 pub struct LoadedFaces {
     pub(super) corners: Vec<Corners>,
@@ -128,7 +128,8 @@ pub struct LoadedFaces {
     pub(super) seams: Vec<Seam>,
 }
 
-/// Two edges of rims that are joined: one in the direction of its face, and the ends of the other one in the same order.
+/// Two edges of rims that are joined: one in the direction of its face, and the ends of the other one in the
+/// same order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Seam {
     pub(super) one: [VertexId; 2],

@@ -15,12 +15,13 @@ use nalgebra::Matrix3;
 use std::sync::Arc;
 
 impl SheetModel {
-    /// Adds a pressure of a given size (pascals) on faces. A face of the area `A` with the unit normal `n` of its front
-    /// feels the force `p A n`, a third of it on each corner: a positive pressure pushes towards the front.
+    /// Adds a pressure of a given size (pascals) on faces. A face of the area `A` with the unit normal `n` of
+    /// its front feels the force `p A n`, a third of it on each corner: a positive pressure pushes towards
+    /// the front.
     ///
-    /// Where the faces enclose a volume `V`, the pressure has the potential `-p V`. Elsewhere it is a force, whose
-    /// work is a part of [`StepReport::work`](crate::StepReport::work): BDF2 and implicit Euler take it at the end of a
-    /// step, all other methods as it is.
+    /// Where the faces enclose a volume `V`, the pressure has the potential `-p V`. Elsewhere it is a force,
+    /// whose work is a part of [`StepReport::work`](crate::StepReport::work): BDF2 and implicit Euler take it
+    /// at the end of a step, all other methods as it is.
     ///
     /// ```
     /// use isosheet_dynamics::{LoadedFaces, Profile, SheetModel};
@@ -112,7 +113,8 @@ impl FaceLoad for OpenPressure {
     }
 }
 
-/// The derivatives of `(b - a) x (c - a)`, twice the area of a face along its normal, by its corners `a`, `b`, `c`.
+/// The derivatives of `(b - a) x (c - a)`, twice the area of a face along its normal, by its corners `a`,
+/// `b`, `c`.
 pub(super) fn area_derivatives(x: &OfCorners) -> [Matrix3<f64>; 3] {
     let [a, b, c] = x;
     [c - b, a - c, b - a].map(|side| side.cross_matrix())

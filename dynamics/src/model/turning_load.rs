@@ -14,9 +14,9 @@ use isosheet_mesh::{FaceId, Topology, VertexId};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-/// The same load on each of some vertices, of a direction that turns with the faces around them: each face carries a
-/// share like its area, which is fixed in the face. In its plane the direction goes along with its edges; where these
-/// stretch by a part, so does that component of the load.
+/// The same load on each of some vertices, of a direction that turns with the faces around them: each face
+/// carries a share like its area, which is fixed in the face. In its plane the direction goes along with its
+/// edges; where these stretch by a part, so does that component of the load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurningLoad {
     size: Profile,
@@ -34,8 +34,8 @@ struct OfFace {
 }
 
 impl TurningLoad {
-    /// A load on vertices of a mesh that has a direction of any length at positions `x` (`3V`, metres); the profile
-    /// gives its size on each vertex, newtons.
+    /// A load on vertices of a mesh that has a direction of any length at positions `x` (`3V`, metres); the
+    /// profile gives its size on each vertex, newtons.
     ///
     /// # Errors
     /// [`LoadError`] naming the first argument that cannot be used.
@@ -96,8 +96,8 @@ impl TurningLoad {
 
 impl SheetModel {
     /// Adds a load whose direction turns with the sheet. Its work is a part of
-    /// [`StepReport::work`](crate::StepReport::work); BDF2 and implicit Euler take it at the end of a step, all other
-    /// methods as it is.
+    /// [`StepReport::work`](crate::StepReport::work); BDF2 and implicit Euler take it at the end of a step,
+    /// all other methods as it is.
     #[must_use]
     pub fn with_turning_load(self, load: TurningLoad) -> Self {
         self.with_implicit_force(Follower(Arc::new(load)))

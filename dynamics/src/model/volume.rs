@@ -10,11 +10,12 @@ use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
-/// The volume `V = sum_f det(x_a - c, x_b - c, x_d - c) / 6` that faces enclose, positive where they have it behind them.
-/// It does not depend on the point `c`; the mean of all corners costs the fewest digits.
+/// The volume `V = sum_f det(x_a - c, x_b - c, x_d - c) / 6` that faces enclose, positive where they have it
+/// behind them. It does not depend on the point `c`; the mean of all corners costs the fewest digits.
 ///
-/// Its gradient at a vertex is a third of the sum of the areas of the faces around it, as vectors along their normals:
-/// the resultants of a pressure of one. Where a seam stands open, a strip of triangles closes the surface.
+/// Its gradient at a vertex is a third of the sum of the areas of the faces around it, as vectors along their
+/// normals: the resultants of a pressure of one. Where a seam stands open, a strip of triangles closes the
+/// surface.
 #[derive(Debug, Clone)]
 pub(super) struct Volume {
     /// The vertices of the faces, and of each face and each triangle of a strip their numbers in this list.
@@ -23,8 +24,8 @@ pub(super) struct Volume {
     hinges: Vec<Hinge>,
 }
 
-/// An edge with what is opposite to it in the faces that have it in its direction and in the other one; nothing
-/// beside a seam.
+/// An edge with what is opposite to it in the faces that have it in its direction and in the other one;
+/// nothing beside a seam.
 #[derive(Debug, Clone, Copy)]
 struct Hinge {
     edge: EdgeId,
@@ -87,9 +88,10 @@ impl Volume {
 
     /// Adds `scale` times a part of the second derivatives, which are those of closed seams.
     ///
-    /// The block of an edge from `a` to `b` is that of the cross product with `w = s (r - l) / 6`, between what is
-    /// opposite to it on both sides. Its eigenvalues are `|w|`, `-|w|` and zero, each of them twice: the matrices
-    /// `|w| (1 - n n^T) / 2` at both ends, `n = w / |w|`, and half of the block itself make up the semidefinite part.
+    /// The block of an edge from `a` to `b` is that of the cross product with `w = s (r - l) / 6`, between
+    /// what is opposite to it on both sides. Its eigenvalues are `|w|`, `-|w|` and zero, each of them twice:
+    /// the matrices `|w| (1 - n n^T) / 2` at both ends, `n = w / |w|`, and half of the block itself make up
+    /// the semidefinite part.
     pub(super) fn add_hessian(
         &self,
         x: &[f64],

@@ -11,11 +11,12 @@ use isosheet_dynamics as engine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A pressure on one side of faces, which stays along their normals: positive towards the side from which they are
-/// counter-clockwise, their front.
+/// A pressure on one side of faces, which stays along their normals: positive towards the side from which
+/// they are counter-clockwise, their front.
 ///
-/// Where the faces enclose a volume, glued sheets together, it has a potential, `-p V`; elsewhere its work is that of a
-/// force. Sheets that are glued to each other by their rims have a common front, that of the first one that is named.
+/// Where the faces enclose a volume, glued sheets together, it has a potential, `-p V`; elsewhere its work is
+/// that of a force. Sheets that are glued to each other by their rims have a common front, that of the first
+/// one that is named.
 ///
 /// ```toml
 /// [[forces.pressure]]
@@ -38,9 +39,9 @@ fn everywhere() -> Selection {
     Selection::All
 }
 
-/// Gas that a closed sheet encloses, or several sheets that are glued to each other by their rims: its pressure is
-/// `p = p1 (V1 / V)^n` in the volume `V`, with the pressure `p1` and the volume `V1` at the start. Weight and inertia of the
-/// gas are left out.
+/// Gas that a closed sheet encloses, or several sheets that are glued to each other by their rims: its
+/// pressure is `p = p1 (V1 / V)^n` in the volume `V`, with the pressure `p1` and the volume `V1` at the
+/// start. Weight and inertia of the gas are left out.
 ///
 /// ```toml
 /// [[forces.gas]]
@@ -61,8 +62,8 @@ pub struct Gas {
     /// Exponent `n`. If left out, 1: the temperature stays the same. Air that is compressed fast has 1.4.
     #[serde(default = "isothermal")]
     pub exponent: f64,
-    /// Gas that is let in, by the volume that it takes at the pressure at the start, cubic metres; what is let out has a
-    /// negative sign. It is added to `V1`.
+    /// Gas that is let in, by the volume that it takes at the pressure at the start, cubic metres; what is
+    /// let out has a negative sign. It is added to `V1`.
     #[serde(default)]
     pub added: Profile,
 }
@@ -91,7 +92,8 @@ pub struct Moment {
     pub sheet: Option<String>,
     /// On which edges: those both ends of which are selected. They share the moment by their lengths.
     pub at: Selection,
-    /// The axis about which the moment turns at the start, right-handed, of any length. Later it turns about the edges.
+    /// The axis about which the moment turns at the start, right-handed, of any length. Later it turns about
+    /// the edges.
     pub axis: [f64; 3],
     /// Size of the whole moment, newton metres.
     pub size: Profile,

@@ -11,8 +11,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 /// (K + V C V^T)^-1 = K^-1 - U S^-1 V^T K^-1,   U = K^-1 V,   S = C^-1 + V^T U
 /// ```
 ///
-/// (Sherman, Morrison and Woodbury; Golub and Van Loan, "Matrix Computations", 2013, Sec. 2.1.4), which takes a
-/// solve with the factorised `K` for each term.
+/// (Sherman, Morrison and Woodbury; Golub and Van Loan, "Matrix Computations", 2013, Sec. 2.1.4), which takes
+/// a solve with the factorised `K` for each term.
 #[derive(Debug, Default)]
 pub(super) struct LowRank {
     terms: Vec<Term>,

@@ -16,8 +16,8 @@ fn derivatives_are_those_of_differences() {
     check_derivatives(&moment(&edges, [1.0, 0.7, 0.4]).expect("a moment"), &moved);
 }
 
-/// The forces at an edge add up to nothing, and turn about it by the moment: at one of the rim and within the sheet,
-/// whichever direction the axis has along it.
+/// The forces at an edge add up to nothing, and turn about it by the moment: at one of the rim and within the
+/// sheet, whichever direction the axis has along it.
 #[test]
 fn the_forces_are_a_couple_about_the_edge() {
     let sheet = crumpled();

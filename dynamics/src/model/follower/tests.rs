@@ -5,8 +5,8 @@ use crate::term::Formula;
 use crate::{Profile, SheetModel, State, TurningLoad};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 
-/// The derivatives of the loads at positions are those of differences of the forces, and loads are forces alone: they
-/// do not turn the whole by themselves.
+/// The derivatives of the loads at positions are those of differences of the forces, and loads are forces
+/// alone: they do not turn the whole by themselves.
 pub(in crate::model) fn check_derivatives(load: &impl FaceLoad, x: &[f64]) {
     for (number, face) in load.faces().iter().enumerate() {
         let corners = places(face, x);
@@ -42,8 +42,8 @@ pub(in crate::model) fn crumpled() -> Sheet {
     Sheet::new(x, &flat.face_indices()).expect("a sheet")
 }
 
-/// The term has the derivatives that it says, vanishes at the start of the step, and once renewed has the forces of
-/// the iterate, which it does not renew again.
+/// The term has the derivatives that it says, vanishes at the start of the step, and once renewed has the
+/// forces of the iterate, which it does not renew again.
 #[test]
 fn the_term_follows_the_load() {
     let sheet = crumpled();

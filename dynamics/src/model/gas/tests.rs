@@ -11,7 +11,8 @@ fn enclosed(gas: Gas) -> (EnclosedGas, Vec<[usize; 2]>, Vec<f64>) {
     (EnclosedGas { volume, gas, first }, edges.collect(), x)
 }
 
-/// Pressures follow `p V^n`, energies are their integrals, also where the series ends and beyond the smallest volume.
+/// Pressures follow `p V^n`, energies are their integrals, also where the series ends and beyond the smallest
+/// volume.
 #[test]
 fn the_pressure_is_that_of_a_polytropic_gas() {
     for exponent in [1.0, 1.4, 2.5] {
@@ -45,7 +46,8 @@ fn the_pressure_is_that_of_a_polytropic_gas() {
     }
 }
 
-/// Where gas and air outside have the same pressure, the energy is the work of small displacements, to all digits.
+/// Where gas and air outside have the same pressure, the energy is the work of small displacements, to all
+/// digits.
 #[test]
 fn energies_of_small_changes_keep_their_digits() {
     let (gas, ..) = enclosed(Gas::default());

@@ -1,7 +1,7 @@
 use super::*;
 
-/// Two squares of two faces each, with fronts to the same side, the first with the vertices 0 to 3, the second with 4
-/// to 7.
+/// Two squares of two faces each, with fronts to the same side, the first with the vertices 0 to 3, the
+/// second with 4 to 7.
 fn two_squares() -> Topology {
     Topology::from_faces(8, &[[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]).expect("two squares")
 }
@@ -12,7 +12,8 @@ fn loaded(faces: &[u32], joined: &[[u32; 2]]) -> Result<LoadedFaces, LoadedFaces
     LoadedFaces::new(&two_squares(), &faces, &joined)
 }
 
-/// Of a pillow one side is turned over and nothing is left open; a square that continues another one stays as it is.
+/// Of a pillow one side is turned over and nothing is left open; a square that continues another one stays as
+/// it is.
 #[test]
 fn seams_give_a_common_front() {
     let all = [0, 1, 2, 3];

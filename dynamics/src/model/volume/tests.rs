@@ -102,8 +102,8 @@ fn the_semidefinite_part_is_the_positive_one() {
     }
 }
 
-/// The volume between two squares whose rims are joined, and stand apart, is that of the box, whichever way their fronts
-/// point; its gradient is that of differences.
+/// The volume between two squares whose rims are joined, and stand apart, is that of the box, whichever way
+/// their fronts point; its gradient is that of differences.
 #[test]
 fn strips_close_open_seams() {
     let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
