@@ -1,5 +1,6 @@
 //! The second derivatives of energies: who receives them, and which part of them.
 
+use crate::vectors::{add, point};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,6 +18,11 @@ pub trait HessianSink {
     /// Adds `d2V / dx_a dx_b` for a pair named by [`Potential::couplings`](crate::Potential::couplings), rows at `a`; the transposed block
     /// is implied.
     fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>);
+
+    /// Adds `factor g g^T` with a `factor` of at least zero and a vector `g` of some vertices, which may be all
+    /// of them: the part of the Hessian of an energy of one quantity that is made of the quantity's gradient.
+    /// Damped steps take it exactly, for one more solve. The default leaves it out, as conservative methods do.
+    fn add_square(&mut self, _factor: f64, _gradient: &[(VertexId, Vector3<f64>)]) {}
 }
 
 /// Receives 3x3 blocks of a symmetric Hessian.
@@ -80,6 +86,14 @@ impl HessianSink for HessianProduct<'_> {
 
     fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
         self.add_both(a.index(), b.index(), block);
+    }
+
+    fn add_square(&mut self, factor: f64, gradient: &[(VertexId, Vector3<f64>)]) {
+        let slopes = gradient.iter().map(|(v, g)| g.dot(&point(self.vector, *v)));
+        let slope = self.scale * factor * slopes.sum::<f64>();
+        for (v, g) in gradient {
+            add(self.product, *v, &(slope * g));
+        }
     }
 }
 

@@ -100,13 +100,17 @@ pub use material::plate_bending::{
 pub use material::{Directions, Isotropic, Material, NamedMaterial, Orthotropic, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};
 pub use model::clamps::ClampAcrossMesh;
+pub use model::edge_moment::EdgeMoment;
 pub use model::elastic_deformation::ElasticDeformation;
+pub use model::gas::{Gas, GasError};
 pub use model::hand::{Hand, HandError};
 pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};
+pub use model::loaded_faces::{LoadedFaces, LoadedFacesError};
 pub use model::of_material::{SheetOfMaterial, SheetOfMaterialError};
 pub use model::part::PotentialOfPart;
 pub use model::support::Support;
+pub use model::turning_load::TurningLoad;
 pub use model::{Isometry, ModelError, SheetModel};
 pub use motion::profile::{Interpolation, Profile, ProfileError};
 pub use motion::{

@@ -135,6 +135,32 @@ impl StepStart<'_> {
     pub(crate) fn t(&self) -> f64 {
         self.state.t + self.span
     }
+
+    /// Work of an implicit force at the free vertices in a step that ends at positions `x` with the force `end`
+    /// (`3V`, newtons): of implicit Euler with the force at the end, which balances the energy but for what the
+    /// method dissipates; of a two-step formula by the trapezoidal rule with the force at the start, at the order
+    /// of the formula.
+    pub(crate) fn implicit_work(
+        &self,
+        force: &impl Force,
+        free: &[bool],
+        x: &[f64],
+        end: &mut [f64],
+    ) -> Exchange {
+        let start = self.state;
+        if self.formula == Formula::TwoStep {
+            force.add_force(start.t, &start.x, &start.v, end);
+            end.iter_mut().for_each(|f| *f *= 0.5);
+        }
+        let rows = end.as_chunks::<3>().0.iter().zip(free);
+        let mut work = 0.0;
+        for (v, (row, _)) in rows.enumerate().filter(|(_, (_, is_free))| **is_free) {
+            for k in 0..3 {
+                work += row[k] * (x[3 * v + k] - start.x[3 * v + k]);
+            }
+        }
+        Exchange::driven(work)
+    }
 }
 
 /// How far back the formula of a step reaches.
@@ -196,6 +222,8 @@ pub(crate) enum Refusal {
     },
     /// The step would end in contact, with this gap (metres).
     Contact { gap: f64 },
+    /// Loads that follow the sheet are not those of the end of the step, by so much of the largest.
+    UnsettledLoads { error: f64 },
 }
 
 /// Energy exchanged in a step, joules.

@@ -42,6 +42,7 @@ mod edit;
 mod engine_problem;
 mod error;
 mod folding;
+mod follower_loads;
 mod forces;
 mod form;
 mod functions;
@@ -107,7 +108,8 @@ pub use edit::{Edit, EditError};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
-pub use forces::{Acceleration, Forces, Load};
+pub use follower_loads::{Gas, Moment, Pressure};
+pub use forces::{Acceleration, Forces, Frame, Load};
 pub use glue::{Glue, SeamSide};
 pub use guides::{BodyForce, BodyTorque, Guide};
 pub use key::{Key, KeyError, KeyPart};
@@ -305,7 +307,8 @@ impl Scene {
             obstacle.check(&key, &mut checks);
         }
         bodies::check(&self.body, &self.sheet, &mut checks);
-        self.forces.check(&root.name("forces"), &mut checks);
+        self.forces
+            .check(&self.sheet, &root.name("forces"), &mut checks);
         if let Some(air) = &self.air {
             air.check(&root.name("air"), &mut checks);
         }

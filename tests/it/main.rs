@@ -20,6 +20,7 @@ mod forces;
 mod hard;
 mod impacts;
 mod invariance;
+mod loads;
 mod locking;
 mod materials;
 mod modules;

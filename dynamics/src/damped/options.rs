@@ -26,7 +26,7 @@ pub struct ImplicitOptions {
     /// Largest change of a normal force between the last two updates of lagged friction, relative to the
     /// largest normal force. Default 1e-3; at least 0.05 in the augmented Lagrangian.
     pub friction_tolerance: f64,
-    /// Largest number of updates of lagged friction per sub-step. Default 5.
+    /// Largest number of updates of lagged friction, and of loads that follow the sheet, per sub-step. Default 5.
     pub max_friction_updates: usize,
     /// Seed of the perturbation of a state at a saddle point of the incremental potential. Default 0.
     pub seed: u64,

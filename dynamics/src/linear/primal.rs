@@ -3,6 +3,7 @@
 mod cost;
 mod far;
 mod iterative;
+mod low_rank;
 mod whole;
 
 use crate::hessian::{BlockSink, CouplingSink};
@@ -10,13 +11,15 @@ use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
 use crate::report::effort::SolverEffort;
+use crate::vectors::add;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
 use far::{FarCouplings, stiff_pairs};
 use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt};
 use isosheet_mesh::{EdgeId, VertexId};
 use iterative::{ConjugateGradients, Ending, Goal};
-use nalgebra::Matrix3;
+use low_rank::LowRank;
+use nalgebra::{Matrix3, Vector3};
 use whole::WholeMatrix;
 
 /// Pairs without contact that keep their room, per pair and rod in use: room costs fill, analysing
@@ -42,11 +45,13 @@ const GRADIENT_ACCURACY: f64 = 0.1;
 /// Potentials may couple vertices without a common edge. Bending couples some thirty to each vertex, and a
 /// factorisation with these couplings takes ten times as long as one without. So the matrix without them,
 /// with their substitutes ([`FarCouplings`]), is factorised where that is the cheaper way, and conjugate
-/// gradients on the whole matrix do the rest.
+/// gradients on the whole matrix do the rest. Terms of rank one that couple all vertices are no part of what is
+/// factorised, and enter solutions exactly ([`LowRank`]).
 pub(crate) struct PrimalMatrix {
     /// All but the far couplings.
     near: SparseLlt,
     far: FarCouplings,
+    low_rank: LowRank,
     whole: Option<WholeMatrix>,
     /// What the matrix without far couplings and the whole one cost, both without contact.
     costs: Option<[Direct; 2]>,
@@ -150,6 +155,7 @@ impl PrimalMatrix {
         Ok(Self {
             near: SparseLlt::with_blocks(pattern, 3)?,
             far,
+            low_rank: LowRank::default(),
             whole: None,
             costs: None,
             masses: (0..model.free_index().len())
@@ -246,6 +252,7 @@ impl PrimalMatrix {
     pub(crate) fn clear(&mut self) {
         self.factorised = Factorised::Nothing;
         self.far.clear();
+        self.low_rank.clear();
         self.near.values_mut().fill(0.0);
     }
 
@@ -332,19 +339,24 @@ impl PrimalMatrix {
     /// Factorises the matrix that was assembled last, or without its far couplings.
     ///
     /// # Errors
-    /// [`LinalgError::NotPositiveDefinite`]. (Without far couplings some matrices that are not positive
-    /// definite are factorised; [`PrimalMatrix::solve_whole`] finds those that matter.)
+    /// [`LinalgError::NotPositiveDefinite`], also where terms of rank one alone would make it positive definite.
+    /// (Without far couplings some matrices that are not positive definite are factorised;
+    /// [`PrimalMatrix::solve_whole`] finds those that matter.)
     pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {
         if self.far.are_zero() {
-            self.near.factorize()?;
-            self.factorised = Factorised::Near;
+            self.factorize_near(Factorised::Near)
         } else if self.is_slow || !self.is_iteration_cheaper() {
-            self.factorize_whole()?;
+            self.factorize_whole()
         } else {
             self.add_substitutes(1.0);
-            self.near.factorize()?;
-            self.factorised = Factorised::Substituted;
+            self.factorize_near(Factorised::Substituted)
         }
+    }
+
+    fn factorize_near(&mut self, is: Factorised) -> Result<(), LinalgError> {
+        self.near.factorize()?;
+        self.low_rank.prepare(|b| self.near.solve(b))?;
+        self.factorised = is;
         Ok(())
     }
 
@@ -387,6 +399,7 @@ impl PrimalMatrix {
         }
         let whole = self.whole.as_mut().expect("it has just been made");
         whole.factorize(self.near.values(), &self.far)?;
+        self.low_rank.prepare(|b| whole.solve(b))?;
         self.factorised = Factorised::Whole;
         Ok(())
     }
@@ -409,8 +422,9 @@ impl PrimalMatrix {
         pattern.sub_symmetric_product(values, &self.rhs, &mut packed);
         packed.iter_mut().for_each(|p| *p = -*p);
         self.far.add_difference(&self.rhs, &mut packed);
+        self.low_rank.add_product(&self.rhs, &mut packed);
         if self.factorised != Factorised::Substituted {
-            let at = |i: usize| nalgebra::Vector3::from_column_slice(&self.rhs[3 * i..][..3]);
+            let at = |i: usize| Vector3::from_column_slice(&self.rhs[3 * i..][..3]);
             self.far.for_each_substitute(|i, block| {
                 let sum = block * at(i);
                 (0..3).for_each(|k| packed[3 * i + k] += sum[k]);
@@ -440,6 +454,7 @@ impl PrimalMatrix {
             (Factorised::Whole, Some(whole)) => whole.solve(&mut self.rhs),
             _ => self.near.solve(&mut self.rhs),
         }
+        self.low_rank.correct(&mut self.rhs);
         scatter(model, &self.rhs, out);
     }
 
@@ -460,9 +475,12 @@ impl PrimalMatrix {
             relative: GRADIENT_ACCURACY,
             max_iterations: self.iterations_worth(),
         };
-        let (ending, _) = self
-            .iteration
-            .solve(&mut self.near, &self.far, &self.rhs, goal);
+        let Self { near, low_rank, .. } = self;
+        let mut solve = |b: &mut [f64]| {
+            near.solve(b);
+            low_rank.correct(b);
+        };
+        let (ending, _) = self.iteration.solve(&mut solve, &self.far, &self.rhs, goal);
         match ending {
             Ending::Solved => scatter(model, &self.iteration.x, out),
             Ending::TooSlow if effort.count_factorisation() => {
@@ -530,6 +548,17 @@ impl HessianSink for Sink<'_> {
             Ok(_) => self.add(a.0, b.0, block),
             Err(_) => self.matrix.far.add(self.model, [a, b], block, self.scale),
         }
+    }
+
+    fn add_square(&mut self, factor: f64, gradient: &[(VertexId, Vector3<f64>)]) {
+        let mut packed = vec![0.0; self.matrix.rhs.len()];
+        for (v, g) in gradient {
+            let i = self.model.free_index()[v.index()];
+            if i != PINNED {
+                add(&mut packed, VertexId(i), g);
+            }
+        }
+        self.matrix.low_rank.add(self.scale * factor, packed);
     }
 }
 

@@ -9,7 +9,7 @@ use crate::SheetModel;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::motion::profile::{Profile, ProfileError};
 use crate::potential::Force;
-use crate::term::{Exchange, Formula, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
+use crate::term::{Exchange, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
 use crate::vectors::{add, point};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Topology, VertexId, area_from_lengths};
@@ -437,27 +437,13 @@ impl Term for AirStep {
         }
     }
 
-    /// Work of the air at the free vertices: of implicit Euler with the force at the end, which balances the
-    /// energy but for what the method dissipates; of a two-step formula by the trapezoidal rule with the force
-    /// at the start, at the order of the formula.
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
-        let start = step.state;
         let mut force = std::mem::take(&mut self.force);
         force.clear();
         force.resize(at.x.len(), 0.0);
         self.add_gradient(at, -1.0, &mut force);
-        if step.formula == Formula::TwoStep {
-            self.drag.add_force(start.t, &start.x, &start.v, &mut force);
-            force.iter_mut().for_each(|f| *f *= 0.5);
-        }
-        let rows = force.as_chunks::<3>().0.iter().zip(self.free.iter());
-        let mut work = 0.0;
-        for (v, (row, _)) in rows.enumerate().filter(|(_, (_, is_free))| **is_free) {
-            for k in 0..3 {
-                work += row[k] * (at.x[3 * v + k] - start.x[3 * v + k]);
-            }
-        }
+        let work = step.implicit_work(&self.drag, &self.free, at.x, &mut force);
         self.force = force;
-        Ok(Exchange::driven(work))
+        Ok(work)
     }
 }

@@ -3,7 +3,7 @@
 use crate::motion::profile::{Profile, ProfileError};
 use crate::potential::Force;
 use isosheet_mesh::wording::given;
-use isosheet_mesh::{Advice, Topology, VertexId};
+use isosheet_mesh::{Advice, EdgeId, FaceId, Topology, VertexId};
 use nalgebra::Vector3;
 
 /// Why a load cannot be made.
@@ -42,6 +42,21 @@ pub enum LoadError {
         /// Its weight, kilograms.
         weight: f64,
     },
+    /// There are no edges to act on.
+    #[error("a moment acts on no edge")]
+    NoEdges,
+    /// An edge is across the axis of a moment.
+    #[error("{edge} is across the axis of the moment on it")]
+    AcrossAxis {
+        /// The edge.
+        edge: EdgeId,
+    },
+    /// A loaded face has no area.
+    #[error("{face} is loaded and has no area")]
+    Sliver {
+        /// The face.
+        face: FaceId,
+    },
 }
 
 impl Advice for LoadError {
@@ -50,6 +65,9 @@ impl Advice for LoadError {
             Self::Profile(error) => error.advice(),
             Self::Direction { .. } => Some("give finite numbers, not all zero"),
             Self::Weight { .. } => Some("give finite weights"),
+            Self::NoEdges => Some("name edges"),
+            Self::AcrossAxis { .. } => Some("give an axis along the edges"),
+            Self::Sliver { .. } => Some("mend the mesh"),
             Self::NoSuchVertex { .. } => None,
         }
     }

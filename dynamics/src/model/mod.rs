@@ -4,19 +4,26 @@ pub(crate) mod air;
 pub(crate) mod clamps;
 #[cfg(test)]
 mod derivative_tests;
+pub(crate) mod edge_moment;
 pub(crate) mod elastic_deformation;
 mod error;
+mod follower;
+pub(crate) mod gas;
 pub(crate) mod hand;
 mod hands;
 pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;
+pub(crate) mod loaded_faces;
 mod memory;
 pub(crate) mod of_material;
 pub(crate) mod part;
+mod pressure;
 pub(crate) mod round_off;
 pub(crate) mod support;
 mod supports;
+pub(crate) mod turning_load;
+mod volume;
 
 use crate::constraint::VertexConstraint;
 use crate::material::elastic_sheet::ElasticSheet;

@@ -3,7 +3,7 @@
 use crate::hessian::HessianSink;
 use crate::potential::{At, CouplingKind, Potential, PotentialShape, Reached, Settled};
 use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
-use nalgebra::{Matrix2, Matrix3};
+use nalgebra::{Matrix2, Matrix3, Vector3};
 
 /// A potential that was made for one sheet, in a model of the [union](isosheet_mesh::Sheet::union) of
 /// several: it sees the coordinates of its own vertices, and its derivatives go to the places that these have
@@ -177,5 +177,11 @@ impl HessianSink for Shifted<'_> {
     fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
         let [a, b] = [a, b].map(|v| self.part.vertex(v));
         self.hessian.add_pair(a, b, block);
+    }
+
+    fn add_square(&mut self, factor: f64, gradient: &[(VertexId, Vector3<f64>)]) {
+        let shifted = gradient.iter().map(|(v, g)| (self.part.vertex(*v), *g));
+        self.hessian
+            .add_square(factor, &shifted.collect::<Vec<_>>());
     }
 }

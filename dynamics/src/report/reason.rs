@@ -20,6 +20,8 @@ pub enum Reason {
     AboveStart,
     /// The linear algebra failed.
     LinearAlgebra,
+    /// Loads that follow the sheet are not those of its place at the end of the step.
+    UnsettledLoads,
     /// The watch of the step or the limit of factorisations ended the iteration.
     Ended,
 }
@@ -33,6 +35,7 @@ impl fmt::Display for Reason {
             Self::Iterations => "all iterations were used",
             Self::AboveStart => "the minimum found is above the start of the step",
             Self::LinearAlgebra => "the linear algebra failed",
+            Self::UnsettledLoads => "loads that follow the sheet have not settled",
             Self::Ended => "the step was ended",
         })
     }

@@ -3,6 +3,7 @@
 mod bends;
 mod builder;
 mod contacts;
+mod follower_loads;
 mod forces;
 mod glue;
 mod guides;
@@ -62,6 +63,7 @@ impl Scene {
         builder.add_isometry()?;
         builder.perturb_start()?;
         builder.add_glue()?;
+        builder.add_follower_loads()?;
         let (contacts, obstacles) = builder.contacts()?;
         let gauge = |(k, measure): (usize, &Measure)| {
             let key = Key::root().name("measure").entry(k);

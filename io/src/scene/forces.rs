@@ -1,9 +1,11 @@
 //! Forces on the sheet.
 
+use super::follower_loads::{Gas, Moment, Pressure};
 use super::key::Key;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::selection::Selection;
+use super::sheet::Sheet;
 use super::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -31,6 +33,12 @@ pub struct Forces {
     pub gravity: Option<[f64; 3]>,
     /// Loads on vertices.
     pub load: Vec<Load>,
+    /// Pressures on faces.
+    pub pressure: Vec<Pressure>,
+    /// Gas in closed surfaces.
+    pub gas: Vec<Gas>,
+    /// Moments on lines of edges.
+    pub moment: Vec<Moment>,
     /// Uniform accelerations that change with time, such as those of a frame that is shaken.
     pub acceleration: Vec<Acceleration>,
 }
@@ -51,10 +59,24 @@ pub struct Load {
     pub sheet: Option<String>,
     /// Which vertices.
     pub at: Selection,
-    /// Direction in space, of any length.
+    /// Direction in space, of any length; in the frame of the sheet that at the start.
     pub direction: [f64; 3],
+    /// What the direction turns with.
+    #[serde(default)]
+    pub frame: Frame,
     /// Size of the whole load, newtons.
     pub size: Profile,
+}
+
+/// What the direction of a load turns with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Frame {
+    /// Nothing: it is fixed in space.
+    #[default]
+    Space,
+    /// The faces around each vertex: the direction is that at the start.
+    Sheet,
 }
 
 /// A uniform acceleration of the whole sheet.
@@ -74,7 +96,7 @@ pub struct Acceleration {
 }
 
 impl Forces {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+    pub(crate) fn check(&self, sheets: &[Sheet], key: &Key, checks: &mut Checks) {
         if let Some(gravity) = &self.gravity {
             checks.finite(key.name("gravity"), gravity, Unit::MetrePerSquareSecond);
         }
@@ -82,6 +104,15 @@ impl Forces {
             load.at.check(&key.name("at"), checks);
             checks.direction(key.name("direction"), &load.direction);
             load.size.check(key.name("size"), Unit::Newton, checks);
+        }
+        for (key, pressure) in key.name("pressure").entries(&self.pressure) {
+            pressure.check(sheets, &key, checks);
+        }
+        for (key, gas) in key.name("gas").entries(&self.gas) {
+            gas.check(sheets, &key, checks);
+        }
+        for (key, moment) in key.name("moment").entries(&self.moment) {
+            moment.check(sheets, &key, checks);
         }
         for (key, field) in key.name("acceleration").entries(&self.acceleration) {
             checks.direction(key.name("direction"), &field.direction);

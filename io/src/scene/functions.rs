@@ -42,6 +42,18 @@ impl Scene {
             let key = root.name("forces.load").entry(k).name("size");
             all.push((key, &mut load.size));
         }
+        for (k, pressure) in self.forces.pressure.iter_mut().enumerate() {
+            let key = root.name("forces.pressure").entry(k).name("size");
+            all.push((key, &mut pressure.size));
+        }
+        for (k, gas) in self.forces.gas.iter_mut().enumerate() {
+            let key = root.name("forces.gas").entry(k).name("added");
+            all.push((key, &mut gas.added));
+        }
+        for (k, moment) in self.forces.moment.iter_mut().enumerate() {
+            let key = root.name("forces.moment").entry(k).name("size");
+            all.push((key, &mut moment.size));
+        }
         for (k, field) in self.forces.acceleration.iter_mut().enumerate() {
             let key = root.name("forces.acceleration").entry(k).name("size");
             all.push((key, &mut field.size));

@@ -29,11 +29,13 @@ pub enum StartingPoint {
     Hammock,
     /// A strip of film that is peeled off a plate.
     Peel,
+    /// Two squares of film that are glued along their edges and blown up.
+    Pillow,
 }
 
 impl StartingPoint {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Hanging,
         Self::Clamp,
         Self::Drape,
@@ -47,6 +49,7 @@ impl StartingPoint {
         Self::Hypar,
         Self::Hammock,
         Self::Peel,
+        Self::Pillow,
     ];
 
     /// Its name.
@@ -65,6 +68,7 @@ impl StartingPoint {
             Self::Hypar => "hypar",
             Self::Hammock => "hammock",
             Self::Peel => "peel",
+            Self::Pillow => "pillow",
         }
     }
 
@@ -84,6 +88,7 @@ impl StartingPoint {
             Self::Hypar => "Pleated paper whose creases bend its panels to a hyperbolic paraboloid",
             Self::Hammock => "Rigid bodies that fall into a hammock of film",
             Self::Peel => "A strip of film that is peeled off a plate",
+            Self::Pillow => "Two squares of film that are glued to a pillow and blown up",
         }
     }
 
@@ -103,6 +108,7 @@ impl StartingPoint {
             Self::Hypar => include_str!("starting_point/hypar.toml"),
             Self::Hammock => include_str!("starting_point/hammock.toml"),
             Self::Peel => include_str!("starting_point/peel.toml"),
+            Self::Pillow => include_str!("starting_point/pillow.toml"),
         }
     }
 }

@@ -4,6 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unit {
     Metre,
+    CubicMetre,
     PerMetre,
     Second,
     Kilogram,
@@ -44,8 +45,9 @@ impl UnitRange {
 }
 
 impl Unit {
-    pub(crate) const ALL: [Self; 16] = [
+    pub(crate) const ALL: [Self; 17] = [
         Self::Metre,
+        Self::CubicMetre,
         Self::PerMetre,
         Self::Second,
         Self::Kilogram,
@@ -75,6 +77,12 @@ impl Unit {
                 1e-12,
                 1e12,
                 "an atom measures 1e-10 m, the orbit of the earth 1e11 m",
+            ),
+            Self::CubicMetre => (
+                "m3",
+                1e-24,
+                1e24,
+                "a cell of 1e-6 m has 1e-18 m3, all oceans 1e18 m3",
             ),
             Self::PerMetre => (
                 "1/m",

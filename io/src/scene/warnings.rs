@@ -98,6 +98,10 @@ impl PlacedSheets<'_> {
             let key = entry("forces.load", k).name("at");
             selections.push((key, load.sheet.as_ref(), &load.at));
         }
+        for (k, moment) in scene.forces.moment.iter().enumerate() {
+            let key = entry("forces.moment", k).name("at");
+            selections.push((key, moment.sheet.as_ref(), &moment.at));
+        }
         for (k, weight) in scene.weight.iter().enumerate() {
             let key = entry("weight", k).name("at");
             selections.push((key, weight.sheet.as_ref(), &weight.at));

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 11] = [
+const ALL_KEYS: [&str; 12] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -337,6 +337,45 @@ const ALL_KEYS: [&str; 11] = [
     friction = 0.1
     from = 0.2
     until = 0.4
+    "#,
+    r#"version = 1
+    [[sheet]]
+    name = "lower"
+    mesh = { square = { side = 0.2, level = 1 } }
+    material = "PET film"
+    [[sheet]]
+    name = "upper"
+    mesh = { square = { side = 0.2, level = 1 } }
+    material = "PET film"
+    placement = { position = [0, 0, 0.01] }
+    [[forces.pressure]]
+    sheets = ["lower", "upper"]
+    at = "all"
+    size = 10
+    [[forces.gas]]
+    sheets = ["lower", "upper"]
+    ambient = 1e5
+    pressure = 1.1e5
+    exponent = 1.4
+    added = { smooth_step = { to = 1e-3, end = 1 } }
+    [[forces.moment]]
+    sheet = "upper"
+    at = { half_space = { point = [0.1999, 0, 0], normal = [1, 0, 0] } }
+    axis = [0, 1, 0]
+    size = 1e-3
+    [[forces.load]]
+    sheet = "upper"
+    at = { vertices = [0] }
+    direction = [0, 0, 1]
+    frame = "sheet"
+    size = 1e-3
+    [[forces.load]]
+    at = "boundary"
+    direction = [0, 0, 1]
+    frame = "space"
+    size = 1e-3
+    [stop]
+    time = 1
     "#,
 ];
 

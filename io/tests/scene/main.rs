@@ -12,6 +12,7 @@ mod formulas;
 mod guides;
 mod keys;
 mod live;
+mod loads;
 mod materials;
 mod meaning;
 mod messages;

@@ -2,6 +2,7 @@
 
 use crate::objective::Objective;
 use crate::potential::Memories;
+use crate::report::reason::Reason;
 use crate::report::step_error::StepError;
 use crate::step::integrator::Phases;
 use crate::term::{Barrier, Iterate, Refusal, StepStart};
@@ -52,8 +53,8 @@ impl<'a> StepProblem<'a> {
         self.has_contact() || self.objective.has(Barrier::StrainLimit)
     }
 
-    /// The error of a refusal by a term.
-    pub(crate) fn error(&self, refusal: Refusal) -> StepError {
+    /// The error of a refusal by a term after some iterations.
+    pub(crate) fn error(&self, refusal: Refusal, iterations: usize) -> StepError {
         match refusal {
             Refusal::NonFiniteForce { vertex, value, t } => {
                 StepError::NonFiniteForce { vertex, value, t }
@@ -62,6 +63,14 @@ impl<'a> StepProblem<'a> {
                 t: self.state().t,
                 h: self.start.span,
                 gap,
+            },
+            Refusal::UnsettledLoads { error } => StepError::NotConverged {
+                t: self.state().t,
+                h: self.start.span,
+                iterations,
+                residual: error,
+                strain: 0.0,
+                reason: Reason::UnsettledLoads,
             },
         }
     }

@@ -1,7 +1,7 @@
 //! Conjugate gradients on a matrix that differs from a factorised one by its far couplings.
 
 use super::far::FarCouplings;
-use isosheet_coords::linalg::SparseLlt;
+use crate::vectors::dot;
 
 /// Working memory, in free coordinates.
 #[derive(Debug)]
@@ -50,8 +50,8 @@ impl ConjugateGradients {
         }
     }
 
-    /// Solves `(M + E) x = b` with the factorised `M`, not less than `M + E`, and the difference `E` that the
-    /// far couplings make.
+    /// Solves `(M + E) x = b` with `M`, not less than `M + E`, which `solve` applies inversely, and the difference
+    /// `E` that the far couplings make.
     ///
     /// The iteration starts at `x = M^-1 b`, which is exact where `E` does not matter, as along stiff rods:
     /// the residual is `-E x`, and what is measured from there on is the error in soft directions. Since
@@ -62,24 +62,24 @@ impl ConjugateGradients {
     /// within a truncated-Newton method", Oper. Res. Lett. 9, 1990.)
     pub(super) fn solve(
         &mut self,
-        matrix: &mut SparseLlt,
+        solve: &mut impl FnMut(&mut [f64]),
         far: &FarCouplings,
         b: &[f64],
         goal: Goal,
     ) -> (Ending, usize) {
         self.x.copy_from_slice(b);
-        matrix.solve(&mut self.x);
+        solve(&mut self.x);
         self.residual.fill(0.0);
         far.add_difference(&self.x, &mut self.residual);
         self.residual.iter_mut().for_each(|r| *r = -*r);
-        let mut gained = inner(&self.x, &self.residual);
+        let mut gained = dot(&self.x, &self.residual);
         let mut previous = f64::INFINITY;
         self.direction.fill(0.0);
         self.near_image.fill(0.0);
         for iteration in 0..goal.max_iterations {
             self.preconditioned.copy_from_slice(&self.residual);
-            matrix.solve(&mut self.preconditioned);
-            let square = inner(&self.residual, &self.preconditioned);
+            solve(&mut self.preconditioned);
+            let square = dot(&self.residual, &self.preconditioned);
             if square == 0.0 {
                 return (Ending::Solved, iteration);
             }
@@ -91,7 +91,7 @@ impl ConjugateGradients {
             }
             self.image.copy_from_slice(&self.near_image);
             far.add_difference(&self.direction, &mut self.image);
-            let curvature = inner(&self.direction, &self.image);
+            let curvature = dot(&self.direction, &self.image);
             if !(curvature > 0.0 && square > 0.0) {
                 return (Ending::NotDefinite, iteration + 1);
             }
@@ -108,8 +108,4 @@ impl ConjugateGradients {
         }
         (Ending::TooSlow, goal.max_iterations)
     }
-}
-
-fn inner(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

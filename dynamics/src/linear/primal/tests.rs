@@ -243,3 +243,41 @@ fn indefinite_matrices_are_found() {
     }
     assert!(found > 0);
 }
+
+/// Terms of rank one enter solutions exactly, whichever way a sheet is solved with.
+#[test]
+fn terms_of_rank_one_are_solved_for_exactly() {
+    let (model, x) = paper(3, plate(5e-4));
+    let all = |k: f64| {
+        let wave = wave(&model, k);
+        let vertices = model.topology().vertex_ids();
+        let all = vertices.map(|v| (v, crate::vectors::point(&wave, v)));
+        all.collect::<Vec<_>>()
+    };
+    let b = wave(&model, 1.3);
+    for is_whole in [false, true] {
+        let mut matrix = assembled(&model, &x, (1.0, 0.0));
+        for k in [0.1, 0.7] {
+            matrix.scaled_sink(&model, 0.5).add_square(40.0, &all(k));
+        }
+        if is_whole {
+            matrix.leave_iteration();
+        }
+        matrix.factorize().unwrap();
+        assert_eq!(matrix.is_iterative(), !is_whole);
+        let mut found = vec![0.0; b.len()];
+        matrix.solve(&model, &b, &mut found);
+        let mut image = matrix.product(&model, &found);
+        if !is_whole {
+            // What is factorised has the substitutes of far couplings in their place.
+            let [mut free, mut difference] = [(); 2].map(|()| vec![0.0; 3 * model.free_count()]);
+            gather(&model, &found, &mut free);
+            matrix.far.add_difference(&free, &mut difference);
+            let mut full = vec![0.0; b.len()];
+            scatter(&model, &difference, &mut full);
+            image.iter_mut().zip(&full).for_each(|(i, f)| *i -= f);
+        }
+        let worst = image.iter().zip(&b).map(|(r, b)| (r - b).abs());
+        assert!(worst.fold(0.0, f64::max) < 1e-9, "{is_whole}");
+    }
+}

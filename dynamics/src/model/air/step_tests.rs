@@ -4,6 +4,7 @@ use super::*;
 use crate::State;
 use crate::hessian::{CouplingSink, HessianSink};
 use crate::potential::Memories;
+use crate::term::Formula;
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::DMatrix;
 

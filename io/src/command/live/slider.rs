@@ -52,6 +52,9 @@ impl Slider {
             "angle" => (format!("angle of {owner}"), "°"),
             "x" | "y" | "z" => (format!("{owner} along {last}"), "m"),
             "size" if owner.starts_with("forces.load") => (above.to_owned(), "N"),
+            "size" if owner.starts_with("forces.pressure") => (above.to_owned(), "Pa"),
+            "size" if owner.starts_with("forces.moment") => (above.to_owned(), "N m"),
+            "added" => (format!("gas added to {owner}"), "m³"),
             "size" => (above.to_owned(), "m/s²"),
             "wind[0]" => ("wind along x".to_owned(), WIND),
             "wind[1]" => ("wind along y".to_owned(), WIND),
@@ -103,6 +106,9 @@ mod tests {
         // The air is still, and the crease folds.
         let crease = ("angle of crease[0]".to_owned(), 0.0, 60.0);
         assert_eq!(sliders(StartingPoint::Leaf.text()), [crease]);
+        // The seams close, and air is blown in.
+        let added = ("gas added to forces.gas[0]".to_owned(), 0.0, 6e-4);
+        assert_eq!(sliders(StartingPoint::Pillow.text()), [added]);
     }
 
     #[test]

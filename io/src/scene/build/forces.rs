@@ -1,10 +1,10 @@
 //! Loads, accelerations and the air.
 
 use super::builder::{Builder, at};
-use crate::scene::Air;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
-use isosheet_dynamics::{AccelerationField, SimulationError, VertexLoad};
+use crate::scene::{Air, Frame};
+use isosheet_dynamics::{AccelerationField, SimulationError, TurningLoad, VertexLoad};
 
 impl Builder<'_> {
     pub(super) fn add_forces(&mut self) -> Result<(), SceneError> {
@@ -23,9 +23,20 @@ impl Builder<'_> {
                 .vertices(load.sheet.as_deref(), &load.at, &key)?;
             let size = load.size.scaled(1.0 / vertices.len() as f64);
             let topology = self.model().topology();
-            let load = VertexLoad::new(topology, &vertices, load.direction, size);
-            let load = load.map_err(at(&key))?;
-            self.change(|m| Ok(m.with_force(load)), at::<SimulationError>(&key))?;
+            let direction = load.direction;
+            let error = at::<SimulationError>(&key);
+            match load.frame {
+                Frame::Space => {
+                    let load = VertexLoad::new(topology, &vertices, direction, size);
+                    let load = load.map_err(at(&key))?;
+                    self.change(|m| Ok(m.with_force(load)), error)?;
+                }
+                Frame::Sheet => {
+                    let load = TurningLoad::new(topology, &vertices, direction, size, &self.x);
+                    let load = load.map_err(at(&key))?;
+                    self.change(|m| Ok(m.with_turning_load(load)), error)?;
+                }
+            }
         }
         for (key, field) in key.name("acceleration").entries(&forces.acceleration) {
             let weights = self.model().mass().row_sums(self.model().topology());
