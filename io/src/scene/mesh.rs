@@ -9,7 +9,7 @@ use super::pattern::{
 };
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use crate::format::ReadingChanges;
+use crate::format::{FaceGroups, ReadingChanges};
 use isosheet_mesh::Sheet;
 use isosheet_mesh::generate::{self, FoldPattern, GenerateError};
 use schemars::JsonSchema;
@@ -165,6 +165,8 @@ impl Argument {
 pub(crate) struct RestMesh {
     pub(crate) sheet: Sheet,
     pub(crate) roles: Option<EdgeRoles>,
+    /// The groups of faces that a file names.
+    pub(crate) groups: FaceGroups,
     /// What reading a file changed.
     pub(crate) changes: ReadingChanges,
 }
@@ -182,6 +184,7 @@ impl RestMesh {
         Self {
             sheet,
             roles: None,
+            groups: FaceGroups::default(),
             changes: ReadingChanges::default(),
         }
     }
@@ -432,6 +435,7 @@ fn read_sheet(file: &MeshFile, key: &Key, files: &mut Files) -> Result<RestMesh,
             ..EdgeRoles::default()
         }),
         sheet,
+        groups: mesh.groups.clone(),
         changes: mesh.changes,
     })
 }

@@ -9,9 +9,10 @@ use super::obstacles::Shape;
 use super::placed::PlacedSheets;
 use super::problem::Problem;
 use super::resolution::check_shape;
-use super::selection::Selection;
+use super::selection::{InPlace, Selection};
 use super::start::velocities;
 use crate::body_mesh::BodyMesh;
+use crate::format::FaceGroups;
 use isosheet_collide as collide;
 use isosheet_collide::{BroadPhase, ContactMesh};
 use isosheet_dynamics::contact::SurfacePoints;
@@ -335,7 +336,12 @@ impl PlacedBody<'_> {
         at: &Key,
     ) -> Result<Vec<VertexId>, Problem> {
         let surface = self.solid.surface();
-        let found = selection.resolve(at, surface.topology(), surface.positions())?;
+        let place = InPlace {
+            topology: surface.topology(),
+            x: surface.positions(),
+            groups: &FaceGroups::default(),
+        };
+        let found = selection.resolve(at, &place)?;
         Ok(found.into_iter().map(|v| self.part.vertex(v)).collect())
     }
 

@@ -8,6 +8,7 @@ mod complete;
 mod files;
 mod folding;
 mod formulas;
+mod groups;
 mod guides;
 mod keys;
 mod live;
