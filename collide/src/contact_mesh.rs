@@ -22,6 +22,8 @@ pub struct ContactMesh {
     elements: Vec<Element>,
     glued: Option<Glued>,
     parts: Option<Parts>,
+    /// The first vertex of those that do not meet bodies.
+    driven_from: u32,
 }
 
 /// A face, a free edge or a free vertex together with the vertices and edges that it represents.
@@ -217,6 +219,7 @@ impl ContactMesh {
             elements,
             glued: None,
             parts: None,
+            driven_from: u32::MAX,
         }
     }
 
@@ -246,6 +249,19 @@ impl ContactMesh {
         let named = || Parts::new(self.vertex_count, parts, attached);
         self.parts = (!parts.is_empty()).then(named);
         self
+    }
+
+    /// Says that the vertices from this one on move in a prescribed way: primitives that have them meet no bodies,
+    /// which do so too.
+    #[must_use]
+    pub fn with_driven_from(mut self, first: u32) -> Self {
+        self.driven_from = first;
+        self
+    }
+
+    /// Whether a primitive meets bodies, by one of its vertices.
+    pub(crate) fn meets_bodies(&self, vertex: u32) -> bool {
+        vertex < self.driven_from
     }
 
     /// Whether two primitives have a vertex in common, are glued to each other or belong together.

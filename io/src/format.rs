@@ -40,6 +40,8 @@ pub use mesh_file::{
     MeshFileProblem, MeshFormat, MeshOptions, Polygons, ReadingChanges, Repair, SeparateBuffers,
     parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
+#[cfg(feature = "scene")]
+pub(crate) use trajectory::MovingMesh;
 pub use trajectory::{FrameData, Trajectory};
 #[cfg(feature = "run")]
 pub(crate) use trajectory::{FrameQuantity, MeshCounts, MotionError};

@@ -137,20 +137,24 @@ pub(crate) fn describe_scene(setup: &Setup) -> String {
         .flat_map(CarriedBody::vertices)
         .collect();
     let pins = setup.model.pins().into_iter();
-    let pins = pins.filter(|v| !carriers.contains(v)).count();
+    let pins = pins
+        .filter(|v| !carriers.contains(v) && !setup.origins.is_driven(*v))
+        .count();
     let mass = setup.model.mass().total();
     let modelled = setup.modelled.join(", ");
     let bodies = setup.bodies.iter().map(|body| body.surface());
     let bodies: Vec<_> = bodies.collect();
     let sheets = setup.parts.iter().map(|(name, part)| {
+        let mut driven = setup.origins.driven.iter();
         let kind = match bodies.contains(&part.vertices) {
-            true => "body ",
+            true => "body",
+            false if driven.any(|surface| surface.part == *part) => "obstacle",
             false => "sheet",
         };
         let (v, f) = (&part.vertices, &part.faces);
         let last = [v.end - 1, f.end - 1];
         format!(
-            "{kind}            {name}: vertices {} to {}, faces {} to {}\n",
+            "{kind:<16} {name}: vertices {} to {}, faces {} to {}\n",
             v.start, last[0], f.start, last[1]
         )
     });

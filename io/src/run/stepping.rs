@@ -88,7 +88,7 @@ impl HistoryRow {
             kinetic,
             potential: total - kinetic,
             total,
-            strain: simulation.model().edges().max_strain(&state.x),
+            strain: simulation.model().max_strain(&state.x),
             plastic: dissipated(simulation.model(), 0.0),
             gap: simulation.contacts().and_then(finite_gap),
             ..Self::default()
@@ -261,14 +261,17 @@ impl<'a> Stepping<'a> {
             force: load.force,
             torque: load.torque,
         });
-        let bodies = self.simulation.body_loads().into_iter().enumerate();
-        let on_obstacles = bodies.map(|(number, load)| LoadRow {
-            t,
-            on: LoadKind::Obstacle,
-            number,
-            force: load.force.into(),
-            torque: load.torque.into(),
-        });
+        let obstacles = self.plan.facts.obstacle_loads(&self.simulation);
+        let on_obstacles = obstacles
+            .into_iter()
+            .enumerate()
+            .map(|(number, load)| LoadRow {
+                t,
+                on: LoadKind::Obstacle,
+                number,
+                force: load.force,
+                torque: load.torque,
+            });
         let on_bodies = CarriedBody::contact_loads(&self.plan.facts.bodies, &self.simulation);
         let on_bodies = on_bodies
             .into_iter()
@@ -487,7 +490,7 @@ impl<'a> Stepping<'a> {
     }
 
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {
-        let loads = self.simulation.body_loads();
+        let loads = self.plan.facts.obstacle_loads(&self.simulation);
         Ending {
             reason,
             t: report.t,
@@ -497,7 +500,7 @@ impl<'a> Stepping<'a> {
             energy_drift: report.energy_drift,
             largest_speed: self.largest_speed(),
             supports: self.support_forces(),
-            obstacles: loads.iter().map(|load| load.force.into()).collect(),
+            obstacles: loads.iter().map(|load| load.force).collect(),
             bodies: CarriedBody::contact_loads(&self.plan.facts.bodies, &self.simulation)
                 .iter()
                 .map(|load| load.force)

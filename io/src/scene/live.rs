@@ -167,7 +167,7 @@ impl LiveScene {
         let bodies = self.facts.bodies.iter();
         let carriers: Vec<VertexId> = bodies.flat_map(|body| body.vertices).collect();
         let mut pins = self.simulation.model().pins();
-        pins.retain(|v| !carriers.contains(v));
+        pins.retain(|v| !carriers.contains(v) && !self.facts.origins.is_driven(*v));
         pins
     }
 
@@ -198,9 +198,20 @@ impl LiveScene {
         &self.facts.parts
     }
 
-    /// The obstacles, in the order of the scene.
+    /// The obstacles that do not deform, in the order of the scene.
     pub fn obstacles(&self) -> &[Obstacle] {
         &self.facts.obstacles
+    }
+
+    /// The number in the scene of one of these.
+    #[cfg(feature = "cli")]
+    pub(crate) fn obstacle_number(&self, k: usize) -> usize {
+        self.facts.origins.obstacle_number(k)
+    }
+
+    /// What the sheet does to the obstacles at the end of the last step, in the order of the scene.
+    pub fn obstacle_loads(&self) -> Vec<BodyLoad> {
+        self.facts.obstacle_loads(&self.simulation)
     }
 
     /// What is modelled, in words.

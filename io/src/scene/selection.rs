@@ -211,7 +211,7 @@ pub(super) fn by_number(
 }
 
 /// The vertex that is nearest to a point, and its distance.
-fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> (VertexId, f64) {
+pub(super) fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> (VertexId, f64) {
     let distance2 = |p: &[f64; 3]| -> f64 { (0..3).map(|k| (p[k] - wanted[k]).powi(2)).sum() };
     let (mut best, mut least) = (0, f64::INFINITY);
     for (i, p) in points.iter().enumerate() {

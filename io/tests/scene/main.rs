@@ -16,6 +16,7 @@ mod materials;
 mod meaning;
 mod messages;
 mod patches;
+mod sequences;
 mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;
