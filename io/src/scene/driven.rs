@@ -156,9 +156,10 @@ fn check_faces(mesh: &MovingMesh, at: &Key) -> Result<(), Problem> {
                 && n0.dot(&n1) > 0.0
                 && middle > -2.0 * (first * last).sqrt();
             if !is_kept {
-                let what = match n0.norm() > 0.0 {
-                    true => format!("turns over from frame {frame} to frame {next}"),
-                    false => format!("has no area in frame {frame}"),
+                let what = match [n0, n1].map(|n| n.norm() > 0.0) {
+                    [false, _] => format!("has no area in frame {frame}"),
+                    [_, false] => format!("has no area in frame {next}"),
+                    [true, true] => format!("turns over from frame {frame} to frame {next}"),
                 };
                 return Err(Problem::new(
                     at.clone(),

@@ -41,25 +41,31 @@ const CLOTH: &str = "version = 1\n[sheet]\nmaterial = \"cotton\"\n\
      mesh = { rectangle = { width = 0.2, height = 0.1, columns = 8, rows = 4 } }\n\
      [forces]\ngravity = [0, 0, -9.81]\n";
 
-/// Two corners that follow a mesh which goes up for half a second and rests then move as pins that are lifted by
-/// that profile: by number, by the nearest vertex and by the same number.
+/// Two corners that follow a mesh which goes up move as pins that are lifted by a profile: by number, by
+/// the nearest vertex and by the same number.
 #[test]
 fn pins_follow_a_mesh_in_motion() {
     let dir = tempfile::tempdir().unwrap();
     let body = generate::grid(8, 4, 0.2, 0.1, generate::Diagonals::UnionJack).unwrap();
     let x = body.positions();
-    let (start, end) = (moved(x, [0.0, 0.0, -0.01]), moved(x, [0.03, 0.0, 0.04]));
+    let (start, end) = (moved(x, [0.0, 0.0, -0.01]), moved(x, [0.1, 0.0, 0.19]));
     write(
         &dir.path().join("body.npz"),
         &body,
-        &[(0.0, start.clone()), (0.5, end.clone())],
+        &[(-1.0, start), (4.0, end)],
     );
     let corners = "[[support]]\nat = { vertices = [0, 8] }\n";
-    let ramp = |to: f64| format!("{{ ramp = {{ to = {to}, end = 0.5 }} }}");
+    let ramp = |to: f64| {
+        format!(
+            "{{ ramp = {{ from = {}, to = {}, begin = -1, end = 4 }} }}",
+            -0.2 * to,
+            0.8 * to
+        )
+    };
     let lifted = format!(
         "hold = {{ moving_pin = {{ x = {}, z = {} }} }}",
-        ramp(0.03),
-        ramp(0.05)
+        ramp(0.1),
+        ramp(0.2)
     );
     let follow = |vertices: &str| {
         format!(
@@ -83,7 +89,8 @@ fn pins_follow_a_mesh_in_motion() {
             "{hold}: {}",
             off(&expected, &found)
         );
-        assert!((found.state().x[2] - 0.05).abs() < 1e-12);
+        let t = found.state().t;
+        assert!((found.state().x[2] - 0.04 * t).abs() < 1e-12);
     }
 }
 
@@ -118,7 +125,6 @@ fn what_cannot_be_followed_is_refused() {
         );
         let message = simulation(dir.path(), &text).err().unwrap();
         assert!(message.contains(reason), "{file}, {vertices}: {message}");
-        assert!(message.contains("hold.follow."), "{message}");
     }
 }
 
@@ -170,64 +176,75 @@ const HELD: &str = "version = 1\n[sheet]\nmaterial = \"cotton\"\ndamping = 1\n\
      [forces]\ngravity = [0, 0, -9.81]\n[contact]\nactivation = 0.004\nstiffness = 1e-4\nrest_speed = 1e-3\n\
      [[support]]\nat = { vertices = [0, 10] }\n";
 
-/// A ball that comes up pushes the cloth as the same ball does that is moved by a profile, with friction. The forces
-/// on it are the same too.
+/// A ball that comes up bends a clamped strip of card as the same ball does that is moved by a profile, with friction.
+/// The forces on it are the same too.
 #[test]
 fn a_mesh_in_motion_that_does_not_deform_is_a_body_that_moves() {
     let dir = tempfile::tempdir().unwrap();
-    let ball = ball(0.05);
-    let (low, high) = ([0.0, 0.0, -0.06], [0.02, 0.0, 0.04]);
-    let frames = [low, high].map(|by| moved(ball.positions(), by));
-    let [start, end] = frames;
-    write(
-        &dir.path().join("ball.npz"),
-        &ball,
-        &[(0.0, start), (0.5, end)],
-    );
+    let ball = ball(0.02);
+    let place = |t: f64| [0.15 + 0.01 * t, 0.02, -0.025 + 0.05 * t];
+    let frames = [-1.0, 4.0].map(|t| (t, moved(ball.positions(), place(t))));
+    write(&dir.path().join("ball.npz"), &ball, &frames);
     isosheet_io::write_obj(
         &dir.path().join("ball.obj"),
         ball.topology(),
         ball.positions(),
     )
     .unwrap();
-    let body = "[[obstacle]]\nshape = { file = { path = \"ball.obj\" } }\npose = { position = [0, 0, -0.06] }\n\
-                motion = { x = { ramp = { to = 0.02, end = 0.5 } }, z = { ramp = { to = 0.1, end = 0.5 } } }\n\
-                friction = 0.3";
+    let ramp = |rate: f64| {
+        format!(
+            "{{ ramp = {{ from = {}, to = {}, begin = -1, end = 4 }} }}",
+            -rate,
+            4.0 * rate
+        )
+    };
+    let body = format!(
+        "[[obstacle]]\nshape = {{ file = {{ path = \"ball.obj\" }} }}\nfriction = 0.3\n\
+         pose = {{ position = [0.15, 0.02, -0.025] }}\nmotion = {{ x = {}, z = {} }}",
+        ramp(0.01),
+        ramp(0.05)
+    );
     let mesh = "[[obstacle]]\nshape = { sequence = { path = \"ball.npz\" } }\nfriction = 0.3";
     let start = |obstacle: &str| {
-        let text = format!("{HELD}{obstacle}");
+        let text = format!(
+            "version = 1\n[sheet]\nmaterial = \"card\"\ndamping = 4\n\
+             mesh = {{ rectangle = {{ width = 0.2, height = 0.05, columns = 16, rows = 4 }} }}\n\
+             [contact]\nactivation = 0.002\nstiffness = 1e-4\nrest_speed = 1e-2\n\
+             [[support]]\nat = {{ box = {{ min = [-1, -1, -1], max = [1e-6, 1, 1] }} }}\nhold = \"clamp\"\n\
+             {obstacle}"
+        );
         LiveScene::start(SceneFile::parse(text, &dir.path().join("scene.toml"), &[]).unwrap())
             .unwrap()
     };
-    let [mut expected, mut found] = [start(body), start(mesh)];
-    let mut largest: f64 = 0.0;
-    for _ in 0..40 {
+    let [mut expected, mut found] = [start(&body), start(mesh)];
+    for _ in 0..45 {
         expected.step(1.0 / 60.0).unwrap();
         let report = found.step(1.0 / 60.0).unwrap();
         assert!(
-            report.gap.unwrap() > 0.0 && report.strain < 0.05,
+            report.gap.unwrap() > 0.0 && report.strain < 0.01,
             "{report:?}"
         );
-        let sheets = 3 * 121;
-        let [a, b] = [&expected, &found].map(|live| &live.simulation().state().x[..sheets]);
-        let off = a
-            .iter()
-            .zip(b)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
-        largest = largest.max(off);
     }
-    assert!(largest < 1e-4, "{largest}");
+    let sheet = 3 * 17 * 5;
+    let [a, b] = [&expected, &found].map(|live| &live.simulation().state().x[..sheet]);
+    let off = a
+        .iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
+    let bent = a.iter().skip(2).step_by(3).fold(0.0, |m: f64, z| m.max(*z));
+    assert!(bent > 0.02, "the strip is bent: {bent}");
+    assert!(off < 1e-4 * bent, "{off} of {bent}");
     let [a, b] = [&expected, &found].map(|live| live.obstacle_loads()[0].force);
-    assert!(a[2] < -1e-3, "the cloth lies on the ball: {a:?}");
+    assert!(a[2] < -1e-3, "the strip presses on the ball: {a:?}");
     for k in 0..3 {
-        assert!((a[k] - b[k]).abs() < 1e-2 * a[2].abs(), "{a:?} {b:?}");
+        assert!((a[k] - b[k]).abs() < 1e-3 * a[2].abs(), "{a:?} {b:?}");
     }
     // What is known of the sheet is that of the sheet alone.
     let [a, b] = [&expected, &found].map(LiveScene::simulation);
     assert_eq!(a.model().mass().total(), b.model().mass().total());
     assert_eq!(a.model().mean_length(), b.model().mean_length());
-    assert_eq!(found.pins().len(), 2);
+    assert_eq!(expected.pins(), found.pins());
     assert_eq!(found.parts()[1].0, "obstacle_0");
 }
 
