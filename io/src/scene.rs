@@ -37,6 +37,7 @@ mod chart;
 mod contact;
 mod creases;
 mod curl;
+mod direction;
 mod driven;
 mod edit;
 mod engine_problem;
@@ -101,6 +102,7 @@ pub use chart::{
 pub use contact::{Contact, SheetPair};
 pub use creases::{Crease, CreaseEdges, PatternEdges};
 pub use curl::Curl;
+pub use direction::{Direction, TextureAxis, TextureDirection};
 pub use edit::{Edit, EditError};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};

@@ -1,5 +1,6 @@
 //! Where the mesh of a sheet comes from.
 
+use super::direction::FaceTexture;
 use super::error::SceneError;
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
@@ -167,6 +168,8 @@ pub(crate) struct RestMesh {
     pub(crate) roles: Option<EdgeRoles>,
     /// The groups of faces that a file names.
     pub(crate) groups: FaceGroups,
+    /// The texture coordinates of its faces, if a file has any.
+    pub(crate) texture: Vec<FaceTexture>,
     /// What reading a file changed.
     pub(crate) changes: ReadingChanges,
 }
@@ -185,6 +188,7 @@ impl RestMesh {
             sheet,
             roles: None,
             groups: FaceGroups::default(),
+            texture: Vec::new(),
             changes: ReadingChanges::default(),
         }
     }
@@ -436,6 +440,7 @@ fn read_sheet(file: &MeshFile, key: &Key, files: &mut Files) -> Result<RestMesh,
         }),
         sheet,
         groups: mesh.groups.clone(),
+        texture: mesh.texture.clone(),
         changes: mesh.changes,
     })
 }

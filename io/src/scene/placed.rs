@@ -1,5 +1,6 @@
 //! The sheets of a scene in their places, and the union of them that is simulated.
 
+use super::direction::{Direction, FaceTexture};
 use super::error::SceneError;
 use super::mesh::RestMesh;
 use super::mesh_file::{Files, MeshFile};
@@ -15,6 +16,7 @@ use crate::format::{FaceGroups, ReadingChanges};
 use isosheet_dynamics::Patched;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{FaceId, MassKind, MassMatrix, MeshError, Part, Sheet, VertexId};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// What is made of the mesh of a sheet, its division, its place and its start.
@@ -30,6 +32,8 @@ pub(crate) struct Form {
     pub(super) changes: ReadingChanges,
     /// The groups of its faces that its file names.
     groups: FaceGroups,
+    /// The texture coordinates of the faces of its mesh, if that has any.
+    texture: Vec<FaceTexture>,
     /// Positions at the start, `3V`.
     start: Vec<f64>,
     /// Positions of the shape whose curvature it has.
@@ -39,7 +43,7 @@ pub(crate) struct Form {
 /// A sheet in its place.
 pub(super) struct PlacedSheet<'a> {
     /// What the scene says of it.
-    pub(super) of: &'a SheetOfScene,
+    pub(super) of: Cow<'a, SheetOfScene>,
     pub(super) key: Key,
     pub(super) form: Arc<Form>,
     /// Where it is in the union.
@@ -87,7 +91,13 @@ impl<'a> PlacedSheets<'a> {
         let numbered = sheets.iter().zip(&*forms).zip(parts).enumerate();
         let list = numbered.map(|(k, ((of, form), part))| {
             let key = sheet_key(sheets.len(), k);
-            let patched = patched(of, &form.in_place(), &key)?;
+            let of = match of.direction {
+                Some(Direction::Texture(_)) => {
+                    Cow::Owned(of.with_texture(&form.unplaced, &form.texture, &key)?)
+                }
+                _ => Cow::Borrowed(of),
+            };
+            let patched = patched(&of, &form.in_place(), &key)?;
             let mass = match (of.mass, &of.patch[..]) {
                 (None, [_, ..]) => of_densities(form, &patched),
                 (mass, _) => {
@@ -146,7 +156,7 @@ impl<'a> PlacedSheets<'a> {
         selection: &Selection,
         key: &Key,
     ) -> Result<Vec<VertexId>, Problem> {
-        let all = self.list.iter().map(|sheet| sheet.of);
+        let all = self.list.iter().map(|sheet| &*sheet.of);
         let at = key.name("at");
         let number = match selection {
             Selection::Vertices(_) => Some(sheets::one_of(all, name, key, "the vertices")?),
@@ -172,7 +182,7 @@ impl<'a> PlacedSheets<'a> {
         key: &Key,
         what: &str,
     ) -> Result<&PlacedSheet<'a>, Problem> {
-        let all = self.list.iter().map(|sheet| sheet.of);
+        let all = self.list.iter().map(|sheet| &*sheet.of);
         sheets::one_of(all, name, key, what).map(|k| &self.list[k])
     }
 }
@@ -202,6 +212,7 @@ impl Form {
             sheet,
             roles,
             groups,
+            texture,
             changes,
         } = of.mesh.build(&mesh_key, files)?;
         let unplaced = Refined::new(sheet, of.refine, &key.name("refine"))?;
@@ -233,6 +244,7 @@ impl Form {
         Ok(Self {
             roles: roles.map(|roles| unplaced.roles(roles)),
             groups: groups.of_parts(&unplaced.faces_of_mesh()),
+            texture,
             placed,
             unplaced,
             changes,

@@ -14,7 +14,7 @@ fn the_trajectory_of_a_run_drives_another_that_continues_to_the_same_bits() {
         format!(
             "version = 1\n[sheet]\nmaterial = \"cotton\"\ndamping = 1\n\
              mesh = {{ square = {{ side = {side}, level = 1 }} }}\n\
-             placement = {{ position = [{0}, {0}, {z}] }}\n[stop]\ntime = 0.3\n[output]\nframe_interval = 0.01\n\
+             placement = {{ position = [{0}, {0}, {z}] }}\n[stop]\ntime = 0.3\n[output]\nframes_per_second = 60\n\
              checkpoint_interval = 0\n",
             -0.5 * side
         )

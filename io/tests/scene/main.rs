@@ -5,6 +5,7 @@ mod bodies;
 mod book;
 mod charts;
 mod complete;
+mod directions;
 mod files;
 mod folding;
 mod formulas;
