@@ -145,7 +145,7 @@ impl MeshFile {
 
     /// Keeps some of the faces, with what the file says of them; returns how many are removed.
     pub(super) fn retain_faces(&mut self, mut keep: impl FnMut(&[u32; 3]) -> bool) -> usize {
-        let kept: Vec<bool> = self.faces.iter().map(|face| keep(face)).collect();
+        let kept: Vec<bool> = self.faces.iter().map(&mut keep).collect();
         let numbers: Vec<u32> = (0..)
             .zip(&kept)
             .filter(|(_, kept)| **kept)
