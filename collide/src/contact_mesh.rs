@@ -25,6 +25,8 @@ pub struct ContactMesh {
     glued: Option<Glued>,
     parts: Option<Parts>,
     passing: Passing,
+    /// The first vertex of those that do not meet bodies.
+    driven_from: u32,
 }
 
 /// A face, a free edge or a free vertex together with the vertices and edges that it represents.
@@ -221,6 +223,7 @@ impl ContactMesh {
             glued: None,
             parts: None,
             passing: Passing::default(),
+            driven_from: u32::MAX,
         }
     }
 
@@ -257,6 +260,19 @@ impl ContactMesh {
     pub fn with_passing(mut self, vertices: [Range<usize>; 2]) -> Self {
         self.passing.add(vertices);
         self
+    }
+
+    /// Says that the vertices from this one on move in a prescribed way: primitives that have them meet no bodies,
+    /// which do so too.
+    #[must_use]
+    pub fn with_driven_from(mut self, first: u32) -> Self {
+        self.driven_from = first;
+        self
+    }
+
+    /// Whether a primitive meets bodies, by one of its vertices.
+    pub(crate) fn meets_bodies(&self, vertex: u32) -> bool {
+        vertex < self.driven_from
     }
 
     /// Whether two primitives have a vertex in common, are glued to each other, belong together or pass through

@@ -302,6 +302,15 @@ impl Contacts {
         self
     }
 
+    /// Tells of the points from this one on that they move in a prescribed way, as bodies do: they belong to one
+    /// [part](Contacts::with_parts), and meet no body.
+    #[must_use]
+    pub fn with_driven_from(mut self, first: VertexId) -> Self {
+        self.mesh = self.mesh.with_driven_from(first.0);
+        self.neighbours = None;
+        self
+    }
+
     /// Sets the friction between two of several sheets, whose vertices these are, or of one of them with
     /// itself, in place of that of [`Contacts::with_self_contact`].
     ///

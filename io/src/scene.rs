@@ -38,6 +38,8 @@ mod chart;
 mod contact;
 mod creases;
 mod curl;
+mod direction;
+mod driven;
 mod edit;
 mod engine_problem;
 mod error;
@@ -71,6 +73,7 @@ mod refined;
 mod resolution;
 mod schema;
 mod selection;
+mod sequence;
 mod setup;
 mod sheet;
 mod sheets;
@@ -104,6 +107,7 @@ pub use chart::{
 pub use contact::{Contact, SheetPair};
 pub use creases::{Crease, CreaseEdges, PatternEdges};
 pub use curl::Curl;
+pub use direction::{Direction, TextureAxis, TextureDirection};
 pub use edit::{Edit, EditError};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
@@ -131,6 +135,7 @@ pub use problem::Problem;
 pub use profile::{Change, Course, Interpolation, Profile};
 pub use schema::{as_written, documented_schema, schema};
 pub use selection::Selection;
+pub use sequence::Sequence;
 pub use setup::{Integration, Setup};
 pub use sheet::{Bending, Elasticity, Isometry, RestShape, Sheet};
 pub use source::{SceneFile, SceneFileError};
@@ -138,7 +143,7 @@ pub use start::{Spin, Start};
 pub use starting_point::StartingPoint;
 pub use stop::{Rest, Stop};
 pub use support_forces::{SupportForces, SupportLoad};
-pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
+pub use supports::{Curve, Followed, Hold, Support, Surface, SurfaceSide};
 pub use switch::{Condition, Threshold, When};
 pub use targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
 pub use unit::UnitRange;
@@ -378,34 +383,38 @@ impl Scene {
     pub fn files(&self) -> Vec<(Key, PathBuf)> {
         let mut scene = self.clone();
         let files = scene.files_mut().into_iter();
-        files.map(|(key, file)| (key, file.path.clone())).collect()
+        files.map(|(key, path)| (key, path.clone())).collect()
     }
 
-    /// The mesh files that the scene names, with their places.
-    pub(crate) fn files_mut(&mut self) -> Vec<(Key, &mut MeshFile)> {
+    /// The paths of the files that the scene names, with their places.
+    pub(crate) fn files_mut(&mut self) -> Vec<(Key, &mut PathBuf)> {
         let (root, mut files) = (Key::root(), Vec::new());
         let count = self.sheet.len();
         for (k, sheet) in self.sheet.iter_mut().enumerate() {
             let key = sheets::sheet_key(count, k);
             if let Mesh::File(file) = &mut sheet.mesh {
-                files.push((key.name("mesh.file"), file));
+                files.push((key.name("mesh.file"), &mut file.path));
             }
             if let Some(file) = &mut sheet.start.file {
-                files.push((key.name("start.file"), file));
+                files.push((key.name("start.file"), &mut file.path));
             }
             let curl = sheet.curl.as_mut();
             if let Some(file) = curl.and_then(|curl| curl.shape.as_mut()) {
-                files.push((key.name("curl.shape"), file));
+                files.push((key.name("curl.shape"), &mut file.path));
             }
         }
         for (k, obstacle) in self.obstacle.iter_mut().enumerate() {
-            if let Shape::File(file) = &mut obstacle.shape {
-                files.push((root.name("obstacle").entry(k).name("shape.file"), file));
-            }
+            let key = root.name("obstacle").entry(k).name("shape");
+            files.extend(obstacle.shape.file_mut(&key));
         }
         for (k, body) in self.body.iter_mut().enumerate() {
-            if let Shape::File(file) = &mut body.shape {
-                files.push((root.name("body").entry(k).name("shape.file"), file));
+            let key = root.name("body").entry(k).name("shape");
+            files.extend(body.shape.file_mut(&key));
+        }
+        for (k, support) in self.support.iter_mut().enumerate() {
+            if let Hold::Follow { sequence, .. } = &mut support.hold {
+                let key = root.name("support").entry(k).name("hold.follow.sequence");
+                files.push((key, &mut sequence.path));
             }
         }
         files

@@ -44,7 +44,8 @@ impl Body {
         let mut limit = limit;
         let places = sheet.x.as_chunks::<3>().0.iter();
         let steps = sheet.dx.as_chunks::<3>().0.iter();
-        for (v, (x, dx)) in (0..).zip(places.zip(steps)) {
+        let vertices = (0..).zip(places.zip(steps));
+        for (v, (x, dx)) in vertices.take_while(|(v, _)| sheet.mesh.meets_bodies(*v)) {
             let course = part.course(&Vector3::from(*x), &Vector3::from(*dx));
             let distance = shape.signed_distance(&part.now(&course)).value;
             let nearest = distance - course.reach(part);
@@ -80,7 +81,7 @@ impl Body {
         };
         let mut check = Check { sheet, part, limit };
         for &[v, f] in &candidates.vertex_face {
-            if !own.vertex_meets_face(others, [v, f]) {
+            if !sheet.mesh.meets_bodies(v) || !own.vertex_meets_face(others, [v, f]) {
                 continue;
             }
             let corners = features.face(f);
@@ -94,11 +95,15 @@ impl Body {
             }
         }
         for &[f, v] in &candidates.face_vertex {
-            if features.is_flat_vertex(v) || !others.vertex_meets_face(own, [v, f]) {
+            let corners = sheet.mesh.faces()[f as usize];
+            if features.is_flat_vertex(v)
+                || !sheet.mesh.meets_bodies(corners[0])
+                || !others.vertex_meets_face(own, [v, f])
+            {
                 continue;
             }
             let corner = features.vertex(v);
-            let courses = sheet.mesh.faces()[f as usize].map(course);
+            let courses = corners.map(course);
             let is_near = check.is_near(&courses, |[p, q, r]| {
                 let closest = point_triangle(&[corner, *p, *q, *r]);
                 support(&closest, -1.0, &[corner], radius)
@@ -108,11 +113,15 @@ impl Body {
             }
         }
         for &[e, g] in &candidates.edge_edge {
-            if features.is_flat_edge(g) || !own.edge_meets_edge(others, [e, g]) {
+            let own_ends = sheet.mesh.edges()[e as usize];
+            if features.is_flat_edge(g)
+                || !sheet.mesh.meets_bodies(own_ends[0])
+                || !own.edge_meets_edge(others, [e, g])
+            {
                 continue;
             }
             let ends = features.edge(g);
-            let courses = sheet.mesh.edges()[e as usize].map(course);
+            let courses = own_ends.map(course);
             let is_near = check.is_near(&courses, |[p, q]| {
                 let [c, d] = ends;
                 let closest = edge_edge(&[*p, *q, c, d]);

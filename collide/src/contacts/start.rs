@@ -78,7 +78,8 @@ pub(super) fn check_body(
     if let Shape::Surface(surface) = shape
         && surface.is_closed()
     {
-        for (v, p) in (0..).zip(x.as_chunks::<3>().0) {
+        let vertices = (0..).zip(x.as_chunks::<3>().0);
+        for (v, p) in vertices.take_while(|(v, _)| boxes.mesh().meets_bodies(*v)) {
             let local = place.to_local(&Vector3::from(*p));
             let gap = surface.signed_distance(&local).value;
             if gap <= 0.0 {
@@ -99,14 +100,14 @@ pub(super) fn check_body(
     boxes.edge_faces_with(&other, &mut pairs);
     for &[e, f] in &pairs {
         let (edge, face) = (sheet.edges()[e as usize], solid.faces()[f as usize]);
-        if pierces(gather(x, edge), gather(&places, face)) {
+        if sheet.meets_bodies(edge[0]) && pierces(gather(x, edge), gather(&places, face)) {
             return Err(touching(edge[0], 0.0));
         }
     }
     other.edge_faces_with(boxes, &mut pairs);
     for &[e, f] in &pairs {
         let (edge, face) = (solid.edges()[e as usize], sheet.faces()[f as usize]);
-        if pierces(gather(&places, edge), gather(x, face)) {
+        if sheet.meets_bodies(face[0]) && pierces(gather(&places, edge), gather(x, face)) {
             return Err(touching(face[0], 0.0));
         }
     }

@@ -157,7 +157,9 @@ impl Glue {
     /// The force that each pair carries at time `t` (seconds) and positions `x` (`3V`, metres), newtons.
     pub fn pair_forces(&self, t: f64, x: &[f64]) -> Vec<f64> {
         let pairs = 0..self.pairs.len();
-        pairs.map(|p| self.stiffness * self.gap(p, t, x).norm()).collect()
+        pairs
+            .map(|p| self.stiffness * self.gap(p, t, x).norm())
+            .collect()
     }
 
     /// What is left between the vertices of a pair, less what they are meant to be apart at time `t`, metres.

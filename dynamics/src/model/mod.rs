@@ -4,6 +4,7 @@ pub(crate) mod air;
 pub(crate) mod clamps;
 #[cfg(test)]
 mod derivative_tests;
+mod driven;
 pub(crate) mod edge_moment;
 pub(crate) mod elastic_deformation;
 mod error;
@@ -58,6 +59,8 @@ pub struct SheetModel {
     elastic: Option<ElasticSheet>,
     /// All edges with their rest lengths.
     edges: LengthConstraints,
+    /// Those that have a length to keep, where that are not all.
+    measured: Option<LengthConstraints>,
     /// Those that are rods.
     rods: LengthConstraints,
     rod_edges: Vec<EdgeId>,
@@ -69,8 +72,10 @@ pub struct SheetModel {
     /// Forces that damped steps take as terms of their objective.
     implicit: Vec<Box<dyn ImplicitForce>>,
     damping: f64,
-    /// The vertices of sheets; those after them belong to rigid bodies.
+    /// The vertices of sheets; those after them belong to rigid bodies and to surfaces in prescribed motion.
     sheet_vertices: usize,
+    /// The first vertex of surfaces in prescribed motion.
+    driven_from: usize,
     free_index: Vec<u32>,
     free_count: usize,
     moving_pins: Vec<MovingPin>,
@@ -127,6 +132,7 @@ impl SheetModel {
             rods: edges.clone(),
             rod_edges: topology.edge_ids().collect(),
             edges,
+            measured: None,
             shortest_edges,
             mean_length: sheet.mean_length(),
             mean_mass: mass.total() / n as f64,
@@ -137,6 +143,7 @@ impl SheetModel {
             implicit: Vec::new(),
             damping: 0.0,
             sheet_vertices: n,
+            driven_from: n,
             free_index: (0..n as u32).collect(),
             free_count: n,
             moving_pins: Vec::new(),
@@ -209,9 +216,7 @@ impl SheetModel {
                 is_rod[edge.index()] = false;
             }
         }
-        let all = self.topology.edge_ids();
-        self.rod_edges = all.filter(|e| is_rod[e.index()]).collect();
-        self.rods = self.edges.of_edges(&self.rod_edges);
+        self.set_rods(|edge| is_rod[edge.index()]);
         self.elastic = Some(elastic);
         Ok(self)
     }
@@ -288,6 +293,14 @@ impl SheetModel {
     /// Which edges the rods are.
     pub fn rod_edges(&self) -> &[EdgeId] {
         &self.rod_edges
+    }
+
+    /// Largest strain of an edge at positions `x` (`3V`, metres); edges of surfaces in prescribed motion have none.
+    ///
+    /// # Panics
+    /// If `x` is not of length `3V`.
+    pub fn max_strain(&self, x: &[f64]) -> f64 {
+        self.measured.as_ref().unwrap_or(&self.edges).max_strain(x)
     }
 
     /// Largest violation of the equations of isometry at positions `x` (`3V`, metres), which an accepted step

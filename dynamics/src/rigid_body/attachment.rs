@@ -37,7 +37,9 @@ impl Attachment {
     /// The force that each pair carries at positions `x` (`3V`, metres), newtons.
     pub fn pair_forces(&self, x: &[f64]) -> Vec<f64> {
         let pairs = self.pairs.iter();
-        pairs.map(|pair| self.stiffness * Self::gap(pair, x).norm()).collect()
+        pairs
+            .map(|pair| self.stiffness * Self::gap(pair, x).norm())
+            .collect()
     }
 
     /// The vertices of a pair with their weights in what is between them.

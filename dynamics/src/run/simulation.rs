@@ -647,7 +647,7 @@ impl Simulation {
             friction,
             plastic,
             energy_drift: kinetic + potential - work + dissipated + friction + plastic - start,
-            strain: model.edges().max_strain(x),
+            strain: model.max_strain(x),
             constrained_strain: model.constrained_strain(x),
             taut: totals.taut.clone(),
             violation: model.largest_violation(*t, x),

@@ -273,12 +273,12 @@ impl Simulation {
     /// Force of the sheet on each obstacle of the scene, newtons, of shape (obstacles, 3).
     #[getter]
     fn obstacle_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let loads = self.copied(py, |s| s.body_loads());
+        let loads = self.with(py, |live| live.obstacle_loads());
         rows(
             py,
             &loads
                 .iter()
-                .map(|load| load.force.into())
+                .map(|load| load.force)
                 .collect::<Vec<[f64; 3]>>(),
         )
     }

@@ -1,14 +1,14 @@
 //! `isosheet info`.
 
 use super::failure::{Code, Done, Failure};
-use super::message::print_warnings;
+use super::message::{counted, print_warnings};
 use super::reading::what_reading_did;
 use super::write::to_stdout;
 use crate::dynamics::{SheetModel, rod_rank};
 use crate::mesh::{Dof, MassKind, Sheet, VertexId};
 use crate::run::Recording;
 use crate::scene::{CarriedBody, SceneFile, Setup, bounds};
-use crate::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with};
+use crate::{FaceGroups, MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -72,6 +72,9 @@ impl Info {
         };
         let mesh = read_mesh_with(&self.file, &options);
         let changes = mesh.as_ref().map_or(String::new(), what_reading_did);
+        let groups = mesh
+            .as_ref()
+            .map_or(String::new(), |mesh| describe_groups(&mesh.groups));
         let sheet = mesh
             .and_then(MeshFile::into_sheet)
             .map_err(|e| match e.problem {
@@ -88,8 +91,19 @@ impl Info {
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped)
             .map_err(|e| Failure::of(Code::Input, &e))?;
         let description = describe_sheet(&sheet, &model, sheet.positions());
-        to_stdout(&format!("{description}{changes}"))
+        to_stdout(&format!("{description}{groups}{changes}"))
     }
+}
+
+/// The groups of faces that a mesh file names.
+fn describe_groups(groups: &FaceGroups) -> String {
+    let line = |(name, faces): (&str, &[u32])| {
+        format!(
+            "group            {name}: {}\n",
+            counted(faces.len(), "face", "faces")
+        )
+    };
+    groups.iter().map(line).collect()
 }
 
 /// Prints what came of a run, and what its scene is like.
@@ -123,20 +137,24 @@ pub(crate) fn describe_scene(setup: &Setup) -> String {
         .flat_map(CarriedBody::vertices)
         .collect();
     let pins = setup.model.pins().into_iter();
-    let pins = pins.filter(|v| !carriers.contains(v)).count();
+    let pins = pins
+        .filter(|v| !carriers.contains(v) && !setup.origins.is_driven(*v))
+        .count();
     let mass = setup.model.mass().total();
     let modelled = setup.modelled.join(", ");
     let bodies = setup.bodies.iter().map(|body| body.surface());
     let bodies: Vec<_> = bodies.collect();
     let sheets = setup.parts.iter().map(|(name, part)| {
+        let mut driven = setup.origins.driven.iter();
         let kind = match bodies.contains(&part.vertices) {
-            true => "body ",
+            true => "body",
+            false if driven.any(|surface| surface.part == *part) => "obstacle",
             false => "sheet",
         };
         let (v, f) = (&part.vertices, &part.faces);
         let last = [v.end - 1, f.end - 1];
         format!(
-            "{kind}            {name}: vertices {} to {}, faces {} to {}\n",
+            "{kind:<16} {name}: vertices {} to {}, faces {} to {}\n",
             v.start, last[0], f.start, last[1]
         )
     });

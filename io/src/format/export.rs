@@ -151,7 +151,12 @@ pub fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
     let (x, faces) = (&mesh.positions[..], &mesh.faces[..]);
     error::check_mesh(x, faces)?;
     match format {
-        ExportMeshFormat::Obj => obj::write(path, faces, x, &Extras::default()),
+        ExportMeshFormat::Obj => obj::write(
+            path,
+            faces,
+            x,
+            &Extras::of_groups(&mesh.groups, faces.len()),
+        ),
         ExportMeshFormat::Off => off::write(path, faces, x),
         ExportMeshFormat::Stl => stl::write(path, faces, x),
         ExportMeshFormat::Ply => ply::write(path, faces, x),

@@ -2,6 +2,7 @@
 
 mod assignment;
 mod error;
+mod face_groups;
 mod faces;
 mod fold;
 mod fold_frame;
@@ -22,6 +23,7 @@ mod weld;
 
 pub use assignment::EdgeAssignment;
 pub use error::{Location, MeshFileError, MeshFileProblem};
+pub use face_groups::FaceGroups;
 pub use fold_frame::FoldFrame;
 pub use format::MeshFormat;
 pub use mesh::{FileCrease, MeshFile, ReadingChanges};

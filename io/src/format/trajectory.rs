@@ -3,11 +3,15 @@
 mod archive;
 mod data;
 mod motion;
+#[cfg(feature = "scene")]
+mod moving_mesh;
 mod rate;
 
 pub use data::FrameData;
 pub(crate) use data::{FrameQuantity, MeshCounts};
 pub(crate) use motion::{Motion, MotionError, MotionFrame};
+#[cfg(feature = "scene")]
+pub(crate) use moving_mesh::MovingMesh;
 
 use crate::format::atomic::write_atomically;
 use crate::format::{DataError, FileError};

@@ -51,6 +51,7 @@ impl HoldingBody {
             let (local, shape) = match &entry.hold {
                 Hold::Pin
                 | Hold::MovingPin(_)
+                | Hold::Follow { .. }
                 | Hold::Clamp
                 | Hold::MovingClamp(_)
                 | Hold::SlidingClamp { .. } => return None,

@@ -81,7 +81,7 @@ fn hash(scene: &Scene, meshes: &[Arc<[u8]>]) -> SceneHash {
     const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
     let mut scene = scene.clone();
     for (_, file) in scene.files_mut() {
-        file.path = PathBuf::new();
+        *file = PathBuf::new();
     }
     let mut sum = SUM.digest();
     let canonical = serde_json::to_vec(&scene);

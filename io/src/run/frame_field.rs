@@ -1,6 +1,7 @@
 //! Fields of a page, frame by frame.
 
 use crate::format::{DataError, FrameQuantity, MotionFrame};
+use crate::scene::Origins;
 use crate::view::{Centering, Field, Scale, strains};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{ElasticDeformation, SheetModel};
@@ -26,15 +27,28 @@ impl<'a> FrameField<'a> {
         }
     }
 
-    /// The fields of a motion of a sheet among obstacles: the strain of the edges, the distance to obstacles, and of
+    /// The fields of a motion of a sheet among obstacles: the strain of the edges (none of obstacles that deform), the distance to obstacles, and of
     /// each quantity that `has` names what a page shows of it.
     pub(super) fn all(
         sheet: &Sheet,
+        origins: &Origins,
         obstacles: &'a [Obstacle],
         has: impl Fn(FrameQuantity) -> bool,
     ) -> Vec<Self> {
         let strain = strains(sheet.topology(), sheet.positions());
-        let mut fields = vec![Self::new(Field::strain(), move |frame| strain(frame.x))];
+        let driven = origins
+            .driven
+            .iter()
+            .map(|surface| surface.part.edges.clone());
+        let driven: Vec<_> = driven.collect();
+        let of_sheets = move |frame: &MotionFrame<'_>| {
+            let mut strains = strain(frame.x);
+            for edges in &driven {
+                strains[edges.clone()].fill(0.0);
+            }
+            strains
+        };
+        let mut fields = vec![Self::new(Field::strain(), of_sheets)];
         if !obstacles.is_empty() {
             fields.push(Self::obstacle_distance(obstacles));
         }

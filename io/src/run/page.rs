@@ -33,7 +33,7 @@ impl Recording {
     /// The fields of the page.
     fn fields(&self) -> Vec<FrameField<'_>> {
         let has = |quantity: FrameQuantity| self.shape.has(quantity);
-        let mut fields = FrameField::all(&self.sheet, &self.obstacles, has);
+        let mut fields = FrameField::all(&self.sheet, &self.origins, &self.obstacles, has);
         fields.extend(FrameField::elastic(
             &self.model,
             self.sheet.topology().face_count(),
@@ -45,6 +45,9 @@ impl Recording {
     /// corners.
     fn still(&self, times: Vec<f64>, corners: [[f64; 3]; 2]) -> Replay {
         let mut replay = Replay::still(&self.sheet, &self.obstacles, times, &self.history);
+        for (k, body) in replay.bodies.iter_mut().enumerate() {
+            body.name = format!("obstacle[{}]", self.origins.obstacle_number(k));
+        }
         let held = constraints::bodies(self.scene.scene(), &replay.times, corners);
         replay.bodies.extend(held);
         replay

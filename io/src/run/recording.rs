@@ -7,7 +7,7 @@ use crate::format::{
     EventRow, FileError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, SeriesBody,
     Trajectory, read_events, read_history, read_json, read_loads, read_measures,
 };
-use crate::scene::{SceneFile, Setup};
+use crate::scene::{Origins, SceneFile, Setup};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
 use isosheet_mesh::generate::FoldAssignment;
@@ -37,8 +37,10 @@ pub struct Recording {
     pub immobile: Vec<VertexId>,
     /// The model at its start.
     pub(crate) model: SheetModel,
-    /// The obstacles, in the order of the scene.
+    /// The obstacles that do not deform, in the order of the scene.
     pub obstacles: Vec<Obstacle>,
+    /// Which entry of the scene made what.
+    pub(crate) origins: Origins,
     /// How many numbers a frame has.
     pub(crate) shape: FrameShape,
     /// The frames with the mesh.
@@ -106,7 +108,7 @@ impl Recording {
         let shape = FrameShape::of(&setup);
         let bodies: Vec<VertexId> = setup.bodies.iter().flat_map(|body| body.vertices).collect();
         let of_sheets = |mut vertices: Vec<VertexId>| {
-            vertices.retain(|v| !bodies.contains(v));
+            vertices.retain(|v| !bodies.contains(v) && !setup.origins.is_driven(*v));
             vertices
         };
         let path = folder.join(RunFolder::FRAMES);
@@ -123,6 +125,7 @@ impl Recording {
             shape,
             sheet: setup.sheet,
             obstacles: setup.obstacles,
+            origins: setup.origins,
             history: tables.history,
             loads: tables.loads,
             measures: tables.measures,
@@ -133,7 +136,8 @@ impl Recording {
         (recording, frames)
     }
 
-    /// The obstacles for files of other programs, `obstacle_0` and so on in the order of the scene, with their
+    /// The obstacles that do not deform for files of other programs, `obstacle_0` and so on by their numbers in the
+    /// scene, with their
     /// poses in the frames of the trajectory. Of a half-space there is a square that is larger than what the
     /// sheet passes through.
     pub fn exported_bodies(&self) -> Vec<SeriesBody> {
@@ -146,7 +150,8 @@ impl Recording {
             let far = points.map(|p| (Vector3::from(*p) - origin).norm());
             // Half as far again as the farthest point of the sheet.
             let half = 1.5 * far.fold(0.0, f64::max);
-            SeriesBody::of_obstacle(format!("obstacle_{k}"), obstacle, times, half)
+            let name = format!("obstacle_{}", self.origins.obstacle_number(k));
+            SeriesBody::of_obstacle(name, obstacle, times, half)
         };
         self.obstacles.iter().enumerate().map(body).collect()
     }

@@ -4,6 +4,7 @@ use super::frame_field::{FrameField, check_frame};
 use crate::format::{
     BodyPose, DataError, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory,
 };
+use crate::scene::Origins;
 use crate::view::{Body, BodyShape, Replay, Scale, TimeSeries};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_mesh::Sheet;
@@ -32,7 +33,7 @@ impl Replay {
             let first = trajectory.first_data();
             first.is_some_and(|data| !quantity.of(&data).is_empty())
         };
-        let fields = FrameField::all(sheet, obstacles, has);
+        let fields = FrameField::all(sheet, &Origins::default(), obstacles, has);
         let still = Self::still(sheet, obstacles, trajectory.times().to_vec(), history);
         still.with_frames(trajectory, sheet, &fields)
     }

@@ -13,9 +13,7 @@ use crate::format::{
 };
 use crate::format::{MeasureRow, MeasureWriter};
 use crate::scene::check_positions;
-use crate::scene::{
-    CarriedBody, Facts, Integrator, Kept, Scene, SceneError, SceneFile, UnderWay,
-};
+use crate::scene::{CarriedBody, Facts, Integrator, Kept, Scene, SceneError, SceneFile, UnderWay};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::contact::ActiveContacts;
 use isosheet_dynamics::{
@@ -102,7 +100,7 @@ impl HistoryRow {
             kinetic,
             potential: total - kinetic,
             total,
-            strain: simulation.model().edges().max_strain(&state.x),
+            strain: simulation.model().max_strain(&state.x),
             plastic: dissipated(simulation.model(), 0.0),
             gap: simulation.contacts().and_then(finite_gap),
             ..Self::default()
@@ -289,19 +287,20 @@ impl<'a> Stepping<'a> {
             force: load.force,
             torque: load.torque,
         });
-        let bodies = self
+        let obstacles = self
             .under_way
-            .simulation
-            .body_loads()
+            .facts
+            .obstacle_loads(&self.under_way.simulation);
+        let on_obstacles = obstacles
             .into_iter()
-            .enumerate();
-        let on_obstacles = bodies.map(|(number, load)| LoadRow {
-            t,
-            on: LoadKind::Obstacle,
-            number,
-            force: load.force.into(),
-            torque: load.torque.into(),
-        });
+            .enumerate()
+            .map(|(number, load)| LoadRow {
+                t,
+                on: LoadKind::Obstacle,
+                number,
+                force: load.force,
+                torque: load.torque,
+            });
         let on_bodies =
             CarriedBody::contact_loads(&self.under_way.facts.bodies, &self.under_way.simulation);
         let on_bodies = on_bodies
@@ -555,7 +554,10 @@ impl<'a> Stepping<'a> {
     }
 
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {
-        let loads = self.under_way.simulation.body_loads();
+        let loads = self
+            .under_way
+            .facts
+            .obstacle_loads(&self.under_way.simulation);
         Ending {
             reason,
             t: report.t,
@@ -565,7 +567,7 @@ impl<'a> Stepping<'a> {
             energy_drift: report.energy_drift,
             largest_speed: self.largest_speed(),
             supports: self.support_forces(),
-            obstacles: loads.iter().map(|load| load.force.into()).collect(),
+            obstacles: loads.iter().map(|load| load.force).collect(),
             bodies: CarriedBody::contact_loads(
                 &self.under_way.facts.bodies,
                 &self.under_way.simulation,

@@ -99,6 +99,11 @@ impl Body {
                 ),
                 "choose a closed shape, or make it an `[[obstacle]]`",
             ),
+            Shape::Sequence(_) => checks.report(
+                shape.clone(),
+                "a mesh in motion is no body that responds",
+                "make it an `[[obstacle]]`",
+            ),
             _ => self.shape.check(&shape, checks),
         }
         checks.within(key.name("sides"), self.sides as f64, SIDES);

@@ -3,6 +3,7 @@
 mod bends;
 mod builder;
 mod contacts;
+mod follow;
 mod follower_loads;
 mod forces;
 mod glue;
@@ -88,9 +89,16 @@ impl Builder<'_> {
         };
         let of_bodies = self.bodies.list.iter().enumerate();
         let of_bodies = of_bodies.map(|(k, body)| (body.of.name(k), body.part.clone()));
+        let of_obstacles = self.origins.driven.iter();
+        let of_obstacles = of_obstacles.map(|o| (format!("obstacle_{}", o.number), o.part.clone()));
         let parts: Vec<_> = match &sheets[..] {
-            [_] if self.bodies.list.is_empty() => Vec::new(),
-            several => several.iter().map(part).chain(of_bodies).collect(),
+            [_] if self.surface.is_none() => Vec::new(),
+            several => several
+                .iter()
+                .map(part)
+                .chain(of_bodies)
+                .chain(of_obstacles)
+                .collect(),
         };
         let of_sheets = self.sheets.warnings(self.scene);
         let mut fold_assignments = self.sheets.fold_assignments();

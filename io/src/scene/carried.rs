@@ -47,6 +47,19 @@ impl BodyLoad {
     }
 }
 
+impl BodyLoad {
+    /// The sum of the forces on some vertices, of those on all (`3V`), with its torque about a point.
+    pub(super) fn of_vertices(
+        vertices: impl IntoIterator<Item = VertexId>,
+        forces: &[f64],
+        x: &[f64],
+        about: Vector3<f64>,
+    ) -> Self {
+        let own = vertices.into_iter().map(|v| (v, of_vertex(forces, v)));
+        Self::sum(own, x, about)
+    }
+}
+
 impl CarriedBody {
     /// Its mean by the weights of its centre of mass: the place of the centre of positions, its velocity of
     /// velocities (`3V`).
@@ -89,8 +102,8 @@ impl CarriedBody {
         let x = &simulation.state().x;
         let load = |body: &Self| {
             let forces = forces.as_ref()?;
-            let own = body.vertices.map(|v| (v, of_vertex(forces, v)));
-            Some(BodyLoad::sum(own, x, of_point(x, &body.centre)))
+            let centre = of_point(x, &body.centre);
+            Some(BodyLoad::of_vertices(body.vertices, forces, x, centre))
         };
         bodies
             .iter()

@@ -1,5 +1,6 @@
 //! The curvature that a sheet has by itself.
 
+use super::direction::Direction;
 use super::key::Key;
 use super::mesh_file::MeshFile;
 use super::problem::Checks;
@@ -67,7 +68,7 @@ impl Curl {
         }
     }
 
-    pub(super) fn check(&self, of_sheet: Option<[f64; 3]>, key: &Key, checks: &mut Checks) {
+    pub(super) fn check(&self, of_sheet: Option<&Direction>, key: &Key, checks: &mut Checks) {
         if let Some(along) = &self.along {
             checks.direction(key.name("along"), along);
         }

@@ -1,6 +1,7 @@
 //! Errors of the engine as problems of the scene.
 
-use super::key::Key;
+use super::driven::DrivenSurface;
+use super::key::{Key, KeyPart};
 use super::problem::Problem;
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
 use isosheet_dynamics::{
@@ -25,6 +26,8 @@ pub struct Origins {
     pub(crate) guides: HashMap<VertexId, usize>,
     /// The points of the surface of each body that responds.
     pub(crate) bodies: Vec<Range<usize>>,
+    /// The obstacles that deform.
+    pub(crate) driven: Vec<DrivenSurface>,
 }
 
 /// Two supports that come closer to each other.
@@ -72,10 +75,25 @@ impl Origins {
         vertices
     }
 
-    /// What holds a vertex: `hold` of a support, or the guide of a body.
+    /// One of the obstacles that do not deform.
+    fn obstacle_key(&self, body: usize) -> Key {
+        Key::root()
+            .name("obstacle")
+            .entry(self.obstacle_number(body))
+    }
+
+    /// What holds a vertex: `hold` of a support, the guide of a body, or the mesh in motion of an obstacle.
     fn support_key(&self, support: Support) -> Key {
         if let Some(body) = self.guides.get(&support.vertex()) {
             return Key::root().name("body").entry(*body).name("guide");
+        }
+        let vertex = support.vertex().index();
+        let mut driven = self.driven.iter();
+        if let Some(surface) = driven.find(|surface| surface.vertices.contains(&vertex)) {
+            return Key::root()
+                .name("obstacle")
+                .entry(surface.number)
+                .name("shape.sequence");
         }
         let number = self.support(support);
         let list = Key::root().name("support");
@@ -151,7 +169,7 @@ impl Origins {
                 cause,
                 ..
             } => (
-                root.name("obstacle").entry(pressing.body).name("motion"),
+                self.obstacle_key(pressing.body).name("motion"),
                 remedy_of_press(cause),
             ),
             StepError::StepTooSmall { cause, .. } => {
@@ -187,7 +205,7 @@ impl Origins {
             StepError::Unsatisfiable { infeasibility, .. } => {
                 let key = match infeasibility.by {
                     Driver::Support(support) => self.support_key(support),
-                    Driver::Body(body) => root.name("obstacle").entry(body).name("motion"),
+                    Driver::Body(body) => self.obstacle_key(body).name("motion"),
                 };
                 let remedy = match infeasibility.strain_limit {
                     Some(_) => {
@@ -198,7 +216,7 @@ impl Origins {
                 };
                 (key, remedy)
             }
-            StepError::Body(error) => return of_body_motion(error),
+            StepError::Body(error) => return self.of_body_motion(error),
             StepError::OffConstraints { .. } => (
                 root.name("sheet.start"),
                 "the positions at the start need the rest lengths of `sheet.mesh`",
@@ -281,30 +299,41 @@ impl Origins {
         }
     }
 
-    /// The number of the body whose surface has a point.
-    fn body_of(&self, point: u32) -> Option<usize> {
-        let surfaces = &mut self.bodies.iter();
-        surfaces.position(|surface| surface.contains(&(point as usize)))
+    /// The body, or the obstacle that deforms, whose surface has a point.
+    fn solid_of(&self, point: u32) -> Option<Key> {
+        let (root, point) = (Key::root(), point as usize);
+        let of_bodies = self.bodies.iter().enumerate();
+        let of_bodies = of_bodies.map(|(k, surface)| (surface, root.name("body").entry(k)));
+        let of_obstacles = self.driven.iter();
+        let of_obstacles =
+            of_obstacles.map(|o| (&o.part.vertices, root.name("obstacle").entry(o.number)));
+        let mut surfaces = of_bodies.chain(of_obstacles);
+        let found = surfaces.find(|(surface, _)| surface.contains(&point));
+        found.map(|(_, key)| key)
     }
 
     /// A point of what touches, in words.
     fn point_in_words(&self, point: u32) -> String {
-        match self.body_of(point) {
+        match self.solid_of(point) {
             None => format!("the sheet at vertex {point}"),
-            Some(k) => format!("`body[{k}]`"),
+            Some(key) => format!("`{key}`"),
         }
+    }
+
+    fn of_body_motion(&self, error: &BodyMotionError) -> Problem {
+        Problem::from_error(self.obstacle_key(error.body).name("motion"), error)
     }
 
     fn of_contact(&self, error: &ContactError) -> Problem {
         let root = Key::root();
         match error {
-            ContactError::Motion(error) => of_body_motion(error),
+            ContactError::Motion(error) => self.of_body_motion(error),
             ContactError::Touching {
                 pair: ContactPair::Body { vertex, body },
                 gap,
                 ..
             } => Problem::new(
-                root.name("obstacle").entry(*body),
+                self.obstacle_key(*body),
                 format!(
                     "the obstacle touches {} at the start (gap {} m, thickness of the \
                      sheet taken off)",
@@ -317,15 +346,19 @@ impl Origins {
                 pair: ContactPair::Sheet { first, second },
                 gap,
                 ..
-            } if self.body_of(*first).or(self.body_of(*second)).is_some() => {
-                let (body, other) = match self.body_of(*first) {
-                    Some(body) => (body, second),
-                    None => (self.body_of(*second).unwrap_or_default(), first),
+            } if self.solid_of(*first).or(self.solid_of(*second)).is_some() => {
+                let (solid, other) = match self.solid_of(*first) {
+                    Some(solid) => (solid, second),
+                    None => (self.solid_of(*second).unwrap_or(root), first),
+                };
+                let what = match solid.parts().first() {
+                    Some(KeyPart::Name(name)) if name == "obstacle" => "obstacle",
+                    _ => "body",
                 };
                 Problem::new(
-                    root.name("body").entry(body).name("pose"),
+                    solid.name("pose"),
                     format!(
-                        "the body touches {} at the start (gap {} m, thickness of the sheet taken off)",
+                        "the {what} touches {} at the start (gap {} m, thickness of the sheet taken off)",
                         self.point_in_words(*other),
                         brief(*gap)
                     ),
@@ -391,9 +424,4 @@ fn remedy_of(reason: Reason) -> (Key, &'static str) {
              `sheet.start.perturbation` says to which side it goes",
         ),
     }
-}
-
-fn of_body_motion(error: &BodyMotionError) -> Problem {
-    let key = Key::root().name("obstacle").entry(error.body);
-    Problem::from_error(key.name("motion"), error)
 }

@@ -22,7 +22,7 @@ impl Scene {
         }
         for (k, support) in self.support.iter_mut().enumerate() {
             let (place, motion) = match &mut support.hold {
-                Hold::Pin | Hold::Clamp => continue,
+                Hold::Pin | Hold::Clamp | Hold::Follow { .. } => continue,
                 Hold::MovingPin(motion) => ("hold.moving_pin", motion),
                 Hold::MovingClamp(motion) => ("hold.moving_clamp", motion),
                 Hold::SlidingClamp { motion, .. } => ("hold.sliding_clamp.motion", motion),

@@ -174,7 +174,8 @@ impl LiveScene {
         let bodies = self.under_way.facts.bodies.iter();
         let carriers: Vec<VertexId> = bodies.flat_map(|body| body.vertices).collect();
         let mut pins = self.under_way.simulation.model().pins();
-        pins.retain(|v| !carriers.contains(v));
+        let origins = &self.under_way.facts.origins;
+        pins.retain(|v| !carriers.contains(v) && !origins.is_driven(*v));
         pins
     }
 
@@ -206,9 +207,22 @@ impl LiveScene {
         &self.under_way.facts.parts
     }
 
-    /// The obstacles, in the order of the scene.
+    /// The obstacles that do not deform, in the order of the scene.
     pub fn obstacles(&self) -> &[Obstacle] {
         &self.under_way.facts.obstacles
+    }
+
+    /// The number in the scene of one of these.
+    #[cfg(feature = "cli")]
+    pub(crate) fn obstacle_number(&self, k: usize) -> usize {
+        self.under_way.facts.origins.obstacle_number(k)
+    }
+
+    /// What the sheet does to the obstacles at the end of the last step, in the order of the scene.
+    pub fn obstacle_loads(&self) -> Vec<BodyLoad> {
+        self.under_way
+            .facts
+            .obstacle_loads(&self.under_way.simulation)
     }
 
     /// What is modelled, in words.

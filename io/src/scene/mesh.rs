@@ -1,5 +1,6 @@
 //! Where the mesh of a sheet comes from.
 
+use super::direction::FaceTexture;
 use super::error::SceneError;
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
@@ -9,7 +10,7 @@ use super::pattern::{
 };
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use crate::format::ReadingChanges;
+use crate::format::{FaceGroups, ReadingChanges};
 use isosheet_mesh::Sheet;
 use isosheet_mesh::generate::{self, FoldPattern, GenerateError};
 use schemars::JsonSchema;
@@ -165,6 +166,10 @@ impl Argument {
 pub(crate) struct RestMesh {
     pub(crate) sheet: Sheet,
     pub(crate) roles: Option<EdgeRoles>,
+    /// The groups of faces that a file names.
+    pub(crate) groups: FaceGroups,
+    /// The texture coordinates of its faces, if a file has any.
+    pub(crate) texture: Vec<FaceTexture>,
     /// What reading a file changed.
     pub(crate) changes: ReadingChanges,
 }
@@ -182,6 +187,8 @@ impl RestMesh {
         Self {
             sheet,
             roles: None,
+            groups: FaceGroups::default(),
+            texture: Vec::new(),
             changes: ReadingChanges::default(),
         }
     }
@@ -432,6 +439,8 @@ fn read_sheet(file: &MeshFile, key: &Key, files: &mut Files) -> Result<RestMesh,
             ..EdgeRoles::default()
         }),
         sheet,
+        groups: mesh.groups.clone(),
+        texture: mesh.texture.clone(),
         changes: mesh.changes,
     })
 }

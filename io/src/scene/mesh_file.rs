@@ -2,10 +2,11 @@
 
 use super::key::Key;
 use super::problem::{Checks, Problem};
+use super::sequence::Sequence;
 use super::unit::Unit;
 use crate::format::{
-    self, FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, Polygons,
-    SeparateBuffers, input, parse_mesh, read_mesh_with,
+    self, FileError, FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions,
+    MovingMesh, Polygons, SeparateBuffers, input, parse_mesh, read_mesh_with,
 };
 use isosheet_mesh::Advice;
 use schemars::JsonSchema;
@@ -61,6 +62,16 @@ pub enum UpAxis {
     Y,
 }
 
+impl UpAxis {
+    /// A point of a file with z upwards.
+    pub(super) fn place(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Z => [x, y, z],
+            Self::Y => [x, -z, y],
+        }
+    }
+}
+
 /// What to do with faces of more than three corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -106,11 +117,7 @@ impl MeshFile {
     /// Puts a mesh as the file has it in metres and with z upwards.
     fn place(&self, mesh: &mut format::MeshFile) {
         for p in mesh.positions.as_chunks_mut::<3>().0 {
-            let [x, y, z] = p.map(|c| self.scale * c);
-            *p = match self.up {
-                UpAxis::Z => [x, y, z],
-                UpAxis::Y => [x, -z, y],
-            };
+            *p = self.up.place(p.map(|c| self.scale * c));
         }
     }
 }
@@ -123,6 +130,7 @@ pub(crate) struct Files {
     folder: PathBuf,
     contents: BTreeMap<PathBuf, Arc<[u8]>>,
     meshes: Vec<(MeshFile, Arc<format::MeshFile>)>,
+    sequences: Vec<(Sequence, Arc<MovingMesh>)>,
 }
 
 impl Files {
@@ -159,7 +167,28 @@ impl Files {
         })
     }
 
-    /// The same with the error of the reader.
+    /// A mesh in motion, in metres and with z upwards, at times of the simulation; `key` is the place of the file in
+    /// the scene.
+    pub(crate) fn sequence(
+        &mut self,
+        of: &Sequence,
+        key: &Key,
+    ) -> Result<Arc<MovingMesh>, Problem> {
+        if let Some((_, mesh)) = self.sequences.iter().find(|(known, _)| known == of) {
+            return Ok(mesh.clone());
+        }
+        let path = self.folder.join(&of.path);
+        let contents = self.contents(&of.path);
+        let read = contents.map_err(|e| FileError::unreadable(&path, e));
+        let read = read.and_then(|contents| MovingMesh::parse(&contents, &path));
+        let mesh = read.map_err(|e| Problem::from_error(key.name("path"), &e))?;
+        let placed = mesh.map(|p| of.up.place(p.map(|c| of.scale * c)));
+        let mesh = Arc::new(placed.delayed(of.delay));
+        self.sequences.push((of.clone(), mesh.clone()));
+        Ok(mesh)
+    }
+
+    /// [`Self::read`] with the error of the reader.
     pub(crate) fn mesh(&mut self, file: &MeshFile) -> Result<Arc<format::MeshFile>, MeshFileError> {
         if let Some((_, mesh)) = self.meshes.iter().find(|(known, _)| known == file) {
             return Ok(mesh.clone());

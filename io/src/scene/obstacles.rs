@@ -5,11 +5,13 @@ use super::mesh_file::{Files, MeshFile};
 use super::outline::Outline;
 use super::pose::{Motion, Pose};
 use super::problem::{Checks, Problem};
+use super::sequence::Sequence;
 use super::unit::Unit;
 use isosheet_collide as collide;
 use isosheet_collide::{SurfaceError, TriangleSurface, rounded_line};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A body at rest or in prescribed motion.
@@ -95,6 +97,9 @@ pub enum Shape {
     Wall(Wall),
     /// The triangles of a mesh file: a solid if they are closed, otherwise a surface with two sides.
     File(MeshFile),
+    /// A mesh in motion, which may deform: a surface with two sides. It is an obstacle alone, has no `motion`
+    /// besides its own, and passes through other obstacles.
+    Sequence(Sequence),
 }
 
 /// A thin wall with two sides.
@@ -145,6 +150,11 @@ impl Obstacle {
         self.shape.check(&key.name("shape"), checks);
         self.pose.check(&key.name("pose"), checks);
         self.motion.check(&key.name("motion"), checks);
+        if matches!(self.shape, Shape::Sequence(_)) && self.motion != Motion::default() {
+            let message = "the obstacle is a mesh in motion, and moves besides";
+            let remedy = "leave out `motion`, and place the mesh by `pose`";
+            checks.report(key.name("motion"), message, remedy);
+        }
         checks.not_negative(key.name("friction"), self.friction, Unit::One);
     }
 
@@ -206,6 +216,7 @@ impl Shape {
                 checks.not_negative(shape.name("corner_radius"), wall.corner_radius, Unit::Metre);
             }
             Shape::File(file) => file.check(&shape, checks),
+            Shape::Sequence(sequence) => sequence.check(&shape, checks),
         }
     }
 
@@ -220,6 +231,17 @@ impl Shape {
             Self::Frame { .. } => "frame",
             Self::Wall(_) => "wall",
             Self::File(_) => "file",
+            Self::Sequence(_) => "sequence",
+        }
+    }
+
+    /// The path of the file that it is, with the place of the file; `key` is its own.
+    pub(super) fn file_mut(&mut self, key: &Key) -> Option<(Key, &mut PathBuf)> {
+        let key = key.name(self.name());
+        match self {
+            Self::File(file) => Some((key, &mut file.path)),
+            Self::Sequence(sequence) => Some((key, &mut sequence.path)),
+            _ => None,
         }
     }
 
@@ -264,6 +286,14 @@ impl Shape {
                         Problem::new(key.name("path"), message, remedy)
                     })?;
                 collide::Shape::Surface(Arc::new(surface))
+            }
+            Self::Sequence(_) => {
+                let message = "a mesh in motion has no form of its own";
+                return Err(Problem::new(
+                    key.name("sequence"),
+                    message,
+                    "make it an `[[obstacle]]`",
+                ));
             }
         })
     }

@@ -3,10 +3,10 @@
 use super::key::Key;
 use super::patch::Patch;
 use super::problem::{Checks, Problem};
+use super::selection::InPlace;
 use super::sheet::{Bending, Sheet};
 use super::unit::Unit;
 use isosheet_dynamics::Patched;
-use isosheet_mesh::{FaceId, Topology, VertexId};
 
 /// Checks the patches of a sheet.
 pub(super) fn check(sheet: &Sheet, key: &Key, checks: &mut Checks) {
@@ -69,30 +69,16 @@ fn check_patch(patch: &Patch, sheet: &Sheet, key: &Key, checks: &mut Checks) {
     }
 }
 
-/// A sheet with the positions `start` (`3V`, metres), and what its patches are as sheets.
+/// A sheet in its place, and what its patches are as sheets.
 pub(super) fn patched(
     sheet: &Sheet,
-    topology: &Topology,
-    start: &[f64],
+    place: &InPlace<'_>,
     key: &Key,
 ) -> Result<Patched<Sheet>, Problem> {
     let mut all = Patched::everywhere(sheet.clone());
     for (key, patch) in key.name("patch").entries(&sheet.patch) {
         let at = key.name("at");
-        let vertices = patch.at.resolve(&at, topology, start)?;
-        let is_inside = |v: &VertexId| vertices.binary_search(v).is_ok();
-        let faces = topology.face_ids().zip(topology.faces());
-        let faces: Vec<FaceId> = faces
-            .filter(|(_, corners)| corners.iter().all(is_inside))
-            .map(|(face, _)| face)
-            .collect();
-        if faces.is_empty() {
-            return Err(Problem::new(
-                at,
-                "no face of the sheet has all its corners here",
-                "choose a larger region, or a finer mesh",
-            ));
-        }
+        let faces = patch.at.faces(&at, place)?;
         all = all.with_patch(faces, sheet.of_patch(patch));
     }
     Ok(all)

@@ -1,5 +1,6 @@
 //! The sheets of a scene in their places, and the union of them that is simulated.
 
+use super::direction::{Direction, FaceTexture};
 use super::error::SceneError;
 use super::mesh::RestMesh;
 use super::mesh_file::{Files, MeshFile};
@@ -8,12 +9,14 @@ use super::pattern::EdgeRoles;
 use super::problem::Problem;
 use super::refined::Refined;
 use super::resolution::check_shape;
+use super::selection::InPlace;
 use super::sheets::sheet_key;
 use super::{Key, Selection, Sheet as SheetOfScene, Weight, sheets};
-use crate::format::ReadingChanges;
+use crate::format::{FaceGroups, ReadingChanges};
 use isosheet_dynamics::Patched;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{FaceId, MassKind, MassMatrix, MeshError, Part, Sheet, VertexId};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// What is made of the mesh of a sheet, its division, its place and its start.
@@ -27,6 +30,10 @@ pub(crate) struct Form {
     pub(super) roles: Option<EdgeRoles>,
     /// What reading its file changed.
     pub(super) changes: ReadingChanges,
+    /// The groups of its faces that its file names.
+    groups: FaceGroups,
+    /// The texture coordinates of the faces of its mesh, if that has any.
+    texture: Vec<FaceTexture>,
     /// Positions at the start, `3V`.
     start: Vec<f64>,
     /// Positions of the shape whose curvature it has.
@@ -36,7 +43,7 @@ pub(crate) struct Form {
 /// A sheet in its place.
 pub(super) struct PlacedSheet<'a> {
     /// What the scene says of it.
-    pub(super) of: &'a SheetOfScene,
+    pub(super) of: Cow<'a, SheetOfScene>,
     pub(super) key: Key,
     pub(super) form: Arc<Form>,
     /// Where it is in the union.
@@ -52,6 +59,8 @@ pub(super) struct PlacedSheets<'a> {
     pub(super) union: Sheet,
     /// Positions at the start, `3V`.
     pub(super) start: Vec<f64>,
+    /// The groups of faces that files name.
+    groups: FaceGroups,
 }
 
 impl<'a> PlacedSheets<'a> {
@@ -76,10 +85,19 @@ impl<'a> PlacedSheets<'a> {
                 .map_err(|e| Problem::from_error(Key::root().name("sheet"), &e))?,
         };
         let parts = Part::of_union(&shapes);
+        let of_forms = forms.iter().zip(&parts);
+        let groups =
+            FaceGroups::union(of_forms.map(|(form, part)| (&form.groups, part.faces.start)));
         let numbered = sheets.iter().zip(&*forms).zip(parts).enumerate();
         let list = numbered.map(|(k, ((of, form), part))| {
             let key = sheet_key(sheets.len(), k);
-            let patched = patched(of, form.placed.topology(), &form.start, &key)?;
+            let of = match of.direction {
+                Some(Direction::Texture(_)) => {
+                    Cow::Owned(of.with_texture(&form.unplaced, &form.texture, &key)?)
+                }
+                _ => Cow::Borrowed(of),
+            };
+            let patched = patched(&of, &form.in_place(), &key)?;
             let mass = match (of.mass, &of.patch[..]) {
                 (None, [_, ..]) => of_densities(form, &patched),
                 (mass, _) => {
@@ -103,6 +121,7 @@ impl<'a> PlacedSheets<'a> {
             list: list.collect::<Result<_, Problem>>()?,
             union,
             start: starts.concat(),
+            groups,
         })
     }
 
@@ -137,18 +156,22 @@ impl<'a> PlacedSheets<'a> {
         selection: &Selection,
         key: &Key,
     ) -> Result<Vec<VertexId>, Problem> {
-        let all = self.list.iter().map(|sheet| sheet.of);
+        let all = self.list.iter().map(|sheet| &*sheet.of);
         let at = key.name("at");
         let number = match selection {
             Selection::Vertices(_) => Some(sheets::one_of(all, name, key, "the vertices")?),
             _ => sheets::number_of(all, name, &key.name("sheet"))?,
         };
         let Some(number) = number else {
-            return selection.resolve(&at, self.union.topology(), &self.start);
+            let place = InPlace {
+                topology: self.union.topology(),
+                x: &self.start,
+                groups: &self.groups,
+            };
+            return selection.resolve(&at, &place);
         };
         let PlacedSheet { form, part, .. } = &self.list[number];
-        let own = &self.start[part.coordinates()];
-        let found = selection.resolve(&at, form.placed.topology(), own)?;
+        let found = selection.resolve(&at, &form.in_place())?;
         Ok(found.into_iter().map(|v| part.vertex(v)).collect())
     }
 
@@ -159,7 +182,7 @@ impl<'a> PlacedSheets<'a> {
         key: &Key,
         what: &str,
     ) -> Result<&PlacedSheet<'a>, Problem> {
-        let all = self.list.iter().map(|sheet| sheet.of);
+        let all = self.list.iter().map(|sheet| &*sheet.of);
         sheets::one_of(all, name, key, what).map(|k| &self.list[k])
     }
 }
@@ -174,11 +197,22 @@ fn of_densities(form: &Form, patched: &Patched<SheetOfScene>) -> Result<MassMatr
 }
 
 impl Form {
+    /// The sheet where it starts.
+    fn in_place(&self) -> InPlace<'_> {
+        InPlace {
+            topology: self.placed.topology(),
+            x: &self.start,
+            groups: &self.groups,
+        }
+    }
+
     fn new(of: &SheetOfScene, key: &Key, files: &mut Files) -> Result<Self, Problem> {
         let mesh_key = key.name("mesh");
         let RestMesh {
             sheet,
             roles,
+            groups,
+            texture,
             changes,
         } = of.mesh.build(&mesh_key, files)?;
         let unplaced = Refined::new(sheet, of.refine, &key.name("refine"))?;
@@ -209,6 +243,8 @@ impl Form {
         let curled = curled.transpose()?;
         Ok(Self {
             roles: roles.map(|roles| unplaced.roles(roles)),
+            groups: groups.of_parts(&unplaced.faces_of_mesh()),
+            texture,
             placed,
             unplaced,
             changes,

@@ -2,6 +2,7 @@
 
 use super::bodies::Body;
 use super::carried::CarriedBody;
+use super::driven::DrivenObstacles;
 use super::guides::{self, Guide};
 use super::key::Key;
 use super::mesh_file::Files;
@@ -9,9 +10,10 @@ use super::obstacles::Shape;
 use super::placed::PlacedSheets;
 use super::problem::Problem;
 use super::resolution::check_shape;
-use super::selection::Selection;
+use super::selection::{InPlace, Selection};
 use super::start::velocities;
 use crate::body_mesh::BodyMesh;
+use crate::format::FaceGroups;
 use isosheet_collide as collide;
 use isosheet_collide::{BroadPhase, ContactMesh};
 use isosheet_dynamics::contact::SurfacePoints;
@@ -41,8 +43,8 @@ pub(super) struct PlacedBodies<'a> {
     pub(super) list: Vec<PlacedBody<'a>>,
 }
 
-/// What is seen of sheets and bodies, and what touches: the sheets, and after them the surfaces of the bodies,
-/// whose vertices are points that the model carries.
+/// What is seen of sheets and bodies, and what touches: the sheets, and after them the surfaces of the bodies and of
+/// obstacles that deform, whose vertices are points that the model carries.
 pub(super) struct Surface {
     pub(super) sheet: Sheet,
     pub(super) points: SurfacePoints,
@@ -87,25 +89,45 @@ impl<'a> PlacedBodies<'a> {
         Ok(Self { list })
     }
 
-    /// The mesh of the model: the sheets, and after them what carries the bodies.
-    pub(super) fn mesh(&self, sheets: &Sheet) -> Result<Sheet, Problem> {
-        self.beside(sheets, |body| &body.tetrahedron)
+    /// The mesh of the model: the sheets, after them what carries the bodies, and after that obstacles that deform.
+    pub(super) fn mesh(&self, sheets: &Sheet, driven: &DrivenObstacles) -> Result<Sheet, Problem> {
+        self.beside(sheets, |body| &body.tetrahedron, driven)
     }
 
-    /// The sheets, and after them something of each body.
+    /// The sheets, after them something of each body, and after that obstacles that deform.
     fn beside(
         &self,
         sheets: &Sheet,
         of: impl for<'b> Fn(&'b PlacedBody<'a>) -> &'b Sheet,
+        driven: &DrivenObstacles,
     ) -> Result<Sheet, Problem> {
-        if self.list.is_empty() {
+        if self.list.is_empty() && driven.list.is_empty() {
             return Ok(sheets.clone());
         }
         let all: Vec<&Sheet> = [sheets]
             .into_iter()
             .chain(self.list.iter().map(of))
+            .chain(driven.sheets())
             .collect();
-        Sheet::union(&all).map_err(|e| Problem::from_error(Key::root().name("body"), &e))
+        let what = match self.list.is_empty() {
+            true => "obstacle",
+            false => "body",
+        };
+        Sheet::union(&all).map_err(|e| Problem::from_error(Key::root().name(what), &e))
+    }
+
+    /// The numbers of vertices, edges and faces of the sheets and the surfaces of the bodies, and of the vertices of
+    /// the model.
+    pub(super) fn counts(&self, sheets: &Sheet) -> ([usize; 3], usize) {
+        let t = sheets.topology();
+        let of_sheets = [t.vertex_count(), t.edge_count(), t.face_count()];
+        let last = self.list.last().map(|body| &body.part);
+        let all =
+            last.map(|part| [&part.vertices, &part.edges, &part.faces].map(|range| range.end));
+        (
+            all.unwrap_or(of_sheets),
+            t.vertex_count() + 4 * self.list.len(),
+        )
     }
 
     /// The masses of the model, of those of the sheets.
@@ -134,18 +156,27 @@ impl<'a> PlacedBodies<'a> {
     }
 
     /// What is seen and touches; none if that is the sheets alone.
-    pub(super) fn surface(&self, sheets: &Sheet) -> Result<Option<Surface>, Problem> {
-        if self.list.is_empty() {
+    pub(super) fn surface(
+        &self,
+        sheets: &Sheet,
+        driven: &DrivenObstacles,
+    ) -> Result<Option<Surface>, Problem> {
+        if self.list.is_empty() && driven.list.is_empty() {
             return Ok(None);
         }
-        let sheet = self.beside(sheets, |body| body.solid.surface())?;
+        let sheet = self.beside(sheets, |body| body.solid.surface(), driven)?;
         let own = sheets.topology().vertex_count();
         let carried = self.list.iter().flat_map(|body| {
             let points = body.solid.surface().positions().as_chunks::<3>().0.iter();
             points.map(|p| body.body.carried(*p, body.first))
         });
-        let vertices = own + 4 * self.list.len();
-        let points = SurfacePoints::new(vertices, own, carried.collect());
+        let carried: Vec<_> = carried.chain(driven.points()).collect();
+        let of_driven = driven
+            .list
+            .iter()
+            .map(|obstacle| obstacle.surface.vertices.len());
+        let vertices = own + 4 * self.list.len() + of_driven.sum::<usize>();
+        let points = SurfacePoints::new(vertices, own, carried);
         let points = points.map_err(|e| Problem::from_error(Key::root().name("body"), &e))?;
         Ok(Some(Surface { sheet, points }))
     }
@@ -335,7 +366,12 @@ impl PlacedBody<'_> {
         at: &Key,
     ) -> Result<Vec<VertexId>, Problem> {
         let surface = self.solid.surface();
-        let found = selection.resolve(at, surface.topology(), surface.positions())?;
+        let place = InPlace {
+            topology: surface.topology(),
+            x: surface.positions(),
+            groups: &FaceGroups::default(),
+        };
+        let found = selection.resolve(at, &place)?;
         Ok(found.into_iter().map(|v| self.part.vertex(v)).collect())
     }
 

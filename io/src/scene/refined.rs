@@ -37,6 +37,14 @@ impl Refined {
         &self.levels[self.levels.len() - 1]
     }
 
+    /// Of each face of the refined mesh the face of the mesh that it is a part of.
+    pub(super) fn faces_of_mesh(&self) -> Vec<u32> {
+        // Each division makes four of a face, one after the other.
+        let parts = 4_u32.pow(self.levels.len() as u32 - 1);
+        let faces = self.sheet().topology().face_count() as u32;
+        (0..faces).map(|face| face / parts).collect()
+    }
+
     /// The edges that an edge of the mesh consists of, from its first end to its second.
     pub(super) fn parts(&self, edge: EdgeId) -> Vec<EdgeId> {
         let mut parts = vec![self.mesh().topology().edges()[edge.index()]];
@@ -128,6 +136,27 @@ mod tests {
         let inside = refined.inside_faces();
         let count = 4 * mesh.topology().edge_count();
         assert_eq!(inside.len() + count, fine.topology().edge_count());
+    }
+
+    #[test]
+    fn parts_of_a_face_lie_in_it() {
+        let refined = refined(2);
+        let middle = |sheet: &Sheet, face: usize| {
+            let corners = sheet.topology().faces()[face].map(|v| sheet.position(v));
+            [0, 1].map(|k| corners.iter().map(|p| p[k]).sum::<f64>() / 3.0)
+        };
+        let mut parts = vec![0; refined.mesh().topology().face_count()];
+        for (part, face) in refined.faces_of_mesh().into_iter().enumerate() {
+            let p = middle(refined.sheet(), part);
+            let [a, b, c] = refined.mesh().topology().faces()[face as usize]
+                .map(|v| refined.mesh().position(v));
+            for [a, b] in [[a, b], [b, c], [c, a]] {
+                let side = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+                assert!(side > 0.0, "part {part} of face {face}");
+            }
+            parts[face as usize] += 1;
+        }
+        assert!(parts.iter().all(|count| *count == 16));
     }
 
     #[test]

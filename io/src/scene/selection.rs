@@ -3,7 +3,8 @@
 use super::key::Key;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use isosheet_mesh::{Topology, VertexId};
+use crate::format::FaceGroups;
+use isosheet_mesh::{FaceId, Topology, VertexId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,10 @@ pub enum Selection {
     Boundary,
     /// Vertices by their numbers, from 0.
     Vertices(Vec<usize>),
+    /// The faces of a group that the mesh file of the sheet names, and their vertices: of an OBJ file a group, an
+    /// object or a material, of a PLY file an integer of its faces (`"label=3"`), of a glTF file a node, a mesh or a
+    /// material, of a FOLD file an entry of `faces_isosheet:group`. `isosheet info` lists the groups of a file.
+    Group(String),
     /// For each point (metres) the vertex nearest to it.
     Nearest(Vec<[f64; 3]>),
     /// All vertices in a box with edges along the axes.
@@ -41,6 +46,49 @@ pub enum Selection {
     },
 }
 
+/// What selections choose from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct InPlace<'a> {
+    pub(crate) topology: &'a Topology,
+    /// Positions (`3V`, metres).
+    pub(crate) x: &'a [f64],
+    /// The groups of its faces that files name.
+    pub(crate) groups: &'a FaceGroups,
+}
+
+/// Most groups that an error lists.
+const MOST_LISTED: usize = 12;
+
+impl InPlace<'_> {
+    /// The faces of a group.
+    fn faces_of(&self, group: &str, key: &Key) -> Result<Vec<FaceId>, Problem> {
+        let Some(faces) = self.groups.faces(group) else {
+            let names: Vec<String> = self
+                .groups
+                .iter()
+                .map(|(name, _)| format!("{name:?}"))
+                .collect();
+            let there_are = match names.len() {
+                0 => "the sheet has none".to_owned(),
+                count if count > MOST_LISTED => {
+                    format!(
+                        "there are {} and {} more",
+                        names[..MOST_LISTED].join(", "),
+                        count - MOST_LISTED
+                    )
+                }
+                _ => format!("there are {}", names.join(", ")),
+            };
+            return Err(Problem::new(
+                key.name("group"),
+                format!("no group of faces has the name {group:?}: {there_are}"),
+                "name a group of the mesh file of the sheet (`isosheet info` lists them)",
+            ));
+        };
+        Ok(faces.iter().map(|&face| FaceId(face)).collect())
+    }
+}
+
 /// Allowance for round-off at the boundary of a region, as a part of the size of the sheet: far above the
 /// round-off of coordinates (1e-16 of their size), far below the distance of vertices.
 const ROUND_OFF: f64 = 1e-9;
@@ -48,7 +96,7 @@ const ROUND_OFF: f64 = 1e-9;
 impl Selection {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         match self {
-            Self::All | Self::Boundary | Self::Vertices(_) => {}
+            Self::All | Self::Boundary | Self::Vertices(_) | Self::Group(_) => {}
             Self::Nearest(points) => {
                 checks.points(key.name("nearest"), points);
             }
@@ -73,13 +121,9 @@ impl Selection {
         }
     }
 
-    /// The vertices at positions `x` (`3V`, metres), ascending and without repetition.
-    pub(crate) fn resolve(
-        &self,
-        key: &Key,
-        topology: &Topology,
-        x: &[f64],
-    ) -> Result<Vec<VertexId>, Problem> {
+    /// The vertices that are meant of a sheet, ascending and without repetition.
+    pub(crate) fn resolve(&self, key: &Key, sheet: &InPlace<'_>) -> Result<Vec<VertexId>, Problem> {
+        let InPlace { topology, x, .. } = *sheet;
         let points = x.as_chunks::<3>().0;
         let slack = ROUND_OFF * size(points);
         let in_region = |inside: &dyn Fn(&[f64; 3]) -> bool| -> Vec<VertexId> {
@@ -93,6 +137,10 @@ impl Selection {
                 ids.filter(|&v| topology.is_boundary_vertex(v)).collect()
             }
             Self::Vertices(numbers) => by_number(numbers, key, points.len())?,
+            Self::Group(group) => {
+                let faces = sheet.faces_of(group, key)?.into_iter();
+                faces.flat_map(|f| topology.faces()[f.index()]).collect()
+            }
             Self::Nearest(wanted) => wanted.iter().map(|p| nearest(points, p).0).collect(),
             Self::Box { min, max } => {
                 in_region(&|p| (0..3).all(|k| (min[k] - slack..=max[k] + slack).contains(&p[k])))
@@ -115,6 +163,27 @@ impl Selection {
             ));
         }
         Ok(found)
+    }
+
+    /// The faces that are meant of a sheet, ascending: those of the group, or those all corners of which are
+    /// selected.
+    pub(crate) fn faces(&self, key: &Key, sheet: &InPlace<'_>) -> Result<Vec<FaceId>, Problem> {
+        if let Self::Group(group) = self {
+            return sheet.faces_of(group, key);
+        }
+        let vertices = self.resolve(key, sheet)?;
+        let is_inside = |v: &VertexId| vertices.binary_search(v).is_ok();
+        let faces = sheet.topology.face_ids().zip(sheet.topology.faces());
+        let faces = faces.filter(|(_, corners)| corners.iter().all(is_inside));
+        let faces: Vec<FaceId> = faces.map(|(face, _)| face).collect();
+        if faces.is_empty() {
+            return Err(Problem::new(
+                key.clone(),
+                "no face of the sheet has all its corners here",
+                "choose a larger region, or a finer mesh",
+            ));
+        }
+        Ok(faces)
     }
 
     /// The distance of each point of [`Selection::Nearest`] from the vertex that it chooses, metres.
@@ -142,7 +211,7 @@ pub(super) fn by_number(
 }
 
 /// The vertex that is nearest to a point, and its distance.
-fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> (VertexId, f64) {
+pub(super) fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> (VertexId, f64) {
     let distance2 = |p: &[f64; 3]| -> f64 { (0..3).map(|k| (p[k] - wanted[k]).powi(2)).sum() };
     let (mut best, mut least) = (0, f64::INFINITY);
     for (i, p) in points.iter().enumerate() {

@@ -69,17 +69,21 @@ impl Facts {
         SurfacePoints::placed(self.points.as_ref(), x)
     }
 
-    /// Values of what is seen by those of the model, so many for each: those of the sheets, and zero of bodies.
+    /// Values of what is seen by those of the model, so many for each: those of the sheets, and zero of bodies and
+    /// obstacles.
     fn of_sheets(
         &self,
         mut values: Vec<f64>,
         each: usize,
         range: fn(&Part) -> &Range<usize>,
     ) -> Vec<f64> {
-        let parts = self.bodies.first().zip(self.bodies.last());
-        if let Some((first, last)) = parts.filter(|_| !values.is_empty()) {
-            values.truncate(each * range(&first.part).start);
-            values.resize(each * range(&last.part).end, 0.0);
+        let of_bodies = self.bodies.iter().map(|body| &body.part);
+        let of_obstacles = self.origins.driven.iter().map(|surface| &surface.part);
+        let mut parts = of_bodies.chain(of_obstacles);
+        if let Some(first) = parts.next().filter(|_| !values.is_empty()) {
+            let last = parts.last().unwrap_or(first);
+            values.truncate(each * range(first).start);
+            values.resize(each * range(last).end, 0.0);
         }
         values
     }

@@ -1,18 +1,21 @@
 //! The sheet: mesh, material, placement and start.
 
 use super::curl::Curl;
+use super::direction::{Direction, FaceTexture, gradients};
 use super::key::Key;
 use super::material::{Material, ratios, typical_poisson};
 use super::mesh::Mesh;
 use super::patch::Patch;
 use super::pose::Pose;
-use super::problem::Checks;
+use super::problem::{Checks, Problem};
+use super::refined::Refined;
 use super::start::Start;
 use super::unit::Unit;
 use super::yields::SheetYield;
 use isosheet_dynamics as engine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A sheet. A scene of several has a table `[[sheet]]` for each, with a `name` by which supports, creases and
 /// loads name it; where they name none, regions and points are of all sheets. All sheets are of rods or all
@@ -43,11 +46,11 @@ pub struct Sheet {
     /// What the sheet is made of. Without it, the sheet is one of rigid rods, as in the paper.
     #[serde(default)]
     pub material: Option<Material>,
-    /// The direction of the material, in the frame of the mesh, of any length: along the machine of paper, along the warp
-    /// of cloth, along the fibres of a laminate. A material that has two directions is stiffer along this one than
+    /// The direction of the material: along the machine of paper, along the warp of cloth, along the fibres of a
+    /// laminate. A vector in the frame of the mesh, of any length, or a texture coordinate of the mesh file. A material that has two directions is stiffer along this one than
     /// across; without the key it is the same in all directions, with the means of both.
     #[serde(default)]
-    pub direction: Option<[f64; 3]>,
+    pub direction: Option<Direction>,
     /// Mass of a square metre, kg/m2: steel of 1 mm has 7.8. If left out, that of the material; without one
     /// 0.08, as office paper has. Not used if `mass` is given.
     #[serde(default)]
@@ -238,7 +241,10 @@ impl Sheet {
     pub(super) fn of_patch(&self, patch: &Patch) -> Self {
         Self {
             material: Some(patch.material.clone()),
-            direction: patch.direction.or(self.direction),
+            direction: patch
+                .direction
+                .map(Direction::from)
+                .or_else(|| self.direction.clone()),
             density: patch.density,
             isometry: match self.isometry() {
                 Isometry::Rods => Some(Isometry::Rods),
@@ -252,8 +258,34 @@ impl Sheet {
 
     /// Its direction in space.
     fn material_direction(&self) -> Option<engine::MaterialDirection> {
-        let direction = self.direction?;
-        Some(engine::MaterialDirection::Uniform(self.placed(direction)))
+        let direction = self.direction.as_ref()?;
+        Some(direction.in_space(|vector| self.placed(vector)))
+    }
+
+    /// A direction in the frame of the mesh in space, or that of the sheet.
+    fn direction_or(&self, own: Option<[f64; 3]>) -> engine::MaterialDirection {
+        let own = own.map(|own| engine::MaterialDirection::Uniform(self.placed(own)));
+        let direction = own.or_else(|| self.material_direction());
+        direction.unwrap_or(engine::MaterialDirection::Faces(Vec::new()))
+    }
+
+    /// The same with the direction that the texture of its mesh gives to each face.
+    pub(super) fn with_texture(
+        &self,
+        unplaced: &Refined,
+        texture: &[FaceTexture],
+        key: &Key,
+    ) -> Result<Self, Problem> {
+        let Some(Direction::Texture(of)) = self.direction else {
+            return Ok(self.clone());
+        };
+        let of_mesh = gradients(unplaced.mesh(), texture, of, &key.name("direction"))?;
+        let faces = unplaced.faces_of_mesh().into_iter();
+        let placed = faces.map(|face| self.placed(of_mesh[face as usize]));
+        Ok(Self {
+            direction: Some(Direction::Faces(Arc::new(placed.collect()))),
+            ..self.clone()
+        })
     }
 
     /// Mass of a square metre, kg/m2, unless `mass` is given: as written, of the material, or of office
@@ -321,13 +353,13 @@ impl Sheet {
                 twist,
                 coupling,
             } => {
-                let own = direction.or(self.direction).unwrap_or_default();
+                let direction = self.direction_or(direction);
                 let plate = engine::OrthotropicPlate {
                     along,
                     across,
                     coupling,
                     twist,
-                    direction: engine::MaterialDirection::Uniform(self.placed(own)),
+                    direction,
                 };
                 Some(plate.into())
             }
@@ -338,9 +370,8 @@ impl Sheet {
     /// The curvature that it has by itself, unless that is of another shape.
     pub(super) fn natural_curvature(&self) -> Option<engine::Curl> {
         let curl = self.curl.as_ref()?;
-        let along = curl.along.or(self.direction).unwrap_or_default();
         Some(engine::Curl {
-            direction: engine::MaterialDirection::Uniform(self.placed(along)),
+            direction: self.direction_or(curl.along),
             curvature: curl.tensor().into(),
             profile: curl.profile.as_given(),
         })
@@ -405,7 +436,15 @@ impl Sheet {
     /// Checks that the sheet has a direction where its stiffness has, and nowhere else.
     fn check_direction(&self, key: &Key, checks: &mut Checks) {
         if let Some(direction) = &self.direction {
-            checks.direction(key.name("direction"), direction);
+            direction.check(key.name("direction"), checks);
+            if matches!(direction, Direction::Texture(_)) && !matches!(self.mesh, Mesh::File(_)) {
+                let message = "the direction is that of a texture, and the mesh is from no file";
+                checks.report(
+                    key.name("direction.uv"),
+                    message,
+                    "give a vector, for instance [1, 0, 0]",
+                );
+            }
         }
         let of_material = self.made_of().is_some_and(|m| m.directions.is_some());
         let own = match self.bending {
@@ -500,7 +539,7 @@ impl Sheet {
         }
         if let Some(curl) = &self.curl {
             let key = key.name("curl");
-            curl.check(self.direction, &key, checks);
+            curl.check(self.direction.as_ref(), &key, checks);
             if matches!(self.bending(), Bending::None | Bending::Hinges { .. }) {
                 let message = "the sheet curls, and no plate resists bending";
                 checks.report(key.clone(), message, PLATE);

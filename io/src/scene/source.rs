@@ -236,7 +236,7 @@ impl SceneFile {
         let mut scene = self.scene.clone();
         let mut keys = Vec::new();
         for ((key, file), name) in scene.files_mut().into_iter().zip(names) {
-            file.path = name.clone();
+            *file = name.clone();
             keys.push(key.name("path"));
         }
         self.changed(scene, keys)

@@ -4,6 +4,7 @@ use super::key::Key;
 use super::pose::Motion;
 use super::problem::{Checks, Problem};
 use super::selection::Selection;
+use super::sequence::Sequence;
 use super::switch::When;
 use super::unit::Unit;
 use isosheet_dynamics::constraint::{
@@ -60,6 +61,15 @@ pub enum Hold {
     Pin,
     /// In a prescribed motion, which is zero at the start: all vertices move as one rigid body.
     MovingPin(Motion),
+    /// As vertices of a mesh in motion move: each keeps the distance and the direction from its vertex there that it
+    /// has at the start.
+    Follow {
+        /// The mesh in motion.
+        sequence: Sequence,
+        /// Which of its vertices they follow.
+        #[serde(default)]
+        vertices: Followed,
+    },
     /// Clamped where they are at the start: the sheet keeps the slope that it has there, along the edges between
     /// the vertices. Of a plate one line of vertices is enough; of other sheets the faces along the line are
     /// pinned, which shortens the free part by their height.
@@ -94,6 +104,25 @@ pub enum Hold {
         #[serde(default)]
         motion: Motion,
     },
+}
+
+/// Which vertices of a mesh in motion are followed.
+///
+/// ```toml
+/// [[support]]
+/// at = { group = "waistband" }
+/// hold = { follow = { sequence = { path = "body.npz" }, vertices = "nearest" } }
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Followed {
+    /// Of each vertex the one that is nearest at the start.
+    #[default]
+    Nearest,
+    /// Of each vertex the one with the same number, as in the sheet that it belongs to.
+    SameNumber,
+    /// Vertices by their numbers, from 0: one for each vertex that is held, in the order of the numbers of these.
+    Numbers(Vec<usize>),
 }
 
 /// A curve.
@@ -279,6 +308,9 @@ impl Support {
         match &self.hold {
             Hold::Pin | Hold::Clamp => {}
             Hold::MovingPin(motion) => motion.check(&hold.name("moving_pin"), checks),
+            Hold::Follow { sequence, .. } => {
+                sequence.check(&hold.name("follow.sequence"), checks);
+            }
             Hold::MovingClamp(motion) => motion.check(&hold.name("moving_clamp"), checks),
             Hold::SlidingClamp { direction, motion } => {
                 let key = hold.name("sliding_clamp");
@@ -303,7 +335,11 @@ impl Hold {
     /// Whether vertices have no motion of their own.
     pub(super) fn is_pin(&self) -> bool {
         match self {
-            Self::Pin | Self::MovingPin(_) | Self::Clamp | Self::MovingClamp(_) => true,
+            Self::Pin
+            | Self::MovingPin(_)
+            | Self::Follow { .. }
+            | Self::Clamp
+            | Self::MovingClamp(_) => true,
             Self::SlidingClamp { .. } | Self::Curve { .. } | Self::Surface { .. } => false,
         }
     }
@@ -341,7 +377,11 @@ impl Hold {
         match self {
             Self::Clamp => Some(Motion::default()),
             Self::MovingClamp(motion) | Self::SlidingClamp { motion, .. } => Some(motion.clone()),
-            Self::Pin | Self::MovingPin(_) | Self::Curve { .. } | Self::Surface { .. } => None,
+            Self::Pin
+            | Self::MovingPin(_)
+            | Self::Follow { .. }
+            | Self::Curve { .. }
+            | Self::Surface { .. } => None,
         }
     }
 }

@@ -21,6 +21,7 @@ mod live_page;
 mod measures;
 mod pages;
 mod rod_forces;
+mod sequences;
 mod sizes;
 #[path = "../shared/skip.rs"]
 mod skip;

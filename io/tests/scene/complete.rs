@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 12] = [
+const ALL_KEYS: [&str; 13] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -374,6 +374,25 @@ const ALL_KEYS: [&str; 12] = [
     direction = [0, 0, 1]
     frame = "space"
     size = 1e-3
+    [stop]
+    time = 1
+    "#,
+    r#"version = 1
+    [sheet]
+    mesh = { file = { path = "shirt.obj" } }
+    material = "office paper"
+    direction = { uv = "u" }
+    [[sheet.patch]]
+    at = { group = "collar" }
+    material = "card"
+    [[obstacle]]
+    shape = { sequence = { path = "body.npz", scale = 0.01, up = "y", delay = 0.5 } }
+    [[support]]
+    at = { group = "hem" }
+    hold = { follow = { sequence = { path = "body.npz", scale = 0.01, up = "y", delay = 0.5 }, vertices = "same_number" } }
+    [[support]]
+    at = { vertices = [3] }
+    hold = { follow = { sequence = { path = "body.npz" }, vertices = { numbers = [7] } } }
     [stop]
     time = 1
     "#,

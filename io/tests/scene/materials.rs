@@ -260,7 +260,7 @@ fn a_scene_with_a_material_is_written_as_it_is_read() {
         for isometry in [None, Some(Isometry::ELASTIC), Some(Isometry::Rods)] {
             let mut scene = sheet("");
             scene.sheet[0].material = Some(material.clone());
-            scene.sheet[0].direction = Some([0.6, 0.8, 0.0]);
+            scene.sheet[0].direction = Some([0.6, 0.8, 0.0].into());
             scene.sheet[0].isometry = isometry;
             let written = SceneFile::of(scene.clone(), Path::new("")).unwrap();
             assert_eq!(parse(&written.text().text).unwrap().scene(), &scene);

@@ -15,8 +15,10 @@ pub(super) fn page(session: &Session, title: &str, nonce: &str) -> Result<String
     let state = simulation.state();
     let times = [state.t];
     let obstacles = live.obstacles().iter().enumerate();
-    let obstacles =
-        obstacles.map(|(k, body)| Body::of_obstacle(&format!("obstacle[{k}]"), body, &times));
+    let obstacles = obstacles.map(|(k, body)| {
+        let name = format!("obstacle[{}]", live.obstacle_number(k));
+        Body::of_obstacle(&name, body, &times)
+    });
     let holding = session.holding().iter().map(|body| {
         let pose = |t: f64| body.pose(scene, t);
         Body::moving(&body.name, body.shape.clone(), &times, pose)

@@ -2,6 +2,7 @@
 
 use super::error::{check_count, check_mesh};
 use super::{ExportError, Series};
+use crate::format::FaceGroups;
 use crate::format::atomic::{FileWriter, write_atomically};
 use isosheet_mesh::Topology;
 use std::io::{self, Write};
@@ -52,7 +53,9 @@ pub(super) fn extras<'a>(series: &'a Series<'_>) -> Extras<'a> {
     let sheets = series.sheets().iter();
     Extras {
         uv: series.uv(),
-        groups: sheets.map(|s| (&*s.name, s.part.faces.start)).collect(),
+        groups: sheets
+            .map(|s| (s.name.clone(), s.part.faces.start))
+            .collect(),
     }
 }
 
@@ -103,9 +106,36 @@ fn write_bodies(path: &Path, series: &Series<'_>, frame: usize) -> Result<(), Ex
 pub(super) struct Extras<'a> {
     /// Texture coordinates of the vertices.
     pub(super) uv: Option<&'a [[f64; 2]]>,
-    /// Groups of faces that follow one another: the name of each, and the number of its first face,
-    /// ascending.
-    pub(super) groups: Vec<(&'a str, usize)>,
+    /// Faces that follow one another and have the same groups: the names of these, and the number of the first
+    /// face, ascending.
+    pub(super) groups: Vec<(String, usize)>,
+}
+
+impl Extras<'_> {
+    /// The groups of so many faces. Names are separated by spaces in a file, and have none.
+    pub(super) fn of_groups(groups: &FaceGroups, faces: usize) -> Self {
+        let mut names = vec![String::new(); faces];
+        for (name, own) in groups.iter() {
+            let word = name.replace(char::is_whitespace, "_");
+            for &face in own {
+                let names = &mut names[face as usize];
+                if !names.is_empty() {
+                    names.push(' ');
+                }
+                names.push_str(&word);
+            }
+        }
+        let mut runs: Vec<(String, usize)> = Vec::new();
+        for (face, names) in names.into_iter().enumerate() {
+            if runs.last().map_or("", |run| &run.0) != names {
+                runs.push((names, face));
+            }
+        }
+        Self {
+            uv: None,
+            groups: runs,
+        }
+    }
 }
 
 /// The lines of a file; the positions are finite and the corners exist.

@@ -1,9 +1,10 @@
 //! Polygons of a file, and what becomes of them.
 
 use super::error::{COPY, Located, Location, MeshFileProblem, no_such_vertex};
-use super::{MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
+use super::{FaceGroups, MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
 use crate::format::DataError;
 use isosheet_mesh::wording::given;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Vertices and polygons as a file has them.
@@ -13,6 +14,10 @@ pub(super) struct Polyhedron {
     pub(super) positions: Vec<f64>,
     /// Corners of all faces, one after the other, from 0; whether each exists is checked at the end.
     corners: Vec<i64>,
+    /// Texture coordinates of the corners; none beyond the end.
+    texture: Vec<Option<[f64; 2]>>,
+    /// Groups of the faces.
+    pub(super) groups: FaceGroups,
     /// The end of each face in `corners`, and its place.
     ends: Vec<(usize, Location)>,
     /// The first vertices of the objects of the file, where it has several and they do not share vertices.
@@ -37,6 +42,18 @@ impl Polyhedron {
     pub(super) fn push_face(&mut self, corners: impl IntoIterator<Item = i64>, place: Location) {
         self.corners.extend(corners);
         self.ends.push((self.corners.len(), place));
+    }
+
+    /// Gives the corners of the last face texture coordinates.
+    pub(super) fn push_texture(&mut self, corners: impl IntoIterator<Item = Option<[f64; 2]>>) {
+        let first = self.ends.iter().rev().nth(1).map_or(0, |face| face.0);
+        self.texture.resize(first, None);
+        self.texture.extend(corners);
+    }
+
+    /// Adds the last face to a group.
+    pub(super) fn push_group(&mut self, group: &str) {
+        self.groups.add(group, self.face_count() as u32 - 1);
     }
 
     /// Says that the vertices that follow belong to another object of the file.
@@ -103,24 +120,45 @@ impl Polyhedron {
             polygons: 0,
             diagonals: Vec::new(),
             creases: Vec::new(),
+            groups: FaceGroups::default(),
+            texture: Vec::new(),
             changes: ReadingChanges::default(),
             path: PathBuf::new(),
             positions: Vec::new(),
         };
         let mut start = 0;
-        for &(end, place) in &self.ends {
+        let mut origin = Vec::with_capacity(self.ends.len());
+        for (face, &(end, place)) in (0..).zip(&self.ends) {
             let added = self.triangles(start..end, options, &mut mesh);
             added.map_err(|problem| (Some(place), problem))?;
+            if !self.texture.is_empty() {
+                for triangle in &mesh.faces[origin.len()..] {
+                    mesh.texture.push(self.texture_of(start..end, triangle));
+                }
+            }
+            origin.resize(mesh.faces.len(), face);
             start = end;
         }
+        mesh.groups = self.groups.of_parts(&origin);
         mesh.positions = self.positions;
         Ok(mesh)
+    }
+
+    /// The texture coordinates of the corners of a triangle of a face.
+    fn texture_of(&self, face: Range<usize>, triangle: &[u32; 3]) -> Option<[[f64; 2]; 3]> {
+        let of_corner = |v: u32| {
+            let mut corners = face.clone();
+            let corner = corners.find(|&k| self.corners[k] == i64::from(v))?;
+            *self.texture.get(corner)?
+        };
+        let [a, b, c] = triangle.map(of_corner);
+        Some([a?, b?, c?])
     }
 
     /// Adds the triangles of one face to a mesh.
     fn triangles(
         &self,
-        range: std::ops::Range<usize>,
+        range: Range<usize>,
         options: &MeshOptions,
         mesh: &mut MeshFile,
     ) -> Result<(), MeshFileProblem> {

@@ -27,6 +27,7 @@ use std::collections::HashMap;
 ///   reversed faces are turned with them.
 /// - Edges with the assignment `C` separate the sheet: vertices there are doubled.
 /// - Fold angles are degrees in the file.
+/// - The key `faces_isosheet:group` has the name of a group, or null, for each of `faces_vertices`.
 pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Located> {
     let plain = |problem| (None, problem);
     let frame = frames::read(bytes, options.frame.as_ref()).map_err(plain)?;
@@ -64,8 +65,12 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
         sides::check_faces(&edges, &sides).map_err(|e| plain(e.into()))?;
     }
     sides::turn(&mut edges, &sides).map_err(|e| plain(e.into()))?;
+    let groups = read_groups(&frame, faces.len()).map_err(|e| plain(e.into()))?;
     for (k, face) in faces.into_iter().enumerate() {
         polyhedron.push_face(face, Location::Face(k));
+        if let Some(Some(group)) = groups.get(k) {
+            polyhedron.push_group(group);
+        }
     }
     polyhedron.lines = edges.len();
     let mut mesh = polyhedron.assemble(options)?;
@@ -97,6 +102,20 @@ fn add_vertices(frame: &FrameRecord, polyhedron: &mut Polyhedron) -> Result<(), 
         polyhedron.push_vertex([x, y, z].map(|c| unit * c))?;
     }
     Ok(())
+}
+
+/// The group of each face, if faces have any.
+fn read_groups(frame: &FrameRecord, faces: usize) -> Result<&[Option<String>], DataError> {
+    let groups = frame.groups.as_deref().unwrap_or_default();
+    match groups.len() {
+        0 => Ok(groups),
+        found if found == faces => Ok(groups),
+        found => {
+            let message = format!("`faces_isosheet:group` has {found} entries for {faces} faces");
+            let remedy = "give one for each of `faces_vertices`, null for a face of no group";
+            Err(DataError::new(message, remedy))
+        }
+    }
 }
 
 /// The edges with their assignments and angles.

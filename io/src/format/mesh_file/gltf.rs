@@ -17,7 +17,8 @@ const GLB_HEADER: usize = 12;
 /// Reads the triangles of all meshes that the default scene shows, each where its nodes place it.
 ///
 /// Coordinates are metres and have y upwards by definition of the format; they are turned to z upwards,
-/// `(x, y, z) -> (x, -z, y)`. Materials, skins and morph targets are skipped.
+/// `(x, y, z) -> (x, -z, y)`. The names of nodes, meshes and materials are groups of faces; the first texture
+/// coordinates are kept. Skins and morph targets are skipped.
 pub(super) fn parse(
     bytes: &[u8],
     path: &Path,
@@ -61,20 +62,24 @@ fn read(bytes: &[u8], path: &Path, options: &MeshOptions) -> Result<Polyhedron, 
     }
     let buffers = read_buffers(&document, blob, path, options.buffers)?;
     let mut polyhedron = Polyhedron::default();
-    for (mesh, placement) in &placed {
+    for placed in &placed {
         polyhedron.begin_part();
-        add_mesh(mesh, placement, &buffers, &mut polyhedron)?;
+        add_mesh(placed, &buffers, &mut polyhedron)?;
     }
     Ok(polyhedron)
 }
 
 /// Adds the triangles of a mesh where it is placed.
 fn add_mesh(
-    mesh: &Mesh<'_>,
-    placement: &Matrix,
+    placed: &PlacedMesh<'_>,
     buffers: &[Vec<u8>],
     polyhedron: &mut Polyhedron,
 ) -> Result<(), DataError> {
+    let PlacedMesh {
+        node,
+        mesh,
+        placement,
+    } = placed;
     let is_mirrored = determinant(placement) < 0.0;
     for (k, primitive) in mesh.primitives().enumerate() {
         let part = format!("part {k} of mesh {}", mesh.index());
@@ -85,7 +90,7 @@ fn add_mesh(
         let first = (polyhedron.positions.len() / 3) as i64;
         let positions = primitive.get(&Semantic::Positions);
         let positions = positions.ok_or_else(|| array("positions", "are missing".to_owned()))?;
-        let points = vectors(&positions, buffers).map_err(|e| array("positions", e))?;
+        let points = vectors::<3>(&positions, buffers).map_err(|e| array("positions", e))?;
         let count = points.len() as i64;
         let corners: Vec<i64> = match primitive.indices() {
             Some(indices) => scalars(&indices, buffers).map_err(|e| array("indices", e))?,
@@ -100,6 +105,10 @@ fn add_mesh(
             let remedy = "export it as triangles, or without this part";
             return Err(DataError::new(message, remedy).at(mesh.index()));
         };
+        let texture = primitive.get(&Semantic::TexCoords(0));
+        let texture = texture.and_then(|t| vectors::<2>(&t, buffers).ok());
+        let material = primitive.material();
+        let groups = [*node, mesh.name(), material.name()];
         for p in points {
             let [x, y, z] = apply(placement, p);
             polyhedron.push_vertex([x, -z, y])?;
@@ -109,6 +118,13 @@ fn add_mesh(
             let corners = if is_mirrored { [a, c, b] } else { [a, b, c] };
             let place = Location::Face(polyhedron.face_count());
             polyhedron.push_face(corners, place);
+            if let Some(texture) = &texture {
+                let of_corner = |v: i64| texture.get(usize::try_from(v - first).ok()?).copied();
+                polyhedron.push_texture(corners.map(of_corner));
+            }
+            for group in groups.iter().flatten() {
+                polyhedron.push_group(group);
+            }
         }
     }
     Ok(())
@@ -251,18 +267,18 @@ fn elements<'a>(
     all.ok_or_else(|| "lie outside of their buffer".to_owned())
 }
 
-fn vectors(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[f64; 3]>, String> {
-    if (accessor.dimensions(), accessor.data_type()) != (Dimensions::Vec3, DataType::F32) {
-        return Err("are not vectors of three 32-bit floats".to_owned());
+/// The vectors of an accessor, which have `N` components.
+fn vectors<const N: usize>(
+    accessor: &Accessor<'_>,
+    buffers: &[Vec<u8>],
+) -> Result<Vec<[f64; N]>, String> {
+    let (dimensions, kind) = (accessor.dimensions(), accessor.data_type());
+    if (dimensions.multiplicity(), kind) != (N, DataType::F32) || dimensions == Dimensions::Mat2 {
+        return Err(format!("are not vectors of {N} 32-bit floats"));
     }
-    let number = |b: &[u8; 4]| f64::from(f32::from_le_bytes(*b));
-    let point = |bytes: &[u8]| {
-        let [x, y, z] = bytes.as_chunks::<4>().0 else {
-            return [0.0; 3];
-        };
-        [number(x), number(y), number(z)]
-    };
-    Ok(elements(accessor, buffers, 12)?
+    let number = |b: [u8; 4]| f64::from(f32::from_le_bytes(b));
+    let point = |bytes: &[u8]| std::array::from_fn(|k| number(bytes.as_chunks::<4>().0[k]));
+    Ok(elements(accessor, buffers, 4 * N)?
         .into_iter()
         .map(point)
         .collect())
@@ -293,9 +309,17 @@ const IDENTITY: Matrix = [
     [0.0, 0.0, 0.0, 1.0],
 ];
 
+/// A mesh as a node shows it.
+struct PlacedMesh<'a> {
+    /// The name of the node, if it has one.
+    node: Option<&'a str>,
+    mesh: Mesh<'a>,
+    placement: Matrix,
+}
+
 /// The meshes that nodes of the scene show, each with the matrix of its node, as often as they are shown: all
 /// of them, or those of a name. Where no node shows one of these, they are as they are.
-fn placed_meshes<'a>(document: &'a Document, name: Option<&str>) -> Vec<(Mesh<'a>, Matrix)> {
+fn placed_meshes<'a>(document: &'a Document, name: Option<&str>) -> Vec<PlacedMesh<'a>> {
     let is_wanted = |m: &Mesh<'_>| name.is_none() || m.name() == name;
     let scene = document
         .default_scene()
@@ -320,13 +344,21 @@ fn placed_meshes<'a>(document: &'a Document, name: Option<&str>) -> Vec<(Mesh<'a
             std::array::from_fn(|row| (0..4).map(|k| parent[k][row] * column[k]).sum())
         });
         let mesh = node.mesh().filter(is_wanted);
-        placed.extend(mesh.map(|mesh| (mesh, matrix)));
+        placed.extend(mesh.map(|mesh| PlacedMesh {
+            node: node.name(),
+            mesh,
+            placement: matrix,
+        }));
         let children: Vec<_> = node.children().collect();
         pending.extend(children.into_iter().rev().map(|child| (child, matrix)));
     }
     if placed.is_empty() {
         let meshes = document.meshes().filter(is_wanted);
-        placed.extend(meshes.map(|mesh| (mesh, IDENTITY)));
+        placed.extend(meshes.map(|mesh| PlacedMesh {
+            node: None,
+            mesh,
+            placement: IDENTITY,
+        }));
     }
     placed
 }

@@ -2,6 +2,7 @@
 
 use super::assignment::EdgeAssignment;
 use super::error::MeshFileError;
+use super::face_groups::FaceGroups;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Sheet, Topology, VertexId};
@@ -78,6 +79,12 @@ pub struct MeshFile {
     pub diagonals: Vec<[u32; 2]>,
     /// The edges of a FOLD file and the diagonals; empty for other formats.
     pub creases: Vec<FileCrease>,
+    /// The groups of triangles that the file names: those of OBJ files by groups, objects and materials; of PLY
+    /// files by properties of faces, as `property=value`; of glTF files by nodes, meshes and materials; of FOLD
+    /// files by the key `faces_isosheet:group`.
+    pub groups: FaceGroups,
+    /// Of each triangle the texture coordinates of its corners, where the file has them; empty if it has none.
+    pub texture: Vec<Option<[[f64; 2]; 3]>>,
     /// What reading changed.
     pub changes: ReadingChanges,
     pub(super) path: PathBuf,
@@ -96,6 +103,8 @@ impl MeshFile {
             polygons: 0,
             diagonals: Vec::new(),
             creases,
+            groups: FaceGroups::default(),
+            texture: Vec::new(),
             changes: ReadingChanges::default(),
             path: PathBuf::new(),
         }
@@ -131,6 +140,25 @@ impl MeshFile {
         self.relabel(&label);
         let removed = used.len() - kept.len() / 3;
         self.positions = kept;
+        removed
+    }
+
+    /// Keeps some of the faces, with what the file says of them; returns how many are removed.
+    pub(super) fn retain_faces(&mut self, mut keep: impl FnMut(&[u32; 3]) -> bool) -> usize {
+        let kept: Vec<bool> = self.faces.iter().map(&mut keep).collect();
+        let numbers: Vec<u32> = (0..)
+            .zip(&kept)
+            .filter(|(_, kept)| **kept)
+            .map(|(k, _)| k)
+            .collect();
+        let removed = self.faces.len() - numbers.len();
+        if removed > 0 {
+            let mut of_faces = kept.iter();
+            self.faces.retain(|_| of_faces.next() == Some(&true));
+            let mut of_texture = kept.iter();
+            self.texture.retain(|_| of_texture.next() == Some(&true));
+            self.groups = self.groups.of_parts(&numbers);
+        }
         removed
     }
 

@@ -10,13 +10,15 @@ use isosheet_mesh::wording::given;
 
 /// Reads the vertices and faces of an OBJ file.
 ///
-/// Understood: `v`, `f` (indices from 1, or negative and counted backwards; texture and normal indices are
-/// skipped), line continuation by a backslash, comments. Groups, objects, materials, normals, texture
-/// coordinates, colours, lines and points are skipped.
+/// Understood: `v`, `vt`, `f` (indices from 1, or negative and counted backwards; those of normals are skipped),
+/// `g`, `o` and `usemtl` as groups of the faces that follow, line continuation by a backslash, comments. Normals,
+/// colours, lines and points are skipped. Texture coordinates that are no numbers or not there are none.
 pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     let mut parser = Parser {
         mesh: Polyhedron::counted_from(1),
         unknown: None,
+        texture: Vec::new(),
+        groups: Default::default(),
     };
     // Names may be in any encoding; numbers are ASCII.
     let text = String::from_utf8_lossy(bytes);
@@ -51,17 +53,17 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
 struct Parser {
     mesh: Polyhedron,
     unknown: Option<(usize, String)>,
+    /// Texture coordinates read so far.
+    texture: Vec<Option<[f64; 2]>>,
+    /// Names by which the faces that follow are grouped: those after `g`, after `o` and after `usemtl`.
+    groups: [Vec<String>; 3],
 }
 
 /// Words that begin the other lines of an OBJ file.
-const SKIPPED: [&str; 22] = [
-    "vt",
+const SKIPPED: [&str; 18] = [
     "vn",
     "vp",
-    "g",
-    "o",
     "s",
-    "usemtl",
     "mtllib",
     "mg",
     "lod",
@@ -87,9 +89,22 @@ impl Parser {
             None => {}
             Some("v") => self.vertex(content)?,
             Some("f" | "fo") => {
-                let corners: Vec<i64> = words.map(|w| self.corner(w)).collect::<Result<_, _>>()?;
+                let corners = words.clone().map(|w| self.corner(w));
+                let corners: Vec<i64> = corners.collect::<Result<_, _>>()?;
                 self.mesh.push_face(corners, Location::Line(number));
+                let texture: Vec<_> = words.map(|w| self.texture_at(w)).collect();
+                if texture.iter().any(Option::is_some) {
+                    self.mesh.push_texture(texture);
+                }
+                for name in self.groups.iter().flatten() {
+                    self.mesh.push_group(name);
+                }
             }
+            Some("vt") => self.texture.push(texture(words)),
+            Some("g") => self.groups[0] = words.map(str::to_owned).collect(),
+            // Their names may have spaces.
+            Some("o") => self.groups[1] = name(words),
+            Some("usemtl") => self.groups[2] = name(words),
             Some("l") => self.mesh.lines += 1,
             Some("p") => self.mesh.points += 1,
             Some(word) if SKIPPED.contains(&word) => {}
@@ -145,6 +160,18 @@ impl Parser {
         }
     }
 
+    /// The texture coordinates of a corner.
+    fn texture_at(&self, word: &str) -> Option<[f64; 2]> {
+        let index = word.split('/').nth(1)?.parse::<i64>().ok()?;
+        let count = self.texture.len() as i64;
+        let number = if index > 0 {
+            index - 1
+        } else {
+            count.checked_add(index)?
+        };
+        *self.texture.get(usize::try_from(number).ok()?)?
+    }
+
     fn finish(self) -> Result<Polyhedron, Located> {
         match self.unknown {
             Some((line, word)) if self.mesh.positions.is_empty() && self.mesh.face_count() == 0 => {
@@ -156,6 +183,19 @@ impl Parser {
             _ => Ok(self.mesh),
         }
     }
+}
+
+/// The name that some words are, if there are any.
+fn name<'a>(words: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let name = words.collect::<Vec<_>>().join(" ");
+    Vec::from_iter((!name.is_empty()).then_some(name))
+}
+
+/// The texture coordinates on a line, the second of which may be left out.
+fn texture<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<[f64; 2]> {
+    let u = words.next()?.parse::<f64>().ok()?;
+    let v = words.next().map_or(Ok(0.0), str::parse::<f64>).ok()?;
+    (u.is_finite() && v.is_finite()).then_some([u, v])
 }
 
 #[cfg(test)]

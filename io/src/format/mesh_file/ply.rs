@@ -14,6 +14,8 @@ const MAGIC: &[u8] = b"ply";
 
 /// Reads the vertices and faces of a PLY file, text or binary of either byte order: the properties `x`, `y`
 /// and `z` of the element `vertex` and the list `vertex_indices` or `vertex_index` of the element `face`.
+/// Faces are grouped by their properties that are integers and no colours. Texture coordinates are the properties
+/// `s` and `t`, `u` and `v` or `texture_u` and `texture_v` of the vertices, or the list `texcoord` of the faces.
 /// Everything else is skipped.
 pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     let mut mesh = Polyhedron::default();
@@ -33,6 +35,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
         .map_err(|e| located(&e, true))?;
     let text = header.encoding == Encoding::Ascii;
     check(&header, reader.get_ref().len() as u64)?;
+    let mut texture = Vec::new();
     for (name, element) in &header.elements {
         let rows = parser
             .read_payload_for_element(&mut reader, element, &header)
@@ -40,13 +43,21 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
         match name.as_str() {
             "vertex" => {
                 for row in rows {
+                    texture.push(texture_coordinates(row.texture));
                     mesh.push_vertex(row.place)
                         .map_err(|problem| (None, problem.into()))?;
                 }
             }
             "face" => {
                 for (k, row) in rows.into_iter().enumerate() {
+                    let of_corners: Vec<_> = row.texture_of_corners(&texture).collect();
                     mesh.push_face(row.corners, Location::Face(k));
+                    if of_corners.iter().any(Option::is_some) {
+                        mesh.push_texture(of_corners);
+                    }
+                    for (name, value) in row.integers {
+                        mesh.push_group(&format!("{name}={value}"));
+                    }
                 }
             }
             _ => {}
@@ -59,6 +70,21 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
 struct PlyRow {
     place: [f64; 3],
     corners: Vec<i64>,
+    /// Texture coordinates of a vertex.
+    texture: [Option<f64>; 2],
+    /// Two texture coordinates of each corner of a face.
+    texcoord: Vec<f32>,
+    /// The integers of a face that are no colours.
+    integers: Vec<(String, i64)>,
+}
+
+/// Properties of faces by which they are not grouped.
+const COLOURS: [&str; 4] = ["red", "green", "blue", "alpha"];
+
+/// Two texture coordinates, if both are there.
+fn texture_coordinates([u, v]: [Option<f64>; 2]) -> Option<[f64; 2]> {
+    let both = [u?, v?];
+    both.iter().all(|c| c.is_finite()).then_some(both)
 }
 
 impl PropertyAccess for PlyRow {
@@ -66,6 +92,9 @@ impl PropertyAccess for PlyRow {
         Self {
             place: [0.0; 3],
             corners: Vec::new(),
+            texture: [None; 2],
+            texcoord: Vec::new(),
+            integers: Vec::new(),
         }
     }
 
@@ -86,26 +115,81 @@ impl PropertyAccess for PlyRow {
                 };
                 PropertyAccessResult::Set
             }
-            _ => PropertyAccessResult::Ignored,
+            "s" | "u" | "texture_u" => self.set_texture(0, &property),
+            "t" | "v" | "texture_v" => self.set_texture(1, &property),
+            "texcoord" => match property {
+                Property::ListFloat(list) => {
+                    self.texcoord = list;
+                    PropertyAccessResult::Set
+                }
+                _ => PropertyAccessResult::Ignored,
+            },
+            name if COLOURS.contains(&name) => PropertyAccessResult::Ignored,
+            name => match integer(&property) {
+                Some(value) => {
+                    self.integers.push((name.to_owned(), value));
+                    PropertyAccessResult::Set
+                }
+                None => PropertyAccessResult::Ignored,
+            },
         }
     }
 }
 
 impl PlyRow {
     fn set(&mut self, axis: usize, property: &Property) -> PropertyAccessResult {
-        self.place[axis] = match *property {
-            Property::Char(v) => v.into(),
-            Property::UChar(v) => v.into(),
-            Property::Short(v) => v.into(),
-            Property::UShort(v) => v.into(),
-            Property::Int(v) => v.into(),
-            Property::UInt(v) => v.into(),
-            Property::Float(v) => v.into(),
-            Property::Double(v) => v,
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
+        match number(property) {
+            Some(value) => {
+                self.place[axis] = value;
+                PropertyAccessResult::Set
+            }
+            None => PropertyAccessResult::UnsupportedType,
+        }
+    }
+
+    fn set_texture(&mut self, axis: usize, property: &Property) -> PropertyAccessResult {
+        self.texture[axis] = number(property);
         PropertyAccessResult::Set
     }
+
+    /// The texture coordinates of the corners of a face: its own, or those of the vertices.
+    fn texture_of_corners(
+        &self,
+        vertices: &[Option<[f64; 2]>],
+    ) -> impl Iterator<Item = Option<[f64; 2]>> {
+        let own = self.texcoord.as_chunks::<2>().0;
+        let is_own = own.len() == self.corners.len();
+        self.corners
+            .iter()
+            .enumerate()
+            .map(move |(k, &corner)| match is_own {
+                true => texture_coordinates(own[k].map(|c| Some(c.into()))),
+                false => *vertices.get(usize::try_from(corner).ok()?)?,
+            })
+    }
+}
+
+/// A property that is a number.
+fn number(property: &Property) -> Option<f64> {
+    match *property {
+        Property::Float(v) => Some(v.into()),
+        Property::Double(v) => Some(v),
+        // Integers have 32 bits at most.
+        _ => integer(property).map(|v| v as f64),
+    }
+}
+
+/// A property that is an integer.
+fn integer(property: &Property) -> Option<i64> {
+    Some(match *property {
+        Property::Char(v) => v.into(),
+        Property::UChar(v) => v.into(),
+        Property::Short(v) => v.into(),
+        Property::UShort(v) => v.into(),
+        Property::Int(v) => v.into(),
+        Property::UInt(v) => v.into(),
+        _ => return None,
+    })
 }
 
 /// Checks that the elements have the properties of a mesh, and that the rest of the file can hold as many as

@@ -93,6 +93,11 @@ impl MeshFile {
         repair.unused_vertices = self.drop_unreferenced() - repair.merged_vertices;
         let count = self.vertex_count();
         let reversed = orient_consistently(count, &mut self.faces).map_err(MeshError::from)?;
+        for face in &reversed {
+            if let Some(Some(corners)) = self.texture.get_mut(face.index()) {
+                corners.swap(1, 2);
+            }
+        }
         self.turn_creases(&reversed)?;
         repair.reversed_faces = reversed.len();
         Ok(repair)
@@ -115,24 +120,23 @@ impl MeshFile {
     }
 
     fn remove_degenerate(&mut self) -> usize {
-        let points = self.positions.as_chunks::<3>().0;
-        let before = self.faces.len();
-        self.faces.retain(|f| {
+        let positions = std::mem::take(&mut self.positions);
+        let points = positions.as_chunks::<3>().0;
+        let removed = self.retain_faces(|f| {
             let corners = f.map(|v| points[v as usize]);
             Sheet::new(corners.as_flattened().to_vec(), &[[0, 1, 2]]).is_ok()
         });
-        before - self.faces.len()
+        self.positions = positions;
+        removed
     }
 
     fn remove_duplicates(&mut self) -> usize {
-        let before = self.faces.len();
         let mut seen = HashSet::new();
-        self.faces.retain(|f| {
+        self.retain_faces(|f| {
             let mut corners = *f;
             corners.sort_unstable();
             seen.insert(corners)
-        });
-        before - self.faces.len()
+        })
     }
 }
 

@@ -49,9 +49,7 @@ impl MeshFile {
         self.changes.welded_vertices += points.len() - places.len();
         self.positions = places.into_flattened();
         self.relabel(&label);
-        let before = self.faces.len();
-        self.faces.retain(|[a, b, c]| a != b && b != c && c != a);
-        self.changes.collapsed_faces += before - self.faces.len();
+        self.changes.collapsed_faces += self.retain_faces(|[a, b, c]| a != b && b != c && c != a);
         self.diagonals.retain(|[a, b]| a != b);
         self.unite_creases();
     }

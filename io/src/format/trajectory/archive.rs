@@ -143,8 +143,8 @@ impl<W: Write + Seek> ArchiveWriter<W> {
 }
 
 /// Reads arrays.
-pub(super) struct ArchiveReader<'a> {
-    zip: ZipArchive<BufReader<File>>,
+pub(super) struct ArchiveReader<'a, R> {
+    zip: ZipArchive<R>,
     /// The bytes that further arrays may take.
     left: u64,
     /// For messages.
@@ -154,9 +154,16 @@ pub(super) struct ArchiveReader<'a> {
 /// An array: its shape and its entries by rows.
 pub(super) type Shaped<T> = (Vec<u64>, Vec<T>);
 
-impl<'a> ArchiveReader<'a> {
+impl<'a> ArchiveReader<'a, BufReader<File>> {
     pub(super) fn open(path: &'a Path) -> io::Result<Self> {
-        let zip = ZipArchive::new(BufReader::new(input::open(path)?))?;
+        Self::new(BufReader::new(input::open(path)?), path)
+    }
+}
+
+impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
+    /// Reads what is an archive as a whole; `path` is used in errors only.
+    pub(super) fn new(archive: R, path: &'a Path) -> io::Result<Self> {
+        let zip = ZipArchive::new(archive)?;
         // What is read is used, too.
         let left = memory::free() / 2;
         Ok(Self { zip, left, path })

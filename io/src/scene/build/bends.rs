@@ -73,7 +73,7 @@ impl Builder<'_> {
     ) -> Result<Vec<&'static str>, SceneError> {
         let sheet = &self.sheets.list[number];
         let PlacedSheet { of, key, form, .. } = sheet;
-        let (of, placed) = (*of, &form.placed);
+        let (of, placed) = (of.clone(), &form.placed);
         let yields = of.yields();
         let laws = sheet.patched.map(|own| own.plate());
         let [key, yield_key] = ["bending", "yield"].map(|name| key.name(name));
@@ -225,7 +225,7 @@ impl Builder<'_> {
                     self.modelled
                         .push("a start off the flat state, towards the angles".into());
                 }
-                let [driven, flat] = folding.springs(&targets, own.of, &own.form.placed, x);
+                let [driven, flat] = folding.springs(&targets, &own.of, &own.form.placed, x);
                 springs.add(key.clone(), EdgeFolds::Yes, driven);
                 springs.add(key, EdgeFolds::No, flat);
                 targets.renumber(|e| own.part.edge(e));

@@ -1,6 +1,7 @@
 //! A model on its way from a scene.
 
 use crate::scene::bond::Bond;
+use crate::scene::driven::DrivenObstacles;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
 use crate::scene::mesh_file::Files;
@@ -14,7 +15,9 @@ use crate::scene::switches::Switches;
 use crate::scene::targets::Targets;
 use crate::scene::{Origins, Scene};
 use isosheet_collide as collide;
-use isosheet_dynamics::{Patched, PlateBending, PlateLaw, RigidDisplacement, SheetModel};
+use isosheet_dynamics::{
+    Patched, PlateBending, PlateLaw, PointMotion, RigidDisplacement, SheetModel,
+};
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, VertexId};
 use std::collections::BTreeMap;
@@ -66,6 +69,7 @@ pub(super) struct Builder<'a> {
     pub(super) switches: &'a Switches,
     pub(super) sheets: PlacedSheets<'a>,
     pub(super) bodies: PlacedBodies<'a>,
+    pub(super) driven: DrivenObstacles,
     /// What is seen and touches, where it is more than the sheets.
     pub(super) surface: Option<Surface>,
     /// Vertices that are glued to bodies, each with the number of the body.
@@ -102,13 +106,27 @@ impl<'a> Builder<'a> {
         let key = Key::root().name("sheet");
         let sheets = PlacedSheets::new(&scene.sheet, &mut kept.forms, &mut kept.files)?;
         let bodies = PlacedBodies::new(&scene.body, &sheets, &mut kept.files)?;
+        let (end, model_vertices) = bodies.counts(&sheets.union);
+        let driven = DrivenObstacles::new(&scene.obstacle, end, model_vertices, &mut kept.files)?;
         let damping = scene.sheet[0].damping;
-        let mass = bodies.mass(&sheets.union, sheets.mass(&scene.weight)?);
-        let mut model = SheetModel::with_mass(&bodies.mesh(&sheets.union)?, mass)
+        let mass = driven.mass(bodies.mass(&sheets.union, sheets.mass(&scene.weight)?));
+        let mut model = SheetModel::with_mass(&bodies.mesh(&sheets.union, &driven)?, mass)
             .and_then(|m| m.with_damping(damping))
             .map_err(at(&key))?;
-        if let Some(first) = bodies.list.first() {
-            model = model.with_bodies_from(first.first);
+        let first_body = bodies.list.first().map(|body| body.first);
+        if let Some(first) = first_body.or(driven.first()) {
+            model = model.with_bodies_from(first);
+        }
+        if let Some(first) = driven.first() {
+            model = model.with_driven_from(first);
+        }
+        for obstacle in &driven.list {
+            for (number, vertex) in obstacle.surface.vertices.clone().enumerate() {
+                let mesh = Arc::clone(&obstacle.motion);
+                let motion = PointMotion::from(move |t: f64| mesh.position(number, t));
+                let pinned = model.with_moving_pin(VertexId::from_index(vertex), motion);
+                model = pinned.map_err(at(&Key::root().name("obstacle")))?;
+            }
         }
         let mut modelled = Vec::new();
         if damping > 0.0 {
@@ -123,19 +141,27 @@ impl<'a> Builder<'a> {
         let surfaces = bodies.list.iter().map(|body| body.part.vertices.clone());
         let origins = Origins {
             bodies: surfaces.collect(),
+            driven: driven.list.iter().map(|o| o.surface.clone()).collect(),
             ..Origins::default()
         };
         Ok(Self {
             scene,
             kept,
             switches,
-            x: sheets.start.iter().copied().chain(bodies.start()).collect(),
-            surface: bodies.surface(&sheets.union)?,
+            x: sheets
+                .start
+                .iter()
+                .copied()
+                .chain(bodies.start())
+                .chain(driven.start())
+                .collect(),
+            surface: bodies.surface(&sheets.union, &driven)?,
             glued_to_bodies: Vec::new(),
             glued: Vec::new(),
             bonds: Vec::new(),
             sheets,
             bodies,
+            driven,
             model: Some(model),
             origins,
             clamps: Vec::new(),

@@ -1,8 +1,10 @@
 //! Contact, and obstacles.
 
 use super::builder::{Builder, Kept, at};
+use crate::scene::driven::DrivenSurface;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
+use crate::scene::obstacles::Shape;
 use crate::scene::placed::PlacedSheet;
 use crate::scene::placed_bodies::Surface;
 use crate::scene::problem::Problem;
@@ -52,17 +54,26 @@ impl Builder<'_> {
         let mut contacts = contacts
             .map_err(at(&key.name("contact")))?
             .with_glue(&[&self.glued[..], &self.cuts()].concat());
-        if !self.bodies.list.is_empty() {
+        let sheets = 0..self.sheets.union.topology().vertex_count();
+        if let Some(surface) = &self.surface {
             let mut parts: Vec<_> = self.origins.bodies.clone();
             if !scene.contact.self_contact {
                 // Sheets meet bodies, and not one another.
-                parts.push(0..self.sheets.union.topology().vertex_count());
+                parts.push(sheets.clone());
+            }
+            if let Some(first) = self.driven.first_point() {
+                // Obstacles pass through one another.
+                parts.push(first..surface.points.count());
+                contacts = contacts.with_driven_from(VertexId::from_index(first));
             }
             contacts = contacts.with_parts(&parts, self.glued_to_bodies.iter().copied());
         }
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);
+            if matches!(obstacle.shape, Shape::Sequence(_)) {
+                continue;
+            }
             let Kept { files, shapes, .. } = &mut *self.kept;
             let shape = shapes.get(k, obstacle.shape.clone(), |shape| {
                 shape.build(&key.name("shape"), files)
@@ -72,13 +83,20 @@ impl Builder<'_> {
             let coefficients = Coefficients::equal(obstacle.friction);
             contacts = contacts.with_body(body, coefficients).map_err(at(&key))?;
         }
-        self.count(obstacles.len(), "obstacle", "obstacles");
+        self.count(scene.obstacle.len(), "obstacle", "obstacles");
         self.bodies.check_empty(&self.sheets, &obstacles)?;
-        if scene.contact.self_contact || !self.bodies.list.is_empty() {
+        if scene.contact.self_contact || self.surface.is_some() {
             let coefficients = Coefficients::equal(scene.contact.friction);
             contacts = contacts
                 .with_self_contact(coefficients)
                 .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
+            for DrivenSurface { number, part, .. } in &self.origins.driven {
+                let coefficients = Coefficients::equal(scene.obstacle[*number].friction);
+                let others = 0..self.driven.first_point().unwrap_or_default();
+                contacts = contacts
+                    .with_friction_between([others, part.vertices.clone()], coefficients)
+                    .map_err(at(&key.name("obstacle").entry(*number)))?;
+            }
             let list = key.name("contact.pair");
             for (k, pair) in scene.contact.pair.iter().enumerate() {
                 let key = list.entry(k);

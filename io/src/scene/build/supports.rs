@@ -52,6 +52,13 @@ impl Builder<'_> {
                         self.change(|m| m.with_moving_pin(v, motion), at(&key))?;
                     }
                 }
+                Hold::Follow {
+                    sequence,
+                    vertices: followed,
+                } => {
+                    let key = key.name("hold.follow");
+                    self.follow(&vertices, (sequence, followed), &key)?;
+                }
                 Hold::Curve { shape, motion } => {
                     for &v in &vertices {
                         let constraint = shape.constrain(v).map_err(at(&key))?;

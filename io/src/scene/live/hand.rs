@@ -76,7 +76,10 @@ impl LiveScene {
     /// [`HoldError`]; then nothing has changed.
     pub fn hold(&mut self, vertex: VertexId) -> Result<[f64; 3], HoldError> {
         let surfaces = &mut self.under_way.facts.bodies.iter();
-        if surfaces.any(|body| body.surface().contains(&vertex.index())) {
+        let driven = &mut self.under_way.facts.origins.driven.iter();
+        if surfaces.any(|body| body.surface().contains(&vertex.index()))
+            || driven.any(|surface| surface.part.vertices.contains(&vertex.index()))
+        {
             return Err(HoldError::Body { vertex });
         }
         let model = self.under_way.simulation.model();

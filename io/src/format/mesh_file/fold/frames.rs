@@ -22,6 +22,9 @@ pub(super) struct FrameRecord {
     #[serde(rename = "edges_foldAngle", alias = "edges_foldAngles")]
     pub(super) fold_angles: Option<Vec<Option<f64>>>,
     pub(super) faces_vertices: Option<Vec<Vec<i64>>>,
+    /// The groups of each face.
+    #[serde(rename = "faces_isosheet:group")]
+    pub(super) groups: Option<Vec<Option<String>>>,
     /// The other frames; in the key frame alone, whose keys are those of the file itself.
     file_frames: Option<Vec<FrameRecord>>,
 }
@@ -158,6 +161,7 @@ fn inherited(frames: &[FrameRecord], number: usize) -> Result<FrameRecord, DataE
                 .or_else(|| from.edges_assignment.clone()),
             fold_angles: frame.fold_angles.or_else(|| from.fold_angles.clone()),
             faces_vertices: frame.faces_vertices.or_else(|| from.faces_vertices.clone()),
+            groups: frame.groups.or_else(|| from.groups.clone()),
             file_frames: None,
         }
     };

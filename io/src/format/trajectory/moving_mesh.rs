@@ -1,0 +1,248 @@
+//! Meshes in motion, of archives of numpy.
+
+use super::archive::{ArchiveReader, Shaped};
+use crate::format::FileError;
+use isosheet_mesh::wording::given;
+use std::io::Cursor;
+use std::path::Path;
+
+/// The positions of the vertices of a mesh at several times, between which they go straight on.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MovingMesh {
+    /// Seconds, increasing.
+    times: Vec<f64>,
+    /// `3V` for each time, metres.
+    x: Vec<f64>,
+    vertex_count: usize,
+    faces: Vec<[u32; 3]>,
+}
+
+impl MovingMesh {
+    /// Reads the arrays `t`, `x` and `faces` of an archive as [`Trajectory::write`](super::Trajectory::write) makes
+    /// it; `path` is used in errors only.
+    ///
+    /// # Errors
+    /// [`FileError::Read`], naming the array and the place in it.
+    pub(crate) fn parse(bytes: &[u8], path: &Path) -> Result<Self, FileError> {
+        const ARRAYS: &str = "give an .npz file with the arrays `t` (T), `x` (T x V x 3) and `faces` (F x 3), such as \
+                              the trajectory of a run";
+        let wrong = |problem: String| FileError::content(path, problem, ARRAYS);
+        let mut npz =
+            ArchiveReader::new(Cursor::new(bytes), path).map_err(|e| wrong(e.to_string()))?;
+        let (t_shape, times) = floats(&mut npz, "t", 1)?;
+        let (x_shape, x) = floats(&mut npz, "x", 3)?;
+        let (faces_shape, corners) = integers(&mut npz, "faces", 2)?;
+        let (frames, vertices) = (t_shape[0], x_shape[1]);
+        for (name, shape, expected) in [
+            ("x", &x_shape, vec![frames, vertices, 3]),
+            ("faces", &faces_shape, vec![faces_shape[0], 3]),
+        ] {
+            if *shape != expected {
+                return Err(wrong(format!(
+                    "array `{name}`: its shape is {shape:?}, {expected:?} expected"
+                )));
+            }
+        }
+        if frames == 0 || vertices == 0 {
+            return Err(wrong(format!(
+                "it has {frames} frames of {vertices} vertices"
+            )));
+        }
+        if let Some(k) = times.iter().position(|t| !t.is_finite()) {
+            return Err(wrong(format!(
+                "the time of frame {k} is {}",
+                given(times[k])
+            )));
+        }
+        if let Some(k) = times.windows(2).position(|t| t[0] >= t[1]) {
+            let [before, now] = [times[k], times[k + 1]].map(given);
+            let problem = format!("frame {} has the time {now} s after {before} s", k + 1);
+            return Err(FileError::content(
+                path,
+                problem,
+                "sort the frames by time, and give one for each time",
+            ));
+        }
+        if let Some(k) = x.iter().position(|c| !c.is_finite()) {
+            let (axis, v, value) = (["x", "y", "z"][k % 3], k as u64 / 3, given(x[k]));
+            let (frame, vertex) = (v / vertices, v % vertices);
+            let problem =
+                format!("coordinate {axis} of vertex {vertex} in frame {frame} is {value}");
+            return Err(FileError::content(
+                path,
+                problem,
+                "write finite coordinates",
+            ));
+        }
+        let corner = |(k, v): (usize, &i64)| match u32::try_from(*v) {
+            Ok(corner) if u64::from(corner) < vertices => Ok(corner),
+            _ => Err(wrong(format!(
+                "face {} refers to vertex {v} of {vertices}",
+                k / 3
+            ))),
+        };
+        let corners = corners.iter().enumerate().map(corner);
+        let corners: Vec<u32> = corners.collect::<Result<_, _>>()?;
+        Ok(Self {
+            times,
+            x,
+            vertex_count: vertices as usize,
+            faces: corners.as_chunks().0.to_vec(),
+        })
+    }
+
+    /// The same with each position changed.
+    pub(crate) fn map(mut self, change: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+        for p in self.x.as_chunks_mut::<3>().0 {
+            *p = change(*p);
+        }
+        self
+    }
+
+    /// The same at other times.
+    pub(crate) fn delayed(mut self, by: f64) -> Self {
+        self.times.iter_mut().for_each(|t| *t += by);
+        self
+    }
+
+    /// The times of the frames, seconds.
+    pub(crate) fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The corners of the faces.
+    pub(crate) fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// The number of vertices.
+    pub(crate) fn vertex_count(&self) -> usize {
+        self.vertex_count
+    }
+
+    /// The positions of a frame, metres.
+    pub(crate) fn frame(&self, k: usize) -> &[[f64; 3]] {
+        let n = 3 * self.vertex_count;
+        self.x[n * k..n * (k + 1)].as_chunks().0
+    }
+
+    /// The position of a vertex at a time: on the line between those at the times about it, and that at the first
+    /// or the last time beyond these.
+    pub(crate) fn position(&self, vertex: usize, t: f64) -> [f64; 3] {
+        let next = self.times.partition_point(|time| *time <= t);
+        let at = |k: usize| self.frame(k)[vertex];
+        if next == 0 || next == self.times.len() {
+            return at(next.saturating_sub(1));
+        }
+        let [before, after] = [self.times[next - 1], self.times[next]];
+        let part = (t - before) / (after - before);
+        let [p, q] = [at(next - 1), at(next)];
+        std::array::from_fn(|k| p[k] + part * (q[k] - p[k]))
+    }
+
+    /// The positions of all vertices at a time.
+    pub(crate) fn positions(&self, t: f64) -> Vec<f64> {
+        (0..self.vertex_count)
+            .flat_map(|v| self.position(v, t))
+            .collect()
+    }
+}
+
+/// An array of numbers of 64 or 32 bits.
+fn floats(
+    npz: &mut ArchiveReader<'_, Cursor<&[u8]>>,
+    name: &'static str,
+    dimensions: usize,
+) -> Result<Shaped<f64>, FileError> {
+    npz.get::<f64>(name, dimensions)
+        .or_else(|error| match npz.get::<f32>(name, dimensions) {
+            Ok((shape, values)) => Ok((shape, values.into_iter().map(f64::from).collect())),
+            Err(_) => Err(error),
+        })
+}
+
+/// An array of integers of 32 or 64 bits.
+fn integers(
+    npz: &mut ArchiveReader<'_, Cursor<&[u8]>>,
+    name: &'static str,
+    dimensions: usize,
+) -> Result<Shaped<i64>, FileError> {
+    npz.get::<i64>(name, dimensions)
+        .or_else(|_| npz.get::<i32>(name, dimensions).map(widened))
+        .or_else(|_| npz.get::<u32>(name, dimensions).map(widened))
+}
+
+fn widened<T: Into<i64>>((shape, values): Shaped<T>) -> Shaped<i64> {
+    (shape, values.into_iter().map(T::into).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Trajectory;
+    use crate::format::trajectory::archive::ArchiveWriter;
+    use isosheet_mesh::Sheet;
+
+    fn moving(times: &[f64], heights: &[f64]) -> MovingMesh {
+        let x = |z: f64| [0.0, 0.0, z, 1.0, 0.0, z, 0.0, 1.0, 2.0 * z];
+        let mut trajectory = Trajectory::new(&Sheet::new(x(0.0).to_vec(), &[[0, 1, 2]]).unwrap());
+        for (t, z) in times.iter().zip(heights) {
+            trajectory.push(*t, &x(*z)).unwrap();
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("moving.npz");
+        trajectory.write(&path).unwrap();
+        MovingMesh::parse(&std::fs::read(&path).unwrap(), &path).unwrap()
+    }
+
+    /// What is said of an archive with these arrays.
+    fn refused(t: &[f64], x: &[f64], faces: &[i64]) -> String {
+        let mut bytes = Vec::new();
+        let mut npz = ArchiveWriter::new(Cursor::new(&mut bytes));
+        npz.put("t", &[t.len() as u64], t.iter().copied()).unwrap();
+        let shape = [t.len() as u64, (x.len() / 3 / t.len().max(1)) as u64, 3];
+        npz.put("x", &shape, x.iter().copied()).unwrap();
+        npz.put("faces", &[faces.len() as u64 / 3, 3], faces.iter().copied())
+            .unwrap();
+        npz.finish().unwrap();
+        match MovingMesh::parse(&bytes, Path::new("body.npz")) {
+            Ok(mesh) => panic!("accepted: {mesh:?}"),
+            Err(error) => error.to_string(),
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_frame_and_vertex() {
+        let mut x = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+            .as_flattened()
+            .repeat(3);
+        let faces = [0, 1, 2];
+        let found = refused(&[0.0, 1.0, 1.0], &x, &faces);
+        assert_eq!(found, "body.npz: frame 2 has the time 1 s after 1 s");
+        let found = refused(&[0.0, f64::NAN, 1.0], &x, &faces);
+        assert_eq!(found, "body.npz: the time of frame 1 is NaN");
+        let found = refused(&[0.0, 1.0, 2.0], &x, &[0, 1, 2, 2, 1, 3]);
+        assert_eq!(found, "body.npz: face 1 refers to vertex 3 of 3");
+        let found = refused(&[], &[], &faces);
+        assert_eq!(found, "body.npz: it has 0 frames of 0 vertices");
+        x[9 + 7] = f64::INFINITY;
+        let found = refused(&[0.0, 1.0, 2.0], &x, &faces);
+        assert_eq!(
+            found,
+            "body.npz: coordinate y of vertex 2 in frame 1 is inf"
+        );
+        let other = MovingMesh::parse(b"no archive", Path::new("body.npz")).unwrap_err();
+        assert!(other.to_string().starts_with("body.npz: "), "{other}");
+    }
+
+    #[test]
+    fn vertices_go_straight_on_between_frames_and_rest_before_and_after() {
+        let mesh = moving(&[1.0, 2.0, 4.0], &[0.0, 0.5, -0.5]);
+        assert_eq!((mesh.vertex_count(), mesh.faces()), (3, &[[0, 1, 2]][..]));
+        let heights = [-1.0, 1.0, 1.5, 2.0, 3.0, 4.0, 9.0].map(|t| mesh.position(2, t)[2]);
+        assert_eq!(heights, [0.0, 0.0, 0.5, 1.0, 0.0, -1.0, -1.0]);
+        let later = mesh.clone().delayed(10.0).map(|[x, y, z]| [z, y, x]);
+        assert_eq!(later.position(2, 11.5), [0.5, 1.0, 0.0]);
+        assert_eq!(mesh.positions(1.5)[..6], [0.0, 0.0, 0.25, 1.0, 0.0, 0.25]);
+    }
+}
