@@ -310,6 +310,11 @@ impl Support {
             Hold::MovingPin(motion) => motion.check(&hold.name("moving_pin"), checks),
             Hold::Follow { sequence, .. } => {
                 sequence.check(&hold.name("follow.sequence"), checks);
+                if self.from.is_some() {
+                    let message = "a support that follows a mesh in motion cannot be taken up in the course of a run";
+                    let remedy = "leave `from` out, or follow the mesh from the start; `until` may release it";
+                    checks.report(key.name("from"), message, remedy);
+                }
             }
             Hold::MovingClamp(motion) => motion.check(&hold.name("moving_clamp"), checks),
             Hold::SlidingClamp { direction, motion } => {
@@ -352,7 +357,7 @@ impl Hold {
     /// Its motion, if it has one.
     fn motion(&self) -> Option<&Motion> {
         match self {
-            Self::Pin | Self::Clamp => None,
+            Self::Pin | Self::Clamp | Self::Follow { .. } => None,
             Self::MovingPin(motion)
             | Self::MovingClamp(motion)
             | Self::SlidingClamp { motion, .. }
