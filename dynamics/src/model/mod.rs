@@ -46,8 +46,7 @@ pub(crate) const PINNED: u32 = u32::MAX;
 #[derive(Debug)]
 pub struct SheetModel {
     topology: Topology,
-    isometry: Isometry,
-    /// The elasticity in the plane, where [`SheetModel::isometry`] is that.
+    /// The elasticity in the plane of sheets that have it.
     elastic: Option<ElasticSheet>,
     /// All edges with their rest lengths.
     edges: LengthConstraints,
@@ -115,7 +114,6 @@ impl SheetModel {
             }
         }
         Ok(Self {
-            isometry: Isometry::Rods,
             elastic: None,
             rods: edges.clone(),
             rod_edges: topology.edge_ids().collect(),
@@ -159,7 +157,7 @@ impl SheetModel {
     }
 
     /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see
-    /// [`ElasticSheet`].
+    /// [`ElasticSheet`]; of the [union](ElasticSheet::union) of some of several sheets, those of these sheets.
     ///
     /// For BDF2 and implicit Euler; other methods and charts are refused. [`SheetModel::of_material`] does this
     /// and all else that a material needs; by hand:
@@ -195,7 +193,6 @@ impl SheetModel {
         if found != face_count {
             return Err(ModelError::ElasticSheet { found, face_count });
         }
-        self.isometry = Isometry::Elastic;
         let mut is_rod = vec![true; self.edges.len()];
         for face in elastic.faces() {
             for edge in self.topology.face_edges(face) {
@@ -263,11 +260,6 @@ impl SheetModel {
         &self.topology
     }
 
-    /// What keeps the lengths.
-    pub fn isometry(&self) -> Isometry {
-        self.isometry
-    }
-
     /// All edges with their rest lengths, rods or not.
     pub fn edges(&self) -> &LengthConstraints {
         &self.edges
@@ -281,6 +273,17 @@ impl SheetModel {
     /// Which edges the rods are.
     pub fn rod_edges(&self) -> &[EdgeId] {
         &self.rod_edges
+    }
+
+    /// Whether an edge is a rod.
+    pub(crate) fn is_rod(&self, edge: EdgeId) -> bool {
+        self.rod_edges.binary_search(&edge).is_ok()
+    }
+
+    /// Whether there are rods in sheets, and not in rigid bodies alone.
+    pub fn has_rods_in_sheets(&self) -> bool {
+        let of_sheets = |ends: &[usize; 2]| ends.iter().all(|v| *v < self.sheet_vertices);
+        self.rods.edges().iter().any(of_sheets)
     }
 
     /// Largest violation of the equations of isometry at positions `x` (`3V`, metres), which an accepted step

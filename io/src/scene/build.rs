@@ -39,7 +39,7 @@ impl Scene {
         builder.add_supports()?;
         builder.add_guides()?;
         builder.add_body_forces()?;
-        builder.mend_lengths();
+        builder.mend_lengths()?;
         builder.add_folds()?;
         builder.add_isometry()?;
         builder.perturb()?;

@@ -15,6 +15,7 @@ mod materials;
 mod meaning;
 mod messages;
 mod patches;
+mod several_materials;
 mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;

@@ -191,11 +191,6 @@ fn what_is_wrong_with_several_sheets_is_said() {
         ),
         (
             "material = \"office paper\"",
-            "",
-            "one sheet has rigid rods, and another is elastic",
-        ),
-        (
-            "material = \"office paper\"",
             "material = \"office paper\"\nthickness = 1e-4",
             "thickness",
         ),
