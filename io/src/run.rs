@@ -394,7 +394,8 @@ fn finish(
         write_obj_files(folder, plan)?;
     }
     let sheets = facts.parts.iter().enumerate();
-    let sheets = sheets.map(|(k, part)| SheetPlace::new(part, progress.sheet_strains.get(k).copied()));
+    let sheets =
+        sheets.map(|(k, part)| SheetPlace::new(part, progress.sheet_strains.get(k).copied()));
     let summary = Summary {
         program: "isosheet".into(),
         version: env!("CARGO_PKG_VERSION").into(),

@@ -343,6 +343,19 @@ impl Scene {
                 remedy,
             );
         }
+        let mut others = self.sheet.iter().enumerate();
+        let differs = |(_, sheet): &(usize, &Sheet)| sheet.damping != self.sheet[0].damping;
+        if self.method.integrator == Integrator::Chart
+            && let Some((number, _)) = others.find(differs)
+        {
+            let key = sheets::sheet_key(self.sheet.len(), number).name("damping");
+            let message = "a chart damps all sheets alike, and the first one has another rate";
+            checks.report(
+                key,
+                message,
+                "give all sheets the same `damping`, or choose `bdf2`",
+            );
+        }
         let mut sheets = self.sheet.iter();
         if let Some(elastic) = sheets.find(|sheet| sheet.isometry() != Isometry::Rods) {
             checks.report(

@@ -151,7 +151,8 @@ impl ElasticSheet {
         }
         let face = |(face, law): (FaceId, &MembraneLaw)| {
             let area = sheet.face_areas()[face.index()];
-            let own = Face::new(sheet, face, Self::LIMIT).ok_or(ElasticSheetError::Face { face, area });
+            let own =
+                Face::new(sheet, face, Self::LIMIT).ok_or(ElasticSheetError::Face { face, area });
             let mut own = own?;
             own.set_law(law.of_face(sheet, face)?);
             Ok(own)

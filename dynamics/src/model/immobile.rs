@@ -1,7 +1,7 @@
 //! Vertices that cannot move because rods to fixed ones hold them.
 
-use crate::model::PINNED;
 use crate::SheetModel;
+use crate::model::PINNED;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 

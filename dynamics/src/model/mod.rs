@@ -2,6 +2,7 @@
 
 pub(crate) mod air;
 pub(crate) mod clamps;
+mod damping;
 #[cfg(test)]
 mod derivative_tests;
 pub(crate) mod elastic_deformation;
@@ -22,6 +23,7 @@ use crate::constraint::VertexConstraint;
 use crate::material::elastic_sheet::ElasticSheet;
 use crate::potential::{At, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::term::ImplicitForce;
+use damping::Damping;
 pub use error::ModelError;
 use isosheet_mesh::{EdgeId, LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
 use support::MovingPin;
@@ -60,7 +62,7 @@ pub struct SheetModel {
     forces: Vec<Box<dyn Force>>,
     /// Forces that damped steps take as terms of their objective.
     implicit: Vec<Box<dyn ImplicitForce>>,
-    damping: f64,
+    damping: Vec<Damping>,
     /// The vertices of sheets; those after them belong to rigid bodies.
     sheet_vertices: usize,
     free_index: Vec<u32>,
@@ -126,7 +128,7 @@ impl SheetModel {
             hands: Vec::new(),
             forces: Vec::new(),
             implicit: Vec::new(),
-            damping: 0.0,
+            damping: Vec::new(),
             sheet_vertices: n,
             free_index: (0..n as u32).collect(),
             free_count: n,
@@ -242,19 +244,6 @@ impl SheetModel {
         self
     }
 
-    /// Sets the rate `gamma` (1/s) of the velocity damping `v <- v exp(-gamma h)` that follows
-    /// every step: the paper's "we add this damping force to the velocity" (Sec. 6).
-    ///
-    /// # Errors
-    /// [`ModelError::Damping`] if the rate is negative or not finite.
-    pub fn with_damping(mut self, rate: f64) -> Result<Self, ModelError> {
-        if !(rate.is_finite() && rate >= 0.0) {
-            return Err(ModelError::Damping { rate });
-        }
-        self.damping = rate;
-        Ok(self)
-    }
-
     /// Connectivity.
     pub fn topology(&self) -> &Topology {
         &self.topology
@@ -321,18 +310,6 @@ impl SheetModel {
     /// The non-conservative forces in the order in which they were added.
     pub fn forces(&self) -> &[Box<dyn Force>] {
         &self.forces
-    }
-
-    /// Rate of the velocity damping, 1/s.
-    pub fn damping(&self) -> f64 {
-        self.damping
-    }
-
-    /// The part of velocities (`3V`) that damping over `h` seconds leaves, in place of them.
-    pub(crate) fn damp(&self, v: &mut [f64], h: f64) {
-        let factor = (-self.damping * h).exp();
-        let of_sheets = &mut v[..3 * self.sheet_vertices];
-        of_sheets.iter_mut().for_each(|v| *v *= factor);
     }
 
     /// The number of vertices of sheets, before those of rigid bodies.

@@ -166,8 +166,7 @@ impl Setup {
 
     /// Whether the simulation gives the forces of the rods ([`Simulation::rod_forces`]).
     pub fn has_rod_forces(&self) -> bool {
-        matches!(self.integration, Integration::Free { .. })
-            && self.model.has_rods_in_sheets()
+        matches!(self.integration, Integration::Free { .. }) && self.model.has_rods_in_sheets()
     }
 
     /// The simulation at the start.

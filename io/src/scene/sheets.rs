@@ -59,7 +59,7 @@ pub(super) fn sheet_key(count: usize, number: usize) -> Key {
     }
 }
 
-/// Checks the sheets, and what they have to have in common.
+/// Checks the sheets.
 pub(super) fn check(sheets: &[Sheet], checks: &mut Checks) {
     let root = Key::root().name("sheet");
     if sheets.is_empty() {
@@ -73,7 +73,6 @@ pub(super) fn check(sheets: &[Sheet], checks: &mut Checks) {
         patched::check(sheet, &key, checks);
         if sheets.len() > 1 {
             check_name(sheets, k, &key, checks);
-            check_common(&sheets[0], sheet, &key, checks);
         }
     }
     if checks.problems.len() == before
@@ -95,23 +94,6 @@ fn check_name(sheets: &[Sheet], k: usize, key: &Key, checks: &mut Checks) {
             checks.report(key.name("name"), message, remedy);
         }
         Some(_) => {}
-    }
-}
-
-/// The engine has one rate of damping and one distance of contact.
-fn check_common(first: &Sheet, sheet: &Sheet, key: &Key, checks: &mut Checks) {
-    for (name, is_same) in [
-        ("damping", sheet.damping == first.damping),
-        ("thickness", sheet.thickness == first.thickness),
-    ] {
-        if !is_same {
-            let message = format!("the {name} differs from that of the first sheet");
-            checks.report(
-                key.name(name),
-                message,
-                format!("give all sheets the same `{name}`"),
-            );
-        }
     }
 }
 

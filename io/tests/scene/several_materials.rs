@@ -1,5 +1,6 @@
 //! Sheets of several materials in one scene: rods beside elastic sheets, and numbers that each sheet has of its own.
 
+use crate::bodies::{centre, live, play};
 use crate::{parse, simulation};
 use isosheet_io::dynamics::Simulation;
 use isosheet_io::scene::Setup;
@@ -10,9 +11,7 @@ const G: f64 = 9.81;
 fn strain(simulation: &Simulation, setup: &Setup, sheet: usize) -> f64 {
     let edges = setup.parts[sheet].1.edges.clone();
     let model = simulation.model();
-    model
-        .edges()
-        .max_strain_among(edges, &simulation.state().x)
+    model.edges().max_strain_among(edges, &simulation.state().x)
 }
 
 /// A square of rods on an elastic cloth that hangs by its rim.
@@ -30,7 +29,12 @@ const CARD_ON_CLOTH: &str = "version = 1\n\
 fn a_card_of_rods_on_an_elastic_cloth_keeps_its_lengths_and_its_weight_reaches_the_supports() {
     let setup = parse(CARD_ON_CLOTH).unwrap().build().unwrap();
     assert!(setup.modelled.iter().any(|words| words == "rigid rods"));
-    assert!(setup.modelled.iter().any(|words| words.starts_with("elasticity")));
+    assert!(
+        setup
+            .modelled
+            .iter()
+            .any(|words| words.starts_with("elasticity"))
+    );
     let mut card_on_cloth = simulation(CARD_ON_CLOTH);
     for _ in 0..180 {
         let report = card_on_cloth.step(1.0 / 60.0).unwrap();
@@ -38,7 +42,10 @@ fn a_card_of_rods_on_an_elastic_cloth_keeps_its_lengths_and_its_weight_reaches_t
         assert!(strain(&card_on_cloth, &setup, 1) < 2e-12);
         assert!(report.constrained_strain < 2e-12);
     }
-    assert!(strain(&card_on_cloth, &setup, 0) > 1e-5, "the cloth stretches");
+    assert!(
+        strain(&card_on_cloth, &setup, 0) > 1e-5,
+        "the cloth stretches"
+    );
     let at_supports = card_on_cloth.support_forces();
     let lift: f64 = at_supports.iter().map(|(_, force)| force[2]).sum();
     assert!((lift / (0.014 * G) - 1.0).abs() < 0.01, "{lift}");
@@ -86,9 +93,15 @@ fn each_of_several_sheets_has_its_own_limit_of_strain() {
     // Green's strain is e + e^2 / 2, and its stress is along the strip as it is then.
     let green = |e: f64| e * (1.0 + 0.5 * e);
     let expected = 0.0099;
-    assert!((green(stretch(0)) / expected - 1.0).abs() < 0.02, "{}", stretch(0));
+    assert!(
+        (green(stretch(0)) / expected - 1.0).abs() < 0.02,
+        "{}",
+        stretch(0)
+    );
     let elastic = run.model().elastic_sheet().unwrap();
-    let strains = elastic.faces().zip(elastic.strains(x).zip(elastic.limits()));
+    let strains = elastic
+        .faces()
+        .zip(elastic.strains(x).zip(elastic.limits()));
     for (face, (strain, limit)) in strains {
         let is_first = setup.parts[0].1.faces.contains(&face.index());
         assert_eq!(limit, if is_first { 0.1 } else { 0.004 });
@@ -96,4 +109,118 @@ fn each_of_several_sheets_has_its_own_limit_of_strain() {
     }
     assert!(stretch(1) > 0.002 && stretch(1) < 0.004, "{}", stretch(1));
     assert!(stretch(2).abs() < 1e-11, "{}", stretch(2));
+}
+
+/// A sheet of felt of 3 mm on a table and a card of 1 mm on it: middle surfaces lie 3 mm above the table and (3 + 1) / 2
+/// mm above the felt, and what the barrier leaves.
+#[test]
+fn a_stack_of_sheets_of_several_thicknesses_has_its_height() {
+    let activation = 2e-4;
+    let [felt, card] = [3e-3, 1e-3];
+    let scene = format!(
+        "version = 1\n\
+         [[sheet]]\nname = \"felt\"\nmaterial = \"polycarbonate film\"\nthickness = {felt:?}\ndamping = 10\n\
+         mesh = {{ square = {{ side = 0.1, level = 1 }} }}\nplacement = {{ position = [0, 0, 3.3e-3] }}\n\
+         [[sheet]]\nname = \"card\"\nmaterial = \"office paper\"\nthickness = {card:?}\ndamping = 5\n\
+         mesh = {{ square = {{ side = 0.05, level = 1 }} }}\nplacement = {{ position = [0.021, 0.022, 5.6e-3] }}\n\
+         [[obstacle]]\nshape = \"half_space\"\n\
+         [forces]\ngravity = [0, 0, -9.81]\n\
+         [contact]\nself_contact = true\nactivation = {activation:?}\n"
+    );
+    let mut stack = simulation(&scene);
+    for _ in 0..120 {
+        let report = stack.step(1.0 / 60.0).unwrap();
+        assert!(report.gap.is_none_or(|gap| gap > 0.0));
+    }
+    let heights = |vertices: std::ops::Range<usize>| {
+        let x = stack.state().vertex_positions();
+        x[vertices].iter().map(|p| p[2]).collect::<Vec<f64>>()
+    };
+    let (below, above) = (heights(0..25), heights(25..50));
+    let slack = 1e-5; // of bends between vertices
+    for z in &below {
+        assert!((felt..felt + activation).contains(z), "{z}");
+    }
+    for z in &above {
+        let apart = z - below.iter().sum::<f64>() / 25.0;
+        let kept = 0.5 * (felt + card);
+        assert!(
+            apart > kept - slack && apart < kept + activation + slack,
+            "{apart}"
+        );
+    }
+}
+
+/// A sheet that is thrown at another one at several metres per second stays away by the mean of both thicknesses.
+#[test]
+fn a_thick_sheet_that_is_thrown_keeps_its_distance() {
+    let scene = "version = 1\n\
+        [[sheet]]\nname = \"target\"\nmaterial = \"office paper\"\nthickness = 4e-3\n\
+        mesh = { square = { side = 0.2, level = 1 } }\n\
+        [[support]]\nsheet = \"target\"\nat = \"all\"\n\
+        [[sheet]]\nname = \"thrown\"\nmaterial = \"office paper\"\n\
+        mesh = { square = { side = 0.05, level = 1 } }\nplacement = { position = [0.06, 0.07, 0.05] }\n\
+        start = { velocity = [0, 0, -5] }\n\
+        [contact]\nself_contact = true\n";
+    let mut run = simulation(scene);
+    let mut lowest = f64::INFINITY;
+    for _ in 0..60 {
+        run.step(1e-3).unwrap();
+        let thrown = &run.state().vertex_positions()[25..];
+        lowest = thrown.iter().map(|p| p[2]).fold(lowest, f64::min);
+    }
+    // (4 mm + 0) / 2, and no further away than the barrier reaches: 1 % of the mean edge.
+    assert!(lowest > 2e-3 && lowest < 2e-3 + 1e-3, "{lowest}");
+}
+
+/// Two bodies keep no distance by the thickness of a sheet that is elsewhere.
+#[test]
+fn the_thickness_of_a_sheet_is_none_of_bodies() {
+    let scene = "version = 1\n\
+        [sheet]\nmaterial = \"office paper\"\nthickness = 5e-3\nmesh = { square = { side = 0.1, level = 1 } }\n\
+        placement = { position = [1, 1, 1] }\n[[support]]\nat = \"all\"\n\
+        [[body]]\nname = \"below\"\nshape = { box = { size = [0.1, 0.1, 0.02] } }\nmass = 0.1\n\
+        pose = { position = [0, 0, 0.0101] }\n\
+        [[body]]\nname = \"above\"\nshape = { box = { size = [0.05, 0.05, 0.02] } }\nmass = 0.1\n\
+        pose = { position = [0.003, 0.002, 0.0302] }\n\
+        [[obstacle]]\nshape = \"half_space\"\n\
+        [forces]\ngravity = [0, 0, -9.81]\n\
+        [contact]\nactivation = 2e-4\n";
+    let mut run = live(scene);
+    play(&mut run, 1.0);
+    let [below, above] = [0, 1].map(|k| centre(&run, k).z);
+    assert!(below > 0.01 && below < 0.01 + 2e-4, "{below}");
+    assert!(
+        above - below > 0.02 && above - below < 0.02 + 2e-4,
+        "{above}"
+    );
+}
+
+/// A clamped strip with a load at its end stays bent where the moment at the clamp was beyond that at which it yields,
+/// and springs back where it was not. Both have the same stiffness.
+#[test]
+fn each_of_several_sheets_yields_by_itself() {
+    let strip = |name: &str, y: f64, moment: f64| {
+        format!(
+            "[[sheet]]\nname = \"{name}\"\nmesh = {{ rectangle = {{ width = 0.1, height = 0.02, columns = 10, rows = 2 }} }}\n\
+             isometry = {{ elastic = {{ stiffness = 3e5 }} }}\nbending = {{ plate = {{ rigidity = 1e-3 }} }}\n\
+             yield = {{ moment = {moment:?} }}\ndamping = 10\nplacement = {{ position = [0, {y:?}, 0] }}\n\
+             [[support]]\nsheet = \"{name}\"\nat = {{ vertices = [0, 1, 11, 12, 22, 23] }}\n\
+             [[forces.load]]\nsheet = \"{name}\"\nat = {{ vertices = [10, 21, 32] }}\ndirection = [0, 0, 1]\n\
+             size = {{ keyframes = {{ keys = [[0, 0], [0.5, 1e-3], [1, 1e-3], [1.5, 0]] }} }}\n"
+        )
+    };
+    // The moment at the clamp is 1e-3 N 0.09 m / 0.02 m = 4.5e-3 N m / m.
+    let scene = format!(
+        "version = 1\n{}{}",
+        strip("strong", 0.0, 9e-3),
+        strip("weak", 1.0, 2.2e-3)
+    );
+    let mut run = simulation(&scene);
+    for _ in 0..150 {
+        run.step(1.0 / 50.0).unwrap();
+    }
+    let tip = |first: usize| run.state().vertex_positions()[first + 21][2];
+    assert!(tip(0).abs() < 1e-5, "{}", tip(0));
+    assert!(tip(33) > 1e-3, "{}", tip(33));
 }

@@ -175,13 +175,17 @@ impl<'a> Fit<'a> {
     /// a sheet.
     pub(super) fn strain_limit(&self) -> Option<f64> {
         let worst = self.excess.as_ref()?.worst(&self.x)?;
-        let is_of_rods = self.model.has_rods_in_sheets() && self.rod_energy() > self.excess_energy();
+        let is_of_rods =
+            self.model.has_rods_in_sheets() && self.rod_energy() > self.excess_energy();
         (!is_of_rods).then_some(worst.limit)
     }
 
     /// Whether lengths or strains, gaps and supports are met but for what convergence leaves.
     fn is_met(&self) -> bool {
-        let worst = self.excess.as_ref().and_then(|excess| excess.worst(&self.x));
+        let worst = self
+            .excess
+            .as_ref()
+            .and_then(|excess| excess.worst(&self.x));
         let beyond = worst.map_or(0.0, |worst| worst.strain - worst.limit);
         let strain = self.model.rods().max_strain(&self.x).max(beyond);
         let closed = self.gaps.largest_violation(&self.x) / self.model.mean_length();

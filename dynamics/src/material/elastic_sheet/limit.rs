@@ -42,7 +42,10 @@ impl StrainLimit {
 
     /// With a barrier of this stiffness beside its own, joules per square metre.
     pub(super) fn with_barrier(self, stiffness: f64) -> Self {
-        Self { stiffness: self.stiffness + stiffness, ..self }
+        Self {
+            stiffness: self.stiffness + stiffness,
+            ..self
+        }
     }
 
     /// `p` and its derivative by the square of the strain.

@@ -78,16 +78,15 @@ impl<'a> Builder<'a> {
         let key = Key::root().name("sheet");
         let sheets = PlacedSheets::new(&scene.sheet, &mut kept.forms, &mut kept.files)?;
         let bodies = PlacedBodies::new(&scene.body, &sheets, &mut kept.files)?;
-        let damping = scene.sheet[0].damping;
         let mass = bodies.mass(&sheets.union, sheets.mass(&scene.weight)?);
         let mut model = SheetModel::with_mass(&bodies.mesh(&sheets.union)?, mass)
-            .and_then(|m| m.with_damping(damping))
+            .and_then(|m| m.with_dampings(sheets.dampings()))
             .map_err(at(&key))?;
         if let Some(first) = bodies.list.first() {
             model = model.with_bodies_from(first.first);
         }
         let mut modelled = Vec::new();
-        if damping > 0.0 {
+        if scene.sheet.iter().any(|sheet| sheet.damping > 0.0) {
             modelled.push("velocity damping".to_owned());
         }
         if !scene.weight.is_empty() {

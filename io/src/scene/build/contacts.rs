@@ -43,7 +43,9 @@ impl Builder<'_> {
             None => ContactOptions::for_sheet(self.model()),
             Some(surface) => ContactOptions::for_surface(&surface.sheet, &surface.points),
         };
-        let options = scene.contact.options(automatic, scene.sheet[0].thickness);
+        let thickest = scene.sheet.iter().map(|sheet| sheet.thickness);
+        let thickest = thickest.fold(0.0, f64::max);
+        let options = scene.contact.options(automatic, thickest);
         let contacts = match &self.surface {
             None => Contacts::new(self.model(), options),
             Some(Surface { sheet, points }) => Contacts::on_surface(sheet, points.clone(), options),
@@ -51,6 +53,13 @@ impl Builder<'_> {
         let mut contacts = contacts
             .map_err(at(&key.name("contact")))?
             .with_glue(&[self.targets.glued(), self.cuts()].concat());
+        for PlacedSheet { of, part, key, .. } in &self.sheets.list {
+            if of.thickness != thickest {
+                contacts = contacts
+                    .with_thickness_of(part.vertices.clone(), of.thickness)
+                    .map_err(at(&key.name("thickness")))?;
+            }
+        }
         if !self.bodies.list.is_empty() {
             let mut parts: Vec<_> = self.origins.bodies.clone();
             if !scene.contact.self_contact {

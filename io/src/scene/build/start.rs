@@ -16,7 +16,8 @@ const ROUNDING: f64 = 1e-4;
 
 impl Builder<'_> {
     pub(super) fn mend_lengths(&mut self) -> Result<(), SceneError> {
-        let of_file = |sheet: &Sheet| sheet.isometry() == Isometry::Rods && sheet.start.file.is_some();
+        let of_file =
+            |sheet: &Sheet| sheet.isometry() == Isometry::Rods && sheet.start.file.is_some();
         if !self.scene.sheet.iter().any(of_file) {
             return Ok(());
         }
