@@ -23,7 +23,7 @@ use body::Body;
 use evaluate::{Placed, Sheet};
 use isosheet_dynamics::contact::{
     ActiveContact, ActiveContacts, BodyMotion, BodyPlace, Coefficients, Contact, ContactError,
-    ContactKey, ContactLaws, JointMotion, SheetPair, StepSpan, SurfacePoints,
+    ContactKey, ContactLaws, JointMotion, ObstaclePair, SheetPair, StepSpan, SurfacePoints,
 };
 use isosheet_dynamics::{SheetModel, State};
 use isosheet_mesh::{Topology, VertexId};
@@ -349,6 +349,26 @@ impl Contacts {
     ) -> Result<Self, ContactsError> {
         coefficients.validate()?;
         self.laws.pairs.push(SheetPair {
+            vertices,
+            coefficients,
+        });
+        Ok(self)
+    }
+
+    /// Sets the friction of one of several sheets, whose vertices these are, with a body, in place of that of
+    /// [`Contacts::with_body`].
+    ///
+    /// # Errors
+    /// [`ContactsError::Friction`].
+    pub fn with_friction_on(
+        mut self,
+        obstacle: u32,
+        vertices: Range<usize>,
+        coefficients: Coefficients,
+    ) -> Result<Self, ContactsError> {
+        coefficients.validate()?;
+        self.laws.obstacle_pairs.push(ObstaclePair {
+            obstacle,
             vertices,
             coefficients,
         });

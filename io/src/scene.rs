@@ -297,18 +297,22 @@ impl Scene {
         for (key, obstacle) in root.name("obstacle").entries(&self.obstacle) {
             obstacle.check(&key, &mut checks);
         }
+        obstacles::check_names(&self.obstacle, &self.sheet, &self.body, &mut checks);
         bodies::check(&self.body, &self.sheet, &mut checks);
         self.forces.check(&root.name("forces"), &mut checks);
         if let Some(air) = &self.air {
             air.check(&root.name("air"), &mut checks);
         }
         let contact = root.name("contact");
-        self.contact.check(&self.body, &contact, &mut checks);
+        self.contact
+            .check(&self.body, &self.obstacle, &contact, &mut checks);
         for (k, pair) in self.contact.pair.iter().enumerate() {
             let key = root.name("contact.pair").entry(k).name("sheets");
             for (i, name) in pair.sheets.iter().enumerate() {
                 let key = key.entry(i);
-                bodies::check_reference(&self.sheet, &self.body, Some(name), &key, &mut checks);
+                if obstacles::number_of(&self.obstacle, name).is_none() {
+                    bodies::check_reference(&self.sheet, &self.body, Some(name), &key, &mut checks);
+                }
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {

@@ -28,6 +28,7 @@ use face::Face;
 use isosheet_mesh::{FaceId, Part, Sheet};
 use load::strain_barrier;
 pub use membrane::{MembraneLaw, OrthotropicMembrane};
+use std::ops::Range;
 
 /// The elasticity of a sheet in its plane, with a limit of the strain. In place of rigid rods
 /// ([`SheetModel::with_elastic_sheet`](crate::SheetModel::with_elastic_sheet)) it makes an everyday sheet of
@@ -102,6 +103,8 @@ pub struct ElasticSheet {
     stiffness: f64,
     /// Kilograms; zero before a simulation has started.
     mass: f64,
+    /// The vertices from the first to the last one of its faces; none before a simulation has started.
+    vertices: Range<usize>,
     /// Largest acceleration by constant forces, m/s2; zero before a simulation has started.
     acceleration: f64,
     /// How the sheets bend; nothing of those without a plate.
@@ -165,6 +168,7 @@ impl ElasticSheet {
             face_count: sheet.topology().face_count(),
             stiffness: laws.all().map(MembraneLaw::stiffness).fold(0.0, f64::max),
             mass: 0.0,
+            vertices: 0..0,
             acceleration: 0.0,
             arcs: Vec::new(),
         })
@@ -318,10 +322,18 @@ impl ElasticSheet {
         excess
     }
 
+    /// The vertices from the first to the last one of its faces.
+    pub(crate) fn vertices(&self) -> Range<usize> {
+        let corners = || self.faces.iter().flat_map(Face::corners);
+        let first = corners().min().map_or(0, |v| v.index());
+        first..corners().max().map_or(first, |v| v.index() + 1)
+    }
+
     /// Sets what the barrier follows besides the motion: the mass of the sheet, kilograms, and the largest
     /// acceleration by constant forces, m/s2.
     pub(crate) fn set_load(&mut self, mass: f64, acceleration: f64) {
         self.mass = mass;
+        self.vertices = self.vertices();
         self.acceleration = acceleration;
     }
 
@@ -417,7 +429,13 @@ impl Potential for ElasticSheet {
         let [barrier, bends @ ..] = memory else {
             return Settled::default();
         };
-        let needed = strain_barrier(self.mass / self.area(), self.acceleration, state);
+        let own = 3 * self.vertices.start..3 * self.vertices.end;
+        let (x, v) = (&state.x[own.clone()], &state.v[own]);
+        let needed = strain_barrier(
+            self.mass / self.area(),
+            self.acceleration,
+            Reached { x, v, ..state },
+        );
         *barrier = barrier.max(needed);
         for arcs in &self.arcs {
             arcs.remember(&self.faces, (state.t, state.x), bends);

@@ -14,6 +14,7 @@ mod live;
 mod materials;
 mod meaning;
 mod messages;
+mod pairs;
 mod patches;
 mod several_materials;
 mod sheets;

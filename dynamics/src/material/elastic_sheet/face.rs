@@ -116,6 +116,10 @@ impl Face {
         self.law = law.by(&self.strains);
     }
 
+    pub(super) fn corners(&self) -> [VertexId; 3] {
+        self.corners
+    }
+
     /// The limit of its strain.
     pub(super) fn limit(&self) -> f64 {
         self.limit.limit()

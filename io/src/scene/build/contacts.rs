@@ -3,6 +3,7 @@
 use super::builder::{Builder, Kept, at};
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
+use crate::scene::obstacles;
 use crate::scene::placed::PlacedSheet;
 use crate::scene::placed_bodies::Surface;
 use crate::scene::problem::Problem;
@@ -87,14 +88,26 @@ impl Builder<'_> {
             contacts = contacts
                 .with_self_contact(coefficients)
                 .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
-            for (key, pair) in key.name("contact.pair").entries(&scene.contact.pair) {
-                let [first, second] = &pair.sheets;
-                let vertices = [self.points_of(first, &key)?, self.points_of(second, &key)?];
-                let coefficients = Coefficients::equal(pair.friction);
-                contacts = contacts
-                    .with_friction_between(vertices, coefficients)
-                    .map_err(at(&key))?;
-            }
+        }
+        for (key, pair) in key.name("contact.pair").entries(&scene.contact.pair) {
+            let [first, second] = &pair.sheets;
+            let obstacle = |name: &str| obstacles::number_of(&scene.obstacle, name);
+            let coefficients = Coefficients::equal(pair.friction);
+            let with_pair = match (obstacle(first), obstacle(second)) {
+                (None, None) => {
+                    let vertices = [self.points_of(first, &key)?, self.points_of(second, &key)?];
+                    contacts.with_friction_between(vertices, coefficients)
+                }
+                (Some(number), _) => {
+                    let vertices = self.points_of(second, &key)?;
+                    contacts.with_friction_on(number as u32, vertices, coefficients)
+                }
+                (None, Some(number)) => {
+                    let vertices = self.points_of(first, &key)?;
+                    contacts.with_friction_on(number as u32, vertices, coefficients)
+                }
+            };
+            contacts = with_pair.map_err(at(&key))?;
         }
         if scene.contact.self_contact {
             self.modelled.push("self-contact".into());
