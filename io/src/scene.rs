@@ -104,7 +104,7 @@ pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use forces::{Acceleration, Forces, Load};
-pub use glue::{Glue, SeamSide};
+pub use glue::{Glue, SeamBend, SeamSide};
 pub use guides::{BodyForce, BodyTorque, Guide};
 pub use key::{Key, KeyError, KeyPart};
 pub use live::{FailedStep, HoldError, LiveScene};

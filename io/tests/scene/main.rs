@@ -16,6 +16,7 @@ mod meaning;
 mod messages;
 mod pairs;
 mod patches;
+mod seams;
 mod several_materials;
 mod sheets;
 #[path = "../shared/skip.rs"]

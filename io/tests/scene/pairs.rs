@@ -92,7 +92,9 @@ fn a_body_slides_on_the_sheet_of_its_pair_and_another_one_stays() {
 fn pairs_that_cannot_be_are_refused_with_the_cause() {
     let floor = |name: &str| format!("[[obstacle]]\nname = \"{name}\"\nshape = \"half_space\"\n");
     let pair = |first: &str, second: &str| {
-        format!("[[contact.pair]]\nsheets = [\"{first}\", \"{second}\"]\nfriction = 0.1\n")
+        format!(
+            "[contact]\nself_contact = true\n[[contact.pair]]\nsheets = [\"{first}\", \"{second}\"]\nfriction = 0.1\n"
+        )
     };
     let wall = floor("wall") + "pose = { position = [0, 0, -1] }\n";
     let sheet = small_sheet("sheet", 0.0, 0.1);

@@ -111,6 +111,25 @@ fn each_of_several_sheets_has_its_own_limit_of_strain() {
     assert!(stretch(2).abs() < 1e-11, "{}", stretch(2));
 }
 
+/// The barrier at the limit of a sheet is what carries it here, and is none of a body that is far away.
+#[test]
+fn a_heavy_body_far_away_changes_nothing_of_a_sheet_at_its_limit() {
+    let elastic = "{ elastic = { stiffness = 1e4, poisson = 0.0, limit = 0.004 } }";
+    let alone = format!("version = 1\n{}", pulled("bound", 0.0, elastic));
+    let beside = alone.clone()
+        + "[[body]]\nshape = { box = { size = [0.1, 0.1, 0.1] } }\nmass = 1000\n\
+           pose = { position = [2, 2, 2] }\n";
+    let [alone, beside] = [alone, beside].map(|scene| {
+        let mut run = simulation(&scene);
+        for _ in 0..120 {
+            run.step(1.0 / 60.0).unwrap();
+        }
+        run.state().x[3 * 21]
+    });
+    // The stretch is 0.2 to 0.4 mm.
+    assert!((alone - beside).abs() < 1e-8, "{alone} {beside}");
+}
+
 /// A sheet of felt of 3 mm on a table and a card of 1 mm on it: middle surfaces lie 3 mm above the table and (3 + 1) / 2
 /// mm above the felt, and what the barrier leaves.
 #[test]
