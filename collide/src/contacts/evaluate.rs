@@ -100,7 +100,7 @@ impl Sheet<'_> {
     /// The gap for a distance of a primitive with this vertex from an obstacle; `None` out of reach, but not if it is
     /// not a number.
     fn gap(&self, vertex: u32, distance: f64) -> Option<f64> {
-        let thickness = self.thickness.from_obstacles(vertex);
+        let thickness = self.thickness.against_obstacles(vertex);
         let Clearance { thickness, reach } = Clearance::new(thickness, self.activation);
         let gap = distance - thickness;
         (gap < reach - thickness || gap.is_nan()).then_some(gap)

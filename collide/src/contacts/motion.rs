@@ -26,7 +26,7 @@ impl SheetMotion<'_> {
 
     /// Of a primitive with this vertex and an obstacle.
     pub(super) fn of_obstacle(&self, vertex: u32) -> Clearance {
-        Clearance::new(self.thickness.from_obstacles(vertex), self.activation)
+        Clearance::new(self.thickness.against_obstacles(vertex), self.activation)
     }
 }
 

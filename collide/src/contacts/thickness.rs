@@ -53,7 +53,7 @@ impl Thickness {
     }
 
     /// The distance, metres, that the sheet or body of a vertex keeps from obstacles.
-    pub(super) fn from_obstacles(&self, v: u32) -> f64 {
+    pub(super) fn against_obstacles(&self, v: u32) -> f64 {
         self.of(v).unwrap_or(0.0)
     }
 }
@@ -108,10 +108,10 @@ mod tests {
             [3e-3, 1e-3]
         );
         assert_eq!(
-            [thickness.between(8, 9), thickness.from_obstacles(8)],
+            [thickness.between(8, 9), thickness.against_obstacles(8)],
             [0.0; 2]
         );
-        assert_eq!(thickness.from_obstacles(4), 1e-3);
+        assert_eq!(thickness.against_obstacles(4), 1e-3);
         assert_eq!(thickness.largest(), 3e-3);
         thickness.set(0..4, 5e-4);
         assert_eq!(thickness.largest(), 1e-3);

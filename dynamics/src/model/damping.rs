@@ -115,7 +115,7 @@ mod tests {
         let mut left = 0.0;
         for (part, rate) in parts.iter().zip(rates) {
             let expected = (-rate * f64::from(steps) * h).exp();
-            for v in &run.state().v[part.coordinates()].as_chunks::<3>().0[..] {
+            for v in run.state().v[part.coordinates()].as_chunks::<3>().0 {
                 assert!((v[0] - expected).abs() < 1e-9, "{} {expected}", v[0]);
             }
             left += 0.5 * 0.1 * expected * expected;
