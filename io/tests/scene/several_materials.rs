@@ -2,7 +2,8 @@
 
 use crate::bodies::{centre, live, play};
 use crate::{parse, simulation};
-use isosheet_io::dynamics::Simulation;
+use isosheet_io::dynamics::{Simulation, immobile_vertices};
+use isosheet_io::mesh::VertexId;
 use isosheet_io::scene::Setup;
 
 const G: f64 = 9.81;
@@ -242,4 +243,47 @@ fn each_of_several_sheets_yields_by_itself() {
     let tip = |first: usize| run.state().vertex_positions()[first + 21][2];
     assert!(tip(0).abs() < 1e-5, "{}", tip(0));
     assert!(tip(33) > 1e-3, "{}", tip(33));
+}
+
+/// A strip that hangs by two corners, taut between them: of rods its upper rim cannot move.
+#[test]
+fn rods_that_hold_one_another_are_found_beside_an_elastic_sheet() {
+    let strip = |name: &str, y: f64, isometry: &str| {
+        format!(
+            "[[sheet]]\nname = \"{name}\"\nmass = 1e-3\nisometry = {isometry}\n\
+             mesh = {{ rectangle = {{ width = 0.1, height = 0.02, columns = 10, rows = 2 }} }}\n\
+             placement = {{ position = [0, {y:?}, 0] }}\n\
+             [[support]]\nsheet = \"{name}\"\nat = {{ vertices = [0, 10] }}\n"
+        )
+    };
+    let elastic = strip("elastic", 0.0, "{ elastic = { stiffness = 1e4 } }");
+    let scene = format!("version = 1\n{elastic}{}", strip("rods", 1.0, "\"rods\""));
+    let setup = parse(&scene).unwrap().build().unwrap();
+    let mut found = immobile_vertices(&setup.model, &setup.start.x);
+    found.sort_unstable();
+    let expected: Vec<VertexId> = (34..43).map(VertexId).collect();
+    assert_eq!(found, expected);
+}
+
+/// No line of edges of an irregular mesh runs along a clamp, which matters to rods alone.
+#[test]
+fn clamps_across_the_mesh_are_warned_of_where_the_sheet_is_of_rods() {
+    let sheet = |name: &str, y: f64, isometry: &str| {
+        format!(
+            "[[sheet]]\nname = \"{name}\"\nisometry = {isometry}\nplacement = {{ position = [0, {y:?}, 0] }}\n\
+             mesh = {{ polygon = {{ outline = [[0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]], spacing = 0.02 }} }}\n\
+             [[support]]\nsheet = \"{name}\"\nat = {{ half_space = {{ point = [0.05, 0, 0], normal = [-1, 0, 0] }} }}\n"
+        )
+    };
+    let elastic = sheet("elastic", 0.0, "{ elastic = { stiffness = 1e4 } }");
+    let scene = format!("version = 1\n{elastic}{}", sheet("rods", 1.0, "\"rods\""));
+    let warnings = parse(&scene).unwrap().build().unwrap().warnings();
+    let [warning] = &warnings[..] else {
+        panic!("{warnings:?}");
+    };
+    let text = format!("{warning:?}");
+    assert!(
+        text.contains("`support[1]`") && !text.contains("`support[0]`"),
+        "{text}"
+    );
 }
