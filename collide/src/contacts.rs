@@ -14,6 +14,7 @@ mod sheet;
 mod start;
 #[cfg(test)]
 mod tests;
+mod thickness;
 
 pub use options::{ContactOptions, ContactsError};
 
@@ -22,16 +23,17 @@ use body::Body;
 use evaluate::{Placed, Sheet};
 use isosheet_dynamics::contact::{
     ActiveContact, ActiveContacts, BodyMotion, BodyPlace, Coefficients, Contact, ContactError,
-    ContactKey, ContactLaws, JointMotion, SheetPair, StepSpan, SurfacePoints,
+    ContactKey, ContactLaws, JointMotion, ObstaclePair, SheetPair, StepSpan, SurfacePoints,
 };
 use isosheet_dynamics::{SheetModel, State};
 use isosheet_mesh::{Topology, VertexId};
 use motion::SheetMotion;
 use nalgebra::Vector3;
 use neighbours::{Neighbours, SelfPairs};
-use options::smallest_height;
+use options::smallest_heights;
 use path::PartOfStep;
 use std::ops::Range;
+use thickness::{Clearance, Thickness};
 
 /// Length of the first part of a long motion that is searched for pairs, in mean edge lengths, and ratio of
 /// the lengths of the following parts: contact mostly ends a long motion early, and the number of pairs whose
@@ -92,7 +94,7 @@ const NEXT_PART: f64 = 4.0;
 /// ```
 ///
 /// # What repels what
-/// Every gap `g`, a distance less the thickness of the sheet, has a potential below the activation distance
+/// Every gap `g`, a distance less the thickness that counts there, has a potential below the activation distance
 /// `d`: `-kappa (1 - z)^2 ln z` with `z = (g / d)^2` and the stiffness `kappa` ([`ContactOptions`]). Gaps are:
 ///
 /// * half-space: that of every vertex. A flat face is away if its corners are.
@@ -136,8 +138,9 @@ pub struct Contacts {
     /// Squared rest lengths of the edges.
     lengths2: Vec<f64>,
     mean_length: f64,
-    /// The face of a sheet with the smallest height, and that height.
-    smallest_height: (u32, f64),
+    thickness: Thickness,
+    /// The smallest height of each face of a sheet, metres; infinite of what does not touch itself.
+    heights: Vec<f64>,
     bodies: Vec<Body>,
     has_self_contact: bool,
     /// Made at the first positions, in scenes that need them.
@@ -195,7 +198,8 @@ impl Contacts {
             mesh: ContactMesh::from_topology(topology),
             points: None,
             lengths2: lengths.iter().map(|l| l * l).collect(),
-            smallest_height: smallest_height(topology, lengths, own),
+            thickness: Thickness::new(options.thickness, own),
+            heights: smallest_heights(topology, lengths, own).collect(),
             bodies: Vec::new(),
             has_self_contact: false,
             mean_length: lengths.iter().sum::<f64>() / lengths.len() as f64,
@@ -250,9 +254,16 @@ impl Contacts {
     /// neighbours in a flat sheet.
     pub fn with_self_contact(mut self, coefficients: Coefficients) -> Result<Self, ContactsError> {
         coefficients.validate()?;
-        let (face, height) = self.smallest_height;
-        let reach = self.options.reach();
-        if reach >= height {
+        let faces = (0..).zip(self.mesh.faces().iter().zip(&self.heights));
+        let of_faces = faces.map(|(face, (&[v, ..], &height))| {
+            let thickness = self.thickness.between(v, v);
+            let reach = Clearance::new(thickness, self.options.activation).reach;
+            (face, height, reach)
+        });
+        let narrowest = of_faces.min_by(|a, b| (a.1 - a.2).total_cmp(&(b.1 - b.2)));
+        if let Some((face, height, reach)) = narrowest
+            && reach >= height
+        {
             return Err(ContactsError::Reach {
                 face,
                 height,
@@ -290,11 +301,11 @@ impl Contacts {
         parts: &[Range<usize>],
         attached: impl IntoIterator<Item = (VertexId, usize)>,
     ) -> Self {
-        let (face, _) = self.smallest_height;
-        let corner = self.mesh.faces().get(face as usize).map(|f| f[0] as usize);
-        if corner.is_some_and(|v| parts.iter().any(|part| part.contains(&v))) {
-            // Its neighbours do not repel it.
-            self.smallest_height = (face, f64::INFINITY);
+        for (&[v, ..], height) in self.mesh.faces().iter().zip(&mut self.heights) {
+            if parts.iter().any(|part| part.contains(&(v as usize))) {
+                // Its neighbours do not repel it.
+                *height = f64::INFINITY;
+            }
         }
         let attached = attached.into_iter().map(|(v, part)| (v.0, part as u32));
         self.mesh = self.mesh.with_parts(parts, attached);
@@ -309,6 +320,30 @@ impl Contacts {
         self.mesh = self.mesh.with_driven_from(first.0);
         self.neighbours = None;
         self
+    }
+
+    /// Gives one of several sheets, whose vertices these are, its own thickness in place of that of the options,
+    /// metres. Two sheets of thickness `a` and `b` keep the distance `(a + b) / 2` of their middle surfaces, and each
+    /// keeps its own thickness from bodies, as from itself. Comes before [`Contacts::with_self_contact`].
+    ///
+    /// # Errors
+    /// [`ContactsError`] if it makes no sense.
+    ///
+    /// # Panics
+    /// If there is no such vertex of a sheet.
+    pub fn with_thickness_of(
+        mut self,
+        vertices: Range<usize>,
+        thickness: f64,
+    ) -> Result<Self, ContactsError> {
+        let options = ContactOptions {
+            thickness,
+            ..self.options
+        };
+        options.validate()?;
+        self.thickness.set(vertices, thickness);
+        self.neighbours = None;
+        Ok(self)
     }
 
     /// Sets the friction between two of several sheets, whose vertices these are, or of one of them with
@@ -337,6 +372,26 @@ impl Contacts {
         self
     }
 
+    /// Sets the friction of one of several sheets, whose vertices these are, with a body, in place of that of
+    /// [`Contacts::with_body`].
+    ///
+    /// # Errors
+    /// [`ContactsError::Friction`].
+    pub fn with_friction_on(
+        mut self,
+        obstacle: u32,
+        vertices: Range<usize>,
+        coefficients: Coefficients,
+    ) -> Result<Self, ContactsError> {
+        coefficients.validate()?;
+        self.laws.obstacle_pairs.push(ObstaclePair {
+            obstacle,
+            vertices,
+            coefficients,
+        });
+        Ok(self)
+    }
+
     /// The options.
     pub fn options(&self) -> &ContactOptions {
         &self.options
@@ -345,6 +400,11 @@ impl Contacts {
     /// The bodies, in the order in which they were added.
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = &Obstacle> {
         self.bodies.iter().map(Body::obstacle)
+    }
+
+    /// Largest distance below which the barrier acts between any two parts, metres.
+    fn reach(&self) -> f64 {
+        Clearance::new(self.thickness.largest(), self.options.activation).reach
     }
 
     /// Whether pairs are searched for in a tree of boxes.
@@ -361,7 +421,9 @@ impl Contacts {
             mesh: &self.mesh,
             x,
             dx,
-            reach: self.options.reach(),
+            thickness: &self.thickness,
+            activation: self.options.activation,
+            reach: self.reach(),
             ccd: &self.ccd,
         };
         self.parts.clear();
@@ -453,8 +515,8 @@ impl Contact for Contacts {
             mesh: &self.mesh,
             x,
             lengths2: &self.lengths2,
-            reach: self.options.reach(),
-            thickness: self.options.thickness,
+            thickness: &self.thickness,
+            activation: self.options.activation,
         };
         out.extend(pairs.iter().filter_map(|&key| match key.body {
             None => sheet.with_itself(key),
@@ -485,10 +547,11 @@ impl Contact for Contacts {
         let t = state.t;
         let active = ActiveContacts::at_rest(self, t, x);
         start::check_gaps(active.list(), t)?;
+        let reach = self.reach();
         let Some(neighbours) = &mut self.neighbours else {
             return Ok(());
         };
-        let boxes = neighbours.at_rest(x, self.options.reach());
+        let boxes = neighbours.at_rest(x, reach);
         let places = active.bodies().iter();
         for (number, (body, place)) in self.bodies.iter().zip(places).enumerate() {
             start::check_body(

@@ -395,6 +395,9 @@ fn finish(
     if output.obj {
         write_obj_files(folder, plan)?;
     }
+    let sheets = facts.parts.iter().enumerate();
+    let sheets =
+        sheets.map(|(k, part)| SheetPlace::new(part, progress.sheet_strains.get(k).copied()));
     let summary = Summary {
         program: "isosheet".into(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -402,7 +405,7 @@ fn finish(
         scene: plan.hash.to_string(),
         wall_time: progress.wall + clock.elapsed().as_secs_f64(),
         modelled: facts.modelled.clone(),
-        sheets: facts.parts.iter().map(SheetPlace::new).collect(),
+        sheets: sheets.collect(),
         vertices: topology.vertex_count(),
         faces: topology.face_count(),
         steps: progress.steps,

@@ -114,7 +114,7 @@ pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use follower_loads::{Gas, Moment, Pressure};
 pub use forces::{Acceleration, Forces, Frame, Load};
-pub use glue::{Glue, SeamSide};
+pub use glue::{Glue, SeamBend, SeamSide};
 pub use guides::{BodyForce, BodyTorque, Guide};
 pub use key::{Key, KeyError, KeyPart};
 pub use live::{FailedStep, HoldError, LiveScene};
@@ -311,6 +311,7 @@ impl Scene {
         for (key, obstacle) in root.name("obstacle").entries(&self.obstacle) {
             obstacle.check(&key, &mut checks);
         }
+        obstacles::check_names(&self.obstacle, &self.sheet, &self.body, &mut checks);
         bodies::check(&self.body, &self.sheet, &mut checks);
         self.forces
             .check(&self.sheet, &root.name("forces"), &mut checks);
@@ -318,12 +319,15 @@ impl Scene {
             air.check(&root.name("air"), &mut checks);
         }
         let contact = root.name("contact");
-        self.contact.check(&self.body, &contact, &mut checks);
+        self.contact
+            .check(&self.body, &self.obstacle, &contact, &mut checks);
         for (k, pair) in self.contact.pair.iter().enumerate() {
             let key = root.name("contact.pair").entry(k).name("sheets");
             for (i, name) in pair.sheets.iter().enumerate() {
                 let key = key.entry(i);
-                bodies::check_reference(&self.sheet, &self.body, Some(name), &key, &mut checks);
+                if obstacles::number_of(&self.obstacle, name).is_none() {
+                    bodies::check_reference(&self.sheet, &self.body, Some(name), &key, &mut checks);
+                }
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
@@ -357,6 +361,19 @@ impl Scene {
                 key.clone(),
                 "this integrator has no place for contact",
                 remedy,
+            );
+        }
+        let mut others = self.sheet.iter().enumerate();
+        let differs = |(_, sheet): &(usize, &Sheet)| sheet.damping != self.sheet[0].damping;
+        if self.method.integrator == Integrator::Chart
+            && let Some((number, _)) = others.find(differs)
+        {
+            let key = sheets::sheet_key(self.sheet.len(), number).name("damping");
+            let message = "a chart damps all sheets alike, and the first one has another rate";
+            checks.report(
+                key,
+                message,
+                "give all sheets the same `damping`, or choose `bdf2`",
             );
         }
         let mut sheets = self.sheet.iter();

@@ -1,6 +1,7 @@
 //! The edge-length constraints and their Jacobian.
 
 use crate::{EdgeId, Sheet};
+use std::ops::Range;
 
 /// The length constraints of a sheet (Liu, Tang and Joneja 2007, Eq. 3), one for each edge or for some of them,
 ///
@@ -141,9 +142,18 @@ impl LengthConstraints {
     /// # Panics
     /// If `x` is not of length 3V.
     pub fn max_strain(&self, x: &[f64]) -> f64 {
+        self.max_strain_among(0..self.len(), x)
+    }
+
+    /// The same over some of the edges.
+    ///
+    /// # Panics
+    /// If `x` is not of length 3V, or an edge does not exist.
+    pub fn max_strain_among(&self, edges: Range<usize>, x: &[f64]) -> f64 {
         self.check(x);
         let mut worst = 0.0f64;
-        for (&[a, b], &l) in self.edges.iter().zip(&self.lengths) {
+        let lengths = &self.lengths[edges.clone()];
+        for (&[a, b], &l) in self.edges[edges].iter().zip(lengths) {
             let s = ((distance(x, a, b) - l) / l).abs();
             if s.is_nan() {
                 return f64::NAN;

@@ -91,7 +91,7 @@ impl Scene {
             let elastic = ElasticSheet::union(vec![(elastic, parts[0].clone())], faces);
             model = model
                 .with_potential(PotentialOfPart::new(plate, &parts[0]))
-                .with_elastic_sheet(elastic.expect("one limit"))
+                .with_elastic_sheet(elastic)
                 .expect("its faces");
             assert_eq!(model.rods().len(), 6, "the rods are those of the block");
         }

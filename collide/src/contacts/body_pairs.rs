@@ -47,16 +47,17 @@ impl Body {
         let vertices = (0..).zip(places.zip(steps));
         for (v, (x, dx)) in vertices.take_while(|(v, _)| sheet.mesh.meets_bodies(*v)) {
             let course = part.course(&Vector3::from(*x), &Vector3::from(*dx));
+            let clearance = sheet.of_obstacle(v);
             let distance = shape.signed_distance(&part.now(&course)).value;
             let nearest = distance - course.reach(part);
-            if nearest > sheet.reach {
+            if nearest > clearance.reach {
                 continue;
             }
             pairs.push(self.key(ContactKind::Vertex, [v, 0]));
-            if nearest > sheet.trigger_distance() {
+            if nearest > clearance.trigger_distance() {
                 continue;
             }
-            limit = part.advance(sheet.ccd, &[course], limit, |[p]| {
+            limit = part.advance(&clearance.ccd(sheet.ccd), &[course], limit, |[p]| {
                 let d = shape.signed_distance(p);
                 (d.normal, d.normal.dot(p) - d.value)
             });
@@ -85,7 +86,7 @@ impl Body {
                 continue;
             }
             let corners = features.face(f);
-            let is_near = check.is_near(&[course(v)], |[p]| {
+            let is_near = check.is_near(v, &[course(v)], |[p]| {
                 let [a, b, c] = corners;
                 let closest = point_triangle(&[*p, a, b, c]);
                 support(&closest, 1.0, &corners, radius)
@@ -104,7 +105,7 @@ impl Body {
             }
             let corner = features.vertex(v);
             let courses = corners.map(course);
-            let is_near = check.is_near(&courses, |[p, q, r]| {
+            let is_near = check.is_near(corners[0], &courses, |[p, q, r]| {
                 let closest = point_triangle(&[corner, *p, *q, *r]);
                 support(&closest, -1.0, &[corner], radius)
             });
@@ -122,7 +123,7 @@ impl Body {
             }
             let ends = features.edge(g);
             let courses = own_ends.map(course);
-            let is_near = check.is_near(&courses, |[p, q]| {
+            let is_near = check.is_near(own_ends[0], &courses, |[p, q]| {
                 let [c, d] = ends;
                 let closest = edge_edge(&[*p, *q, c, d]);
                 support(&closest, 1.0, &ends, radius)
@@ -155,12 +156,15 @@ struct Check<'a> {
 }
 
 impl Check<'_> {
-    /// Whether the pair may come within reach. Shortens the motion to what is safe for it.
+    /// Whether the pair of a primitive with this vertex may come within reach. Shortens the motion to what is safe
+    /// for it.
     fn is_near<const N: usize>(
         &mut self,
+        vertex: u32,
         courses: &[Course; N],
         support: impl Fn(&[Vector3<f64>; N]) -> (Vector3<f64>, f64),
     ) -> bool {
+        let clearance = self.sheet.of_obstacle(vertex);
         let places = courses.each_ref().map(|c| self.part.now(c));
         let (n, height) = support(&places);
         // The distance from the separating plane is not more than that of the primitives.
@@ -169,12 +173,12 @@ impl Check<'_> {
         let distance = clearances.fold(f64::INFINITY, smaller);
         let moved = courses.iter().map(|c| c.reach(self.part));
         let nearest = distance - moved.fold(0.0, f64::max);
-        if nearest > self.sheet.reach {
+        if nearest > clearance.reach {
             return false;
         }
-        if nearest <= self.sheet.trigger_distance() || nearest.is_nan() {
-            let ccd = self.sheet.ccd;
-            *self.limit = self.part.advance(ccd, courses, *self.limit, support);
+        if nearest <= clearance.trigger_distance() || nearest.is_nan() {
+            let ccd = clearance.ccd(self.sheet.ccd);
+            *self.limit = self.part.advance(&ccd, courses, *self.limit, support);
         }
         true
     }

@@ -4,6 +4,7 @@ use super::body::Body;
 use super::features::Features;
 use super::motion::{two_edges, vertex_face};
 use super::rolling::{edge_gradient, face_gradients};
+use super::thickness::{Clearance, Thickness};
 use crate::ContactMesh;
 use crate::distance::{Closest, edge_edge, point_triangle};
 use crate::vectors::gather;
@@ -19,9 +20,9 @@ pub(super) struct Sheet<'a> {
     pub(super) x: &'a [f64],
     /// Squared rest lengths of the edges.
     pub(super) lengths2: &'a [f64],
-    /// Distance below which the barrier acts, metres.
-    pub(super) reach: f64,
-    pub(super) thickness: f64,
+    pub(super) thickness: &'a Thickness,
+    /// Gap below which the barrier acts, metres.
+    pub(super) activation: f64,
 }
 
 /// A body in its place.
@@ -59,7 +60,9 @@ impl Sheet<'_> {
         closest: &Closest<4>,
     ) -> Option<ActiveContact> {
         let distance = closest.distance();
-        if distance >= self.reach {
+        let [first, .., last] = vertices;
+        let clearance = Clearance::new(self.thickness.between(first, last), self.activation);
+        if distance >= clearance.reach {
             return None;
         }
         Some(ActiveContact {
@@ -67,7 +70,7 @@ impl Sheet<'_> {
             vertices,
             weights: closest.weights,
             normal: closest.difference / distance,
-            gap: distance - self.thickness,
+            gap: distance - clearance.thickness,
             closest: Vector3::zeros(),
             parallel: None,
             rolling: None,
@@ -94,17 +97,20 @@ impl Sheet<'_> {
         place.to_local(&p)
     }
 
-    /// The gap for a distance; `None` out of reach, but not if it is not a number.
-    fn gap(&self, distance: f64) -> Option<f64> {
-        let gap = distance - self.thickness;
-        (gap < self.reach - self.thickness || gap.is_nan()).then_some(gap)
+    /// The gap for a distance of a primitive with this vertex from an obstacle; `None` out of reach, but not if it is
+    /// not a number.
+    fn gap(&self, vertex: u32, distance: f64) -> Option<f64> {
+        let thickness = self.thickness.against_obstacles(vertex);
+        let Clearance { thickness, reach } = Clearance::new(thickness, self.activation);
+        let gap = distance - thickness;
+        (gap < reach - thickness || gap.is_nan()).then_some(gap)
     }
 
     fn vertex(&self, key: ContactKey, Placed { body, place }: Placed<'_>) -> Option<ActiveContact> {
         let [v, _] = key.pair;
         let p = self.local(place, v);
         let d = body.obstacle().shape().signed_distance(&p);
-        let gap = self.gap(d.value)?;
+        let gap = self.gap(v, d.value)?;
         Some(ActiveContact {
             key,
             vertices: [v; 4],
@@ -128,7 +134,7 @@ impl Sheet<'_> {
         let [a, b, c] = features.face(f);
         let closest = point_triangle(&[p, a, b, c]);
         let distance = closest.distance();
-        let gap = self.gap(distance - features.radius)?;
+        let gap = self.gap(v, distance - features.radius)?;
         let n = closest.difference / distance;
         let point = p - closest.difference;
         Some(ActiveContact {
@@ -154,7 +160,7 @@ impl Sheet<'_> {
         let ([p, q, r], b) = (face.map(|v| self.local(place, v)), features.vertex(v));
         let closest = point_triangle(&[b, p, q, r]);
         let distance = closest.distance();
-        let gap = self.gap(distance - features.radius)?;
+        let gap = self.gap(face[0], distance - features.radius)?;
         let n = -closest.difference / distance;
         let [_, wp, wq, wr] = closest.weights;
         Some(ActiveContact {
@@ -187,7 +193,7 @@ impl Sheet<'_> {
         let ([p, q], [c, d]) = (edge.map(|v| self.local(place, v)), features.edge(g));
         let closest = edge_edge(&[p, q, c, d]);
         let distance = closest.distance();
-        let gap = self.gap(distance - features.radius)?;
+        let gap = self.gap(edge[0], distance - features.radius)?;
         let n = closest.difference / distance;
         let [wp, wq, wc, wd] = closest.weights;
         let point = -wc * c - wd * d;

@@ -1,5 +1,6 @@
 //! A motion of the sheet that is searched for pairs.
 
+use super::thickness::{Clearance, Thickness};
 use crate::{CcdOptions, ContactMesh};
 
 /// A motion of the sheet and what the search for pairs needs to know about it.
@@ -8,16 +9,24 @@ pub(super) struct SheetMotion<'a> {
     pub(super) mesh: &'a ContactMesh,
     pub(super) x: &'a [f64],
     pub(super) dx: &'a [f64],
-    /// Distance below which the barrier acts, metres.
+    pub(super) thickness: &'a Thickness,
+    /// Gap below which the barrier acts, metres.
+    pub(super) activation: f64,
+    /// Largest distance below which the barrier acts between any two parts, metres.
     pub(super) reach: f64,
     pub(super) ccd: &'a CcdOptions,
 }
 
 impl SheetMotion<'_> {
-    /// Distance from which continuous collision detection is needed, metres: half way between contact and the
-    /// reach of the barrier. Pairs that stay further apart need none; the margin is larger than round-off.
-    pub(super) fn trigger_distance(&self) -> f64 {
-        self.ccd.separation + 0.5 * (self.reach - self.ccd.separation)
+    /// Of the pair of two primitives, the first one of which has the first and the second one the last of these
+    /// vertices.
+    pub(super) fn of_pair(&self, [first, .., last]: [u32; 4]) -> Clearance {
+        Clearance::new(self.thickness.between(first, last), self.activation)
+    }
+
+    /// Of a primitive with this vertex and an obstacle.
+    pub(super) fn of_obstacle(&self, vertex: u32) -> Clearance {
+        Clearance::new(self.thickness.against_obstacles(vertex), self.activation)
     }
 }
 

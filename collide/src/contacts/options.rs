@@ -19,7 +19,8 @@ pub struct ContactOptions {
     /// itself. A sheet may start closer; it is then pushed away.
     pub activation: f64,
     /// Thickness of the sheet, metres: the least distance from bodies and from itself, before the
-    /// gap begins to count. Default 0.
+    /// gap begins to count. Default 0. Bodies have none. Of several sheets each may have its own, see
+    /// [`super::Contacts::with_thickness_of`].
     pub thickness: f64,
     /// Stiffness of the barrier. Default [`Stiffness::Automatic`].
     pub stiffness: Stiffness,
@@ -133,7 +134,7 @@ impl ContactOptions {
 
     fn between(topology: &Topology, lengths: &[f64], own: usize) -> Self {
         let length = lengths.iter().sum::<f64>() / lengths.len() as f64;
-        let (_, height) = smallest_height(topology, lengths, own);
+        let height = smallest_heights(topology, lengths, own).fold(f64::INFINITY, f64::min);
         Self {
             activation: (RELATIVE_ACTIVATION * length).min(0.5 * height),
             thickness: 0.0,
@@ -188,24 +189,26 @@ impl ContactOptions {
     }
 
     /// Distance below which the barrier acts, metres.
-    pub(super) fn reach(&self) -> f64 {
+    fn reach(&self) -> f64 {
         self.thickness + self.activation
     }
 }
 
-/// The face with the smallest height and that height, metres, of those between the first `own` vertices. In the flat sheet no vertex is closer
-/// than this to an edge or face that it does not belong to, nor are two edges without a common end,
-/// except across slits and at re-entrant corners of the outline.
-pub(super) fn smallest_height(topology: &Topology, lengths: &[f64], own: usize) -> (u32, f64) {
-    let mut best = (0, f64::INFINITY);
-    let is_own = |(_, face): &(u32, FaceId)| topology.faces()[face.index()][0].index() < own;
-    for (number, face) in (0..).zip(topology.face_ids()).filter(is_own) {
+/// The smallest height of each face between the first `own` vertices, metres, and infinity of the others. In the flat
+/// sheet no vertex is closer than this to an edge or face that it does not belong to, nor are two edges without a
+/// common end, except across slits and at re-entrant corners of the outline.
+pub(super) fn smallest_heights<'a>(
+    topology: &'a Topology,
+    lengths: &'a [f64],
+    own: usize,
+) -> impl Iterator<Item = f64> + 'a {
+    let height = move |face: FaceId| {
+        if topology.faces()[face.index()][0].index() >= own {
+            return f64::INFINITY;
+        }
         let sides = topology.face_edges(face).map(|e| lengths[e.index()]);
         let longest = sides.iter().fold(0.0, |longest, side| side.max(longest));
-        let height = 2.0 * area_from_lengths(sides) / longest;
-        if height < best.1 {
-            best = (number, height);
-        }
-    }
-    best
+        2.0 * area_from_lengths(sides) / longest
+    };
+    topology.face_ids().map(height)
 }

@@ -24,32 +24,28 @@ pub(super) fn query(
     pairs: &mut Vec<ContactKey>,
 ) -> f64 {
     let boxes = neighbours.boxes();
-    let SheetMotion {
-        mesh,
-        x,
-        dx,
-        reach,
-        ccd,
-    } = sheet;
-    let trigger_distance = sheet.trigger_distance();
+    let SheetMotion { mesh, x, dx, .. } = sheet;
     let mut limit = limit;
     for pair in neighbours.vertex_face() {
         if !boxes.vertex_meets_face(boxes, pair) {
             continue;
         }
         let vertices = vertex_face(mesh, pair);
+        let clearance = sheet.of_pair(vertices);
         let (places, steps) = (gather(x, vertices), gather(dx, vertices));
         let closer = approach(&steps, 1);
         let [p, a, b, c] = places;
         let directions = [(a - p) + (b - p) + (c - p), (b - a).cross(&(c - a))];
-        if are_apart(&places, 1, &directions, reach + closer) {
+        if are_apart(&places, 1, &directions, clearance.reach + closer) {
             continue;
         }
         let nearest = point_triangle(&places).distance() - closer;
-        if nearest <= trigger_distance || nearest.is_nan() {
-            limit = ccd.point_triangle(&places, &steps, limit);
+        if nearest <= clearance.trigger_distance() || nearest.is_nan() {
+            limit = clearance
+                .ccd(sheet.ccd)
+                .point_triangle(&places, &steps, limit);
         }
-        if nearest <= reach || nearest.is_nan() {
+        if nearest <= clearance.reach || nearest.is_nan() {
             pairs.push(key(ContactKind::VertexFace, pair));
         }
     }
@@ -58,18 +54,19 @@ pub(super) fn query(
             continue;
         }
         let vertices = two_edges(mesh, pair);
+        let clearance = sheet.of_pair(vertices);
         let (places, steps) = (gather(x, vertices), gather(dx, vertices));
         let closer = approach(&steps, 2);
         let [a, b, c, d] = places;
         let directions = [(c - a) + (d - b), (b - a).cross(&(d - c))];
-        if are_apart(&places, 2, &directions, reach + closer) {
+        if are_apart(&places, 2, &directions, clearance.reach + closer) {
             continue;
         }
         let nearest = edge_edge(&places).distance() - closer;
-        if nearest <= trigger_distance || nearest.is_nan() {
-            limit = ccd.edge_edge(&places, &steps, limit);
+        if nearest <= clearance.trigger_distance() || nearest.is_nan() {
+            limit = clearance.ccd(sheet.ccd).edge_edge(&places, &steps, limit);
         }
-        if nearest <= reach || nearest.is_nan() {
+        if nearest <= clearance.reach || nearest.is_nan() {
             pairs.push(key(ContactKind::EdgeEdge, pair));
         }
     }

@@ -89,7 +89,7 @@ impl ChartSimulation {
     /// Invalid options; a state with the wrong edge lengths or off its supports;
     /// [`ChartDynamicsError::Chart`] for states where the chart is singular (flat sheets) or too
     /// ill-conditioned; [`ChartDynamicsError::OneSided`], [`ChartDynamicsError::Elastic`],
-    /// [`ChartDynamicsError::Plastic`].
+    /// [`ChartDynamicsError::Plastic`], [`ChartDynamicsError::Damping`].
     pub fn from_state(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -385,7 +385,8 @@ impl ChartSimulation {
     /// Velocity damping over `h`; returns the potential energy.
     pub(super) fn damp(&mut self, h: f64) -> Result<f64, ChartDynamicsError> {
         let (model, memories) = (self.stepper.mechanics.model(), self.memories());
-        let damping = (-model.damping() * h).exp();
+        let rate = model.damping().ok_or(ChartDynamicsError::Damping)?;
+        let damping = (-rate * h).exp();
         let potential = model.energy_with(memories, self.motion.t, &self.motion.state.x);
         let kinetic = self.motion.state.hamiltonian - potential;
         let driven = model.has_drives();
@@ -427,6 +428,9 @@ fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsErr
     }
     if model.can_yield() {
         return Err(ChartDynamicsError::Plastic);
+    }
+    if model.damping().is_none() {
+        return Err(ChartDynamicsError::Damping);
     }
     let State { t, x, v } = start;
     for (what, slice) in [("x", x), ("v", v)] {

@@ -36,6 +36,17 @@ impl SheetPair {
     }
 }
 
+/// Friction between an obstacle and one of several sheets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObstaclePair {
+    /// The obstacle, by its number among the bodies of [`Contact`](super::Contact).
+    pub obstacle: u32,
+    /// The vertices of the sheet ([`Part::vertices`](isosheet_mesh::Part::vertices)).
+    pub vertices: Range<usize>,
+    /// The coefficients.
+    pub coefficients: Coefficients,
+}
+
 /// The parameters of barrier and friction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactLaws {
@@ -51,6 +62,8 @@ pub struct ContactLaws {
     pub pairs: Vec<SheetPair>,
     /// Friction of the sheet with each body, in the order of the bodies; none where a body has no entry.
     pub bodies: Vec<Coefficients>,
+    /// Friction of single sheets with bodies, where it is another.
+    pub obstacle_pairs: Vec<ObstaclePair>,
 }
 
 impl ContactLaws {
@@ -63,6 +76,7 @@ impl ContactLaws {
             itself: Coefficients::FRICTIONLESS,
             pairs: Vec::new(),
             bodies: Vec::new(),
+            obstacle_pairs: Vec::new(),
         }
     }
 
@@ -76,6 +90,12 @@ impl ContactLaws {
                 pair.map_or(self.itself, |pair| pair.coefficients)
             }
             Some(b) => {
+                let has = |pair: &&ObstaclePair| {
+                    pair.obstacle == b && pair.vertices.contains(&(vertices[0] as usize))
+                };
+                if let Some(pair) = self.obstacle_pairs.iter().find(has) {
+                    return pair.coefficients;
+                }
                 let own = self.bodies.get(b as usize);
                 own.copied().unwrap_or(Coefficients::FRICTIONLESS)
             }
@@ -96,7 +116,9 @@ impl ContactLaws {
     /// Whether there is no friction anywhere.
     pub(crate) fn is_frictionless(&self) -> bool {
         let pairs = self.pairs.iter().map(|pair| &pair.coefficients);
-        let mut all = self.bodies.iter().chain(pairs).chain([&self.itself]);
+        let of_obstacles = self.obstacle_pairs.iter().map(|pair| &pair.coefficients);
+        let bodies = self.bodies.iter().chain(of_obstacles);
+        let mut all = bodies.chain(pairs).chain([&self.itself]);
         all.all(Coefficients::is_frictionless)
     }
 }

@@ -54,7 +54,7 @@ pub use error::{BodyMotionError, ContactError, ContactPair};
 pub use friction::{Coefficients, Friction, FrictionError};
 pub use impulse::ContactPoint;
 pub(crate) use lagged::LaggedFriction;
-pub use laws::{ContactLaws, SheetPair, Stiffness};
+pub use laws::{ContactLaws, ObstaclePair, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;
 pub(crate) use set::ContactSet;
 pub use set::{ContactKey, ContactKind, JointMotion};

@@ -177,12 +177,12 @@ pub(crate) fn check_motions(model: &SheetModel, state: &State) -> Result<(), Ste
 pub(crate) fn check_state(model: &SheetModel, state: &State) -> Result<(), StepError> {
     check_finite(state)?;
     if let Some(elastic) = model.elastic_sheet()
-        && let Some((face, strain)) = elastic.beyond_limit(&state.x)
+        && let Some(worst) = elastic.beyond_limit(&state.x)
     {
         return Err(StepError::BeyondStrainLimit {
-            face,
-            strain,
-            limit: elastic.limit(),
+            face: worst.face,
+            strain: worst.strain,
+            limit: worst.limit,
             t: state.t,
         });
     }

@@ -42,7 +42,7 @@ pub(crate) fn infeasibility(
         by,
         distance,
         t,
-        strain_limit: model.elastic_sheet().map(|sheet| sheet.limit()),
+        strain_limit: fit.strain_limit(),
         pressed,
         against: bodies,
     })

@@ -3,7 +3,7 @@
 use crate::linear::rod_least_squares::RodLeastSquares;
 use crate::model::PINNED;
 use crate::step::history::Multipliers;
-use crate::{Isometry, Method, SheetModel};
+use crate::{Method, SheetModel};
 
 impl Method {
     /// Force density (tension over length, N/m) of a unit multiplier: BDF2 and implicit Euler have
@@ -31,12 +31,13 @@ pub(crate) fn rod_forces(
     multipliers: &Multipliers,
     x: &[f64],
 ) -> Option<Vec<f64>> {
-    if model.isometry() != Isometry::Rods {
+    if !model.has_rods_in_sheets() {
         return None;
     }
     let rods = model.rods();
+    let mut all = vec![0.0; model.edges().len()];
     if multipliers.rods.is_empty() || multipliers.step == 0.0 {
-        return Some(vec![0.0; rods.len()]);
+        return Some(all);
     }
     let density = method.density_of_multipliers(multipliers.step);
     let edges = rods.edges().iter();
@@ -49,10 +50,14 @@ pub(crate) fn rod_forces(
     };
     let forces: Vec<f64> = known.map(force).collect();
     // Methods that need independent rods have unique forces.
-    match method.is_minimising() {
-        true => least_forces(model, x, &forces),
-        false => Some(forces),
+    let forces = match method.is_minimising() {
+        true => least_forces(model, x, &forces)?,
+        false => forces,
+    };
+    for (edge, force) in model.rod_edges().iter().zip(forces) {
+        all[edge.index()] = force;
     }
+    Some(all)
 }
 
 /// The forces of least squares that load the free vertices as the given ones do, without singular directions

@@ -588,7 +588,8 @@ impl Stepping for Substeps<'_, '_> {
         totals.outcome = totals.outcome.max(step.outcome);
         totals.work += exchange.work + exchange.driven;
         totals.friction += exchange.friction;
-        let dissipated = damp(model, &mut motion.state, h);
+        let dissipated = model.damping_loss(&motion.state.v, h);
+        model.damp(&mut motion.state.v, h);
         totals.dissipated += dissipated;
         motion.account.spend(dissipated);
         let settled = model.settle(&motion.state, &mut motion.memories);
@@ -645,18 +646,6 @@ fn force_sum(model: &SheetModel, memories: &Memories, state: &State) -> f64 {
     let mut force = vec![0.0; state.x.len()];
     model.acting_force(memories, state.t, &state.x, &mut force);
     force.iter().map(|f| f.abs()).sum()
-}
-
-/// Applies velocity damping over a step; returns the energy taken out.
-fn damp(model: &SheetModel, state: &mut State, h: f64) -> f64 {
-    if model.damping() == 0.0 {
-        return 0.0;
-    }
-    let factor = (-model.damping() * h).exp();
-    let mut of_sheets = state.v.clone();
-    of_sheets[3 * model.sheet_vertices()..].fill(0.0);
-    model.damp(&mut state.v, h);
-    model.kinetic_energy(&of_sheets) * (1.0 - factor * factor)
 }
 
 #[cfg(test)]

@@ -100,6 +100,12 @@ pub enum CreaseError {
         /// The edge.
         edge: EdgeId,
     },
+    /// An edge is not on the boundary, or the other face of its seam is none.
+    #[error("{edge} is not glued to the edge of another face")]
+    Seam {
+        /// The edge.
+        edge: EdgeId,
+    },
     /// A stiffness is negative or not finite.
     #[error("the spring at {edge} has stiffness {stiffness} N m", stiffness = given(*stiffness))]
     Stiffness {
@@ -144,6 +150,7 @@ impl Advice for CreaseError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::NotInterior { .. } => Some("put springs on edges between two faces"),
+            Self::Seam { .. } => Some("glue edges of boundaries to each other"),
             Self::Stiffness { .. } | Self::Rigidity { .. } => {
                 Some("give a finite one of at least 0")
             }
@@ -184,11 +191,21 @@ pub struct CreaseSprings {
 struct Hinge {
     /// First and second end, opposite vertex of the left and of the right face.
     vertices: [VertexId; 4],
-    /// The edges between pairs of these, with the places of their first and second end.
-    edges: [(EdgeId, usize, usize); 5],
+    edge: EdgeId,
+    /// The six pairs of these, by their places: first that of the edge, last that of the opposite vertices.
+    pairs: [(Between, usize, usize); 6],
     stiffness: f64,
     rest: RestAngle,
     yields: Option<Yield>,
+}
+
+/// What is between two vertices of a hinge.
+#[derive(Debug, Clone, Copy)]
+enum Between {
+    /// An edge, which leads from the first to the second one.
+    Edge(EdgeId),
+    /// Nothing.
+    Nothing,
 }
 
 /// What a hinge does at an angle.
@@ -208,7 +225,51 @@ impl CreaseSprings {
     /// [`CreaseError`] naming the first edge that has no fold angle, or whose stiffness or rest angle cannot
     /// be used.
     pub fn new(topology: &Topology, springs: Vec<CreaseSpring>) -> Result<Self, CreaseError> {
-        let hinges = springs.into_iter().map(|s| Hinge::new(topology, s));
+        let hinge = |spring: CreaseSpring| {
+            let edge = spring.edge;
+            if edge.index() >= topology.edge_count() {
+                return Err(CreaseError::NotInterior { edge });
+            }
+            match topology.opposite_vertices(edge) {
+                [Some(left), Some(right)] => Hinge::new(topology, spring, [left, right]),
+                _ => Err(CreaseError::NotInterior { edge }),
+            }
+        };
+        let hinges = springs.into_iter().map(hinge);
+        let hinges = hinges.collect::<Result<_, _>>()?;
+        Ok(Self { hinges })
+    }
+
+    /// Springs across seams: each at an edge of a boundary, between the face there and the face at another edge of
+    /// a boundary that is [glued](crate::Glue) to it, whose corner opposite of that edge is given. The angle is
+    /// positive for a valley as seen from the side from which the first face is counter-clockwise, however the
+    /// second one is.
+    ///
+    /// # Errors
+    /// As [`CreaseSprings::new`]; [`CreaseError::Seam`] naming the first edge that is not one of a boundary, or whose
+    /// other face has a corner on it.
+    pub fn across_seams(
+        topology: &Topology,
+        springs: Vec<(CreaseSpring, VertexId)>,
+    ) -> Result<Self, CreaseError> {
+        let hinge = |(spring, other): (CreaseSpring, VertexId)| {
+            let edge = spring.edge;
+            let refused = CreaseError::Seam { edge };
+            if edge.index() >= topology.edge_count() || other.index() >= topology.vertex_count() {
+                return Err(refused);
+            }
+            let opposite = match topology.opposite_vertices(edge) {
+                [Some(left), None] => [left, other],
+                [None, Some(right)] => [other, right],
+                _ => return Err(refused),
+            };
+            let ends = topology.edges()[edge.index()];
+            match opposite[0] == opposite[1] || ends.contains(&other) {
+                true => Err(refused),
+                false => Hinge::new(topology, spring, opposite),
+            }
+        };
+        let hinges = springs.into_iter().map(hinge);
         let hinges = hinges.collect::<Result<_, _>>()?;
         Ok(Self { hinges })
     }
@@ -221,7 +282,7 @@ impl CreaseSprings {
     /// [`CreaseError::Yield`].
     pub fn with_yield(mut self, sheet: &Sheet, yields: Yield) -> Result<Self, CreaseError> {
         for hinge in &mut self.hinges {
-            let edge = hinge.edge();
+            let edge = hinge.edge;
             let source = yields.validate();
             source.map_err(|source| CreaseError::Yield { edge, source })?;
             hinge.yields = sheet_stiffness(sheet, yields.hardening, edge).map(|hardening| Yield {
@@ -311,19 +372,18 @@ impl CreaseSprings {
 }
 
 impl Hinge {
-    fn new(topology: &Topology, spring: CreaseSpring) -> Result<Self, CreaseError> {
+    /// Of a spring between two faces with these corners opposite of its edge, the left one first.
+    fn new(
+        topology: &Topology,
+        spring: CreaseSpring,
+        [left, right]: [VertexId; 2],
+    ) -> Result<Self, CreaseError> {
         let CreaseSpring {
             edge,
             stiffness,
             rest,
             yields,
         } = spring;
-        if edge.index() >= topology.edge_count() {
-            return Err(CreaseError::NotInterior { edge });
-        }
-        let [Some(left), Some(right)] = topology.opposite_vertices(edge) else {
-            return Err(CreaseError::NotInterior { edge });
-        };
         if !(stiffness.is_finite() && stiffness >= 0.0) {
             return Err(CreaseError::Stiffness { edge, stiffness });
         }
@@ -334,26 +394,23 @@ impl Hinge {
         }
         let [a, b] = topology.edges()[edge.index()];
         let vertices = [a, b, left, right];
-        let between = |i: usize, j: usize| {
-            let e = topology.find_edge(vertices[i], vertices[j]);
-            let e = e.expect("two corners of a face share an edge");
-            if topology.edges()[e.index()][0] == vertices[i] {
-                (e, i, j)
-            } else {
-                (e, j, i)
-            }
+        let between = |i: usize, j: usize| match topology.find_edge(vertices[i], vertices[j]) {
+            None => (Between::Nothing, i, j),
+            Some(e) if topology.edges()[e.index()][0] == vertices[i] => (Between::Edge(e), i, j),
+            Some(e) => (Between::Edge(e), j, i),
         };
+        let pairs = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3)].map(|(i, j)| between(i, j));
+        let [first, second, third, fourth, fifth] = pairs;
+        // (In a closed surface of four faces the opposite corners have an edge, which counts as none.)
+        let last = (Between::Nothing, 2, 3);
         Ok(Self {
             vertices,
-            edges: [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3)].map(|(i, j)| between(i, j)),
+            edge,
+            pairs: [first, second, third, fourth, fifth, last],
             stiffness,
             rest,
             yields,
         })
-    }
-
-    fn edge(&self) -> EdgeId {
-        self.edges[0].0
     }
 
     /// The number of its layers, none if it does not yield.
@@ -430,18 +487,25 @@ impl Potential for CreaseSprings {
             for (i, &v) in h.vertices.iter().enumerate() {
                 hessian.add_vertex(v, &block(i, i));
             }
-            for &(e, i, j) in &h.edges {
-                hessian.add_edge(e, &block(i, j));
+            for &(between, i, j) in &h.pairs {
+                match between {
+                    Between::Edge(e) => hessian.add_edge(e, &block(i, j)),
+                    Between::Nothing => {
+                        hessian.add_pair(h.vertices[i], h.vertices[j], &block(i, j));
+                    }
+                }
             }
-            hessian.add_pair(h.vertices[2], h.vertices[3], &block(2, 3));
         }
     }
 
     fn couplings(&self) -> Vec<[VertexId; 2]> {
-        self.hinges
-            .iter()
-            .map(|h| [h.vertices[2], h.vertices[3]])
-            .collect()
+        let pairs = |h: &Hinge| {
+            let vertices = h.vertices;
+            let apart = h.pairs.into_iter();
+            let apart = apart.filter(|(between, ..)| matches!(between, Between::Nothing));
+            apart.map(move |(_, i, j)| [vertices[i], vertices[j]])
+        };
+        self.hinges.iter().flat_map(pairs).collect()
     }
 
     fn is_driven(&self) -> bool {
@@ -452,7 +516,7 @@ impl Potential for CreaseSprings {
         let yielding = self
             .with_plastic(memory)
             .filter(|(h, _)| h.yields.is_some());
-        yielding.map(|(h, p)| (h.edge(), h.plastic(p))).collect()
+        yielding.map(|(h, p)| (h.edge, h.plastic(p))).collect()
     }
 
     fn memory(&self) -> Vec<f64> {

@@ -26,10 +26,9 @@ use bend::{Bend, NUMBERS};
 pub use error::ElasticSheetError;
 use face::Face;
 use isosheet_mesh::{FaceId, Part, Sheet};
-use law::Law;
-use limit::StrainLimit;
 use load::strain_barrier;
 pub use membrane::{MembraneLaw, OrthotropicMembrane};
+use std::ops::Range;
 
 /// The elasticity of a sheet in its plane, with a limit of the strain. In place of rigid rods
 /// ([`SheetModel::with_elastic_sheet`](crate::SheetModel::with_elastic_sheet)) it makes an everyday sheet of
@@ -104,11 +103,23 @@ pub struct ElasticSheet {
     stiffness: f64,
     /// Kilograms; zero before a simulation has started.
     mass: f64,
+    /// The vertices from the first to the last one of its faces; none before a simulation has started.
+    vertices: Range<usize>,
     /// Largest acceleration by constant forces, m/s2; zero before a simulation has started.
     acceleration: f64,
-    limit: StrainLimit,
     /// How the sheets bend; nothing of those without a plate.
     arcs: Vec<Arcs>,
+}
+
+/// The strain of a face of an [`ElasticSheet`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StrainOfFace {
+    /// The face.
+    pub face: FaceId,
+    /// The norm of its strain.
+    pub strain: f64,
+    /// The limit of that.
+    pub limit: f64,
 }
 
 impl ElasticSheet {
@@ -143,7 +154,8 @@ impl ElasticSheet {
         }
         let face = |(face, law): (FaceId, &MembraneLaw)| {
             let area = sheet.face_areas()[face.index()];
-            let own = Face::new(sheet, face).ok_or(ElasticSheetError::Face { face, area });
+            let own =
+                Face::new(sheet, face, Self::LIMIT).ok_or(ElasticSheetError::Face { face, area });
             let mut own = own?;
             own.set_law(law.of_face(sheet, face)?);
             Ok(own)
@@ -156,8 +168,8 @@ impl ElasticSheet {
             face_count: sheet.topology().face_count(),
             stiffness: laws.all().map(MembraneLaw::stiffness).fold(0.0, f64::max),
             mass: 0.0,
+            vertices: 0..0,
             acceleration: 0.0,
-            limit: StrainLimit::new(Self::LIMIT),
             arcs: Vec::new(),
         })
     }
@@ -189,34 +201,30 @@ impl ElasticSheet {
         if !(limit > 0.0 && limit < 0.5) {
             return Err(ElasticSheetError::Limit { limit });
         }
-        self.limit = StrainLimit::new(limit);
+        for face in &mut self.faces {
+            face.set_limit(limit);
+        }
         Ok(self)
     }
 
     /// The elasticity of some sheets of a [union](Sheet::union) with so many faces, each with its own
-    /// stiffness. Sheets that are not among them remain rigid.
-    ///
-    /// # Errors
-    /// [`ElasticSheetError::Limits`] if the limits of their strains differ.
+    /// stiffness and limit of the strain. Sheets that are not among them remain rigid.
     ///
     /// # Panics
     /// If there is no sheet.
-    pub fn union(sheets: Vec<(Self, Part)>, face_count: usize) -> Result<Self, ElasticSheetError> {
+    #[must_use]
+    pub fn union(sheets: Vec<(Self, Part)>, face_count: usize) -> Self {
         let mut sheets = sheets.into_iter();
         let (mut union, part) = sheets.next().expect("at least one sheet");
         union.face_count = face_count;
         union.place(&part, 0);
         for (mut sheet, part) in sheets {
-            let (first, other) = (union.limit(), sheet.limit());
-            if first != other {
-                return Err(ElasticSheetError::Limits { first, other });
-            }
             sheet.place(&part, union.faces.len());
             union.faces.append(&mut sheet.faces);
             union.arcs.append(&mut sheet.arcs);
             union.stiffness = union.stiffness.max(sheet.stiffness);
         }
-        Ok(union)
+        union
     }
 
     /// Makes it that of a sheet in a union of several, the first of whose faces has this number among those that
@@ -228,9 +236,14 @@ impl ElasticSheet {
         self.arcs = arcs.map(|arcs| arcs.in_union(part, first)).collect();
     }
 
-    /// The limit of the strain.
+    /// The limit of the strain; of several sheets the largest.
     pub fn limit(&self) -> f64 {
-        self.limit.limit()
+        self.limits().fold(0.0, f64::max)
+    }
+
+    /// The limit of the strain of each face.
+    pub fn limits(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.faces.iter().map(Face::limit)
     }
 
     /// The stiffness of the material, `E h`, newtons per metre; of several sheets, patches or directions the
@@ -251,9 +264,9 @@ impl ElasticSheet {
 
     /// The elastic energy of each face, joules, with that of the barrier; infinite beyond the limit.
     pub fn face_energies<'a>(&'a self, at: At<'a>) -> impl ExactSizeIterator<Item = f64> + 'a {
-        let limit = self.limit_of(at.memory);
+        let barrier = barrier_of(at.memory);
         self.strained(at)
-            .map(move |(face, strained)| face.energy(&strained, &limit))
+            .map(move |(face, strained)| face.energy(&strained, barrier))
     }
 
     /// The part of the slack in these energies, joules.
@@ -277,14 +290,6 @@ impl ElasticSheet {
         })
     }
 
-    /// The limit with the stiffness of the barrier in a memory, none without.
-    fn limit_of(&self, memory: &[f64]) -> StrainLimit {
-        match memory {
-            [stiffness, ..] => self.limit.with_stiffness(*stiffness),
-            [] => self.limit,
-        }
-    }
-
     /// The angles by which the faces bend, radians, from the energies of bending of all faces of the sheet,
     /// joules.
     pub(crate) fn bend_angles(&self, bending: &[f64]) -> impl Iterator<Item = f64> {
@@ -298,12 +303,21 @@ impl ElasticSheet {
         })
     }
 
-    /// The face with the largest strain, and that strain, where it is not below the limit.
-    pub fn beyond_limit(&self, x: &[f64]) -> Option<(FaceId, f64)> {
-        let strains = self.faces().zip(self.strains(x));
+    /// The face that comes nearest to its limit or is farthest beyond it.
+    pub(crate) fn worst(&self, x: &[f64]) -> Option<StrainOfFace> {
+        let faces = self.faces.iter().map(|face| StrainOfFace {
+            face: face.id,
+            strain: face.strain(x).norm(),
+            limit: face.limit(),
+        });
         // (Strains that are not numbers are beyond it, too.)
-        let worst = strains.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let is_within = worst.1 < self.limit();
+        faces.max_by(|a, b| (a.strain - a.limit).total_cmp(&(b.strain - b.limit)))
+    }
+
+    /// The face that is farthest beyond its limit, if one is not within it.
+    pub fn beyond_limit(&self, x: &[f64]) -> Option<StrainOfFace> {
+        let worst = self.worst(x)?;
+        let is_within = worst.strain < worst.limit;
         (!is_within).then_some(worst)
     }
 
@@ -311,17 +325,24 @@ impl ElasticSheet {
     /// `sum_T A_T k max(0, |E_T| - m)^2 / 2` with a stiffness `k` (joules per square metre).
     pub(crate) fn excess(&self, stiffness: f64) -> Self {
         let mut excess = self.clone();
-        excess.limit = self.limit.excess().with_stiffness(stiffness);
         for face in &mut excess.faces {
-            face.set_law(Law::NONE);
+            face.measure_excess(stiffness);
         }
         excess
+    }
+
+    /// The vertices from the first to the last one of its faces.
+    pub(crate) fn vertices(&self) -> Range<usize> {
+        let corners = || self.faces.iter().flat_map(Face::corners);
+        let first = corners().min().map_or(0, |v| v.index());
+        first..corners().max().map_or(first, |v| v.index() + 1)
     }
 
     /// Sets what the barrier follows besides the motion: the mass of the sheet, kilograms, and the largest
     /// acceleration by constant forces, m/s2.
     pub(crate) fn set_load(&mut self, mass: f64, acceleration: f64) {
         self.mass = mass;
+        self.vertices = self.vertices();
         self.acceleration = acceleration;
     }
 
@@ -336,30 +357,35 @@ impl ElasticSheet {
     }
 }
 
+/// The stiffness of the barrier in a memory, joules per square metre; none without.
+fn barrier_of(memory: &[f64]) -> f64 {
+    memory.first().copied().unwrap_or(0.0)
+}
+
 impl Potential for ElasticSheet {
     fn energy(&self, at: At<'_>) -> f64 {
         self.face_energies(at).sum()
     }
 
     fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
-        let limit = self.limit_of(at.memory);
+        let barrier = barrier_of(at.memory);
         for (face, strained) in self.strained(at) {
-            face.add_gradient(&strained, &limit, gradient);
+            face.add_gradient(&strained, barrier, gradient);
         }
     }
 
     fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
-        let limit = self.limit_of(at.memory);
+        let barrier = barrier_of(at.memory);
         for (face, strained) in self.strained(at) {
-            face.add_hessian(&strained, &limit, |density| density, hessian);
+            face.add_hessian(&strained, barrier, |density| density, hessian);
         }
     }
 
     /// With the curvature of edges under tension alone.
     fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
-        let limit = self.limit_of(at.memory);
+        let barrier = barrier_of(at.memory);
         for (face, strained) in self.strained(at) {
-            face.add_hessian(&strained, &limit, |density| density.max(0.0), hessian);
+            face.add_hessian(&strained, barrier, |density| density.max(0.0), hessian);
         }
     }
 
@@ -369,23 +395,21 @@ impl Potential for ElasticSheet {
 
     /// Along the part every face keeps a part of its distance from the limit.
     fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
-        let limit = self.limit();
-        let cut = |part: f64, face: &Face| face.safe_part(at.x, dx, limit, part);
+        let cut = |part: f64, face: &Face| face.safe_part(at.x, dx, part);
         self.faces.iter().fold(1.0, cut)
     }
 
     /// Whether every face keeps a part of its distance from the limit.
     fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
-        let limit = self.limit();
-        let stays = |face: &Face| face.stays_within(at.x, end, limit);
+        let stays = |face: &Face| face.stays_within(at.x, end);
         self.faces.iter().all(stays)
     }
 
     /// The tangent law of each face times the strains of second order, `|dx_a - dx_b|^2 / 2` for each edge.
     fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, gradient: &mut [f64]) -> bool {
-        let limit = self.limit_of(at.memory);
+        let barrier = barrier_of(at.memory);
         for (face, strained) in self.strained(at) {
-            face.add_second_order(&strained, dx, &limit, scale, gradient);
+            face.add_second_order(&strained, dx, barrier, scale, gradient);
         }
         true
     }
@@ -414,7 +438,13 @@ impl Potential for ElasticSheet {
         let [barrier, bends @ ..] = memory else {
             return Settled::default();
         };
-        let needed = strain_barrier(self.mass / self.area(), self.acceleration, state);
+        let own = 3 * self.vertices.start..3 * self.vertices.end;
+        let (x, v) = (&state.x[own.clone()], &state.v[own]);
+        let needed = strain_barrier(
+            self.mass / self.area(),
+            self.acceleration,
+            Reached { x, v, ..state },
+        );
         *barrier = barrier.max(needed);
         for arcs in &self.arcs {
             arcs.remember(&self.faces, (state.t, state.x), bends);

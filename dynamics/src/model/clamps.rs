@@ -1,8 +1,8 @@
 //! Clamps that no line of edges runs along.
 
+use crate::SheetModel;
 use crate::vectors::point;
-use crate::{Isometry, SheetModel};
-use isosheet_mesh::VertexId;
+use isosheet_mesh::{FaceId, VertexId};
 use nalgebra::Vector3;
 
 /// A clamp of a sheet of rods that no line of edges of the mesh runs along, see
@@ -29,20 +29,20 @@ impl SheetModel {
     /// fold along a line of edges further away, and rods may lock elsewhere. `docs/troubleshooting.md` of the
     /// repository says how often.
     ///
-    /// None for elastic sheets.
+    /// Elastic sheets have none.
     ///
     /// # Panics
     /// If the length of `x` is not three times the number of vertices.
     pub fn clamps_across_the_mesh(&self, x: &[f64]) -> Vec<ClampAcrossMesh> {
         assert_eq!(x.len(), self.coordinate_count(), "length of the positions");
-        if self.isometry() != Isometry::Rods {
-            return Vec::new();
-        }
         let topology = self.topology();
+        let is_of_rods = |f: FaceId| topology.face_edges(f).iter().all(|e| self.is_rod(*e));
         let is_clamped = |f: &[VertexId; 3]| f.iter().all(|v| self.is_pinned(*v));
         let mut in_clamp = vec![false; topology.vertex_count()];
-        for v in topology.faces().iter().filter(|f| is_clamped(f)).flatten() {
-            in_clamp[v.index()] = true;
+        for (face, corners) in topology.face_ids().zip(topology.faces()) {
+            if is_clamped(corners) && is_of_rods(face) {
+                corners.iter().for_each(|v| in_clamp[v.index()] = true);
+            }
         }
         let clamps = parts(self, |v| in_clamp[v.index()]);
         let free = parts(self, |v| !self.is_pinned(v));

@@ -1,7 +1,7 @@
 //! Vertices that cannot move because rods to fixed ones hold them.
 
+use crate::SheetModel;
 use crate::model::PINNED;
-use crate::{Isometry, SheetModel};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 
@@ -27,15 +27,12 @@ const OFF_LINE: f64 = 1e-3;
 /// block the infinitesimal flexes (Connelly and Whiteley, SIAM J. Discrete Math. 9, 1996); large flat
 /// patches may be immobile as a whole without being found.
 ///
-/// `x`: positions, `3V`, metres. Empty for elastic sheets.
+/// `x`: positions, `3V`, metres. Vertices of elastic sheets are not among them.
 ///
 /// # Panics
 /// If the length of `x` is not three times the number of vertices.
 pub fn immobile_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
     assert_eq!(x.len(), model.coordinate_count(), "length of the positions");
-    if model.isometry() != Isometry::Rods {
-        return Vec::new();
-    }
     let mut search = Search::new(model, x);
     loop {
         let before = search.found.len();
@@ -57,7 +54,7 @@ struct Search<'a> {
     model: &'a SheetModel,
     x: &'a [f64],
     fixed: Vec<bool>,
-    /// With supports that these rules do not know.
+    /// With supports that these rules do not know, or edges that are no rods.
     other: Vec<bool>,
     found: Vec<VertexId>,
 }
@@ -80,6 +77,14 @@ impl<'a> Search<'a> {
         }
         for c in model.constraints() {
             other[c.vertex().index()] = true;
+        }
+        let topology = model.topology();
+        for (edge, ends) in topology.edge_ids().zip(topology.edges()) {
+            if !model.is_rod(edge) {
+                for v in ends {
+                    (fixed[v.index()], other[v.index()]) = (false, true);
+                }
+            }
         }
         Self {
             model,

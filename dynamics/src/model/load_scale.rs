@@ -30,9 +30,12 @@ impl SheetModel {
     /// state.
     pub(crate) fn set_load(&mut self, state: &State) {
         let acceleration = LoadScale::at(self, state).acceleration;
-        let mass = self.mass.total();
+        // Of what there is besides, the mass is no measure: it may be anywhere.
+        let masses = self.mass.row_sums(&self.topology);
+        let (total, all) = (self.mass.total(), masses.iter().sum::<f64>());
         if let Some(elastic) = &mut self.elastic {
-            elastic.set_load(mass, acceleration);
+            let own: f64 = masses[elastic.vertices()].iter().sum();
+            elastic.set_load(total * (own / all), acceleration);
         }
     }
 }

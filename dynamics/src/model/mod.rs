@@ -2,6 +2,7 @@
 
 pub(crate) mod air;
 pub(crate) mod clamps;
+mod damping;
 #[cfg(test)]
 mod derivative_tests;
 mod driven;
@@ -30,6 +31,7 @@ use crate::constraint::VertexConstraint;
 use crate::material::elastic_sheet::ElasticSheet;
 use crate::potential::{At, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::term::ImplicitForce;
+use damping::Damping;
 pub use error::ModelError;
 use isosheet_mesh::{EdgeId, LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
 use support::MovingPin;
@@ -54,8 +56,7 @@ pub(crate) const PINNED: u32 = u32::MAX;
 #[derive(Debug)]
 pub struct SheetModel {
     topology: Topology,
-    isometry: Isometry,
-    /// The elasticity in the plane, where [`SheetModel::isometry`] is that.
+    /// The elasticity in the plane of sheets that have it.
     elastic: Option<ElasticSheet>,
     /// All edges with their rest lengths.
     edges: LengthConstraints,
@@ -71,7 +72,7 @@ pub struct SheetModel {
     forces: Vec<Box<dyn Force>>,
     /// Forces that damped steps take as terms of their objective.
     implicit: Vec<Box<dyn ImplicitForce>>,
-    damping: f64,
+    damping: Vec<Damping>,
     /// The vertices of sheets; those after them belong to rigid bodies and to surfaces in prescribed motion.
     sheet_vertices: usize,
     /// The first vertex of surfaces in prescribed motion.
@@ -127,7 +128,6 @@ impl SheetModel {
             }
         }
         Ok(Self {
-            isometry: Isometry::Rods,
             elastic: None,
             rods: edges.clone(),
             rod_edges: topology.edge_ids().collect(),
@@ -141,7 +141,7 @@ impl SheetModel {
             hands: Vec::new(),
             forces: Vec::new(),
             implicit: Vec::new(),
-            damping: 0.0,
+            damping: Vec::new(),
             sheet_vertices: n,
             driven_from: n,
             free_index: (0..n as u32).collect(),
@@ -173,7 +173,7 @@ impl SheetModel {
     }
 
     /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see
-    /// [`ElasticSheet`].
+    /// [`ElasticSheet`]; of the [union](ElasticSheet::union) of some of several sheets, those of these sheets.
     ///
     /// For BDF2 and implicit Euler; other methods and charts are refused. [`SheetModel::of_material`] does this
     /// and all else that a material needs; by hand:
@@ -209,7 +209,6 @@ impl SheetModel {
         if found != face_count {
             return Err(ModelError::ElasticSheet { found, face_count });
         }
-        self.isometry = Isometry::Elastic;
         let mut is_rod = vec![true; self.edges.len()];
         for face in elastic.faces() {
             for edge in self.topology.face_edges(face) {
@@ -257,27 +256,9 @@ impl SheetModel {
         self
     }
 
-    /// Sets the rate `gamma` (1/s) of the velocity damping `v <- v exp(-gamma h)` that follows
-    /// every step: the paper's "we add this damping force to the velocity" (Sec. 6).
-    ///
-    /// # Errors
-    /// [`ModelError::Damping`] if the rate is negative or not finite.
-    pub fn with_damping(mut self, rate: f64) -> Result<Self, ModelError> {
-        if !(rate.is_finite() && rate >= 0.0) {
-            return Err(ModelError::Damping { rate });
-        }
-        self.damping = rate;
-        Ok(self)
-    }
-
     /// Connectivity.
     pub fn topology(&self) -> &Topology {
         &self.topology
-    }
-
-    /// What keeps the lengths.
-    pub fn isometry(&self) -> Isometry {
-        self.isometry
     }
 
     /// All edges with their rest lengths, rods or not.
@@ -301,6 +282,17 @@ impl SheetModel {
     /// If `x` is not of length `3V`.
     pub fn max_strain(&self, x: &[f64]) -> f64 {
         self.measured.as_ref().unwrap_or(&self.edges).max_strain(x)
+    }
+
+    /// Whether an edge is a rod.
+    pub(crate) fn is_rod(&self, edge: EdgeId) -> bool {
+        self.rod_edges.binary_search(&edge).is_ok()
+    }
+
+    /// Whether there are rods in sheets, and not in rigid bodies alone.
+    pub fn has_rods_in_sheets(&self) -> bool {
+        let of_sheets = |ends: &[usize; 2]| ends.iter().all(|v| *v < self.sheet_vertices);
+        self.rods.edges().iter().any(of_sheets)
     }
 
     /// Largest violation of the equations of isometry at positions `x` (`3V`, metres), which an accepted step
@@ -338,18 +330,6 @@ impl SheetModel {
     /// The non-conservative forces in the order in which they were added.
     pub fn forces(&self) -> &[Box<dyn Force>] {
         &self.forces
-    }
-
-    /// Rate of the velocity damping, 1/s.
-    pub fn damping(&self) -> f64 {
-        self.damping
-    }
-
-    /// The part of velocities (`3V`) that damping over `h` seconds leaves, in place of them.
-    pub(crate) fn damp(&self, v: &mut [f64], h: f64) {
-        let factor = (-self.damping * h).exp();
-        let of_sheets = &mut v[..3 * self.sheet_vertices];
-        of_sheets.iter_mut().for_each(|v| *v *= factor);
     }
 
     /// The number of vertices of sheets, before those of rigid bodies.

@@ -78,7 +78,7 @@ impl SheetModel {
     /// [`SheetOfMaterial::build`].
     ///
     /// ```
-    /// use isosheet_dynamics::{Isometry, Material, SheetModel};
+    /// use isosheet_dynamics::{Material, SheetModel};
     /// use isosheet_mesh::generate;
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -86,7 +86,7 @@ impl SheetModel {
     /// let clamp = sheet.vertices_where(|[x, _, _]| x < 0.03); // two columns of vertices
     /// let paper = Material::office_paper();
     /// let model = SheetModel::of_material(&sheet, &paper).clamped(&clamp).build()?.with_gravity();
-    /// assert_eq!(model.isometry(), Isometry::Elastic);
+    /// assert!(model.elastic_sheet().is_some());
     /// # Ok(())
     /// # }
     /// ```
@@ -283,7 +283,6 @@ mod tests {
         let paper = Material::office_paper();
         let builder = SheetModel::of_material(&sheet, &paper).with_isometry(Isometry::Rods);
         let model = builder.build().unwrap();
-        assert_eq!(model.isometry(), Isometry::Rods);
         assert!(model.elastic_sheet().is_none());
         // A strip of 0.2 m by 0.05 m that is bent to a cylinder of the radius 1 m has the energy D A / 2.
         let bent = sheet.positions().as_chunks::<3>().0.iter();

@@ -95,6 +95,9 @@ pub enum ChartDynamicsError {
         "the sheet yields (its bends or creases stay), and the equations in a chart have no place for that"
     )]
     Plastic,
+    /// Sheets have different rates of the velocity damping, and momenta of a chart belong to all of them.
+    #[error("a chart damps all sheets alike, and these have different rates of damping")]
+    Damping,
     /// A one-sided constraint makes no closure equation.
     #[error("vertex constraint {index} is one-sided, and a chart takes two-sided constraints only")]
     OneSided {
@@ -216,6 +219,9 @@ impl Advice for ChartDynamicsError {
             }
             Self::MovingPin { .. } => Some("build the chart with that vertex free"),
             Self::Elastic | Self::Plastic => Some("use BDF2 or implicit Euler without a chart"),
+            Self::Damping => {
+                Some("give all sheets the same rate, or use BDF2 or implicit Euler without a chart")
+            }
             Self::OneSided { .. } => {
                 Some("use contact with a body, or a damped method without a chart")
             }

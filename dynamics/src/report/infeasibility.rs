@@ -15,7 +15,7 @@ pub struct Infeasibility {
     pub distance: f64,
     /// When it asks for this, seconds.
     pub t: f64,
-    /// The limit of the strain, which an elastic sheet keeps in place of lengths.
+    /// The limit of the strain, where an elastic sheet does not allow it, and not rods.
     pub strain_limit: Option<f64>,
     /// The vertices that bodies press, those pressed most first.
     #[serde(serialize_with = "as_numbers")]

@@ -412,7 +412,7 @@ impl Simulation {
     }
 
     /// Forces of the rods in the last accepted sub-step, newtons, tension positive, in the order of the
-    /// edges. `None` in charts and for elastic sheets.
+    /// edges; zero of edges of elastic sheets. `None` in charts, and where all sheets are elastic.
     ///
     /// | method | time of the forces |
     /// |---|---|

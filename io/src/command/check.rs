@@ -77,7 +77,10 @@ impl Check {
                 let changes = what_reading_did(&mesh);
                 let merging = what_merging_does(mesh);
                 to_stdout(&format!("{name}: a sheet of {counts}\n{changes}{merging}"))?;
-                let warnings = [Warning::closed(&sheet), Warning::wide_file(&sheet)];
+                let warnings = [
+                    Warning::closed(&sheet, "the surface"),
+                    Warning::wide_file(&sheet),
+                ];
                 print_warnings(&warnings.into_iter().flatten().collect::<Vec<_>>());
                 Ok(())
             }

@@ -48,6 +48,9 @@ pub(crate) struct RunProgress {
     pub(crate) slow_since: Option<f64>,
     /// Largest edge strain so far.
     pub(crate) strain: f64,
+    /// The same of each of several sheets.
+    #[serde(default)]
+    pub(crate) sheet_strains: Vec<f64>,
     /// Largest displacement of a vertex so far, metres.
     pub(crate) displacement: f64,
     /// Extremes of the energies so far.

@@ -10,9 +10,10 @@ use std::fmt;
 pub struct ElasticSummary {
     /// Stiffness of the material, Young's modulus times thickness, N/m.
     pub stiffness: f64,
-    /// Limit of the strain.
+    /// Limit of the strain; where sheets have several, that of the face which came nearest to its own.
     pub limit: f64,
-    /// Largest strain of a face in any step, the norm of Green's strain.
+    /// Largest strain of a face in any step, the norm of Green's strain; where sheets have several limits, that of
+    /// the face which came nearest to its own.
     pub strain: f64,
     /// Part of the stretching in the elastic energy at the end, from 0 to 1.
     pub share: f64,
@@ -81,11 +82,14 @@ impl ElasticSummary {
         let Some(deformation) = simulation.elastic_deformation() else {
             return;
         };
-        self.strain = deformation
-            .strain
-            .iter()
-            .copied()
-            .fold(self.strain, f64::max);
+        let elastic = simulation.model().elastic_sheet();
+        let faces = elastic.iter().flat_map(|e| e.faces().zip(e.limits()));
+        for (face, limit) in faces {
+            let strain = deformation.strain[face.index()];
+            if strain / limit > self.strain / self.limit {
+                (self.strain, self.limit) = (strain, limit);
+            }
+        }
         self.share = deformation.total_share();
         self.slack = deformation.slack_share();
         let before = self.sharpest.map_or(0.0, |bend| bend.angle);

@@ -151,10 +151,17 @@ impl Rows {
             name,
             vertices,
             faces,
+            largest_strain,
         } in &summary.sheets
         {
             let [[v, w], [f, g]] = [*vertices, *faces];
-            let place = format!("vertices {v} to {}, faces {f} to {}", w - 1, g - 1);
+            let strain = largest_strain.map(|strain| format!(", largest strain {strain:.1e}"));
+            let place = format!(
+                "vertices {v} to {}, faces {f} to {}{}",
+                w - 1,
+                g - 1,
+                strain.unwrap_or_default()
+            );
             self.add(&format!("sheet {name}"), place);
         }
         let solves = (summary.iterations, summary.factorisations);

@@ -233,6 +233,7 @@ impl<'a> Stepping<'a> {
         let row = HistoryRow::of_start(&self.under_way.simulation);
         self.progress.energy = EnergySummary::of_start(&self.under_way.simulation);
         self.progress.strain = row.strain;
+        self.observe_sheets();
         self.progress.gap = row.gap;
         self.record_row(row)?;
         self.record_measures()?;
@@ -422,6 +423,7 @@ impl<'a> Stepping<'a> {
         }
         self.progress.steps = number;
         self.count(&report);
+        self.observe_sheets();
         self.observe_elastic();
         self.record_row(self.row(&report))?;
         self.record_loads()?;
@@ -484,6 +486,22 @@ impl<'a> Stepping<'a> {
         // An infinite gap means that nothing is within reach.
         if let Some(gap) = report.gap.filter(|gap| gap.is_finite()) {
             progress.gap = Some(progress.gap.map_or(gap, |least| least.min(gap)));
+        }
+    }
+
+    /// Takes in the strain of each of several sheets.
+    fn observe_sheets(&mut self) {
+        let facts = &self.plan.facts;
+        let strains = &mut self.progress.sheet_strains;
+        // Bodies and obstacles in motion come last.
+        let others = facts.bodies.len() + facts.origins.driven.len();
+        strains.resize(facts.parts.len() - others, 0.0);
+        let (edges, x) = (
+            self.under_way.simulation.model().edges(),
+            &self.under_way.simulation.state().x,
+        );
+        for (strain, (_, part)) in strains.iter_mut().zip(&facts.parts) {
+            *strain = strain.max(edges.max_strain_among(part.edges.clone(), x));
         }
     }
 

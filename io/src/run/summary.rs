@@ -123,7 +123,7 @@ impl Ending {
 }
 
 /// One of several sheets and bodies in the arrays of a run.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SheetPlace {
     /// Its name.
     pub name: String,
@@ -131,15 +131,19 @@ pub struct SheetPlace {
     pub vertices: [usize; 2],
     /// Its first face, and the one after its last.
     pub faces: [usize; 2],
+    /// Largest relative change of the length of one of its edges in any step; none of a body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_strain: Option<f64>,
 }
 
 impl SheetPlace {
-    pub(crate) fn new((name, part): &(String, Part)) -> Self {
+    pub(crate) fn new((name, part): &(String, Part), largest_strain: Option<f64>) -> Self {
         let ends = |range: &std::ops::Range<usize>| [range.start, range.end];
         Self {
             name: name.clone(),
             vertices: ends(&part.vertices),
             faces: ends(&part.faces),
+            largest_strain,
         }
     }
 }

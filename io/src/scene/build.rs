@@ -59,7 +59,7 @@ impl Scene {
         builder.add_supports()?;
         builder.add_guides()?;
         builder.add_body_forces()?;
-        builder.mend_start();
+        builder.mend_start()?;
         builder.add_folds()?;
         builder.add_isometry()?;
         builder.perturb_start()?;

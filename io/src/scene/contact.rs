@@ -4,7 +4,7 @@ use super::key::Key;
 use super::problem::Checks;
 use super::switch::When;
 use super::unit::Unit;
-use super::{Body, bodies};
+use super::{Body, Obstacle, bodies, obstacles};
 use isosheet_collide::{ContactOptions, Stiffness};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ pub struct Contact {
     /// Coefficient of friction of sheets and bodies with themselves and one another. (That of an obstacle is
     /// given with the obstacle.)
     pub friction: f64,
-    /// Friction between two of several sheets and bodies, where it is another.
+    /// Friction between two of several sheets, bodies and obstacles, where it is another.
     pub pair: Vec<SheetPair>,
     /// Gap below which contact acts, metres; if left out, 1 % of the mean edge length and at most half the
     /// smallest height of a face.
@@ -36,7 +36,7 @@ pub struct Contact {
     pub rest_speed: Option<f64>,
 }
 
-/// Friction between two of several sheets and bodies, or of a sheet with itself.
+/// Friction between two of several sheets, bodies and obstacles with a `name`, or of a sheet with itself.
 ///
 /// ```toml
 /// [[sheet]]
@@ -58,7 +58,7 @@ pub struct Contact {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheetPair {
-    /// The names of the two sheets or bodies.
+    /// The names of the two: sheets, bodies, and at most one obstacle.
     pub sheets: [String; 2],
     /// Coefficient of friction.
     pub friction: f64,
@@ -72,14 +72,29 @@ pub struct SheetPair {
 }
 
 impl Contact {
-    pub(crate) fn check(&self, bodies: &[Body], key: &Key, checks: &mut Checks) {
+    pub(crate) fn check(
+        &self,
+        bodies: &[Body],
+        obstacles: &[Obstacle],
+        key: &Key,
+        checks: &mut Checks,
+    ) {
         checks.not_negative(key.name("friction"), self.friction, Unit::One);
         for (key, pair) in key.name("pair").entries(&self.pair) {
             checks.not_negative(key.name("friction"), pair.friction, Unit::One);
             let is_body = |name: &String| bodies::number_of(bodies, name).is_some();
-            if !self.self_contact && !pair.sheets.iter().any(is_body) {
-                let remedy = "write `self_contact = true`, or leave the pair out";
-                checks.report(key, "sheets do not meet one another", remedy);
+            let is_obstacle = |name: &String| obstacles::number_of(obstacles, name).is_some();
+            match pair.sheets.iter().filter(|name| is_obstacle(name)).count() {
+                0 if !self.self_contact && !pair.sheets.iter().any(is_body) => {
+                    let remedy = "write `self_contact = true`, or leave the pair out";
+                    checks.report(key, "sheets do not meet one another", remedy);
+                }
+                0 | 1 => {}
+                _ => checks.report(
+                    key.name("sheets"),
+                    "obstacles do not meet one another",
+                    "name a sheet or a body and an obstacle",
+                ),
             }
         }
         let lengths = [

@@ -18,8 +18,8 @@ use serde::{Deserialize, Serialize};
 ///
 /// Pairs that coincide at the start stay together. Others are drawn together by a `closing` from 0 to 1. The
 /// sides of a seam may run in opposite directions: two ends of a strip make a band, and a Moebius band if one
-/// of them is given from its other end. A seam along one line is a hinge without stiffness; with a second one
-/// along the next lines of vertices (an overlap) the curvature goes on across it. Sides that overlap are
+/// of them is given from its other end. A seam along one line is a hinge without stiffness, unless it has a `bend`;
+/// with a second one along the next lines of vertices (an overlap) the curvature goes on across it. Sides that overlap are
 /// drawn together through each other, so that with `contact.self_contact` an overlap has to be there at the
 /// start.
 ///
@@ -50,6 +50,9 @@ pub struct Glue {
     /// `L`: a pair that carries all of that is apart by a ten-thousandth of an edge.
     #[serde(default)]
     pub stiffness: Option<f64>,
+    /// What resists bending across the seam, where edges of the two sides lie on one another. If left out, nothing.
+    #[serde(default)]
+    pub bend: Option<SeamBend>,
     /// When the glue sets; if left out, at the start. It then holds the vertices of each pair as far apart as they
     /// are at that moment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -58,6 +61,25 @@ pub struct Glue {
     /// sides of a seam that was glued at the start do not meet in contact where they were glued.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<When>,
+}
+
+/// What resists bending across a seam: a crease between the faces of both sides.
+///
+/// ```toml
+/// [[glue]]
+/// first = { line = { from = [0, 0, 0], to = [0, 0.02, 0] } }
+/// second = { line = { from = [0.3, 0, 0], to = [0.3, 0.02, 0] } }
+/// bend = { stiffness = 0.1 }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SeamBend {
+    /// Torsional stiffness of a metre of the seam, N (newton metres per radian and metre).
+    pub stiffness: f64,
+    /// Fold angle at rest, degrees: 0 for flat, positive for a valley as seen from the side from which the faces of the
+    /// first side are counter-clockwise.
+    #[serde(default)]
+    pub angle: f64,
 }
 
 fn closed() -> Profile {
@@ -114,6 +136,16 @@ impl Glue {
                 "give `second`, or the names of a sheet and a body, `sheets = [\"flag\", \"pole\"]`",
             ),
             _ => {}
+        }
+        if let Some(bend) = &self.bend {
+            let key = key.name("bend");
+            checks.not_negative(key.name("stiffness"), bend.stiffness, Unit::Newton);
+            checks.within(key.name("angle"), bend.angle, [-180.0, 180.0]);
+            if body.is_some() || self.closing != closed() {
+                let message =
+                    "bending is resisted across seams that are closed at all times, between sheets";
+                checks.report(key, message, "leave the key out");
+            }
         }
         if body.is_some() && self.closing != closed() {
             let remedy = "leave the key out";

@@ -7,6 +7,7 @@ use super::pose::{Motion, Pose};
 use super::problem::{Checks, Problem};
 use super::sequence::Sequence;
 use super::unit::Unit;
+use super::{Body, Sheet, bodies};
 use isosheet_collide as collide;
 use isosheet_collide::{SurfaceError, TriangleSurface, rounded_line};
 use schemars::JsonSchema;
@@ -26,6 +27,9 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Obstacle {
+    /// Its name, by which `contact.pair` names it. If left out, it has none.
+    #[serde(default)]
+    pub name: Option<String>,
     /// Its form.
     pub shape: Shape,
     /// Where it is while displacements and angle of its motion are zero.
@@ -139,6 +143,7 @@ impl Obstacle {
     /// A body at rest without friction.
     pub fn new(shape: Shape) -> Self {
         Self {
+            name: None,
             shape,
             pose: Pose::default(),
             motion: Motion::default(),
@@ -167,6 +172,38 @@ impl Obstacle {
         let motion = self.motion.of_body(self.pose.isometry());
         let motion = isosheet_dynamics::RigidProfile::from(motion);
         collide::Obstacle::new(shape, motion).map_err(|e| Problem::from_error(key.clone(), &e))
+    }
+}
+
+/// The number of the obstacle of a name.
+pub(super) fn number_of(obstacles: &[Obstacle], name: &str) -> Option<usize> {
+    obstacles
+        .iter()
+        .position(|obstacle| obstacle.name.as_deref() == Some(name))
+}
+
+/// Checks that nothing else has the name of an obstacle.
+pub(super) fn check_names(
+    all: &[Obstacle],
+    sheets: &[Sheet],
+    bodies: &[Body],
+    checks: &mut Checks,
+) {
+    for (k, (key, obstacle)) in Key::root().name("obstacle").entries(all).enumerate() {
+        let Some(name) = &obstacle.name else {
+            continue;
+        };
+        let is_other = number_of(all, name) != Some(k)
+            || bodies::number_of(bodies, name).is_some()
+            || sheets.iter().any(|sheet| sheet.name.as_ref() == Some(name));
+        if is_other {
+            let message = format!("another obstacle, body or sheet has the name `{name}`, too");
+            let remedy = "give each obstacle a `name` of its own, or none";
+            checks.report(key.name("name"), message, remedy);
+        }
+        if name.is_empty() {
+            checks.report(key.name("name"), "the name is empty", "leave it out");
+        }
     }
 }
 

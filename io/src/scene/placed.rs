@@ -17,6 +17,7 @@ use isosheet_dynamics::Patched;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{FaceId, MassKind, MassMatrix, MeshError, Part, Sheet, VertexId};
 use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What is made of the mesh of a sheet, its division, its place and its start.
@@ -147,6 +148,12 @@ impl<'a> PlacedSheets<'a> {
             }
         }
         Ok(mass)
+    }
+
+    /// The rate of the velocity damping of each sheet, with its vertices.
+    pub(super) fn dampings(&self) -> impl Iterator<Item = (Range<usize>, f64)> {
+        let sheets = self.list.iter();
+        sheets.map(|sheet| (sheet.part.vertices.clone(), sheet.of.damping))
     }
 
     /// The vertices of a selection in the sheet of a name, or in all sheets.

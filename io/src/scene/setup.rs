@@ -14,7 +14,7 @@ use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
 use isosheet_dynamics::contact::{Contact, SurfacePoints};
 use isosheet_dynamics::{
-    Checkpoint, Isometry, Method, SheetModel, Simulation, SimulationError, State, StepControl,
+    Checkpoint, Method, SheetModel, Simulation, SimulationError, State, StepControl,
 };
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Part, Sheet, VertexId};
@@ -184,8 +184,7 @@ impl Setup {
 
     /// Whether the simulation gives the forces of the rods ([`Simulation::rod_forces`]).
     pub fn has_rod_forces(&self) -> bool {
-        matches!(self.integration, Integration::Free { .. })
-            && self.model.isometry() == Isometry::Rods
+        matches!(self.integration, Integration::Free { .. }) && self.model.has_rods_in_sheets()
     }
 
     /// The simulation at the start.

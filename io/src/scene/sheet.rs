@@ -18,9 +18,9 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A sheet. A scene of several has a table `[[sheet]]` for each, with a `name` by which supports, creases and
-/// loads name it; where they name none, regions and points are of all sheets. All sheets are of rods or all
-/// are elastic, and they have the same `damping`, `thickness` and limit of strain. With
-/// `contact.self_contact` they meet one another.
+/// loads name it; where they name none, regions and points are of all sheets. Each is of its own material,
+/// rods beside elastic sheets, with its own `damping`, `yield` and `thickness`. With `contact.self_contact`
+/// they meet one another.
 ///
 /// ```toml
 /// [sheet]
@@ -58,8 +58,9 @@ pub struct Sheet {
     /// Mass of the whole sheet, kilograms; if left out, `density` times its area.
     #[serde(default)]
     pub mass: Option<f64>,
-    /// Thickness, metres: the least distance of its middle surface from bodies and from itself. It does not
-    /// change mass or stiffness.
+    /// Thickness, metres: the least distance of its middle surface from bodies and from itself. From another sheet
+    /// it keeps the mean of both, so that a stack has its height. It does not change mass or stiffness. Faces with a
+    /// common vertex do not keep it: a fold is sharp at its line, and the layers open beside it.
     #[serde(default)]
     pub thickness: f64,
     /// What keeps the lengths. If left out, the elasticity of the material; without one rigid rods.

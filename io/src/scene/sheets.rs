@@ -3,7 +3,7 @@
 use super::key::Key;
 use super::patched;
 use super::problem::{Checks, Problem};
-use super::sheet::{Isometry, Sheet};
+use super::sheet::Sheet;
 use super::size;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -59,7 +59,7 @@ pub(super) fn sheet_key(count: usize, number: usize) -> Key {
     }
 }
 
-/// Checks the sheets, and what they have to have in common.
+/// Checks the sheets.
 pub(super) fn check(sheets: &[Sheet], checks: &mut Checks) {
     let root = Key::root().name("sheet");
     if sheets.is_empty() {
@@ -73,7 +73,6 @@ pub(super) fn check(sheets: &[Sheet], checks: &mut Checks) {
         patched::check(sheet, &key, checks);
         if sheets.len() > 1 {
             check_name(sheets, k, &key, checks);
-            check_common(&sheets[0], sheet, &key, checks);
         }
     }
     if checks.problems.len() == before
@@ -95,39 +94,6 @@ fn check_name(sheets: &[Sheet], k: usize, key: &Key, checks: &mut Checks) {
             checks.report(key.name("name"), message, remedy);
         }
         Some(_) => {}
-    }
-}
-
-/// The engine has one kind of sheet, one rate of damping and one distance of contact.
-fn check_common(first: &Sheet, sheet: &Sheet, key: &Key, checks: &mut Checks) {
-    let is_rigid = |s: &Sheet| s.isometry() == Isometry::Rods;
-    if is_rigid(sheet) != is_rigid(first) {
-        checks.report(
-            key.name("isometry"),
-            "one sheet has rigid rods, and another is elastic",
-            "give all sheets a `material`, or write `isometry = \"rods\"` in all of them",
-        );
-    }
-    let limit = |s: &Sheet| s.elasticity().map(|e| e.limit);
-    if !is_rigid(sheet) && !is_rigid(first) && limit(sheet) != limit(first) {
-        checks.report(
-            key.name("isometry"),
-            "the limit of the strain differs from that of the first sheet",
-            "write the same `isometry = { elastic = { limit = ... } }` in all sheets",
-        );
-    }
-    for (name, is_same) in [
-        ("damping", sheet.damping == first.damping),
-        ("thickness", sheet.thickness == first.thickness),
-    ] {
-        if !is_same {
-            let message = format!("the {name} differs from that of the first sheet");
-            checks.report(
-                key.name(name),
-                message,
-                format!("give all sheets the same `{name}`"),
-            );
-        }
     }
 }
 

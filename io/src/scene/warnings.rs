@@ -13,16 +13,19 @@ use isosheet_mesh::{Sheet, VertexId};
 const WIDE: f64 = 20.0;
 
 impl Warning {
-    /// Closed parts of a sheet of rods.
-    pub(crate) fn closed(sheet: &Sheet) -> Option<Self> {
+    /// Closed parts of a sheet of rods, which is called by a name.
+    pub(crate) fn closed(sheet: &Sheet, name: &str) -> Option<Self> {
         let t = sheet.topology();
         let parts = t.components();
         let is_closed = |part: &&Vec<VertexId>| !part.iter().any(|&v| t.is_boundary_vertex(v));
         let closed = parts.iter().filter(is_closed).count();
         (closed > 0).then(|| {
             let what = match closed == parts.len() {
-                true => "the surface is closed".to_owned(),
-                false => format!("{closed} of the {} parts are closed surfaces", parts.len()),
+                true => format!("{name} is closed"),
+                false => format!(
+                    "{closed} of the {} parts of {name} are closed surfaces",
+                    parts.len()
+                ),
             };
             let message = format!("{what}: a sheet of rigid rods without a boundary cannot bend");
             Self::new(
@@ -76,10 +79,15 @@ impl PlacedSheets<'_> {
             };
             wide.into_iter().chain(reversed)
         });
-        let closed = match scene.sheet[0].isometry() {
-            Isometry::Rods => Warning::closed(&self.union),
-            Isometry::Elastic { .. } => None,
-        };
+        let rods = self.list.iter();
+        let rods = rods.filter(|sheet| sheet.of.isometry() == Isometry::Rods);
+        let closed = rods.filter_map(|sheet| {
+            let name = match &self.list[..] {
+                [_] => "the surface".to_owned(),
+                _ => format!("the surface of `{}`", sheet.key),
+            };
+            Warning::closed(&sheet.form.placed, &name)
+        });
         of_sheets
             .chain(self.far_points(scene))
             .chain(closed)

@@ -38,6 +38,10 @@ const ALL_KEYS: [&str; 13] = [
     second = { line = { from = [0, 0, 0], to = [1, 0, 0] } }
     closing = 0.0
     stiffness = 10.0
+    [[glue]]
+    first = { vertices = [0] }
+    second = { vertices = [5] }
+    bend = { stiffness = 0.1, angle = 10 }
     [[weight]]
     sheet = "main"
     at = { vertices = [1] }
@@ -63,6 +67,7 @@ const ALL_KEYS: [&str; 13] = [
     at = "all"
     hold = { surface = { shape = { cylinder = { point = [0, 0, 0], axis = [0, 0, 1], radius = 1 } }, side = "on" } }
     [[obstacle]]
+    name = "table"
     shape = { box = { size = [1, 1, 1] } }
     pose = { position = [0, 0, -3] }
     motion = { x = { run_up = { from = 0, rate = 0.1, begin = 0, end = 1 } }, z = { smooth_step = { to = 1, end = 1 } } }

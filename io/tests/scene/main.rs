@@ -18,10 +18,13 @@ mod loads;
 mod materials;
 mod meaning;
 mod messages;
+mod pairs;
 mod patches;
 mod peel;
 mod random_bodies;
+mod seams;
 mod sequences;
+mod several_materials;
 mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;

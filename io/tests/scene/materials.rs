@@ -109,7 +109,7 @@ fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
     assert_eq!(rods.sheet[0].elasticity(), None);
     let setup = rods.build(Path::new("")).unwrap();
     assert!((setup.model.mass().total() - 0.02 * denim.density).abs() < 1e-15);
-    assert_eq!(setup.model.isometry(), dynamics::Isometry::Rods);
+    assert!(setup.model.elastic_sheet().is_none());
     // A plate of the rigidity of denim, which is bent about the middle line.
     let mut x = setup.start.x.clone();
     x[2] = 0.01;

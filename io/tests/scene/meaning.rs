@@ -220,7 +220,7 @@ fn starting_points_run_and_keep_their_promises() {
                 None => (report.strain >= 2e-12).then_some(report.strain),
                 Some(elastic) => elastic
                     .beyond_limit(&run.state().x)
-                    .map(|(_, strain)| strain),
+                    .map(|worst| worst.strain),
             };
             assert_eq!(beyond, None, "{}", kind.name());
             assert!(report.gap.is_none_or(|gap| gap > 0.0), "{}", kind.name());

@@ -47,14 +47,12 @@ pub(super) struct Fit<'a> {
     t: f64,
 }
 
-/// As stiff for rods between two pins as for a rod of the mean mass; none for elastic sheets.
+/// As stiff for rods between two pins as for a rod of the mean mass.
 fn penalties(model: &SheetModel) -> Vec<f64> {
     let mut penalty = crate::linear::free::penalties(model, ROD_STIFFNESS);
-    if model.elastic_sheet().is_none() {
-        for (p, l) in penalty.iter_mut().zip(model.rods().lengths()) {
-            if *p == 0.0 {
-                *p = ROD_STIFFNESS * model.mean_mass() / (l * l);
-            }
+    for (p, l) in penalty.iter_mut().zip(model.rods().lengths()) {
+        if *p == 0.0 {
+            *p = ROD_STIFFNESS * model.mean_mass() / (l * l);
         }
     }
     penalty
@@ -156,25 +154,40 @@ impl<'a> Fit<'a> {
         self.rows.add_gradient(&mut self.gradient);
     }
 
+    /// That of the rods.
+    fn rod_energy(&self) -> f64 {
+        let rods: f64 = self.tension.iter().zip(&self.c).map(|(w, c)| w * c).sum();
+        0.5 * rods
+    }
+
+    /// That of the strains beyond the limit.
+    fn excess_energy(&self) -> f64 {
+        let excess = self.excess.as_ref();
+        excess.map_or(0.0, |excess| excess.energy(At::new(self.t, &self.x)))
+    }
+
     /// The sum of the squares.
     pub(super) fn energy(&self) -> f64 {
-        let rods: f64 = self.tension.iter().zip(&self.c).map(|(w, c)| w * c).sum();
-        let excess = self
-            .excess
-            .as_ref()
-            .map_or(0.0, |excess| excess.energy(At::new(self.t, &self.x)));
-        0.5 * rods + excess + self.gaps.energy(&self.x) + self.rows.value()
+        self.rod_energy() + self.excess_energy() + self.gaps.energy(&self.x) + self.rows.value()
+    }
+
+    /// The limit of the strain that is exceeded most, if that is what does not allow the motion, and not the rods of
+    /// a sheet.
+    pub(super) fn strain_limit(&self) -> Option<f64> {
+        let worst = self.excess.as_ref()?.worst(&self.x)?;
+        let is_of_rods =
+            self.model.has_rods_in_sheets() && self.rod_energy() > self.excess_energy();
+        (!is_of_rods).then_some(worst.limit)
     }
 
     /// Whether lengths or strains, gaps and supports are met but for what convergence leaves.
     fn is_met(&self) -> bool {
-        let strain = match &self.excess {
-            Some(excess) => {
-                let largest = excess.strains(&self.x).fold(0.0, f64::max);
-                (largest - excess.limit()).max(0.0)
-            }
-            None => self.model.rods().max_strain(&self.x),
-        };
+        let worst = self
+            .excess
+            .as_ref()
+            .and_then(|excess| excess.worst(&self.x));
+        let beyond = worst.map_or(0.0, |worst| worst.strain - worst.limit);
+        let strain = self.model.rods().max_strain(&self.x).max(beyond);
         let closed = self.gaps.largest_violation(&self.x) / self.model.mean_length();
         strain.max(closed).max(self.rows.largest_violation()) < MET_STRAIN
     }

@@ -47,17 +47,6 @@ pub enum ElasticSheetError {
         /// The limit given.
         limit: f64,
     },
-    /// Two sheets that are to be one have different limits of the strain.
-    #[error(
-        "the limit of the strain is {first} of one sheet and {other} of another",
-        first = given(*first), other = given(*other)
-    )]
-    Limits {
-        /// The limit of the first sheet.
-        first: f64,
-        /// That of another.
-        other: f64,
-    },
     /// A face has no area at rest, so that it has no strain.
     #[error("{face} has the area {area} m2 at rest", area = given(*area))]
     Face {
@@ -77,7 +66,6 @@ impl Advice for ElasticSheetError {
             Self::Direction { source } => source.advice(),
             Self::Patch(error) => error.advice(),
             Self::Limit { .. } => Some("give a value above 0 and below 0.5, for instance 0.01"),
-            Self::Limits { .. } => Some("give all sheets the same limit"),
             Self::Face { .. } => Some("remove the face, or mend the mesh"),
         }
     }

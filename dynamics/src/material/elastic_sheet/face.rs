@@ -30,6 +30,7 @@ pub(super) struct Face {
     pub(super) rigidity: f64,
     /// Its law by the length errors.
     law: Law,
+    limit: StrainLimit,
 }
 
 /// The state of a face.
@@ -59,8 +60,8 @@ const SMALLEST_PART: f64 = 1e-12;
 const ARC: f64 = 1.0 / 24.0;
 
 impl Face {
-    /// Without stiffness; nothing if the face has no area.
-    pub(super) fn new(sheet: &Sheet, face: FaceId) -> Option<Self> {
+    /// Without stiffness, with a limit of its strain; nothing if the face has no area.
+    pub(super) fn new(sheet: &Sheet, face: FaceId, limit: f64) -> Option<Self> {
         let topology = sheet.topology();
         let edges = topology.face_edges(face);
         let ends = edges.map(|e| topology.edges()[e.index()]);
@@ -95,6 +96,7 @@ impl Face {
             edge_squares: errors,
             rigidity: 0.0,
             law: Law::NONE,
+            limit: StrainLimit::new(limit),
         })
     }
 
@@ -112,6 +114,26 @@ impl Face {
     /// Sets the law by the components of the strain.
     pub(super) fn set_law(&mut self, law: Law) {
         self.law = law.by(&self.strains);
+    }
+
+    pub(super) fn corners(&self) -> [VertexId; 3] {
+        self.corners
+    }
+
+    /// The limit of its strain.
+    pub(super) fn limit(&self) -> f64 {
+        self.limit.limit()
+    }
+
+    /// Sets the limit of its strain.
+    pub(super) fn set_limit(&mut self, limit: f64) {
+        self.limit = StrainLimit::new(limit);
+    }
+
+    /// Measures what is beyond the limit in place of the elasticity, with a stiffness in joules per square metre.
+    pub(super) fn measure_excess(&mut self, stiffness: f64) {
+        self.law = Law::NONE;
+        self.limit = self.limit.excess(stiffness);
     }
 
     /// The length errors of the edges as chords of arcs, m2, by the second derivatives of positions `H` (rows
@@ -202,8 +224,10 @@ impl Face {
         }
     }
 
-    /// Joules; infinite at the limit and beyond.
-    pub(super) fn energy(&self, at: &Strained, limit: &StrainLimit) -> f64 {
+    /// Joules, with a `barrier` at the limit of this stiffness, joules per square metre; infinite at the limit and
+    /// beyond.
+    pub(super) fn energy(&self, at: &Strained, barrier: f64) -> f64 {
+        let limit = self.limit.with_barrier(barrier);
         let elastic = self.law.at(&at.beyond, &at.slack).energy();
         self.area * (elastic + limit.value(at.strain.norm_squared()))
     }
@@ -222,14 +246,16 @@ impl Face {
     }
 
     /// The derivatives of the energy by the length errors, newtons per metre.
-    fn densities(&self, at: &Strained, limit: &StrainLimit) -> Vector3<f64> {
+    fn densities(&self, at: &Strained, barrier: f64) -> Vector3<f64> {
+        let limit = self.limit.with_barrier(barrier);
         let [slope, _] = limit.derivatives(at.strain.norm_squared());
         let barrier = 2.0 * slope * (self.strains.transpose() * at.strain);
         self.area * (self.law.at(&at.beyond, &at.slack).slope() + barrier)
     }
 
     /// The second derivatives of the energy by the length errors, newtons per cubic metre.
-    fn tangent_law(&self, at: &Strained, limit: &StrainLimit) -> Matrix3<f64> {
+    fn tangent_law(&self, at: &Strained, barrier: f64) -> Matrix3<f64> {
+        let limit = self.limit.with_barrier(barrier);
         let mut law = self.law.at(&at.beyond, &at.slack).curvature();
         let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
         if slope != 0.0 {
@@ -240,8 +266,8 @@ impl Face {
         self.area * law
     }
 
-    pub(super) fn add_gradient(&self, at: &Strained, limit: &StrainLimit, gradient: &mut [f64]) {
-        self.add_forces(at, &self.densities(at, limit), gradient);
+    pub(super) fn add_gradient(&self, at: &Strained, barrier: f64, gradient: &mut [f64]) {
+        self.add_forces(at, &self.densities(at, barrier), gradient);
     }
 
     /// Adds what force densities of the edges (newtons per metre) do to the gradient.
@@ -261,38 +287,39 @@ impl Face {
         &self,
         at: &Strained,
         dx: &[f64],
-        limit: &StrainLimit,
+        barrier: f64,
         scale: f64,
         gradient: &mut [f64],
     ) {
         let changes = self.edge_vectors(dx);
         let second = Vector3::from(changes.map(|d| 0.5 * d.norm_squared()));
-        let densities = scale * self.tangent_law(at, limit) * second;
+        let densities = scale * self.tangent_law(at, barrier) * second;
         self.add_forces(at, &densities, gradient);
     }
 
     /// The strain that a displacement from `x` may end with: it keeps its distance from the limit but for
     /// [`KEPT_MARGIN`] of it.
-    fn bound(&self, strain: f64, limit: f64) -> f64 {
+    fn bound(&self, strain: f64) -> f64 {
+        let limit = self.limit();
         limit - KEPT_MARGIN * (limit - strain)
     }
 
     /// Whether a displacement from `x` to `end` ends within the limit, and keeps a part of the distance from
     /// it.
-    pub(super) fn stays_within(&self, x: &[f64], end: &[f64], limit: f64) -> bool {
-        self.strain(end).norm() <= self.bound(self.strain(x).norm(), limit)
+    pub(super) fn stays_within(&self, x: &[f64], end: &[f64]) -> bool {
+        self.strain(end).norm() <= self.bound(self.strain(x).norm())
     }
 
     /// Adds the Hessian; `part` says which part of the force density of an edge counts for its curvature.
     pub(super) fn add_hessian(
         &self,
         at: &Strained,
-        limit: &StrainLimit,
+        barrier: f64,
         part: impl Fn(f64) -> f64,
         hessian: &mut dyn HessianSink,
     ) {
-        let law = self.tangent_law(at, limit);
-        let densities = self.densities(at, limit).map(part);
+        let law = self.tangent_law(at, barrier);
+        let densities = self.densities(at, barrier).map(part);
         // Products of the derivatives of two length errors, `law_ij v_i v_j^T`.
         let product = |i: usize, j: usize| {
             let v = &at.vectors;
@@ -318,13 +345,13 @@ impl Face {
     /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients
     /// in Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval
     /// is halved.
-    pub(super) fn safe_part(&self, x: &[f64], dx: &[f64], limit: f64, most: f64) -> f64 {
+    pub(super) fn safe_part(&self, x: &[f64], dx: &[f64], most: f64) -> f64 {
         let vectors = self.edge_vectors(x);
         let changes = self.edge_vectors(dx);
         let first = Vector3::from_fn(|k, _| vectors[k].dot(&changes[k]));
         let second = Vector3::from_fn(|k, _| 0.5 * changes[k].norm_squared());
         let (e0, e1, e2) = (self.strain(x), self.strains * first, self.strains * second);
-        let bound = self.bound(e0.norm(), limit);
+        let bound = self.bound(e0.norm());
         if e0.norm() + most * (e1.norm() + most * e2.norm()) <= bound {
             return most;
         }

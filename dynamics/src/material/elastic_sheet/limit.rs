@@ -27,10 +27,11 @@ impl StrainLimit {
         }
     }
 
-    /// What is beyond the limit.
-    pub(super) fn excess(self) -> Self {
+    /// What is beyond the limit, with a stiffness in joules per square metre.
+    pub(super) fn excess(self, stiffness: f64) -> Self {
         Self {
             law: Law::Excess,
+            stiffness,
             ..self
         }
     }
@@ -39,8 +40,12 @@ impl StrainLimit {
         self.limit
     }
 
-    pub(super) fn with_stiffness(self, stiffness: f64) -> Self {
-        Self { stiffness, ..self }
+    /// With a barrier of this stiffness beside its own, joules per square metre.
+    pub(super) fn with_barrier(self, stiffness: f64) -> Self {
+        Self {
+            stiffness: self.stiffness + stiffness,
+            ..self
+        }
     }
 
     /// `p` and its derivative by the square of the strain.

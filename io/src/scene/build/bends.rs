@@ -14,7 +14,7 @@ use isosheet_dynamics::{
     CreaseSprings, ElasticSheet, ElasticSheetError, LineClamp, Patched, PlateBending, PlateEdges,
     PlateLaw, Potential, PotentialOfPart, RigidDisplacement, SheetModel, start_of_folding,
 };
-use isosheet_mesh::{EdgeId, MassMatrix, VertexId};
+use isosheet_mesh::{EdgeId, MassMatrix, Part, VertexId};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -249,7 +249,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    pub(super) fn add_isometry(&mut self) -> Result<(), SceneError> {
+    /// The sheets that are elastic, with the slack of their plates where these are there already.
+    fn elastic_sheets(&self) -> Result<Vec<(ElasticSheet, Part)>, SceneError> {
         let mut elastic = Vec::new();
         for (number, placed) in self.sheets.list.iter().enumerate() {
             let PlacedSheet { of, key, part, .. } = placed;
@@ -262,21 +263,39 @@ impl Builder<'_> {
             });
             let plate = self.plates.get(&number).map(Arc::as_ref);
             let sheet = elastic_sheet(placed, elasticity, plate);
-            let sheet = sheet.map_err(at(&key))?;
-            let words = elastic_in_words(&sheet);
-            if !self.modelled.contains(&words) {
-                self.modelled.push(words);
-            }
-            elastic.push((sheet, part.clone()));
+            elastic.push((sheet.map_err(at(&key))?, part.clone()));
         }
+        Ok(elastic)
+    }
+
+    /// Gives the model the elasticity of the sheets that have it, so that the others alone are of rods.
+    pub(super) fn part_rods(&mut self) -> Result<(), SceneError> {
+        let elastic = self.elastic_sheets()?;
+        self.add_elastic(elastic)
+    }
+
+    fn add_elastic(&mut self, elastic: Vec<(ElasticSheet, Part)>) -> Result<(), SceneError> {
         if elastic.is_empty() {
-            self.modelled.push("rigid rods".into());
             return Ok(());
         }
         let key = Key::root().name("sheet");
         let faces = self.model().topology().face_count();
-        let elastic = ElasticSheet::union(elastic, faces).map_err(at(&key))?;
+        let elastic = ElasticSheet::union(elastic, faces);
         self.change(|m| m.with_elastic_sheet(elastic), at(&key))
+    }
+
+    pub(super) fn add_isometry(&mut self) -> Result<(), SceneError> {
+        let elastic = self.elastic_sheets()?;
+        for (sheet, _) in &elastic {
+            let words = elastic_in_words(sheet);
+            if !self.modelled.contains(&words) {
+                self.modelled.push(words);
+            }
+        }
+        if elastic.len() < self.sheets.list.len() {
+            self.modelled.push("rigid rods".into());
+        }
+        self.add_elastic(elastic)
     }
 }
 

@@ -108,10 +108,9 @@ impl<'a> Builder<'a> {
         let bodies = PlacedBodies::new(&scene.body, &sheets, &mut kept.files)?;
         let (end, model_vertices) = bodies.counts(&sheets.union);
         let driven = DrivenObstacles::new(&scene.obstacle, end, model_vertices, &mut kept.files)?;
-        let damping = scene.sheet[0].damping;
         let mass = driven.mass(bodies.mass(&sheets.union, sheets.mass(&scene.weight)?));
         let mut model = SheetModel::with_mass(&bodies.mesh(&sheets.union, &driven)?, mass)
-            .and_then(|m| m.with_damping(damping))
+            .and_then(|m| m.with_dampings(sheets.dampings()))
             .map_err(at(&key))?;
         let first_body = bodies.list.first().map(|body| body.first);
         if let Some(first) = first_body.or(driven.first()) {
@@ -129,7 +128,7 @@ impl<'a> Builder<'a> {
             }
         }
         let mut modelled = Vec::new();
-        if damping > 0.0 {
+        if scene.sheet.iter().any(|sheet| sheet.damping > 0.0) {
             modelled.push("velocity damping".to_owned());
         }
         if !scene.weight.is_empty() {

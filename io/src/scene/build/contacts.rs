@@ -4,7 +4,7 @@ use super::builder::{Builder, Kept, at};
 use crate::scene::driven::DrivenSurface;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
-use crate::scene::obstacles::Shape;
+use crate::scene::obstacles::{self, Shape};
 use crate::scene::placed::PlacedSheet;
 use crate::scene::placed_bodies::Surface;
 use crate::scene::problem::Problem;
@@ -13,6 +13,14 @@ use isosheet_collide::{Coefficients, ContactOptions, Contacts, ContactsError, Ob
 use isosheet_mesh::VertexId;
 use std::collections::HashMap;
 use std::ops::Range;
+
+/// One of the two that meet in a pair.
+enum Meeting {
+    /// These points of sheets, bodies and obstacles in motion.
+    Points(Range<usize>),
+    /// The obstacle of this number among those that do not deform.
+    Body(u32),
+}
 
 impl Builder<'_> {
     pub(super) fn cuts(&self) -> Vec<[VertexId; 2]> {
@@ -46,7 +54,9 @@ impl Builder<'_> {
             None => ContactOptions::for_sheet(self.model()),
             Some(surface) => ContactOptions::for_surface(&surface.sheet, &surface.points),
         };
-        let options = scene.contact.options(automatic, scene.sheet[0].thickness);
+        let thickest = scene.sheet.iter().map(|sheet| sheet.thickness);
+        let thickest = thickest.fold(0.0, f64::max);
+        let options = scene.contact.options(automatic, thickest);
         let contacts = match &self.surface {
             None => Contacts::new(self.model(), options),
             Some(Surface { sheet, points }) => Contacts::on_surface(sheet, points.clone(), options),
@@ -54,6 +64,13 @@ impl Builder<'_> {
         let mut contacts = contacts
             .map_err(at(&key.name("contact")))?
             .with_glue(&[&self.glued[..], &self.cuts()].concat());
+        for PlacedSheet { of, part, key, .. } in &self.sheets.list {
+            if of.thickness != thickest {
+                contacts = contacts
+                    .with_thickness_of(part.vertices.clone(), of.thickness)
+                    .map_err(at(&key.name("thickness")))?;
+            }
+        }
         let sheets = 0..self.sheets.union.topology().vertex_count();
         if let Some(surface) = &self.surface {
             let mut parts: Vec<_> = self.origins.bodies.clone();
@@ -97,24 +114,51 @@ impl Builder<'_> {
                     .with_friction_between([others, part.vertices.clone()], coefficients)
                     .map_err(at(&key.name("obstacle").entry(*number)))?;
             }
-            let list = key.name("contact.pair");
-            for (k, pair) in scene.contact.pair.iter().enumerate() {
-                let key = list.entry(k);
-                let [first, second] = &pair.sheets;
-                let vertices = [self.points_of(first, &key)?, self.points_of(second, &key)?];
-                let coefficients = Coefficients::equal(pair.friction);
-                contacts = match self.switches.holds(Holder::Contact(k)) {
-                    true => contacts
-                        .with_friction_between(vertices, coefficients)
-                        .map_err(at(&key))?,
-                    false => contacts.without_contact_between(vertices),
-                };
-            }
+        }
+        for (k, (key, pair)) in (0..).zip(key.name("contact.pair").entries(&scene.contact.pair)) {
+            let [first, second] = [0, 1].map(|side| self.meeting(&pair.sheets[side], &key));
+            let holds = self.switches.holds(Holder::Contact(k));
+            let coefficients = Coefficients::equal(pair.friction);
+            let with_pair = match (first?, second?) {
+                (Meeting::Points(first), Meeting::Points(second)) if !holds => {
+                    Ok(contacts.without_contact_between([first, second]))
+                }
+                (Meeting::Points(first), Meeting::Points(second)) => {
+                    contacts.with_friction_between([first, second], coefficients)
+                }
+                (Meeting::Body(body), Meeting::Points(vertices))
+                | (Meeting::Points(vertices), Meeting::Body(body)) => {
+                    contacts.with_friction_on(body, vertices, coefficients)
+                }
+                (Meeting::Body(_), Meeting::Body(_)) => {
+                    let message = "two obstacles do not meet each other";
+                    let remedy = "name a sheet or a body that responds and what it meets";
+                    return Err(Problem::new(key, message, remedy).into());
+                }
+            };
+            contacts = with_pair.map_err(at(&key))?;
         }
         if scene.contact.self_contact {
             self.modelled.push("self-contact".into());
         }
         Ok((Some(contacts), obstacles))
+    }
+
+    /// What one of the names of a pair stands for.
+    fn meeting(&self, name: &str, key: &Key) -> Result<Meeting, Problem> {
+        let obstacles = &self.scene.obstacle;
+        let Some(number) = obstacles::number_of(obstacles, name) else {
+            return self.points_of(name, key).map(Meeting::Points);
+        };
+        let mut driven = self.origins.driven.iter();
+        Ok(match driven.find(|surface| surface.number == number) {
+            Some(surface) => Meeting::Points(surface.part.vertices.clone()),
+            None => {
+                let before = obstacles[..number].iter();
+                let rigid = before.filter(|o| !matches!(o.shape, Shape::Sequence(_)));
+                Meeting::Body(rigid.count() as u32)
+            }
+        })
     }
 
     pub(super) fn points_of(&self, name: &str, key: &Key) -> Result<Range<usize>, Problem> {

@@ -1,13 +1,19 @@
 //! Seams.
 
 use super::builder::{Builder, at};
+use crate::scene::SeamBend;
 use crate::scene::bodies;
 use crate::scene::bond::Bond;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
+use crate::scene::problem::Problem;
 use crate::scene::switch::Holder;
-use isosheet_dynamics::{Attachment, Glue, PAPER_GRAVITY, Potential, Profile, SimulationError};
-use isosheet_mesh::VertexId;
+use isosheet_dynamics::{
+    Attachment, CreaseSpring, CreaseSprings, Glue, PAPER_GRAVITY, Potential, Profile,
+    SimulationError,
+};
+use isosheet_mesh::{EdgeId, VertexId};
+use std::collections::BTreeMap;
 
 impl Builder<'_> {
     pub(super) fn add_glue(&mut self) -> Result<(), SceneError> {
@@ -56,6 +62,15 @@ impl Builder<'_> {
             if seam.from.is_none() {
                 self.glued.extend(pairs);
             }
+            if let Some(bend) = &seam.bend {
+                let springs = self.seam_springs(bend, &holding, &key)?;
+                let springs = CreaseSprings::across_seams(self.sheets.union.topology(), springs);
+                let springs = springs.map_err(at(&key.name("bend")))?;
+                self.change(
+                    |m| Ok(m.with_potential(springs)),
+                    at::<SimulationError>(&key),
+                )?;
+            }
             self.targets.seams.push(glue.clone());
             let bond = Bond::of_sheets(numbers, glue.clone());
             self.add_bond(&key, bond, glue)?;
@@ -80,5 +95,73 @@ impl Builder<'_> {
             |m| Ok(m.with_potential(potential)),
             at::<SimulationError>(key),
         )
+    }
+
+    /// The springs across a seam of these pairs, each with the opposite corner of the face on its second side. Seam
+    /// and faces beside it are springs in series ([`CreaseSpring::put_in_sheet`]).
+    fn seam_springs(
+        &self,
+        bend: &SeamBend,
+        pairs: &[[VertexId; 2]],
+        key: &Key,
+    ) -> Result<Vec<(CreaseSpring, VertexId)>, Problem> {
+        let union = &self.sheets.union;
+        let topology = union.topology();
+        let partners: BTreeMap<VertexId, VertexId> = pairs.iter().map(|&[a, b]| (a, b)).collect();
+        // Radians of bend by a moment on a metre of the edge.
+        let compliance = |edge: EdgeId| {
+            let [face] = topology
+                .edge_faces(edge)
+                .into_iter()
+                .flatten()
+                .collect::<Vec<_>>()[..]
+            else {
+                return 0.0;
+            };
+            let sheets = self.sheets.list.iter();
+            let mut own = sheets.filter(|sheet| sheet.part.faces.contains(&face.index()));
+            let rigidity = own
+                .next()
+                .map_or(0.0, |sheet| sheet.of.bending().rigidity());
+            match rigidity > 0.0 {
+                true => {
+                    union.face_areas()[face.index()] / (rigidity * union.lengths()[edge.index()])
+                }
+                false => 0.0,
+            }
+        };
+        let spring = |edge: EdgeId| {
+            let ends = topology.edges()[edge.index()].map(|v| partners.get(&v).copied());
+            let other = topology.find_edge(ends[0]?, ends[1]?)?;
+            let [opposite] = topology
+                .opposite_vertices(other)
+                .into_iter()
+                .flatten()
+                .collect::<Vec<_>>()[..]
+            else {
+                return None;
+            };
+            if !topology.is_boundary_edge(edge) {
+                return None;
+            }
+            let beside = compliance(edge) + compliance(other);
+            let stiffness = bend.stiffness / (1.0 + bend.stiffness * beside);
+            let spring = CreaseSpring {
+                edge,
+                stiffness: stiffness * union.lengths()[edge.index()],
+                rest: bend.angle.to_radians().into(),
+                yields: None,
+            };
+            Some((spring, opposite))
+        };
+        let springs: Vec<_> = topology.edge_ids().filter_map(spring).collect();
+        if springs.is_empty() {
+            return Err(Problem::new(
+                key.name("bend"),
+                "no edge of the rim of one side of the seam is glued to one of the other side",
+                "glue vertices that follow one another on the rims of both sides, or leave the key out",
+            ));
+        }
+        Ok(springs)
     }
 }

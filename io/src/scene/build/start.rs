@@ -3,7 +3,7 @@
 use super::builder::{Builder, StartPlaces};
 use crate::scene::error::SceneError;
 use crate::scene::placed::PlacedSheet;
-use crate::scene::sheet::Isometry;
+use crate::scene::sheet::{Isometry, Sheet};
 use isosheet_dynamics::{State, leave_flat_in, project_positions};
 use nalgebra::Vector3;
 
@@ -16,33 +16,36 @@ const ROUNDING: f64 = 1e-4;
 
 impl Builder<'_> {
     /// The start is that of the scene as it was, whatever holds the sheets now.
-    pub(super) fn mend_start(&mut self) {
+    pub(super) fn mend_start(&mut self) -> Result<(), SceneError> {
         match &self.kept.start {
             Some(start) if !self.switches.are_at_start(self.scene) => {
                 self.x.clone_from(&start.mended);
             }
             _ => {
-                self.mend_lengths();
+                self.mend_lengths()?;
                 self.kept.start = Some(StartPlaces {
                     mended: self.x.clone(),
                     perturbed: Vec::new(),
                 });
             }
         }
+        Ok(())
     }
 
-    fn mend_lengths(&mut self) {
-        let sheets = &self.scene.sheet;
-        let is_rigid = sheets[0].isometry() == Isometry::Rods;
-        if !is_rigid || sheets.iter().all(|sheet| sheet.start.file.is_none()) {
-            return;
+    fn mend_lengths(&mut self) -> Result<(), SceneError> {
+        let of_file =
+            |sheet: &Sheet| sheet.isometry() == Isometry::Rods && sheet.start.file.is_some();
+        if !self.scene.sheet.iter().any(of_file) {
+            return Ok(());
         }
+        self.part_rods()?;
         if (EXACT..=ROUNDING).contains(&self.model().rods().max_strain(&self.x)) {
             let mut mended = self.x.clone();
             if project_positions(self.model(), &mut mended, EXACT).is_ok() {
                 self.x = mended;
             }
         }
+        Ok(())
     }
 
     /// The same of the random displacements.

@@ -1,0 +1,135 @@
+//! Velocity damping of sheets.
+
+use crate::{ModelError, SheetModel};
+use std::ops::Range;
+
+/// The velocity damping of the vertices of a range.
+#[derive(Debug, Clone)]
+pub(super) struct Damping {
+    vertices: Range<usize>,
+    /// 1/s.
+    rate: f64,
+}
+
+impl SheetModel {
+    /// Sets the rate `gamma` (1/s) of the velocity damping `v <- v exp(-gamma h)` that follows
+    /// every step: the paper's "we add this damping force to the velocity" (Sec. 6).
+    ///
+    /// # Errors
+    /// [`ModelError::Damping`] if the rate is negative or not finite.
+    pub fn with_damping(self, rate: f64) -> Result<Self, ModelError> {
+        let all = 0..self.sheet_vertices;
+        self.with_dampings([(all, rate)])
+    }
+
+    /// As [`SheetModel::with_damping`], with a rate for each of several sheets, whose vertices these are; without
+    /// damping elsewhere.
+    ///
+    /// # Errors
+    /// [`ModelError::Damping`] if a rate is negative or not finite.
+    pub fn with_dampings(
+        mut self,
+        sheets: impl IntoIterator<Item = (Range<usize>, f64)>,
+    ) -> Result<Self, ModelError> {
+        self.damping.clear();
+        for (vertices, rate) in sheets {
+            if !(rate.is_finite() && rate >= 0.0) {
+                return Err(ModelError::Damping { rate });
+            }
+            match self.damping.last_mut() {
+                Some(last) if last.rate == rate && last.vertices.end == vertices.start => {
+                    last.vertices.end = vertices.end;
+                }
+                _ => self.damping.push(Damping { vertices, rate }),
+            }
+        }
+        Ok(self)
+    }
+
+    /// The rate of the velocity damping, 1/s, if that is the same of all sheets.
+    pub fn damping(&self) -> Option<f64> {
+        match &self.damping[..] {
+            [] => Some(0.0),
+            [all] if all.vertices.len() >= self.sheet_vertices => Some(all.rate),
+            several => several.iter().all(|own| own.rate == 0.0).then_some(0.0),
+        }
+    }
+
+    /// The coordinates of what is damped, each with the part of its velocities that `h` seconds leave.
+    fn damped(&self, h: f64) -> impl Iterator<Item = (Range<usize>, f64)> {
+        let damped = self.damping.iter().filter(|own| own.rate > 0.0);
+        damped.map(move |own| {
+            let end = own.vertices.end.min(self.sheet_vertices);
+            let coordinates = 3 * own.vertices.start.min(end)..3 * end;
+            (coordinates, (-own.rate * h).exp())
+        })
+    }
+
+    /// The part of velocities (`3V`) that damping over `h` seconds leaves, in place of them.
+    pub(crate) fn damp(&self, v: &mut [f64], h: f64) {
+        for (coordinates, factor) in self.damped(h) {
+            v[coordinates].iter_mut().for_each(|v| *v *= factor);
+        }
+    }
+
+    /// The energy that damping takes from velocities (`3V`, metres per second) in `h` seconds, joules.
+    pub(crate) fn damping_loss(&self, v: &[f64], h: f64) -> f64 {
+        let loss = |(coordinates, factor): (Range<usize>, f64)| {
+            let mut alone = vec![0.0; v.len()];
+            alone[coordinates.clone()].copy_from_slice(&v[coordinates]);
+            self.kinetic_energy(&alone) * (1.0 - factor * factor)
+        };
+        self.damped(h).map(loss).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Method, Simulation, State};
+    use isosheet_mesh::{MassKind, Part, Sheet, generate};
+
+    /// Of two sheets that coast freely each loses its velocity at its own rate, and the account of the energy has
+    /// what both lose.
+    #[test]
+    fn each_of_two_sheets_has_its_own_rate() {
+        let sheet = generate::isotropic_square(1, 0.1).expect("a square");
+        let other = sheet.map_positions(|[x, y, z]| [x, y, z + 1.0]);
+        let other = other.expect("it stays a square");
+        let both = Sheet::union(&[&sheet, &other]).expect("a union");
+        let parts = Part::of_union(&[&sheet, &other]);
+        let rates = [0.5, 3.0];
+        let model = SheetModel::new(&both, 0.2, MassKind::Lumped).expect("a model");
+        let model = model
+            .with_dampings(parts.iter().map(|p| p.vertices.clone()).zip(rates))
+            .expect("rates");
+        assert_eq!(model.damping(), None);
+        let velocities = [1.0, 0.0, 0.0].repeat(both.topology().vertex_count());
+        let start = State::moving(both.positions().to_vec(), velocities);
+        let mut run = Simulation::new(model, start, Method::default()).expect("a simulation");
+        let (steps, h) = (20, 0.01);
+        let mut dissipated = 0.0;
+        for _ in 0..steps {
+            dissipated = run.step(h).expect("a step").dissipated;
+        }
+        let mut left = 0.0;
+        for (part, rate) in parts.iter().zip(rates) {
+            let expected = (-rate * f64::from(steps) * h).exp();
+            for v in run.state().v[part.coordinates()].as_chunks::<3>().0 {
+                assert!((v[0] - expected).abs() < 1e-9, "{} {expected}", v[0]);
+            }
+            left += 0.5 * 0.1 * expected * expected;
+        }
+        assert!((dissipated - (0.1 - left)).abs() < 1e-9, "{dissipated}");
+    }
+
+    #[test]
+    fn rates_that_make_no_sense_are_refused() {
+        let sheet = generate::isotropic_square(1, 0.1).expect("a square");
+        for rate in [-1.0, f64::NAN, f64::INFINITY] {
+            let model = SheetModel::new(&sheet, 0.2, MassKind::Lumped).expect("a model");
+            let refused = model.with_dampings([(0..5, 1.0), (5..25, rate)]);
+            assert!(matches!(refused, Err(ModelError::Damping { .. })));
+        }
+    }
+}
