@@ -43,20 +43,15 @@ fn sphere(level: u32, radius: f64) -> Sheet {
     Sheet::new(x, &faces).expect("a sphere")
 }
 
-/// Twice the area of a face along its normal.
-fn twice_the_area(x: &[f64], face: [VertexId; 3]) -> [Vector3<f64>; 4] {
-    let [a, b, c] = face.map(|v| Vector3::from_column_slice(&x[3 * v.index()..][..3]));
-    [a, b, c, (b - a).cross(&(c - a))]
-}
-
-/// The volume behind the faces of a closed sheet.
+/// The volume behind the faces of a closed sheet, or of one that vertical walls close.
 fn volume(sheet: &Sheet, x: &[f64]) -> f64 {
     let faces = sheet.topology().faces().iter();
-    let six = faces.map(|f| {
-        let [a, b, c, _] = twice_the_area(x, *f);
-        a.dot(&b.cross(&c))
+    let below = faces.map(|f| {
+        let [a, b, c] = f.map(|v| Vector3::from_column_slice(&x[3 * v.index()..][..3]));
+        let across = (b - a).cross(&(c - a)).z / 2.0;
+        across * (a + b + c).z / 3.0
     });
-    six.sum::<f64>() / 6.0
+    below.sum()
 }
 
 /// A film without bending stiffness.
