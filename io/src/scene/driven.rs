@@ -1,31 +1,17 @@
 //! Obstacles that deform: meshes in motion beside the sheets.
 
-use super::carried::BodyLoad;
-use super::engine_problem::Origins;
+use super::driven_surface::DrivenSurface;
 use super::key::Key;
 use super::mesh_file::Files;
 use super::obstacles::{Obstacle, Shape};
 use super::problem::Problem;
 use super::resolution::check_shape;
-use super::setup::Facts;
 use crate::format::MovingMesh;
+use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::contact::CarriedPoint;
-use isosheet_dynamics::{SheetModel, Simulation};
 use isosheet_mesh::{MassMatrix, Part, Sheet, VertexId};
 use nalgebra::Vector3;
-use std::ops::Range;
 use std::sync::Arc;
-
-/// An obstacle whose surface is among those of a simulation: its vertices are pinned, and follow a mesh in motion.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct DrivenSurface {
-    /// The number of the obstacle in the scene.
-    pub(crate) number: usize,
-    /// Its vertices in the model.
-    pub(crate) vertices: Range<usize>,
-    /// Where its surface is among the sheets and the surfaces of bodies.
-    pub(crate) part: Part,
-}
 
 /// An obstacle that deforms, in its place.
 pub(super) struct DrivenObstacle {
@@ -170,76 +156,4 @@ fn check_faces(mesh: &MovingMesh, at: &Key) -> Result<(), Problem> {
         }
     }
     Ok(())
-}
-
-/// The number in the scene of one of the obstacles that do not deform.
-fn rigid_obstacle(driven: &[DrivenSurface], number: usize) -> usize {
-    driven.iter().fold(number, |number, surface| {
-        number + usize::from(surface.number <= number)
-    })
-}
-
-impl Facts {
-    /// What the sheet does to the obstacles at the end of the last step, in the order of the scene: torques about the
-    /// origins of the frames of those that do not deform, and about the origin of space of the others.
-    pub(crate) fn obstacle_loads(&self, simulation: &Simulation) -> Vec<BodyLoad> {
-        let driven = &self.origins.driven[..];
-        let rigid = simulation.body_loads().into_iter().enumerate();
-        let rigid = rigid.map(|(k, load)| {
-            let load = BodyLoad {
-                force: load.force.into(),
-                torque: load.torque.into(),
-            };
-            (rigid_obstacle(driven, k), load)
-        });
-        let forces = match driven {
-            [] => None,
-            _ => simulation.contact_forces(),
-        };
-        let x = &simulation.state().x;
-        let of_driven = driven.iter().map(|surface| {
-            let load = forces.as_ref().map(|forces| {
-                let vertices = surface.vertices.clone().map(VertexId::from_index);
-                BodyLoad::of_vertices(vertices, forces, x, Vector3::zeros())
-            });
-            (surface.number, load.unwrap_or_default())
-        });
-        let mut all: Vec<_> = rigid.chain(of_driven).collect();
-        all.sort_by_key(|(number, _)| *number);
-        all.into_iter().map(|(_, load)| load).collect()
-    }
-}
-
-impl Origins {
-    /// Whether a vertex of the model belongs to an obstacle that deforms.
-    pub(crate) fn is_driven(&self, vertex: VertexId) -> bool {
-        let mut driven = self.driven.iter();
-        driven.any(|surface| surface.vertices.contains(&vertex.index()))
-    }
-
-    /// The number in the scene of one of the obstacles that do not deform.
-    pub(crate) fn obstacle_number(&self, rigid: usize) -> usize {
-        rigid_obstacle(&self.driven, rigid)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_rigid_obstacles_pass_over_those_that_deform() {
-        let surface = |number| DrivenSurface {
-            number,
-            vertices: 0..0,
-            part: Part {
-                vertices: 0..0,
-                edges: 0..0,
-                faces: 0..0,
-            },
-        };
-        let driven = [surface(0), surface(2), surface(3)];
-        assert_eq!([0, 1, 2].map(|k| rigid_obstacle(&driven, k)), [1, 4, 5]);
-        assert_eq!(rigid_obstacle(&[], 3), 3);
-    }
 }

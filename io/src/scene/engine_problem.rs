@@ -1,6 +1,6 @@
 //! Errors of the engine as problems of the scene.
 
-use super::driven::DrivenSurface;
+use super::driven_surface::{DrivenSurface, rigid_obstacle};
 use super::key::{Key, KeyPart};
 use super::problem::Problem;
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
@@ -28,6 +28,19 @@ pub struct Origins {
     pub(crate) bodies: Vec<Range<usize>>,
     /// The obstacles that deform.
     pub(crate) driven: Vec<DrivenSurface>,
+}
+
+impl Origins {
+    /// Whether a vertex of the model belongs to an obstacle that deforms.
+    pub(crate) fn is_driven(&self, vertex: VertexId) -> bool {
+        let mut driven = self.driven.iter();
+        driven.any(|surface| surface.vertices.contains(&vertex.index()))
+    }
+
+    /// The number in the scene of one of the obstacles that do not deform.
+    pub(crate) fn obstacle_number(&self, rigid: usize) -> usize {
+        rigid_obstacle(&self.driven, rigid)
+    }
 }
 
 /// Two supports that come closer to each other.

@@ -4,6 +4,7 @@ use super::key::Key;
 use super::problem::{Checks, Problem};
 use super::sequence::Sequence;
 use super::unit::Unit;
+use super::up_axis::UpAxis;
 use crate::format::{
     self, FileError, FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions,
     MovingMesh, Polygons, SeparateBuffers, input, parse_mesh, read_mesh_with,
@@ -49,27 +50,6 @@ pub struct MeshFile {
 
 fn one() -> f64 {
     1.0
-}
-
-/// The axis of a file that points upwards.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum UpAxis {
-    /// z: coordinates are used as they are.
-    #[default]
-    Z,
-    /// y: (x, y, z) becomes (x, -z, y).
-    Y,
-}
-
-impl UpAxis {
-    /// A point of a file with z upwards.
-    pub(super) fn place(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
-        match self {
-            Self::Z => [x, y, z],
-            Self::Y => [x, -z, y],
-        }
-    }
 }
 
 /// What to do with faces of more than three corners.

@@ -1,6 +1,6 @@
 //! The sheets of a scene in their places, and the union of them that is simulated.
 
-use super::direction::{Direction, FaceTexture};
+use super::direction::{Direction, FaceTexture, gradients};
 use super::error::SceneError;
 use super::mesh::RestMesh;
 use super::mesh_file::{Files, MeshFile};
@@ -92,12 +92,7 @@ impl<'a> PlacedSheets<'a> {
         let numbered = sheets.iter().zip(&*forms).zip(parts).enumerate();
         let list = numbered.map(|(k, ((of, form), part))| {
             let key = sheet_key(sheets.len(), k);
-            let of = match of.direction {
-                Some(Direction::Texture(_)) => {
-                    Cow::Owned(of.with_texture(&form.unplaced, &form.texture, &key)?)
-                }
-                _ => Cow::Borrowed(of),
-            };
+            let of = with_texture(of, form, &key)?;
             let patched = patched(&of, &form.in_place(), &key)?;
             let mass = match (of.mass, &of.patch[..]) {
                 (None, [_, ..]) => of_densities(form, &patched),
@@ -192,6 +187,25 @@ impl<'a> PlacedSheets<'a> {
         let all = self.list.iter().map(|sheet| &*sheet.of);
         sheets::one_of(all, name, key, what).map(|k| &self.list[k])
     }
+}
+
+/// A sheet with the direction that the texture of its mesh gives to each face, if it is meant.
+fn with_texture<'a>(
+    of: &'a SheetOfScene,
+    form: &Form,
+    key: &Key,
+) -> Result<Cow<'a, SheetOfScene>, Problem> {
+    let Some(Direction::Texture(texture)) = of.direction else {
+        return Ok(Cow::Borrowed(of));
+    };
+    let mesh = form.unplaced.mesh();
+    let of_mesh = gradients(mesh, &form.texture, texture, &key.name("direction"))?;
+    let faces = form.unplaced.faces_of_mesh().into_iter();
+    let placed = faces.map(|face| of.placed(of_mesh[face as usize]));
+    Ok(Cow::Owned(SheetOfScene {
+        direction: Some(Direction::Faces(Arc::new(placed.collect()))),
+        ..of.clone()
+    }))
 }
 
 /// The masses of a sheet with patches.

@@ -1,9 +1,9 @@
 //! Meshes in motion, from files.
 
 use super::key::Key;
-use super::mesh_file::UpAxis;
 use super::problem::Checks;
 use super::unit::Unit;
+use super::up_axis::UpAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;

@@ -1,7 +1,7 @@
 //! Everything that a simulation is made of.
 
 use super::bond::Bond;
-use super::carried::CarriedBody;
+use super::carried::{BodyLoad, CarriedBody};
 use super::chart::Chart;
 use super::error::{SceneError, SceneText};
 use super::key::Key;
@@ -18,6 +18,7 @@ use isosheet_dynamics::{
 };
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Part, Sheet, VertexId};
+use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -102,6 +103,37 @@ impl Facts {
     /// So many values of the vertices of what is seen by those of the model.
     pub(crate) fn of_vertices(&self, values: Vec<f64>, each: usize) -> Vec<f64> {
         self.of_sheets(values, each, |part| &part.vertices)
+    }
+}
+
+impl Facts {
+    /// What the sheet does to the obstacles at the end of the last step, in the order of the scene: torques about the
+    /// origins of the frames of those that do not deform, and about the origin of space of the others.
+    pub(crate) fn obstacle_loads(&self, simulation: &Simulation) -> Vec<BodyLoad> {
+        let driven = &self.origins.driven[..];
+        let rigid = simulation.body_loads().into_iter().enumerate();
+        let rigid = rigid.map(|(k, load)| {
+            let load = BodyLoad {
+                force: load.force.into(),
+                torque: load.torque.into(),
+            };
+            (self.origins.obstacle_number(k), load)
+        });
+        let forces = match driven {
+            [] => None,
+            _ => simulation.contact_forces(),
+        };
+        let x = &simulation.state().x;
+        let of_driven = driven.iter().map(|surface| {
+            let load = forces.as_ref().map(|forces| {
+                let vertices = surface.vertices.clone().map(VertexId::from_index);
+                BodyLoad::of_vertices(vertices, forces, x, Vector3::zeros())
+            });
+            (surface.number, load.unwrap_or_default())
+        });
+        let mut all: Vec<_> = rigid.chain(of_driven).collect();
+        all.sort_by_key(|(number, _)| *number);
+        all.into_iter().map(|(_, load)| load).collect()
     }
 }
 

@@ -1,21 +1,19 @@
 //! The sheet: mesh, material, placement and start.
 
 use super::curl::Curl;
-use super::direction::{Direction, FaceTexture, gradients};
+use super::direction::Direction;
 use super::key::Key;
 use super::material::{Material, ratios, typical_poisson};
 use super::mesh::Mesh;
 use super::patch::Patch;
 use super::pose::Pose;
-use super::problem::{Checks, Problem};
-use super::refined::Refined;
+use super::problem::Checks;
 use super::start::Start;
 use super::unit::Unit;
 use super::yields::SheetYield;
 use isosheet_dynamics as engine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// A sheet. A scene of several has a table `[[sheet]]` for each, with a `name` by which supports, creases and
 /// loads name it; where they name none, regions and points are of all sheets. Each is of its own material,
@@ -270,25 +268,6 @@ impl Sheet {
         direction.unwrap_or(engine::MaterialDirection::Faces(Vec::new()))
     }
 
-    /// The same with the direction that the texture of its mesh gives to each face.
-    pub(super) fn with_texture(
-        &self,
-        unplaced: &Refined,
-        texture: &[FaceTexture],
-        key: &Key,
-    ) -> Result<Self, Problem> {
-        let Some(Direction::Texture(of)) = self.direction else {
-            return Ok(self.clone());
-        };
-        let of_mesh = gradients(unplaced.mesh(), texture, of, &key.name("direction"))?;
-        let faces = unplaced.faces_of_mesh().into_iter();
-        let placed = faces.map(|face| self.placed(of_mesh[face as usize]));
-        Ok(Self {
-            direction: Some(Direction::Faces(Arc::new(placed.collect()))),
-            ..self.clone()
-        })
-    }
-
     /// Mass of a square metre, kg/m2, unless `mass` is given: as written, of the material, or of office
     /// paper.
     pub fn areal_density(&self) -> f64 {
@@ -379,7 +358,7 @@ impl Sheet {
     }
 
     /// A direction in the frame of the mesh, in space.
-    fn placed(&self, direction: [f64; 3]) -> [f64; 3] {
+    pub(super) fn placed(&self, direction: [f64; 3]) -> [f64; 3] {
         let [from, to] = [[0.0; 3], direction].map(|p| self.placement.place(p));
         std::array::from_fn(|k| to[k] - from[k])
     }

@@ -1,7 +1,7 @@
 //! Contact, and obstacles.
 
 use super::builder::{Builder, Kept, at};
-use crate::scene::driven::DrivenSurface;
+use crate::scene::driven_surface::DrivenSurface;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
 use crate::scene::obstacles::{self, Shape};
