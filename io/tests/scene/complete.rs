@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 11] = [
+const ALL_KEYS: [&str; 12] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -311,6 +311,9 @@ const ALL_KEYS: [&str; 11] = [
     [[sheet.patch]]
     at = { group = "collar" }
     material = "card"
+    [[support]]
+    at = { vertices = [5] }
+    hold = { follow = { sequence = { path = "body.npz" }, vertices = "nearest" } }
     [[obstacle]]
     shape = { sequence = { path = "body.npz", scale = 0.01, up = "y", delay = 0.5 } }
     [[support]]
@@ -319,6 +322,14 @@ const ALL_KEYS: [&str; 11] = [
     [[support]]
     at = { vertices = [3] }
     hold = { follow = { sequence = { path = "body.npz" }, vertices = { numbers = [7] } } }
+    [stop]
+    time = 1
+    "#,
+    r#"version = 1
+    [sheet]
+    mesh = { file = { path = "shirt.obj" } }
+    material = "office paper"
+    direction = { uv = "v" }
     [stop]
     time = 1
     "#,
