@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 13] = [
+const ALL_KEYS: [&str; 14] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -390,6 +390,9 @@ const ALL_KEYS: [&str; 13] = [
     [[sheet.patch]]
     at = { group = "collar" }
     material = "card"
+    [[support]]
+    at = { vertices = [5] }
+    hold = { follow = { sequence = { path = "body.npz" }, vertices = "nearest" } }
     [[obstacle]]
     shape = { sequence = { path = "body.npz", scale = 0.01, up = "y", delay = 0.5 } }
     [[support]]
@@ -398,6 +401,14 @@ const ALL_KEYS: [&str; 13] = [
     [[support]]
     at = { vertices = [3] }
     hold = { follow = { sequence = { path = "body.npz" }, vertices = { numbers = [7] } } }
+    [stop]
+    time = 1
+    "#,
+    r#"version = 1
+    [sheet]
+    mesh = { file = { path = "shirt.obj" } }
+    material = "office paper"
+    direction = { uv = "v" }
     [stop]
     time = 1
     "#,

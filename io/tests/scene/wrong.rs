@@ -69,7 +69,14 @@ fn checked(tried: &str, error: &SceneError) -> Vec<PlacedProblem> {
         );
         assert!(problem.message.len() > 5, "{tried}: {shown}");
         for word in [
-            "f64", "u32", "usize", "serde", "variant", "struct ", "sequence", "boolean",
+            "f64",
+            "u32",
+            "usize",
+            "serde",
+            "variant",
+            "struct ",
+            "type: sequence",
+            "boolean",
         ] {
             assert!(!shown.contains(word), "{tried} speaks of {word}: {shown}");
         }
@@ -399,12 +406,16 @@ pose = {{ position = [0, 0, -1] }}
             );
         }
     }
-    // The scene above has all the paths that the reference knows.
+    // The scene above has all the paths of meshes that the reference knows. (Those of meshes in motion are tried with
+    // these.)
     let scenes = scenes();
     let paths = places(&scenes)
         .into_keys()
         .filter(|name| name.ends_with(".path"));
-    assert_eq!(paths.collect::<Vec<_>>(), ["MeshFile.path"]);
+    assert_eq!(
+        paths.collect::<Vec<_>>(),
+        ["MeshFile.path", "Sequence.path"]
+    );
     let users = schema().to_string().matches("#/$defs/MeshFile").count();
     assert_eq!(users, 4, "a path was added to scenes: try it here");
 }
