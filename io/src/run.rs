@@ -35,6 +35,7 @@ mod energy;
 mod error;
 mod estimate;
 mod extend;
+mod extension_error;
 #[cfg(feature = "picture")]
 mod film;
 mod folder;
@@ -63,7 +64,8 @@ pub use elastic::{Bend, ElasticSummary};
 pub use energy::EnergySummary;
 pub use error::RunError;
 pub use estimate::Estimate;
-pub use extend::{ExtensionError, extend_folder};
+pub use extend::extend_folder;
+pub use extension_error::ExtensionError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};

@@ -52,6 +52,7 @@ mod functions;
 mod glue;
 mod guides;
 mod in_words;
+mod integration;
 mod key;
 mod live;
 mod material;
@@ -59,12 +60,14 @@ mod measure;
 mod mesh;
 mod mesh_file;
 mod method;
+mod obstacle_names;
 mod obstacles;
 mod outline;
 mod output;
 mod patch;
 mod patched;
 mod pattern;
+mod periods;
 mod placed;
 mod placed_bodies;
 mod pose;
@@ -118,6 +121,7 @@ pub use follower_loads::{Gas, Moment, Pressure};
 pub use forces::{Acceleration, Forces, Frame, Load};
 pub use glue::{Glue, SeamBend, SeamSide};
 pub use guides::{BodyForce, BodyTorque, Guide};
+pub use integration::Integration;
 pub use key::{Key, KeyError, KeyPart};
 pub use live::{FailedStep, HoldError, LiveScene};
 pub use material::{Material, Plate};
@@ -138,7 +142,7 @@ pub use profile::{Change, Course, Interpolation, Profile};
 pub use schema::{as_written, documented_schema, schema};
 pub use selection::Selection;
 pub use sequence::Sequence;
-pub use setup::{Integration, Setup};
+pub use setup::Setup;
 pub use sheet::{Bending, Elasticity, Isometry, RestShape, Sheet};
 pub use source::{SceneFile, SceneFileError};
 pub use start::{Spin, Start};
@@ -314,7 +318,7 @@ impl Scene {
         for (key, obstacle) in root.name("obstacle").entries(&self.obstacle) {
             obstacle.check(&key, &mut checks);
         }
-        obstacles::check_names(&self.obstacle, &self.sheet, &self.body, &mut checks);
+        obstacle_names::check_names(&self.obstacle, &self.sheet, &self.body, &mut checks);
         bodies::check(&self.body, &self.sheet, &mut checks);
         self.forces
             .check(&self.sheet, &root.name("forces"), &mut checks);
@@ -328,7 +332,7 @@ impl Scene {
             let key = root.name("contact.pair").entry(k).name("sheets");
             for (i, name) in pair.sheets.iter().enumerate() {
                 let key = key.entry(i);
-                if obstacles::number_of(&self.obstacle, name).is_none() {
+                if obstacle_names::number_of(&self.obstacle, name).is_none() {
                     bodies::check_reference(&self.sheet, &self.body, Some(name), &key, &mut checks);
                 }
             }

@@ -271,7 +271,7 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 17,
+            found: 16,
             supported: 17
         }
     ));

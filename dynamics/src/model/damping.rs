@@ -1,15 +1,8 @@
 //! Velocity damping of sheets.
 
+use super::damped_range::Damping;
 use crate::{ModelError, SheetModel};
 use std::ops::Range;
-
-/// The velocity damping of the vertices of a range.
-#[derive(Debug, Clone)]
-pub(super) struct Damping {
-    vertices: Range<usize>,
-    /// 1/s.
-    rate: f64,
-}
 
 impl SheetModel {
     /// Sets the rate `gamma` (1/s) of the velocity damping `v <- v exp(-gamma h)` that follows

@@ -2,6 +2,7 @@
 
 pub(crate) mod air;
 pub(crate) mod clamps;
+mod damped_range;
 mod damping;
 #[cfg(test)]
 mod derivative_tests;
@@ -31,7 +32,7 @@ use crate::constraint::VertexConstraint;
 use crate::material::elastic_sheet::ElasticSheet;
 use crate::potential::{At, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::term::ImplicitForce;
-use damping::Damping;
+use damped_range::Damping;
 pub use error::ModelError;
 use isosheet_mesh::{EdgeId, LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
 use support::MovingPin;

@@ -1,6 +1,6 @@
 //! Why a run cannot go on.
 
-use super::ExtensionError;
+use super::extension_error::ExtensionError;
 use crate::format::{DataError, ExportError, FileError};
 use crate::scene::{SceneError, SceneFileError};
 use isosheet_mesh::Advice;

@@ -1,6 +1,6 @@
 //! What to know of a run before its results are used.
 
-use super::Summary;
+use super::{ElasticSummary, Summary};
 use crate::scene::Warning;
 use isosheet_mesh::wording::brief;
 
@@ -16,7 +16,7 @@ impl Summary {
     /// Part by which the mesh may change the forces of bends.
     pub const FORCE_ERROR: f64 = 0.03;
 
-    /// Part of the elastic energy that the slack of bends may have.
+    /// Part of the elastic energy that the slack of bends may have in a sheet that is stretched more than bent.
     pub const SLACK: f64 = 0.05;
 
     /// Part by which steps may make a vibration slower.
@@ -36,7 +36,9 @@ impl Summary {
                           faces by their strain and by the share of stretching in their energy";
             warnings.push(Warning::new(message, remedy));
         }
-        let slack = self.elastic.filter(|e| e.slack > Self::SLACK);
+        // Where a sheet mostly bends, its forces are those of the bends.
+        let is_stretched = |e: &ElasticSummary| e.share > 0.5 && e.slack > Self::SLACK;
+        let slack = self.elastic.filter(is_stretched);
         if let Some(elastic) = slack.filter(|_| self.ending.is_squeezed()) {
             let message = format!(
                 "the mesh is too coarse for forces of supports that pull against each other: {} % of the elastic energy \

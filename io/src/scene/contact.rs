@@ -1,10 +1,11 @@
 //! Contact of the sheet with itself and with obstacles.
 
 use super::key::Key;
+use super::obstacles::Shape;
 use super::problem::Checks;
 use super::switch::When;
 use super::unit::Unit;
-use super::{Body, Obstacle, bodies, obstacles};
+use super::{Body, Obstacle, bodies, obstacle_names};
 use isosheet_collide::{ContactOptions, Stiffness};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -80,10 +81,34 @@ impl Contact {
         checks: &mut Checks,
     ) {
         checks.not_negative(key.name("friction"), self.friction, Unit::One);
-        for (key, pair) in key.name("pair").entries(&self.pair) {
+        for (k, (key, pair)) in key.name("pair").entries(&self.pair).enumerate() {
+            let is_same = |other: &SheetPair| {
+                let [first, second] = &pair.sheets;
+                other.sheets == pair.sheets || [second, first] == other.sheets.each_ref()
+            };
+            if let Some(other) = self.pair[..k].iter().position(is_same) {
+                let message = format!("`contact.pair[{other}]` is of the same two");
+                let remedy = "describe how two of them meet in one entry";
+                checks.report(key.name("sheets"), message, remedy);
+            }
             checks.not_negative(key.name("friction"), pair.friction, Unit::One);
             let is_body = |name: &String| bodies::number_of(bodies, name).is_some();
-            let is_obstacle = |name: &String| obstacles::number_of(obstacles, name).is_some();
+            let is_obstacle = |name: &String| obstacle_names::number_of(obstacles, name).is_some();
+            let switch = match (&pair.from, &pair.until) {
+                (Some(_), _) => Some("from"),
+                (None, Some(_)) => Some("until"),
+                (None, None) => None,
+            };
+            let deforms = |name: &String| {
+                let number = obstacle_names::number_of(obstacles, name);
+                number.is_some_and(|k| matches!(obstacles[k].shape, Shape::Sequence(_)))
+            };
+            let is_rigid = |name: &String| is_obstacle(name) && !deforms(name);
+            if let Some(switch) = switch.filter(|_| pair.sheets.iter().any(is_rigid)) {
+                let message = "contact with an obstacle that does not deform begins with the run and never ends";
+                let remedy = "leave the key out; an obstacle may move to where it is in the way, and away from there";
+                checks.report(key.name(switch), message, remedy);
+            }
             match pair.sheets.iter().filter(|name| is_obstacle(name)).count() {
                 0 if !self.self_contact && !pair.sheets.iter().any(is_body) => {
                     let remedy = "write `self_contact = true`, or leave the pair out";

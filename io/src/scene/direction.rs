@@ -34,6 +34,13 @@ pub enum Direction {
 }
 
 /// A direction by texture coordinates.
+///
+/// ```toml
+/// [sheet]
+/// mesh = { file = { path = "shirt.obj" } }
+/// material = "cotton"
+/// direction = { uv = "u" }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TextureDirection {

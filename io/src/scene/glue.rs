@@ -141,7 +141,8 @@ impl Glue {
             let key = key.name("bend");
             checks.not_negative(key.name("stiffness"), bend.stiffness, Unit::Newton);
             checks.within(key.name("angle"), bend.angle, [-180.0, 180.0]);
-            if body.is_some() || self.closing != closed() {
+            let switches = self.from.is_some() || self.until.is_some();
+            if body.is_some() || self.closing != closed() || switches {
                 let message =
                     "bending is resisted across seams that are closed at all times, between sheets";
                 checks.report(key, message, "leave the key out");

@@ -1,9 +1,9 @@
 //! How the motion is computed.
 
 use super::chart::Chart;
+use super::integration::Integration;
 use super::key::Key;
 use super::problem::Checks;
-use super::setup::Integration;
 use super::unit::Unit;
 use isosheet_dynamics as engine;
 use isosheet_dynamics::{EnergyMomentumOptions, ImplicitOptions, RattleOptions};

@@ -2,8 +2,8 @@
 
 use super::bond::Bond;
 use super::carried::{BodyLoad, CarriedBody};
-use super::chart::Chart;
 use super::error::{SceneError, SceneText};
+use super::integration::Integration;
 use super::key::Key;
 use super::problem::Problem;
 use super::switches::{Switches, other_switches};
@@ -13,28 +13,12 @@ use super::{Gauge, Origins};
 use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
 use isosheet_dynamics::contact::{Contact, SurfacePoints};
-use isosheet_dynamics::{
-    Checkpoint, Method, SheetModel, Simulation, SimulationError, State, StepControl,
-};
+use isosheet_dynamics::{Checkpoint, SheetModel, Simulation, SimulationError, State};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Part, Sheet, VertexId};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::ops::Range;
-
-/// How the motion is computed.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Integration {
-    /// Over all positions.
-    Free {
-        /// The integrator.
-        method: Method,
-        /// What happens to rejected steps.
-        control: StepControl,
-    },
-    /// In the chart that exists at the start.
-    InChart(Chart),
-}
 
 /// What is known of a scene besides its simulation.
 #[derive(Clone, Debug)]

@@ -38,7 +38,7 @@ pub struct Support {
     #[serde(default)]
     pub hold: Hold,
     /// When it is taken up; if left out, at the start. It then holds the vertices where they are at that moment, and
-    /// its motion is counted from there; a curve or a surface has to be where they are.
+    /// moves on from there by as much as its motion, at the time of the scene, changes afterwards; a curve or a surface has to be where they are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<When>,
     /// When it is released; if left out, never.

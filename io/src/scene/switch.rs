@@ -4,7 +4,6 @@ use super::key::Key;
 use super::measure::Measure;
 use super::problem::Checks;
 use super::unit::Unit;
-use super::{Integrator, Scene};
 use isosheet_mesh::wording::given;
 use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
@@ -114,59 +113,16 @@ impl Holder {
     }
 }
 
-impl Scene {
-    /// The periods of all that does not hold at all times.
-    pub(crate) fn periods(&self) -> impl Iterator<Item = Period<'_>> {
-        let supports = self.support.iter().enumerate();
-        let supports = supports.map(|(k, s)| (Holder::Support(k), &s.from, &s.until));
-        let glue = self.glue.iter().enumerate();
-        let glue = glue.map(|(k, g)| (Holder::Glue(k), &g.from, &g.until));
-        let pairs = self.contact.pair.iter().enumerate();
-        let pairs = pairs.map(|(k, p)| (Holder::Contact(k), &p.from, &p.until));
-        let all = supports.chain(glue).chain(pairs);
-        let all = all.map(|(of, from, until)| Period {
-            of,
-            from: from.as_ref(),
-            until: until.as_ref(),
-        });
-        all.filter(|period| period.from.is_some() || period.until.is_some())
-    }
-
-    pub(super) fn check_periods(&self, checks: &mut Checks) {
-        for period in self.periods() {
-            period.check(&self.measure, checks);
-            let key = period.of.key();
-            if !self.method.integrator.is_minimising() {
-                checks.report(
-                    key.name(period.first_name()),
-                    match self.method.integrator {
-                        Integrator::Chart => "what holds a sheet in a chart holds it at all times",
-                        _ => "this integrator has no place for what comes and goes",
-                    },
-                    "choose `bdf2` or `implicit_euler` as `method.integrator`",
-                );
-            }
-            if self.folding.is_some() && matches!(period.of, Holder::Support(_)) {
-                checks.report(
-                    key.name(period.first_name()),
-                    "the supports of a sheet that `folding` folds hold it at all times",
-                    "leave the key out, or drive the creases by `[[crease]]`",
-                );
-            }
-        }
-    }
-}
-
 impl Period<'_> {
     /// The key that a problem of both is reported at.
-    fn first_name(&self) -> &'static str {
+    pub(super) fn first_name(&self) -> &'static str {
         match self.from {
             Some(_) => "from",
             None => "until",
         }
     }
 
-    fn check(&self, measures: &[Measure], checks: &mut Checks) {
+    pub(super) fn check(&self, measures: &[Measure], checks: &mut Checks) {
         let key = self.of.key();
         for (name, when) in [("from", self.from), ("until", self.until)] {
             if let Some(when) = when {

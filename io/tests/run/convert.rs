@@ -552,7 +552,7 @@ fn files_that_do_not_fit_are_one_error() {
     let dir = dir.path();
     done(dir, &["simulate", "scene.toml", "--set", "stop.time=0.04"]);
     // The shell counts in blocks of half a kilobyte or a whole one.
-    let script = "trap '' XFSZ; ulimit -f 4; exec \"$0\" convert scene-run \"$1\"";
+    let script = "trap '' XFSZ; ulimit -f 4; exec \"$0\" convert scene-run \"$1\" -q";
     let series = SeriesFormat::ALL.map(SeriesFormat::extension);
     for extension in series.into_iter().chain(["png", "apng"]) {
         let out = format!("x.{extension}");

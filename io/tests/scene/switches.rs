@@ -1,5 +1,6 @@
 //! What is taken up and released: what is refused, and what it does.
 
+use crate::bodies::problem;
 use crate::parse;
 use isosheet_io::scene::{LiveScene, Scene};
 use isosheet_io::{EventChange, EventKind};
@@ -261,5 +262,46 @@ fn a_clamp_is_taken_up_where_the_sheet_is_and_the_other_one_released() {
         let mut resumed = LiveScene::resume(scene.file().clone(), checkpoint).expect("the same");
         let reports = [resumed.step(0.01), scene.step(0.01)].map(|r| r.expect("accepted"));
         assert_eq!(reports[0], reports[1]);
+    }
+}
+
+/// What switches in time and has no place for it is refused before the run.
+#[test]
+fn what_cannot_come_and_go_is_said_at_the_start() {
+    let two = "version = 1
+        [[sheet]]
+        name = \"a\"
+        mesh = { square = { side = 0.1, level = 1 } }
+        material = \"PET film\"
+        [[sheet]]
+        name = \"b\"
+        mesh = { square = { side = 0.1, level = 1 } }
+        material = \"PET film\"
+        placement = { position = [0, 0, 0.01] }
+        [[obstacle]]
+        name = \"floor\"
+        shape = \"half_space\"
+        pose = { position = [0, 0, -0.1] }
+        [contact]
+        self_contact = true\n";
+    let pair = |names: [&str; 2], more: &str| {
+        format!("[[contact.pair]]\nsheets = {names:?}\nfriction = 0.2\n{more}\n")
+    };
+    let seam = "[[glue]]\nsheets = [\"a\", \"b\"]\nfirst = \"boundary\"\nsecond = \"boundary\"\n\
+                closing = 0\n";
+    for (wrong, part) in [
+        (pair(["a", "floor"], "until = 0.2"), "an obstacle that does not deform"),
+        (
+            pair(["a", "b"], "until = 0.1") + &pair(["b", "a"], "from = 0.2"),
+            "`contact.pair[0]` is of the same two",
+        ),
+        (format!("{seam}until = 0.2\n[[forces.gas]]\n"), "a seam of the sheets around it"),
+        (
+            format!("{}until = 0.2\nbend = {{ stiffness = 1 }}\n", seam.replace("closing = 0\n", "")),
+            "closed at all times",
+        ),
+    ] {
+        let said = problem(&format!("{two}{wrong}"));
+        assert!(said.contains(part), "{wrong}: {said}");
     }
 }

@@ -4,7 +4,8 @@ use super::builder::{Builder, Kept, at};
 use crate::scene::driven_surface::DrivenSurface;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
-use crate::scene::obstacles::{self, Shape};
+use crate::scene::obstacle_names;
+use crate::scene::obstacles::Shape;
 use crate::scene::placed::PlacedSheet;
 use crate::scene::placed_bodies::Surface;
 use crate::scene::problem::Problem;
@@ -147,7 +148,7 @@ impl Builder<'_> {
     /// What one of the names of a pair stands for.
     fn meeting(&self, name: &str, key: &Key) -> Result<Meeting, Problem> {
         let obstacles = &self.scene.obstacle;
-        let Some(number) = obstacles::number_of(obstacles, name) else {
+        let Some(number) = obstacle_names::number_of(obstacles, name) else {
             return self.points_of(name, key).map(Meeting::Points);
         };
         let mut driven = self.origins.driven.iter();
