@@ -216,10 +216,10 @@ impl ElasticSheet {
     }
 
     /// With lengths that grow by themselves, by a part `s` that is a function of time: negative for paper that
-    /// dries, positive for film that is heated. It is what [above](Self) is said of the sheet whose lengths at
-    /// rest are `1 + s` times those of the mesh: strains and their limit are measured from these, and `E h` is
-    /// of the sheet as it then is. Its mass stays what it is. What it does to bending stiffness, slack and
-    /// curvature without stress, a part of the order of `s`, is left out.
+    /// dries, positive for film that is heated. The energy is that [above](Self) of a sheet whose lengths at
+    /// rest are `1 + s` times those of the mesh, with the same `E h`: strains and their limit are measured from
+    /// these. The mass stays what it is. What swelling does to bending stiffness, slack and curvature without
+    /// stress, a part of the order of `s`, is left out.
     ///
     /// A strip that is held at both ends and shrinks by a part `s` pulls with `E h s` per width.
     ///
@@ -235,9 +235,9 @@ impl ElasticSheet {
 
     /// The first part by which lengths would grow at a time that is not within [`ElasticSheet::SWELLING`].
     pub(crate) fn swollen_too_much(&self, t: f64) -> Option<f64> {
-        let parts = self.faces.iter().map(|face| face.swelling().part(t));
+        let mut parts = self.faces.iter().map(|face| face.swelling().part(t));
         let [least, most] = Self::SWELLING;
-        parts.into_iter().find(|s| !(*s >= least && *s <= most))
+        parts.find(|part| !(least..=most).contains(part))
     }
 
     /// The elasticity of some sheets of a [union](Sheet::union) with so many faces, each with its own

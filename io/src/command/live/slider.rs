@@ -146,4 +146,22 @@ mod tests {
             ]
         );
     }
+
+    #[test]
+    fn curls_and_swelling_have_sliders() {
+        let text = r#"
+            version = 1
+            [sheet]
+            mesh = { square = { side = 0.2, level = 1 } }
+            material = "office paper"
+            curl = { along = [1, 0, 0], radius = 0.1 }
+            swell = { ramp = { to = -0.002, end = 1 } }
+        "#;
+        let named = |name: &str, low, high| (name.to_owned(), low, high);
+        let expected = [
+            named("sheet.curl", 0.0, 1.0),
+            named("sheet.swell", -0.002, 0.0),
+        ];
+        assert_eq!(sliders(text), expected);
+    }
 }
