@@ -216,10 +216,10 @@ impl ElasticSheet {
     }
 
     /// With lengths that grow by themselves, by a part `s` that is a function of time: negative for paper that
-    /// dries, positive for film that is heated. The energy is that [above](Self) of a sheet whose lengths at
-    /// rest are `1 + s` times those of the mesh, with the same `E h`: strains and their limit are measured from
-    /// these. The mass stays what it is. What swelling does to bending stiffness, slack and curvature without
-    /// stress, a part of the order of `s`, is left out.
+    /// dries, positive for film that is heated. Energies are those [above](Self) with `E_T - g I`, `1 + 2 g = (1 +
+    /// s)^2`, in place of `E_T`, by areas and stiffnesses of the sheet before it swells; the limit is one of the
+    /// strain against the grown lengths, `(E_T - g I) / (1 + s)^2`. What swelling does to bending stiffness, slack
+    /// and curvature without stress, a part of the order of `s`, is left out.
     ///
     /// A strip that is held at both ends and shrinks by a part `s` pulls with `E h s` per width.
     ///

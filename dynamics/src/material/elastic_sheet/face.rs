@@ -42,9 +42,9 @@ pub(super) struct Strained {
     growth: f64,
     /// Edge vectors, from corner `i + 1` to corner `i + 2`.
     vectors: [Vector3<f64>; 3],
-    /// The strain by the components of [`Face::strains`].
+    /// The strain against the grown lengths, by the components of [`Face::strains`].
     strain: Vector3<f64>,
-    /// Length errors beyond those of the chords of arcs, over the growth, m2.
+    /// Length errors beyond those of the chords of arcs, m2.
     beyond: Vector3<f64>,
     slack: Slack,
 }
@@ -175,7 +175,7 @@ impl Face {
         }
         let energy = |squared: f64| {
             let at = self.at(here, &Bend { squared, ..bend });
-            self.area * at.growth * self.law.at(&at.beyond, &at.slack).energy()
+            self.area * self.law.at(&at.beyond, &at.slack).energy()
         };
         let before = energy(bend.squared);
         let cost = energy(wanted) - before;
@@ -223,7 +223,7 @@ impl Face {
         Vector3::new(error(0), error(1), error(2))
     }
 
-    /// Green's strain by the components of [`Face::strains`]; its Euclidean norm is Frobenius'.
+    /// Green's strain against the grown lengths, by the components of [`Face::strains`]; its Euclidean norm is Frobenius'.
     pub(super) fn strain(&self, At { t, x, .. }: At<'_>) -> Vector3<f64> {
         let growth = self.swelling.growth(t);
         self.strains * self.errors(&self.edge_vectors(x), growth) / growth
@@ -237,7 +237,7 @@ impl Face {
             growth,
             strain: self.strains * errors / growth,
             vectors,
-            beyond: (errors - bend.chords) / growth,
+            beyond: errors - bend.chords,
             slack: self.slack(bend),
         }
     }
@@ -247,12 +247,12 @@ impl Face {
     pub(super) fn energy(&self, at: &Strained, barrier: f64) -> f64 {
         let limit = self.limit.with_barrier(barrier);
         let elastic = self.law.at(&at.beyond, &at.slack).energy();
-        self.area * at.growth * (elastic + limit.value(at.strain.norm_squared()))
+        self.area * (elastic + limit.value(at.strain.norm_squared()))
     }
 
     /// What the slack has of it, joules.
     pub(super) fn slack_energy(&self, at: &Strained) -> f64 {
-        self.area * at.growth * self.law.at(&at.beyond, &at.slack).stored()
+        self.area * self.law.at(&at.beyond, &at.slack).stored()
     }
 
     /// Size of the round-off in the energy of a face at rest whose coordinates are of the given size,
@@ -267,7 +267,7 @@ impl Face {
     fn densities(&self, at: &Strained, barrier: f64) -> Vector3<f64> {
         let limit = self.limit.with_barrier(barrier);
         let [slope, _] = limit.derivatives(at.strain.norm_squared());
-        let barrier = 2.0 * slope * (self.strains.transpose() * at.strain);
+        let barrier = 2.0 * slope * (self.strains.transpose() * at.strain) / at.growth;
         self.area * (self.law.at(&at.beyond, &at.slack).slope() + barrier)
     }
 
@@ -278,10 +278,11 @@ impl Face {
         let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
         if slope != 0.0 {
             let along = self.strains.transpose() * at.strain;
-            law += 2.0 * slope * self.strains.transpose() * self.strains
+            let barrier = 2.0 * slope * self.strains.transpose() * self.strains
                 + 4.0 * curvature * along * along.transpose();
+            law += barrier / (at.growth * at.growth);
         }
-        self.area / at.growth * law
+        self.area * law
     }
 
     pub(super) fn add_gradient(&self, at: &Strained, barrier: f64, gradient: &mut [f64]) {

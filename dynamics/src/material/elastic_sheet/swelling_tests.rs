@@ -55,7 +55,8 @@ fn ran(model: SheetModel, steps: usize) -> (Simulation, StepReport) {
     (run, report.unwrap())
 }
 
-/// Energy, forces, stiffness (by forces of second order), strains and safe parts are those of a sheet that is made with these lengths.
+/// Energy, forces, stiffness (by forces of second order), strains and safe parts are those of a sheet that is made
+/// with these lengths. The energy of an area is `E h e^2 / 2` of smaller strains `e` there, and of a larger area.
 #[test]
 fn a_swollen_sheet_is_one_with_longer_edges() {
     let sheet = strip();
@@ -78,14 +79,15 @@ fn a_swollen_sheet_is_one_with_longer_edges() {
         };
         let at = At::new(2.0, &x);
         let found = [(&sheet, ramp), (&longer, 0.0.into())].map(|(sheet, swelling)| {
-            let elastic = ElasticSheet::new(sheet, STIFFNESS, 0.3).unwrap();
+            let of_area = sheet.area() / strip().area();
+            let elastic = ElasticSheet::new(sheet, of_area * STIFFNESS, 0.3).unwrap();
             let elastic = elastic.with_swelling(swelling).unwrap();
             let mut numbers: Vec<f64> = elastic.strains(at).collect();
             let most = numbers.iter().copied().fold(0.0, f64::max);
             // The barrier acts from half the limit on.
             let elastic = elastic.with_limit(1.2 * most).unwrap();
             let mut memory = elastic.memory();
-            memory[0] = 10.0;
+            memory[0] = 10.0 / of_area;
             let own = at.with_memory(&memory);
             numbers.push(elastic.safe_part(own, &dx));
             numbers.extend(elastic.face_energies(own));
@@ -104,13 +106,12 @@ fn a_swollen_sheet_is_one_with_longer_edges() {
     }
 }
 
-/// A strip that is held at both ends and shrinks pulls with the force `E h w (1 / lambda^2 - 1) / 2`, which is
-/// `E h w s` but for terms of second order, and what it stores is the work of shrinking.
+/// A strip that is held at both ends and shrinks pulls with the force `E h w (s - s^2 / 2)`, and what it stores is the work of shrinking.
 #[test]
 fn a_held_strip_that_shrinks_pulls_at_its_supports() {
     let s = -0.002;
     let (run, report) = ran(model(until(s), &[0.0, LENGTH]), 60);
-    let strain = 0.5 * ((1.0_f64 + s).powi(-2) - 1.0);
+    let strain = 0.5 * (1.0 - (1.0_f64 + s).powi(2));
     let expected = STIFFNESS * WIDTH * strain;
     let held = run.reactions();
     let mut pulls = [0.0; 2];
@@ -134,26 +135,21 @@ fn a_held_strip_that_shrinks_pulls_at_its_supports() {
     );
 }
 
-/// It keeps its shape, scaled, without strain, forces and energy. The error of the energy balance is of second
-/// order in the step.
+/// It keeps its shape, scaled, without strain, forces and energy, and no work is done on it.
 #[test]
 fn a_free_sheet_swells_without_stress() {
-    for s in [-0.1, 0.02] {
-        let [coarse, fine] = [60, 120].map(|steps| {
-            let (run, report) = ran(model(until(s), &[]), steps);
-            let all = 0.5 * STIFFNESS * s * s * LENGTH * WIDTH;
-            assert!(run.energy() < 1e-9 * all, "{s}: {}", run.energy());
-            let edges = run.model().edges();
-            let x = run.state().vertex_positions();
-            for (ends, length) in edges.edges().iter().zip(edges.lengths()) {
-                let [a, b] = ends.map(|v| Vector3::from(x[v]));
-                let (found, expected) = ((a - b).norm(), (1.0 + s) * length);
-                assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
-            }
-            report.energy_drift.abs()
-        });
-        let order = (coarse / fine).log2();
-        assert!((order - 2.0).abs() < 0.3, "{s}: {order}, {coarse} {fine}");
+    for s in [-0.05, 0.02] {
+        let (run, report) = ran(model(until(s), &[]), 60);
+        let all = 0.5 * STIFFNESS * s * s * LENGTH * WIDTH;
+        assert!(run.energy() < 1e-9 * all, "{s}: {}", run.energy());
+        assert!(report.energy_drift.abs() < 1e-6 * all, "{s}: {report:?}");
+        let edges = run.model().edges();
+        let x = run.state().vertex_positions();
+        for (ends, length) in edges.edges().iter().zip(edges.lengths()) {
+            let [a, b] = ends.map(|v| Vector3::from(x[v]));
+            let (found, expected) = ((a - b).norm(), (1.0 + s) * length);
+            assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+        }
     }
 }
 
