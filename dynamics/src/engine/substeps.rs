@@ -4,6 +4,7 @@ mod held;
 
 use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan, SurfacePoints};
 use crate::damped::implicit::Implicit;
+use crate::damped::start::{check_swelling, check_swollen};
 use crate::diagnosis::blocked::{blocked_vertices, dependent_vertices};
 use crate::diagnosis::infeasibility::infeasibility;
 use crate::diagnosis::pressing::pressing;
@@ -12,7 +13,7 @@ use crate::engine::rod_forces::rod_forces;
 use crate::engine::subdivision::Subdivision;
 use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
-use crate::potential::Memories;
+use crate::potential::{At, Memories};
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::infeasibility::Infeasibility;
 use crate::report::pressing::Pressing;
@@ -426,6 +427,8 @@ impl Substeps<'_, '_> {
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
         }
+        check_swelling(model, t)?;
+        check_swollen(model, At::new(t, &motion.state.x))?;
         if let Some(contact) = &mut objective.contact {
             contact.check_bodies(StepSpan {
                 t0: motion.state.t,
@@ -446,6 +449,8 @@ impl Substeps<'_, '_> {
         }
         proposed?;
         let (before, after) = (&motion.state, &proposal.motion.state);
+        // For the work of swelling, which is measured at both ends.
+        check_swollen(model, At::new(before.t, &after.x))?;
         let mut exchange = proposal.account.exchange;
         if model.has_drives() {
             let kept = motion.has_moved.then_some(&motion.balance);
@@ -536,6 +541,7 @@ impl Stepping for Substeps<'_, '_> {
         if matches!(
             refusal,
             StepError::NonFiniteMotion { .. }
+                | StepError::Swelling { .. }
                 | StepError::Body(_)
                 | StepError::Interrupted { .. }
                 | StepError::Locked { .. }

@@ -13,9 +13,13 @@ mod limit;
 mod load;
 mod membrane;
 mod slack;
+mod swelling;
+#[cfg(test)]
+mod swelling_tests;
 #[cfg(test)]
 mod tests;
 
+use crate::motion::profile::Profile;
 use crate::potential::{At, Reached, Settled};
 use crate::{HessianSink, Potential};
 
@@ -29,6 +33,7 @@ use isosheet_mesh::{FaceId, Part, Sheet};
 use load::strain_barrier;
 pub use membrane::{MembraneLaw, OrthotropicMembrane};
 use std::ops::Range;
+use swelling::Swelling;
 
 /// The elasticity of a sheet in its plane, with a limit of the strain. In place of rigid rods
 /// ([`SheetModel::with_elastic_sheet`](crate::SheetModel::with_elastic_sheet)) it makes an everyday sheet of
@@ -126,6 +131,9 @@ impl ElasticSheet {
     /// The limit of the strain unless another is asked for.
     pub const LIMIT: f64 = 0.01;
 
+    /// The least and the largest part by which lengths may [grow](Self::with_swelling).
+    pub const SWELLING: [f64; 2] = [-0.2, 0.2];
+
     /// A sheet that is at rest in the shape of `sheet`, with the `stiffness` `E h` (Young's modulus times
     /// thickness, newtons per metre; office paper 3e5), Poisson's ratio and the limit
     /// [`ElasticSheet::LIMIT`].
@@ -207,6 +215,31 @@ impl ElasticSheet {
         Ok(self)
     }
 
+    /// With lengths that grow by themselves, by a part `s` that is a function of time: negative for paper that
+    /// dries, positive for film that is heated. Energies are those [above](Self) with `E_T - g I`, `1 + 2 g = (1 +
+    /// s)^2`, in place of `E_T`, by areas and stiffnesses of the sheet before it swells; the limit is one of the
+    /// strain against the grown lengths, `(E_T - g I) / (1 + s)^2`. What swelling does to bending stiffness, slack
+    /// and curvature without stress, a part of the order of `s`, is left out.
+    ///
+    /// A strip that is held at both ends and shrinks by a part `s` pulls with `E h s` per width.
+    ///
+    /// # Errors
+    /// [`ElasticSheetError::Profile`].
+    pub fn with_swelling(mut self, part: impl Into<Profile>) -> Result<Self, ElasticSheetError> {
+        let swelling = Swelling::of(part.into())?;
+        for face in &mut self.faces {
+            face.set_swelling(swelling.clone());
+        }
+        Ok(self)
+    }
+
+    /// The first part by which lengths would grow at a time that is not within [`ElasticSheet::SWELLING`].
+    pub(crate) fn swollen_too_much(&self, t: f64) -> Option<f64> {
+        let mut parts = self.faces.iter().map(|face| face.swelling().part(t));
+        let [least, most] = Self::SWELLING;
+        parts.find(|part| !(least..=most).contains(part))
+    }
+
     /// The elasticity of some sheets of a [union](Sheet::union) with so many faces, each with its own
     /// stiffness and limit of the strain. Sheets that are not among them remain rigid.
     ///
@@ -257,9 +290,9 @@ impl ElasticSheet {
         self.faces.iter().map(|face| face.id)
     }
 
-    /// The norm `|E_T|` of the strain of each face at positions `x` (`3V`, metres).
-    pub fn strains<'a>(&'a self, x: &'a [f64]) -> impl ExactSizeIterator<Item = f64> + 'a {
-        self.faces.iter().map(|face| face.strain(x).norm())
+    /// The norm `|E_T|` of the strain of each face.
+    pub fn strains<'a>(&'a self, at: At<'a>) -> impl ExactSizeIterator<Item = f64> + 'a {
+        self.faces.iter().map(move |face| face.strain(at).norm())
     }
 
     /// The elastic energy of each face, joules, with that of the barrier; infinite beyond the limit.
@@ -286,7 +319,7 @@ impl ElasticSheet {
         let bends = at.memory.get(1..).unwrap_or_default().as_chunks().0;
         self.faces.iter().enumerate().map(move |(k, face)| {
             let bend = bends.get(k).map_or(Bend::FLAT, Bend::remembered);
-            (face, face.at(at.x, &bend))
+            (face, face.at(at, &bend))
         })
     }
 
@@ -304,10 +337,10 @@ impl ElasticSheet {
     }
 
     /// The face that comes nearest to its limit or is farthest beyond it.
-    pub(crate) fn worst(&self, x: &[f64]) -> Option<StrainOfFace> {
+    pub(crate) fn worst(&self, at: At<'_>) -> Option<StrainOfFace> {
         let faces = self.faces.iter().map(|face| StrainOfFace {
             face: face.id,
-            strain: face.strain(x).norm(),
+            strain: face.strain(at).norm(),
             limit: face.limit(),
         });
         // (Strains that are not numbers are beyond it, too.)
@@ -315,8 +348,8 @@ impl ElasticSheet {
     }
 
     /// The face that is farthest beyond its limit, if one is not within it.
-    pub fn beyond_limit(&self, x: &[f64]) -> Option<StrainOfFace> {
-        let worst = self.worst(x)?;
+    pub fn beyond_limit(&self, at: At<'_>) -> Option<StrainOfFace> {
+        let worst = self.worst(at)?;
         let is_within = worst.strain < worst.limit;
         (!is_within).then_some(worst)
     }
@@ -389,19 +422,23 @@ impl Potential for ElasticSheet {
         }
     }
 
+    fn is_driven(&self) -> bool {
+        self.faces.iter().any(|face| face.swelling().is_driven())
+    }
+
     fn has_limit(&self) -> bool {
         true
     }
 
     /// Along the part every face keeps a part of its distance from the limit.
     fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
-        let cut = |part: f64, face: &Face| face.safe_part(at.x, dx, part);
+        let cut = |part: f64, face: &Face| face.safe_part(at, dx, part);
         self.faces.iter().fold(1.0, cut)
     }
 
     /// Whether every face keeps a part of its distance from the limit.
     fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
-        let stays = |face: &Face| face.stays_within(at.x, end);
+        let stays = |face: &Face| face.stays_within(at, end);
         self.faces.iter().all(stays)
     }
 
@@ -447,7 +484,7 @@ impl Potential for ElasticSheet {
         );
         *barrier = barrier.max(needed);
         for arcs in &self.arcs {
-            arcs.remember(&self.faces, (state.t, state.x), bends);
+            arcs.remember(&self.faces, At::new(state.t, state.x), bends);
         }
         Settled {
             dissipated: 0.0,

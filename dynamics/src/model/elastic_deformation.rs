@@ -56,22 +56,23 @@ fn share(energy: f64, others: f64) -> f64 {
 }
 
 impl SheetModel {
-    /// How an elastic sheet is deformed at positions `x` (`3V`, metres) by what its potentials remember; nothing for a sheet of rods. Bending
-    /// is that of the potentials that know it by face
-    /// ([`Potential::add_bending_energies`](crate::Potential)), and has an angle if the sheet was told its
-    /// plate ([`ElasticSheet::beside`](crate::ElasticSheet::beside)).
+    /// How an elastic sheet is deformed at a time `t` (seconds) and positions `x` (`3V`, metres) by what its
+    /// potentials remember; nothing for a sheet of rods. Bending is that of the potentials that know it by face
+    /// ([`Potential::add_bending_energies`](crate::Potential)), and has an angle if the sheet was told its plate
+    /// ([`ElasticSheet::beside`](crate::ElasticSheet::beside)).
     ///
     /// # Panics
     /// If `x` is not of length `3V`.
     pub fn elastic_deformation(
         &self,
+        t: f64,
         x: &[f64],
         memories: &Memories,
     ) -> Option<ElasticDeformation> {
         let elastic = self.elastic_sheet()?;
         let mut bending = vec![0.0; elastic.face_count()];
-        let mut own = At::new(0.0, x);
-        for (potential, at) in self.potentials_at(0.0, x, memories) {
+        let mut own = At::new(t, x);
+        for (potential, at) in self.potentials_at(t, x, memories) {
             potential.add_bending_energies(at, &mut bending);
             // That of the elastic sheet is the last one.
             own = at;
@@ -85,7 +86,7 @@ impl SheetModel {
         };
         let angle = of_faces(&mut elastic.bend_angles(&bending));
         Some(ElasticDeformation {
-            strain: of_faces(&mut elastic.strains(x)),
+            strain: of_faces(&mut elastic.strains(own)),
             stretching: of_faces(&mut elastic.face_energies(own)),
             slack: of_faces(&mut elastic.slack_energies(own)),
             angle,

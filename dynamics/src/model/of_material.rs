@@ -6,6 +6,7 @@ use crate::material::elastic_sheet::{ElasticSheet, ElasticSheetError};
 use crate::material::patched::{NoFace, Patched};
 use crate::material::plasticity::Yield;
 use crate::material::plate_bending::{Curl, PlateBending, PlateBendingError, PlateEdges};
+use crate::motion::profile::Profile;
 use crate::options::OptionsError;
 use crate::{Isometry, ModelError, SheetModel};
 use isosheet_mesh::{Advice, EdgeId, FaceId, MassKind, MassMatrix, Sheet, VertexId};
@@ -32,6 +33,9 @@ pub enum SheetOfMaterialError {
     /// The sheet has a direction, and its material has none.
     #[error("the sheet has a direction, and its material is the same in all directions")]
     NoDirections,
+    /// The sheet swells, and is of rigid rods.
+    #[error("the sheet swells or shrinks, and it is of rigid rods, which keep their lengths")]
+    RodsSwell,
 }
 
 impl Advice for SheetOfMaterialError {
@@ -45,6 +49,7 @@ impl Advice for SheetOfMaterialError {
             Self::NoDirections => {
                 Some("leave out the direction, or give a material with `directions`")
             }
+            Self::RodsSwell => Some("leave out the rods, or the swelling"),
         }
     }
 }
@@ -61,6 +66,7 @@ pub struct SheetOfMaterial<'a> {
     creases: Vec<EdgeId>,
     yields: Option<Yield>,
     curvature: WithoutStress,
+    swelling: Option<Profile>,
 }
 
 /// The shape that bending moments are measured from.
@@ -104,6 +110,7 @@ impl SheetModel {
             creases: Vec::new(),
             yields: None,
             curvature: WithoutStress::Flat,
+            swelling: None,
         }
     }
 }
@@ -158,6 +165,12 @@ impl SheetOfMaterial<'_> {
         self
     }
 
+    /// Lets all lengths grow by a part that is a function of time ([`ElasticSheet::with_swelling`]).
+    pub fn swelling(mut self, part: impl Into<Profile>) -> Self {
+        self.swelling = Some(part.into());
+        self
+    }
+
     /// What keeps the lengths: the elasticity of the material, which is the default, or rigid rods along the
     /// edges, of which the material gives mass and bending stiffness alone.
     pub fn with_isometry(mut self, isometry: Isometry) -> Self {
@@ -179,6 +192,7 @@ impl SheetOfMaterial<'_> {
             creases,
             yields,
             curvature,
+            swelling,
         } = self;
         for material in materials.all() {
             let checked = material.validate();
@@ -214,11 +228,15 @@ impl SheetOfMaterial<'_> {
             plate = plate.with_yield(sheet, yields)?;
         }
         let model = match isometry {
+            Isometry::Rods if swelling.is_some() => return Err(SheetOfMaterialError::RodsSwell),
             Isometry::Rods => model,
             Isometry::Elastic => {
                 let laws = materials.map(|material| material.membrane(direction));
                 let limits = materials.all().map(|material| material.strain_limit);
-                let elastic = ElasticSheet::patched(sheet, &laws)?.beside(sheet, &plate);
+                let mut elastic = ElasticSheet::patched(sheet, &laws)?.beside(sheet, &plate);
+                if let Some(part) = swelling {
+                    elastic = elastic.with_swelling(part)?;
+                }
                 model.with_elastic_sheet(elastic.with_limit(limits.fold(0.0, f64::max))?)?
             }
         };
@@ -316,6 +334,17 @@ mod tests {
             .creased(&[EdgeId(1000)])
             .build();
         assert!(matches!(refused, Err(SheetOfMaterialError::Bending(_))));
+        let refused = SheetModel::of_material(&sheet, &material)
+            .swelling(0.01)
+            .with_isometry(Isometry::Rods)
+            .build();
+        assert_eq!(refused.unwrap_err(), SheetOfMaterialError::RodsSwell);
+        let swollen = SheetModel::of_material(&sheet, &material).swelling(0.001);
+        let swollen = swollen.build().unwrap();
+        let strains = swollen.elastic_sheet().unwrap();
+        let mut strains = strains.strains(crate::At::new(0.0, sheet.positions()));
+        let expected = 0.5_f64.sqrt() * (1.001_f64.powi(-2) - 1.0).abs();
+        assert!(strains.all(|s| (s - expected).abs() < 1e-12));
         material.rigidity = f64::NAN;
         let refused = SheetModel::of_material(&sheet, &material)
             .build()

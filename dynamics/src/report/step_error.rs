@@ -217,6 +217,33 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
+    /// A sheet swells or shrinks faster than it can follow, or more than its supports allow.
+    #[error(
+        "as the elastic sheet swells or shrinks, {face} comes to the strain {strain} at t = {t} s, and the limit \
+         is {limit}",
+        strain = brief(*strain), limit = given(*limit), t = brief(*t)
+    )]
+    SwellingBeyondLimit {
+        /// The face with the largest strain.
+        face: FaceId,
+        /// The norm of its strain ([`ElasticSheet`](crate::ElasticSheet)).
+        strain: f64,
+        /// The limit.
+        limit: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// A sheet would swell or shrink by a part that is out of [bounds](crate::ElasticSheet::SWELLING).
+    #[error(
+        "the lengths of an elastic sheet would grow by the part {part} at t = {t} s",
+        part = brief(*part), t = brief(*t)
+    )]
+    Swelling {
+        /// The part.
+        part: f64,
+        /// Time, seconds.
+        t: f64,
+    },
     /// Newton's method did not converge.
     #[error(
         "Newton's method stopped at residual {residual}, edge strain {strain} after {iterations} \
@@ -381,6 +408,10 @@ impl Advice for StepError {
             Self::BeyondStrainLimit { .. } => {
                 Some("start from a shape that is stretched less, or raise the limit of the strain")
             }
+            Self::SwellingBeyondLimit { .. } => Some(
+                "let it swell or shrink more slowly, or less where it is held, or raise the limit of the strain",
+            ),
+            Self::Swelling { .. } => Some("give a function of time from -0.2 to 0.2"),
             Self::NotConverged { .. }
             | Self::EnergyGain { .. }
             | Self::Friction { .. }

@@ -498,8 +498,8 @@ impl Simulation {
 
     /// How an elastic sheet is deformed now, see [`SheetModel::elastic_deformation`].
     pub fn elastic_deformation(&self) -> Option<ElasticDeformation> {
-        self.model()
-            .elastic_deformation(&self.state().x, self.memories())
+        let State { t, x, .. } = self.state();
+        self.model().elastic_deformation(*t, x, self.memories())
     }
 
     /// Total energy `T + V`, contact included, joules.

@@ -192,22 +192,22 @@ impl<'a> FrameField<'a> {
         };
         // What is plastic, and the barrier at the limit, are not in the frames.
         let memories = model.memories();
-        let deformed = move |x: &[f64]| {
-            let mut x = Cow::Borrowed(x);
+        let deformed = move |frame: &MotionFrame<'_>| {
+            let mut x = Cow::Borrowed(frame.x);
             if x.len() != model.coordinate_count() {
                 // After the vertices of sheets those of bodies, wherever they are.
                 x.to_mut().resize(model.coordinate_count(), 0.0);
             }
-            model.elastic_deformation(&x, &memories)
+            model.elastic_deformation(frame.t, &x, &memories)
         };
         let strains = deformed.clone();
         vec![
             Self::new(strain, move |frame| {
-                let deformation = strains(frame.x);
+                let deformation = strains(frame);
                 of_all(deformation.map(|d| d.strain).unwrap_or_default())
             }),
             Self::new(share, move |frame| {
-                let deformation = deformed(frame.x);
+                let deformation = deformed(frame);
                 of_all(deformation.map(shares).unwrap_or_default())
             }),
         ]

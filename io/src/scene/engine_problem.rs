@@ -237,7 +237,16 @@ impl Origins {
             StepError::BeyondStrainLimit { .. } => (
                 root.name("sheet.start"),
                 "start from a shape whose lengths are nearer to those of `sheet.mesh`, choose a smaller \
-                 `sheet.start.perturbation`, or raise the limit, `isometry = { elastic = { limit = ... } }`",
+                 `sheet.start.perturbation`, let `sheet.swell` begin near zero, or raise the limit, `isometry = { elastic = { limit = ... } }`",
+            ),
+            StepError::SwellingBeyondLimit { .. } => (
+                root.name("sheet.swell"),
+                "let it change more slowly, or less where the sheet is held, or raise the limit, `isometry = { elastic = { \
+                 limit = ... } }`",
+            ),
+            StepError::Swelling { .. } => (
+                root.name("sheet.swell"),
+                "end the run before that, or give a function of time from -0.2 to 0.2",
             ),
             StepError::RankDeficient { .. } => (
                 root.name("method.integrator"),

@@ -4,6 +4,7 @@ use super::Scene;
 use super::key::Key;
 use super::pose::Motion;
 use super::profile::Profile;
+use super::sheets::sheet_key;
 use super::supports::Hold;
 
 impl Scene {
@@ -13,6 +14,14 @@ impl Scene {
         if let Some(air) = &mut self.air {
             let components = air.wind.iter_mut().enumerate();
             all.extend(components.map(|(k, wind)| (root.name("air.wind").entry(k), wind)));
+        }
+        let sheets = self.sheet.len();
+        for (k, sheet) in self.sheet.iter_mut().enumerate() {
+            let key = sheet_key(sheets, k);
+            let curl = sheet.curl.as_mut().map(|curl| &mut curl.profile);
+            all.extend(curl.map(|profile| (key.name("curl.profile"), profile)));
+            let swell = sheet.swell.as_mut();
+            all.extend(swell.map(|swell| (key.name("swell"), swell)));
         }
         for (k, crease) in self.crease.iter_mut().enumerate() {
             all.push((

@@ -313,7 +313,7 @@ impl LiveScene {
 
     /// Lets functions of time in the scene go from their present values to others until time `until`
     /// (seconds), along a ramp, and keep these: displacements and angles of supports and bodies, angles of
-    /// creases, sizes of loads. Values are in the units of the scene.
+    /// creases, profiles of curls and swellings, sizes of loads. Values are in the units of the scene.
     ///
     /// # Errors
     /// As [`LiveScene::change`]; [`EditError`] at a key that is no function of time.

@@ -8,6 +8,7 @@ use super::mesh::Mesh;
 use super::patch::Patch;
 use super::pose::Pose;
 use super::problem::Checks;
+use super::profile::Profile;
 use super::start::Start;
 use super::unit::Unit;
 use super::yields::SheetYield;
@@ -73,6 +74,10 @@ pub struct Sheet {
     /// The curvature that it has by itself. If left out, none.
     #[serde(default)]
     pub curl: Option<Curl>,
+    /// The part by which all its lengths grow by themselves, a function of time from -0.2 to 0.2: negative for
+    /// paper that dries, positive for film that is heated. For elastic sheets. If left out, none.
+    #[serde(default)]
+    pub swell: Option<Profile>,
     /// When it yields in bending. If left out, never: bends spring back.
     #[serde(default, rename = "yield")]
     pub yields: Option<SheetYield>,
@@ -219,6 +224,7 @@ impl Sheet {
             bending: None,
             rest: RestShape::Flat,
             curl: None,
+            swell: None,
             yields: None,
             patch: Vec::new(),
             damping: 0.0,
@@ -530,6 +536,22 @@ impl Sheet {
                     key,
                     "the sheet is curved as its mesh is, and curls besides",
                     remedy,
+                );
+            }
+        }
+        if let Some(swell) = &self.swell {
+            let key = key.name("swell");
+            swell.check(key.clone(), Unit::One, checks);
+            if swell.as_given().validate().is_ok() {
+                for part in swell.range(0.0) {
+                    checks.within(key.clone(), part, engine::ElasticSheet::SWELLING);
+                }
+            }
+            if isometry == Isometry::Rods {
+                checks.report(
+                    key,
+                    "the sheet swells or shrinks, and it is of rigid rods, which keep their lengths",
+                    "give `sheet.material`, or `isometry = { elastic = { stiffness = ... } }`",
                 );
             }
         }

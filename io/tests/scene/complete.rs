@@ -267,6 +267,7 @@ const ALL_KEYS: [&str; 14] = [
     material = { youngs = 1e9, youngs_across = 5e8, shear = 3e8, thickness = 1e-3, density = 800 }
     direction = [1, 0, 0]
     curl = { curvature = 5.0, across_curvature = -2.0, twist = 3.0 }
+    swell = { smooth_step = { to = -0.002, end = 1 } }
     isometry = { elastic = { stiffness = 4e5, across = 2e5, shear = 1e5 } }
     [[sheet.patch]]
     at = { half_space = { point = [0.05, 0, 0], normal = [1, 0, 0] } }

@@ -4,7 +4,7 @@ use crate::skip::data_folder;
 use crate::{parse, simulation};
 use isosheet_io::dynamics::nalgebra::Vector3;
 use isosheet_io::dynamics::{
-    Air, Method, PointProfile, Profile as EngineProfile, SheetModel, Simulation, State,
+    Air, At, Method, PointProfile, Profile as EngineProfile, SheetModel, Simulation, State,
 };
 use isosheet_io::mesh::{MassKind, VertexId, fold_angle, generate};
 use isosheet_io::scene::{Scene, SceneFile, StartingPoint};
@@ -219,7 +219,7 @@ fn starting_points_run_and_keep_their_promises() {
             let beyond = match &elastic {
                 None => (report.strain >= 2e-12).then_some(report.strain),
                 Some(elastic) => elastic
-                    .beyond_limit(&run.state().x)
+                    .beyond_limit(At::new(run.state().t, &run.state().x))
                     .map(|worst| worst.strain),
             };
             assert_eq!(beyond, None, "{}", kind.name());

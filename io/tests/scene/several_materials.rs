@@ -2,7 +2,7 @@
 
 use crate::bodies::{centre, live, play};
 use crate::{parse, simulation};
-use isosheet_io::dynamics::{Simulation, immobile_vertices};
+use isosheet_io::dynamics::{At, Simulation, immobile_vertices};
 use isosheet_io::mesh::VertexId;
 use isosheet_io::scene::Setup;
 
@@ -102,7 +102,7 @@ fn each_of_several_sheets_has_its_own_limit_of_strain() {
     let elastic = run.model().elastic_sheet().unwrap();
     let strains = elastic
         .faces()
-        .zip(elastic.strains(x).zip(elastic.limits()));
+        .zip(elastic.strains(At::new(0.0, x)).zip(elastic.limits()));
     for (face, (strain, limit)) in strains {
         let is_first = setup.parts[0].1.faces.contains(&face.index());
         assert_eq!(limit, if is_first { 0.1 } else { 0.004 });

@@ -106,7 +106,7 @@ fn measure(model: Model, job: DiskJob, plan: &Plan) -> Result<(Ran, Saddle)> {
 /// parts.
 fn face_energies(model: Model, sheet: &Sheet, x: &[f64]) -> Result<Vec<f64>> {
     let built = model.sheet(sheet, PAPER)?;
-    if let Some(faces) = built.elastic_deformation(x, &built.memories_at_rest(0.0, x)) {
+    if let Some(faces) = built.elastic_deformation(0.0, x, &built.memories_at_rest(0.0, x)) {
         let sums = faces.stretching.iter().zip(&faces.bending);
         return Ok(sums.map(|(s, b)| s + b).collect());
     }

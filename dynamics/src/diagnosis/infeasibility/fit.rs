@@ -5,7 +5,7 @@ use super::gaps::Gaps;
 use crate::constraint::rows::VertexRows;
 use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;
-use crate::material::elastic_sheet::ElasticSheet;
+use crate::material::elastic_sheet::{ElasticSheet, StrainOfFace};
 use crate::model::support::Support;
 use crate::potential::At;
 use crate::report::infeasibility::Driver;
@@ -171,10 +171,16 @@ impl<'a> Fit<'a> {
         self.rod_energy() + self.excess_energy() + self.gaps.energy(&self.x) + self.rows.value()
     }
 
+    /// The face that is strained most.
+    fn worst(&self) -> Option<StrainOfFace> {
+        let excess = self.excess.as_ref()?;
+        excess.worst(At::new(self.t, &self.x))
+    }
+
     /// The limit of the strain that is exceeded most, if that is what does not allow the motion, and not the rods of
     /// a sheet.
     pub(super) fn strain_limit(&self) -> Option<f64> {
-        let worst = self.excess.as_ref()?.worst(&self.x)?;
+        let worst = self.worst()?;
         let is_of_rods =
             self.model.has_rods_in_sheets() && self.rod_energy() > self.excess_energy();
         (!is_of_rods).then_some(worst.limit)
@@ -182,10 +188,7 @@ impl<'a> Fit<'a> {
 
     /// Whether lengths or strains, gaps and supports are met but for what convergence leaves.
     fn is_met(&self) -> bool {
-        let worst = self
-            .excess
-            .as_ref()
-            .and_then(|excess| excess.worst(&self.x));
+        let worst = self.worst();
         let beyond = worst.map_or(0.0, |worst| worst.strain - worst.limit);
         let strain = self.model.rods().max_strain(&self.x).max(beyond);
         let closed = self.gaps.largest_violation(&self.x) / self.model.mean_length();

@@ -64,9 +64,9 @@ impl Arcs {
     }
 
     /// Writes the bends at a time and positions of the union to the numbers that are remembered of its faces.
-    pub(super) fn remember(&self, faces: &[Face], (t, x): (f64, &[f64]), memory: &mut [f64]) {
+    pub(super) fn remember(&self, faces: &[Face], here: At<'_>, memory: &mut [f64]) {
         let own = &faces[self.faces.clone()];
-        let at = At::new(t, &x[self.coordinates.clone()]);
+        let at = At::new(here.t, &here.x[self.coordinates.clone()]);
         let rows = &mut memory.as_chunks_mut::<NUMBERS>().0[self.faces.clone()];
         for (k, (row, mut bend)) in rows
             .iter_mut()
@@ -90,7 +90,7 @@ impl Arcs {
             let bends = around.map(|f| Bend::remembered(&rows[*f as usize]));
             let wanted = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
             let bend = Bend::remembered(&rows[k]);
-            rows[k] = own[k].with_slack(x, bend, wanted).numbers();
+            rows[k] = own[k].with_slack(here, bend, wanted).numbers();
         }
     }
 }

@@ -242,7 +242,7 @@ fn slack_drives_nothing() {
         // Chords first, which do work of their own.
         let mut chords = memory.clone();
         for arcs in &elastic.arcs {
-            arcs.remember(&elastic.faces, (0.0, &x), &mut chords[1..]);
+            arcs.remember(&elastic.faces, At::new(0.0, &x), &mut chords[1..]);
         }
         let mut slack = chords.clone();
         for (new, old) in slack[1..]

@@ -128,7 +128,7 @@ fn gradients_are_differences_of_energies_where_a_sheet_bends() {
     let x: Vec<f64> = (bent.iter())
         .map(|p| p + rng.random_range(-1e-3..1e-3))
         .collect();
-    assert!(elastic.beyond_limit(&x).is_none());
+    assert!(elastic.beyond_limit(At::new(0.0, &x)).is_none());
     let mut gradient = vec![0.0; x.len()];
     elastic.add_gradient(At::new(0.0, &x).with_memory(&memory), &mut gradient);
     let largest = gradient.iter().fold(0.0_f64, |m, g| m.max(g.abs()));

@@ -2,6 +2,7 @@
 
 use crate::material::direction::DirectionError;
 use crate::material::patched::NoFace;
+use crate::motion::profile::ProfileError;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, FaceId};
 
@@ -47,6 +48,9 @@ pub enum ElasticSheetError {
         /// The limit given.
         limit: f64,
     },
+    /// The function of time by which lengths grow cannot be used.
+    #[error("the swelling cannot be used: {0}")]
+    Profile(#[from] ProfileError),
     /// A face has no area at rest, so that it has no strain.
     #[error("{face} has the area {area} m2 at rest", area = given(*area))]
     Face {
@@ -66,6 +70,7 @@ impl Advice for ElasticSheetError {
             Self::Direction { source } => source.advice(),
             Self::Patch(error) => error.advice(),
             Self::Limit { .. } => Some("give a value above 0 and below 0.5, for instance 0.01"),
+            Self::Profile(error) => error.advice(),
             Self::Face { .. } => Some("remove the face, or mend the mesh"),
         }
     }

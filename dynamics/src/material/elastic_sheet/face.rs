@@ -4,7 +4,9 @@ use super::bend::Bend;
 use super::law::Law;
 use super::limit::StrainLimit;
 use super::slack::Slack;
+use super::swelling::Swelling;
 use crate::HessianSink;
+use crate::potential::At;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Part, Sheet, VertexId};
 use nalgebra::{Matrix3, Vector2, Vector3};
@@ -31,13 +33,16 @@ pub(super) struct Face {
     /// Its law by the length errors.
     law: Law,
     limit: StrainLimit,
+    swelling: Swelling,
 }
 
 /// The state of a face.
 pub(super) struct Strained {
+    /// The square of the factor by which its lengths at rest have grown.
+    growth: f64,
     /// Edge vectors, from corner `i + 1` to corner `i + 2`.
     vectors: [Vector3<f64>; 3],
-    /// The strain by the components of [`Face::strains`].
+    /// The strain against the grown lengths, by the components of [`Face::strains`].
     strain: Vector3<f64>,
     /// Length errors beyond those of the chords of arcs, m2.
     beyond: Vector3<f64>,
@@ -97,6 +102,7 @@ impl Face {
             rigidity: 0.0,
             law: Law::NONE,
             limit: StrainLimit::new(limit),
+            swelling: Swelling::default(),
         })
     }
 
@@ -114,6 +120,14 @@ impl Face {
     /// Sets the law by the components of the strain.
     pub(super) fn set_law(&mut self, law: Law) {
         self.law = law.by(&self.strains);
+    }
+
+    pub(super) fn set_swelling(&mut self, swelling: Swelling) {
+        self.swelling = swelling;
+    }
+
+    pub(super) fn swelling(&self) -> &Swelling {
+        &self.swelling
     }
 
     pub(super) fn corners(&self) -> [VertexId; 3] {
@@ -155,12 +169,12 @@ impl Face {
     /// The bend with slack for a squared bend of `wanted`, or as near to it as energy allows: slack that grows lets
     /// energy go, and slack that closes takes up what it had let go, and no more. So the slack of a face gives
     /// nothing to the motion, however the sheet bends to and fro.
-    pub(super) fn with_slack(&self, x: &[f64], bend: Bend, wanted: f64) -> Bend {
+    pub(super) fn with_slack(&self, here: At<'_>, bend: Bend, wanted: f64) -> Bend {
         if wanted == bend.squared {
             return bend;
         }
         let energy = |squared: f64| {
-            let at = self.at(x, &Bend { squared, ..bend });
+            let at = self.at(here, &Bend { squared, ..bend });
             self.area * self.law.at(&at.beyond, &at.slack).energy()
         };
         let before = energy(bend.squared);
@@ -202,22 +216,26 @@ impl Face {
         [c - b, a - c, b - a]
     }
 
-    /// Length errors of edges, m2.
-    fn errors(&self, vectors: &[Vector3<f64>; 3]) -> Vector3<f64> {
-        let error = |k: usize| 0.5 * (vectors[k].norm_squared() - self.squared_lengths[k]);
+    /// Length errors of edges whose squares have grown, m2.
+    fn errors(&self, vectors: &[Vector3<f64>; 3], growth: f64) -> Vector3<f64> {
+        let squared = self.squared_lengths;
+        let error = |k: usize| 0.5 * (vectors[k].norm_squared() - growth * squared[k]);
         Vector3::new(error(0), error(1), error(2))
     }
 
-    /// Green's strain by the components of [`Face::strains`]; its Euclidean norm is Frobenius'.
-    pub(super) fn strain(&self, x: &[f64]) -> Vector3<f64> {
-        self.strains * self.errors(&self.edge_vectors(x))
+    /// Green's strain against the grown lengths, by the components of [`Face::strains`]; its Euclidean norm is Frobenius'.
+    pub(super) fn strain(&self, At { t, x, .. }: At<'_>) -> Vector3<f64> {
+        let growth = self.swelling.growth(t);
+        self.strains * self.errors(&self.edge_vectors(x), growth) / growth
     }
 
-    pub(super) fn at(&self, x: &[f64], bend: &Bend) -> Strained {
+    pub(super) fn at(&self, At { t, x, .. }: At<'_>, bend: &Bend) -> Strained {
+        let growth = self.swelling.growth(t);
         let vectors = self.edge_vectors(x);
-        let errors = self.errors(&vectors);
+        let errors = self.errors(&vectors, growth);
         Strained {
-            strain: self.strains * errors,
+            growth,
+            strain: self.strains * errors / growth,
             vectors,
             beyond: errors - bend.chords,
             slack: self.slack(bend),
@@ -249,7 +267,7 @@ impl Face {
     fn densities(&self, at: &Strained, barrier: f64) -> Vector3<f64> {
         let limit = self.limit.with_barrier(barrier);
         let [slope, _] = limit.derivatives(at.strain.norm_squared());
-        let barrier = 2.0 * slope * (self.strains.transpose() * at.strain);
+        let barrier = 2.0 * slope * (self.strains.transpose() * at.strain) / at.growth;
         self.area * (self.law.at(&at.beyond, &at.slack).slope() + barrier)
     }
 
@@ -260,8 +278,9 @@ impl Face {
         let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
         if slope != 0.0 {
             let along = self.strains.transpose() * at.strain;
-            law += 2.0 * slope * self.strains.transpose() * self.strains
+            let barrier = 2.0 * slope * self.strains.transpose() * self.strains
                 + 4.0 * curvature * along * along.transpose();
+            law += barrier / (at.growth * at.growth);
         }
         self.area * law
     }
@@ -304,10 +323,11 @@ impl Face {
         limit - KEPT_MARGIN * (limit - strain)
     }
 
-    /// Whether a displacement from `x` to `end` ends within the limit, and keeps a part of the distance from
+    /// Whether a displacement from where it is to `end` ends within the limit, and keeps a part of the distance from
     /// it.
-    pub(super) fn stays_within(&self, x: &[f64], end: &[f64]) -> bool {
-        self.strain(end).norm() <= self.bound(self.strain(x).norm())
+    pub(super) fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
+        let ends = [self.strain(at), self.strain(At { x: end, ..at })];
+        ends[1].norm() <= self.bound(ends[0].norm())
     }
 
     /// Adds the Hessian; `part` says which part of the force density of an edge counts for its curvature.
@@ -345,12 +365,14 @@ impl Face {
     /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients
     /// in Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval
     /// is halved.
-    pub(super) fn safe_part(&self, x: &[f64], dx: &[f64], most: f64) -> f64 {
-        let vectors = self.edge_vectors(x);
+    pub(super) fn safe_part(&self, at: At<'_>, dx: &[f64], most: f64) -> f64 {
+        let growth = self.swelling.growth(at.t);
+        let vectors = self.edge_vectors(at.x);
         let changes = self.edge_vectors(dx);
         let first = Vector3::from_fn(|k, _| vectors[k].dot(&changes[k]));
         let second = Vector3::from_fn(|k, _| 0.5 * changes[k].norm_squared());
-        let (e0, e1, e2) = (self.strain(x), self.strains * first, self.strains * second);
+        let [e1, e2] = [first, second].map(|errors| self.strains * errors / growth);
+        let e0 = self.strain(at);
         let bound = self.bound(e0.norm());
         if e0.norm() + most * (e1.norm() + most * e2.norm()) <= bound {
             return most;

@@ -58,7 +58,7 @@ fn homogeneous_deformations_have_the_energy_of_the_material() {
         assert!((energy / exact - 1.0).abs() < 1e-12, "{energy} {exact}");
         let rest = At::new(0.0, sheet.positions());
         assert!(sheet_of_limit.energy(rest.with_memory(&[kappa])) < 1e-25);
-        for strain in sheet_of_limit.strains(&x) {
+        for strain in sheet_of_limit.strains(At::new(0.0, &x)) {
             assert!((strain - e.norm()).abs() < 1e-13);
         }
     }
@@ -73,9 +73,12 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
         new.with_limit(0.1).unwrap()
     };
     let barrier = [0.02];
-    let loaded = elastic().strains(&x).filter(|s| *s > 0.05).count();
+    let loaded = elastic()
+        .strains(At::new(0.0, &x))
+        .filter(|s| *s > 0.05)
+        .count();
     assert!(
-        loaded > 5 && elastic().beyond_limit(&x).is_none(),
+        loaded > 5 && elastic().beyond_limit(At::new(0.0, &x)).is_none(),
         "{loaded}"
     );
     let gradient = |x: &[f64]| {
@@ -191,7 +194,7 @@ proptest! {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
         let elastic = ElasticSheet::new(&sheet, 1.0, 0.3).unwrap();
         let x = displaced(&sheet, strained.max(1e-9), seed);
-        prop_assume!(elastic.beyond_limit(&x).is_none());
+        prop_assume!(elastic.beyond_limit(At::new(0.0, &x)).is_none());
         let scale = 10f64.powf(size);
         let dx: Vec<f64> = displaced(&sheet, scale, seed + 1).iter().zip(sheet.positions()).map(|(a, b)| a - b).collect();
         let part = elastic.safe_part(At::new(0.0, &x), &dx);
@@ -199,8 +202,8 @@ proptest! {
         let at = |s: f64| -> Vec<f64> { x.iter().zip(&dx).map(|(x, d)| x + s * d).collect() };
         let left = |s: f64| {
             let y = at(s);
-            let before = elastic.strains(&x).collect::<Vec<_>>();
-            let left = elastic.strains(&y).zip(before).map(|(now, was)| (0.01 - now) / (0.01 - was));
+            let before = elastic.strains(At::new(0.0, &x)).collect::<Vec<_>>();
+            let left = elastic.strains(At::new(0.0, &y)).zip(before).map(|(now, was)| (0.01 - now) / (0.01 - was));
             left.fold(f64::INFINITY, f64::min)
         };
         for k in 0..=20 {
@@ -237,7 +240,7 @@ fn faces_bend_by_their_size_over_the_radius() {
         .flat_map(rolled)
         .collect();
     let memories = model.memories();
-    let deformation = model.elastic_deformation(&x, &memories).unwrap();
+    let deformation = model.elastic_deformation(0.0, &x, &memories).unwrap();
     let squared = (1.0_f64 / 16.0).powi(2) * 4.0 / 3.0;
     let (_, sharpest) = deformation.sharpest().unwrap();
     assert!(
@@ -253,7 +256,7 @@ fn faces_bend_by_their_size_over_the_radius() {
         deformation.total_share()
     );
     let flat = model
-        .elastic_deformation(sheet.positions(), &memories)
+        .elastic_deformation(0.0, sheet.positions(), &memories)
         .unwrap();
     assert!(flat.angle.iter().all(|a| *a < 1e-6) && flat.strain.iter().all(|s| *s < 1e-12));
 }
@@ -321,7 +324,9 @@ fn no_accepted_step_is_beyond_the_limit() {
         for _ in 0..60 {
             run.step(1.0 / 60.0).unwrap();
             let elastic = run.model().elastic_sheet().unwrap();
-            largest = elastic.strains(&run.state().x).fold(largest, f64::max);
+            largest = elastic
+                .strains(At::new(0.0, &run.state().x))
+                .fold(largest, f64::max);
         }
         assert!(largest > 0.01 && largest < 0.02, "{largest}");
     }

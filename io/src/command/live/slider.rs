@@ -54,6 +54,8 @@ impl Slider {
             "size" if owner.starts_with("forces.load") => (above.to_owned(), "N"),
             "size" if owner.starts_with("forces.pressure") => (above.to_owned(), "Pa"),
             "size" if owner.starts_with("forces.moment") => (above.to_owned(), "N m"),
+            "profile" => (above.to_owned(), ""),
+            "swell" => (text.clone(), ""),
             "added" => (format!("gas added to {owner}"), "m³"),
             "size" => (above.to_owned(), "m/s²"),
             "wind[0]" => ("wind along x".to_owned(), WIND),
@@ -143,5 +145,23 @@ mod tests {
                 named("angle of obstacle[0]", -135.0, 0.0),
             ]
         );
+    }
+
+    #[test]
+    fn curls_and_swelling_have_sliders() {
+        let text = r#"
+            version = 1
+            [sheet]
+            mesh = { square = { side = 0.2, level = 1 } }
+            material = "office paper"
+            curl = { along = [1, 0, 0], radius = 0.1 }
+            swell = { ramp = { to = -0.002, end = 1 } }
+        "#;
+        let named = |name: &str, low, high| (name.to_owned(), low, high);
+        let expected = [
+            named("sheet.curl", 0.0, 1.0),
+            named("sheet.swell", -0.002, 0.0),
+        ];
+        assert_eq!(sliders(text), expected);
     }
 }

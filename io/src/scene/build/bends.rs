@@ -263,7 +263,12 @@ impl Builder<'_> {
             });
             let plate = self.plates.get(&number).map(Arc::as_ref);
             let sheet = elastic_sheet(placed, elasticity, plate);
-            elastic.push((sheet.map_err(at(&key))?, part.clone()));
+            let mut sheet = sheet.map_err(at(&key))?;
+            if let Some(swell) = &of.swell {
+                let swollen = sheet.with_swelling(swell.as_given());
+                sheet = swollen.map_err(at(&placed.key.name("swell")))?;
+            }
+            elastic.push((sheet, part.clone()));
         }
         Ok(elastic)
     }
@@ -286,6 +291,10 @@ impl Builder<'_> {
 
     pub(super) fn add_isometry(&mut self) -> Result<(), SceneError> {
         let elastic = self.elastic_sheets()?;
+        let swells = |placed: &PlacedSheet<'_>| placed.of.swell.is_some();
+        if self.sheets.list.iter().any(swells) {
+            self.modelled.push("swelling".into());
+        }
         for (sheet, _) in &elastic {
             let words = elastic_in_words(sheet);
             if !self.modelled.contains(&words) {
