@@ -23,6 +23,9 @@ pub struct ElasticSummary {
     pub slack: f64,
     /// Where the sheet bent most over the size of a face, if it bends.
     pub sharpest: Option<Bend>,
+    /// The same at the end.
+    #[serde(default)]
+    pub at_end: Option<Bend>,
 }
 
 /// A bend of a face.
@@ -73,6 +76,7 @@ impl ElasticSummary {
             share: 0.0,
             slack: 0.0,
             sharpest: None,
+            at_end: None,
         })
     }
 
@@ -93,13 +97,15 @@ impl ElasticSummary {
         self.share = deformation.total_share();
         self.slack = deformation.slack_share();
         let before = self.sharpest.map_or(0.0, |bend| bend.angle);
-        if let Some((face, angle)) = deformation.sharpest()
-            && angle > before
-        {
+        if let Some((face, angle)) = deformation.sharpest() {
             let corners = simulation.model().topology().faces()[face];
             let mean = |k: usize| corners.iter().map(|v| x[3 * v.index() + k]).sum::<f64>() / 3.0;
             let at = [mean(0), mean(1), mean(2)];
-            self.sharpest = Some(Bend { angle, t: *t, at });
+            let bend = Bend { angle, t: *t, at };
+            self.at_end = Some(bend);
+            if angle > before {
+                self.sharpest = Some(bend);
+            }
         }
     }
 }

@@ -6,7 +6,7 @@ use super::folder::{Existing, FolderState, RunFolder, RunInputs, stored_scene};
 use super::stepping::{has_short_step, step_count};
 use super::summary::EndReason;
 use super::{Outcome, RunError, Watch, check_origin, simulate};
-use crate::format::{FileError, write_atomically};
+use crate::format::write_atomically;
 use crate::scene::{Files, SceneFile};
 use std::fs;
 use std::io::{ErrorKind, Write};
@@ -73,8 +73,7 @@ pub fn extend_folder(
         checkpoint::write(&checkpoint, &progress, &simulation)?;
     }
     let scene = open.path(RunFolder::SCENE);
-    write_atomically(&scene, |w| w.write_all(longer.text().text.as_bytes()))
-        .map_err(FileError::from)?;
+    write_atomically(&scene, |w| w.write_all(longer.text().text.as_bytes()))?;
     drop(open);
     simulate(&longer, folder, watch)
 }

@@ -48,7 +48,7 @@ impl Summary {
             let remedy = "refine the mesh: with half the edge length the slack is a quarter";
             warnings.push(Warning::new(message, remedy));
         }
-        let bend = sharpest.filter(|bend| bend.shortening() <= Self::CHORD_ERROR);
+        let bend = self.elastic.and_then(|elastic| elastic.at_end);
         let bend = bend.filter(|bend| bend.force_error() > Self::FORCE_ERROR);
         if let Some(bend) = bend.filter(|_| self.ending.is_squeezed()) {
             let message = format!(

@@ -287,17 +287,26 @@ fn what_cannot_come_and_go_is_said_at_the_start() {
     let pair = |names: [&str; 2], more: &str| {
         format!("[[contact.pair]]\nsheets = {names:?}\nfriction = 0.2\n{more}\n")
     };
-    let seam = "[[glue]]\nsheets = [\"a\", \"b\"]\nfirst = \"boundary\"\nsecond = \"boundary\"\n\
+    let seam = "[[glue]]\nsheets = [\"a\", \"b\"]\nfirst = { vertices = [0, 1] }\nsecond = { vertices = [0, 1] }\n\
                 closing = 0\n";
     for (wrong, part) in [
-        (pair(["a", "floor"], "until = 0.2"), "an obstacle that does not deform"),
+        (
+            pair(["a", "floor"], "until = 0.2"),
+            "an obstacle that does not deform",
+        ),
         (
             pair(["a", "b"], "until = 0.1") + &pair(["b", "a"], "from = 0.2"),
             "`contact.pair[0]` is of the same two",
         ),
-        (format!("{seam}until = 0.2\n[[forces.gas]]\n"), "a seam of the sheets around it"),
         (
-            format!("{}until = 0.2\nbend = {{ stiffness = 1 }}\n", seam.replace("closing = 0\n", "")),
+            format!("{seam}until = 0.2\n[[forces.gas]]\n"),
+            "a seam of the sheets around it",
+        ),
+        (
+            format!(
+                "{}until = 0.2\nbend = {{ stiffness = 1 }}\n",
+                seam.replace("closing = 0\n", "")
+            ),
             "closed at all times",
         ),
     ] {
