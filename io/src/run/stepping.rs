@@ -526,7 +526,9 @@ impl<'a> Stepping<'a> {
             return Some(EndReason::SupportForce);
         }
         if let Some(rest) = &scene.stop.rest {
-            if self.largest_speed() > rest.speed {
+            // A sheet at rest that a support is about to release is not at its end.
+            let is_due = self.under_way.switches.are_due(scene);
+            if is_due || self.largest_speed() > rest.speed {
                 self.progress.slow_since = None;
             } else {
                 let since = *self.progress.slow_since.get_or_insert(report.t);

@@ -31,11 +31,13 @@ pub enum StartingPoint {
     Peel,
     /// Two squares of film that are glued along their edges and blown up.
     Pillow,
+    /// A cloth that is pulled away from under a vase.
+    Vase,
 }
 
 impl StartingPoint {
     /// All of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Hanging,
         Self::Clamp,
         Self::Drape,
@@ -50,6 +52,7 @@ impl StartingPoint {
         Self::Hammock,
         Self::Peel,
         Self::Pillow,
+        Self::Vase,
     ];
 
     /// Its name.
@@ -69,6 +72,7 @@ impl StartingPoint {
             Self::Hammock => "hammock",
             Self::Peel => "peel",
             Self::Pillow => "pillow",
+            Self::Vase => "vase",
         }
     }
 
@@ -89,6 +93,7 @@ impl StartingPoint {
             Self::Hammock => "Rigid bodies that fall into a hammock of film",
             Self::Peel => "A strip of film that is peeled off a plate",
             Self::Pillow => "Two squares of film that are glued to a pillow and blown up",
+            Self::Vase => "A cloth that is pulled away from under a vase",
         }
     }
 
@@ -109,6 +114,7 @@ impl StartingPoint {
             Self::Hammock => include_str!("starting_point/hammock.toml"),
             Self::Peel => include_str!("starting_point/peel.toml"),
             Self::Pillow => include_str!("starting_point/pillow.toml"),
+            Self::Vase => include_str!("starting_point/vase.toml"),
         }
     }
 }

@@ -137,6 +137,20 @@ impl Switches {
         self.0.iter().any(|s| s.phase != Phase::Released)
     }
 
+    /// Whether something is still taken up or released at a time within the run.
+    pub(crate) fn are_due(&self, scene: &Scene) -> bool {
+        let comes = |when: Option<&When>| match when {
+            Some(When::Time(time)) => *time <= scene.stop.time,
+            _ => false,
+        };
+        let mut switches = self.0.iter().zip(scene.periods());
+        switches.any(|(switch, period)| match switch.phase {
+            Phase::Waiting => comes(period.from) || comes(period.until),
+            Phase::Holding => comes(period.until),
+            Phase::Released => false,
+        })
+    }
+
     /// Takes up and releases what a step asks for; what has happened.
     pub(crate) fn after_step(&mut self, scene: &Scene, reached: &Reached<'_>) -> Vec<EventRow> {
         let switches = self.0.iter_mut().zip(scene.periods());

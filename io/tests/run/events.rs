@@ -108,3 +108,23 @@ fn a_run_that_is_killed_around_a_release_continues_to_the_same_bits() {
     assert_same(&dir.join("whole"), &dir.join("cut"));
     assert_eq!(summary(&dir.join("cut")).steps, 50);
 }
+
+/// A sheet that lies still until a support lets go comes to its end after that.
+#[test]
+fn a_run_does_not_end_at_rest_before_a_release() {
+    let scene = "version = 1
+        [sheet]
+        mesh = { square = { side = 0.2, level = 1 } }
+        [[support]]
+        at = \"all\"
+        until = 0.5
+        [method]
+        step = 0.05
+        [stop]
+        time = 1
+        rest = { speed = 1e-3, duration = 0.2 }";
+    let dir = with_text(scene);
+    simulated(dir.path(), &[]);
+    let events = fs::read_to_string(dir.path().join("scene-run/events.csv")).unwrap();
+    assert_eq!(events.lines().count(), 2, "{events}");
+}
