@@ -138,6 +138,7 @@ impl Switches {
     }
 
     /// Whether something is still taken up or released at a time within the run.
+    #[cfg(feature = "run")]
     pub(crate) fn are_due(&self, scene: &Scene) -> bool {
         let comes = |when: Option<&When>| match when {
             Some(When::Time(time)) => *time <= scene.stop.time,
