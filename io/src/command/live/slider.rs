@@ -109,7 +109,7 @@ mod tests {
         let crease = ("angle of crease[0]".to_owned(), 0.0, 60.0);
         assert_eq!(sliders(StartingPoint::Leaf.text()), [crease]);
         // The seams close, and air is blown in.
-        let added = ("gas added to forces.gas[0]".to_owned(), 0.0, 6e-4);
+        let added = ("gas added to forces.gas[0]".to_owned(), 0.0, 5e-4);
         assert_eq!(sliders(StartingPoint::Pillow.text()), [added]);
     }
 
