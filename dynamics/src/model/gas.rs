@@ -133,7 +133,7 @@ impl SheetModel {
         if let Some(&[from, to]) = faces.rim.first() {
             return Err(GasError::Open { from, to });
         }
-        let inwards = Volume::new(&faces).value(x) < 0.0;
+        let inwards = faces.volume(x) < 0.0;
         let faces = if inwards { faces.turned_over() } else { faces };
         let volume = Volume::new(&faces);
         let first = volume.value(x);

@@ -33,6 +33,17 @@ struct Hinge {
     opposite: [Option<VertexId>; 2],
 }
 
+impl LoadedFaces {
+    /// The volume that closed faces enclose at positions `x` (`3V`, metres), cubic metres; negative where their front
+    /// is inside.
+    ///
+    /// # Panics
+    /// If `x` is shorter than the mesh that the faces are of.
+    pub fn volume(&self, x: &[f64]) -> f64 {
+        Volume::new(self).value(x)
+    }
+}
+
 impl Volume {
     /// Behind faces that are closed but for their seams.
     pub(super) fn new(loaded: &LoadedFaces) -> Self {

@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 pub struct Pressure {
     /// The names of the sheets. If left out, all of them.
     #[serde(default)]
-    pub sheets: Vec<String>,
+    pub sheets: Option<Vec<String>>,
     /// On which faces: those all corners of which are selected.
     #[serde(default = "everywhere")]
     pub at: Selection,
@@ -52,7 +52,7 @@ fn everywhere() -> Selection {
 pub struct Gas {
     /// The names of the sheets. If left out, all of them.
     #[serde(default)]
-    pub sheets: Vec<String>,
+    pub sheets: Option<Vec<String>>,
     /// Pressure outside, pascals. If left out, 101325, the standard atmosphere.
     #[serde(default = "atmosphere")]
     pub ambient: f64,
@@ -138,8 +138,18 @@ impl Moment {
     }
 }
 
-fn check_names(names: &[String], all: &[Sheet], key: &Key, checks: &mut Checks) {
+fn check_names(names: &Option<Vec<String>>, all: &[Sheet], key: &Key, checks: &mut Checks) {
     let key = key.name("sheets");
+    let Some(names) = names else { return };
+    if names.is_empty() {
+        let message = "no sheet is named";
+        checks.report(
+            key,
+            message,
+            "name sheets, or leave the key out for all of them",
+        );
+        return;
+    }
     for (i, name) in names.iter().enumerate() {
         sheets::check_reference(all, Some(name), &key.entry(i), checks);
         if names[..i].contains(name) {

@@ -51,7 +51,8 @@ impl Scene {
     /// The surface around a gas is closed at all times.
     fn check_gas(&self, checks: &mut Checks) {
         for (key, gas) in Key::root().name("forces.gas").entries(&self.forces.gas) {
-            let is_around = |name: &String| gas.sheets.is_empty() || gas.sheets.contains(name);
+            let named = gas.sheets.as_ref();
+            let is_around = |name: &String| named.is_none_or(|all| all.contains(name));
             let opens = self.glue.iter().position(|glue| {
                 let switches = glue.from.is_some() || glue.until.is_some();
                 // Without names it is of the only sheet.

@@ -141,6 +141,10 @@ fn what_cannot_be_loaded_is_named() {
             "no face has all of its corners",
         ),
         (
+            "[[forces.pressure]]\nsheets = []\nsize = 1",
+            "no sheet is named",
+        ),
+        (
             "[[forces.pressure]]\nsheets = [\"top\"]\nsize = 1",
             "sheets = [\"top\"]",
         ),
@@ -156,4 +160,20 @@ fn what_cannot_be_loaded_is_named() {
         let found = message(forces);
         assert!(found.contains(words), "{found}\n{words}");
     }
+}
+
+/// More than is there is not let out in silence.
+#[test]
+fn a_gas_keeps_a_part_of_what_it_has() {
+    let text = StartingPoint::Pillow.text();
+    let volume = 0.2 * 0.2 * 0.002;
+    let out = |part: f64| {
+        let to = format!("to = {:e}", -part * volume);
+        let text = text.replace("to = 5e-4", &to);
+        assert!(text.contains(&to));
+        parse(&text).unwrap().build().map(|_| ())
+    };
+    out(0.9).unwrap_or_else(|e| panic!("{e}"));
+    let message = out(1.1).unwrap_err().to_string();
+    assert!(message.contains("are let out"), "{message}");
 }

@@ -6,6 +6,7 @@ use crate::scene::error::SceneError;
 use crate::scene::key::Key;
 use crate::scene::problem::Problem;
 use isosheet_dynamics::{EdgeMoment, LoadedFaces, SimulationError};
+use isosheet_mesh::wording::given;
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
 
 impl Builder<'_> {
@@ -20,9 +21,20 @@ impl Builder<'_> {
         }
         for (key, gas) in key.name("gas").entries(&forces.gas) {
             let faces = self.loaded(&gas.sheets, &Selection::All, &key)?;
+            let volume = faces.volume(&self.x).abs();
             let model = self.model.take();
             let filled = model.map(|m| m.with_gas(faces, gas.as_engine(), &self.x));
             self.model = filled.transpose().map_err(at(&key))?;
+            let [least, _] = gas.added.range(self.scene.stop.time);
+            if -least >= volume {
+                let message = format!(
+                    "{} m3 are let out, and there are {} m3 at the start",
+                    given(-least),
+                    given(volume)
+                );
+                let remedy = "let out less than is enclosed at the start";
+                return Err(Problem::new(key.name("added"), message, remedy).into());
+            }
         }
         for (key, moment) in key.name("moment").entries(&forces.moment) {
             let vertices = self
@@ -47,13 +59,13 @@ impl Builder<'_> {
     /// The faces of sheets all corners of which are selected, those of the first sheet that is named first.
     fn loaded(
         &self,
-        names: &[String],
+        names: &Option<Vec<String>>,
         selection: &Selection,
         key: &Key,
     ) -> Result<LoadedFaces, SceneError> {
         let names: Vec<Option<&str>> = match names {
-            [] => vec![None],
-            names => names.iter().map(|name| Some(&name[..])).collect(),
+            None => vec![None],
+            Some(names) => names.iter().map(|name| Some(&name[..])).collect(),
         };
         let topology = self.model().topology();
         let mut faces: Vec<FaceId> = Vec::new();
