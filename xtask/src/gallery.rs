@@ -35,19 +35,11 @@ struct Shown {
 type GalleryRow = (&'static str, &'static str, [f64; 2], f64, &'static [usize]);
 
 /// The scenes in the order of the picture.
-const SCENES: [GalleryRow; 16] = [
+const SCENES: [GalleryRow; 20] = [
     ("drape", "new --kind drape", [-62.0, 24.0], 1.0, &[0]),
     ("stamp", "new --kind stamp", [-65.0, 20.0], 1.0, &[0, 1, 2]),
     ("feed", "new --kind feed", [-70.0, 18.0], 1.0, &[1]),
-    ("fold", "new --kind fold", [-58.0, 38.0], 0.6, &[]),
     ("fig12", "fig12: crumpling", [-62.0, 17.0], 0.125, &[]),
-    (
-        "fig12-marks",
-        "fig12-marks: marks stay",
-        [-62.0, 24.0],
-        1.0,
-        &[],
-    ),
     ("fig13", "fig13: stamping", [-58.0, 30.0], 1.0, &[0, 1]),
     (
         "fig15-rings",
@@ -64,6 +56,12 @@ const SCENES: [GalleryRow; 16] = [
     ("stack", "new --kind stack", [-60.0, 20.0], 0.9, &[1]),
     ("moebius", "new --kind moebius", [-62.0, 30.0], 1.0, &[]),
     ("hypar", "new --kind hypar", [-62.0, 25.0], 1.0, &[]),
+    ("hammock", "new --kind hammock", [-62.0, 25.0], 1.0, &[]),
+    ("vase", "new --kind vase", [-62.0, 22.0], 0.6, &[0]),
+    ("book", "book: opened by its cover", [-60.0, 20.0], 0.5, &[0]),
+    ("roller", "roller: driven by paper", [-60.0, 15.0], 1.0, &[]),
+    ("pillow", "new --kind pillow", [-62.0, 25.0], 1.0, &[]),
+    ("peel", "new --kind peel", [-62.0, 20.0], 0.7, &[]),
 ];
 
 /// All of them.
@@ -80,12 +78,12 @@ fn scenes() -> impl Iterator<Item = Shown> {
 }
 
 /// Pictures in a row, and the size of one, pixels.
-const COLUMNS: usize = 4;
+const COLUMNS: usize = 5;
 const SIZE: [usize; 2] = [480, 400];
 
 /// The scene of the film, by its number, its part of the run, and its frames; the size and the time of one
 /// (pixels, milliseconds).
-const FILMED: usize = 7;
+const FILMED: usize = 5;
 const END: f64 = 0.1;
 const FRAMES: usize = 36;
 const FILM: [usize; 2] = [368, 276];
