@@ -97,6 +97,7 @@ pub use material::plate_bending::{
     Curl, CurlError, Curvature, LineClamp, NaturalTensor, OrthotropicPlate, PlateBending,
     PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
 };
+pub use material::stiffening::Stiffening;
 pub use material::{Directions, Isotropic, Material, NamedMaterial, Orthotropic, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};
 pub use model::clamps::ClampAcrossMesh;

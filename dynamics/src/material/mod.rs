@@ -10,6 +10,7 @@ mod orthotropy;
 pub(crate) mod patched;
 pub(crate) mod plasticity;
 pub(crate) mod plate_bending;
+pub(crate) mod stiffening;
 #[cfg(test)]
 mod tests;
 

@@ -1,4 +1,4 @@
-//! Ambient occlusion: how much of the surroundings a point sees.
+//! Ambient occlusion: how much of the surroundings a point sees, and where a surface is smooth.
 
 use super::camera::{centre, normal};
 use super::pieces::Piece;
@@ -33,6 +33,15 @@ struct Spot {
     faces: Vec<usize>,
 }
 
+/// A corner of a piece, on the side that is seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surroundings {
+    /// How much of what is around it sees, from 0, dark, to 1, free.
+    pub(super) open: f64,
+    /// The unit normal of the surface: the mean of the pieces that meet smoothly there.
+    pub(super) normal: [f64; 3],
+}
+
 /// What hides the surroundings of points.
 pub(super) struct Occlusion {
     faces: Vec<[Vector; 3]>,
@@ -54,12 +63,12 @@ impl Occlusion {
         }
     }
 
-    /// Openness (0 dark to 1 free) at the three corners of every piece, on the side that is seen.
+    /// What is around the three corners of every piece.
     ///
     /// Pieces that meet smoothly in a vertex share one value there. Rays are distributed by the cosine law.
     /// The results do not depend on the number of threads: every ray is followed by itself, and the nearest
     /// face is the same in whatever order the faces are looked at.
-    pub(super) fn openness(&self, pieces: &[Piece], scene: &Triangles) -> Vec<[f64; 3]> {
+    pub(super) fn of_corners(&self, pieces: &[Piece], scene: &Triangles) -> Vec<[Surroundings; 3]> {
         let (spots, of_corner) = spots(pieces, scene);
         let directions = spiral();
         let one = |(k, spot): (usize, &Spot)| {
@@ -69,12 +78,15 @@ impl Occlusion {
             let centroid = spot.centroid.map(|c| c / spot.corners);
             let inset = if is_crease { INSET } else { 0.0 };
             let from = axpy(&corner, inset, &sub(&centroid, &corner));
-            self.around(&from, &up, &directions, &spot.faces)
+            Surroundings {
+                open: self.around(&from, &up, &directions, &spot.faces),
+                normal: up,
+            }
         };
-        let open: Vec<f64> = spots.par_iter().enumerate().map(one).collect();
+        let around: Vec<Surroundings> = spots.par_iter().enumerate().map(one).collect();
         of_corner
             .iter()
-            .map(|spots| spots.map(|k| open[k]))
+            .map(|spots| spots.map(|k| around[k]))
             .collect()
     }
 
@@ -182,7 +194,8 @@ mod tests {
     use isosheet_mesh::Topology;
 
     fn openness(pieces: &[Piece], scene: &Triangles, reach: f64) -> Vec<[f64; 3]> {
-        Occlusion::new(scene, reach).openness(pieces, scene)
+        let around = Occlusion::new(scene, reach).of_corners(pieces, scene);
+        around.iter().map(|c| c.map(|c| c.open)).collect()
     }
 
     fn scene(faces: &[[u32; 3]], x: &[[f64; 3]]) -> Triangles {
@@ -241,6 +254,33 @@ mod tests {
         assert_eq!([bent[0][0], bent[0][1]], [bent[1][1], bent[1][0]]);
         assert!(bent[0].iter().all(|o| *o > 0.95), "{bent:?}");
         assert!(folded[0][..2].iter().all(|o| *o < 0.85), "{folded:?}");
+    }
+
+    /// A bend looks smooth, a fold does not.
+    #[test]
+    fn bends_have_one_normal_and_folds_two() {
+        for (slope, expected) in [(0.3_f64, [0.0, 0.3]), (1.6, [0.0, 1.6])] {
+            let x = [
+                [0.0, 0.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [-1.0, 0.5, 0.0],
+                [slope.cos(), 0.5, slope.sin()],
+            ];
+            let scene = scene(&[[0, 1, 2], [1, 0, 3]], &x);
+            let around = Occlusion::new(&scene, 1.0).of_corners(&pieces(&scene, |_| false), &scene);
+            let shared = if slope < 1.0 {
+                [slope / 2.0; 2]
+            } else {
+                expected
+            };
+            for ((corners, on_line), own) in around.iter().zip(shared).zip(expected) {
+                for (corner, tilt) in corners.iter().zip([on_line, on_line, own]) {
+                    let normal = [-tilt.sin(), 0.0, tilt.cos()];
+                    let off = sub(&corner.normal, &normal);
+                    assert!(dot(&off, &off) < 1e-24, "{corner:?} {tilt}");
+                }
+            }
+        }
     }
 
     /// Every ray is followed by itself, so that threads change no bit.

@@ -1,9 +1,9 @@
 //! A shaded picture of a sheet.
 
-use super::camera::{Camera, centre, normal};
+use super::camera::{Camera, normal};
 use super::canvas::{Image, Light, light};
 use super::error::PictureError;
-use super::occlusion::Occlusion;
+use super::occlusion::{Occlusion, Surroundings};
 use super::pieces::{Cutter, Piece};
 use super::raster::{Corner, Drawing, Facet, Stroke};
 use super::solid::{Solid, Triangles};
@@ -31,8 +31,9 @@ const CONTRAST: f64 = 0.12;
 /// How far lines are drawn in front of what they lie on, as part of what the picture shows.
 const LIFT: f64 = 0.004;
 
-/// Wires that are closer than so many pixels are drawn lighter, so that fine meshes stay light.
-const CLOSE: f64 = 9.0;
+/// Edges within a sheet are not drawn where they are shorter than the first of so many pixels in the mean, and in full
+/// where they are longer than the second: fine meshes look like a sheet.
+const FADING: [f64; 2] = [6.0, 24.0];
 
 /// sRGB colours of lines, of pins and of immobile vertices.
 const INK: [u8; 3] = [38, 42, 48];
@@ -261,32 +262,31 @@ impl<'a> Painter<'a> {
     /// All pieces in their light; those of bodies at the rim of a shadow are cut once more.
     fn facets(&self, mut pieces: Vec<Piece>, scene: &mut Triangles) -> Vec<Facet> {
         let occlusion = Occlusion::new(scene, REACH * self.scale);
-        let mut open = occlusion.openness(&pieces, scene);
-        let is_rim = |k: usize, open: &[[f64; 3]]| {
-            let change = (0..3).map(|i| (open[k][i] - open[k][(i + 1) % 3]).abs());
+        let mut around = occlusion.of_corners(&pieces, scene);
+        let is_rim = |k: usize, around: &[[Surroundings; 3]]| {
+            let open = around[k].map(|corner| corner.open);
+            let change = (0..3).map(|i| (open[i] - open[(i + 1) % 3]).abs());
             pieces[k].face >= scene.own && change.fold(0.0, f64::max) > CONTRAST
         };
-        let rims: Vec<bool> = (0..pieces.len()).map(|k| is_rim(k, &open)).collect();
+        let rims: Vec<bool> = (0..pieces.len()).map(|k| is_rim(k, &around)).collect();
         let of_rim = pieces.iter().zip(&rims).filter(|(_, rim)| **rim);
         let of_rim: Vec<Piece> = of_rim.map(|(piece, _)| *piece).collect();
         let mut kept = rims.iter().map(|rim| !rim);
         pieces.retain(|_| kept.next().unwrap_or(true));
         let mut kept = rims.iter().map(|rim| !rim);
-        open.retain(|_| kept.next().unwrap_or(true));
+        around.retain(|_| kept.next().unwrap_or(true));
         let finer = self.cutter(FINE_GRAIN).finer(&of_rim, scene);
-        open.extend(occlusion.openness(&finer, scene));
+        around.extend(occlusion.of_corners(&finer, scene));
         pieces.extend(finer);
-        let facet = |(piece, open): (&Piece, &[f64; 3])| {
+        let facet = |(piece, around): (&Piece, &[Surroundings; 3])| {
             let points = piece.corners.map(|v| scene.x[v]);
             let flat = normal(&points);
             let flat = if piece.back { flat.map(|c| -c) } else { flat };
             let skin = scene.skin(piece.face);
-            let centre = centre(&points);
             let corners = [0, 1, 2].map(|k| {
-                let (o, p) = (open[k], &points[k]);
+                let (Surroundings { open: o, normal }, p) = (around[k], &points[k]);
                 let [sky, sun] = match &skin {
-                    // Faces of the sheet look flat, so that they are told apart.
-                    None => light_on(self.camera, &flat, &centre),
+                    None => light_on(self.camera, &normal, p),
                     Some(skin) => light_on(self.camera, &skin.normal(&flat, p), p),
                 };
                 let shade = sky * o + sun * (0.4 + 0.6 * o);
@@ -297,7 +297,7 @@ impl<'a> Painter<'a> {
                 face: piece.face as u32,
             }
         };
-        pieces.iter().zip(&open).map(facet).collect()
+        pieces.iter().zip(&around).map(facet).collect()
     }
 
     fn corner(&self, p: &[f64; 3], light: Light) -> Corner {
@@ -337,7 +337,8 @@ impl<'a> Painter<'a> {
             (b[0] - a[0]).hypot(b[1] - a[1])
         };
         let mean = edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64;
-        let inner = 0.55 * (mean / CLOSE).min(1.0);
+        let [none, full] = FADING;
+        let inner = 0.55 * ((mean - none) / (full - none)).clamp(0.0, 1.0);
         strokes.extend(edges.iter().map(|(vertices, is_boundary)| {
             let ends = vertices.map(|v| scene.x[v]);
             if *is_boundary {

@@ -22,6 +22,8 @@ impl Scene {
             all.extend(curl.map(|profile| (key.name("curl.profile"), profile)));
             let swell = sheet.swell.as_mut();
             all.extend(swell.map(|swell| (key.name("swell"), swell)));
+            let stiffening = sheet.stiffening.as_mut();
+            all.extend(stiffening.map(|factor| (key.name("stiffening"), factor)));
         }
         for (k, crease) in self.crease.iter_mut().enumerate() {
             all.push((

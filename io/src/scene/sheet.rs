@@ -78,6 +78,10 @@ pub struct Sheet {
     /// paper that dries, positive for film that is heated. For elastic sheets. If left out, none.
     #[serde(default)]
     pub swell: Option<Profile>,
+    /// The factor of its resistance to bending, a function of time above 0: paper whose glue dries, film that is heated.
+    /// If left out, it stays.
+    #[serde(default)]
+    pub stiffening: Option<Profile>,
     /// When it yields in bending. If left out, never: bends spring back.
     #[serde(default, rename = "yield")]
     pub yields: Option<SheetYield>,
@@ -225,6 +229,7 @@ impl Sheet {
             rest: RestShape::Flat,
             curl: None,
             swell: None,
+            stiffening: None,
             yields: None,
             patch: Vec::new(),
             damping: 0.0,
@@ -553,6 +558,18 @@ impl Sheet {
                     "the sheet swells or shrinks, and it is of rigid rods, which keep their lengths",
                     "give `sheet.material`, or `isometry = { elastic = { stiffness = ... } }`",
                 );
+            }
+        }
+        if let Some(stiffening) = &self.stiffening {
+            let key = key.name("stiffening");
+            stiffening.check(key.clone(), Unit::One, checks);
+            if stiffening.as_given().validate().is_ok() {
+                let [least, _] = stiffening.range(0.0);
+                checks.positive(key.clone(), least, Unit::One);
+            }
+            if self.bending() == Bending::None {
+                let message = "the stiffness changes, and nothing resists bending";
+                checks.report(key, message, "give `sheet.bending`, or `sheet.material`");
             }
         }
         if self.rest == RestShape::Mesh && self.bending() == Bending::None {

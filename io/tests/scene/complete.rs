@@ -268,6 +268,7 @@ const ALL_KEYS: [&str; 14] = [
     direction = [1, 0, 0]
     curl = { curvature = 5.0, across_curvature = -2.0, twist = 3.0 }
     swell = { smooth_step = { to = -0.002, end = 1 } }
+    stiffening = { ramp = { from = 0.5, to = 1, end = 1 } }
     isometry = { elastic = { stiffness = 4e5, across = 2e5, shear = 1e5 } }
     [[sheet.patch]]
     at = { half_space = { point = [0.05, 0, 0], normal = [1, 0, 0] } }

@@ -29,6 +29,7 @@ mod sheets;
 #[path = "../shared/skip.rs"]
 mod skip;
 mod starts;
+mod stiffening;
 mod swelling;
 mod switches;
 mod values;

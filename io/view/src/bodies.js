@@ -15,6 +15,7 @@ import {
   MeshStandardMaterial,
   PlaneGeometry,
   Quaternion,
+  ShadowMaterial,
   SphereGeometry,
   Vector3,
 } from "three";
@@ -45,7 +46,9 @@ export function makeBody(body) {
     const geometry = geometryOf(body.shape).toNonIndexed();
     group.sides = outline(geometry, OUTLINED);
     group.add(coloured("body", new Mesh(geometry, drawEdges(material, edgeUniforms()))));
-    group.children[0].position.set(...centreOf(body.shape));
+    const [surface] = group.children;
+    surface.position.set(...centreOf(body.shape));
+    Object.assign(surface, { castShadow: true, receiveShadow: true });
   }
   return group;
 }
@@ -102,6 +105,9 @@ function roundLength(length) {
   return (digit >= 5 ? 5 : digit >= 2 ? 2 : 1) * power;
 }
 
+/** How dark a shadow on the plane is. */
+const SHADE = 0.22;
+
 /** Cells of the grid from the middle of a patch to its rim. */
 const CELLS = 10;
 
@@ -130,5 +136,7 @@ export function addPatch(group, centre, reach) {
   const grid = new BufferGeometry();
   grid.setAttribute("position", new BufferAttribute(Float32Array.from(points), 3));
   const lines = new LineSegments(grid, new LineBasicMaterial());
-  group.add(coloured("floor", new Mesh(plane, surface)), coloured("grid", lines));
+  const shade = new ShadowMaterial({ opacity: SHADE, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1 });
+  const shadow = Object.assign(new Mesh(plane, shade), { receiveShadow: true });
+  group.add(coloured("floor", new Mesh(plane, surface)), coloured("grid", lines), coloured("shadow", shadow));
 }

@@ -21,10 +21,11 @@ import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { put } from "./colour.js";
 import { Sides, drawEdges, edgeUniforms } from "./edges.js";
+import { Normals } from "./normals.js";
 import { placing } from "./replay.js";
 
 /** Opacity of edges at full strength. */
-const STRENGTH = 0.6;
+const STRENGTH = 0.4;
 /** Largest width in pixels of edges that show a value. */
 const VALUE_WIDTH = 3;
 /** Radius of the balls that mark pins, on the stage and as a share of the mean length of the edges. */
@@ -32,7 +33,7 @@ const PIN_RADIUS = 0.014;
 const PIN_SHARE = 0.22;
 // Squares of side s with a diagonal have 3.4 s pixels of lines on s^2 pixels: 85 % for s = 4, 14 % for 24.
 /** Edges that are shorter on the screen than this are invisible, in pixels. */
-const FADED_LENGTH = 4;
+const FADED_LENGTH = 6;
 /** Edges that are longer on the screen than this have their full strength, in pixels. */
 const FULL_LENGTH = 24;
 
@@ -50,6 +51,9 @@ export class SheetObjects {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", this.corners);
     geometry.setAttribute("color", this.shades);
+    this.normals = new Normals(mesh);
+    this.facing = new BufferAttribute(new Float32Array(9 * mesh.faceCount), 3);
+    geometry.setAttribute("normal", this.facing);
     geometry.boundingSphere = everywhere();
     this.uniforms = edgeUniforms();
     // Each sheet has materials of its own.
@@ -62,7 +66,7 @@ export class SheetObjects {
     this.materials = [FrontSide, BackSide].map((side) =>
       sheets.map(
         () => {
-          const look = { side, vertexColors: true, flatShading: true, roughness: 0.85 };
+          const look = { side, vertexColors: true, roughness: 0.85 };
           return drawEdges(new MeshStandardMaterial(look), this.uniforms);
         },
       ),
@@ -94,7 +98,9 @@ export class SheetObjects {
       replay.data.pins.length + replay.data.immobile.length,
     );
     this.pins.frustumCulled = false;
-    for (const object of this.surfaces) object.frustumCulled = false;
+    for (const object of this.surfaces) {
+      Object.assign(object, { frustumCulled: false, castShadow: true, receiveShadow: true });
+    }
     this.group.add(...this.surfaces, this.lines, this.bars, this.ghost, this.mark, this.pins);
     this.quantity = replay.quantities[0];
     this.showEdges = true;
@@ -150,6 +156,8 @@ export class SheetObjects {
       corners[3 * k + 2] = x[from + 2];
     }
     this.corners.needsUpdate = true;
+    this.normals.update(x, this.facing.array);
+    this.facing.needsUpdate = true;
     this.copyEnds(x, this.lines);
     const place = new Matrix4();
     [...this.replay.data.pins, ...this.replay.data.immobile].forEach((v, k) =>

@@ -32,6 +32,10 @@ const LARGEST_FRAME = 2.5;
 const MARGIN = 1.15;
 /** The smallest distance from which the camera looks at a box, on the stage. */
 const NEAREST = 0.05;
+/** How far away the light is that casts shadows, how far from the middle of the stage it does, and pixels of its map. */
+const SUN_DISTANCE = 5;
+const SHADOW_REACH = 1.8;
+const SHADOW_PIXELS = 2048;
 /** Where the camera looks from, in axes (right, depth, up). */
 const DIRECTION = [0.55, -1, 0.5];
 
@@ -71,9 +75,22 @@ export class Stage {
   }
 
   addLights() {
-    this.scene.add(new HemisphereLight(0xffffff, 0xb5b0a8, 2.3));
-    // The light stands beside the camera and moves with it, so that no side of the sheet is dark.
-    const light = new DirectionalLight(0xffffff, 1.6);
+    this.scene.add(new HemisphereLight(0xffffff, 0xb5b0a8, 1.5));
+    // One light stands beside the camera and moves with it, so that no side of the sheet is dark; one stands above the
+    // stage and casts soft shadows.
+    const sun = new DirectionalLight(0xffffff, 1.4);
+    const aside = new Vector3().setComponent((this.replay.up + 1) % 3, -0.5).setComponent((this.replay.up + 2) % 3, -0.4);
+    sun.position.copy(this.up).multiplyScalar(2).add(aside).multiplyScalar(SUN_DISTANCE / 2);
+    sun.castShadow = true;
+    sun.shadow.mapSize.setScalar(SHADOW_PIXELS);
+    Object.assign(sun.shadow, { radius: 5, blurSamples: 16, bias: -1e-4, normalBias: 0.01 });
+    Object.assign(sun.shadow.camera, { near: 0.1, far: 2 * SUN_DISTANCE });
+    for (const [side, sign] of [["left", -1], ["right", 1], ["bottom", -1], ["top", 1]]) {
+      sun.shadow.camera[side] = sign * SHADOW_REACH;
+    }
+    this.renderer.shadowMap.enabled = true;
+    this.scene.add(sun);
+    const light = new DirectionalLight(0xffffff, 0.7);
     light.position.set(-0.6, 0.9, 0.6);
     this.camera.add(light, light.target);
     light.target.position.set(0, 0, -1);
@@ -195,7 +212,7 @@ export class Stage {
     this.colours = themeColours();
     this.renderer.setClearColor(this.colours.background);
     this.sheet.setColours(this.colours);
-    this.bodies.traverse((object) => object.material?.color.set(this.colours[object.name]));
+    this.bodies.traverse(({ material, name }) => name in this.colours && material?.color.set(this.colours[name]));
     for (const { sides } of this.bodyGroups) sides?.colourAll(new Color(this.colours.outline).toArray());
     this.update();
   }
@@ -204,8 +221,8 @@ export class Stage {
   showBodies(look) {
     this.look = look;
     this.bodies.visible = look !== "hidden";
-    this.bodies.traverse(({ material }) => {
-      if (!material) return;
+    this.bodies.traverse(({ material, name }) => {
+      if (!material || !(name in this.colours)) return;
       const glass = look === "glass";
       Object.assign(material, { transparent: glass, opacity: glass ? GLASS : 1, depthWrite: !glass });
       material.needsUpdate = true;

@@ -55,7 +55,7 @@ impl Slider {
             "size" if owner.starts_with("forces.pressure") => (above.to_owned(), "Pa"),
             "size" if owner.starts_with("forces.moment") => (above.to_owned(), "N m"),
             "profile" => (above.to_owned(), ""),
-            "swell" => (text.clone(), ""),
+            "swell" | "stiffening" => (text.clone(), ""),
             "added" => (format!("gas added to {owner}"), "m³"),
             "size" => (above.to_owned(), "m/s²"),
             "wind[0]" => ("wind along x".to_owned(), WIND),

@@ -12,7 +12,8 @@ use crate::scene::sheet::{Bending, Elasticity, Isometry, RestShape};
 use crate::scene::targets::DrivenCrease;
 use isosheet_dynamics::{
     CreaseSprings, ElasticSheet, ElasticSheetError, LineClamp, Patched, PlateBending, PlateEdges,
-    PlateLaw, Potential, PotentialOfPart, RigidDisplacement, SheetModel, start_of_folding,
+    PlateLaw, Potential, PotentialOfPart, RigidDisplacement, SheetModel, Stiffening,
+    start_of_folding,
 };
 use isosheet_mesh::{EdgeId, MassMatrix, Part, VertexId};
 use std::collections::BTreeSet;
@@ -97,7 +98,7 @@ impl Builder<'_> {
                     let law = Patched::everywhere(rigidity.into());
                     self.plate(number, law, creases, &[])?;
                 }
-                self.add_potential_of(number, springs);
+                self.add_bends(number, springs)?;
             }
             (_, None) => {}
             (_, Some(ground)) => {
@@ -111,10 +112,31 @@ impl Builder<'_> {
                 if curls {
                     modelled.push("curl");
                 }
-                self.add_potential_of(number, own);
+                self.add_bends(number, own)?;
             }
         }
+        if self.sheets.list[number].of.stiffening.is_some() {
+            modelled.push("stiffness that changes");
+        }
         Ok(modelled)
+    }
+
+    /// Adds what resists bending, with the factor by which it changes.
+    fn add_bends(
+        &mut self,
+        number: usize,
+        potential: impl Potential + 'static,
+    ) -> Result<(), SceneError> {
+        let PlacedSheet { of, key, .. } = &self.sheets.list[number];
+        match &of.stiffening {
+            None => self.add_potential_of(number, potential),
+            Some(factor) => {
+                let factor = Stiffening::new(potential, factor.as_given());
+                let stiffening = factor.map_err(at(&key.name("stiffening")))?;
+                self.add_potential_of(number, stiffening);
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn clamped(&self, number: usize) -> Vec<VertexId> {
