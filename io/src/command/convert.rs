@@ -144,7 +144,7 @@ impl Convert {
         let mut recording = Recording::read(&self.input).map_err(Failure::from)?;
         recording.trajectory = self.at_rate(recording.trajectory)?;
         if self.no_bodies {
-            recording.obstacles.clear();
+            recording.leave_out_bodies();
         }
         if let Some(format) = PictureFormat::of(self.output()) {
             return self.write_pictures(&recording, format);

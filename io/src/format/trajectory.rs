@@ -187,6 +187,27 @@ impl Trajectory {
         Ok(subset)
     }
 
+    /// The trajectory of the first vertices, edges and faces of the mesh, which belong together.
+    pub(crate) fn of_first(&self, counts: MeshCounts) -> Self {
+        let frames = |values: &[f64], size: usize, first: usize| -> Vec<f64> {
+            let frames = values.chunks_exact(size.max(1));
+            frames.flat_map(|frame| &frame[..first]).copied().collect()
+        };
+        let data = FrameQuantity::ALL.map(|quantity| {
+            let first = quantity.size(counts);
+            frames(self.all(quantity), self.size(quantity), first)
+        });
+        Self {
+            vertex_count: counts.vertices,
+            t: self.t.clone(),
+            x: frames(&self.x, 3 * self.vertex_count, 3 * counts.vertices),
+            faces: self.faces[..counts.faces].to_vec(),
+            edges: self.edges[..counts.edges].to_vec(),
+            rest_lengths: self.rest_lengths[..counts.edges].to_vec(),
+            data,
+        }
+    }
+
     /// The mesh without frames.
     fn without_frames(&self) -> Self {
         Self {

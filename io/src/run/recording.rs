@@ -4,8 +4,8 @@ use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, StoredFrames};
 use super::{RunError, Summary};
 use crate::format::{
-    EventRow, FileError, HistoryRow, LoadRow, MeasureRow, Motion, MotionFrame, SeriesBody,
-    Trajectory, read_events, read_history, read_json, read_loads, read_measures,
+    EventRow, FileError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion, MotionFrame,
+    SeriesBody, Trajectory, read_events, read_history, read_json, read_loads, read_measures,
 };
 use crate::scene::{Origins, SceneFile, Setup};
 use isosheet_collide::Obstacle;
@@ -134,6 +134,33 @@ impl Recording {
             summary: None,
         };
         (recording, frames)
+    }
+
+    /// Leaves the sheets alone: without obstacles, and without bodies and meshes in motion, which are parts of the mesh.
+    pub fn leave_out_bodies(&mut self) {
+        self.obstacles.clear();
+        self.parts.truncate(self.scene.scene().sheet.len());
+        let Some((_, last)) = self.parts.last() else {
+            return;
+        };
+        let counts = MeshCounts {
+            vertices: last.vertices.end,
+            edges: last.edges.end,
+            faces: last.faces.end,
+        };
+        let faces = &self.sheet.topology().faces()[..counts.faces];
+        let faces: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| v.0)).collect();
+        let positions = self.sheet.positions()[..3 * counts.vertices].to_vec();
+        if let Ok(sheets) = Sheet::new(positions, &faces) {
+            self.sheet = sheets;
+            self.trajectory = self.trajectory.of_first(counts);
+            if let Some(assignments) = &mut self.fold_assignments {
+                assignments.truncate(counts.edges);
+            }
+        }
+        if self.parts.len() == 1 {
+            self.parts.clear();
+        }
     }
 
     /// The obstacles that do not deform for files of other programs, `obstacle_0` and so on by their numbers in the

@@ -52,6 +52,23 @@ fn with_bodies(edits: &[&str], out: &str, folder: &Path) {
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
 }
 
+/// Without bodies the sheet is alone, in files and in pictures.
+#[test]
+fn bodies_that_respond_are_left_out_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    with_bodies(&["stop.time=0.05"], "out", dir);
+    for (options, vertices) in [(&["--no-bodies"][..], 81), (&[], 81 + 16 * 7 + 2 + 8)] {
+        for file in ["x.obj", "x.png"] {
+            let arguments = [&["convert", "out", file, "--frame", "1"], options].concat();
+            let done = run(dir, &arguments);
+            assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        }
+        let mesh = read_mesh(&dir.join("x.obj")).unwrap();
+        assert_eq!(mesh.positions.len(), 3 * vertices);
+    }
+}
+
 /// Frames have the surfaces of the bodies, which move as rigid bodies, and tables what acts on them.
 #[test]
 fn frames_and_tables_have_bodies() {
