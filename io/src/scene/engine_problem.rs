@@ -128,7 +128,14 @@ impl Origins {
             rate,
         }) = meeting.flatten()
         else {
-            return self.of_step(error);
+            let problem = self.of_step(error);
+            let has_rods = simulation.model().has_rods_in_sheets();
+            return match reason_of(error) {
+                Some(Reason::DependentRods | Reason::NoDescent) if !has_rods => {
+                    Problem::new(problem.key, problem.message, OF_ELASTIC)
+                }
+                _ => problem,
+            };
         };
         let list = Key::root().name("support");
         let [first, second] = supports.map(|k| list.entry(k));
@@ -420,6 +427,19 @@ fn remedy_of_press(cause: &StepError) -> &'static str {
         }
     }
 }
+
+/// Why the iteration of a step failed, if that is what failed.
+fn reason_of(error: &StepError) -> Option<Reason> {
+    match error {
+        StepError::StepTooSmall { cause, .. } => reason_of(cause),
+        StepError::NotConverged { reason, .. } => Some(*reason),
+        _ => None,
+    }
+}
+
+/// What helps where the iteration fails without rods.
+const OF_ELASTIC: &str = "forces or stiffnesses there differ by too many orders of magnitude: take a smaller \
+                          `method.step`, and look for a load, a mass or a stiffness that is not of the size meant";
 
 /// The key that is to blame for a failed iteration, and what to do.
 fn remedy_of(reason: Reason) -> (Key, &'static str) {
