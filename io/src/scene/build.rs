@@ -73,7 +73,7 @@ impl Scene {
         let measures = self.measure.iter().enumerate().map(gauge);
         let measures = measures.collect::<Result<_, _>>()?;
         let setup = builder.finish(contacts, obstacles);
-        check_step(self, &setup.model, &setup.start.v)?;
+        check_step(self, &setup.model, setup.sheet.area(), &setup.start.v)?;
         Ok(Setup { measures, ..setup })
     }
 }
