@@ -25,9 +25,13 @@ pub(super) fn check_step(
     let fields: f64 = fields.map(|f| largest(f.size.range(scene.stop.time))).sum();
     // Whatever a load acts on, it takes all of the mass along before long.
     let loads = forces.load.iter();
-    let loads: f64 = loads.map(|load| largest(load.size.range(scene.stop.time))).sum();
+    let loads: f64 = loads
+        .map(|load| largest(load.size.range(scene.stop.time)))
+        .sum();
     let pressures = forces.pressure.iter();
-    let pressures: f64 = pressures.map(|p| largest(p.size.range(scene.stop.time))).sum();
+    let pressures: f64 = pressures
+        .map(|p| largest(p.size.range(scene.stop.time)))
+        .sum();
     let loads = (loads + pressures * area) / model.mass().total();
     let h = scene.method.step;
     let path = h * speed + h * h * (gravity + fields + loads);

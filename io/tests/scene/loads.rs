@@ -152,10 +152,7 @@ fn what_cannot_be_loaded_is_named() {
             "[[forces.load]]\nat = \"all\"\ndirection = [0, 0, 1]\nsize = 1e18",
             "lost in round-off",
         ),
-        (
-            "[[forces.pressure]]\nsize = 1e15",
-            "lost in round-off",
-        ),
+        ("[[forces.pressure]]\nsize = 1e15", "lost in round-off"),
         (
             "[[forces.moment]]\nat = { vertices = [0] }\naxis = [1, 0, 0]\nsize = 1",
             "no edge has both of its ends",
