@@ -14,8 +14,8 @@ mod svg_lines;
 #[cfg(test)]
 mod tests;
 
-use super::mesh_file::{EdgeAssignment, FileCrease};
 use super::DataError;
+use super::mesh_file::{EdgeAssignment, FileCrease};
 pub(super) use faces::faces;
 pub(super) use planar::{Planar, planar};
 
@@ -30,8 +30,9 @@ pub(super) struct Segment {
 }
 
 /// Ends of lines that are so near each other become one point, as a part of the longer side of the drawing, unless
-/// the reader is told otherwise: above the digits that drawing programs write, below any distance that is drawn.
-const SNAP: f64 = 5e-4;
+/// the reader is told otherwise: the first of these distances with which every line leads somewhere. They are above the
+/// digits that drawing programs write, and at most a millimetre of a sheet of twenty centimetres.
+const SNAP: [f64; 4] = [5e-4, 1e-3, 2e-3, 5e-3];
 
 /// The planar graph of a drawing. `snap` is the distance within which points become one, in the unit of the drawing.
 ///
@@ -59,7 +60,26 @@ pub(super) fn of_segments(segments: &[Segment], snap: Option<f64>) -> Result<Pla
                       book has the colours and kinds";
         return Err(DataError::new(message, remedy));
     }
-    let near = snap.unwrap_or(SNAP * size);
+    let Some(snap) = snap else {
+        let mut best = within(segments, SNAP[0] * size);
+        for snap in &SNAP[1..] {
+            let loose = best.as_ref().map_or(usize::MAX, |planar| planar.loose);
+            if loose == 0 {
+                break;
+            }
+            if let Ok(planar) = within(segments, snap * size)
+                && planar.loose < loose
+            {
+                best = Ok(planar);
+            }
+        }
+        return best;
+    };
+    within(segments, snap)
+}
+
+/// The planar graph of a drawing whose points are one within a distance.
+fn within(segments: &[Segment], near: f64) -> Result<Planar, DataError> {
     let mut merged = planar::Points::within(near);
     let mut edges = Vec::with_capacity(segments.len());
     for segment in segments {

@@ -254,6 +254,11 @@ impl Folding {
         [driven.collect(), flat.collect()]
     }
 
+    /// The part of the way to their angles that the springs have gone at a time (seconds), from 0 to 1.
+    pub(crate) fn progress(&self, t: f64) -> f64 {
+        self.course(0.0, 1.0).at(t)
+    }
+
     /// The rest angle of a spring that goes from one angle to another, radians.
     fn course(&self, start: f64, target: f64) -> RestAngle {
         // A target that is a last digit above pi because of rounding would be refused.
@@ -275,7 +280,7 @@ impl Folding {
 
 /// The difference of a fold angle (degrees, not negative) from a target (radians), taken the short way round
 /// as the springs do.
-pub(super) fn off_target(topology: &Topology, x: &[f64], edge: EdgeId, target: f64) -> f64 {
+pub(crate) fn off_target(topology: &Topology, x: &[f64], edge: EdgeId, target: f64) -> f64 {
     let angle = fold_angle(topology, x, edge).unwrap_or(0.0) - target;
     (angle - TAU * (angle / TAU).round()).abs().to_degrees()
 }

@@ -42,8 +42,7 @@ fn segments(bytes: &[u8], format: MeshFormat) -> Result<Vec<Segment>, Located> {
             let remedy = "build it with the feature `svg`, or convert the drawing to a FOLD file";
             Err(plain(DataError::new(message, remedy)))
         }
-        _ => pattern::cp::parse(bytes)
-            .map_err(|(line, e)| (Some(Location::Line(line)), e.into())),
+        _ => pattern::cp::parse(bytes).map_err(|(line, e)| (Some(Location::Line(line)), e.into())),
     }
 }
 

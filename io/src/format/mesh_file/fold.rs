@@ -92,9 +92,11 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
 /// The planar graph of a frame without faces.
 fn of_drawing(points: &[Point], edges: &[FileCrease]) -> Result<Planar, DataError> {
     let extent = |k: usize| {
-        let [low, high] = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| {
-            [l.min(p[k]), h.max(p[k])]
-        });
+        let [low, high] = points
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| {
+                [l.min(p[k]), h.max(p[k])]
+            });
         high - low
     };
     let near = NEAR * extent(0).max(extent(1));

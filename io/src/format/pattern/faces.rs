@@ -14,7 +14,10 @@ pub(super) const MOST_EDGES: usize = 50_000;
 /// Each edge has two sides; at its end, a side is followed by that of the next edge clockwise. The
 /// circuits of positive area are the faces, the one of negative area is the outside. A face is a hole of
 /// the sheet if all of its edges are boundary and have another face on their other side.
-pub(in crate::format) fn faces(points: &[Point], edges: &[FileCrease]) -> Result<Vec<Vec<i64>>, DataError> {
+pub(in crate::format) fn faces(
+    points: &[Point],
+    edges: &[FileCrease],
+) -> Result<Vec<Vec<i64>>, DataError> {
     check_pieces(points, edges)?;
     let out = outgoing(points, edges);
     let mut face_of = vec![usize::MAX; 2 * edges.len()];

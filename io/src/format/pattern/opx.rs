@@ -25,8 +25,14 @@ pub(in crate::format) fn parse(bytes: &[u8]) -> Result<Vec<Segment>, DataError> 
 
 fn segment(number: usize, line: Node<'_, '_>) -> Result<Segment, DataError> {
     let property = |name: &str| {
-        let found = line.children().find(|n| n.attribute("property") == Some(name))?;
-        found.children().find(Node::is_element)?.text().map(str::trim)
+        let found = line
+            .children()
+            .find(|n| n.attribute("property") == Some(name))?;
+        found
+            .children()
+            .find(Node::is_element)?
+            .text()
+            .map(str::trim)
     };
     let wrong = |name: &str, found: &str| {
         let found: String = found.chars().take(30).collect();

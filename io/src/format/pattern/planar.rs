@@ -53,15 +53,16 @@ impl Points {
     /// The number of the nearest point within the distance, or of a new one.
     pub(super) fn add(&mut self, p: Point) -> u32 {
         let [x, y] = self.cell(p);
-        let around = (-1..=1).flat_map(|i| {
-            (-1..=1).map(move |j| [x.saturating_add(i), y.saturating_add(j)])
-        });
+        let around = (-1..=1)
+            .flat_map(|i| (-1..=1).map(move |j| [x.saturating_add(i), y.saturating_add(j)]));
         let known = around.filter_map(|cell| self.cells.get(&cell)).flatten();
         let away = |v: u32| {
             let q = self.points[v as usize];
             (p[0] - q[0]).hypot(p[1] - q[1])
         };
-        let nearest = known.map(|&v| (away(v), v)).filter(|(d, _)| *d <= self.near);
+        let nearest = known
+            .map(|&v| (away(v), v))
+            .filter(|(d, _)| *d <= self.near);
         match nearest.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
             Some((_, v)) => v,
             None => self.push(p),
@@ -89,7 +90,10 @@ pub(in crate::format) fn planar(
             "the drawing has {} lines, more than the {MOST_EDGES} of which faces are made",
             edges.len()
         );
-        return Err(DataError::new(message, "export it as a FOLD file with its faces"));
+        return Err(DataError::new(
+            message,
+            "export it as a FOLD file with its faces",
+        ));
     }
     let without_length = |e: &FileCrease| {
         let [a, b] = e.ends.map(|v| given[v as usize]);
@@ -97,7 +101,9 @@ pub(in crate::format) fn planar(
     };
     if let Some(edge) = edges.iter().position(without_length) {
         let message = format!("edge {edge}, counted from 0, has no length");
-        return Err(DataError::new(message, "remove it, or export the file with its faces").at(edge));
+        return Err(
+            DataError::new(message, "remove it, or export the file with its faces").at(edge),
+        );
     }
     let mut points = Points::within(near);
     for p in given {
@@ -112,8 +118,10 @@ pub(in crate::format) fn planar(
     planar.divide(edges, on)?;
     planar.drop_loose();
     if planar.edges.is_empty() {
-        let message = "the lines of the drawing enclose no face: the outline of the sheet is missing or open";
-        let remedy = "draw the outline as a closed line, or move ends that are meant to meet together";
+        let message =
+            "the lines of the drawing enclose no face: the outline of the sheet is missing or open";
+        let remedy =
+            "draw the outline as a closed line, or move ends that are meant to meet together";
         return Err(DataError::new(message, remedy));
     }
     planar.faces = super::faces(&planar.points, &planar.edges)?;
@@ -196,11 +204,12 @@ impl Planar {
             };
             inner.sort_by(|&v, &w| along(v).total_cmp(&along(w)));
             let chain = [vec![edge.ends[0]], inner, vec![edge.ends[1]]].concat();
-            for ends in chain.windows(2).map(|w| [w[0], w[1]]).filter(|[a, b]| a != b) {
-                let part = FileCrease {
-                    ends,
-                    ..*edge
-                };
+            for ends in chain
+                .windows(2)
+                .map(|w| [w[0], w[1]])
+                .filter(|[a, b]| a != b)
+            {
+                let part = FileCrease { ends, ..*edge };
                 let [a, b] = ends;
                 match known.entry([a.min(b), a.max(b)]) {
                     Entry::Vacant(place) => {

@@ -110,7 +110,10 @@ fn points_of_curve(controls: &[[f64; 2]], flatness: f64) -> Vec<[f64; 2]> {
     });
     // The distance of a curve from its chord is at most an eighth of its second derivative.
     let bend = degree * (degree - 1.0) * second.fold(0.0, f64::max);
-    let parts = (bend / (8.0 * flatness)).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
+    let parts = (bend / (8.0 * flatness))
+        .sqrt()
+        .ceil()
+        .clamp(1.0, MOST_PARTS) as usize;
     let point = |part: usize| {
         let t = part as f64 / parts as f64;
         let mut p = controls.to_vec();
