@@ -2,7 +2,7 @@
 
 use super::failure::{Code, Done, Failure, Format};
 use super::interrupt;
-use super::message::{counted, print_progress, print_result};
+use super::message::{print_progress, print_result};
 use super::simulate::{How, default_folder};
 use crate::format::read_mesh_with;
 use crate::run::{FoldVerdict, Recording, simulate, simulate_anew};
@@ -26,8 +26,9 @@ valleys, green cuts, yellow what stays flat, magenta what folds freely; opacity 
 degrees), a CP file of ORIPA or Oriedita, or an OPX file of ORIPA. Where it gives no angles, mountains and valleys are
 folded by 180 degrees.
 
-Rigid panels are tried first. Where they do not close, the panels are an elastic sheet, which is refined until the creases
-close as well as they can. The last line says which it was, which panels bend, and which creases stay open.";
+Rigid panels are tried first. Where they do not close, the panels are an elastic sheet, then one that is soft in its
+plane and stretches on the way, and at last an elastic one whose triangles are divided. The last line says which it was, which panels
+bend and stretch, and which creases stay open.";
 
 /// Fold a crease pattern, without a scene file
 #[derive(Debug, Args)]
@@ -80,12 +81,11 @@ fn length(text: &str) -> Result<f64, String> {
 /// Creases that are so far from their angles in the mean, degrees, are closed: no other panels are tried.
 const CLOSED: f64 = 1.0;
 
-/// As far as that an elastic sheet is not refined further.
+/// At most so far no further panels are tried, degrees.
 const WELL: f64 = 5.0;
 
-/// How often panels of an elastic sheet are refined at most, and how many faces it has then.
-const MOST_REFINED: usize = 2;
-const MOST_FACES: usize = 6000;
+/// Faces of an elastic sheet whose panels are divided, at most.
+const MOST_FACES: usize = 3000;
 
 impl Fold {
     pub(crate) fn run(&self) -> Done {
@@ -176,11 +176,13 @@ impl Fold {
         }
         let faces = parsed(&rigid, &self.scene_path())?.build()?;
         let faces = faces.model.topology().face_count();
-        for refine in 0..=MOST_REFINED {
-            if refine > 0 && faces << (2 * refine) > MOST_FACES {
-                break;
-            }
-            let panels = Panels::Elastic { refine };
+        let refined = (faces * 4 <= MOST_FACES).then_some(Panels::Elastic { refine: 1 });
+        let others = [
+            Some(Panels::Elastic { refine: 0 }),
+            Some(Panels::Soft),
+            refined,
+        ];
+        for panels in others.into_iter().flatten() {
             let scene = FoldScene {
                 panels,
                 ..rigid.clone()
@@ -204,14 +206,10 @@ impl Fold {
             ..scene.clone()
         };
         let what = match scene.panels {
-            Panels::Rigid => "rigid panels".to_owned(),
-            Panels::Elastic { refine: 0 } => "elastic panels".to_owned(),
-            Panels::Elastic { refine } => {
-                format!(
-                    "elastic panels, refined {}",
-                    counted(refine, "time", "times")
-                )
-            }
+            Panels::Rigid => "rigid panels",
+            Panels::Elastic { refine: 0 } => "elastic panels",
+            Panels::Elastic { .. } => "elastic panels with divided triangles",
+            Panels::Soft => "soft panels",
         };
         let mut watch = || match interrupt::requested() {
             true => ControlFlow::Break(()),

@@ -18,6 +18,8 @@ pub struct FoldVerdict {
     pub panels: [usize; 2],
     /// Whether they can bend.
     pub is_elastic: bool,
+    /// The largest strain of an edge at the end, and of all frames.
+    pub strain: [f64; 2],
 }
 
 impl FoldVerdict {
@@ -25,6 +27,9 @@ impl FoldVerdict {
     pub const OPEN: f64 = 5.0;
     /// A panel bends that is folded further at an edge inside, degrees.
     pub const BENDS: f64 = 5.0;
+
+    /// Panels are said to stretch by more than that, percent: no paper does.
+    pub const STRETCHES: f64 = 1.0;
 
     /// Of a run that has frames; `None` if its scene does not fold a pattern.
     pub fn of(recording: &Recording) -> Option<Self> {
@@ -34,6 +39,9 @@ impl FoldVerdict {
             return None;
         };
         let topology = recording.sheet.topology();
+        let frames = (0..recording.trajectory.len()).filter_map(|k| recording.trajectory.frame(k));
+        let strains = frames.map(|x| recording.model.max_strain(x));
+        let strain = [recording.model.max_strain(x), strains.fold(0.0, f64::max)];
         let off = |&(e, target): &(EdgeId, f64)| (off_target(topology, x, e, target), e);
         let refine = recording.scene.scene().sheet[0].refine;
         // The parts of a crease follow one another.
@@ -81,6 +89,7 @@ impl FoldVerdict {
             open: creases.iter().filter(|(off, _)| *off > Self::OPEN).count(),
             furthest,
             panels: [count, bends.iter().filter(|b| **b).count()],
+            strain,
             is_elastic: recording.scene.scene().sheet[0].isometry() != Isometry::Rods,
         })
     }
@@ -102,6 +111,13 @@ impl FoldVerdict {
             (true, None) => " (rigid panels do not close)".to_owned(),
             (false, _) => String::new(),
         };
+        let [end, largest] = self.strain.map(|s| 100.0 * s);
+        let stretch = match largest > Self::STRETCHES {
+            true => format!(
+                "; panels stretch by {largest:.0} % on the way, and by {end:.1} % at the end"
+            ),
+            false => String::new(),
+        };
         let FoldResidual { rms, largest, .. } = self.residual;
         let creases = match (self.open, self.furthest) {
             (0, _) | (_, None) => "every crease closes".to_owned(),
@@ -112,7 +128,7 @@ impl FoldVerdict {
                 Self::OPEN
             ),
         };
-        format!("folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}")
+        format!("folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}{stretch}")
     }
 }
 

@@ -5,7 +5,7 @@ use isosheet_dynamics::StepProgress;
 use std::ops::ControlFlow;
 
 /// Most factorisations of a trial times vertices: about a second for each hundred thousand.
-const MOST_WORK: usize = 2_000_000;
+const MOST_WORK: usize = 1_000_000;
 
 impl SceneFile {
     /// How far the creases are from the angles that the scene folds to at its end. `None` if it cannot start, a step fails,
