@@ -9,6 +9,7 @@ mod collect;
 mod convert;
 mod exit;
 mod failure;
+mod fold;
 mod frames;
 mod gallery;
 mod info;
@@ -37,6 +38,7 @@ use std::path::Path;
 const EXAMPLES: &str = "\
 Examples:
   isosheet new cloth --kind drape              write a scene to start from: cloth.toml
+  isosheet fold crane.svg --open               fold a crease pattern, and look at it
   isosheet simulate cloth.toml --open          run it in the folder cloth-run, and open its 3D page
   isosheet info cloth-run                      say what came of it
   isosheet convert cloth-run cloth.usda        write it for Blender; .pvd for ParaView, .apng as a film ...
@@ -58,6 +60,8 @@ struct Cli {
 enum Command {
     /// Run a scene; continue it if a part of it is done, do nothing if it is complete
     Simulate(simulate::Simulate),
+    /// Fold a crease pattern (FOLD, SVG, CP, OPX) without a scene file
+    Fold(fold::Fold),
     /// Play a scene in the browser while it is computed, and pull at its sheet
     Live(live::Live),
     /// Continue the run in a folder, with the scene that is stored there
@@ -107,6 +111,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
     cli.verbosity.choose();
     let done = match cli.command {
         Command::Simulate(simulate) => simulate.run(),
+        Command::Fold(fold) => fold.run(),
         Command::Live(live) => live.run(),
         Command::Resume(resume) => resume.run(),
         Command::Sweep(sweep) => sweep.run(program),

@@ -15,6 +15,7 @@ mod loads;
 mod measures;
 pub(crate) mod memory;
 mod mesh_file;
+mod pattern;
 mod trajectory;
 
 pub use atomic::{FileWriter, write_atomically};

@@ -38,6 +38,7 @@ mod extend;
 mod extension_error;
 #[cfg(feature = "picture")]
 mod film;
+mod fold_verdict;
 mod folder;
 mod frame_field;
 mod frames;
@@ -50,6 +51,7 @@ mod spool;
 mod stepping;
 mod summary;
 mod sweep;
+mod trial;
 mod vibration;
 #[cfg(feature = "picture")]
 mod viewpoint;
@@ -68,6 +70,7 @@ pub use extend::extend_folder;
 pub use extension_error::ExtensionError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
+pub use fold_verdict::FoldVerdict;
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};

@@ -44,6 +44,7 @@ mod driven_surface;
 mod edit;
 mod engine_problem;
 mod error;
+mod fold_scene;
 mod folding;
 mod follower_loads;
 mod forces;
@@ -116,6 +117,9 @@ pub use direction::{Direction, TextureAxis, TextureDirection};
 pub use edit::{Edit, EditError};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
+pub use fold_scene::{FoldScene, Panels, Touch};
+#[cfg(feature = "run")]
+pub(crate) use folding::off_target;
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use follower_loads::{Gas, Moment, Pressure};
 pub use forces::{Acceleration, Forces, Frame, Load};

@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 const FORMATS: &str = "\
 Mesh files that are read:
   .obj .off .stl .ply .fold .gltf .glb
+  .svg .cp .opx           crease patterns
 Mesh files that are written, also of one frame of a run (--frame K):
   .obj .off .ply .fold    all digits; .fold with edges, assignments and fold angles
   .stl .glb .usda         32-bit floats

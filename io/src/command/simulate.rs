@@ -66,7 +66,7 @@ pub(crate) struct Resume {
 
 /// How a run is computed and shown.
 #[derive(Debug, Args)]
-struct How {
+pub(super) struct How {
     /// Write one JSON object a line to stdout instead of text
     #[arg(long)]
     json: bool,
@@ -99,7 +99,7 @@ pub(super) fn use_threads(number: u16) -> Done {
 }
 
 impl How {
-    fn format(&self) -> Format {
+    pub(super) fn format(&self) -> Format {
         if self.json {
             Format::Json
         } else {
@@ -107,13 +107,13 @@ impl How {
         }
     }
 
-    fn prepare(&self) -> Done {
+    pub(super) fn prepare(&self) -> Done {
         interrupt::install()?;
         use_threads(self.threads)
     }
 
     /// Runs, shows the progress and says how it ended.
-    fn show(
+    pub(super) fn show(
         &self,
         folder: &Path,
         run: impl FnOnce(&mut Progress) -> Result<Outcome, RunError>,
@@ -210,7 +210,7 @@ impl Simulate {
 }
 
 /// The folder of a scene without `--out`: `drape-run` in the current folder for `scenes/drape.toml`.
-fn default_folder(scene: &Path) -> PathBuf {
+pub(super) fn default_folder(scene: &Path) -> PathBuf {
     let name = scene.file_stem().unwrap_or_default().to_string_lossy();
     PathBuf::from(format!("{name}-run"))
 }

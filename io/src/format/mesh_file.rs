@@ -1,6 +1,7 @@
 //! Reading meshes from files of other programs.
 
 mod assignment;
+mod drawing;
 mod error;
 mod face_groups;
 mod faces;
@@ -29,6 +30,8 @@ pub use format::MeshFormat;
 pub use mesh::{FileCrease, MeshFile, ReadingChanges};
 pub use options::{MeshOptions, Polygons, SeparateBuffers};
 pub use repair::Repair;
+
+pub(super) use plane::{Point, distance, twice_area};
 
 use crate::format::{DataError, input};
 use error::Located;
@@ -136,9 +139,12 @@ fn parse(
         MeshFormat::Gltf | MeshFormat::Glb => {
             gltf::parse(bytes, path, options)?.assemble_copies(options)?
         }
+        MeshFormat::Svg | MeshFormat::Cp | MeshFormat::Opx => {
+            drawing::parse(bytes, format, options)?
+        }
     };
     mesh.path = path.to_owned();
-    if let Some(tolerance) = options.weld {
+    if let (Some(tolerance), false) = (options.weld, format.is_drawing()) {
         mesh.weld(tolerance, &[]);
     }
     Ok(mesh)

@@ -1,7 +1,7 @@
 //! Fields of a page, frame by frame.
 
 use crate::format::{DataError, FrameQuantity, MotionFrame};
-use crate::scene::Origins;
+use crate::scene::{FoldTargets, Origins, off_target};
 use crate::view::{Centering, Field, Scale, strains};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{ElasticDeformation, SheetModel};
@@ -156,6 +156,26 @@ impl<'a> FrameField<'a> {
         Self::new(head, |frame| {
             let angles = frame.data.plastic_angles.iter();
             angles.map(|a| a.to_degrees()).collect()
+        })
+    }
+
+    /// The difference of each crease from the angle that a scene folds it to, degrees; none of other edges.
+    pub(super) fn open(sheet: &'a Sheet, targets: &'a FoldTargets) -> Self {
+        let head = Field {
+            name: "crease short of its angle".into(),
+            unit: "°".into(),
+            place: Centering::Edge,
+            scale: Scale::Linear,
+            note: "How far each crease is from the angle that it is folded to in the end.".into(),
+            values: Vec::new(),
+        };
+        let topology = sheet.topology();
+        Self::new(head, move |frame| {
+            let mut values = vec![0.0; topology.edge_count()];
+            for &(e, target) in &targets.creases {
+                values[e.index()] = off_target(topology, frame.x, e, target);
+            }
+            values
         })
     }
 

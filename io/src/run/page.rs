@@ -34,6 +34,11 @@ impl Recording {
     fn fields(&self) -> Vec<FrameField<'_>> {
         let has = |quantity: FrameQuantity| self.shape.has(quantity);
         let mut fields = FrameField::all(&self.sheet, &self.origins, &self.obstacles, has);
+        fields.extend(
+            self.folding
+                .as_ref()
+                .map(|targets| FrameField::open(&self.sheet, targets)),
+        );
         fields.extend(FrameField::elastic(
             &self.model,
             self.sheet.topology().face_count(),
@@ -47,6 +52,10 @@ impl Recording {
         let mut replay = Replay::still(&self.sheet, &self.obstacles, times, &self.history);
         for (k, body) in replay.bodies.iter_mut().enumerate() {
             body.name = format!("obstacle[{}]", self.origins.obstacle_number(k));
+        }
+        if let Some(folding) = &self.scene.scene().folding {
+            let part = |t: &f64| folding.part.abs() * folding.progress(*t);
+            replay.folded = replay.times.iter().map(part).collect();
         }
         let held = constraints::bodies(self.scene.scene(), &replay.times, corners);
         replay.bodies.extend(held);

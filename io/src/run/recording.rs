@@ -7,7 +7,7 @@ use crate::format::{
     EventRow, FileError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion, MotionFrame,
     SeriesBody, Trajectory, read_events, read_history, read_json, read_loads, read_measures,
 };
-use crate::scene::{Origins, SceneFile, Setup};
+use crate::scene::{FoldTargets, Origins, SceneFile, Setup};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
 use isosheet_mesh::generate::FoldAssignment;
@@ -37,6 +37,8 @@ pub struct Recording {
     pub immobile: Vec<VertexId>,
     /// The model at its start.
     pub(crate) model: SheetModel,
+    /// Where the scene folds creases to.
+    pub(crate) folding: Option<FoldTargets>,
     /// The obstacles that do not deform, in the order of the scene.
     pub obstacles: Vec<Obstacle>,
     /// Which entry of the scene made what.
@@ -124,6 +126,7 @@ impl Recording {
             trajectory: Trajectory::new(&setup.sheet),
             shape,
             sheet: setup.sheet,
+            folding: setup.targets.folding,
             obstacles: setup.obstacles,
             origins: setup.origins,
             history: tables.history,

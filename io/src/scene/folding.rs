@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Folding to the angles of the FOLD file that is the mesh of the sheet.
+/// Folding to the angles of the crease pattern that is the mesh of the sheet: a FOLD, SVG, CP or OPX file.
 ///
 /// A torsion spring at each crease drives it from the angle that it has at the start (before a perturbation)
 /// to its target. Panels of rods are kept flat, or made flat, by a stiffer spring at each edge inside of
@@ -24,7 +24,8 @@ use std::sync::Arc;
 /// enough. Angles that no such shape has are approached as far as the springs come to an equilibrium: the
 /// summary of the run says how large the differences are at the end.
 ///
-/// Mountains and valleys are driven to the angles that `edges_foldAngle` gives them; edges of the kinds `F`
+/// Mountains and valleys are driven to the angles that the file gives them (`edges_foldAngle` of FOLD files, the opacity
+/// of lines of SVG files), and where it gives none to 180 degrees; edges of the kinds `F`
 /// and `J` and the cuts of polygons stay flat; `U`, and `B` inside the sheet, are driven where their angle is
 /// not 0 and move freely elsewhere.
 ///
@@ -202,6 +203,11 @@ impl Folding {
                 let driven = parts.clone().map(|e| (e, self.part * angle));
                 targets.creases.extend(driven);
             };
+            let angle = angle.or(match crease.assignment {
+                EdgeAssignment::Mountain => Some(-PI),
+                EdgeAssignment::Valley => Some(PI),
+                _ => None,
+            });
             match (crease.assignment, angle) {
                 (EdgeAssignment::Flat | EdgeAssignment::Join, _) => targets.flat.extend(parts),
                 (EdgeAssignment::Mountain | EdgeAssignment::Valley, Some(angle)) => drive(angle),
@@ -214,8 +220,7 @@ impl Folding {
                 "{name} in {} gives no crease inside the sheet a fold angle",
                 file.path.display()
             );
-            let remedy = "take a FOLD file with `edges_foldAngle`, or fold by \
-                `[[crease]]` with `at = { pattern = \"assigned\" }`";
+            let remedy = "take a file with mountains and valleys, or with `edges_foldAngle`";
             return Err(Problem::new(key.clone(), message, remedy));
         }
         Ok(targets)
@@ -249,6 +254,11 @@ impl Folding {
         [driven.collect(), flat.collect()]
     }
 
+    /// The part of the way to their angles that the springs have gone at a time (seconds), from 0 to 1.
+    pub(crate) fn progress(&self, t: f64) -> f64 {
+        self.course(0.0, 1.0).at(t)
+    }
+
     /// The rest angle of a spring that goes from one angle to another, radians.
     fn course(&self, start: f64, target: f64) -> RestAngle {
         // A target that is a last digit above pi because of rounding would be refused.
@@ -270,7 +280,7 @@ impl Folding {
 
 /// The difference of a fold angle (degrees, not negative) from a target (radians), taken the short way round
 /// as the springs do.
-pub(super) fn off_target(topology: &Topology, x: &[f64], edge: EdgeId, target: f64) -> f64 {
+pub(crate) fn off_target(topology: &Topology, x: &[f64], edge: EdgeId, target: f64) -> f64 {
     let angle = fold_angle(topology, x, edge).unwrap_or(0.0) - target;
     (angle - TAU * (angle / TAU).round()).abs().to_degrees()
 }

@@ -25,6 +25,8 @@ pub(super) struct Document<'a> {
     frames_of_run: usize,
     stride: usize,
     times: String,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    folded: Vec<f64>,
     faces: String,
     rest: String,
     low: [f64; 3],
@@ -111,6 +113,10 @@ impl<'a> Document<'a> {
             frames_of_run: kept.frames,
             stride: kept.stride,
             times: pack_doubles(kept.numbers().map(|k| replay.times[k])),
+            folded: kept
+                .numbers()
+                .filter_map(|k| replay.folded.get(k).copied())
+                .collect(),
             faces: pack_indices(replay.faces.as_flattened()),
             rest: pack_doubles(replay.rest.iter().copied()),
             low,

@@ -35,6 +35,8 @@ pub struct Replay {
     pub faces: Vec<[u32; 3]>,
     /// Time of each frame (length T, ascending).
     pub times: Vec<f64>,
+    /// Of a run that folds a crease pattern the part of the folding in each frame, from 0 to 1 (length T); empty for others.
+    pub folded: Vec<f64>,
     /// Positions in each frame (T lists of length 3V).
     pub positions: Vec<Vec<f64>>,
     /// Positions of the unloaded sheet (length 3V).
@@ -78,6 +80,9 @@ impl Replay {
         }
         let frames = self.positions.len();
         check::length("the times of the frames", self.times.len(), frames)?;
+        if !self.folded.is_empty() {
+            check::length("the parts of the folding", self.folded.len(), frames)?;
+        }
         for (index, field) in self.fields.iter().enumerate() {
             check::length(&field.place_in_page(index), field.values.len(), frames)?;
         }

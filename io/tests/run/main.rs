@@ -11,6 +11,7 @@ mod devtools;
 mod ends;
 mod events;
 mod extending;
+mod fold;
 mod folders;
 mod folding;
 mod gallery;

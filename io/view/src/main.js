@@ -57,7 +57,7 @@ class Page {
     this.hover.update();
     this.plots.setTime(replay.time);
     $("scrub").value = replay.frame;
-    $("time").textContent = player.timeText?.() ?? `${number(replay.time)} s · ${replay.frame + 1}/${replay.frames}`;
+    $("time").textContent = player.timeText?.() ?? replay.frameText;
     $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
     $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
     this.address.changed();
@@ -66,6 +66,7 @@ class Page {
   connect() {
     const { replay, player, stage } = this;
     $("scrub").max = replay.frames - 1;
+    $("scrub").setAttribute("aria-label", replay.data.folded ? "Part of the folding" : "Frame");
     $("scrub").addEventListener("input", () => player.seek(Number($("scrub").value)));
     $("play").addEventListener("click", () => player.toggle());
     $("transport").hidden = replay.frames === 1 && !replay.data.live;

@@ -1,5 +1,6 @@
 // The decoded replay: positions and values of a frame, and the quantities that the sheet can be coloured by.
 
+import { number } from "./format.js";
 import { DIVERGING, SEQUENTIAL } from "./colour.js";
 import { Mesh } from "./mesh.js";
 
@@ -40,6 +41,13 @@ export class Replay {
 
   get time() {
     return this.data.times[this.frame];
+  }
+
+  /** What is said of the frame: of a crease pattern how far it is folded, of other runs the time. */
+  get frameText() {
+    const { folded } = this.data;
+    const at = folded ? `${(100 * folded[this.frame]).toFixed(0)} % of the fold` : `${number(this.time)} s`;
+    return `${at} · ${this.frame + 1}/${this.frames}`;
   }
 
   /** The two quantiles of each coordinate over all frames between which a share of its values lies. */

@@ -3,16 +3,16 @@
 
 mod cuts;
 mod frames;
-mod pattern;
 mod sides;
 #[cfg(test)]
 mod tests;
 
 use super::error::{Located, Location};
 use super::faces::Polyhedron;
-use super::plane;
+use super::plane::{self, NEAR, Point};
 use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
 use crate::format::DataError;
+use crate::format::pattern::{Planar, planar};
 use frames::FrameRecord;
 use isosheet_mesh::wording::brief;
 use std::collections::HashMap;
@@ -41,6 +41,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     }
     let points = polyhedron.positions.as_chunks::<3>().0;
     let is_flat = points.iter().all(|p| p[2] == 0.0);
+    let mut drawing = Planar::default();
     let mut faces = match &frame.faces_vertices {
         Some(faces) if !faces.is_empty() => faces.clone(),
         _ if edges.is_empty() => Vec::new(),
@@ -50,8 +51,15 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
             let error = DataError::new(message, "export the file with its faces");
             return Err(plain(error.into()));
         }
-        _ => pattern::faces(points, &edges).map_err(|e| plain(e.into()))?,
+        _ => {
+            drawing = of_drawing(points, &edges).map_err(|e| plain(e.into()))?;
+            edges = std::mem::take(&mut drawing.edges);
+            let crossings = drawing.points.iter().skip(vertices).flatten();
+            polyhedron.positions.extend(crossings);
+            std::mem::take(&mut drawing.faces)
+        }
     };
+    let points = polyhedron.positions.as_chunks::<3>().0;
     let (mut sides, mut reversed_faces) = (Vec::new(), 0);
     for (k, face) in faces.iter_mut().enumerate() {
         let is_reversed = is_flat && !is_folded && is_clockwise(points, face);
@@ -74,16 +82,29 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     }
     polyhedron.lines = edges.len();
     let mut mesh = polyhedron.assemble(options)?;
-    let diagonal = |&ends: &[u32; 2]| FileCrease {
-        ends,
-        assignment: EdgeAssignment::Flat,
-        angle: Some(0.0),
-    };
-    mesh.creases = edges;
-    mesh.creases.extend(mesh.diagonals.iter().map(diagonal));
+    drawing.edges = edges;
+    mesh.take_edges(drawing);
     mesh.changes.reversed_faces = reversed_faces;
     mesh.separate_cuts();
     Ok(mesh)
+}
+
+/// The planar graph of a frame without faces.
+fn of_drawing(points: &[Point], edges: &[FileCrease]) -> Result<Planar, DataError> {
+    let extent = |k: usize| {
+        let [low, high] = points
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| {
+                [l.min(p[k]), h.max(p[k])]
+            });
+        high - low
+    };
+    let near = NEAR * extent(0).max(extent(1));
+    let made = planar(points.to_vec(), edges, near);
+    made.map_err(|e| DataError {
+        message: format!("the file has no `faces_vertices`, and {}", e.message),
+        ..e
+    })
 }
 
 fn add_vertices(frame: &FrameRecord, polyhedron: &mut Polyhedron) -> Result<(), DataError> {

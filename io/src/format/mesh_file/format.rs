@@ -20,11 +20,17 @@ pub enum MeshFormat {
     Gltf,
     /// The same in one binary file, `.glb`.
     Glb,
+    /// Scalable Vector Graphics, `.svg`: a crease pattern by the colours of Origami Simulator.
+    Svg,
+    /// Crease patterns of ORIPA and Oriedita as text, `.cp`.
+    Cp,
+    /// Crease patterns of ORIPA as XML, `.opx`.
+    Opx,
 }
 
 impl MeshFormat {
     /// All formats that are read.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 10] = [
         Self::Obj,
         Self::Off,
         Self::Stl,
@@ -32,6 +38,9 @@ impl MeshFormat {
         Self::Fold,
         Self::Gltf,
         Self::Glb,
+        Self::Svg,
+        Self::Cp,
+        Self::Opx,
     ];
 
     /// The extension, without a dot.
@@ -44,7 +53,15 @@ impl MeshFormat {
             Self::Fold => "fold",
             Self::Gltf => "gltf",
             Self::Glb => "glb",
+            Self::Svg => "svg",
+            Self::Cp => "cp",
+            Self::Opx => "opx",
         }
+    }
+
+    /// Whether files of the format are drawings of crease patterns, which have lines and no faces.
+    pub fn is_drawing(self) -> bool {
+        matches!(self, Self::Svg | Self::Cp | Self::Opx)
     }
 
     /// The format of a file by its extension, in capital or small letters; `None` for all others.

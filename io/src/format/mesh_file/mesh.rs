@@ -34,6 +34,12 @@ pub struct ReadingChanges {
     pub reversed_faces: usize,
     /// Vertices that were added because the sheet is cut there.
     pub vertices_at_cuts: usize,
+    /// Lines of drawings that were divided where others cross them or end on them.
+    pub divided_lines: usize,
+    /// Lines of drawings that were left out because they lead nowhere.
+    pub loose_lines: usize,
+    /// Lines of drawings that were left out because they lie on others.
+    pub double_lines: usize,
 }
 
 impl ReadingChanges {
@@ -48,6 +54,7 @@ impl fmt::Display for ReadingChanges {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const VERTICES: [&str; 2] = ["vertex", "vertices"];
         const FACES: [&str; 2] = ["face", "faces"];
+        const LINES: [&str; 2] = ["line", "lines"];
         let changes = [
             (self.welded_vertices, VERTICES, "welded"),
             (self.collapsed_faces, FACES, "without area removed"),
@@ -57,6 +64,9 @@ impl fmt::Display for ReadingChanges {
                 "reversed, clockwise in the file, with the mountains and valleys at them",
             ),
             (self.vertices_at_cuts, VERTICES, "added at cuts"),
+            (self.divided_lines, LINES, "divided where others meet"),
+            (self.loose_lines, LINES, "that lead nowhere left out"),
+            (self.double_lines, LINES, "that lie on others left out"),
         ];
         let made = changes.iter().filter(|(count, ..)| *count > 0);
         let made =
@@ -108,6 +118,16 @@ impl MeshFile {
             changes: ReadingChanges::default(),
             path: PathBuf::new(),
         }
+    }
+
+    /// Makes the diagonals of polygons edges that stay flat.
+    pub(super) fn add_diagonals(&mut self) {
+        let diagonal = |&ends: &[u32; 2]| FileCrease {
+            ends,
+            assignment: EdgeAssignment::Flat,
+            angle: Some(0.0),
+        };
+        self.creases.extend(self.diagonals.iter().map(diagonal));
     }
 
     /// The number of vertices, used or not.

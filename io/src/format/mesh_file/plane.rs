@@ -1,14 +1,14 @@
 //! Drawings in the plane z = 0.
 
 /// A point, whose third coordinate is left out.
-pub(super) type Point = [f64; 3];
+pub(in crate::format) type Point = [f64; 3];
 
 /// An edge meets another one if an end of it is so near, as a part of the size of the pattern: above the
 /// round-off of coordinates of seven digits, below any distance in a drawing.
-pub(super) const NEAR: f64 = 1e-7;
+pub(in crate::format) const NEAR: f64 = 1e-7;
 
 /// Twice the signed area of a polygon in the plane z = 0.
-pub(super) fn twice_area<'a>(mut corners: impl Iterator<Item = &'a Point>) -> f64 {
+pub(in crate::format) fn twice_area<'a>(mut corners: impl Iterator<Item = &'a Point>) -> f64 {
     let Some(first) = corners.next() else {
         return 0.0;
     };
@@ -41,7 +41,7 @@ pub(super) fn meet(e: [u32; 2], f: [u32; 2], points: &[Point], near: f64) -> boo
 }
 
 /// The distance of a point from a segment in the plane.
-fn distance(p: Point, [a, b]: [Point; 2]) -> f64 {
+pub(in crate::format) fn distance(p: Point, [a, b]: [Point; 2]) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let from = [p[0] - a[0], p[1] - a[1]];
     let squared = along[0] * along[0] + along[1] * along[1];

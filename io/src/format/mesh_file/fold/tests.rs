@@ -175,27 +175,36 @@ fn patterns_without_faces_that_are_no_drawing_are_refused() {
     let square = "[0,0],[1,0],[1,1],[0,1]";
     let sides = "[0,1],[1,2],[2,3],[3,0]";
     let with = |more: &str| format!("{sides},{more}");
-    refused(square, &with("[0,2],[3,1]"), "its edges 4 and 5 meet");
     let coincident = format!("{square},[0,0]");
-    refused(&coincident, &with("[0,4]"), "its edge 4 has no length");
-    let inner = format!("{square},[0.5,0.4]");
-    refused(
-        &inner,
-        &with("[0,4]"),
-        "vertex 4 is an end of one edge only",
-    );
-    let on_side = format!("{square},[0.5,0]");
-    refused(
-        &on_side,
-        &with("[2,4],[3,4]"),
-        "meet where they have no vertex",
-    );
+    refused(&coincident, &with("[0,4]"), "has no length");
     let two = format!("{square},[0.4,0.4],[0.6,0.4],[0.5,0.6]");
     refused(
         &two,
         &with("[4,5],[5,6],[6,4]"),
-        "its edges make 2 separate pieces",
+        "lies inside of another one",
     );
+    refused(square, "[0,1],[1,2],[2,3]", "enclose no face");
+}
+
+#[test]
+fn lines_of_patterns_without_faces_may_cross_and_lead_nowhere() {
+    let read = |coords: &str, edges: &str| {
+        let text = format!(r#"{{"vertices_coords": [{coords}], "edges_vertices": [{edges}]}}"#);
+        parse(MeshFormat::Fold, text.as_bytes()).unwrap()
+    };
+    let square = "[0,0],[1,0],[1,1],[0,1]";
+    let sides = "[0,1],[1,2],[2,3],[3,0]";
+    let crossing = read(square, &format!("{sides},[0,2],[3,1]"));
+    assert_eq!((crossing.vertex_count(), crossing.faces.len()), (5, 4));
+    assert_eq!(crossing.positions[12..], [0.5, 0.5, 0.0]);
+    assert_eq!(crossing.changes.divided_lines, 2);
+    let on_side = read(
+        &format!("{square},[0.5,0]"),
+        &format!("{sides},[2,4],[3,4]"),
+    );
+    assert_eq!((on_side.vertex_count(), on_side.faces.len()), (5, 3));
+    let loose = read(&format!("{square},[0.5,0.4]"), &format!("{sides},[0,4]"));
+    assert_eq!((loose.changes.loose_lines, loose.polygons), (1, 1));
 }
 
 /// Seen from the other side, mountains are valleys: where all faces are clockwise the file shows the back of

@@ -1,0 +1,251 @@
+//! `isosheet fold`.
+
+use super::failure::{Code, Done, Failure, Format};
+use super::interrupt;
+use super::message::{print_progress, print_result};
+use super::simulate::{How, default_folder};
+use crate::format::read_mesh_with;
+use crate::run::{FoldVerdict, Recording, simulate, simulate_anew};
+use crate::scene::{FoldResidual, FoldScene, Panels, SceneFile, Touch, bounds};
+use crate::{MeshOptions, write_atomically};
+use clap::Args;
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  isosheet fold crane.svg --open               fold a crease pattern in the folder crane-run, and look at it
+  isosheet fold crane.fold --part 0.8          fold it to four fifths of its angles
+  isosheet fold crane.cp --contact -o crane.toml
+                                               panels touch each other; write the scene that was run";
+
+const NOTES: &str = "\
+The pattern is a FOLD file, an SVG drawing by the colours of Origami Simulator (black the outline, red mountains, blue
+valleys, green cuts, yellow what stays flat, magenta what folds freely; opacity is the fold angle as a part of 180
+degrees), a CP file of ORIPA or Oriedita, or an OPX file of ORIPA. Where it gives no angles, mountains and valleys are
+folded by 180 degrees.
+
+Rigid panels are tried first. Where they do not close, the panels are an elastic sheet, then one that is soft in its
+plane and stretches on the way, and at last an elastic one whose triangles are divided. The last line says which it was, which panels
+bend and stretch, and which creases stay open.";
+
+/// Fold a crease pattern, without a scene file
+#[derive(Debug, Args)]
+#[command(before_help = EXAMPLES, after_help = NOTES)]
+pub(crate) struct Fold {
+    /// The crease pattern (FOLD, SVG, CP, OPX)
+    pattern: PathBuf,
+    /// The folder to write to [default: the name of the pattern with `-run`, in the current folder]
+    out: Option<PathBuf>,
+    /// Which part of its angle each crease is folded by, from 0 to 1
+    #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part)]
+    part: f64,
+    /// Panels touch each other, and do not pass through each other
+    #[arg(long)]
+    contact: bool,
+    /// What the sheet is made of: a name of the page "Materials" of the book
+    #[arg(long, value_name = "NAME", default_value = "office paper")]
+    material: String,
+    /// The longest side of the sheet, metres
+    #[arg(long, value_name = "METRES", default_value_t = 0.2, value_parser = length)]
+    size: f64,
+    /// Which frame of a FOLD file, by its number from 0 [default: the first one with vertices]
+    #[arg(long, value_name = "NUMBER")]
+    frame: Option<usize>,
+    /// Write the scene to a file, which `isosheet simulate` runs again
+    #[arg(short = 'o', long = "scene", value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Delete the run that the folder holds before
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    how: How,
+}
+
+/// A number from 0 to 1 that is not 0.
+fn part(text: &str) -> Result<f64, String> {
+    let part: Option<f64> = text.parse().ok();
+    part.filter(|p| *p > 0.0 && *p <= 1.0)
+        .ok_or_else(|| "give a number above 0 and at most 1".to_owned())
+}
+
+/// A length in metres.
+fn length(text: &str) -> Result<f64, String> {
+    let length: Option<f64> = text.parse().ok();
+    length
+        .filter(|l| (1e-4..=1e3).contains(l))
+        .ok_or_else(|| "give a length from 0.0001 to 1000 metres".to_owned())
+}
+
+/// Creases that are so far from their angles in the mean, degrees, are closed: no other panels are tried.
+const CLOSED: f64 = 1.0;
+
+/// At most so far no further panels are tried, degrees.
+const WELL: f64 = 5.0;
+
+/// Faces of an elastic sheet whose panels are divided, at most.
+const MOST_FACES: usize = 3000;
+
+impl Fold {
+    pub(crate) fn run(&self) -> Done {
+        let format = self.how.format();
+        self.fold().map_err(|failure| failure.in_format(format))
+    }
+
+    fn fold(&self) -> Done {
+        let scene = self.composed()?;
+        self.how.prepare()?;
+        let (scene, rigid) = self.chosen(scene)?;
+        let at = self.scene_path();
+        if self.scene.is_some() {
+            let text = text_of(&scene)?;
+            write_atomically(&at, |w| w.write_all(text.as_bytes()))
+                .map_err(|e| Failure::of(Code::Output, &e))?;
+        }
+        let file = parsed(&scene, &at)?;
+        let folder = self
+            .out
+            .clone()
+            .unwrap_or_else(|| default_folder(&self.pattern));
+        let run = if self.force { simulate_anew } else { simulate };
+        self.how
+            .show(&folder, |progress| run(&file, &folder, progress))?;
+        if self.how.format() == Format::Text {
+            let recording = Recording::read(&folder)?;
+            if let Some(verdict) = FoldVerdict::of(&recording) {
+                print_result(format_args!("{}", verdict.in_words(rigid.as_ref())))?;
+            }
+        }
+        if self.scene.is_some() {
+            print_result(format_args!("scene: {}", at.display()))?;
+        }
+        Ok(())
+    }
+
+    /// Where the scene is, or would be: its paths are relative to that.
+    fn scene_path(&self) -> PathBuf {
+        let beside = || self.pattern.with_extension("toml");
+        self.scene.clone().unwrap_or_else(beside)
+    }
+
+    /// The scene of rigid panels.
+    fn composed(&self) -> Result<FoldScene, Failure> {
+        let options = MeshOptions {
+            frame: self.frame.map(crate::FoldFrame::Number),
+            ..MeshOptions::default()
+        };
+        let mesh = read_mesh_with(&self.pattern, &options);
+        let mesh = mesh.map_err(|e| Failure::of(Code::Input, &e))?;
+        if mesh.creases.is_empty() {
+            let message = format!("{} has no creases", self.pattern.display());
+            let remedy = "give a crease pattern: a FOLD, SVG, CP or OPX file";
+            return Err(Failure::new(Code::Input, message).remedy(remedy));
+        }
+        if !mesh.changes.is_nothing() {
+            print_progress(format_args!("note: {}", mesh.changes));
+        }
+        let [low, high] = bounds(mesh.positions.as_chunks::<3>().0);
+        let side = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        if side <= 0.0 {
+            let message = format!("{} has no extent", self.pattern.display());
+            return Err(Failure::new(Code::Input, message).remedy("correct its coordinates"));
+        }
+        Ok(FoldScene {
+            pattern: named_from(&self.scene_path(), &self.pattern)?,
+            frame: self.frame,
+            scale: self.size / side,
+            size: self.size,
+            material: self.material.clone(),
+            panels: Panels::Rigid,
+            part: self.part,
+            touch: match self.contact {
+                true => Touch::Touches,
+                false => Touch::Passes,
+            },
+        })
+    }
+
+    /// The scene whose panels close best, and how far rigid ones do; `None` if these do not reach an end.
+    fn chosen(&self, rigid: FoldScene) -> Result<(FoldScene, Option<FoldResidual>), Failure> {
+        let residual = self.tried(&rigid)?;
+        let closes = |r: &FoldResidual, rms: f64| r.rms <= rms && r.largest <= 5.0 * rms;
+        let mut best = (residual, rigid.clone());
+        if residual.is_some_and(|r| closes(&r, CLOSED)) {
+            return Ok((rigid, residual));
+        }
+        let faces = parsed(&rigid, &self.scene_path())?.build()?;
+        let faces = faces.model.topology().face_count();
+        let refined = (faces * 4 <= MOST_FACES).then_some(Panels::Elastic { refine: 1 });
+        let others = [
+            Some(Panels::Elastic { refine: 0 }),
+            Some(Panels::Soft),
+            refined,
+        ];
+        for panels in others.into_iter().flatten() {
+            let scene = FoldScene {
+                panels,
+                ..rigid.clone()
+            };
+            let found = self.tried(&scene)?;
+            let rms = |r: &Option<FoldResidual>| r.map_or(f64::INFINITY, |r| r.rms);
+            if rms(&found) < rms(&best.0) || best.1.panels == Panels::Rigid && best.0.is_none() {
+                best = (found, scene);
+            }
+            if best.0.is_some_and(|r| closes(&r, WELL)) {
+                break;
+            }
+        }
+        Ok((best.1, residual))
+    }
+
+    /// How far the creases of a scene are from their angles in the end, without contact.
+    fn tried(&self, scene: &FoldScene) -> Result<Option<FoldResidual>, Failure> {
+        let alone = FoldScene {
+            touch: Touch::Passes,
+            ..scene.clone()
+        };
+        let what = match scene.panels {
+            Panels::Rigid => "rigid panels",
+            Panels::Elastic { refine: 0 } => "elastic panels",
+            Panels::Elastic { .. } => "elastic panels with divided triangles",
+            Panels::Soft => "soft panels",
+        };
+        let mut watch = || match interrupt::requested() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        let found = parsed(&alone, &self.scene_path())?.folds_to(&mut watch)?;
+        if interrupt::requested() {
+            return Err(Failure::new(Code::Interrupted, "stopped by Ctrl-C"));
+        }
+        match found {
+            Some(r) => print_progress(format_args!(
+                "{what}: creases end {:.1} degrees rms from their angles",
+                r.rms
+            )),
+            None => print_progress(format_args!("{what}: no end is reached")),
+        }
+        Ok(found)
+    }
+}
+
+fn text_of(scene: &FoldScene) -> Result<String, Failure> {
+    scene.text().map_err(|e| Failure::of(Code::Input, &e))
+}
+
+/// A scene with its text, as if it were in a file.
+fn parsed(scene: &FoldScene, at: &Path) -> Result<SceneFile, Failure> {
+    Ok(SceneFile::parse(text_of(scene)?, at, &[])?)
+}
+
+/// How a scene names a file: by its name where both are in one folder, and otherwise by its whole path.
+fn named_from(scene: &Path, file: &Path) -> Result<PathBuf, Failure> {
+    if let Some(name) = file.file_name()
+        && scene.parent() == file.parent()
+    {
+        return Ok(name.into());
+    }
+    let whole = std::path::absolute(file);
+    whole.map_err(|e| Failure::new(Code::Input, format!("{}: {e}", file.display())))
+}

@@ -1,0 +1,58 @@
+//! Reading drawings of crease patterns: SVG, CP and OPX files.
+
+use super::error::{Located, Location};
+use super::faces::Polyhedron;
+use super::{MeshFile, MeshFormat, MeshOptions};
+use crate::format::DataError;
+use crate::format::pattern::{self, Planar, Segment};
+
+/// Reads a drawing. Its faces are what its lines enclose, in the plane z = 0 as seen on the screen; points that are
+/// within the tolerance for welding of each other are one.
+pub(super) fn parse(
+    bytes: &[u8],
+    format: MeshFormat,
+    options: &MeshOptions,
+) -> Result<MeshFile, Located> {
+    let plain = |e: DataError| (None, e.into());
+    let segments = segments(bytes, format)?;
+    let planar = pattern::of_segments(&segments, options.weld).map_err(plain)?;
+    let mut polyhedron = Polyhedron::default();
+    for p in &planar.points {
+        polyhedron.push_vertex(*p).map_err(plain)?;
+    }
+    for (k, face) in planar.faces.iter().enumerate() {
+        polyhedron.push_face(face.iter().copied(), Location::Face(k));
+    }
+    let mut mesh = polyhedron.assemble(options)?;
+    mesh.take_edges(planar);
+    mesh.drop_unreferenced();
+    mesh.separate_cuts();
+    Ok(mesh)
+}
+
+fn segments(bytes: &[u8], format: MeshFormat) -> Result<Vec<Segment>, Located> {
+    let plain = |e: DataError| (None, e.into());
+    match format {
+        MeshFormat::Opx => pattern::opx::parse(bytes).map_err(plain),
+        #[cfg(feature = "svg")]
+        MeshFormat::Svg => pattern::svg::parse(bytes).map_err(plain),
+        #[cfg(not(feature = "svg"))]
+        MeshFormat::Svg => {
+            let message = "this program was built without the reader of SVG files";
+            let remedy = "build it with the feature `svg`, or convert the drawing to a FOLD file";
+            Err(plain(DataError::new(message, remedy)))
+        }
+        _ => pattern::cp::parse(bytes).map_err(|(line, e)| (Some(Location::Line(line)), e.into())),
+    }
+}
+
+impl MeshFile {
+    /// Takes the edges of a drawing, and what reading it changed; diagonals of its faces stay flat.
+    pub(super) fn take_edges(&mut self, planar: Planar) {
+        self.changes.divided_lines = planar.divided;
+        self.changes.loose_lines = planar.loose;
+        self.changes.double_lines = planar.double;
+        self.creases = planar.edges;
+        self.add_diagonals();
+    }
+}

@@ -1,0 +1,96 @@
+//! Crease patterns as drawings: lines in a plane, each with what it is meant to do.
+//!
+//! Formats of drawings give [`Segment`]s. Ends that are near each other become one point, lines are divided where
+//! they cross, and the circuits of what comes of it are the faces.
+
+pub(super) mod cp;
+mod faces;
+pub(super) mod opx;
+mod planar;
+#[cfg(feature = "svg")]
+pub(super) mod svg;
+#[cfg(feature = "svg")]
+mod svg_lines;
+#[cfg(test)]
+mod tests;
+
+use super::DataError;
+use super::mesh_file::{EdgeAssignment, FileCrease};
+pub(super) use faces::faces;
+pub(super) use planar::{Planar, planar};
+
+/// A straight line of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Segment {
+    /// Where it begins and ends, x to the right and y upwards.
+    pub(super) ends: [[f64; 2]; 2],
+    pub(super) assignment: EdgeAssignment,
+    /// The fold angle in radians, positive for a valley, where the drawing says it.
+    pub(super) angle: Option<f64>,
+}
+
+/// Ends of lines that are so near each other become one point, as a part of the longer side of the drawing, unless
+/// the reader is told otherwise: the first of these distances with which every line leads somewhere. They are above the
+/// digits that drawing programs write, and at most a millimetre of a sheet of twenty centimetres.
+const SNAP: [f64; 4] = [5e-4, 1e-3, 2e-3, 5e-3];
+
+/// The planar graph of a drawing. `snap` is the distance within which points become one, in the unit of the drawing.
+///
+/// # Errors
+/// [`DataError`] for lines that are no drawing of a sheet.
+pub(super) fn of_segments(segments: &[Segment], snap: Option<f64>) -> Result<Planar, DataError> {
+    let ends = || segments.iter().flat_map(|s| s.ends);
+    if let Some(line) = segments
+        .iter()
+        .position(|s| s.ends.iter().flatten().any(|c| !c.is_finite()))
+    {
+        let message = format!("an end of line {line}, counted from 0, is not finite");
+        return Err(DataError::new(message, "correct it, or remove the line").at(line));
+    }
+    let size = [0, 1]
+        .map(|k| {
+            let [low, high] = faces::bounds(ends().map(|p| p[k]));
+            high - low
+        })
+        .into_iter()
+        .fold(0.0, f64::max);
+    if size <= 0.0 {
+        let message = "the drawing has no lines of the colours or kinds of a crease pattern";
+        let remedy = "draw the outline of the sheet and its creases; the page \"Folding a crease pattern\" of the \
+                      book has the colours and kinds";
+        return Err(DataError::new(message, remedy));
+    }
+    let Some(snap) = snap else {
+        let mut best = within(segments, SNAP[0] * size);
+        for snap in &SNAP[1..] {
+            let loose = best.as_ref().map_or(usize::MAX, |planar| planar.loose);
+            if loose == 0 {
+                break;
+            }
+            if let Ok(planar) = within(segments, snap * size)
+                && planar.loose < loose
+            {
+                best = Ok(planar);
+            }
+        }
+        return best;
+    };
+    within(segments, snap)
+}
+
+/// The planar graph of a drawing whose points are one within a distance.
+fn within(segments: &[Segment], near: f64) -> Result<Planar, DataError> {
+    let mut merged = planar::Points::within(near);
+    let mut edges = Vec::with_capacity(segments.len());
+    for segment in segments {
+        let ends = segment.ends.map(|[x, y]| merged.add([x, y, 0.0]));
+        if ends[0] != ends[1] {
+            edges.push(FileCrease {
+                ends,
+                assignment: segment.assignment,
+                angle: segment.angle,
+            });
+        }
+    }
+    planar(merged.into_points(), &edges, near)
+}

@@ -1,0 +1,284 @@
+//! From lines that may cross, overlap and end anywhere to the edges of a planar graph.
+
+use super::faces::{MOST_EDGES, bounds};
+use crate::format::DataError;
+use crate::format::mesh_file::{EdgeAssignment, FileCrease};
+use crate::format::mesh_file::{Point, distance, twice_area};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+/// A drawing whose edges meet at their ends alone, and each of which is beside a face.
+#[derive(Debug, Default)]
+pub(in crate::format) struct Planar {
+    /// The points that were given, and behind them those where edges cross.
+    pub(in crate::format) points: Vec<Point>,
+    pub(in crate::format) edges: Vec<FileCrease>,
+    /// Corners of the faces, counter-clockwise.
+    pub(in crate::format) faces: Vec<Vec<i64>>,
+    /// Edges that were divided because others cross them or end on them.
+    pub(in crate::format) divided: usize,
+    /// Edges that were left out because they lead nowhere, and those that lie on another one.
+    pub(in crate::format) loose: usize,
+    pub(in crate::format) double: usize,
+}
+
+/// Points, of which those within a distance are one: the first of them.
+pub(super) struct Points {
+    near: f64,
+    points: Vec<Point>,
+    cells: HashMap<[i64; 2], Vec<u32>>,
+}
+
+impl Points {
+    pub(super) fn within(near: f64) -> Self {
+        Self {
+            near: near.max(f64::MIN_POSITIVE),
+            points: Vec::new(),
+            cells: HashMap::new(),
+        }
+    }
+
+    fn cell(&self, p: Point) -> [i64; 2] {
+        [0, 1].map(|k| (p[k] / self.near).floor() as i64)
+    }
+
+    /// Adds a point whatever is near it.
+    fn push(&mut self, p: Point) -> u32 {
+        let number = self.points.len() as u32;
+        self.cells.entry(self.cell(p)).or_default().push(number);
+        self.points.push(p);
+        number
+    }
+
+    /// The number of the nearest point within the distance, or of a new one.
+    pub(super) fn add(&mut self, p: Point) -> u32 {
+        let [x, y] = self.cell(p);
+        let around = (-1..=1)
+            .flat_map(|i| (-1..=1).map(move |j| [x.saturating_add(i), y.saturating_add(j)]));
+        let known = around.filter_map(|cell| self.cells.get(&cell)).flatten();
+        let away = |v: u32| {
+            let q = self.points[v as usize];
+            (p[0] - q[0]).hypot(p[1] - q[1])
+        };
+        let nearest = known
+            .map(|&v| (away(v), v))
+            .filter(|(d, _)| *d <= self.near);
+        match nearest.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) {
+            Some((_, v)) => v,
+            None => self.push(p),
+        }
+    }
+
+    pub(super) fn into_points(self) -> Vec<Point> {
+        self.points
+    }
+}
+
+/// Divides edges where others cross them or end on them within a distance, makes one of those that lie on each other,
+/// leaves out those that lead nowhere, and finds the faces.
+///
+/// # Errors
+/// [`DataError`] for edges without length, for creases on each other that are meant to do different things, for a
+/// drawing that encloses no face, and for one with a part inside of a face of another part.
+pub(in crate::format) fn planar(
+    given: Vec<Point>,
+    edges: &[FileCrease],
+    near: f64,
+) -> Result<Planar, DataError> {
+    if edges.len() > MOST_EDGES {
+        let message = format!(
+            "the drawing has {} lines, more than the {MOST_EDGES} of which faces are made",
+            edges.len()
+        );
+        return Err(DataError::new(
+            message,
+            "export it as a FOLD file with its faces",
+        ));
+    }
+    let without_length = |e: &FileCrease| {
+        let [a, b] = e.ends.map(|v| given[v as usize]);
+        a[0] == b[0] && a[1] == b[1]
+    };
+    if let Some(edge) = edges.iter().position(without_length) {
+        let message = format!("edge {edge}, counted from 0, has no length");
+        return Err(
+            DataError::new(message, "remove it, or export the file with its faces").at(edge),
+        );
+    }
+    let mut points = Points::within(near);
+    for p in given {
+        points.push(p);
+    }
+    let on = points_on_edges(&mut points, edges, near);
+    let mut planar = Planar {
+        divided: on.iter().filter(|points| !points.is_empty()).count(),
+        points: points.into_points(),
+        ..Planar::default()
+    };
+    planar.divide(edges, on)?;
+    planar.drop_loose();
+    if planar.edges.is_empty() {
+        let message =
+            "the lines of the drawing enclose no face: the outline of the sheet is missing or open";
+        let remedy =
+            "draw the outline as a closed line, or move ends that are meant to meet together";
+        return Err(DataError::new(message, remedy));
+    }
+    planar.faces = super::faces(&planar.points, &planar.edges)?;
+    Ok(planar)
+}
+
+/// Of each edge the points between its ends that are on it: ends of other edges, and where others cross it.
+fn points_on_edges(points: &mut Points, edges: &[FileCrease], near: f64) -> Vec<Vec<u32>> {
+    let range = |points: &Points, e: usize, k: usize| {
+        bounds(edges[e].ends.iter().map(|&v| points.points[v as usize][k]))
+    };
+    let mut order: Vec<(usize, [f64; 2], [f64; 2])> = (0..edges.len())
+        .map(|e| (e, range(points, e, 0), range(points, e, 1)))
+        .collect();
+    order.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+    let mut on = vec![Vec::new(); edges.len()];
+    for (k, &(e, x, y)) in order.iter().enumerate() {
+        for &(f, _, v) in order[k + 1..].iter().take_while(|o| o.1[0] <= x[1] + near) {
+            if v[0] <= y[1] + near && y[0] <= v[1] + near {
+                meeting(points, [e, f], edges, near, &mut on);
+            }
+        }
+    }
+    on
+}
+
+/// Notes where two edges meet between the ends of one of them.
+fn meeting(
+    points: &mut Points,
+    [e, f]: [usize; 2],
+    edges: &[FileCrease],
+    near: f64,
+    on: &mut [Vec<u32>],
+) {
+    let at = |points: &Points, v: u32| points.points[v as usize];
+    let mut meets = false;
+    for (edge, other) in [(e, f), (f, e)] {
+        let ends = edges[edge].ends;
+        for &v in edges[other].ends.iter().filter(|v| !ends.contains(v)) {
+            if distance(at(points, v), ends.map(|v| at(points, v))) <= near {
+                on[edge].push(v);
+                meets = true;
+            }
+        }
+    }
+    if meets || edges[e].ends.iter().any(|v| edges[f].ends.contains(v)) {
+        return;
+    }
+    let [[a, b], [c, d]] = [e, f].map(|e| edges[e].ends.map(|v| at(points, v)));
+    let side = |p: Point, q: Point, r: Point| twice_area([p, q, r].iter());
+    let [from, to] = [side(c, d, a), side(c, d, b)];
+    if from * to < 0.0 && side(a, b, c) * side(a, b, d) < 0.0 {
+        let part = from / (from - to);
+        let crossing = points.add([0, 1, 2].map(|k| a[k] + part * (b[k] - a[k])));
+        on[e].push(crossing);
+        on[f].push(crossing);
+    }
+}
+
+/// What is meant where lines lie on each other: an outline or a cut hides a crease, and a crease what stays flat.
+fn rank(assignment: EdgeAssignment) -> u8 {
+    match assignment {
+        EdgeAssignment::Boundary => 4,
+        EdgeAssignment::Cut => 3,
+        EdgeAssignment::Mountain | EdgeAssignment::Valley => 2,
+        EdgeAssignment::Unassigned => 1,
+        EdgeAssignment::Flat | EdgeAssignment::Join => 0,
+    }
+}
+
+impl Planar {
+    /// Makes the parts of the edges between the points on them.
+    fn divide(&mut self, edges: &[FileCrease], on: Vec<Vec<u32>>) -> Result<(), DataError> {
+        let mut known: HashMap<[u32; 2], (usize, usize)> = HashMap::new();
+        for (number, (edge, mut inner)) in edges.iter().zip(on).enumerate() {
+            let [a, b] = edge.ends.map(|v| self.points[v as usize]);
+            let along = |v: u32| {
+                let p = self.points[v as usize];
+                (p[0] - a[0]) * (b[0] - a[0]) + (p[1] - a[1]) * (b[1] - a[1])
+            };
+            inner.sort_by(|&v, &w| along(v).total_cmp(&along(w)));
+            let chain = [vec![edge.ends[0]], inner, vec![edge.ends[1]]].concat();
+            for ends in chain
+                .windows(2)
+                .map(|w| [w[0], w[1]])
+                .filter(|[a, b]| a != b)
+            {
+                let part = FileCrease { ends, ..*edge };
+                let [a, b] = ends;
+                match known.entry([a.min(b), a.max(b)]) {
+                    Entry::Vacant(place) => {
+                        place.insert((self.edges.len(), number));
+                        self.edges.push(part);
+                    }
+                    Entry::Occupied(place) => {
+                        let (at, other) = *place.get();
+                        if other == number {
+                            continue;
+                        }
+                        self.double += 1;
+                        let first = &mut self.edges[at];
+                        match rank(part.assignment).cmp(&rank(first.assignment)) {
+                            std::cmp::Ordering::Greater => *first = part,
+                            std::cmp::Ordering::Less => {}
+                            std::cmp::Ordering::Equal => check_same(first, &part, [other, number])?,
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Leaves out the edges that end where no other one does, again and again.
+    fn drop_loose(&mut self) {
+        let mut at: Vec<Vec<usize>> = vec![Vec::new(); self.points.len()];
+        for (e, edge) in self.edges.iter().enumerate() {
+            edge.ends.iter().for_each(|&v| at[v as usize].push(e));
+        }
+        let mut degree: Vec<usize> = at.iter().map(Vec::len).collect();
+        let mut is_loose = vec![false; self.edges.len()];
+        let mut ends: Vec<usize> = (0..degree.len()).filter(|&v| degree[v] == 1).collect();
+        while let Some(v) = ends.pop() {
+            let Some(&e) = at[v].iter().find(|&&e| !is_loose[e]) else {
+                continue;
+            };
+            is_loose[e] = true;
+            self.loose += 1;
+            for w in self.edges[e].ends.map(|w| w as usize) {
+                degree[w] -= 1;
+                if degree[w] == 1 {
+                    ends.push(w);
+                }
+            }
+        }
+        let mut of_edges = is_loose.iter();
+        self.edges.retain(|_| of_edges.next() == Some(&false));
+    }
+}
+
+/// Refuses lines on each other that contradict each other.
+fn check_same(
+    first: &FileCrease,
+    second: &FileCrease,
+    [a, b]: [usize; 2],
+) -> Result<(), DataError> {
+    if first.assignment == second.assignment && first.angle == second.angle {
+        return Ok(());
+    }
+    let told = |c: &FileCrease| match c.angle {
+        Some(angle) => format!("{} by {} degrees", c.assignment, angle.to_degrees().round()),
+        None => c.assignment.to_string(),
+    };
+    let message = format!(
+        "lines {a} and {b}, counted from 0, lie on each other: one {}, and the other one {}",
+        told(first),
+        told(second)
+    );
+    Err(DataError::new(message, "remove one of them").at(b))
+}

@@ -1,0 +1,167 @@
+//! Drawings of crease patterns: what they become, and what is refused.
+
+use crate::format::mesh_file::EdgeAssignment;
+use crate::format::{MeshFile, MeshFileError, MeshFormat, MeshOptions, parse_mesh};
+use std::f64::consts::PI;
+use std::path::Path;
+
+fn read(format: MeshFormat, text: &str) -> Result<MeshFile, MeshFileError> {
+    parse_mesh(
+        text.as_bytes(),
+        format,
+        Path::new("drawing"),
+        &MeshOptions::default(),
+    )
+}
+
+fn refusal(format: MeshFormat, text: &str) -> String {
+    read(format, text).unwrap_err().to_string()
+}
+
+/// A unit square with a diagonal from the lower left, as CP: y points downwards there.
+const SQUARE: &str = "1 0 0 1 0\n1 1 0 1 -1\n1 1 -1 0 -1\n1 0 -1 0 0\n3 0 0 1 -1\n";
+
+fn creases(mesh: &MeshFile, assignment: EdgeAssignment) -> Vec<[[f64; 2]; 2]> {
+    let place = |v: u32| [0, 1].map(|k| mesh.positions[3 * v as usize + k]);
+    let found = mesh.creases.iter().filter(|c| c.assignment == assignment);
+    found.map(|c| c.ends.map(place)).collect()
+}
+
+fn area(mesh: &MeshFile) -> f64 {
+    mesh.clone().into_sheet().unwrap().area()
+}
+
+#[test]
+fn a_square_with_a_diagonal_is_the_same_in_all_formats() {
+    let cp = read(MeshFormat::Cp, SQUARE).unwrap();
+    assert_eq!((cp.vertex_count(), cp.faces.len()), (4, 2));
+    assert_eq!(
+        creases(&cp, EdgeAssignment::Valley),
+        [[[0.0, 0.0], [1.0, 1.0]]]
+    );
+    assert_eq!(area(&cp), 1.0);
+
+    let line = |kind: u8, [x0, y0, x1, y1]: [i8; 4]| {
+        // Java leaves out what is zero.
+        let number = |name: &str, value: i8| match value {
+            0 => String::new(),
+            _ => format!("<void property=\"{name}\"><double>{value}.0</double></void>"),
+        };
+        format!(
+            "<void index=\"0\"><object class=\"oripa.OriLineProxy\"><void property=\"type\"><int>{kind}</int></void>\
+             {}{}{}{}</object></void>",
+            number("x0", x0),
+            number("x1", x1),
+            number("y0", y0),
+            number("y1", y1)
+        )
+    };
+    let sides = [[0, 0, 1, 0], [1, 0, 1, -1], [1, -1, 0, -1], [0, -1, 0, 0]];
+    let lines: String = sides.into_iter().map(|l| line(1, l)).collect();
+    let opx = format!(
+        "<?xml version=\"1.0\"?><java><object class=\"oripa.DataSet\">{lines}{}</object></java>",
+        line(3, [0, 0, 1, -1])
+    );
+    let opx = read(MeshFormat::Opx, &opx).unwrap();
+    assert_eq!((&opx.positions, &opx.faces), (&cp.positions, &cp.faces));
+    assert_eq!(opx.creases, cp.creases);
+}
+
+#[test]
+fn lines_are_divided_where_they_cross_and_united_where_they_coincide() {
+    // A waterbomb: both diagonals and a middle line in one piece each, and the diagonal twice.
+    let base =
+        "1 0 0 2 0\n1 2 0 2 2\n1 2 2 0 2\n1 0 2 0 0\n3 0 0 2 2\n3 2 2 0 0\n3 0 2 2 0\n2 0 1 2 1\n";
+    let mesh = read(MeshFormat::Cp, base).unwrap();
+    assert_eq!((mesh.vertex_count(), mesh.faces.len()), (7, 6));
+    assert_eq!(creases(&mesh, EdgeAssignment::Valley).len(), 4);
+    assert_eq!(creases(&mesh, EdgeAssignment::Mountain).len(), 2);
+    assert_eq!(creases(&mesh, EdgeAssignment::Boundary).len(), 6);
+    assert_eq!(mesh.changes.double_lines, 2, "both halves of the diagonal");
+    assert_eq!(area(&mesh), 4.0);
+
+    // Ends that miss each other by a thousandth of a millimetre of a sheet of 200 mm meet.
+    let near = SQUARE.replace("3 0 0 1 -1", "3 1e-5 0 1 -0.99999");
+    let mesh = read(MeshFormat::Cp, &near).unwrap();
+    assert_eq!((mesh.vertex_count(), mesh.faces.len()), (4, 2));
+
+    // A line that leads nowhere is no crease.
+    let loose = format!("{SQUARE}2 0 0 0.5 -0.2\n");
+    let mesh = read(MeshFormat::Cp, &loose).unwrap();
+    assert_eq!((mesh.changes.loose_lines, mesh.vertex_count()), (1, 4));
+}
+
+#[test]
+fn what_is_no_pattern_is_refused_with_a_remedy() {
+    let cp = |text: &str| refusal(MeshFormat::Cp, text);
+    let open = SQUARE.lines().take(3).collect::<Vec<_>>().join("\n");
+    assert!(cp(&open).contains("enclose no face"), "{}", cp(&open));
+    let crossing = "2 0 0 1 1\n3 0 1 1 0\n";
+    assert!(cp(crossing).contains("the outline of the sheet is missing or open"));
+    let double = format!("{SQUARE}2 0 0 1 -1\n");
+    let says = "lines 4 and 5, counted from 0, lie on each other: one is a valley, and the other one is a mountain";
+    assert!(cp(&double).contains(says), "{}", cp(&double));
+    assert!(cp("# nothing\n").contains("the drawing has no lines"));
+    assert!(cp("a poem\n").contains("line 1: \"a poem\" is no line of a crease pattern"));
+    assert!(cp("7 0 0 1 1\n").contains("is no line of a crease pattern"));
+    assert!(cp("1 0 0 nan 1\n").contains("is no line of a crease pattern"));
+    let inner = format!("{SQUARE}1 0.6 -0.2 0.8 -0.2\n1 0.8 -0.2 0.8 -0.4\n1 0.8 -0.4 0.6 -0.2\n");
+    assert!(
+        cp(&inner).contains("inside of another one"),
+        "{}",
+        cp(&inner)
+    );
+    let opx = |text: &str| refusal(MeshFormat::Opx, text);
+    assert!(opx("a poem").contains("not valid XML"));
+    assert!(opx("<java/>").contains("the drawing has no lines"));
+}
+
+#[cfg(feature = "svg")]
+#[test]
+fn colours_and_opacity_of_svg_drawings_are_assignments_and_angles() {
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">
+        <style>.m { stroke: red }</style>
+        <g transform="translate(10 10)">
+        <rect width="80" height="80" fill="none" stroke="#000"/>
+        <line class="m" x1="0" y1="40" x2="80" y2="40" opacity="0.5"/>
+        <path d="M 40 0 V 80" style="fill:none;stroke:rgb(0,0,255);stroke-opacity:0.25"/>
+        <polyline points="0,0 40,40" fill="none" stroke="yellow"/>
+        <line x1="80" y1="80" x2="40" y2="40" stroke="magenta"/>
+        <line x1="0" y1="10" x2="80" y2="20" stroke="#888"/>
+        </g></svg>"##;
+    let mesh = read(MeshFormat::Svg, svg).unwrap();
+    assert!((area(&mesh) - 6400.0).abs() < 1e-2);
+    let angles = |assignment: EdgeAssignment| -> Vec<Option<f64>> {
+        let found = mesh.creases.iter().filter(|c| c.assignment == assignment);
+        found.map(|c| c.angle).collect()
+    };
+    let near = |found: Vec<Option<f64>>, expected: f64| {
+        assert_eq!(found.len(), 2, "the lines cross: {found:?}");
+        assert!(
+            found.iter().all(|a| (a.unwrap() - expected).abs() < 1e-6),
+            "{found:?}"
+        );
+    };
+    near(angles(EdgeAssignment::Mountain), -0.5 * PI);
+    near(angles(EdgeAssignment::Valley), 0.25 * PI);
+    assert_eq!(angles(EdgeAssignment::Unassigned).len(), 1);
+    // The yellow line, and the diagonals of the two quads that are left.
+    assert_eq!(angles(EdgeAssignment::Flat).len(), 3);
+    // As seen on the screen: the first line is in the upper left.
+    let [flat, ..] = creases(&mesh, EdgeAssignment::Flat)[..] else {
+        panic!("no flat edge");
+    };
+    let middle = [0, 1].map(|k| 0.5 * (flat[0][k] + flat[1][k]));
+    assert!(middle[0] < 50.0 && middle[1] > -50.0, "{middle:?}");
+    assert!(refusal(MeshFormat::Svg, "a poem").contains("not valid SVG"));
+}
+
+#[cfg(feature = "svg")]
+#[test]
+fn curves_of_svg_drawings_become_lines_near_them() {
+    let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">
+        <circle cx="50" cy="50" r="50" fill="none" stroke="black"/></svg>"#;
+    let mesh = read(MeshFormat::Svg, svg).unwrap();
+    let share = area(&mesh) / (PI * 2500.0);
+    assert!((0.99..1.0).contains(&share), "{share}");
+}

@@ -1,0 +1,142 @@
+//! What came of the folding of a crease pattern, in words.
+
+use super::Recording;
+use crate::scene::{FoldResidual, Isometry, off_target};
+use isosheet_mesh::wording::counted;
+use isosheet_mesh::{EdgeId, fold_angle};
+
+/// How closely creases and panels do what they are meant to, at the end of a run that folds a pattern.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoldVerdict {
+    /// Differences of all creases.
+    pub residual: FoldResidual,
+    /// The number of creases that are further from their angles than [`FoldVerdict::OPEN`].
+    pub open: usize,
+    /// The two vertices of the one that is furthest, and where its middle is in the rest shape, metres.
+    pub furthest: Option<([u32; 2], [f64; 2])>,
+    /// The number of panels, and of those that bend by more than [`FoldVerdict::BENDS`] at an edge.
+    pub panels: [usize; 2],
+    /// Whether they can bend.
+    pub is_elastic: bool,
+    /// The largest strain of an edge at the end, and of all frames.
+    pub strain: [f64; 2],
+}
+
+impl FoldVerdict {
+    /// A crease is open that is further from its angle, degrees.
+    pub const OPEN: f64 = 5.0;
+    /// A panel bends that is folded further at an edge inside, degrees.
+    pub const BENDS: f64 = 5.0;
+
+    /// Panels are said to stretch by more than that, percent: no paper does.
+    pub const STRETCHES: f64 = 1.0;
+
+    /// Of a run that has frames; `None` if its scene does not fold a pattern.
+    pub fn of(recording: &Recording) -> Option<Self> {
+        let last = recording.trajectory.len().checked_sub(1);
+        let x = last.and_then(|k| recording.trajectory.frame(k));
+        let (Some(targets), Some(x)) = (recording.folding.as_ref(), x) else {
+            return None;
+        };
+        let topology = recording.sheet.topology();
+        let frames = (0..recording.trajectory.len()).filter_map(|k| recording.trajectory.frame(k));
+        let strains = frames.map(|x| recording.model.max_strain(x));
+        let strain = [recording.model.max_strain(x), strains.fold(0.0, f64::max)];
+        let off = |&(e, target): &(EdgeId, f64)| (off_target(topology, x, e, target), e);
+        let refine = recording.scene.scene().sheet[0].refine;
+        // The parts of a crease follow one another.
+        let creases = targets.creases.chunks(1 << refine);
+        let creases = creases.filter_map(|parts| {
+            let parts = parts.iter().map(off);
+            parts.max_by(|a, b| a.0.total_cmp(&b.0))
+        });
+        let creases: Vec<(f64, EdgeId)> = creases.collect();
+        let furthest = creases.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let furthest = furthest.map(|&(_, e)| {
+            let ends = topology.edges()[e.index()];
+            let [p, q] = ends.map(|v| recording.sheet.position(v));
+            (ends.map(|v| v.0), [0, 1].map(|k| 0.5 * (p[k] + q[k])))
+        });
+        // Panels are what is left when the sheet is cut along its creases.
+        let mut is_crease = vec![false; topology.edge_count()];
+        for (e, _) in &targets.creases {
+            is_crease[e.index()] = true;
+        }
+        let mut panel: Vec<usize> = (0..topology.face_count()).collect();
+        let inner = || {
+            topology
+                .edge_ids()
+                .filter(|e| !is_crease[e.index()] && !topology.is_boundary_edge(*e))
+        };
+        for e in inner() {
+            if let [Some(a), Some(b)] = topology.edge_faces(e) {
+                let [a, b] = [a, b].map(|f| root(&mut panel, f.index()));
+                panel[a] = b;
+            }
+        }
+        let mut bends = vec![false; panel.len()];
+        for e in inner() {
+            if fold_angle(topology, x, e).unwrap_or(0.0).abs().to_degrees() > Self::BENDS {
+                let face = topology.edge_faces(e)[0].map_or(0, |f| f.index());
+                bends[root(&mut panel, face)] = true;
+            }
+        }
+        let count = (0..panel.len())
+            .filter(|&f| root(&mut panel, f) == f)
+            .count();
+        Some(Self {
+            residual: targets.residual(topology, x),
+            open: creases.iter().filter(|(off, _)| *off > Self::OPEN).count(),
+            furthest,
+            panels: [count, bends.iter().filter(|b| **b).count()],
+            strain,
+            is_elastic: recording.scene.scene().sheet[0].isometry() != Isometry::Rods,
+        })
+    }
+
+    /// One sentence. `rigid` is how far rigid panels close, where that was tried.
+    pub fn in_words(&self, rigid: Option<&FoldResidual>) -> String {
+        let [panels, bent] = self.panels;
+        let all = counted(panels, "panel", "panels");
+        let panels = match (self.is_elastic, bent) {
+            (false, _) => format!("{all} stay rigid"),
+            (true, 0) => format!(
+                "none of {all} bends by more than {} degrees at an edge",
+                Self::BENDS
+            ),
+            (true, bent) => format!("{bent} of {all} bend"),
+        };
+        let rigid = match (self.is_elastic, rigid) {
+            (true, Some(r)) => format!(" (rigid panels do not close: {:.1} degrees rms)", r.rms),
+            (true, None) => " (rigid panels do not close)".to_owned(),
+            (false, _) => String::new(),
+        };
+        let [end, largest] = self.strain.map(|s| 100.0 * s);
+        let stretch = match largest > Self::STRETCHES {
+            true => format!(
+                "; panels stretch by {largest:.0} % on the way, and by {end:.1} % at the end"
+            ),
+            false => String::new(),
+        };
+        let FoldResidual { rms, largest, .. } = self.residual;
+        let creases = match (self.open, self.furthest) {
+            (0, _) | (_, None) => "every crease closes".to_owned(),
+            (open, Some(([a, b], [x, y]))) => format!(
+                "{} open by more than {} degrees, most by {largest:.0} between the vertices {a} and {b} at ({x:.3}, \
+                 {y:.3}) m",
+                counted(open, "crease stays", "creases stay"),
+                Self::OPEN
+            ),
+        };
+        format!("folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}{stretch}")
+    }
+}
+
+/// The representative of a set, with the path to it halved.
+fn root(parent: &mut [usize], mut v: usize) -> usize {
+    while parent[v] != v {
+        parent[v] = parent[parent[v]];
+        v = parent[v];
+    }
+    v
+}

@@ -1,0 +1,42 @@
+//! How far a scene folds, found without a folder.
+
+use crate::scene::{FoldResidual, SceneError, SceneFile};
+use isosheet_dynamics::StepProgress;
+use std::ops::ControlFlow;
+
+/// Most factorisations of a trial times vertices: about a second for each hundred thousand.
+const MOST_WORK: usize = 1_000_000;
+
+impl SceneFile {
+    /// How far the creases are from the angles that the scene folds to at its end. `None` if it cannot start, a step fails,
+    /// or the end takes too much work; the clock has no part in that.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the scene cannot be built.
+    pub(crate) fn folds_to(
+        &self,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Option<FoldResidual>, SceneError> {
+        let setup = self.build()?;
+        let targets = setup.targets.folding.clone();
+        let Ok(mut simulation) = setup.start() else {
+            return Ok(None);
+        };
+        let scene = self.scene();
+        let vertices = simulation.model().topology().vertex_count();
+        let mut left = MOST_WORK / vertices.max(1);
+        while simulation.state().t < scene.stop.time {
+            let mut within = |progress: &StepProgress| match progress.factorisations > left {
+                true => ControlFlow::Break(()),
+                false => watch(),
+            };
+            match simulation.step_watched(scene.method.step, &mut within) {
+                Ok(report) => left = left.saturating_sub(report.factorisations),
+                Err(_) => return Ok(None),
+            }
+        }
+        let topology = simulation.model().topology();
+        let x = &simulation.state().x;
+        Ok(targets.map(|targets| targets.residual(topology, x)))
+    }
+}

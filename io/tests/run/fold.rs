@@ -1,0 +1,129 @@
+//! `isosheet fold`.
+
+use crate::{code, run, stderr};
+use isosheet_io::read_json;
+use isosheet_io::run::{FoldVerdict, Recording, Summary};
+use std::fs;
+use std::path::Path;
+
+/// A vertex with three mountains and a valley: its sectors are 60, 90, 120 and 90 degrees.
+const VERTEX: &str = r#"{
+  "vertices_coords": [[0, 0], [10, 0], [5, 8.660254037844386], [-8.660254037844386, 5], [0, -10]],
+  "faces_vertices": [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]],
+  "edges_vertices": [[0, 1], [0, 2], [0, 3], [0, 4], [1, 2], [2, 3], [3, 4], [4, 1]],
+  "edges_assignment": ["V", "M", "M", "M", "B", "B", "B", "B"]
+}"#;
+
+/// Miura's pattern of 2 by 2 panels as CP.
+const MIURA: &str = "1 0 0 2 1\n1 2 1 4 0\n1 4 0 4 3\n1 4 3 2 4\n1 2 4 0 3\n1 0 3 0 0\n2 2 1 2 2.5\n3 2 2.5 2 4\n\
+                     2 0 1.5 2 2.5\n2 2 2.5 4 1.5\n";
+
+fn folded(folder: &Path, words: &[&str]) -> (String, Summary, FoldVerdict) {
+    let output = run(folder, &[&["fold"], words].concat());
+    assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    let out = folder.join("out");
+    let summary = read_json(&out.join("summary.json")).unwrap();
+    let verdict = FoldVerdict::of(&Recording::read(&out).unwrap()).unwrap();
+    (String::from_utf8(output.stdout).unwrap(), summary, verdict)
+}
+
+#[test]
+fn a_vertex_folds_flat_without_a_scene_file() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("vertex.fold"), VERTEX).unwrap();
+    let (said, summary, verdict) = folded(dir.path(), &["vertex.fold", "out", "-o", "scene.toml"]);
+    // Kawasaki and Maekawa hold, so that all four angles of 180 degrees close.
+    assert!(verdict.residual.rms < 1.0, "{:?}", verdict.residual);
+    assert_eq!((verdict.residual.creases, verdict.open), (4, 0));
+    assert!(said.contains("every crease closes"), "{said}");
+    assert!(summary.ending.t > 4.0);
+    let page = fs::read_to_string(dir.path().join("out/index.html")).unwrap();
+    assert!(
+        page.contains("\"folded\":[0.0,"),
+        "the page knows how far each frame is folded"
+    );
+    // The scene is that of the run.
+    let again = run(dir.path(), &["simulate", "scene.toml", "-o", "again"]);
+    assert_eq!(code(&again), Some(0), "{}", stderr(&again));
+    let again: Summary = read_json(&dir.path().join("again/summary.json")).unwrap();
+    assert_eq!(again.ending.residuals, summary.ending.residuals);
+}
+
+#[test]
+fn a_part_of_the_fold_is_asked_for() {
+    let dir = tempfile::tempdir().unwrap();
+    let diagonal = "1 0 0 1 0\n1 1 0 1 1\n1 1 1 0 1\n1 0 1 0 0\n3 0 0 1 1\n";
+    fs::write(dir.path().join("square.cp"), diagonal).unwrap();
+    let (_, _, verdict) = folded(dir.path(), &["square.cp", "out", "--part", "0.5"]);
+    assert!(verdict.residual.largest < 0.1, "{:?}", verdict.residual);
+    let recording = Recording::read(&dir.path().join("out")).unwrap();
+    let x = recording
+        .trajectory
+        .frame(recording.trajectory.len() - 1)
+        .unwrap();
+    let p = x.as_chunks::<3>().0;
+    let away = |a: usize, b: usize| {
+        (0..3)
+            .map(|k| (p[a][k] - p[b][k]).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    // Folded by 90 degrees the other two corners of a square of side 0.2 m are 0.2 m from each other.
+    let apart = (0..4)
+        .flat_map(|a| (0..a).map(move |b| (a, b)))
+        .map(|(a, b)| away(a, b));
+    let mut apart: Vec<f64> = apart.collect();
+    apart.sort_by(f64::total_cmp);
+    assert!(
+        apart[..5].iter().all(|d| (d - 0.2).abs() < 2e-4),
+        "{apart:?}"
+    );
+    assert!((apart[5] - 0.2 * 2.0_f64.sqrt()).abs() < 2e-4, "{apart:?}");
+}
+
+#[test]
+fn panels_are_elastic_where_rigid_ones_do_not_close() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("miura.cp"), MIURA).unwrap();
+    let (said, _, verdict) = folded(dir.path(), &["miura.cp", "out"]);
+    assert!(!verdict.is_elastic && verdict.residual.rms < 1.0, "{said}");
+    // Eight creases in one vertex, of which as many are mountains as valleys: Maekawa's theorem is broken.
+    let blocked =
+        "1 0 0 2 0\n1 2 0 2 2\n1 2 2 0 2\n1 0 2 0 0\n3 0 0 2 2\n2 2 0 0 2\n2 1 0 1 2\n3 0 1 2 1\n";
+    fs::write(dir.path().join("blocked.cp"), blocked).unwrap();
+    let (said, _, verdict) = folded(dir.path(), &["blocked.cp", "out", "--force"]);
+    assert!(verdict.is_elastic, "{said}");
+    assert!(said.contains("rigid panels do not close"), "{said}");
+    assert!(
+        verdict.open > 0 && said.contains("open by more than 5 degrees"),
+        "{said}"
+    );
+}
+
+#[test]
+fn misuse_of_fold_says_what_to_do() {
+    let dir = tempfile::tempdir().unwrap();
+    let refused = |name: &str, text: &str, exit: i32, more: &[&str]| {
+        fs::write(dir.path().join(name), text).unwrap();
+        let output = run(dir.path(), &[&["fold", name], more].concat());
+        assert_eq!(code(&output), Some(exit), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let said = refused("a.obj", obj, 3, &[]);
+    assert!(
+        said.contains("has no creases") && said.contains("help:"),
+        "{said}"
+    );
+    let said = refused("poem.cp", "a poem\n", 3, &[]);
+    assert!(said.contains("no line of a crease pattern"), "{said}");
+    let said = refused("flat.cp", "1 0 0 1 0\n1 1 0 0 1\n1 0 1 0 0\n", 3, &[]);
+    assert!(
+        said.contains("gives no crease inside the sheet a fold angle"),
+        "{said}"
+    );
+    let said = refused("m.cp", MIURA, 2, &["--part", "2"]);
+    assert!(said.contains("above 0 and at most 1"), "{said}");
+    let said = refused("m.cp", MIURA, 3, &["--material", "paperr"]);
+    assert!(said.contains("office paper"), "{said}");
+}
