@@ -1,9 +1,10 @@
 //! A flag in a wind along it: a clamped elastic plate with attached flow.
 
 use isosheet_dynamics::{
-    Air, AttachedFlow, ElasticSheet, Method, PlateBending, PlateStiffness, SheetModel, Simulation, State,
+    Air, AttachedFlow, ElasticSheet, Method, PlateBending, PlateStiffness, SheetModel, Simulation,
+    State,
 };
-use isosheet_mesh::{EdgeId, FaceId, MassKind, MassMatrix, Sheet, VertexId, generate};
+use isosheet_mesh::{EdgeId, FaceId, MassKind, MassMatrix, VertexId, generate};
 use nalgebra::{Complex, DMatrix};
 
 /// A plate of length and rigidity one (per length of its width), in air of density one.
@@ -35,16 +36,31 @@ impl Flag {
         let [columns, rows] = resolution.cells;
         let cell = 1.0 / columns as f64;
         // A column more is within the clamp.
-        let sheet = generate::grid(columns + 1, rows, 1.0 + cell, self.height, generate::Diagonals::UnionJack)
-            .expect("a grid");
+        let sheet = generate::grid(
+            columns + 1,
+            rows,
+            1.0 + cell,
+            self.height,
+            generate::Diagonals::UnionJack,
+        )
+        .expect("a grid");
         let at = |v: VertexId| sheet.position(v)[0] - cell;
         let topology = sheet.topology();
         let clamp: Vec<VertexId> = topology.vertex_ids().filter(|v| at(*v) < 1e-9).collect();
-        let stiffness = PlateStiffness { rigidity: 1.0, poisson: 0.0 };
+        let stiffness = PlateStiffness {
+            rigidity: 1.0,
+            poisson: 0.0,
+        };
         let plate = PlateBending::clamped(&sheet, stiffness, &clamp).expect("a plate");
-        let elastic = ElasticSheet::new(&sheet, 1e4, 0.0).expect("elastic").beside(&sheet, &plate);
+        let elastic = ElasticSheet::new(&sheet, 1e4, 0.0)
+            .expect("elastic")
+            .beside(&sheet, &plate);
         let is_free = |f: &FaceId| topology.faces()[f.index()].iter().any(|v| at(*v) > 1e-9);
-        let is_end = |e: &EdgeId| topology.edges()[e.index()].iter().all(|v| at(*v) > 1.0 - 1e-9);
+        let is_end = |e: &EdgeId| {
+            topology.edges()[e.index()]
+                .iter()
+                .all(|v| at(*v) > 1.0 - 1e-9)
+        };
         let flow = AttachedFlow {
             faces: topology.face_ids().filter(is_free).collect(),
             trailing: topology.edge_ids().filter(is_end).collect(),
@@ -105,7 +121,8 @@ pub fn slender(flag: Flag) -> Mode {
     let (plate, rigidity, wind) = (flag.mass * flag.height, flag.height, flag.wind);
     let roots: Vec<f64> = (0..MODES).map(root).collect();
     let points = 4000;
-    let (mut gyroscopic, mut follower) = (DMatrix::zeros(MODES, MODES), DMatrix::zeros(MODES, MODES));
+    let (mut gyroscopic, mut follower) =
+        (DMatrix::zeros(MODES, MODES), DMatrix::zeros(MODES, MODES));
     for p in 0..points {
         let x = (p as f64 + 0.5) / f64::from(points);
         let shapes: Vec<[f64; 3]> = roots.iter().map(|r| shape(*r, x)).collect();
@@ -116,18 +133,32 @@ pub fn slender(flag: Flag) -> Mode {
             }
         }
     }
-    let bending = DMatrix::from_fn(MODES, MODES, |i, j| if i == j { rigidity * roots[i].powi(4) } else { 0.0 });
+    let bending = DMatrix::from_fn(MODES, MODES, |i, j| {
+        if i == j {
+            rigidity * roots[i].powi(4)
+        } else {
+            0.0
+        }
+    });
     let mass = plate + air;
     let stiffness = (bending + air * wind * wind * follower) / mass;
     let damping = 2.0 * air * wind * gyroscopic / mass;
     let mut first_order = DMatrix::zeros(2 * MODES, 2 * MODES);
-    first_order.view_mut((0, MODES), (MODES, MODES)).fill_with_identity();
-    first_order.view_mut((MODES, 0), (MODES, MODES)).copy_from(&-stiffness);
-    first_order.view_mut((MODES, MODES), (MODES, MODES)).copy_from(&-damping);
+    first_order
+        .view_mut((0, MODES), (MODES, MODES))
+        .fill_with_identity();
+    first_order
+        .view_mut((MODES, 0), (MODES, MODES))
+        .copy_from(&-stiffness);
+    first_order
+        .view_mut((MODES, MODES), (MODES, MODES))
+        .copy_from(&-damping);
     let values = first_order.complex_eigenvalues();
-    let fastest = values.iter().fold(Complex::new(f64::NEG_INFINITY, 0.0), |best, value| {
-        if value.re > best.re { *value } else { best }
-    });
+    let fastest = values
+        .iter()
+        .fold(Complex::new(f64::NEG_INFINITY, 0.0), |best, value| {
+            if value.re > best.re { *value } else { best }
+        });
     Mode {
         growth: fastest.re,
         frequency: fastest.im.abs(),
@@ -170,7 +201,10 @@ fn root(number: usize) -> f64 {
 fn shape(r: f64, x: f64) -> [f64; 3] {
     // cosh and sinh by exponentials, which cancel for high modes.
     let s = (r.cosh() + r.cos()) / (r.sinh() + r.sin());
-    let (grow, fall) = ((1.0 - s) / 2.0 * (r * x).exp(), (1.0 + s) / 2.0 * (-r * x).exp());
+    let (grow, fall) = (
+        (1.0 - s) / 2.0 * (r * x).exp(),
+        (1.0 + s) / 2.0 * (-r * x).exp(),
+    );
     let (sin, cos) = (r * x).sin_cos();
     [
         grow + fall - cos + s * sin,
