@@ -18,22 +18,21 @@ pub struct Flag {
     pub wind: f64,
 }
 
-/// How finely a flag is resolved.
-#[derive(Debug, Clone, Copy)]
-pub struct Resolution {
-    /// Cells along the wind and across it.
-    pub cells: [usize; 2],
-    /// Length of a step.
-    pub step: f64,
-}
-
 impl Flag {
-    /// The flag, at rest but for a small velocity.
+    /// The flag at rest but for a small velocity, with cells along the wind and across it.
     ///
     /// # Panics
     /// If it cannot be made.
-    pub fn simulation(self, resolution: Resolution) -> Simulation {
-        let [columns, rows] = resolution.cells;
+    pub fn simulation(self, cells: [usize; 2]) -> Simulation {
+        let (model, start) = self.model(cells);
+        Simulation::new(model, start, Method::default()).expect("a simulation")
+    }
+
+    /// Model and start of [`Flag::simulation`].
+    ///
+    /// # Panics
+    /// If it cannot be made.
+    pub fn model(self, [columns, rows]: [usize; 2]) -> (SheetModel, State) {
         let cell = 1.0 / columns as f64;
         // A column more is within the clamp.
         let sheet = generate::grid(
@@ -83,17 +82,37 @@ impl Flag {
         let push = |v: VertexId| 1e-4 * at(v).max(0.0).powi(2);
         let v = topology.vertex_ids().flat_map(|v| [0.0, 0.0, push(v)]);
         let start = State::moving(sheet.positions().to_vec(), v.collect());
-        Simulation::new(model, start, Method::default()).expect("a simulation")
+        (model, start)
     }
 
-    /// Deflection of the middle of the free end.
-    pub fn deflection(run: &Simulation) -> f64 {
-        let points = run.state().x.as_chunks::<3>().0;
-        let far = points.iter().map(|p| p[0]).fold(0.0, f64::max);
-        let end = points.iter().filter(|p| p[0] > far - 1e-3);
-        let end: Vec<f64> = end.map(|p| p[2]).collect();
-        end.iter().sum::<f64>() / end.len() as f64
+    /// Growth rate of the largest deflections of the free end, over the last two of some periods of the mode that
+    /// [`slender`] expects, with so many steps a period.
+    ///
+    /// # Panics
+    /// If a step fails.
+    pub fn growth(self, cells: [usize; 2], steps: usize, periods: usize) -> f64 {
+        let period = std::f64::consts::TAU / slender(self).frequency;
+        let mut run = self.simulation(cells);
+        let mut largest = Vec::new();
+        for _ in 0..periods {
+            let mut most: f64 = 0.0;
+            for _ in 0..steps {
+                run.step(period / steps as f64).expect("a step");
+                most = most.max(deflection(&run).abs());
+            }
+            largest.push(most);
+        }
+        (largest[periods - 1] / largest[periods - 3]).ln() / (2.0 * period)
     }
+}
+
+/// Mean deflection of the free end.
+fn deflection(run: &Simulation) -> f64 {
+    let points = run.state().x.as_chunks::<3>().0;
+    let far = points.iter().map(|p| p[0]).fold(0.0, f64::max);
+    let end = points.iter().filter(|p| p[0] > far - 1e-3);
+    let end: Vec<f64> = end.map(|p| p[2]).collect();
+    end.iter().sum::<f64>() / end.len() as f64
 }
 
 /// A growth rate and an angular frequency.

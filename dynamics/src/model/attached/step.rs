@@ -5,8 +5,8 @@ use super::wake::Past;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::potential::Force;
 use crate::term::{Exchange, Formula, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
-use crate::vectors::{add, dot};
-use nalgebra::{Matrix3, Vector3};
+use crate::vectors::{add, dot, largest_norm};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::sync::Arc;
 
 /// Part of the largest force by which forces may differ from those of the flow at the end of the step before
@@ -40,12 +40,12 @@ impl ImplicitForce for Attached {
 /// formula of the method, and both make forces. At lagged positions `y` they are, to first order,
 ///
 /// ```text
-/// f(x) = f(y) + J (x - y),   U(x) = -(f . d + d . S d / 2),   d = x - y,   S = (J + J^T) / 2,
+/// f(x) = f(y) + J d,   U(x) = -((f + g) . d + d . S d / 2),   d = x - y,   S = (J + J^T) / 2,
 /// ```
 ///
 /// where the derivative `J` is that by the velocities. Most of it is the mass of the air that moves along with
-/// the sheet, `-m / h^2`, which has an energy; the part without one lags behind, and so do the place of the
-/// lattice and the velocity along it, until `U` has the forces of the end of the step.
+/// the sheet, `-m / h^2`, which has an energy; the part without one, `g = (J - S) d`, lags behind, and so do the
+/// place of the lattice and the velocity along it, until `U` has the forces of the end of the step.
 #[derive(Debug)]
 struct FlowStep {
     attached: Attached,
@@ -78,20 +78,22 @@ struct Lagged {
     at: Vec<f64>,
     /// `f`, newtons.
     force: Vec<f64>,
+    /// What has been taken for `(J - S) d`, newtons, and by how much that was wrong, the last one at the end.
+    without_energy: Vec<[Vec<f64>; 2]>,
+    /// `(J - S) d` as it is taken now.
+    taken: Vec<f64>,
     /// `J`, newtons per metre, by rows.
     derivative: Vec<f64>,
     /// Minus the mass of the air that moves along, divided by the square of the step, by rows.
     mass: Vec<f64>,
-    /// Whether `f` has been changed by `J` since it was made.
-    is_extrapolated: bool,
-}
-
-fn largest(forces: &[f64]) -> f64 {
-    crate::vectors::largest_norm(forces)
 }
 
 fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 
 fn flat(vectors: &[Vector3<f64>]) -> Vec<f64> {
@@ -99,7 +101,7 @@ fn flat(vectors: &[Vector3<f64>]) -> Vec<f64> {
 }
 
 impl Lagged {
-    /// `(K + K^T) d / 2` or `K d` for a matrix `K` by rows.
+    /// `K d` for a matrix `K` by rows.
     fn product(matrix: &[f64], d: &[f64]) -> Vec<f64> {
         matrix
             .chunks_exact(d.len())
@@ -107,6 +109,7 @@ impl Lagged {
             .collect()
     }
 
+    /// `S d`.
     fn symmetric_product(&self, d: &[f64]) -> Vec<f64> {
         let order = d.len();
         let mut sum = Self::product(&self.derivative, d);
@@ -119,15 +122,51 @@ impl Lagged {
         sum
     }
 
-    /// `f + S d`.
+    /// `f + g`.
+    fn constant(&self) -> Vec<f64> {
+        sum(&self.force, &self.taken)
+    }
+
+    /// `f + g + S d`.
     fn forces(&self, x: &[f64]) -> Vec<f64> {
         let d = difference(x, &self.at);
-        let mut forces = self.symmetric_product(&d);
-        forces
-            .iter_mut()
-            .zip(&self.force)
-            .for_each(|(s, f)| *s += f);
-        forces
+        sum(&self.constant(), &self.symmetric_product(&d))
+    }
+
+    /// By how much `g` is not `(J - S) d`.
+    fn lag(&self, x: &[f64]) -> Vec<f64> {
+        let d = difference(x, &self.at);
+        let whole = Self::product(&self.derivative, &d);
+        let lag = difference(&whole, &self.symmetric_product(&d));
+        difference(&lag, &self.taken)
+    }
+
+    /// Takes another `g`, from what the last ones were wrong by (Anderson, J. ACM 12, 1965).
+    fn extrapolate(&mut self, lag: Vec<f64>) {
+        let taken = std::mem::take(&mut self.taken);
+        let now = [taken, lag];
+        let steps: Vec<[Vec<f64>; 2]> = self
+            .without_energy
+            .iter()
+            .map(|before| [0, 1].map(|k| difference(&now[k], &before[k])))
+            .collect();
+        self.taken = sum(&now[0], &now[1]);
+        let columns: Vec<DVector<f64>> = steps
+            .iter()
+            .map(|[_, lag]| DVector::from_column_slice(lag))
+            .collect();
+        if !columns.is_empty() {
+            let matrix = DMatrix::from_columns(&columns);
+            let right = DVector::from_column_slice(&now[1]);
+            let small = 1e-10 * matrix.norm();
+            let shares = matrix.svd(true, true).solve(&right, small);
+            for (step, share) in steps.iter().zip(shares.iter().flatten()) {
+                let back = sum(&step[0], &step[1]);
+                let pairs = self.taken.iter_mut().zip(&back);
+                pairs.for_each(|(g, b)| *g -= share * b);
+            }
+        }
+        self.without_energy.push(now);
     }
 }
 
@@ -213,10 +252,11 @@ impl FlowStep {
         }
         self.lagged = Lagged {
             at: self.own(x),
+            taken: vec![0.0; order],
+            without_energy: Vec::new(),
             force,
             derivative,
             mass,
-            is_extrapolated: false,
         };
         Ok(())
     }
@@ -225,14 +265,8 @@ impl FlowStep {
     /// and where that has settled whole.
     fn error(&self, x: &[f64], settled: f64) -> f64 {
         let here = self.own(x);
-        let d = difference(&here, &self.lagged.at);
         let forces = self.lagged.forces(&here);
-        let first: Vec<f64> = Lagged::product(&self.lagged.derivative, &d)
-            .iter()
-            .zip(&self.lagged.force)
-            .map(|(j, f)| j + f)
-            .collect();
-        let error = relative(&forces, &first);
+        let error = largest_norm(&self.lagged.lag(&here)) / largest_norm(&forces);
         if error > settled {
             return error;
         }
@@ -251,8 +285,8 @@ impl FlowStep {
 
 /// The largest difference of two lists of forces, as a part of the largest force.
 fn relative(a: &[f64], b: &[f64]) -> f64 {
-    let size = largest(b);
-    let error = largest(&difference(a, b));
+    let size = largest_norm(b);
+    let error = largest_norm(&difference(a, b));
     if error > 0.0 { error / size } else { error }
 }
 
@@ -292,15 +326,11 @@ impl Term for FlowStep {
         let [before, now] =
             [&self.start.x[..], at.x].map(|x| difference(&self.own(x), &self.lagged.at));
         let moved = difference(&now, &before);
-        let sum: Vec<f64> = now
-            .iter()
-            .zip(&before)
-            .map(|(a, b)| 0.5 * (a + b))
-            .collect();
-        let mut mean = self.lagged.symmetric_product(&sum);
-        mean.iter_mut()
-            .zip(&self.lagged.force)
-            .for_each(|(m, f)| *m += f);
+        let middle: Vec<f64> = sum(&now, &before).iter().map(|d| 0.5 * d).collect();
+        let mean = sum(
+            &self.lagged.constant(),
+            &self.lagged.symmetric_product(&middle),
+        );
         let parts = mean.iter().zip(&moved).map(|(f, d)| f * d);
         Value {
             energy: -parts.clone().sum::<f64>(),
@@ -341,18 +371,11 @@ impl Term for FlowStep {
     fn renew(&mut self, at: Iterate<'_>, settled: f64) -> bool {
         let settled = settled.min(SETTLED);
         let here = self.own(at.x);
-        let d = difference(&here, &self.lagged.at);
-        let rest = difference(
-            &Lagged::product(&self.lagged.derivative, &d),
-            &self.lagged.symmetric_product(&d),
-        );
         let forces = self.lagged.forces(&here);
-        if largest(&rest) > settled * largest(&forces) {
+        let lag = self.lagged.lag(&here);
+        if largest_norm(&lag) > settled * largest_norm(&forces) {
             // To first order: the place of the lattice stays.
-            let force = forces.iter().zip(&rest).map(|(f, r)| f + r);
-            self.lagged.force = force.collect();
-            self.lagged.at = here;
-            self.lagged.is_extrapolated = true;
+            self.lagged.extrapolate(lag);
             return true;
         }
         match self.exact(at.x) {
@@ -363,7 +386,7 @@ impl Term for FlowStep {
 
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
         let error = self.error(at.x, UNSETTLED);
-        if !(error <= UNSETTLED) {
+        if error.is_nan() || error > UNSETTLED {
             return Err(Refusal::UnsettledLoads { error });
         }
         let here = self.own(at.x);
