@@ -12,7 +12,7 @@ use crate::potential::Force;
 use crate::term::{Exchange, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
 use crate::vectors::{add, point};
 use isosheet_mesh::wording::given;
-use isosheet_mesh::{Advice, EdgeId, FaceId, Topology, VertexId, area_from_lengths};
+use isosheet_mesh::{Advice, EdgeId, Topology, VertexId, area_from_lengths};
 use nalgebra::{Matrix3, Vector3};
 use std::fmt;
 use std::sync::Arc;
@@ -202,19 +202,8 @@ impl SheetModel {
     /// # Errors
     /// [`AirError`] if density, a coefficient or a profile makes no sense.
     pub fn with_air(self, air: Air) -> Result<Self, AirError> {
-        self.with_air_along(air, &[])
-    }
-
-    /// Surrounds the sheet with air that has no drag across some faces.
-    ///
-    /// # Errors
-    /// [`AirError`] if density, a coefficient or a profile makes no sense.
-    pub(super) fn with_air_along(self, air: Air, along: &[FaceId]) -> Result<Self, AirError> {
         air.validate()?;
         let mut faces = on_faces(&air, self.topology(), self.edges().lengths());
-        for face in along {
-            faces[face.index()].factors[0] = 0.0;
-        }
         faces.retain(|face| face.vertices[0].index() < self.sheet_vertices());
         let wind = air.wind;
         Ok(self.with_implicit_force(Drag(Arc::new(OnFaces { wind, faces }))))

@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 
 /// A sheet along whose both sides the air flows and which it leaves at an edge, as a wing or a flag in a steady
 /// wind: it has lift, drag that goes with it, the inertia of the air that moves along with the sheet, and a wake
-/// that the wind carries on. The coefficient `normal` is not used there. It holds at small angles between
-/// sheet and wind, 15 degrees as a rule, beyond which the flow separates, and for edges that the air does not
-/// blow against. For the methods BDF2 and implicit Euler.
+/// that the wind carries on. It holds at small angles between sheet and wind, 15 degrees as a rule, beyond which
+/// the flow separates; the drag across faces, which stays, is all that bounds the motion there. For the methods
+/// BDF2 and implicit Euler.
 ///
 /// Each face carries a vortex ring: a step solves a dense system of as many equations.
 ///

@@ -109,7 +109,9 @@ impl Attached {
 
 impl SheetModel {
     /// Surrounds the sheet with air whose flow is attached to some faces: it flows along both sides and leaves
-    /// at the trailing edges. On these faces [`Air::normal`] is not used.
+    /// at the trailing edges. The drag across these faces stays: at small angles it is small against the lift,
+    /// and it bounds motions in which the flow would separate (Eloy, Kofman and Schouveiler, J. Fluid Mech. 691,
+    /// 2012).
     ///
     /// # Errors
     /// [`AttachedFlowError`].
@@ -139,7 +141,7 @@ impl SheetModel {
             potential: self.outer_potential_count(),
         };
         let wake = Wake(attached.clone());
-        let model = self.with_air_along(air, &flow.faces)?;
+        let model = self.with_air(air)?;
         Ok(model.with_potential(wake).with_implicit_force(attached))
     }
 }
