@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::model::air::Wind;
-use isosheet_mesh::Sheet;
 use isosheet_mesh::generate::{Diagonals, grid};
+use isosheet_mesh::{MassKind, Sheet};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -172,5 +172,69 @@ fn wind_along_a_plate_does_nothing() {
         let (force, next) = plate.step(&past, 0.2);
         past = next;
         assert!(force.norm() < 1e-12, "{force}");
+    }
+}
+
+#[test]
+fn flows_that_cannot_be_are_refused() {
+    let sheet = grid(2, 2, 1.0, 1.0, Diagonals::UnionJack).expect("a grid");
+    let topology = sheet.topology();
+    let rim = |is_rim: bool| {
+        let mut edges = topology.edge_ids();
+        let edge = edges.find(|e| topology.is_boundary_edge(*e) == is_rim);
+        edge.expect("there are both")
+    };
+    let flow = AttachedFlow {
+        faces: topology.face_ids().collect(),
+        trailing: vec![rim(true)],
+        rows: 4,
+    };
+    let refused = |flow: &AttachedFlow| {
+        let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).expect("mass");
+        model.with_attached_flow(Air::default(), flow).err()
+    };
+    let face = FaceId(99);
+    let (faces, edge) = (vec![face], rim(false));
+    let many = vec![FaceId(0); AttachedFlow::MOST_FACES + 1];
+    let flow = || flow.clone();
+    assert_eq!(refused(&flow()), None);
+    for (flow, error) in [
+        (
+            AttachedFlow { faces, ..flow() },
+            AttachedFlowError::NoSuchFace {
+                face,
+                face_count: 8,
+            },
+        ),
+        (
+            AttachedFlow {
+                faces: many,
+                ..flow()
+            },
+            AttachedFlowError::TooManyFaces {
+                faces: AttachedFlow::MOST_FACES + 1,
+                most: AttachedFlow::MOST_FACES,
+            },
+        ),
+        (
+            AttachedFlow {
+                trailing: Vec::new(),
+                ..flow()
+            },
+            AttachedFlowError::NoTrailingEdge,
+        ),
+        (
+            AttachedFlow {
+                trailing: vec![edge],
+                ..flow()
+            },
+            AttachedFlowError::NotAtRim { edge },
+        ),
+        (
+            AttachedFlow { rows: 1, ..flow() },
+            AttachedFlowError::Rows { rows: 1 },
+        ),
+    ] {
+        assert_eq!(refused(&flow), Some(error));
     }
 }
