@@ -29,12 +29,8 @@ impl DenseLu {
     pub fn new(order: usize, mut values: Vec<f64>) -> Result<Self, LinalgError> {
         assert_eq!(values.len(), order * order, "the matrix is square");
         let (mut rows, mut inverse_rows) = (vec![0; order], vec![0; order]);
-        let scratch = factor::lu_in_place_scratch::<usize, f64>(
-            order,
-            order,
-            Par::Seq,
-            Default::default(),
-        );
+        let scratch =
+            factor::lu_in_place_scratch::<usize, f64>(order, order, Par::Seq, Default::default());
         let _ = factor::lu_in_place(
             MatMut::from_column_major_slice_mut(&mut values, order, order),
             &mut rows,
@@ -45,7 +41,10 @@ impl DenseLu {
         );
         let pivots = (0..order).map(|i| values[i * order + i].abs());
         let largest = pivots.clone().fold(0.0, f64::max);
-        if !pivots.into_iter().all(|pivot| pivot > LEAST_PIVOT * largest) {
+        if !pivots
+            .into_iter()
+            .all(|pivot| pivot > LEAST_PIVOT * largest)
+        {
             let backward_error = f64::INFINITY;
             return Err(LinalgError::Singular {
                 order,
