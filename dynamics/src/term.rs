@@ -3,6 +3,7 @@
 use crate::State;
 use crate::hessian::{BlockSink, HessianPart, HessianProduct};
 use crate::potential::{Force, Memories};
+use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::VertexId;
 use std::sync::Arc;
 
@@ -110,12 +111,19 @@ pub(crate) trait Term: Send {
 pub(crate) trait ImplicitForce: Force {
     /// The term, in a model with these vertices free.
     fn term(&self, free: Arc<[bool]>) -> Box<dyn Term>;
+
+    /// Whether it is the force of its term alone, and no method without such terms has a place for it.
+    fn needs_minimising(&self) -> bool {
+        false
+    }
 }
 
 /// What a step starts from: `x1 = y + h v1`, with `x^ = y + h (a v0 - b v_)` where inertia alone leads.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StepStart<'a> {
     pub(crate) state: &'a State,
+    /// What the potentials remember.
+    pub(crate) memories: &'a Memories,
     /// Length of the step, seconds.
     pub(crate) span: f64,
     /// Effective step `h`, the root of the factor of the forces, seconds.
@@ -131,6 +139,18 @@ pub(crate) struct StepStart<'a> {
 }
 
 impl StepStart<'_> {
+    /// `b` of `y = x0 + b (x0 - x_)` with the positions `x_` of the state before.
+    pub(crate) fn back(&self) -> f64 {
+        match self.formula {
+            Formula::OneStep => 0.0,
+            Formula::TwoStep => {
+                let part = self.h / self.span;
+                let ratio = (1.0 - part) / (2.0 * part - 1.0);
+                ratio * ratio / (1.0 + 2.0 * ratio)
+            }
+        }
+    }
+
     /// Time at the end of the step, seconds.
     pub(crate) fn t(&self) -> f64 {
         self.state.t + self.span
@@ -212,7 +232,7 @@ pub(crate) enum Barrier {
 }
 
 /// Why a term refuses a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Refusal {
     /// A force is not finite.
     NonFiniteForce {
@@ -224,6 +244,8 @@ pub(crate) enum Refusal {
     Contact { gap: f64 },
     /// Loads that follow the sheet are not those of the end of the step, by so much of the largest.
     UnsettledLoads { error: f64 },
+    /// A linear system has no solution.
+    Linalg(LinalgError),
 }
 
 /// Energy exchanged in a step, joules.

@@ -28,6 +28,7 @@
 //! ```
 
 mod air;
+mod attached_flow;
 mod bodies;
 mod bond;
 mod build;
@@ -104,6 +105,7 @@ mod weight;
 mod yields;
 
 pub use air::Air;
+pub use attached_flow::AttachedFlow;
 pub use bodies::Body;
 pub use carried::{BodyLoad, CarriedBody};
 pub use chart::{
@@ -327,7 +329,7 @@ impl Scene {
         self.forces
             .check(&self.sheet, &root.name("forces"), &mut checks);
         if let Some(air) = &self.air {
-            air.check(&root.name("air"), &mut checks);
+            air.check(&self.sheet, &root.name("air"), &mut checks);
         }
         let contact = root.name("contact");
         self.contact

@@ -11,6 +11,7 @@ use isosheet_dynamics::{
     StepControl, VertexConstraint,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
+use isosheet_tests::flag::Flag;
 use isosheet_tests::{damped, methods};
 use nalgebra::Isometry3;
 
@@ -206,6 +207,18 @@ fn a_sheet_in_gusts_goes_on_bit_for_bit() {
         };
         compare(name, start, model);
     }
+}
+
+/// The wake, the circulation and its rate of change are part of a checkpoint.
+#[test]
+fn a_flag_in_attached_flow_goes_on_bit_for_bit() {
+    let flag = Flag {
+        height: 0.1,
+        mass: 0.3,
+        wind: 30.0,
+    };
+    let model = || flag.model([6, 2]).0;
+    compare("attached flow", || flag.simulation([6, 2]), model);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Tests that span several crates.
 
 mod air;
+mod attached_flow;
 mod balance;
 mod broken_motions;
 mod buckling;

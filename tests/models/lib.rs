@@ -9,6 +9,7 @@ mod catenary;
 mod elastica;
 mod elliptic;
 mod excess_cone;
+pub mod flag;
 mod flap;
 mod linkage;
 mod methods;

@@ -11,6 +11,7 @@
 //! runs sequentially. Results do not depend on the number of threads.
 
 mod dense;
+mod dense_lu;
 mod error;
 mod graph;
 mod ldlt;
@@ -26,6 +27,7 @@ mod symbolic;
 mod testing;
 mod triangular;
 
+pub use dense_lu::DenseLu;
 pub use error::LinalgError;
 pub use ldlt::SparseLdlt;
 pub use llt::SparseLlt;

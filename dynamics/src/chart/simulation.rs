@@ -429,6 +429,9 @@ fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsErr
     if model.can_yield() {
         return Err(ChartDynamicsError::Plastic);
     }
+    if model.needs_minimising() {
+        return Err(ChartDynamicsError::AttachedFlow);
+    }
     if model.damping().is_none() {
         return Err(ChartDynamicsError::Damping);
     }

@@ -102,6 +102,7 @@ fn two_step(
     model.place_pins(state.t + h, &mut ahead);
     let start = StepStart {
         state,
+        memories: attempt.memories,
         span: h,
         h: k * h,
         formula,

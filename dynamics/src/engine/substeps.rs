@@ -90,6 +90,9 @@ impl Engine {
         if model.can_yield() && !method.is_minimising() {
             return Err(SimulationError::Plastic);
         }
+        if model.needs_minimising() && !method.is_minimising() {
+            return Err(SimulationError::AttachedFlow);
+        }
         let model = Arc::new(model);
         let tuning = Tuning::default();
         let integrator = method.build(&model, &tuning)?;

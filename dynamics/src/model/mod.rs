@@ -1,6 +1,7 @@
 //! The mechanical system: rods, masses, pins, potentials and forces.
 
 pub(crate) mod air;
+pub(crate) mod attached;
 pub(crate) mod clamps;
 mod damped_range;
 mod damping;
@@ -232,6 +233,11 @@ impl SheetModel {
     pub(crate) fn with_implicit_force(mut self, force: impl ImplicitForce + 'static) -> Self {
         self.implicit.push(Box::new(force));
         self
+    }
+
+    /// Whether there are forces that only steps which minimise have.
+    pub(crate) fn needs_minimising(&self) -> bool {
+        self.implicit.iter().any(|force| force.needs_minimising())
     }
 
     /// The forces that damped steps take as terms of their objective.

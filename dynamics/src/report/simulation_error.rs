@@ -57,6 +57,9 @@ pub enum SimulationError {
         "the sheet yields (its bends or creases stay), and the method has no place for what yielding loses"
     )]
     Plastic,
+    /// The method does not support attached flow.
+    #[error("the flow of the air is attached, and the method has no place for its wake")]
+    AttachedFlow,
     /// The checkpoint is invalid or of another model.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
@@ -79,7 +82,9 @@ impl Advice for SimulationError {
             Self::Chart(error) => error.advice(),
             Self::Contact(error) => error.advice(),
             Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
-            Self::Elastic | Self::Plastic | Self::Held => Some("use BDF2 or implicit Euler"),
+            Self::Elastic | Self::Plastic | Self::AttachedFlow | Self::Held => {
+                Some("use BDF2 or implicit Euler")
+            }
             Self::Checkpoint(error) => error.advice(),
             Self::ChartControl => Some("leave `StepControl` out"),
             Self::StateLength { .. } | Self::Linalg(..) => None,

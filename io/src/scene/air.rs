@@ -1,5 +1,7 @@
 //! The air around the sheet.
 
+use super::AttachedFlow;
+use super::Sheet;
 use super::key::Key;
 use super::problem::Checks;
 use super::profile::Profile;
@@ -11,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// Air at rest or in motion, which drags at each face of the sheet by the square of the relative velocity;
 /// without `[air]` there is none. With the velocity of the air relative to the face across it, `u_n`, and
 /// along it, `u_t`, the force on both sides of a face of area `A` together is
-/// `density A / 2 (normal |u_n| u_n + tangential |u_t| u_t)`. There is no lift of attached flow and no wake,
-/// and no face or obstacle shelters another.
+/// `density A / 2 (normal |u_n| u_n + tangential |u_t| u_t)`, that of separated flow. There is lift, and a wake,
+/// where the flow is `attached` alone, and no face or obstacle shelters another.
 ///
 /// ```toml
 /// [air]
@@ -31,6 +33,8 @@ pub struct Air {
     pub tangential: f64,
     /// Components of the velocity of the air, m/s. A gust is a component that changes with time.
     pub wind: [Profile; 3],
+    /// The sheet along which the air flows. Without it the flow separates everywhere.
+    pub attached: Option<AttachedFlow>,
 }
 
 impl Default for Air {
@@ -47,16 +51,20 @@ impl Default for Air {
             normal,
             tangential,
             wind: Default::default(),
+            attached: None,
         }
     }
 }
 
 impl Air {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+    pub(crate) fn check(&self, sheets: &[Sheet], key: &Key, checks: &mut Checks) {
         let density = Unit::KilogramPerCubicMetre;
         checks.not_negative(key.name("density"), self.density, density);
         checks.not_negative(key.name("normal"), self.normal, Unit::One);
         checks.not_negative(key.name("tangential"), self.tangential, Unit::One);
+        if let Some(flow) = &self.attached {
+            flow.check(sheets, &key.name("attached"), checks);
+        }
         for (k, component) in self.wind.iter().enumerate() {
             component.check(key.name("wind").entry(k), Unit::MetrePerSecond, checks);
         }

@@ -321,7 +321,9 @@ impl Origins {
                 Problem::from_error(key, error)
             }
             SimulationError::Elastic => Problem::from_error(root.name("sheet.isometry"), error),
-            SimulationError::Plastic => Problem::from_error(root.name("method"), error),
+            SimulationError::Plastic | SimulationError::AttachedFlow => {
+                Problem::from_error(root.name("method"), error)
+            }
             SimulationError::Options(_) => Problem::from_error(root.name("method"), error),
             SimulationError::Chart(_) => Problem::from_error(root.name("method.chart"), error),
             _ => Problem::from_error(root, error),

@@ -103,6 +103,10 @@ const ALL_KEYS: [&str; 14] = [
     normal = 1.1
     tangential = 0.01
     wind = [{ sine = { mean = 2, amplitude = 1, frequency = 0.5 } }, 1, 0]
+    [air.attached]
+    sheet = "main"
+    trailing = "boundary"
+    rows = 20
     [contact]
     self_contact = true
     friction = 0.2

@@ -64,6 +64,10 @@ impl<'a> StepProblem<'a> {
                 h: self.start.span,
                 gap,
             },
+            Refusal::Linalg(source) => StepError::Linalg {
+                t: self.state().t,
+                source,
+            },
             Refusal::UnsettledLoads { error } => StepError::NotConverged {
                 t: self.state().t,
                 h: self.start.span,

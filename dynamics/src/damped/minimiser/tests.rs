@@ -29,9 +29,10 @@ struct Scene {
 }
 
 /// A step from a state at rest.
-fn step<'a>(state: &'a State, prediction: &'a [f64]) -> StepStart<'a> {
+fn step<'a>(state: &'a State, memories: &'a Memories, prediction: &'a [f64]) -> StepStart<'a> {
     StepStart {
         state,
+        memories,
         span: H,
         h: H,
         formula: Formula::OneStep,
@@ -79,7 +80,7 @@ impl Scene {
             model: &self.model,
             memories: &self.memories,
             objective: &mut self.objective,
-            start: step(&self.state, &self.prediction),
+            start: step(&self.state, &self.memories, &self.prediction),
             phases: Phases::All,
         }
     }
@@ -303,11 +304,12 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
             if !is_iterative {
                 minimiser.work.lagrangian.matrix.leave_iteration();
             }
+            let memories = model.memories();
             let problem = StepProblem {
                 model,
-                memories: &model.memories(),
+                memories: &memories,
                 objective: &mut Objective::new(model),
-                start: step(&state, &state.x),
+                start: step(&state, &memories, &state.x),
                 phases: Phases::All,
             };
             let mut effort = SolverEffort::default();

@@ -90,6 +90,7 @@ impl Scene {
         let mut term = force.term(free.into());
         let step = StepStart {
             state: &self.start,
+            memories: &self.memories,
             span: SPAN,
             h: H,
             formula: Formula::TwoStep,

@@ -68,8 +68,10 @@ fn the_term_follows_the_load() {
             .collect::<Vec<f64>>()
     };
     let (ahead, end) = (moved(0.01, 3), moved(0.02, 5));
+    let memories = model.memories();
     let step = StepStart {
         state: &start,
+        memories: &memories,
         span: 0.02,
         h: 0.02,
         formula: Formula::OneStep,

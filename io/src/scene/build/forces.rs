@@ -3,8 +3,11 @@
 use super::builder::{Builder, at};
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
-use crate::scene::{Air, Frame};
-use isosheet_dynamics::{AccelerationField, SimulationError, TurningLoad, VertexLoad};
+use crate::scene::{Air, Frame, Selection};
+use isosheet_dynamics::{
+    AccelerationField, AttachedFlow, SimulationError, TurningLoad, VertexLoad,
+};
+use isosheet_mesh::VertexId;
 
 impl Builder<'_> {
     pub(super) fn add_forces(&mut self) -> Result<(), SceneError> {
@@ -48,10 +51,44 @@ impl Builder<'_> {
         self.count(forces.load.len(), "load", "loads");
         let fields = ["field of acceleration", "fields of acceleration"];
         self.count(forces.acceleration.len(), fields[0], fields[1]);
-        if let Some(air) = self.scene.air.as_ref().map(Air::as_engine) {
-            self.change(|m| m.with_air(air), at(&Key::root().name("air")))?;
-            self.modelled.push("air".into());
+        if let Some(air) = &self.scene.air {
+            self.add_air(air)?;
         }
+        Ok(())
+    }
+
+    fn add_air(&mut self, air: &Air) -> Result<(), SceneError> {
+        let key = Key::root().name("air");
+        let Some(attached) = &air.attached else {
+            self.change(|m| m.with_air(air.as_engine()), at(&key))?;
+            self.modelled.push("air".into());
+            return Ok(());
+        };
+        let key = key.name("attached");
+        let name = attached.sheet.as_deref();
+        let vertices = self.sheets.vertices(name, &Selection::All, &key)?;
+        let shedding = self
+            .sheets
+            .vertices(name, &attached.trailing, &key.name("trailing"))?;
+        let topology = self.model().topology();
+        let among = |some: &[VertexId], corners: &[VertexId]| {
+            corners.iter().all(|v| some.binary_search(v).is_ok())
+        };
+        let faces = topology.face_ids();
+        let edges = topology
+            .edge_ids()
+            .filter(|e| topology.is_boundary_edge(*e));
+        let flow = AttachedFlow {
+            faces: faces
+                .filter(|f| among(&vertices, &topology.faces()[f.index()]))
+                .collect(),
+            trailing: edges
+                .filter(|e| among(&shedding, &topology.edges()[e.index()]))
+                .collect(),
+            rows: attached.rows,
+        };
+        self.change(|m| m.with_attached_flow(air.as_engine(), &flow), at(&key))?;
+        self.modelled.push("air with attached flow".into());
         Ok(())
     }
 }

@@ -1,0 +1,192 @@
+//! Attached flow around sheets: lift, the mass of the air that moves along, and a wake.
+
+mod flow;
+mod lattice;
+mod step;
+#[cfg(test)]
+mod tests;
+mod vortex;
+mod wake;
+
+use super::SheetModel;
+use super::air::{Air, AirError};
+use crate::potential::{At, Memories, Potential, PotentialShape, Reached, Settled};
+use flow::InAir;
+use isosheet_mesh::{Advice, EdgeId, FaceId};
+use lattice::Lattice;
+use std::sync::Arc;
+use wake::{Past, Size};
+
+/// Why there cannot be such a flow.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AttachedFlowError {
+    /// The air makes no sense.
+    #[error(transparent)]
+    Air(#[from] AirError),
+    /// A face does not exist.
+    #[error("the flow is attached to {face}, but the sheet has only {face_count} faces")]
+    NoSuchFace {
+        /// The face.
+        face: FaceId,
+        /// Number of faces.
+        face_count: usize,
+    },
+    /// There are too many faces.
+    #[error("the flow is attached to {faces} faces, more than {most}")]
+    TooManyFaces {
+        /// Their number.
+        faces: usize,
+        /// The largest number.
+        most: usize,
+    },
+    /// Nothing sheds a wake.
+    #[error("the flow leaves the sheet at no edge")]
+    NoTrailingEdge,
+    /// A trailing edge is not at the rim of the faces.
+    #[error(
+        "{edge} is a trailing edge, but not at the rim of the faces that the flow is attached to"
+    )]
+    NotAtRim {
+        /// The edge.
+        edge: EdgeId,
+    },
+    /// The wake has too few rows.
+    #[error("the wake has {rows} rows")]
+    Rows {
+        /// Their number.
+        rows: usize,
+    },
+}
+
+impl Advice for AttachedFlowError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Air(error) => error.advice(),
+            Self::NoTrailingEdge | Self::NotAtRim { .. } => {
+                Some("name edges of the boundary, where the air leaves the sheet")
+            }
+            Self::TooManyFaces { .. } => Some("take a coarser mesh, or separated flow"),
+            Self::Rows { .. } => Some("give it two rows at least"),
+            Self::NoSuchFace { .. } => None,
+        }
+    }
+}
+
+/// Faces that the flow is attached to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AttachedFlow {
+    /// The faces.
+    pub faces: Vec<FaceId>,
+    /// Edges at the rim of these faces where the flow leaves them.
+    pub trailing: Vec<EdgeId>,
+    /// Rows of vortices of the wake, one for each step; older ones become one.
+    pub rows: usize,
+}
+
+impl AttachedFlow {
+    /// The largest number of faces: a step solves a dense system of as many equations, and its matrix couples
+    /// all vertices of these faces.
+    pub const MOST_FACES: usize = 2000;
+    /// The default of [`AttachedFlow::rows`].
+    pub const ROWS: usize = 80;
+}
+
+/// A lattice in the air, whose wake is the memory of the potential of a number.
+#[derive(Debug, Clone)]
+struct Attached {
+    air: Arc<InAir>,
+    size: Size,
+    potential: usize,
+}
+
+impl Attached {
+    /// What the flow remembers.
+    fn past(&self, memories: &Memories) -> Past {
+        Past::read(self.size, &memories.lists()[self.potential])
+    }
+}
+
+impl SheetModel {
+    /// Surrounds the sheet with air whose flow is attached to some faces: it flows along both sides and leaves
+    /// at the trailing edges. The drag across these faces stays: at small angles it is small against the lift,
+    /// and it bounds motions in which the flow would separate (Eloy, Kofman and Schouveiler, J. Fluid Mech. 691,
+    /// 2012).
+    ///
+    /// # Errors
+    /// [`AttachedFlowError`].
+    pub fn with_attached_flow(
+        self,
+        air: Air,
+        flow: &AttachedFlow,
+    ) -> Result<Self, AttachedFlowError> {
+        air.validate()?;
+        let faces = flow.faces.len();
+        if faces > AttachedFlow::MOST_FACES {
+            let most = AttachedFlow::MOST_FACES;
+            return Err(AttachedFlowError::TooManyFaces { faces, most });
+        }
+        if flow.rows < 2 {
+            return Err(AttachedFlowError::Rows { rows: flow.rows });
+        }
+        let lengths = self.edges().lengths();
+        let lattice = Lattice::new(self.topology(), lengths, &flow.faces, &flow.trailing)?;
+        let attached = Attached {
+            size: Size::of(&lattice, flow.rows),
+            air: Arc::new(InAir {
+                lattice,
+                density: air.density,
+                wind: air.wind.clone(),
+            }),
+            potential: self.outer_potential_count(),
+        };
+        let wake = Wake(attached.clone());
+        let model = self.with_air(air)?;
+        Ok(model.with_potential(wake).with_implicit_force(attached))
+    }
+}
+
+/// The wake, which remembers and has no energy.
+#[derive(Debug)]
+struct Wake(Attached);
+
+impl Potential for Wake {
+    fn energy(&self, _at: At<'_>) -> f64 {
+        0.0
+    }
+
+    fn add_gradient(&self, _at: At<'_>, _gradient: &mut [f64]) {}
+
+    fn shape(&self) -> PotentialShape {
+        PotentialShape::Linear
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        vec![0.0; self.0.size.len()]
+    }
+
+    fn start(&self, Reached { t, x, v }: Reached<'_>, memory: &mut [f64]) {
+        let Attached { air, size, .. } = &self.0;
+        let edge = air.lattice.edge(&air.lattice.shape(x));
+        let none = vec![0.0; air.lattice.faces.len()];
+        let mut past = Past::at_start(*size, t, none, &edge);
+        // (Where there is no flow the first step says so.)
+        if let Ok(flow) = air.flow(&past, t, x) {
+            let circulation = air.circulation(&flow, v);
+            past = Past::at_start(*size, t, circulation, &edge);
+        }
+        past.write(memory);
+    }
+
+    fn settle(&self, Reached { t, x, v }: Reached<'_>, memory: &mut [f64]) -> Settled {
+        let Attached { air, size, .. } = &self.0;
+        let past = Past::read(*size, memory);
+        let mut past = past.carried(&air.wind, t - past.times[0]);
+        if let Ok(flow) = air.flow(&past, t, x) {
+            let circulation = air.circulation(&flow, v);
+            past = flow.settled(t, circulation);
+        }
+        past.write(memory);
+        Settled::default()
+    }
+}

@@ -1,0 +1,51 @@
+//! Sheets along whose both sides the air flows.
+
+use super::Sheet;
+use super::key::Key;
+use super::problem::Checks;
+use super::selection::Selection;
+use super::sheets;
+use isosheet_dynamics as engine;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A sheet along whose both sides the air flows and which it leaves at an edge, as a wing or a flag in a steady
+/// wind: it has lift, drag that goes with it, the inertia of the air that moves along with the sheet, and a wake
+/// that the wind carries on. It holds at small angles between sheet and wind, 15 degrees as a rule, beyond which
+/// the flow separates; the drag across faces, which stays, is all that bounds the motion there. For the methods
+/// BDF2 and implicit Euler.
+///
+/// Each face carries a vortex ring: a step solves a dense system of as many equations.
+///
+/// ```toml
+/// [air]
+/// wind = [6, 0, 0]
+/// [air.attached]
+/// trailing = { half_space = { point = [0.3, 0, 0], normal = [1, 0, 0] } }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AttachedFlow {
+    /// The name of the sheet, if there are several and not all are meant.
+    #[serde(default)]
+    pub sheet: Option<String>,
+    /// Where the air leaves the sheet: the edges of its boundary both ends of which are selected.
+    pub trailing: Selection,
+    /// The number of rows of vortices that the wake has, one for each step; what is behind them is one row more.
+    /// At least 2. If left out, 80.
+    #[serde(default = "rows")]
+    pub rows: usize,
+}
+
+fn rows() -> usize {
+    engine::AttachedFlow::ROWS
+}
+
+impl AttachedFlow {
+    pub(super) fn check(&self, all: &[Sheet], key: &Key, checks: &mut Checks) {
+        let name = self.sheet.as_deref();
+        sheets::check_reference(all, name, &key.name("sheet"), checks);
+        self.trailing.check(&key.name("trailing"), checks);
+        checks.count(key.name("rows"), self.rows, 2);
+    }
+}
