@@ -44,6 +44,9 @@ impl EllipticArc {
 /// As many samples of a curve measure its length and its turning.
 const SAMPLES: usize = 96;
 
+/// A curve that turns by more than this between two samples, radians, has a corner there.
+const CUSP: f64 = 0.5;
+
 impl PlaneCurve {
     /// The point at the parameter `t`.
     pub fn point(&self, t: f64) -> [f64; 2] {
@@ -136,9 +139,12 @@ impl PlaneCurve {
             let t = at(k, samples);
             let next = (self.point(t), self.derivative(t));
             let length = distance(last.0, next.0) / longest;
-            let bend = cross(last.1, next.1).atan2(dot(last.1, next.1)).abs() / turn;
             // A cusp turns at one point, where chords end in any case.
-            needed.push(needed[k - 1] + length.max(bend.min(1.0)));
+            let bend = match cross(last.1, next.1).atan2(dot(last.1, next.1)).abs() {
+                bend if bend < CUSP => bend / turn,
+                _ => 1.0,
+            };
+            needed.push(needed[k - 1] + length.max(bend));
             last = next;
         }
         let total = needed[samples];
