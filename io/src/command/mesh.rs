@@ -4,7 +4,7 @@ use super::failure::{Code, Done, Failure};
 use super::info::refuse_folder;
 use super::message::counted;
 use super::write::{is_same_file, to_stdout};
-use crate::drawing::{
+use crate::format::drawing::{
     DrawingError, DrawingOptions, DrawingUnit, DrawnSheet, Length, LineClass, LineRules, Selector,
 };
 use crate::mesh::plane::PlaneError;

@@ -121,8 +121,8 @@ impl PlaneCurve {
         }
     }
 
-    /// Parameters from `range[0]` to `range[1]`, both included, between which chords are at most `longest` long,
-    /// turn by at most `turn` radians, and are about equally long where the curve is equally bent.
+    /// Parameters from `range[0]` to `range[1]`, both included, between which chords are at most `longest`
+    /// long, turn by at most `turn` radians, and are about equally long where the curve is equally bent.
     pub fn subdivide(&self, range: [f64; 2], longest: f64, turn: f64) -> Vec<f64> {
         let at = |k: usize, n: usize| {
             let w = k as f64 / n as f64;

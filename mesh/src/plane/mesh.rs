@@ -23,8 +23,8 @@ pub enum Role {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneOptions {
     /// Length of the edges, about, metres. No edge along a line is longer. Edges are shorter where lines are
-    /// near to each other, or bent: chords of curves turn by 30 degrees at most, so that no chord is further from its
-    /// curve than a fifteenth of its length.
+    /// near to each other, or bent: chords of curves turn by 30 degrees at most, so that no chord is further
+    /// from its curve than a fifteenth of its length.
     pub spacing: f64,
     /// Another number gives another triangulation.
     pub seed: u64,
@@ -70,11 +70,11 @@ const JITTER: f64 = 0.15;
 const CLEARANCE: f64 = 0.6;
 
 impl PlaneMesh {
-    /// The mesh of the sheet that cuts bound: what is separated from the outside by one line, by three, ..., so
-    /// that outlines within outlines are holes.
+    /// The mesh of the sheet that cuts bound: what is separated from the outside by one line, by three, ...,
+    /// so that outlines within outlines are holes.
     ///
-    /// Triangles have angles of 25 degrees and more where the lines allow it: where they meet at 60 degrees or more.
-    /// The same arguments give the same mesh.
+    /// Triangles have angles of 25 degrees and more where the lines allow it: where they meet at 60 degrees
+    /// or more. The same arguments give the same mesh.
     ///
     /// # Errors
     /// [`PlaneError`]
@@ -261,7 +261,8 @@ fn lattice(net: &Net, inside: &[bool], options: &PlaneOptions) -> Vec<Point> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{EllipticArc, PlaneCurve};
+    use super::super::curve::{EllipticArc, PlaneCurve};
+    use super::super::graph::Piece;
     use super::*;
     use std::f64::consts::TAU;
 
@@ -285,13 +286,13 @@ mod tests {
     }
 
     fn roles(graph: &PlaneGraph, cuts: usize) -> Vec<Role> {
-        let is_cut = |p: &super::super::Piece| p.sources.iter().any(|s| *s < cuts);
+        let is_cut = |p: &Piece| p.sources.iter().any(|s| *s < cuts);
         let role = |p| if is_cut(p) { Role::Cut } else { Role::Crease };
         graph.pieces.iter().map(role).collect()
     }
 
-    /// Triangles are counter-clockwise, an edge has two at most, and every piece inside is covered by a chain of
-    /// edges with its vertices on the curve.
+    /// Triangles are counter-clockwise, an edge has two at most, and every piece inside is covered by a chain
+    /// of edges with its vertices on the curve.
     fn check(graph: &PlaneGraph, mesh: &PlaneMesh) {
         let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
         for f in &mesh.faces {
@@ -369,8 +370,8 @@ mod tests {
         [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]
     }
 
-    /// Rows of panels, some with a hole or a slit, creases between them, turned by an angle: nothing meets at less
-    /// than a right angle, and so no triangle has less than 25 degrees.
+    /// Rows of panels, some with a hole or a slit, creases between them, turned by an angle: nothing meets at
+    /// less than a right angle, and so no triangle has less than 25 degrees.
     #[test]
     fn a_hundred_drawings_with_right_angles() {
         for seed in 0..100 {
@@ -421,8 +422,8 @@ mod tests {
         }
     }
 
-    /// Stars with creases at random angles, which cross each other and the outline: small angles do not keep the
-    /// refinement from ending, the area is exact, and what lies outside is left out.
+    /// Stars with creases at random angles, which cross each other and the outline: small angles do not keep
+    /// the refinement from ending, the area is exact, and what lies outside is left out.
     #[test]
     fn a_hundred_stars_with_creases_at_any_angle() {
         for seed in 0..100 {

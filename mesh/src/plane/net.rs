@@ -12,8 +12,8 @@ use std::f64::consts::PI;
 pub(super) type Triangles = ConstrainedDelaunayTriangulation<Point2<f64>>;
 pub(super) type Edge<'a> = DirectedEdgeHandle<'a, Point2<f64>, (), CdtEdge<()>, ()>;
 
-/// No chord turns by more than this, so that the angle between two chords of a curve is 150 degrees or more, and
-/// no chord is further from its curve than a fifteenth of its length.
+/// No chord turns by more than this, so that the angle between two chords of a curve is 150 degrees or more,
+/// and no chord is further from its curve than a fifteenth of its length.
 const TURN: f64 = PI / 6.0;
 
 /// Chords that cross although their curves do not are halved at most so often.

@@ -1,9 +1,10 @@
 //! Delaunay refinement (Ruppert 1995) with segments that follow curves.
 //!
-//! A segment is halved where a vertex lies within the circle over it; a triangle that is too large or too thin
-//! gets a vertex in the centre of its circumscribed circle, unless that lies in the circle over a segment, which
-//! is halved instead. Where lines meet at small angles, segments are cut at distances from the corner that are
-//! powers of two, and thin triangles between two such cuts stay (Miller, Pav and Walkington 2003).
+//! A segment is halved where a vertex lies within the circle over it; a triangle that is too large or too
+//! thin gets a vertex in the centre of its circumscribed circle, unless that lies in the circle over a
+//! segment, which is halved instead. Where lines meet at small angles, segments are cut at distances from the
+//! corner that are powers of two, and thin triangles between two such cuts stay (Miller, Pav and Walkington
+//! 2003).
 
 use super::error::PlaneError;
 use super::graph::PlaneGraph;
@@ -12,13 +13,13 @@ use super::vec2::{Point, cross, distance, dot, sub};
 use spade::Triangulation;
 use std::collections::VecDeque;
 
-/// The largest ratio of the radius of the circumscribed circle to the shortest side: 1 / (2 sin 25 degrees), where 25
-/// degrees are the smallest angle. Ruppert's algorithm is proven to end for 20.7 degrees and does so in
-/// practice up to 33.
+/// The largest ratio of the radius of the circumscribed circle to the shortest side: 1 / (2 sin 25 degrees),
+/// where 25 degrees are the smallest angle. Ruppert's algorithm is proven to end for 20.7 degrees and does so
+/// in practice up to 33.
 const THINNEST: f64 = 1.1831;
 
-/// The largest radius of the circumscribed circle as a part of the spacing. That of an equilateral triangle whose sides
-/// are as long as the spacing is 0.58.
+/// The largest radius of the circumscribed circle as a part of the spacing. That of an equilateral triangle
+/// whose sides are as long as the spacing is 0.58.
 const LARGEST: f64 = 0.9;
 
 /// Lines that meet at smaller angles are cut at powers of two: cosine of 60 degrees.
@@ -139,8 +140,8 @@ impl<'a> Refiner<'a> {
         Ok(true)
     }
 
-    /// Queues the triangles at a vertex from the edge to one neighbour counter-clockwise to that to another, or
-    /// all around, with the segments opposite of it.
+    /// Queues the triangles at a vertex from the edge to one neighbour counter-clockwise to that to another,
+    /// or all around, with the segments opposite of it.
     fn look_around(&mut self, vertex: u32, from: u32, to: Option<u32>) {
         let Some(first) = self.net.edge([vertex, from]) else {
             return;
@@ -168,8 +169,8 @@ impl<'a> Refiner<'a> {
         }
     }
 
-    /// The parameter at which a segment is cut: in the middle, or at a distance from the end with small angles
-    /// that is a power of two of the spacing.
+    /// The parameter at which a segment is cut: in the middle, or at a distance from the end with small
+    /// angles that is a power of two of the spacing.
     fn cut(&self, segment: &Segment) -> f64 {
         let curve = &self.graph.pieces[segment.piece].curve;
         let [t, u] = segment.range;

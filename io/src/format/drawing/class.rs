@@ -3,8 +3,8 @@
 use crate::format::EdgeAssignment;
 use std::fmt;
 
-/// What a line of a drawing is meant to do, the strongest first: where lines of several kinds lie on each other, the first
-/// of them counts.
+/// What a line of a drawing is meant to do, the strongest first: where lines of several kinds lie on each
+/// other, the first of them counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LineClass {
     /// The sheet ends here, or is cut.

@@ -10,9 +10,9 @@ use isosheet_mesh::wording::given;
 pub struct DrawingOptions {
     /// Length of the edges of the mesh, about, metres.
     pub spacing: f64,
-    /// Ends of lines that are at most so far apart, metres, are joined, ends that are as near to a line are moved onto it,
-    /// and lines that run along each other as near as this become one. `None` (the default) is a ten-thousandth of the diagonal
-    /// of the drawing.
+    /// Ends of lines that are at most so far apart, metres, are joined, ends that are as near to a line are
+    /// moved onto it, and lines that run along each other as near as this become one. `None` (the default) is
+    /// a ten-thousandth of the diagonal of the drawing.
     pub snap: Option<f64>,
     /// The length of a unit of the file, where it is not the one that the file says.
     pub unit: Option<DrawingUnit>,

@@ -4,9 +4,9 @@ use super::class::LineClass;
 use super::lines::Pen;
 use super::selector::Selector;
 
-/// What lines are taken for. A selector by layer counts before one by colour, and that before one by dash; what is
-/// selected by none goes by the words in the names of its layers, then by its colour as in Origami Simulator, then by
-/// its dash.
+/// What lines are taken for. A selector by layer counts before one by colour, and that before one by dash;
+/// what is selected by none goes by the words in the names of its layers, then by its colour as in Origami
+/// Simulator, then by its dash.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LineRules {
     /// The selectors with what they mean.
@@ -101,7 +101,8 @@ impl LineRules {
     }
 }
 
-/// What the words of a name say; nothing if they say several things, but that mountains and valleys are creases.
+/// What the words of a name say; nothing if they say several things, but that mountains and valleys are
+/// creases.
 fn class_of_name(name: &str) -> Option<LineClass> {
     let name = name.to_lowercase();
     let words: Vec<&str> = name.split(|c: char| !c.is_alphabetic()).collect();

@@ -1,6 +1,7 @@
 //! The mesh of a drawing.
 
 use super::class::LineClass;
+use super::file::read_drawing;
 use super::lines::{Drawing, DrawnLine};
 use super::options::DrawingOptions;
 use super::report::{ClassCount, DrawingReport, Places};
@@ -140,12 +141,12 @@ impl DrawnSheet {
     /// [`DrawingError`]
     pub fn read(path: &Path, options: &DrawingOptions) -> Result<Self, DrawingError> {
         options.validate()?;
-        mesh_drawing(&super::read_drawing(path, options)?, options)
+        mesh_drawing(&read_drawing(path, options)?, options)
     }
 }
 
-/// The class of each pen with the reason. Where all lines that nothing is known of are drawn alike and there are no
-/// others, they are the outline.
+/// The class of each pen with the reason. Where all lines that nothing is known of are drawn alike and there
+/// are no others, they are the outline.
 fn classify(
     drawing: &Drawing,
     options: &DrawingOptions,

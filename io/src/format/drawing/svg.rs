@@ -1,7 +1,7 @@
 //! Scalable Vector Graphics.
 //!
-//! Shapes are read as curves with all digits: arcs stay arcs. (Crates that render drawings have coordinates of 32 bits,
-//! arcs of Bezier curves and no layers.)
+//! Shapes are read as curves with all digits: arcs stay arcs. (Crates that render drawings have coordinates
+//! of 32 bits, arcs of Bezier curves and no layers.)
 
 mod matrix;
 mod page;
@@ -54,17 +54,17 @@ pub(super) fn parse(bytes: &[u8], options: &DrawingOptions) -> Result<Drawing, D
     }
     let mut drawing = Drawing::default();
     let (size, is_absolute) = page_size(root);
-    let (place, viewport) = content(root, size);
-    let (unit, place, height) = match options.unit {
+    let (unit, size) = match options.unit {
         // A unit of the drawing is known, whatever the page says.
-        Some(unit) => (unit, translation(0.0, 0.0), viewport.size[1]),
-        None => (DrawingUnit::Pixel, place, size[1]),
+        Some(unit) => (unit, content(root, size).1.size),
+        None => (DrawingUnit::Pixel, size),
     };
+    let (place, viewport) = content(root, size);
     if options.unit.is_none() && !is_absolute {
         drawing.assumed_unit = Some("1 px is 1/96 in");
     }
     let metres = unit.metres(options.scale);
-    let upright = compose(scaling(metres, -metres), translation(0.0, -height));
+    let upright = compose(scaling(metres, -metres), translation(0.0, -size[1]));
     let mut reader = Reader {
         document: &document,
         sheet,

@@ -1,22 +1,30 @@
 //! Units of drawings.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
 /// The length that a unit of a drawing means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "scene", derive(schemars::JsonSchema))]
 pub enum DrawingUnit {
     /// Metres.
+    #[serde(rename = "m")]
     Metre,
     /// Centimetres.
+    #[serde(rename = "cm")]
     Centimetre,
     /// Millimetres.
+    #[serde(rename = "mm")]
     Millimetre,
     /// Inches.
+    #[serde(rename = "in")]
     Inch,
     /// Points of printers, 1/72 inch.
+    #[serde(rename = "pt")]
     Point,
     /// Pixels of pages, 1/96 inch.
+    #[serde(rename = "px")]
     Pixel,
 }
 

@@ -51,7 +51,8 @@ impl Viewport {
     }
 }
 
-/// Where the content of an element `svg` is drawn, in units of what it is in: the map there, and its viewport.
+/// Where the content of an element `svg` is drawn, in units of what it is in: the map there, and its
+/// viewport.
 pub(super) fn content(node: Node<'_, '_>, size: [f64; 2]) -> (Matrix, Viewport) {
     let view: Option<ViewBox> = node.attribute("viewBox").and_then(|t| t.parse().ok());
     let Some(view) = view else {

@@ -127,8 +127,8 @@ impl Drawn {
     }
 }
 
-/// The arc from one point to another on an ellipse with these half-axes, which is turned by an angle; `bulge` says whether
-/// it is the larger one, and whether its angles ascend. `None` where it is a straight line.
+/// The arc from one point to another on an ellipse with these half-axes, which is turned by an angle; `bulge`
+/// says whether it is the larger one, and whether its angles ascend. `None` where it is a straight line.
 fn elliptic_arc(
     from: Point,
     to: Point,
@@ -183,8 +183,8 @@ mod tests {
         (p[0] - q[0]).hypot(p[1] - q[1]) < 1e-12
     }
 
-    /// Every choice of the flags gives an arc between the ends on the ellipse, and they are four different ones
-    /// whose angles add up to whole turns in pairs.
+    /// Every choice of the flags gives an arc between the ends on the ellipse, and they are four different
+    /// ones whose angles add up to whole turns in pairs.
     #[test]
     fn arcs_have_their_ends_and_flags() {
         let (from, to, radii, turn) = ([1.0, 2.0], [2.5, 2.2], [2.0, 1.0], 0.4);
