@@ -15,6 +15,7 @@ mod gallery;
 mod info;
 mod interrupt;
 mod live;
+mod mesh;
 mod message;
 mod open;
 mod page;
@@ -44,6 +45,8 @@ Examples:
   isosheet convert cloth-run cloth.usda        write it for Blender; .pvd for ParaView, .apng as a film ...
   isosheet sweep cloth.toml --over sheet.density=0.1,0.2
                                                run the scene with both values
+  isosheet mesh box.svg -o box.fold --spacing 5mm
+                                               make a mesh of a drawing, with its creases and cuts
   isosheet check cloth.toml                    say what is wrong with a scene or a mesh file";
 
 /// Simulates sheets that bend and crease and do not stretch.
@@ -80,6 +83,8 @@ enum Command {
     Info(info::Info),
     /// Convert a mesh file to another format, or a run to files of other programs
     Convert(convert::Convert),
+    /// Make a triangle mesh of a drawing, with its creases, cuts and holes
+    Mesh(mesh::MeshArgs),
     /// Write a commented scene to start from
     New(start::New),
     /// Print the completion script of a shell
@@ -121,6 +126,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
         Command::Check(check) => check.run(),
         Command::Info(info) => info.run(),
         Command::Convert(convert) => convert.run(),
+        Command::Mesh(mesh) => mesh.run(),
         Command::New(new) => new.run(),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -4,6 +4,7 @@ pub(crate) mod atomic;
 #[cfg(feature = "run")]
 mod cell;
 mod data_error;
+pub mod drawing;
 mod events;
 mod export;
 mod file_error;

@@ -40,6 +40,7 @@ mod contact;
 mod creases;
 mod curl;
 mod direction;
+mod drawing;
 mod driven;
 mod driven_surface;
 mod edit;
@@ -116,6 +117,7 @@ pub use contact::{Contact, SheetPair};
 pub use creases::{Crease, CreaseEdges, PatternEdges};
 pub use curl::Curl;
 pub use direction::{Direction, TextureAxis, TextureDirection};
+pub use drawing::DrawingFile;
 pub use edit::{Edit, EditError};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
@@ -422,8 +424,10 @@ impl Scene {
         let count = self.sheet.len();
         for (k, sheet) in self.sheet.iter_mut().enumerate() {
             let key = sheets::sheet_key(count, k);
-            if let Mesh::File(file) = &mut sheet.mesh {
-                files.push((key.name("mesh.file"), &mut file.path));
+            match &mut sheet.mesh {
+                Mesh::File(file) => files.push((key.name("mesh.file"), &mut file.path)),
+                Mesh::Drawing(file) => files.push((key.name("mesh.drawing"), &mut file.path)),
+                _ => {}
             }
             if let Some(file) = &mut sheet.start.file {
                 files.push((key.name("start.file"), &mut file.path));

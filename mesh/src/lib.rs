@@ -32,7 +32,9 @@ mod ids;
 mod lengths;
 mod mass;
 pub mod origami;
+
 mod part;
+pub mod plane;
 mod repair;
 mod sheet;
 #[cfg(test)]

@@ -119,6 +119,9 @@ pub enum PatternEdges {
     Mountains,
     /// The valleys.
     Valleys,
+    /// The edges inside the sheet of which the pattern does not say whether they are mountains or valleys. A
+    /// positive angle makes them valleys.
+    Unassigned,
     /// The edges inside panels, which are meant to stay flat.
     Flat,
     /// The zigzag creases of `sheet.mesh.miura`; a positive angle folds each to its side.
@@ -247,7 +250,13 @@ fn of_pattern(wanted: PatternEdges, roles: &EdgeRoles) -> Vec<(EdgeId, f64)> {
     };
     let edges = roles.assignments.iter().enumerate();
     let edges = edges.map(|(e, &a)| (EdgeId::from_index(e), a));
-    edges
-        .filter_map(|(e, a)| sign(e, a?).map(|s| (e, s)))
-        .collect()
+    let chosen = |(e, a): (EdgeId, Option<FoldAssignment>)| {
+        let sign = match a {
+            Some(a) => sign(e, a)?,
+            None if wanted == PatternEdges::Unassigned => 1.0,
+            None => return None,
+        };
+        Some((e, sign))
+    };
+    edges.filter_map(chosen).collect()
 }

@@ -1,6 +1,7 @@
 //! Where the mesh of a sheet comes from.
 
 use super::direction::FaceTexture;
+use super::drawing::DrawingFile;
 use super::error::SceneError;
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
@@ -10,9 +11,9 @@ use super::pattern::{
 };
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use crate::format::{FaceGroups, ReadingChanges};
-use isosheet_mesh::Sheet;
+use crate::format::{self, FaceGroups, ReadingChanges};
 use isosheet_mesh::generate::{self, FoldPattern, GenerateError};
+use isosheet_mesh::{MeshError, Sheet};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -122,6 +123,8 @@ pub enum Mesh {
     },
     /// A mesh file: OBJ, OFF, STL, PLY, FOLD (with its crease pattern) or glTF.
     File(MeshFile),
+    /// A drawing: SVG or DXF, with its creases, cuts and holes.
+    Drawing(DrawingFile),
 }
 
 /// How the cells of a rectangle are cut into triangles.
@@ -215,6 +218,7 @@ impl Mesh {
             Self::SquareTwist(_) => "square_twist",
             Self::Triangles { .. } => "triangles",
             Self::File(_) => "file",
+            Self::Drawing(_) => "drawing",
         }
     }
 
@@ -299,7 +303,7 @@ impl Mesh {
                 ("square", Length(twist.square)),
                 ("angle", Angle(twist.angle, 90.0)),
             ],
-            Self::Triangles { .. } | Self::File(_) => Vec::new(),
+            Self::Triangles { .. } | Self::File(_) | Self::Drawing(_) => Vec::new(),
         }
     }
 
@@ -324,6 +328,7 @@ impl Mesh {
                 checks.points(key.name("vertices"), vertices);
             }
             Self::File(file) => file.check(&key, checks),
+            Self::Drawing(drawing) => drawing.check(&key, checks),
             _ => {}
         }
     }
@@ -413,6 +418,10 @@ impl Mesh {
                 return Ok(RestMesh::plain(sheet));
             }
             Self::File(file) => return read_sheet(file, &key, files),
+            Self::Drawing(drawing) => {
+                let drawn = drawing.sheet(&key, files)?;
+                return rest_mesh(&drawn.mesh).map_err(|e| Problem::from_error(key, &e));
+            }
         };
         let sheet = made.map_err(|e| generator_problem(&key, &e))?;
         Ok(RestMesh::plain(sheet))
@@ -427,11 +436,16 @@ fn of_pattern(key: &Key, pattern: Result<FoldPattern, GenerateError>) -> Result<
 
 fn read_sheet(file: &MeshFile, key: &Key, files: &mut Files) -> Result<RestMesh, Problem> {
     let mesh = files.read(file, key)?;
-    let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces).map_err(|error| {
+    rest_mesh(&mesh).map_err(|error| {
         let path = file.path.display();
         let remedy = format!("`isosheet check {path} --fix -o FILE` repairs what can be repaired");
         Problem::new(key.name("path"), format!("{path}: {error}"), remedy)
-    })?;
+    })
+}
+
+/// The sheet of a mesh with what is said of its edges and faces.
+fn rest_mesh(mesh: &format::MeshFile) -> Result<RestMesh, MeshError> {
+    let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces)?;
     let assignments = mesh.fold_assignments(sheet.topology());
     Ok(RestMesh {
         roles: assignments.map(|assignments| EdgeRoles {

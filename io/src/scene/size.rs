@@ -92,9 +92,11 @@ impl Mesh {
             Self::Kresling(pattern) => 2.0 * product(pattern.columns, pattern.rows),
             Self::Hypar(pattern) => 8.0 * pattern.rings as f64,
             Self::Triangles { faces, .. } => faces.len() as f64,
-            Self::Octagon { .. } | Self::DegreeFour(_) | Self::SquareTwist(_) | Self::File(_) => {
-                0.0
-            }
+            Self::Octagon { .. }
+            | Self::DegreeFour(_)
+            | Self::SquareTwist(_)
+            | Self::File(_)
+            | Self::Drawing(_) => 0.0,
         }
     }
 }

@@ -118,6 +118,7 @@ fn damaged_files_give_a_value_or_a_typed_error() {
 /// The seeds have to reach what lies behind the first checks: none of them may be refused.
 #[test]
 fn every_seed_is_accepted() {
+    use isosheet_io::drawing::{DrawingOptions, mesh_drawing, parse_drawing};
     use isosheet_io::dynamics::Checkpoint;
     use isosheet_io::scene::SceneFile;
     use isosheet_io::{MeshFormat, MeshOptions, Trajectory, parse_mesh, read_history};
@@ -144,6 +145,14 @@ fn every_seed_is_accepted() {
                         .map_err(|e| e.to_string())
                         .and_then(|scene| scene.build().map_err(|e| e.to_string()));
                     built.err()
+                }
+                "svg" | "dxf" => {
+                    let options = DrawingOptions::with_spacing(0.01);
+                    let drawing = parse_drawing(seed, &path.with_extension(name), &options);
+                    let drawn = drawing.map_err(|e| e.to_string());
+                    let drawn =
+                        drawn.and_then(|d| mesh_drawing(&d, &options).map_err(|e| e.to_string()));
+                    drawn.err()
                 }
                 _ => {
                     let format = MeshFormat::of(&path.with_extension(name)).expect("a format");

@@ -4,6 +4,7 @@
 //! A target may return a value or a typed error and has to panic on anything that neither of them may be:
 //! a number that is not finite, an index of nothing, a value that another call of the crate does not take.
 
+use isosheet_io::drawing::{DrawingOptions, mesh_drawing, parse_drawing};
 use isosheet_io::dynamics::{Checkpoint, Method, SheetModel, Simulation, State};
 use isosheet_io::mesh::{MassKind, VertexId, generate};
 use isosheet_io::scene::{Mesh, Outline, OutlineShape, Scene, SceneFile};
@@ -17,7 +18,7 @@ use std::path::Path;
 pub(crate) type Target = fn(&[u8]);
 
 /// All targets with their names.
-pub(crate) const TARGETS: [(&str, Target); 12] = [
+pub(crate) const TARGETS: [(&str, Target); 14] = [
     ("obj", obj),
     ("off", off),
     ("stl", stl),
@@ -25,6 +26,8 @@ pub(crate) const TARGETS: [(&str, Target); 12] = [
     ("fold", fold),
     ("gltf", gltf),
     ("glb", glb),
+    ("svg", svg),
+    ("dxf", dxf),
     ("scene", scene),
     ("checkpoint", checkpoint),
     ("checkpoint_json", checkpoint_json),
@@ -64,6 +67,32 @@ fn gltf(data: &[u8]) {
 
 fn glb(data: &[u8]) {
     mesh(data, MeshFormat::Glb);
+}
+
+fn svg(data: &[u8]) {
+    drawing(data, Path::new("drawing.svg"));
+}
+
+fn dxf(data: &[u8]) {
+    drawing(data, Path::new("drawing.dxf"));
+}
+
+/// Reads a drawing, and makes a mesh of it with some ten edges across.
+fn drawing(data: &[u8], path: &Path) {
+    let options = DrawingOptions::with_spacing(1.0);
+    let drawing = match parse_drawing(data, path, &options) {
+        Ok(drawing) => drawing,
+        Err(error) => return assert!(!error.to_string().is_empty()),
+    };
+    let ends = drawing.lines.iter().flat_map(|line| line.curve.ends());
+    let far = ends.flatten().map(f64::abs).fold(1e-9, f64::max);
+    match mesh_drawing(&drawing, &DrawingOptions::with_spacing(0.1 * far)) {
+        Ok(drawn) => {
+            assert!(!drawn.report.to_string().is_empty());
+            use_mesh(drawn.mesh);
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
 }
 
 /// Reads a mesh as it is by default, and with the other choice of every option.

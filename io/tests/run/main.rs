@@ -8,6 +8,7 @@ mod continuing;
 mod convert;
 #[path = "../shared/devtools.rs"]
 mod devtools;
+mod drawings;
 mod ends;
 mod events;
 mod extending;

@@ -6,6 +6,7 @@ mod book;
 mod charts;
 mod complete;
 mod directions;
+mod drawings;
 mod everyday;
 mod files;
 mod folding;

@@ -9,7 +9,7 @@ impl MeshFile {
     ///
     /// At each end of a cut edge, the faces that are neighbours across edges that are not cut stay together:
     /// those with the first face keep the vertex, the others get copies of it. A cut edge becomes two edges.
-    pub(in crate::format::mesh_file) fn separate_cuts(&mut self) {
+    pub(crate) fn separate_cuts(&mut self) {
         let cuts: BTreeSet<[u32; 2]> = self
             .creases
             .iter()

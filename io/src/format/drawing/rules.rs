@@ -1,0 +1,189 @@
+//! Which lines are cuts, creases and so on.
+
+use super::class::LineClass;
+use super::lines::Pen;
+use super::selector::Selector;
+
+/// What lines are taken for. A selector by layer counts before one by colour, and that before one by dash;
+/// what is selected by none goes by the words in the names of its layers, then by its colour as in Origami
+/// Simulator, then by its dash.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LineRules {
+    /// The selectors with what they mean.
+    pub selectors: Vec<(Selector, LineClass)>,
+}
+
+/// Words of names of layers, and what lines there are.
+const WORDS: [(LineClass, &[&str]); 6] = [
+    (
+        LineClass::Cut,
+        &[
+            "cut", "cuts", "cutting", "outline", "contour", "knife", "boundary", "border", "edge",
+            "edges", "hole", "holes", "slit", "slits", "slot", "slots",
+        ],
+    ),
+    (LineClass::Mountain, &["mountain", "mountains"]),
+    (LineClass::Valley, &["valley", "valleys"]),
+    (
+        LineClass::Crease,
+        &[
+            "crease",
+            "creases",
+            "fold",
+            "folds",
+            "folding",
+            "score",
+            "scores",
+            "scoring",
+            "bend",
+            "bends",
+            "perf",
+            "perfs",
+            "perforation",
+            "perforations",
+            "hinge",
+            "hinges",
+        ],
+    ),
+    (LineClass::Flat, &["facet", "facets", "flat"]),
+    (
+        LineClass::Ignored,
+        &[
+            "dim",
+            "dims",
+            "dimension",
+            "dimensions",
+            "annotation",
+            "annotations",
+            "note",
+            "notes",
+            "text",
+            "texts",
+            "guide",
+            "guides",
+            "bleed",
+            "print",
+            "artwork",
+            "safety",
+            "title",
+        ],
+    ),
+];
+
+/// Colours of solid lines as Origami Simulator reads them, and white, which cannot be seen.
+const COLOURS: [(&str, LineClass); 7] = [
+    ("black", LineClass::Cut),
+    ("green", LineClass::Cut),
+    ("red", LineClass::Mountain),
+    ("blue", LineClass::Valley),
+    ("magenta", LineClass::Crease),
+    ("yellow", LineClass::Flat),
+    ("white", LineClass::Ignored),
+];
+
+impl LineRules {
+    /// What lines of a pen are, with the reason in words; `None` where nothing says it.
+    pub fn class(&self, pen: &Pen) -> Option<(LineClass, String)> {
+        let selected = self.selectors.iter().filter(|(s, _)| s.selects(pen));
+        if let Some((selector, class)) = selected.min_by_key(|(s, _)| s.rank()) {
+            return Some((*class, selector.to_string()));
+        }
+        let by_word = |name: &String| Some((class_of_name(name)?, format!("layer {name:?}")));
+        if let Some(found) = pen.layers.iter().find_map(by_word) {
+            return Some(found);
+        }
+        let colour = pen.colour.name();
+        if pen.dashed && matches!(colour, Some("black" | "grey") | None) {
+            return Some((LineClass::Crease, "dashed".to_owned()));
+        }
+        let known = COLOURS.iter().find(|(name, _)| Some(*name) == colour);
+        known.map(|(name, class)| (*class, (*name).to_owned()))
+    }
+}
+
+/// What the words of a name say; nothing if they say several things, but that mountains and valleys are
+/// creases.
+fn class_of_name(name: &str) -> Option<LineClass> {
+    let name = name.to_lowercase();
+    let words: Vec<&str> = name.split(|c: char| !c.is_alphabetic()).collect();
+    let is_said = |known: &[&str]| words.iter().any(|w| known.contains(w));
+    let said = WORDS.iter().filter(|(_, known)| is_said(known));
+    let said: Vec<LineClass> = said.map(|(class, _)| *class).collect();
+    match said[..] {
+        [class]
+        | [
+            class @ (LineClass::Mountain | LineClass::Valley),
+            LineClass::Crease,
+        ] => Some(class),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::colour::Colour;
+    use super::*;
+
+    fn pen(colour: [u8; 3], dashed: bool, layers: &[&str]) -> Pen {
+        Pen {
+            colour: Colour(colour),
+            dashed,
+            opacity: 1.0,
+            layers: layers.iter().map(|l| (*l).to_owned()).collect(),
+        }
+    }
+
+    #[test]
+    fn layers_count_before_colours_and_these_before_dashes() {
+        let rules = LineRules::default();
+        let class = |pen: &Pen| rules.class(pen).map(|(class, _)| class);
+        for (pen, expected) in [
+            (pen([0; 3], false, &[]), Some(LineClass::Cut)),
+            (pen([0; 3], true, &[]), Some(LineClass::Crease)),
+            (pen([255, 0, 0], true, &[]), Some(LineClass::Mountain)),
+            (
+                pen([255, 0, 0], false, &["Cut_Lines"]),
+                Some(LineClass::Cut),
+            ),
+            (
+                pen([0; 3], false, &["a", "Score lines"]),
+                Some(LineClass::Crease),
+            ),
+            (
+                pen([0; 3], false, &["mountain-folds"]),
+                Some(LineClass::Mountain),
+            ),
+            (
+                pen([0, 0, 255], false, &["cut and crease"]),
+                Some(LineClass::Valley),
+            ),
+            (pen([255, 128, 0], false, &["Layer 1"]), None),
+            (
+                pen([128; 3], false, &["dimensions"]),
+                Some(LineClass::Ignored),
+            ),
+        ] {
+            assert_eq!(class(&pen), expected, "{pen:?}");
+        }
+        let selectors = [
+            ("red", LineClass::Cut),
+            ("layer:X", LineClass::Crease),
+            ("solid", LineClass::Flat),
+        ];
+        let selectors = selectors.map(|(text, class)| (text.parse().unwrap(), class));
+        let rules = LineRules {
+            selectors: selectors.to_vec(),
+        };
+        let class = |pen: &Pen| rules.class(pen).map(|(class, _)| class);
+        assert_eq!(
+            class(&pen([250, 0, 0], false, &["cut"])),
+            Some(LineClass::Cut)
+        );
+        assert_eq!(
+            class(&pen([250, 0, 0], false, &["x"])),
+            Some(LineClass::Crease)
+        );
+        assert_eq!(class(&pen([0, 0, 250], false, &[])), Some(LineClass::Flat));
+        assert_eq!(class(&pen([0, 0, 250], true, &[])), Some(LineClass::Valley));
+    }
+}

@@ -1,0 +1,287 @@
+//! The mesh of a drawing.
+
+use super::class::LineClass;
+use super::file::read_drawing;
+use super::lines::{Drawing, DrawnLine};
+use super::options::DrawingOptions;
+use super::report::{ClassCount, DrawingReport, Places};
+use crate::format::{DataError, EdgeAssignment, FileCrease, FileError, MeshFile};
+use isosheet_mesh::plane::{Piece, PlaneError, PlaneGraph, PlaneMesh, PlaneOptions, Role};
+use isosheet_mesh::wording::counted;
+use isosheet_mesh::{Advice, MeshError, Sheet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::f64::consts::PI;
+use std::path::Path;
+use thiserror::Error;
+
+/// Why a drawing does not become a sheet.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum DrawingError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// An option is out of range, or it is not known what lines are.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// The lines bound no sheet.
+    #[error(transparent)]
+    Plane(#[from] PlaneError),
+    /// The triangles are no sheet.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+impl Advice for DrawingError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::File(error) => error.advice(),
+            Self::Data(error) => error.advice(),
+            Self::Plane(error) => error.advice(),
+            Self::Mesh(error) => error.advice(),
+        }
+    }
+}
+
+/// A drawing that has become a sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnSheet {
+    /// The mesh, metres, in the plane z = 0, with its creases. Cuts have vertices of their own on both sides.
+    pub mesh: MeshFile,
+    /// What was taken for what, and what was changed.
+    pub report: DrawingReport,
+}
+
+/// The default tolerance for snapping, as a part of the diagonal of the drawing.
+const SNAP: f64 = 1e-4;
+
+/// Makes a triangle mesh of a drawing whose edges follow its lines.
+///
+/// # Errors
+/// [`DrawingError`]
+pub fn mesh_drawing(
+    drawing: &Drawing,
+    options: &DrawingOptions,
+) -> Result<DrawnSheet, DrawingError> {
+    options.validate()?;
+    let kinds = classify(drawing, options)?;
+    let of_line = |line: &DrawnLine| kinds[line.pen].0;
+    let is_drawn = |line: &&DrawnLine| of_line(line) != LineClass::Ignored;
+    let lines: Vec<&DrawnLine> = drawing.lines.iter().filter(is_drawn).collect();
+    if lines.is_empty() {
+        let message = match drawing.lines.is_empty() {
+            true => "the drawing has no lines",
+            false => "all lines of the drawing are left out",
+        };
+        return Err(DataError::new(message, "draw the outline of the sheet as lines").into());
+    }
+    let curves: Vec<_> = lines.iter().map(|l| l.curve).collect();
+    let snap = options.snap.unwrap_or_else(|| SNAP * diagonal(&lines));
+    let graph = PlaneGraph::new(&curves, snap.max(f64::MIN_POSITIVE))?;
+    refuse_self_crossing(&graph, &lines, of_line)?;
+    let classes: Vec<LineClass> = graph
+        .pieces
+        .iter()
+        .map(|p| class_of(p.sources.iter().map(|s| of_line(lines[*s]))))
+        .collect();
+    let roles: Vec<Role> = classes.iter().map(|class| role(*class)).collect();
+    let plane = PlaneOptions {
+        spacing: options.spacing,
+        seed: options.seed,
+    };
+    let plane = PlaneMesh::new(&graph, &roles, &plane)?;
+    let angle = |piece: usize| {
+        let opacity = drawing.pens[lines[graph.pieces[piece].sources[0]].pen].opacity;
+        let sign = match classes[piece] {
+            LineClass::Mountain => -1.0,
+            LineClass::Valley => 1.0,
+            _ => return None,
+        };
+        (opacity < 1.0).then_some(sign * opacity * PI)
+    };
+    let creases: Vec<FileCrease> = plane
+        .edges
+        .iter()
+        .map(|(ends, piece)| FileCrease {
+            ends: *ends,
+            assignment: classes[*piece].assignment(),
+            angle: angle(*piece),
+        })
+        .collect();
+    let mesh = assemble(&plane, creases);
+    Sheet::new(mesh.positions.clone(), &mesh.faces)?;
+    let report = DrawingReport {
+        size: extent(&plane.points),
+        classes: count(drawing, &kinds),
+        joined: Places::of(graph.joins.iter().map(|j| (j.gap, j.at))),
+        doubled: Places::of(doubled(&graph).map(|p| (p.length(), p.middle()))),
+        contradicting: Places::of(
+            doubled(&graph)
+                .filter(|p| {
+                    let classes = p.sources.iter().map(|s| of_line(lines[*s]));
+                    classes.collect::<BTreeSet<_>>().len() > 1
+                })
+                .map(|p| (p.length(), p.middle())),
+        ),
+        beyond: Places::of(plane.outside.iter().map(|&k| {
+            let piece = &graph.pieces[k];
+            (piece.length(), piece.middle())
+        })),
+        too_short: graph.dropped.len(),
+        left_out: drawing.left_out.clone(),
+        assumed_unit: drawing.assumed_unit,
+    };
+    Ok(DrawnSheet { mesh, report })
+}
+
+impl DrawnSheet {
+    /// The sheet of a file.
+    ///
+    /// # Errors
+    /// [`DrawingError`]
+    pub fn read(path: &Path, options: &DrawingOptions) -> Result<Self, DrawingError> {
+        options.validate()?;
+        mesh_drawing(&read_drawing(path, options)?, options)
+    }
+}
+
+/// The class of each pen with the reason. Where all lines that nothing is known of are drawn alike and there
+/// are no others, they are the outline.
+fn classify(
+    drawing: &Drawing,
+    options: &DrawingOptions,
+) -> Result<Vec<(LineClass, String)>, DataError> {
+    let known: Vec<_> = drawing
+        .pens
+        .iter()
+        .map(|p| options.rules.class(p))
+        .collect();
+    let open = drawing.pens.iter().zip(&known).filter(|(_, k)| k.is_none());
+    let open: BTreeSet<(String, bool)> = open
+        .map(|(p, _)| (p.colour.to_string(), p.dashed))
+        .collect();
+    let is_outline = open.len() == 1 && known.iter().all(Option::is_none);
+    if !is_outline && let Some((colour, dashed)) = open.first() {
+        let dashes = if *dashed { "dashed " } else { "" };
+        let more = match open.len() {
+            1 => String::new(),
+            n => format!(" (and {})", counted(n - 1, "other kind", "other kinds")),
+        };
+        let message =
+            format!("it is not known what the {dashes}lines of the colour {colour} are{more}");
+        let remedy =
+            "say it by their colour or layer: cut, crease, mountain, valley, flat or ignore";
+        return Err(DataError::new(message, remedy));
+    }
+    let outline = || (LineClass::Cut, "the only lines".to_owned());
+    Ok(known
+        .into_iter()
+        .map(|k| k.unwrap_or_else(outline))
+        .collect())
+}
+
+/// The class of lines that lie on each other: a mountain on a valley is a crease.
+fn class_of(classes: impl Iterator<Item = LineClass>) -> LineClass {
+    let classes: BTreeSet<LineClass> = classes.collect();
+    match classes.first() {
+        Some(LineClass::Mountain) if classes.contains(&LineClass::Valley) => LineClass::Crease,
+        Some(class) => *class,
+        None => LineClass::Ignored,
+    }
+}
+
+fn role(class: LineClass) -> Role {
+    match class {
+        LineClass::Cut => Role::Cut,
+        _ => Role::Crease,
+    }
+}
+
+fn refuse_self_crossing(
+    graph: &PlaneGraph,
+    lines: &[&DrawnLine],
+    of_line: impl Fn(&DrawnLine) -> LineClass,
+) -> Result<(), DataError> {
+    let is_own =
+        |[a, b]: [usize; 2]| lines[a].path == lines[b].path && of_line(lines[a]) == LineClass::Cut;
+    let Some((_, at)) = graph.crossings.iter().find(|(pair, _)| is_own(*pair)) else {
+        return Ok(());
+    };
+    let [x, y] = at.map(|c| (1e5 * c).round() / 1e2 + 0.0);
+    let message = format!("an outline crosses itself at ({x}, {y}) mm");
+    Err(DataError::new(message, "draw it without the crossing"))
+}
+
+fn doubled(graph: &PlaneGraph) -> impl Iterator<Item = &Piece> {
+    graph.pieces.iter().filter(|p| p.sources.len() > 1)
+}
+
+fn extent(points: &[[f64; 2]]) -> [f64; 2] {
+    [0, 1].map(|k| {
+        let along = points.iter().map(|p| p[k]);
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| {
+            (l.min(c), h.max(c))
+        });
+        high - low
+    })
+}
+
+fn diagonal(lines: &[&DrawnLine]) -> f64 {
+    let points = lines
+        .iter()
+        .flat_map(|l| [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| l.curve.point(t)));
+    let [w, h] = extent(&points.collect::<Vec<_>>());
+    w.hypot(h)
+}
+
+/// The mesh with vertices of their own on both sides of cuts; edges within panels stay flat.
+fn assemble(plane: &PlaneMesh, mut creases: Vec<FileCrease>) -> MeshFile {
+    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+    let mut known: HashSet<[u32; 2]> = creases.iter().map(|c| sorted(c.ends)).collect();
+    for &[a, b, c] in &plane.faces {
+        for ends in [[a, b], [b, c], [c, a]].map(sorted) {
+            if known.insert(ends) {
+                creases.push(FileCrease {
+                    ends,
+                    assignment: EdgeAssignment::Flat,
+                    angle: None,
+                });
+            }
+        }
+    }
+    let positions = plane.points.iter().flat_map(|p| [p[0], p[1], 0.0]);
+    let mut mesh = MeshFile::of_frame(positions.collect(), plane.faces.clone(), creases);
+    mesh.separate_cuts();
+    for crease in &mut mesh.creases {
+        if crease.assignment == EdgeAssignment::Cut {
+            crease.assignment = EdgeAssignment::Boundary;
+        }
+    }
+    mesh
+}
+
+fn count(drawing: &Drawing, kinds: &[(LineClass, String)]) -> Vec<ClassCount> {
+    let mut classes = Vec::new();
+    for class in LineClass::ALL {
+        let own = drawing.lines.iter().filter(|l| kinds[l.pen].0 == class);
+        let mut reasons = BTreeMap::new();
+        let (mut lines, mut length) = (0, 0.0);
+        for line in own {
+            lines += 1;
+            let t = line.curve.subdivide([0.0, 1.0], f64::INFINITY, 0.02);
+            let points: Vec<[f64; 2]> = t.iter().map(|t| line.curve.point(*t)).collect();
+            let chord = |p: &[[f64; 2]]| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]);
+            length += points.windows(2).map(chord).sum::<f64>();
+            *reasons.entry(kinds[line.pen].1.clone()).or_default() += 1;
+        }
+        if lines > 0 {
+            classes.push(ClassCount {
+                class,
+                lines,
+                length,
+                reasons,
+            });
+        }
+    }
+    classes
+}

@@ -1,0 +1,256 @@
+//! Scalable Vector Graphics.
+//!
+//! Shapes are read as curves with all digits: arcs stay arcs. (Crates that render drawings have coordinates
+//! of 32 bits, arcs of Bezier curves and no layers.)
+
+mod matrix;
+mod page;
+mod path;
+mod shapes;
+mod style;
+
+use super::colour::Colour;
+use super::lines::{Drawing, Pen};
+use super::options::DrawingOptions;
+use super::unit::DrawingUnit;
+use crate::format::DataError;
+use matrix::{Matrix, compose, scaling, translation};
+use page::{Along, Viewport, content, page_size};
+use roxmltree::{Document, Node, ParsingOptions};
+use simplecss::StyleSheet;
+use style::{Ink, Style};
+
+/// Groups in groups, and elements that use others, are followed so deep.
+const DEEPEST: usize = 200;
+
+/// As many elements are drawn at most: those that use each other can ask for any number.
+const MOST_ELEMENTS: usize = 1_000_000;
+
+const EXPORT: &str = "export it again as plain SVG";
+
+/// Reads the shapes of a drawing. Its y axis points upwards, from the lower edge of the page.
+pub(super) fn parse(bytes: &[u8], options: &DrawingOptions) -> Result<Drawing, DataError> {
+    let text = std::str::from_utf8(bytes)
+        .map_err(|e| DataError::new(format!("byte {} is not UTF-8", e.valid_up_to()), EXPORT))?;
+    let parsing = ParsingOptions {
+        allow_dtd: true,
+        nodes_limit: 1 << 24,
+        ..ParsingOptions::default()
+    };
+    let document = Document::parse_with_options(text, parsing)
+        .map_err(|e| DataError::new(format!("it is no XML: {e}"), EXPORT))?;
+    let root = document.root_element();
+    if root.tag_name().name() != "svg" {
+        let found = root.tag_name().name();
+        let message = format!("its root is <{found}>, and not <svg>");
+        return Err(DataError::new(message, EXPORT));
+    }
+    let mut sheet = StyleSheet::new();
+    let styles = document
+        .descendants()
+        .filter(|n| n.tag_name().name() == "style");
+    for text in styles.flat_map(|n| n.children()).filter_map(|n| n.text()) {
+        sheet.parse_more(text);
+    }
+    let mut drawing = Drawing::default();
+    let (size, is_absolute) = page_size(root);
+    let (unit, size) = match options.unit {
+        // A unit of the drawing is known, whatever the page says.
+        Some(unit) => (unit, content(root, size).1.size),
+        None => (DrawingUnit::Pixel, size),
+    };
+    let (place, viewport) = content(root, size);
+    if options.unit.is_none() && !is_absolute {
+        drawing.assumed_unit = Some("1 px is 1/96 in");
+    }
+    let metres = unit.metres(options.scale);
+    let upright = compose(scaling(metres, -metres), translation(0.0, -size[1]));
+    let mut reader = Reader {
+        document: &document,
+        sheet,
+        drawing,
+        elements: 0,
+    };
+    let state = State {
+        matrix: compose(upright, place),
+        viewport,
+        style: Style::initial().of(root, &reader.sheet),
+        layers: Vec::new(),
+        depth: 0,
+    };
+    for child in root.children() {
+        reader.element(child, &state)?;
+    }
+    Ok(reader.drawing)
+}
+
+struct Reader<'a, 'input> {
+    document: &'a Document<'input>,
+    sheet: StyleSheet<'a>,
+    drawing: Drawing,
+    elements: usize,
+}
+
+/// What an element takes over from those that it is in.
+#[derive(Clone)]
+struct State {
+    matrix: Matrix,
+    viewport: Viewport,
+    style: Style,
+    /// The outermost first.
+    layers: Vec<String>,
+    depth: usize,
+}
+
+impl Reader<'_, '_> {
+    fn element(&mut self, node: Node<'_, '_>, around: &State) -> Result<(), DataError> {
+        if !node.is_element() {
+            return Ok(());
+        }
+        self.elements += 1;
+        if around.depth > DEEPEST || self.elements > MOST_ELEMENTS {
+            let message = "elements are nested or used too often";
+            return Err(DataError::new(message, EXPORT));
+        }
+        let name = node.tag_name().name();
+        let style = around.style.of(node, &self.sheet);
+        if !style.shown {
+            self.drawing.leave_out("hidden element");
+            return Ok(());
+        }
+        let mut state = State {
+            style,
+            depth: around.depth + 1,
+            ..around.clone()
+        };
+        if let Some(text) = node.attribute("transform") {
+            let Some(matrix) = matrix::parse(text) else {
+                let message = format!("line {}: {text:?} is no transform", self.line(node));
+                return Err(DataError::new(message, EXPORT));
+            };
+            state.matrix = compose(state.matrix, matrix);
+        }
+        state.layers.extend(names(node));
+        match name {
+            "g" | "a" => self.children(node, &state),
+            "switch" => match node.children().find(Node::is_element) {
+                Some(first) => self.element(first, &state),
+                None => Ok(()),
+            },
+            "svg" => {
+                let get = |name, along| state.viewport.attribute(node, name, along);
+                let [w, h] = state.viewport.size;
+                let size = [
+                    get("width", Along::X).unwrap_or(w),
+                    get("height", Along::Y).unwrap_or(h),
+                ];
+                let at = [get("x", Along::X), get("y", Along::Y)].map(|c| c.unwrap_or(0.0));
+                let (place, viewport) = content(node, size);
+                let place = compose(translation(at[0], at[1]), place);
+                state.matrix = compose(state.matrix, place);
+                state.viewport = viewport;
+                self.children(node, &state)
+            }
+            "use" => self.used(node, state),
+            "text" => {
+                self.drawing.leave_out("text");
+                Ok(())
+            }
+            "image" | "foreignObject" => {
+                self.drawing.leave_out("image");
+                Ok(())
+            }
+            _ => {
+                if let Some(paths) = shapes::paths(node, state.viewport) {
+                    self.shape(node, paths, &state);
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn children(&mut self, node: Node<'_, '_>, state: &State) -> Result<(), DataError> {
+        node.children()
+            .try_for_each(|child| self.element(child, state))
+    }
+
+    /// Draws the element that another one uses.
+    fn used(&mut self, node: Node<'_, '_>, mut state: State) -> Result<(), DataError> {
+        let link = node.attributes().find(|a| a.name() == "href");
+        let id = link.and_then(|a| a.value().strip_prefix('#'));
+        let document = self.document;
+        let target = id.and_then(|id| {
+            document
+                .descendants()
+                .find(|n| n.attribute("id") == Some(id))
+        });
+        let Some(target) = target else {
+            self.drawing.leave_out("use of what is not in the file");
+            return Ok(());
+        };
+        let get = |name, along| state.viewport.attribute(node, name, along).unwrap_or(0.0);
+        let [x, y] = [get("x", Along::X), get("y", Along::Y)];
+        state.matrix = compose(state.matrix, translation(x, y));
+        match target.tag_name().name() {
+            "symbol" => self.children(target, &state),
+            _ => self.element(target, &state),
+        }
+    }
+
+    fn shape(
+        &mut self,
+        node: Node<'_, '_>,
+        paths: Vec<Vec<isosheet_mesh::plane::PlaneCurve>>,
+        state: &State,
+    ) {
+        // What bounds a coloured area is a line too.
+        let ink = match state.style.stroke {
+            Ink::Colour(colour) => Some(colour),
+            Ink::Nothing => match state.style.fill {
+                Ink::Colour(colour) if node.tag_name().name() != "line" => Some(colour),
+                _ => None,
+            },
+        };
+        let Some(colour) = ink.filter(|_| state.style.visible && state.style.opacity() > 0.0)
+        else {
+            self.drawing.leave_out("invisible shape");
+            return;
+        };
+        if node.attribute("clip-path").is_some() {
+            self.drawing.leave_out("clipping of a shape");
+        }
+        for path in paths {
+            let curves = path.iter().map(|c| c.transformed(state.matrix));
+            self.drawing.push(pen(colour, state), curves);
+        }
+    }
+
+    fn line(&self, node: Node<'_, '_>) -> u32 {
+        self.document.text_pos_at(node.range().start).row
+    }
+}
+
+fn pen(colour: Colour, state: &State) -> Pen {
+    Pen {
+        colour,
+        dashed: state.style.dashed,
+        opacity: state.style.opacity(),
+        layers: state.layers.iter().rev().cloned().collect(),
+    }
+}
+
+/// The names of an element as drawing programs write them: Inkscape has labels of layers, Illustrator has
+/// identifiers, in which other characters than letters are written as `_x20_`, and names.
+fn names(node: Node<'_, '_>) -> Vec<String> {
+    let labels = node
+        .attributes()
+        .filter(|a| a.name() == "label" || a.name() == "data-name");
+    let mut names: Vec<String> = labels.map(|a| a.value().to_owned()).collect();
+    if names.is_empty() {
+        let others = ["class", "id"]
+            .into_iter()
+            .filter_map(|name| node.attribute(name));
+        names.extend(others.map(|id| id.replace("_x20_", " ")));
+    }
+    names
+}
