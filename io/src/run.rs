@@ -78,6 +78,8 @@ pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
+#[cfg(feature = "cli")]
+pub(crate) use trial::FoldTrial;
 pub use vibration::Vibration;
 #[cfg(feature = "picture")]
 pub use viewpoint::Viewpoint;

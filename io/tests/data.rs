@@ -192,7 +192,7 @@ use Expected::{Read, Refused};
 use Surface::{No, Sheet as Chi};
 
 #[rustfmt::skip]
-const FILES: [(&str, Expected); 79] = [
+const FILES: [(&str, Expected); 83] = [
     ("fold/bad_twist.fold", Read(16, 18, 9, Chi(1))),
     ("fold/bird_base_oriedita.fold", Read(9, 8, 4, Chi(1))),
     ("fold/bird_base_x4_tri.fold", Read(33, 56, 0, Chi(1))),

@@ -5,7 +5,7 @@ use super::interrupt;
 use super::message::{print_progress, print_result};
 use super::simulate::{How, default_folder};
 use crate::format::read_mesh_with;
-use crate::run::{FoldVerdict, Recording, simulate, simulate_anew};
+use crate::run::{FoldTrial, FoldVerdict, Recording, simulate, simulate_anew};
 use crate::scene::{FoldResidual, FoldScene, Panels, SceneFile, Touch, bounds};
 use crate::{MeshOptions, write_atomically};
 use clap::Args;
@@ -168,10 +168,18 @@ impl Fold {
 
     /// The scene whose panels close best, and how far rigid ones do; `None` if these do not reach an end.
     fn chosen(&self, rigid: FoldScene) -> Result<(FoldScene, Option<FoldResidual>), Failure> {
-        let residual = self.tried(&rigid)?;
-        let closes = |r: &FoldResidual, rms: f64| r.rms <= rms && r.largest <= 5.0 * rms;
-        let mut best = (residual, rigid.clone());
-        if residual.is_some_and(|r| closes(&r, CLOSED)) {
+        let first = self.tried(&rigid)?;
+        let residual = first.map(|trial| trial.residual);
+        let closes = |trial: &FoldTrial, rms: f64| {
+            let FoldTrial {
+                residual: r,
+                strain,
+            } = *trial;
+            let is_of_paper = 100.0 * strain <= FoldVerdict::STRETCHES;
+            is_of_paper && r.rms <= rms && r.largest <= 5.0 * rms
+        };
+        let mut best = (first, rigid.clone());
+        if first.is_some_and(|trial| closes(&trial, CLOSED)) {
             return Ok((rigid, residual));
         }
         let faces = parsed(&rigid, &self.scene_path())?.build()?;
@@ -188,11 +196,15 @@ impl Fold {
                 ..rigid.clone()
             };
             let found = self.tried(&scene)?;
-            let rms = |r: &Option<FoldResidual>| r.map_or(f64::INFINITY, |r| r.rms);
-            if rms(&found) < rms(&best.0) || best.1.panels == Panels::Rigid && best.0.is_none() {
+            let rank = |trial: Option<FoldTrial>| match trial {
+                Some(trial) => (!closes(&trial, WELL), trial.residual.rms),
+                None => (true, f64::INFINITY),
+            };
+            let is_first = best.1.panels == Panels::Rigid && best.0.is_none();
+            if is_first || rank(found) < rank(best.0) {
                 best = (found, scene);
             }
-            if best.0.is_some_and(|r| closes(&r, WELL)) {
+            if best.0.is_some_and(|trial| closes(&trial, WELL)) {
                 break;
             }
         }
@@ -200,7 +212,7 @@ impl Fold {
     }
 
     /// How far the creases of a scene are from their angles in the end, without contact.
-    fn tried(&self, scene: &FoldScene) -> Result<Option<FoldResidual>, Failure> {
+    fn tried(&self, scene: &FoldScene) -> Result<Option<FoldTrial>, Failure> {
         let alone = FoldScene {
             touch: Touch::Passes,
             ..scene.clone()
@@ -220,9 +232,10 @@ impl Fold {
             return Err(Failure::new(Code::Interrupted, "stopped by Ctrl-C"));
         }
         match found {
-            Some(r) => print_progress(format_args!(
-                "{what}: creases end {:.1} degrees rms from their angles",
-                r.rms
+            Some(FoldTrial { residual, strain }) => print_progress(format_args!(
+                "{what}: creases end {:.1} degrees rms from their angles, with strains of {:.1} % at most",
+                residual.rms,
+                100.0 * strain
             )),
             None => print_progress(format_args!("{what}: no end is reached")),
         }

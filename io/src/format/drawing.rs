@@ -10,7 +10,7 @@ mod report;
 mod rules;
 mod selector;
 mod sheet;
-mod svg;
+pub(in crate::format) mod svg;
 mod unit;
 
 pub use class::LineClass;

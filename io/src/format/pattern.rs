@@ -7,10 +7,7 @@ pub(super) mod cp;
 mod faces;
 pub(super) mod opx;
 mod planar;
-#[cfg(feature = "svg")]
 pub(super) mod svg;
-#[cfg(feature = "svg")]
-mod svg_lines;
 #[cfg(test)]
 mod tests;
 

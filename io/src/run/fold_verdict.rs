@@ -120,6 +120,10 @@ impl FoldVerdict {
         };
         let FoldResidual { rms, largest, .. } = self.residual;
         let creases = match (self.open, self.furthest) {
+            (0, _) | (_, None) if end > Self::STRETCHES => {
+                "every crease closes, but only with stretched panels, which is no shape of paper"
+                    .to_owned()
+            }
             (0, _) | (_, None) => "every crease closes".to_owned(),
             (open, Some(([a, b], [x, y]))) => format!(
                 "{} open by more than {} degrees, most by {largest:.0} between the vertices {a} and {b} at ({x:.3}, \

@@ -7,6 +7,15 @@ use std::ops::ControlFlow;
 /// Most factorisations of a trial times vertices: about a second for each hundred thousand.
 const MOST_WORK: usize = 1_000_000;
 
+/// Where a scene that folds a pattern ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FoldTrial {
+    /// How far creases are from their angles.
+    pub(crate) residual: FoldResidual,
+    /// The largest strain of an edge.
+    pub(crate) strain: f64,
+}
+
 impl SceneFile {
     /// How far the creases are from the angles that the scene folds to at its end. `None` if it cannot start, a step fails,
     /// or the end takes too much work; the clock has no part in that.
@@ -16,7 +25,7 @@ impl SceneFile {
     pub(crate) fn folds_to(
         &self,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Option<FoldResidual>, SceneError> {
+    ) -> Result<Option<FoldTrial>, SceneError> {
         let setup = self.build()?;
         let targets = setup.targets.folding.clone();
         let Ok(mut simulation) = setup.start() else {
@@ -37,6 +46,10 @@ impl SceneFile {
         }
         let topology = simulation.model().topology();
         let x = &simulation.state().x;
-        Ok(targets.map(|targets| targets.residual(topology, x)))
+        let strain = simulation.model().max_strain(x);
+        Ok(targets.map(|targets| FoldTrial {
+            residual: targets.residual(topology, x),
+            strain,
+        }))
     }
 }

@@ -47,7 +47,7 @@ pub fn parse_drawing(
     options: &DrawingOptions,
 ) -> Result<Drawing, FileError> {
     let drawing = match DrawingFormat::of(path) {
-        Some(DrawingFormat::Svg) => svg::parse(bytes, options),
+        Some(DrawingFormat::Svg) => svg::parse(bytes, options.unit, options.scale),
         Some(DrawingFormat::Dxf) => dxf::parse(bytes, options),
         None => {
             let message = "it is no drawing by its name";

@@ -11,7 +11,6 @@ mod style;
 
 use super::colour::Colour;
 use super::lines::{Drawing, Pen};
-use super::options::DrawingOptions;
 use super::unit::DrawingUnit;
 use crate::format::DataError;
 use matrix::{Matrix, compose, scaling, translation};
@@ -28,8 +27,9 @@ const MOST_ELEMENTS: usize = 1_000_000;
 
 const EXPORT: &str = "export it again as plain SVG";
 
-/// Reads the shapes of a drawing. Its y axis points upwards, from the lower edge of the page.
-pub(super) fn parse(bytes: &[u8], options: &DrawingOptions) -> Result<Drawing, DataError> {
+/// Reads the shapes of a drawing, `scale` times as large, by the unit of the file unless another is given. Its y axis
+/// points upwards, from the lower edge of the page.
+pub(in crate::format) fn parse(bytes: &[u8], unit: Option<DrawingUnit>, scale: f64) -> Result<Drawing, DataError> {
     let text = std::str::from_utf8(bytes)
         .map_err(|e| DataError::new(format!("byte {} is not UTF-8", e.valid_up_to()), EXPORT))?;
     let parsing = ParsingOptions {
@@ -54,16 +54,16 @@ pub(super) fn parse(bytes: &[u8], options: &DrawingOptions) -> Result<Drawing, D
     }
     let mut drawing = Drawing::default();
     let (size, is_absolute) = page_size(root);
-    let (unit, size) = match options.unit {
+    let (length, size) = match unit {
         // A unit of the drawing is known, whatever the page says.
         Some(unit) => (unit, content(root, size).1.size),
         None => (DrawingUnit::Pixel, size),
     };
     let (place, viewport) = content(root, size);
-    if options.unit.is_none() && !is_absolute {
+    if unit.is_none() && !is_absolute {
         drawing.assumed_unit = Some("1 px is 1/96 in");
     }
-    let metres = unit.metres(options.scale);
+    let metres = length.metres(scale);
     let upright = compose(scaling(metres, -metres), translation(0.0, -size[1]));
     let mut reader = Reader {
         document: &document,

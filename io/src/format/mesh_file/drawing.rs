@@ -34,14 +34,7 @@ fn segments(bytes: &[u8], format: MeshFormat) -> Result<Vec<Segment>, Located> {
     let plain = |e: DataError| (None, e.into());
     match format {
         MeshFormat::Opx => pattern::opx::parse(bytes).map_err(plain),
-        #[cfg(feature = "svg")]
         MeshFormat::Svg => pattern::svg::parse(bytes).map_err(plain),
-        #[cfg(not(feature = "svg"))]
-        MeshFormat::Svg => {
-            let message = "this program was built without the reader of SVG files";
-            let remedy = "build it with the feature `svg`, or convert the drawing to a FOLD file";
-            Err(plain(DataError::new(message, remedy)))
-        }
         _ => pattern::cp::parse(bytes).map_err(|(line, e)| (Some(Location::Line(line)), e.into())),
     }
 }
