@@ -13,7 +13,7 @@ use toml::{Table, Value};
 const MOST_LEVELS: usize = 64;
 
 /// The values of further classes: those of meshes, or none.
-pub(crate) type Further = fn(&Bound<'_, PyAny>) -> Option<Value>;
+pub(crate) type Further = fn(&Bound<'_, PyAny>) -> PyResult<Option<Value>>;
 
 /// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries,
 /// numpy arrays and numbers, and what `further` knows. Entries of dictionaries that are `None` are left out. It is
@@ -24,9 +24,6 @@ fn nested(value: &Bound<'_, PyAny>, further: Further, level: usize) -> PyResult<
         return Err(PyValueError::new_err(format!(
             "the value contains itself, or is nested deeper than {MOST_LEVELS} levels"
         )));
-    }
-    if let Some(value) = further(value) {
-        return Ok(value);
     }
     if value.is_instance_of::<PyBool>() {
         return Ok(Value::Boolean(value.extract()?));
@@ -52,6 +49,9 @@ fn nested(value: &Bound<'_, PyAny>, further: Further, level: usize) -> PyResult<
         let entries = value.try_iter()?;
         let entries = entries.map(|entry| nested(&entry?, further, level + 1));
         return Ok(Value::Array(entries.collect::<PyResult<_>>()?));
+    }
+    if let Some(value) = further(value)? {
+        return Ok(value);
     }
     // Arrays and numbers of numpy, and of what else there is.
     if let Some(plain) = value.getattr_opt(intern!(py, "tolist"))? {
