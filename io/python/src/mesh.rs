@@ -19,8 +19,8 @@ type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 
 /// A mesh of triangles, whose edges have their lengths here as rest lengths.
 ///
-///     >>> isosheet.Mesh([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]], [[0, 1, 2]]).area
-///     0.005
+///     >>> isosheet.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).area
+///     0.5
 ///
 /// vertices: array of shape (V, 3), metres.
 /// faces: array of whole numbers of shape (F, 3), the corners of each triangle, all counter-clockwise as seen

@@ -16,8 +16,8 @@ use std::sync::{Mutex, PoisonError};
 ///     >>> with simulation.record("hanging-run") as recorder:
 ///     ...     for _ in range(10):
 ///     ...         report = simulation.step()
-///     >>> recorder.run.time.size
-///     6
+///     >>> recorder.run.summary["steps"]
+///     10
 #[pyclass(frozen, module = "isosheet")]
 pub(crate) struct Recorder {
     simulation: Py<Simulation>,

@@ -38,7 +38,7 @@ def test_every_second_frame_is_saved(run, tmp_path):
     run.save(tmp_path / "half.npz", every=2)
     half = np.load(tmp_path / "half.npz")
     assert np.array_equal(half["t"], run.time[::2]) and np.array_equal(half["x"], run.x[::2])
-    with pytest.raises(isosheet.Error, match="extension"):
+    with pytest.raises(isosheet.Error, match="no format"):
         run.save(tmp_path / "run.xyz")
     with pytest.raises(isosheet.Error):
         run.save(tmp_path / "none.npz", every=0)

@@ -33,7 +33,7 @@ def test_stubs_have_the_names_of_the_module():
         if issubclass(kind, Exception) and kind is not isosheet.Error:
             found = set()
         assert found == set(members), name
-        for member in public(vars(kind)) - {"__new__", "key", "time", "advice", "problems"}:
+        for member in public(vars(kind)) - {*NAMED, "key", "time", "advice", "problems"}:
             assert getattr(kind, member).__doc__, f"{name}.{member} has no docstring"
         assert kind.__doc__, name
 
