@@ -112,7 +112,8 @@ impl Scene {
 
     /// The scene of a dictionary, which has the keys of a scene file; `version` may be left out.
     ///
-    /// Values are numbers, texts, lists, dictionaries, numpy arrays, paths and meshes. Paths are relative to
+    /// Values are numbers, texts, lists, dictionaries, objects of dataclasses, numpy arrays, paths and meshes; what is
+    /// None is left out. Paths are relative to
     /// `folder`.
     #[staticmethod]
     #[pyo3(signature = (scene, folder = PathBuf::new()))]

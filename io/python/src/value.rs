@@ -15,8 +15,8 @@ const MOST_LEVELS: usize = 64;
 /// The values of further classes: those of meshes, or none.
 pub(crate) type Further = fn(&Bound<'_, PyAny>) -> PyResult<Option<Value>>;
 
-/// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries,
-/// numpy arrays and numbers, and what `further` knows. Entries of dictionaries that are `None` are left out. It is
+/// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries, objects of
+/// dataclasses, numpy arrays and numbers, and what `further` knows. Entries of dictionaries that are `None` are left out. It is
 /// so many levels deep in others.
 fn nested(value: &Bound<'_, PyAny>, further: Further, level: usize) -> PyResult<Value> {
     let py = value.py();
@@ -44,6 +44,14 @@ fn nested(value: &Bound<'_, PyAny>, further: Further, level: usize) -> PyResult<
     }
     if let Ok(dict) = value.cast::<PyDict>() {
         return Ok(Value::Table(nested_table(dict, further, level)?));
+    }
+    if let Some(fields) = value.getattr_opt(intern!(py, "__dataclass_fields__"))? {
+        let dict = PyDict::new(py);
+        for name in fields.try_iter()? {
+            let name = name?.cast_into::<PyString>()?;
+            dict.set_item(&name, value.getattr(&name)?)?;
+        }
+        return Ok(Value::Table(nested_table(&dict, further, level)?));
     }
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         let entries = value.try_iter()?;

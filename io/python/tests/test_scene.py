@@ -1,5 +1,7 @@
 """Scenes, meshes, materials and errors."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -211,6 +213,25 @@ def test_an_obstacle_of_arrays_is_that_of_the_formula():
         weight = simulation.masses.sum() * 9.81
         assert simulation.obstacle_forces[0] == pytest.approx([0, 0, -weight], abs=1e-6 * weight)
     assert found[0] == pytest.approx(found[1], abs=1e-5)
+
+
+@dataclasses.dataclass
+class Ball:
+    radius: float
+
+
+@dataclasses.dataclass
+class Obstacle:
+    shape: dict
+    friction: float = 0.5
+    name: object = None
+
+
+def test_objects_of_dataclasses_are_tables():
+    scene = isosheet.Scene(**TRIANGLE, obstacle=[Obstacle({"sphere": Ball(0.1)})])
+    assert scene["obstacle[0].shape.sphere.radius"] == 0.1 and scene["obstacle[0].friction"] == 0.5
+    with pytest.raises(isosheet.SceneError, match="fricton"):
+        isosheet.Scene(**TRIANGLE, obstacle=[{"shape": {"sphere": Ball(0.1)}, "fricton": 1}])
 
 
 def test_a_scene_is_made_of_keyword_arguments():
