@@ -1,5 +1,6 @@
 //! Recordings of simulations whose steps a program takes.
 
+use isosheet_io::LoadKind;
 use isosheet_io::mesh::VertexId;
 use isosheet_io::run::{
     EndReason, ExistingRun, Recorder, RecorderOptions, Recording, RecordingEnd, RunError, simulate,
@@ -80,6 +81,21 @@ fn a_recording_has_the_files_of_a_run() {
         summary.wall_time = recording.summary.as_ref().unwrap().wall_time;
         assert_eq!(recording.summary, Some(summary));
     }
+}
+
+#[test]
+fn the_forces_at_the_end_are_those_of_the_last_step() {
+    // A support has been released before that step.
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("run");
+    simulate(&scene(&[]), &run, &mut |_: &_| ControlFlow::Continue(())).unwrap();
+    let recording = Recording::read(&run).unwrap();
+    let last = recording.history.last().unwrap().t;
+    let loads = recording.loads.iter();
+    let loads = loads.filter(|load| load.t == last && load.on == LoadKind::Support);
+    let loads: Vec<[f64; 3]> = loads.map(|load| load.force).collect();
+    assert_eq!(recording.summary.unwrap().ending.supports, loads);
+    assert_eq!(loads[1], [0.0; 3]);
 }
 
 #[test]
