@@ -23,6 +23,8 @@
 //! killed, at most the steps since the last checkpoint are lost
 //! ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
 //!
+//! A [`Recorder`] writes the same folder of a simulation whose steps a program takes.
+//!
 //! A [`Sweep`] makes many runs of one scene, and [`Collection`] makes one table of their summaries.
 //! With the feature `picture` a `Gallery` is one page of many runs.
 
@@ -30,6 +32,7 @@ mod checkpoint;
 mod collect;
 mod commit;
 mod constraints;
+mod control;
 mod elastic;
 mod energy;
 mod error;
@@ -45,10 +48,13 @@ mod frames;
 #[cfg(feature = "picture")]
 mod gallery;
 mod page;
+mod recorder;
 mod recording;
 mod replay;
+mod row;
 mod spool;
 mod stepping;
+mod steps;
 mod summary;
 mod sweep;
 mod trial;
@@ -57,11 +63,13 @@ mod vibration;
 mod viewpoint;
 mod warning;
 mod watch;
+mod writer;
 
 pub use collect::Collection;
 pub use commit::note_commit;
 #[cfg(feature = "cli")]
 pub(crate) use constraints::HoldingBody;
+pub use control::Intervention;
 pub use elastic::{Bend, ElasticSummary};
 pub use energy::EnergySummary;
 pub use error::RunError;
@@ -75,6 +83,7 @@ pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use page::write_page;
+pub use recorder::{ExistingRun, RecordedStepError, Recorder, RecorderOptions, RecordingEnd};
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
@@ -100,7 +109,9 @@ use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use stepping::{Plan, Rows, Stepping, step_count};
+use stepping::{Plan, Stepping};
+use steps::step_count;
+use writer::{Rows, RunWriter};
 
 /// How a call of [`simulate`] ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -270,7 +281,7 @@ fn simulate_in(
     };
     let mut stepping = Stepping::begin(&plan, &open, &mut kept, under_way, saved, clock)?;
     watch.begin(&Beginning {
-        steps: stepping.progress.steps,
+        steps: stepping.writer.progress.steps,
         of: step_count(file.scene()),
         modelled: plan.facts.modelled.clone(),
         vertices: plan.facts.sheet.topology().vertex_count(),
@@ -288,9 +299,9 @@ fn simulate_in(
     } else {
         advanced?;
     }
-    let Stepping {
+    let RunWriter {
         progress, tables, ..
-    } = stepping;
+    } = stepping.writer;
     let recorded = match (progress.ending.is_some(), tables) {
         (true, Some(tables)) => {
             let setup = file.build_with(&mut kept)?;
@@ -309,13 +320,13 @@ fn advance(
 ) -> Result<(), RunError> {
     // More seconds than a duration can hold are as good as never.
     let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
-    while stepping.progress.ending.is_none() {
+    while stepping.writer.progress.ending.is_none() {
         let Some(tick) = stepping.step(watch)? else {
             break;
         };
         let go_on = watch.step(&tick);
-        let due = stepping.clock.elapsed() >= interval;
-        if due || go_on.is_break() || stepping.progress.ending.is_some() {
+        let due = stepping.writer.clock.elapsed() >= interval;
+        if due || go_on.is_break() || stepping.writer.progress.ending.is_some() {
             stepping.save()?;
         }
         if go_on.is_break() {
@@ -376,6 +387,9 @@ fn check_origin(folder: &RunFolder, progress: &RunProgress, hash: &str) -> Resul
     if progress.scene != hash {
         return Err(RunError::OtherScene { folder: root });
     }
+    if !progress.control.is_empty() {
+        return Err(RunError::Controlled { folder: root });
+    }
     if progress.version != env!("CARGO_PKG_VERSION") {
         return Err(RunError::OtherVersion {
             folder: root,
@@ -428,6 +442,7 @@ fn finish(
         factorisations: progress.factorisations,
         rejected: progress.rejected,
         elastic: progress.elastic,
+        control: progress.control.clone(),
         measures: progress.measured.clone(),
         ending,
     };

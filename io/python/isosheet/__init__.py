@@ -15,6 +15,7 @@ kilograms and newtons, angles in scenes are in degrees.
 from ._isosheet import (
     Error,
     Mesh,
+    Recorder,
     Run,
     RunFailed,
     Scene,
@@ -29,6 +30,7 @@ from ._isosheet import (
 __all__ = [
     "Error",
     "Mesh",
+    "Recorder",
     "Run",
     "RunFailed",
     "Scene",

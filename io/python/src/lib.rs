@@ -4,8 +4,10 @@
 //! |---|---|
 //! | `scene.rs`, `value.rs` | scenes, and Python's values as those of TOML |
 //! | `simulation.rs`, `report.rs` | simulations and what a step reports |
-//! | `mesh.rs`, `materials.rs` | meshes from arrays, generators and files; the catalogue |
-//! | `run.rs` | what a run has written |
+//! | `mesh.rs`, `foreign.rs` | meshes from arrays, generators, files and other libraries |
+//! | `materials.rs` | the catalogue |
+//! | `recorder.rs` | recordings of simulations |
+//! | `run.rs`, `picture.rs` | what a run has written, and files of it |
 //! | `error.rs`, `arrays.rs` | exceptions with advice, numpy arrays |
 //!
 //! Arrays are copies: the memory of a simulation changes with each step. Whatever takes long lets other
@@ -15,9 +17,12 @@ mod arrays;
 #[path = "../../src/bin/isosheet/commit.rs"]
 mod commit;
 mod error;
+mod foreign;
 mod materials;
 mod mesh;
+mod picture;
 mod recorded;
+mod recorder;
 mod report;
 mod run;
 mod scene;
@@ -55,6 +60,7 @@ fn _isosheet(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<mesh::Mesh>()?;
     module.add_class::<report::StepReport>()?;
     module.add_class::<recorded::Run>()?;
+    module.add_class::<recorder::Recorder>()?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<simulation::Simulation>()?;
     module.add_function(wrap_pyfunction!(command, module)?)?;

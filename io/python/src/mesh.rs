@@ -2,12 +2,13 @@
 
 use crate::arrays::{array, refuse_array, rows, vectors};
 use crate::error::{of_scene, plain};
+use crate::foreign;
 use crate::value::table;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene;
 use isosheet_io::write_obj;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 use std::path::{Path, PathBuf};
@@ -18,11 +19,21 @@ type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 
 /// A mesh of triangles, whose edges have their lengths here as rest lengths.
 ///
+///     >>> isosheet.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).area
+///     0.5
+///
 /// vertices: array of shape (V, 3), metres.
 /// faces: array of whole numbers of shape (F, 3), the corners of each triangle, all counter-clockwise as seen
 ///     from the same side.
 ///
-/// A mesh takes the place of a mesh in a scene: ``Scene.from_dict({"sheet": {"mesh": mesh}, ...})``. Raises
+/// A mesh of trimesh, meshio or PyVista may be given alone: ``Mesh(trimesh.load("cloth.ply"))``; it is known by its
+/// attributes. What these libraries make of one:
+///
+///     trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+///     meshio.Mesh(mesh.vertices, [("triangle", mesh.faces)])
+///     pyvista.PolyData.from_regular_faces(mesh.vertices, mesh.faces)
+///
+/// A mesh, also one of these libraries, takes the place of a mesh in a scene: ``Scene.from_dict({"sheet": {"mesh": mesh}, ...})``. Raises
 /// Error for what is no oriented surface.
 #[pyclass(frozen, module = "isosheet")]
 pub(crate) struct Mesh {
@@ -31,9 +42,17 @@ pub(crate) struct Mesh {
 
 impl Mesh {
     /// A mesh of Python as a scene has it.
-    pub(crate) fn value_of(object: &Bound<'_, PyAny>) -> Option<Value> {
-        let mesh = object.cast::<Self>().ok()?;
-        Some(mesh.get().as_value())
+    pub(crate) fn value_of(object: &Bound<'_, PyAny>) -> PyResult<Option<Value>> {
+        if let Ok(mesh) = object.cast::<Self>() {
+            return Ok(Some(mesh.get().as_value()));
+        }
+        match foreign::arrays(object)? {
+            Some([vertices, faces]) => {
+                let mesh = Self::of_arrays(&vertices, &faces)?;
+                Ok(Some(mesh.as_value()))
+            }
+            None => Ok(None),
+        }
     }
 
     /// The mesh as a scene has it.
@@ -58,21 +77,8 @@ impl Mesh {
         )]))
     }
 
-    fn of(py: Python<'_>, mesh: &scene::Mesh) -> PyResult<Self> {
-        let sheet = py.detach(|| mesh.sheet(Path::new("")));
-        let sheet = sheet.map_err(|e| of_scene(py, &e))?;
-        Ok(Self { sheet })
-    }
-}
-
-#[pymethods]
-impl Mesh {
-    #[new]
-    fn new(
-        py: Python<'_>,
-        vertices: &Bound<'_, PyAny>,
-        faces: &Bound<'_, PyAny>,
-    ) -> PyResult<Self> {
+    fn of_arrays(vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = vertices.py();
         let numpy = py.import("numpy")?;
         refuse_array(vertices)?;
         refuse_array(faces)?;
@@ -104,6 +110,28 @@ impl Mesh {
         Ok(Self { sheet })
     }
 
+    fn of(py: Python<'_>, mesh: &scene::Mesh) -> PyResult<Self> {
+        let sheet = py.detach(|| mesh.sheet(Path::new("")));
+        let sheet = sheet.map_err(|e| of_scene(py, &e))?;
+        Ok(Self { sheet })
+    }
+}
+
+#[pymethods]
+impl Mesh {
+    #[new]
+    #[pyo3(signature = (vertices, faces = None))]
+    fn new(vertices: &Bound<'_, PyAny>, faces: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        if let Some(faces) = faces {
+            return Self::of_arrays(vertices, faces);
+        }
+        let Some([vertices, faces]) = foreign::arrays(vertices)? else {
+            let message = "give vertices and faces, or a mesh of trimesh, meshio or PyVista";
+            return Err(PyTypeError::new_err(message));
+        };
+        Self::of_arrays(&vertices, &faces)
+    }
+
     /// A mesh of a generator of scenes: ``Mesh.generate("square", side=0.2, level=3)``.
     ///
     /// Names and parameters are those of ``sheet.mesh`` in scenes. Raises `SceneError` for wrong ones.
@@ -115,7 +143,7 @@ impl Mesh {
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let parameters =
-            parameters.map_or_else(|| Ok(Table::new()), |given| table(given, |_| None))?;
+            parameters.map_or_else(|| Ok(Table::new()), |given| table(given, |_| Ok(None)))?;
         let value = Table::from_iter([(name.to_owned(), Value::Table(parameters))]);
         let mesh = value.try_into();
         let mesh: scene::Mesh =

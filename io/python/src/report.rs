@@ -40,6 +40,10 @@ macro_rules! values_of {
 
 values_of! {
     /// What a step reports; energies in joules, lengths in metres, times in seconds.
+    ///
+    ///     >>> report = isosheet.Simulation(isosheet.Scene.new("hanging")).step()
+    ///     >>> report.total == report.kinetic + report.potential
+    ///     True
     StepReport of report: dynamics::StepReport {
         /// Time at the end of the step.
         time: f64 = report.t;

@@ -2,16 +2,17 @@
 
 use crate::arrays::{array, rows, slices};
 use crate::error::{of_run, plain};
+use crate::picture::{Kind, Shown, framed, options};
 use crate::recorded::Run;
 use crate::scene::Scene;
 use crate::value::to_python;
 use isosheet_io::run::{self, Recording};
 use isosheet_io::view::{PageOptions, TimeSeries};
-use isosheet_io::{HistoryRow, LoadKind, LoadRow};
+use isosheet_io::{HistoryRow, LoadKind, LoadRow, SeriesOptions, write_series};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toml::Value;
@@ -20,6 +21,13 @@ use toml::Value;
 type Column<T> = (&'static str, fn(&HistoryRow) -> T);
 
 impl Run {
+    /// What a folder has.
+    pub(crate) fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        let recording = py.detach(|| Recording::read(&folder));
+        let recording = recording.map_err(|e| of_run(py, &e))?;
+        Ok(Self { folder, recording })
+    }
+
     /// The values of all frames one after the other, and how many each frame has; `None` if frames have none.
     fn frames<'a>(
         &'a self,
@@ -71,9 +79,7 @@ impl Run {
 impl Run {
     #[new]
     fn new(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        let recording = py.detach(|| Recording::read(&folder));
-        let recording = recording.map_err(|e| of_run(py, &e))?;
-        Ok(Self { folder, recording })
+        Self::read(py, folder)
     }
 
     /// The folder.
@@ -282,12 +288,104 @@ impl Run {
 
     /// The 3D page in a frame of a notebook.
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(framed(&self.html(py, PageOptions::default().budget)?))
+    }
+
+    /// Opens the 3D page in the browser; returns its file, which is a temporary one.
+    fn show<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let page = self.html(py, PageOptions::default().budget)?;
-        let page = page.replace('&', "&amp;").replace('"', "&quot;");
-        Ok(format!(
-            "<iframe srcdoc=\"{page}\" sandbox=\"allow-scripts\" \
-             style=\"width: 100%; height: 640px; border: 0\"></iframe>"
-        ))
+        py.import("isosheet._show")?.call_method1("show", (page,))
+    }
+
+    /// Writes frames as a file of another program, whose format the extension says: .usda, .glb, .pvd, .pc2, .obj,
+    /// .fold, .csv or .npz; see `isosheet convert`. A picture or a film is written by `picture` and `film`.
+    ///
+    /// every: every so many frames one.
+    ///
+    /// Returns the files, the one with that name last. ``run.save("cloth.usda")``
+    #[pyo3(signature = (path, *, every = 1))]
+    fn save(&self, py: Python<'_>, path: PathBuf, every: usize) -> PyResult<Vec<PathBuf>> {
+        let options = SeriesOptions {
+            every,
+            ..SeriesOptions::default()
+        };
+        let saved = py.detach(|| write_series(&path, &self.recording.series(&options)?));
+        saved.map(|saved| saved.files).map_err(|e| plain(py, &e))
+    }
+
+    /// Writes a shaded picture of a frame as a PNG file: ``run.picture("end.png")``.
+    ///
+    /// frame: its number, from the end where negative.
+    /// height: pixels; the width follows from what is seen.
+    /// view: where the viewer is, degrees counter-clockwise from the x axis and above the horizon.
+    #[pyo3(signature = (path, frame = -1, *, height = 480, view = None))]
+    fn picture(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        frame: isize,
+        height: usize,
+        view: Option<(f64, f64)>,
+    ) -> PyResult<()> {
+        let count = self.recording.trajectory.len();
+        let number = match frame < 0 {
+            true => count.checked_add_signed(frame),
+            false => Some(frame.unsigned_abs()),
+        };
+        let number = number.filter(|k| *k < count).ok_or_else(|| {
+            PyIndexError::new_err(format!("the run has {count} frames, and no frame {frame}"))
+        })?;
+        let shown = Shown {
+            recording: &self.recording,
+            frames: vec![number],
+            options: options(height, view),
+        };
+        shown.write(py, &path, Kind::Picture)
+    }
+
+    /// Writes shaded pictures of the frames as an animated PNG file in real time, which browsers and notebooks show:
+    /// ``run.film("cloth.apng")``.
+    ///
+    /// every: every so many frames one; height and view are those of `picture`.
+    #[pyo3(signature = (path, *, every = 1, height = 480, view = None))]
+    fn film(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        every: usize,
+        height: usize,
+        view: Option<(f64, f64)>,
+    ) -> PyResult<()> {
+        if every == 0 {
+            return Err(PyValueError::new_err(
+                "every is 0; give a number of frames from 1",
+            ));
+        }
+        let shown = Shown {
+            recording: &self.recording,
+            frames: (0..self.recording.trajectory.len())
+                .step_by(every)
+                .collect(),
+            options: options(height, view),
+        };
+        shown.write(py, &path, Kind::Film)
+    }
+
+    /// Plots quantities over time with matplotlib, which is no part of isosheet: ``run.plot("tip", "total")``.
+    ///
+    /// names: measures, columns of the history, or bodies of `loads`, of which the size of the force is shown; by
+    ///     default all measures, or the energies.
+    /// ax: the axes of matplotlib, by default the current ones.
+    ///
+    /// Returns the axes. Raises `KeyError` for a name that there is not.
+    #[pyo3(signature = (*names, ax = None))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        names: &Bound<'py, PyTuple>,
+        ax: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let show = slf.py().import("isosheet._show")?;
+        show.call_method1("plot", (slf, names, ax))
     }
 
     fn __repr__(&self) -> String {

@@ -16,8 +16,15 @@ use toml::Value;
 
 /// A scene: everything that decides how a simulation goes. The keys are those of scene files.
 ///
-/// Make one by `Scene.from_toml`, `Scene.from_dict` or Scene.new. A scene never changes; Scene.edit makes
-/// another one.
+/// The keys are given as keyword arguments, see `Scene.from_dict`. `Scene.from_toml` reads a file, `Scene.new` makes a
+/// scene to start from. A scene never changes; Scene.edit makes another one.
+///
+///     >>> scene = isosheet.Scene(
+///     ...     sheet={"mesh": {"square": {"side": 0.2, "level": 2}}, "density": 0.08},
+///     ...     forces={"gravity": [0, 0, -9.81]},
+///     ... )
+///     >>> scene["stop.time"]
+///     1.0
 #[pyclass(frozen, module = "isosheet")]
 pub(crate) struct Scene {
     file: SceneFile,
@@ -49,8 +56,37 @@ fn parse(text: String, folder: &Path) -> Result<SceneFile, SceneFileError> {
     SceneFile::parse(text, &folder.join("scene.toml"), &[])
 }
 
+impl Scene {
+    /// The scene of a dictionary.
+    fn of_keys(py: Python<'_>, scene: &Bound<'_, PyDict>, folder: &Path) -> PyResult<Self> {
+        let mut scene = table(scene, Mesh::value_of)?;
+        let version = Value::Integer(isosheet_io::scene::VERSION.into());
+        scene.entry("version").or_insert(version);
+        let file = parse(scene.to_string(), folder);
+        file.map(Self::of).map_err(|e| of_file(py, &e))
+    }
+}
+
 #[pymethods]
 impl Scene {
+    #[new]
+    #[pyo3(signature = (*, folder = PathBuf::new(), **keys))]
+    #[pyo3(
+        text_signature = "(*, sheet, folder='', crease=None, folding=None, glue=None, weight=None, support=None, \
+                             obstacle=None, body=None, forces=None, air=None, contact=None, measure=None, \
+                             method=None, stop=None, output=None, version=1)"
+    )]
+    fn with_keys(
+        py: Python<'_>,
+        folder: PathBuf,
+        keys: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        match keys {
+            Some(keys) => Self::of_keys(py, keys, &folder),
+            None => Self::of_keys(py, &PyDict::new(py), &folder),
+        }
+    }
+
     /// The scene of a file, or of a text.
     ///
     /// `text_or_path`: a path, or a text of TOML, which is told by its having more than one line.
@@ -76,16 +112,13 @@ impl Scene {
 
     /// The scene of a dictionary, which has the keys of a scene file; `version` may be left out.
     ///
-    /// Values are numbers, texts, lists, dictionaries, numpy arrays, paths and meshes. Paths are relative to
+    /// Values are numbers, texts, lists, dictionaries, objects of dataclasses, numpy arrays, paths and meshes; what is
+    /// None is left out. Paths are relative to
     /// `folder`.
     #[staticmethod]
     #[pyo3(signature = (scene, folder = PathBuf::new()))]
     fn from_dict(py: Python<'_>, scene: &Bound<'_, PyDict>, folder: PathBuf) -> PyResult<Self> {
-        let mut scene = table(scene, Mesh::value_of)?;
-        let version = Value::Integer(isosheet_io::scene::VERSION.into());
-        scene.entry("version").or_insert(version);
-        let file = parse(scene.to_string(), &folder);
-        file.map(Self::of).map_err(|e| of_file(py, &e))
+        Self::of_keys(py, scene, &folder)
     }
 
     /// A commented scene to start from, of a kind of `isosheet new`: "hanging", "clamp", "drape" and so on.

@@ -1,41 +1,112 @@
 //! Simulations.
 
 use crate::arrays::{array, rows, slices, vectors};
-use crate::error::{of_file, of_scene, of_step, plain};
+use crate::error::{of_file, of_run, of_scene, of_step, plain};
 use crate::mesh::{Mesh, edges};
+use crate::picture::framed;
+use crate::recorder;
 use crate::report::StepReport;
 use crate::scene::{Scene, Signals};
 use crate::value::{Remade, edits as edits_of, remade};
-use isosheet_io::dynamics::{self, Checkpoint};
+use isosheet_io::dynamics::{self, Checkpoint, StepProgress};
 use isosheet_io::mesh::VertexId;
+use isosheet_io::run::{
+    ExistingRun, RecordedStepError, Recorder, RecorderOptions, Recording, RecordingEnd,
+};
 use isosheet_io::scene::{Key, KeyError, LiveScene};
+use isosheet_io::view::{PageOptions, Replay};
+use isosheet_io::{DataError, Trajectory};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 /// A simulation of a scene, at its start.
 ///
 /// scene: a Scene.
 ///
+///     >>> simulation = isosheet.Simulation(isosheet.Scene.new("hanging"))
+///     >>> reports = simulation.run(0.1)
+///     >>> simulation.x.shape == simulation.v.shape
+///     True
+///
 /// Arrays are copies, because the next step changes the memory of the simulation. Numbers of vertices, faces
 /// and edges are V, F and E; units are metres, seconds, newtons and joules. Steps let other threads of Python
 /// run; a simulation that several threads use does what they ask for one after the other.
 #[pyclass(frozen, module = "isosheet")]
 pub(crate) struct Simulation {
-    live: Mutex<LiveScene>,
+    inner: Mutex<Inner>,
+}
+
+/// A simulation, and what records it.
+struct Inner {
+    live: LiveScene,
+    recorder: Option<Recorder>,
+}
+
+impl Inner {
+    fn step(
+        &mut self,
+        h: f64,
+        watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,
+    ) -> Result<dynamics::StepReport, RecordedStepError> {
+        match &mut self.recorder {
+            Some(recorder) => recorder.step(&mut self.live, h, watch),
+            None => Ok(self.live.step_watched(h, watch)?),
+        }
+    }
 }
 
 impl Simulation {
     fn of(live: LiveScene) -> Self {
-        let live = Mutex::new(live);
-        Self { live }
+        let recorder = None;
+        Self {
+            inner: Mutex::new(Inner { live, recorder }),
+        }
     }
 
     /// Does something with the simulation while other threads of Python run.
     fn with<R: Send>(&self, py: Python<'_>, f: impl FnOnce(&mut LiveScene) -> R + Send) -> R {
-        py.detach(|| f(&mut self.live.lock().unwrap_or_else(PoisonError::into_inner)))
+        self.with_recorder(py, |inner| f(&mut inner.live))
+    }
+
+    /// Does something with the simulation and with what records it.
+    fn with_recorder<R: Send>(&self, py: Python<'_>, f: impl FnOnce(&mut Inner) -> R + Send) -> R {
+        py.detach(|| f(&mut self.inner.lock().unwrap_or_else(PoisonError::into_inner)))
+    }
+
+    /// Ends the recording; nothing if there is none.
+    pub(crate) fn end_recording(
+        &self,
+        py: Python<'_>,
+        end: RecordingEnd,
+    ) -> PyResult<Option<Recording>> {
+        let ended = self.with_recorder(py, |inner| {
+            let recorder = inner.recorder.take()?;
+            Some(recorder.finish(&inner.live, end))
+        });
+        ended.transpose().map_err(|e| of_run(py, &e))
+    }
+
+    /// The page of the present state.
+    fn replay(&self, py: Python<'_>) -> PyResult<Replay> {
+        let replay = self.with(py, |live| -> Result<Replay, DataError> {
+            let mut trajectory = Trajectory::new(live.sheet());
+            trajectory.push(live.simulation().state().t, &live.positions())?;
+            let parts = live.parts().iter();
+            Ok(Replay {
+                title: "simulation".into(),
+                sheets: parts.map(|(_, part)| part.faces.len()).collect(),
+                pins: live.pins().iter().map(|v| v.0).collect(),
+                summary: vec![("modelled".into(), live.modelled().join(", "))],
+                scene: live.file().text().text.clone(),
+                ..Replay::of_motion(live.sheet(), live.obstacles(), &trajectory, &[])?
+            })
+        });
+        replay.map_err(|e| plain(py, &e))
     }
 
     /// A copy of something that the engine has.
@@ -50,19 +121,23 @@ impl Simulation {
     /// A step of `h` seconds, or of the next one of a run until a time; nothing at its end.
     fn advance(&self, py: Python<'_>, length: Length) -> PyResult<Option<StepReport>> {
         let mut signals = Signals::default();
-        let stepped = self.with(py, |live| {
+        let stepped = self.with_recorder(py, |inner| {
+            let live = &inner.live;
             let h = match length {
                 Length::Given(h) => h,
                 Length::OfScene => live.file().scene().method.step,
                 Length::Until(end) => live.next_step(end)?,
             };
-            let stepped = live.step_watched(h, &mut |_| signals.ask());
-            Some(stepped.map_err(|e| (e, live.simulation().state().t)))
+            let stepped = inner.step(h, &mut |_| signals.ask());
+            Some(stepped.map_err(|e| (e, inner.live.simulation().state().t)))
         });
         match stepped {
             None => Ok(None),
             Some(Ok(report)) => Ok(Some(report.into())),
-            Some(Err((error, t))) => Err(signals.raised.unwrap_or_else(|| of_step(py, &error, t))),
+            Some(Err((RecordedStepError::Step(error), t))) => {
+                Err(signals.raised.unwrap_or_else(|| of_step(py, &error, t)))
+            }
+            Some(Err((RecordedStepError::Run(error), _))) => Err(of_run(py, &error)),
         }
     }
 }
@@ -155,6 +230,76 @@ impl Simulation {
             }
         }
         Ok(reports)
+    }
+
+    /// Records all steps from now on in a folder, as `isosheet simulate` does: page, frames, history, loads, measures,
+    /// summary. Use it in a ``with`` statement, or call its `close`.
+    ///
+    /// fps: frames per second of simulated time, by default those of the scene.
+    /// every: the number of steps from one frame to the next, in place of `fps`.
+    /// replace: whether a run that the folder holds is deleted; without it, it is kept, and `RunFailed` raised.
+    ///
+    /// Without changes between the steps the files have the bits of those of the command, but for wall times. The scene
+    /// in the folder has what was driven as it went, and ends where the recording does; what else was changed is in
+    /// ``run.summary["control"]``.
+    ///
+    ///     >>> simulation = isosheet.Simulation(isosheet.Scene.new("hanging"))
+    ///     >>> with simulation.record("hanging-run", every=1):
+    ///     ...     report = simulation.step()
+    #[pyo3(signature = (folder, *, fps = None, every = None, replace = false))]
+    fn record(
+        slf: &Bound<'_, Self>,
+        folder: PathBuf,
+        fps: Option<f64>,
+        every: Option<u64>,
+        replace: bool,
+    ) -> PyResult<recorder::Recorder> {
+        let py = slf.py();
+        if every == Some(0) || every.is_some() && fps.is_some() {
+            let message = "give `fps`, or `every`, a number of steps from 1";
+            return Err(PyValueError::new_err(message));
+        }
+        let begun = slf.get().with_recorder(py, |inner| {
+            if let Some(recorder) = &inner.recorder {
+                return Ok(Some(recorder.folder().to_owned()));
+            }
+            let step = inner.live.file().scene().method.step;
+            let options = RecorderOptions {
+                frames_per_second: fps.or(every.map(|steps| 1.0 / (steps as f64 * step))),
+                existing: match replace {
+                    true => ExistingRun::Delete,
+                    false => ExistingRun::Keep,
+                },
+            };
+            let recorder = Recorder::begin(&mut inner.live, &folder, &options)?;
+            inner.recorder = Some(recorder);
+            Ok(None)
+        });
+        match begun.map_err(|e| of_run(py, &e))? {
+            None => Ok(recorder::Recorder::new(slf.clone().unbind(), folder)),
+            Some(other) => Err(PyValueError::new_err(format!(
+                "the simulation is recorded in {} already; end that recording first",
+                other.display()
+            ))),
+        }
+    }
+
+    /// The 3D page of the present state, one text of HTML that needs no other file and no connection.
+    fn html(&self, py: Python<'_>) -> PyResult<String> {
+        let replay = self.replay(py)?;
+        let page = py.detach(|| replay.to_html_with(&PageOptions::default()));
+        page.map_err(|e| plain(py, &e))
+    }
+
+    /// Opens the 3D page of the present state in the browser; returns the file.
+    fn show<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let page = self.html(py)?;
+        py.import("isosheet._show")?.call_method1("show", (page,))
+    }
+
+    /// The 3D page of the present state in a frame of a notebook.
+    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(framed(&self.html(py)?))
     }
 
     /// Changes values of the scene from now on: ``simulation.change({"forces.gravity": [0, 0, 0]})``.

@@ -13,10 +13,10 @@ use toml::{Table, Value};
 const MOST_LEVELS: usize = 64;
 
 /// The values of further classes: those of meshes, or none.
-pub(crate) type Further = fn(&Bound<'_, PyAny>) -> Option<Value>;
+pub(crate) type Further = fn(&Bound<'_, PyAny>) -> PyResult<Option<Value>>;
 
-/// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries,
-/// numpy arrays and numbers, and what `further` knows. Entries of dictionaries that are `None` are left out. It is
+/// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries, objects of
+/// dataclasses, numpy arrays and numbers, and what `further` knows. Entries of dictionaries that are `None` are left out. It is
 /// so many levels deep in others.
 fn nested(value: &Bound<'_, PyAny>, further: Further, level: usize) -> PyResult<Value> {
     let py = value.py();
@@ -24,9 +24,6 @@ fn nested(value: &Bound<'_, PyAny>, further: Further, level: usize) -> PyResult<
         return Err(PyValueError::new_err(format!(
             "the value contains itself, or is nested deeper than {MOST_LEVELS} levels"
         )));
-    }
-    if let Some(value) = further(value) {
-        return Ok(value);
     }
     if value.is_instance_of::<PyBool>() {
         return Ok(Value::Boolean(value.extract()?));
@@ -48,10 +45,21 @@ fn nested(value: &Bound<'_, PyAny>, further: Further, level: usize) -> PyResult<
     if let Ok(dict) = value.cast::<PyDict>() {
         return Ok(Value::Table(nested_table(dict, further, level)?));
     }
+    if let Some(fields) = value.getattr_opt(intern!(py, "__dataclass_fields__"))? {
+        let dict = PyDict::new(py);
+        for name in fields.try_iter()? {
+            let name = name?.cast_into::<PyString>()?;
+            dict.set_item(&name, value.getattr(&name)?)?;
+        }
+        return Ok(Value::Table(nested_table(&dict, further, level)?));
+    }
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         let entries = value.try_iter()?;
         let entries = entries.map(|entry| nested(&entry?, further, level + 1));
         return Ok(Value::Array(entries.collect::<PyResult<_>>()?));
+    }
+    if let Some(value) = further(value)? {
+        return Ok(value);
     }
     // Arrays and numbers of numpy, and of what else there is.
     if let Some(plain) = value.getattr_opt(intern!(py, "tolist"))? {

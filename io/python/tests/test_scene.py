@@ -1,5 +1,7 @@
 """Scenes, meshes, materials and errors."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -145,3 +147,99 @@ def test_a_run_needs_a_folder(tmp_path, monkeypatch):
     with pytest.raises(isosheet.RunFailed, match="the path of the folder is empty"):
         isosheet.Scene.from_dict(TRIANGLE).simulate("")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_sheet_starts_at_arrays():
+    square = isosheet.Mesh.generate("square", side=0.2, level=1)
+    rolled = square.vertices
+    radius = 0.1
+    angle = rolled[:, 0] / radius
+    bent = np.column_stack([radius * np.sin(angle), rolled[:, 1], radius * (1 - np.cos(angle))])
+    # Rods keep their lengths: those of the bent mesh are the rest lengths.
+    mesh = isosheet.Mesh(bent, square.faces)
+    moved = bent @ np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    velocities = np.zeros_like(moved)
+    velocities[:, 2] = np.arange(len(moved))
+    scene = isosheet.Scene(
+        sheet={
+            "mesh": mesh,
+            "density": 0.08,
+            "placement": {"position": [0, 0, 1]},
+            "start": {"positions": moved, "velocities": velocities, "velocity": [1, 0, 0]},
+        }
+    )
+    simulation = isosheet.Simulation(scene)
+    assert simulation.x == pytest.approx(moved + [0, 0, 1], abs=1e-15)
+    assert simulation.v == pytest.approx(velocities + [1, 0, 0], abs=1e-15)
+    assert "velocities at the start" in simulation.modelled
+    for name in ("positions", "velocities"):
+        with pytest.raises(isosheet.SceneError, match="has 24 entries, and the mesh 25 vertices") as caught:
+            isosheet.Simulation(scene.edit({f"sheet.start.{name}": moved[:-1]}))
+        assert caught.value.key == f"sheet.start.{name}" and caught.value.advice
+    with pytest.raises(isosheet.SceneError, match="leave one of both out"):
+        scene.edit({"sheet.start.file": {"path": "start.obj"}})
+
+
+def test_a_refined_sheet_starts_at_arrays_of_its_mesh():
+    mesh = isosheet.Mesh([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]], [[0, 1, 2]])
+    raised = mesh.vertices + [0, 0, 0.5]
+    start = {"positions": raised, "velocities": [[0, 0, 0], [0, 0, 2], [0, 0, 4]]}
+    scene = isosheet.Scene(sheet={"mesh": mesh, "density": 0.08, "refine": 1, "start": start})
+    simulation = isosheet.Simulation(scene)
+    a, b = np.triu_indices(3, 1)
+    middle = {tuple(np.round(p, 12)) for p in np.vstack([raised, (raised[a] + raised[b]) / 2])}
+    assert {tuple(np.round(p, 12)) for p in simulation.x} == middle
+    # Of a linear field.
+    assert simulation.v[:, 2] == pytest.approx(20 * simulation.x[:, 0] + 40 * simulation.x[:, 1], abs=1e-12)
+
+
+def test_an_obstacle_of_arrays_is_that_of_the_formula():
+    x, y, z = 0.2, 0.3, 0.1
+    corners = np.array([[i, j, k] for k in (-z, z) for j in (-y, y) for i in (-x, x)]) / 2
+    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    box = isosheet.Mesh(corners, [[a, b, c] for a, *rest in quads for b, c in (rest[:2], rest[1:])])
+    found = []
+    for shape in (box, {"box": {"size": [x, y, z]}}):
+        scene = isosheet.Scene(
+            sheet={"mesh": {"square": {"side": 0.05, "level": 1}}, "density": 0.08, "damping": 20.0,
+                   "placement": {"position": [0, 0, 0.06]}},
+            obstacle=[{"shape": shape, "friction": 0.5}],
+            forces={"gravity": [0, 0, -9.81]},
+            method={"step": 0.01},
+        )
+        simulation = isosheet.Simulation(scene)
+        simulation.run(0.3)
+        found.append(simulation.x)
+        weight = simulation.masses.sum() * 9.81
+        assert simulation.obstacle_forces[0] == pytest.approx([0, 0, -weight], abs=1e-6 * weight)
+    assert found[0] == pytest.approx(found[1], abs=1e-5)
+
+
+@dataclasses.dataclass
+class Ball:
+    radius: float
+
+
+@dataclasses.dataclass
+class Obstacle:
+    shape: dict
+    friction: float = 0.5
+    name: object = None
+
+
+def test_objects_of_dataclasses_are_tables():
+    scene = isosheet.Scene(**TRIANGLE, obstacle=[Obstacle({"sphere": Ball(0.1)})])
+    assert scene["obstacle[0].shape.sphere.radius"] == 0.1 and scene["obstacle[0].friction"] == 0.5
+    with pytest.raises(isosheet.SceneError, match="fricton"):
+        isosheet.Scene(**TRIANGLE, obstacle=[{"shape": {"sphere": Ball(0.1)}, "fricton": 1}])
+
+
+def test_a_scene_is_made_of_keyword_arguments():
+    scene = isosheet.Scene(**TRIANGLE)
+    assert scene == isosheet.Scene.from_dict(TRIANGLE)
+    with pytest.raises(isosheet.SceneError, match="shet"):
+        isosheet.Scene(shet=TRIANGLE["sheet"])
+    with pytest.raises(isosheet.SceneError, match="sheet"):
+        isosheet.Scene()
+    with pytest.raises(TypeError):
+        isosheet.Scene(TRIANGLE)

@@ -1,9 +1,11 @@
 """Simulations: exact motions, forces, control, checkpoints, threads."""
 
 import copy
+import multiprocessing
 import pickle
 import threading
 import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -254,3 +256,21 @@ def test_a_simulation_that_threads_share_takes_their_steps_in_turn():
     for _ in range(20):
         alone.step()
     assert np.array_equal(simulation.x, alone.x)
+
+
+def positions_later(simulation):
+    """For another thread or process."""
+    simulation.run(0.1)
+    return simulation.x
+
+
+@pytest.mark.parametrize("executor", [
+    ThreadPoolExecutor,
+    lambda workers: ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")),
+], ids=["threads", "processes"])
+def test_executors_make_a_batch_of_runs_with_the_bits_of_one(executor):
+    scenes = [hanging(sheet={"mesh": {"square": {"side": 0.2, "level": 1}}, "density": d}) for d in (0.06, 0.08, 0.1)]
+    with executor(2) as pool:
+        batch = list(pool.map(positions_later, map(isosheet.Simulation, scenes)))
+    for scene, x in zip(scenes, batch, strict=True):
+        assert np.array_equal(x, positions_later(isosheet.Simulation(scene)))

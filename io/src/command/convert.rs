@@ -114,7 +114,8 @@ impl Convert {
             }
             let trajectory = Trajectory::read(&self.input).map_err(|e| input(&e))?;
             let trajectory = self.at_rate(trajectory)?;
-            return self.write_run(&self.series(&trajectory)?);
+            let series = Series::new(&trajectory, &self.series_options()?);
+            return self.write_run(&series.map_err(|e| failed(&e, Code::Input))?);
         }
         self.check_input()?;
         let of_runs = [
@@ -150,19 +151,8 @@ impl Convert {
         if let Some(format) = PictureFormat::of(self.output()) {
             return self.write_pictures(&recording, format);
         }
-        let mut series = self.series(&recording.trajectory)?;
-        if let Some(assignments) = recording.fold_assignments.take() {
-            series = series
-                .with_assignments(assignments)
-                .map_err(|e| input(&e))?;
-        }
-        if !recording.parts.is_empty() {
-            series = series
-                .with_sheets(&recording.parts)
-                .map_err(|e| input(&e))?;
-        }
-        let bodies = recording.exported_bodies();
-        self.write_run(&series.with_bodies(bodies).map_err(|e| input(&e))?)
+        let series = recording.series(&self.series_options()?);
+        self.write_run(&series.map_err(|e| failed(&e, Code::Input))?)
     }
 
     /// The chosen part of a motion at the rate that was asked for.
@@ -259,19 +249,18 @@ impl Convert {
         Ok(())
     }
 
-    fn series<'a>(&self, trajectory: &'a Trajectory) -> Result<Series<'a>, Failure> {
+    fn series_options(&self) -> Result<SeriesOptions, Failure> {
         if self.weld.is_some() {
             return Err(weld_of_run());
         }
         self.check_look()?;
         let range = self.range();
-        let options = SeriesOptions {
+        Ok(SeriesOptions {
             first: range.first.unwrap_or(0),
             last: range.last,
             every: self.every(),
             rate: self.fps.unwrap_or(SeriesOptions::default().rate),
-        };
-        Series::new(trajectory, &options).map_err(|e| failed(&e, Code::Input))
+        })
     }
 
     fn write_pictures(&self, recording: &Recording, format: PictureFormat) -> Done {

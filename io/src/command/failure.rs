@@ -111,7 +111,9 @@ impl From<RunError> for Failure {
             RunError::OtherScene { .. }
             | RunError::OtherVersion { .. }
             | RunError::Foreign { .. }
-            | RunError::NotOwn { .. } => Code::OtherScene,
+            | RunError::NotOwn { .. }
+            | RunError::Taken { .. }
+            | RunError::Controlled { .. } => Code::OtherScene,
             RunError::Busy { .. } => Code::Busy,
             RunError::NoFolder | RunError::Extension { .. } => Code::CommandLine,
             RunError::SceneFile(SceneFileError::Edit(_)) => Code::CommandLine,

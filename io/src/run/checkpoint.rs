@@ -1,6 +1,7 @@
 //! The checkpoint of a run: how far it has come, with the checkpoint of its simulation.
 
 use super::RunError;
+use super::control::Intervention;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::error::BEGIN_ANEW;
@@ -35,6 +36,9 @@ pub(crate) struct RunProgress {
     /// What is written of the table of events; none if all holds at all times.
     #[serde(default)]
     pub(crate) events: Option<Written>,
+    /// What a program did between the steps so far that the scene at the beginning did not say.
+    #[serde(default)]
+    pub(crate) control: Vec<Intervention>,
     /// What the measures showed so far.
     #[serde(default)]
     pub(crate) measured: BTreeMap<String, Measured>,

@@ -98,6 +98,27 @@ pub enum RunError {
         /// Why.
         cause: ExtensionError,
     },
+    /// The folder holds a run, which a recording would replace.
+    #[error("{} holds a run", folder.display())]
+    Taken {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A program interfered between the steps of the run, which its scene alone does not continue.
+    #[error(
+        "the run in {} was controlled by a program between its steps, and its scene alone does not continue it",
+        folder.display()
+    )]
+    Controlled {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The scene of a simulation was changed so that its recording cannot go on.
+    #[error("`{key}` was changed so that the files of the recording would have other columns")]
+    NotRecordable {
+        /// The key of the scene.
+        key: String,
+    },
     /// A file of the run cannot be read or written, or is damaged.
     #[error(transparent)]
     File(#[from] FileError),
@@ -133,6 +154,15 @@ impl Advice for RunError {
             Self::NoRun { .. } => Some("name the folder that `isosheet simulate` wrote"),
             Self::OtherVersion { .. } => Some(
                 "continue it with that version, replace it with --force, or choose another folder with --out",
+            ),
+            Self::Taken { .. } => {
+                Some("choose another folder, or have the run replaced: `replace=True` in Python")
+            }
+            Self::Controlled { .. } => Some(
+                "have that program make it again, or run the scene of the folder from its start in another folder",
+            ),
+            Self::NotRecordable { .. } => Some(
+                "have it in the scene from the start, with no effect at first; or end the recording and begin another",
             ),
             Self::Extension { cause, .. } => cause.advice(),
             Self::File(error) => error.advice(),

@@ -1,7 +1,7 @@
 //! What a run needs, before it begins.
 
 use super::frames::FrameShape;
-use super::stepping::step_count;
+use super::steps::step_count;
 use crate::format::memory;
 use crate::scene::bytes_in_words;
 use crate::scene::{Key, MEMORY_OF_FACE, Problem, Scene, SceneError, SceneFile, Setup, Warning};

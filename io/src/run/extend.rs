@@ -3,7 +3,7 @@
 use super::checkpoint::{self, RunProgress};
 use super::extension_error::ExtensionError;
 use super::folder::{Existing, FolderState, RunFolder, RunInputs, stored_scene};
-use super::stepping::{has_short_step, step_count};
+use super::steps::{has_short_step, step_count};
 use super::summary::EndReason;
 use super::{Outcome, RunError, Watch, check_origin, simulate};
 use crate::format::write_atomically;

@@ -37,6 +37,7 @@ fn in_words(reason: EndReason) -> &'static str {
         EndReason::Time => "its time had passed",
         EndReason::Rest => "the sheet was at rest (`stop.rest`)",
         EndReason::SupportForce => "the force at a support was reached (`stop.support_force`)",
+        EndReason::Program | EndReason::Error => "a program took its steps and ended it",
         EndReason::Taut => "the lengths did not allow more (`method.taut`)",
     }
 }

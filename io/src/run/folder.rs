@@ -156,9 +156,8 @@ impl RunFolder {
         Self::SCENE,
     ];
 
-    /// Whether a folder is that of a run, complete or not.
-    #[cfg(feature = "picture")]
-    pub(crate) fn is_run(root: &Path) -> bool {
+    /// Whether a folder holds a run, complete or not.
+    pub(crate) fn holds_run(root: &Path) -> bool {
         root.join(Self::SCENE).is_file() && Self::is_marked(root)
     }
 

@@ -174,6 +174,20 @@ impl FrameFile {
         Ok(())
     }
 
+    /// Takes the last frame back.
+    pub(crate) fn take_back(&mut self) -> Result<(), FileError> {
+        let end = self.file.stream_position();
+        let cut = end.and_then(|end| {
+            // All frames have the length of the last one.
+            let length = end.saturating_sub(self.record.len() as u64);
+            self.file.set_len(length)?;
+            self.file.seek(SeekFrom::End(0))
+        });
+        cut.map_err(|e| FileError::unwritable(&self.path, e))?;
+        self.count -= 1;
+        Ok(())
+    }
+
     /// Waits until all frames are on the disk.
     pub(crate) fn sync(&self) -> Result<(), FileError> {
         let synced = self.file.sync_data();

@@ -138,7 +138,7 @@ fn files(name: &str) -> [PathBuf; 2] {
 
 /// Adds a folder if it is that of a run, and returns the folders beneath it otherwise.
 fn find(folder: &Path, found: &mut Vec<PathBuf>) -> Result<Vec<PathBuf>, GalleryError> {
-    if RunFolder::is_run(folder) {
+    if RunFolder::holds_run(folder) {
         found.push(folder.to_owned());
         return Ok(Vec::new());
     }

@@ -104,6 +104,17 @@ impl Recording {
         } else {
             "The scene above and the mesh files that it names are in the folder of the run."
         };
+        let control = self.summary.iter().flat_map(|summary| &summary.control);
+        let files = match control
+            .map(|done| done.in_scene)
+            .reduce(|all, one| all && one)
+        {
+            None => files.to_owned(),
+            Some(true) => format!("{files} It has what a program drove in the course of the run."),
+            Some(false) => format!(
+                "{files} A program changed more in the course of the run than the scene can say."
+            ),
+        };
         let program = match &self.summary {
             None => String::new(),
             Some(summary) => {
@@ -148,6 +159,8 @@ impl Rows {
             EndReason::Time => "the whole time has passed",
             EndReason::Rest => "the sheet is at rest",
             EndReason::SupportForce => "the force at a support is reached",
+            EndReason::Program => "the program that took the steps ended it",
+            EndReason::Error => "an error ended the program that took the steps",
             EndReason::Taut => "more is asked for than the lengths allow",
         };
         let reason = ending.taut.as_deref().unwrap_or(reason);
@@ -188,6 +201,12 @@ impl Rows {
         }
         if let Some(plastic) = ending.plastic {
             self.add("dissipated by yielding", format!("{plastic:.2e} J"));
+        }
+        for done in &summary.control {
+            self.add(
+                "changed by the program that took the steps",
+                done.to_string(),
+            );
         }
         for words in ending.residuals.in_words() {
             self.add("targets at the end", words);

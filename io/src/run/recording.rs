@@ -4,8 +4,9 @@ use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, StoredFrames};
 use super::{RunError, Summary};
 use crate::format::{
-    EventRow, FileError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion, MotionFrame,
-    SeriesBody, Trajectory, read_events, read_history, read_json, read_loads, read_measures,
+    EventRow, ExportError, FileError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion,
+    MotionFrame, Series, SeriesBody, SeriesOptions, Trajectory, read_events, read_history,
+    read_json, read_loads, read_measures,
 };
 use crate::scene::{FoldTargets, Origins, SceneFile, Setup};
 use isosheet_collide::Obstacle;
@@ -164,6 +165,21 @@ impl Recording {
         if self.parts.len() == 1 {
             self.parts.clear();
         }
+    }
+
+    /// The frames for files of other programs, with bodies, the names of sheets and what edges are meant to do.
+    ///
+    /// # Errors
+    /// [`ExportError`] for options that choose no frames.
+    pub fn series(&self, options: &SeriesOptions) -> Result<Series<'_>, ExportError> {
+        let mut series = Series::new(&self.trajectory, options)?;
+        if let Some(assignments) = &self.fold_assignments {
+            series = series.with_assignments(assignments.clone())?;
+        }
+        if !self.parts.is_empty() {
+            series = series.with_sheets(&self.parts)?;
+        }
+        series.with_bodies(self.exported_bodies())
     }
 
     /// The obstacles that do not deform for files of other programs, `obstacle_0` and so on by their numbers in the

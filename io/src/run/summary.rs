@@ -1,5 +1,6 @@
 //! What a complete run says of itself.
 
+use super::control::Intervention;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::vibration::Vibration;
@@ -56,6 +57,9 @@ pub struct Summary {
     /// How the sheet was stretched and bent, if it is elastic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elastic: Option<ElasticSummary>,
+    /// What a program did between the steps that the scene at the beginning did not say.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub control: Vec<Intervention>,
     /// What the measures of the scene showed, by their names.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub measures: BTreeMap<String, Measured>,
@@ -160,4 +164,8 @@ pub enum EndReason {
     SupportForce,
     /// The supports ask for more than the lengths allow (`method.taut`).
     Taut,
+    /// The program that took the steps ended the recording.
+    Program,
+    /// An error ended the program that took the steps.
+    Error,
 }

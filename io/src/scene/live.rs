@@ -12,7 +12,7 @@ use super::profile::{Change, Course};
 use super::sheets::sheet_key;
 use super::under_way::UnderWay;
 use super::{
-    Body, BodyLoad, CarriedBody, Method, Problem, Profile, Scene, SceneError, SceneFile,
+    Body, BodyLoad, CarriedBody, Files, Method, Problem, Profile, Scene, SceneError, SceneFile,
     SceneFileError, Setup,
 };
 use crate::format::EventRow;
@@ -122,6 +122,16 @@ impl LiveScene {
     /// The scene with all changes.
     pub fn file(&self) -> &SceneFile {
         &self.file
+    }
+
+    /// The simulation with what is known of its scene.
+    pub(crate) fn under_way(&self) -> &UnderWay {
+        &self.under_way
+    }
+
+    /// The files that the scene names, as they were read.
+    pub(crate) fn files(&mut self) -> &mut Files {
+        &mut self.kept.files
     }
 
     /// The simulation.
@@ -263,8 +273,18 @@ impl LiveScene {
         h: f64,
         watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,
     ) -> Result<StepReport, FailedStep> {
+        self.step_observed(h, watch, &mut |_, _| ())
+    }
+
+    /// The same, and shows the state at the end of the step, before anything is taken up or released there.
+    pub(crate) fn step_observed(
+        &mut self,
+        h: f64,
+        watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,
+        observe: &mut dyn FnMut(&UnderWay, &StepReport),
+    ) -> Result<StepReport, FailedStep> {
         self.events.clear();
-        let stepped = self.under_way.simulation.step_watched(h, watch);
+        let stepped = self.under_way.step_watched(h, watch);
         let report = stepped.map_err(|step| {
             let problem = self
                 .under_way
@@ -275,6 +295,7 @@ impl LiveScene {
             let step = Some(step);
             FailedStep { step, scene }
         })?;
+        observe(&self.under_way, &report);
         let (scene, hand) = (self.file.scene(), self.hand.as_ref());
         let events = self.under_way.switch(scene, &mut self.kept, hand);
         self.events = events.map_err(|error| FailedStep {

@@ -98,6 +98,13 @@ pub enum Shape {
     },
     /// A thin wall that follows a line in the xz plane and extends along y, half to either side.
     Wall(Wall),
+    /// Triangles from a program: a solid if they are closed, otherwise a surface with two sides.
+    Triangles {
+        /// Coordinates of the vertices, metres.
+        vertices: Vec<[f64; 3]>,
+        /// Vertices of each triangle by their numbers, from 0, counter-clockwise as seen from outside.
+        faces: Vec<[u32; 3]>,
+    },
     /// The triangles of a mesh file: a solid if they are closed, otherwise a surface with two sides.
     File(MeshFile),
     /// A mesh in motion, which may deform: a surface with two sides. It is an obstacle alone, has no `motion`
@@ -219,6 +226,7 @@ impl Shape {
                 checks.count(shape.name("line"), wall.line.len(), 2);
                 checks.not_negative(shape.name("corner_radius"), wall.corner_radius, Unit::Metre);
             }
+            Shape::Triangles { vertices, .. } => checks.points(shape.name("vertices"), vertices),
             Shape::File(file) => file.check(&shape, checks),
             Shape::Sequence(sequence) => sequence.check(&shape, checks),
         }
@@ -234,6 +242,7 @@ impl Shape {
             Self::Prism { .. } => "prism",
             Self::Frame { .. } => "frame",
             Self::Wall(_) => "wall",
+            Self::Triangles { .. } => "triangles",
             Self::File(_) => "file",
             Self::Sequence(_) => "sequence",
         }
@@ -279,6 +288,9 @@ impl Shape {
                 top,
             } => return solid(TriangleSurface::frame(*outer, *opening, [*bottom, *top])),
             Self::Wall(wall) => return solid(wall.surface()),
+            Self::Triangles { vertices, faces } => {
+                return solid(TriangleSurface::new(vertices.as_flattened(), faces));
+            }
             Self::File(file) => {
                 let key = key.name("file");
                 let mesh = files.read(file, &key)?;

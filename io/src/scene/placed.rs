@@ -37,6 +37,8 @@ pub(crate) struct Form {
     texture: Vec<FaceTexture>,
     /// Positions at the start, `3V`.
     start: Vec<f64>,
+    /// Velocities at the start beside those of the sheet as a whole, `3V`.
+    pub(super) velocities: Option<Vec<f64>>,
     /// Positions of the shape whose curvature it has.
     pub(super) curled: Option<Vec<f64>>,
 }
@@ -255,10 +257,28 @@ impl Form {
             let points = x.as_chunks::<3>().0.iter();
             Ok(points.flat_map(|&p| pose.place(p)).collect())
         };
-        let start = match &of.start.file {
-            None => placed.positions().to_vec(),
-            Some(file) => shape(file, key.name("start.file"))?,
+        // Values of the vertices of the mesh.
+        let listed = |values: &[[f64; 3]], key: Key| {
+            let (count, vertices) = (values.len(), unplaced.mesh().topology().vertex_count());
+            if count == vertices {
+                return Ok(unplaced.positions(values.as_flattened().to_vec()));
+            }
+            let message = format!("`{key}` has {count} entries, and the mesh {vertices} vertices");
+            let remedy = "give one for each vertex, in the order of the mesh";
+            Err(Problem::new(key, message, remedy))
         };
+        let start = match (&of.start.file, &of.start.positions) {
+            (Some(file), _) => shape(file, key.name("start.file"))?,
+            (None, Some(positions)) => {
+                let x = listed(positions, key.name("start.positions"))?;
+                let points = x.as_chunks::<3>().0.iter();
+                points.flat_map(|&p| pose.place(p)).collect()
+            }
+            (None, None) => placed.positions().to_vec(),
+        };
+        let velocities = of.start.velocities.as_ref();
+        let velocities = velocities.map(|v| listed(v, key.name("start.velocities")));
+        let velocities = velocities.transpose()?;
         let curled = of.curl.as_ref().and_then(|curl| curl.shape.as_ref());
         let curled = curled.map(|file| shape(file, key.name("curl.shape")));
         let curled = curled.transpose()?;
@@ -270,6 +290,7 @@ impl Form {
             unplaced,
             changes,
             start,
+            velocities,
             curled,
         })
     }

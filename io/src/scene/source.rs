@@ -142,7 +142,7 @@ impl SceneFile {
     ///
     /// # Errors
     /// [`SceneError`], shown at its place in the text of the changed scene.
-    pub(super) fn changed(
+    pub(crate) fn changed(
         &self,
         scene: Scene,
         keys: impl IntoIterator<Item = Key>,

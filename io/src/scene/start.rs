@@ -21,6 +21,10 @@ pub struct Start {
     /// start. It is placed as the rest shape is. With rigid rods, lengths that differ from the rest lengths
     /// by up to 1e-4 of these, as in files of six digits, are corrected by moving the vertices.
     pub file: Option<MeshFile>,
+    /// The same as a list: the positions of the vertices of `mesh`, in its order, metres.
+    pub positions: Option<Vec<[f64; 3]>>,
+    /// Velocities of the vertices of `mesh` in space, in its order, m/s, beside `velocity` and `spin`.
+    pub velocities: Option<Vec<[f64; 3]>>,
     /// Size of a random displacement of all free vertices, as a part of the mean edge length, from 0 to 1:
     /// conservative methods cannot start from a flat sheet under load.
     pub perturbation: f64,
@@ -58,6 +62,20 @@ impl Start {
         if let Some(file) = &self.file {
             file.check(&key.name("file"), checks);
         }
+        if let Some(positions) = &self.positions {
+            let key = key.name("positions");
+            checks.points(key.clone(), positions);
+            if self.file.is_some() {
+                let message = "the sheet starts at the positions of a list and at those of a file";
+                checks.report(key, message, "leave one of both out");
+            }
+        }
+        for (key, velocity) in key
+            .name("velocities")
+            .entries(self.velocities.as_deref().unwrap_or_default())
+        {
+            checks.finite(key, velocity, Unit::MetrePerSecond);
+        }
         checks.count(key.name("seed"), self.seed, 0);
         checks.finite(key.name("velocity"), &self.velocity, Unit::MetrePerSecond);
         if let Some(spin) = &self.spin {
@@ -65,9 +83,16 @@ impl Start {
         }
     }
 
+    /// Whether the sheet starts with another shape than that of its mesh.
+    pub(super) fn has_shape(&self) -> bool {
+        self.file.is_some() || self.positions.is_some()
+    }
+
     /// Whether the sheet starts in motion.
     pub(super) fn is_moving(&self) -> bool {
-        self.velocity != [0.0; 3] || self.spin.is_some_and(|spin| spin.rate != 0.0)
+        self.velocity != [0.0; 3]
+            || self.velocities.is_some()
+            || self.spin.is_some_and(|spin| spin.rate != 0.0)
     }
 
     /// The velocities of points (metres) whose centre of mass is given, m/s.

@@ -6,8 +6,9 @@ use super::switches::{Reached, Switches, not_taken_up};
 use super::{Scene, SceneError, Setup, SupportForces};
 use crate::format::EventRow;
 use isosheet_dynamics::contact::Contact;
-use isosheet_dynamics::{Hand, Simulation};
+use isosheet_dynamics::{Hand, Simulation, StepError, StepProgress, StepReport};
 use std::cell::OnceCell;
+use std::ops::ControlFlow;
 
 /// A simulation between two steps, with what is known of its scene as it is held now.
 pub(crate) struct UnderWay {
@@ -46,6 +47,17 @@ impl UnderWay {
         }
     }
 
+    /// Takes a step, see [`Simulation::step_watched`]; the forces of the supports are those of this step then.
+    pub(crate) fn step_watched(
+        &mut self,
+        h: f64,
+        watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,
+    ) -> Result<StepReport, StepError> {
+        let stepped = self.simulation.step_watched(h, watch);
+        self.before = None;
+        stepped
+    }
+
     /// Takes up and releases what the step that has ended asks for, and goes on with it; what has happened. `hand`
     /// is what somebody holds.
     ///
@@ -57,7 +69,6 @@ impl UnderWay {
         kept: &mut Kept,
         hand: Option<&Hand>,
     ) -> Result<Vec<EventRow>, SceneError> {
-        self.before = None;
         if !self.switches.wait() {
             return Ok(Vec::new());
         }

@@ -22,6 +22,7 @@ mod live;
 mod live_page;
 mod measures;
 mod pages;
+mod recording;
 mod rod_forces;
 mod sequences;
 mod sizes;

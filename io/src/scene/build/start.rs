@@ -33,8 +33,7 @@ impl Builder<'_> {
     }
 
     fn mend_lengths(&mut self) -> Result<(), SceneError> {
-        let of_file =
-            |sheet: &Sheet| sheet.isometry() == Isometry::Rods && sheet.start.file.is_some();
+        let of_file = |sheet: &Sheet| sheet.isometry() == Isometry::Rods && sheet.start.has_shape();
         if !self.scene.sheet.iter().any(of_file) {
             return Ok(());
         }
@@ -84,7 +83,7 @@ impl Builder<'_> {
 
     pub(super) fn start(&mut self) -> State {
         let mut v = vec![0.0; self.x.len()];
-        for PlacedSheet { of, part, .. } in &self.sheets.list {
+        for PlacedSheet { of, part, form, .. } in &self.sheets.list {
             if !of.start.is_moving() {
                 continue;
             }
@@ -97,6 +96,10 @@ impl Builder<'_> {
             let centre = moment.sum::<Vector3<f64>>() / masses.iter().sum::<f64>();
             let velocities = of.start.velocities(points, centre);
             v[part.coordinates()].copy_from_slice(velocities.as_flattened());
+            let further = form.velocities.iter().flatten();
+            for (v, further) in v[part.coordinates()].iter_mut().zip(further) {
+                *v += further;
+            }
         }
         for body in &self.bodies.list {
             let first = 3 * body.first.index();

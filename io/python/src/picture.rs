@@ -1,0 +1,71 @@
+//! Pictures and films of runs, and pages in notebooks.
+
+use crate::error::plain;
+use isosheet_io::picture::PictureError;
+use isosheet_io::run::{Film, FilmOptions, Recording, Viewpoint};
+use isosheet_io::write_atomically;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::io::Write;
+use std::path::Path;
+
+/// What is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// A PNG file of one frame.
+    Picture,
+    /// An animated PNG file.
+    Film,
+}
+
+/// Frames of a run, and how they are shown.
+pub(crate) struct Shown<'a> {
+    pub(crate) recording: &'a Recording,
+    pub(crate) frames: Vec<usize>,
+    pub(crate) options: FilmOptions,
+}
+
+/// How a run is shown.
+pub(crate) fn options(height: usize, view: Option<(f64, f64)>) -> FilmOptions {
+    FilmOptions {
+        height,
+        view: view.map(|(azimuth, elevation)| Viewpoint { azimuth, elevation }),
+        ..FilmOptions::default()
+    }
+}
+
+impl Shown<'_> {
+    pub(crate) fn write(self, py: Python<'_>, path: &Path, kind: Kind) -> PyResult<()> {
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let (known, remedy) = match kind {
+            Kind::Picture => (["png", "png"], "a picture is a .png file"),
+            Kind::Film => (
+                ["apng", "png"],
+                "a film is an .apng file; `isosheet convert` says how ffmpeg makes others of pictures",
+            ),
+        };
+        if !known.iter().any(|known| extension == *known) {
+            let message = format!("{} has another extension: {remedy}", path.display());
+            return Err(PyValueError::new_err(message));
+        }
+        let bytes = py.detach(|| -> Result<Vec<u8>, PictureError> {
+            let film = Film::new(self.recording, self.frames, &self.options)?;
+            match kind {
+                Kind::Picture => film.picture(0)?.to_png(),
+                Kind::Film => film.animation(|_| ()),
+            }
+        });
+        let bytes = bytes.map_err(|e| plain(py, &e))?;
+        let written = py.detach(|| write_atomically(path, |w| w.write_all(&bytes)));
+        written.map_err(|e| plain(py, &e))
+    }
+}
+
+/// A page in a frame of a notebook, which may do nothing but run its own program.
+pub(crate) fn framed(page: &str) -> String {
+    let page = page.replace('&', "&amp;").replace('"', "&quot;");
+    format!(
+        "<iframe srcdoc=\"{page}\" sandbox=\"allow-scripts\" \
+         style=\"width: 100%; height: 640px; border: 0\"></iframe>"
+    )
+}

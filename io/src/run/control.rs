@@ -1,0 +1,194 @@
+//! What a program changed between the steps of a run that it recorded.
+
+use super::RunError;
+use crate::scene::{Course, Interpolation, Key, KeyPart, Profile, Scene, SceneFile};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use toml::Value;
+
+/// What a program did between the steps of a run that is not in the scene that the run began with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Intervention {
+    /// The key of the scene that was changed, or what was done in words.
+    pub what: String,
+    /// When it was done first, seconds.
+    pub first: f64,
+    /// When it was done last, seconds.
+    pub last: f64,
+    /// How often.
+    pub times: u64,
+    /// Whether the scene in the folder of the run has it: functions of time are there as they went, at the ends of
+    /// the steps.
+    pub in_scene: bool,
+}
+
+impl fmt::Display for Intervention {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            what,
+            first,
+            last,
+            times,
+            in_scene,
+        } = self;
+        match times {
+            1 => write!(f, "{what} at {first:.4} s")?,
+            _ => write!(f, "{what}, {times} times from {first:.4} s to {last:.4} s")?,
+        }
+        f.write_str(if *in_scene { "" } else { ", not in the scene" })
+    }
+}
+
+/// What was changed in the course of a run.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Control {
+    /// Functions of time that were replaced, in the order of time.
+    courses: Vec<NewCourse>,
+}
+
+/// A function of time that replaced another one.
+#[derive(Clone, Debug)]
+struct NewCourse {
+    begin: f64,
+    key: Key,
+    profile: Profile,
+}
+
+/// Notes what was done at a time.
+pub(super) fn note(done: &mut Vec<Intervention>, what: &str, t: f64, in_scene: bool) {
+    match done.iter_mut().find(|known| known.what == what) {
+        Some(known) => {
+            known.last = t;
+            known.times += 1;
+            known.in_scene &= in_scene;
+        }
+        None => done.push(Intervention {
+            what: what.to_owned(),
+            first: t,
+            last: t,
+            times: 1,
+            in_scene,
+        }),
+    }
+}
+
+impl Control {
+    /// Takes in that a scene is another one from a time on, and notes what has changed.
+    ///
+    /// # Errors
+    /// [`RunError::NotRecordable`] for changes after which the files of the run would have other columns; then nothing
+    /// is noted.
+    pub(super) fn change(
+        &mut self,
+        before: &Scene,
+        after: &Scene,
+        t: f64,
+        done: &mut Vec<Intervention>,
+    ) -> Result<(), RunError> {
+        let changed = [
+            ("support", before.support.len() == after.support.len()),
+            ("obstacle", before.obstacle.len() == after.obstacle.len()),
+            ("body", before.body.len() == after.body.len()),
+            ("measure", before.measure == after.measure),
+        ];
+        if let Some((key, _)) = changed.into_iter().find(|(_, same)| !same) {
+            return Err(RunError::NotRecordable { key: key.into() });
+        }
+        let (mut patched, mut after) = (before.clone(), after.clone());
+        for (key, profile) in after.functions_mut() {
+            let mut functions = patched.functions_mut();
+            let known = functions.iter_mut().find(|(known, _)| *known == key);
+            let Some((_, known)) = known.filter(|(_, known)| **known != *profile) else {
+                continue;
+            };
+            **known = profile.clone();
+            note(done, &key.to_string(), t, true);
+            self.courses.push(NewCourse {
+                begin: t,
+                key,
+                profile: profile.clone(),
+            });
+        }
+        if patched == after {
+            return Ok(());
+        }
+        let mut keys = Vec::new();
+        if let (Ok(before), Ok(after)) = (Value::try_from(&patched), Value::try_from(&after)) {
+            differing(&before, &after, Key::root(), &mut keys);
+        }
+        for key in keys {
+            note(done, &key.to_string(), t, false);
+        }
+        Ok(())
+    }
+
+    /// Whether no function of time was replaced.
+    pub(super) fn is_empty(&self) -> bool {
+        self.courses.is_empty()
+    }
+
+    /// The scene that a run began with, with the functions of time as they went at these times, and with this time
+    /// to stop.
+    pub(super) fn scene(&self, begun: &SceneFile, times: &[f64], stop: f64) -> Option<SceneFile> {
+        let mut scene = begun.scene().clone();
+        let mut keys = Vec::new();
+        for (key, function) in scene.functions_mut() {
+            let courses = self.courses.iter().filter(|course| course.key == key);
+            let courses: Vec<&NewCourse> = courses.collect();
+            if courses.is_empty() {
+                continue;
+            }
+            // What replaces another function at a time acts in the steps after it.
+            let value = |t: f64| {
+                let last = courses.iter().rev().find(|course| course.begin < t);
+                last.map_or(&*function, |course| &course.profile).value(t)
+            };
+            let all = std::iter::once(0.0).chain(times.iter().copied().filter(|t| *t > 0.0));
+            *function = Profile::Course(Course::Keyframes {
+                interpolation: Interpolation::Linear,
+                keys: without_rests(all.map(|t| [t, value(t)]).collect()),
+            });
+            keys.push(key);
+        }
+        if scene.stop.time != stop {
+            scene.stop.time = stop;
+            keys.push(Key::root().name("stop.time"));
+        }
+        begun.changed(scene, keys).ok()
+    }
+}
+
+/// Keyframes without those between two of the same value.
+fn without_rests(keys: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let is_needed = |k: usize| {
+        let neighbours = (k.checked_sub(1).and_then(|k| keys.get(k)), keys.get(k + 1));
+        !matches!(neighbours, (Some(a), Some(b)) if a[1] == keys[k][1] && b[1] == keys[k][1])
+    };
+    let needed = (0..keys.len()).filter(|k| is_needed(*k));
+    needed.map(|k| keys[k]).collect()
+}
+
+/// The keys at which two values differ: those of lists of numbers as a whole.
+fn differing(before: &Value, after: &Value, key: Key, found: &mut Vec<Key>) {
+    match (before, after) {
+        (Value::Table(before), Value::Table(after)) => {
+            let further = after.keys().filter(|name| !before.contains_key(*name));
+            for name in before.keys().chain(further) {
+                let key = key.part(&KeyPart::Name(name.clone()));
+                match (before.get(name), after.get(name)) {
+                    (Some(before), Some(after)) => differing(before, after, key, found),
+                    _ => found.push(key),
+                }
+            }
+        }
+        (Value::Array(before), Value::Array(after))
+            if before.len() == after.len() && before.iter().all(Value::is_table) =>
+        {
+            for (k, (before, after)) in before.iter().zip(after).enumerate() {
+                differing(before, after, key.entry(k), found);
+            }
+        }
+        _ if before != after => found.push(key),
+        _ => {}
+    }
+}

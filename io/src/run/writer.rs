@@ -1,0 +1,469 @@
+//! The files of a run that grow with its steps.
+
+use super::RunError;
+use super::checkpoint::{self, RunProgress};
+use super::elastic::ElasticSummary;
+use super::energy::EnergySummary;
+use super::folder::{RunFolder, SceneHash};
+use super::frames::{FrameFile, FrameShape};
+use super::recording::Tables;
+use super::row::dissipated;
+use super::steps::step_count;
+use super::summary::{EndReason, Ending, Measured};
+use crate::format::{
+    EventRow, EventWriter, FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter,
+    MeasureRow, MeasureWriter,
+};
+use crate::scene::{CarriedBody, Facts, Integrator, Scene, UnderWay};
+use isosheet_dynamics::{Checkpoint, State, StepReport};
+use nalgebra::Vector3;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Where the rows of the tables of a run are, while it goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rows {
+    /// In its files.
+    InFiles,
+    /// In its files, and in memory for what is made of them at the end.
+    InMemory,
+}
+
+/// The files that a run writes as it goes on, and how far it has come.
+pub(crate) struct RunWriter {
+    history: HistoryWriter,
+    /// The loads of supports and obstacles, if there are any.
+    loads: Option<LoadWriter>,
+    /// What the measures of the scene show, if there are any.
+    measures: Option<MeasureWriter>,
+    /// What is taken up and released, if anything is.
+    events: Option<EventWriter>,
+    frames: FrameFile,
+    /// The rows of these tables, where they are kept in memory.
+    pub(super) tables: Option<Tables>,
+    pub(super) progress: RunProgress,
+    /// The file of the checkpoints.
+    checkpoint: PathBuf,
+    /// Since when the wall time in the progress counts.
+    pub(super) clock: Instant,
+}
+
+/// What is recorded.
+pub(super) struct Subject<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) hash: SceneHash,
+    pub(super) facts: &'a Facts,
+    pub(super) shape: FrameShape,
+    pub(super) rows: Rows,
+}
+
+impl RunWriter {
+    /// The files of a run at its start, or after `saved` steps, of which its folder has them.
+    pub(super) fn begin(
+        subject: &Subject<'_>,
+        folder: &RunFolder,
+        under_way: &UnderWay,
+        saved: Option<RunProgress>,
+        clock: Instant,
+    ) -> Result<Self, RunError> {
+        let &Subject {
+            scene,
+            hash,
+            facts,
+            shape,
+            rows,
+        } = subject;
+        let bears_loads =
+            !scene.support.is_empty() || !scene.obstacle.is_empty() || !scene.body.is_empty();
+        let path = |name| folder.path(name);
+        let [history, loads, measures, events, frames] = [
+            RunFolder::HISTORY,
+            RunFolder::LOADS,
+            RunFolder::MEASURES,
+            RunFolder::EVENTS,
+            RunFolder::FRAMES,
+        ]
+        .map(path);
+        let is_new = saved.is_none();
+        let keeps = rows == Rows::InMemory;
+        let (history, loads, measures, events, frames) = match &saved {
+            None => (
+                HistoryWriter::create(&history)?,
+                bears_loads
+                    .then(|| LoadWriter::create(&loads))
+                    .transpose()?,
+                (!facts.measures.is_empty())
+                    .then(|| MeasureWriter::create(&measures))
+                    .transpose()?,
+                (scene.periods().next().is_some())
+                    .then(|| EventWriter::create(&events))
+                    .transpose()?,
+                FrameFile::create(&frames)?,
+            ),
+            Some(saved) => (
+                HistoryWriter::resume(&history, saved.history)?,
+                saved
+                    .loads
+                    .map(|of| LoadWriter::resume(&loads, of))
+                    .transpose()?,
+                saved
+                    .measures
+                    .map(|of| MeasureWriter::resume(&measures, of))
+                    .transpose()?,
+                saved
+                    .events
+                    .map(|of| EventWriter::resume(&events, of))
+                    .transpose()?,
+                FrameFile::resume(&frames, saved.frames, shape)?,
+            ),
+        };
+        // The files have been cut back to the checkpoint.
+        let tables = match keeps && !is_new {
+            true => Some(Tables::read(folder.root())?),
+            false => keeps.then(Tables::default),
+        };
+        let mut writer = Self {
+            tables,
+            history,
+            loads,
+            measures,
+            events,
+            frames,
+            progress: saved.unwrap_or_else(|| RunProgress {
+                scene: hash.to_string(),
+                version: env!("CARGO_PKG_VERSION").into(),
+                ..RunProgress::default()
+            }),
+            checkpoint: folder.path(RunFolder::CHECKPOINT),
+            clock,
+        };
+        if is_new {
+            writer.record_start(under_way)?;
+        }
+        Ok(writer)
+    }
+
+    /// Records the state at the start.
+    fn record_start(&mut self, under_way: &UnderWay) -> Result<(), RunError> {
+        self.progress.elastic = ElasticSummary::of(under_way.simulation.model());
+        self.observe_elastic(under_way);
+        self.progress.start_energy = under_way.simulation.energy();
+        let row = HistoryRow::of_start(&under_way.simulation);
+        self.progress.energy = EnergySummary::of_start(&under_way.simulation);
+        self.progress.strain = row.strain;
+        self.observe_sheets(under_way);
+        self.progress.gap = row.gap;
+        self.record_row(row)?;
+        self.record_measures(under_way)?;
+        self.record_frame(under_way)?;
+        self.save(&under_way.simulation.checkpoint())
+    }
+
+    /// Records a step that has been taken, but for its frame.
+    pub(super) fn record_step(
+        &mut self,
+        scene: &Scene,
+        under_way: &UnderWay,
+        report: &StepReport,
+    ) -> Result<(), RunError> {
+        self.progress.steps += 1;
+        self.count(scene, under_way, report);
+        self.observe_sheets(under_way);
+        self.observe_elastic(under_way);
+        let model = under_way.simulation.model();
+        let row = HistoryRow::of_step(report, model, self.progress.start_energy);
+        self.record_row(row)?;
+        self.record_loads(under_way)?;
+        self.record_measures(under_way)
+    }
+
+    /// Records what has been taken up and released.
+    pub(super) fn record_events(
+        &mut self,
+        rows: impl IntoIterator<Item = EventRow>,
+    ) -> Result<(), RunError> {
+        let Some(events) = &mut self.events else {
+            return Ok(());
+        };
+        for row in rows {
+            events.append(&row)?;
+            if let Some(tables) = &mut self.tables {
+                tables.events.push(row);
+            }
+        }
+        Ok(())
+    }
+
+    fn record_row(&mut self, row: HistoryRow) -> Result<(), RunError> {
+        self.history.append(&row)?;
+        if let Some(tables) = &mut self.tables {
+            tables.history.push(row);
+        }
+        Ok(())
+    }
+
+    /// Records a frame.
+    pub(super) fn record_frame(&mut self, under_way: &UnderWay) -> Result<(), RunError> {
+        let simulation = &under_way.simulation;
+        let state = simulation.state();
+        let facts = &under_way.facts;
+        let rod_forces = facts.of_edges(simulation.rod_forces().unwrap_or_default());
+        let contact_forces = simulation.surface_forces().unwrap_or_default();
+        let gaps = simulation.vertex_gaps().unwrap_or_default();
+        let plastic_angles = facts.of_edges(simulation.plastic_angles().unwrap_or_default());
+        let curvatures = simulation.plastic_curvatures().unwrap_or_default();
+        let plastic_curvatures = facts.of_faces(curvatures.into_flattened());
+        let data = FrameData {
+            rod_forces: &rod_forces,
+            contact_forces: &contact_forces,
+            gaps: &gaps,
+            plastic_angles: &plastic_angles,
+            plastic_curvatures: &plastic_curvatures,
+        };
+        let (t, x) = (state.t, under_way.facts.shown(&state.x));
+        Ok(self.frames.append(t, &x, &data)?)
+    }
+
+    /// Takes back the last frame.
+    pub(super) fn take_back_frame(&mut self) -> Result<(), RunError> {
+        Ok(self.frames.take_back()?)
+    }
+
+    /// Records the loads at the end of a step.
+    fn record_loads(&mut self, under_way: &UnderWay) -> Result<(), RunError> {
+        let Some(loads) = &mut self.loads else {
+            return Ok(());
+        };
+        let t = under_way.simulation.state().t;
+        let supports = under_way.supports.loads(&under_way.simulation).enumerate();
+        let on_supports = supports.map(|(number, load)| LoadRow {
+            t,
+            on: LoadKind::Support,
+            number,
+            force: load.force,
+            torque: load.torque,
+        });
+        let obstacles = under_way.facts.obstacle_loads(&under_way.simulation);
+        let on_obstacles = obstacles
+            .into_iter()
+            .enumerate()
+            .map(|(number, load)| LoadRow {
+                t,
+                on: LoadKind::Obstacle,
+                number,
+                force: load.force,
+                torque: load.torque,
+            });
+        let on_bodies = CarriedBody::contact_loads(&under_way.facts.bodies, &under_way.simulation);
+        let on_bodies = on_bodies
+            .into_iter()
+            .enumerate()
+            .map(|(number, load)| LoadRow {
+                t,
+                on: LoadKind::Body,
+                number,
+                force: load.force,
+                torque: load.torque,
+            });
+        let guided = under_way.facts.bodies.iter().enumerate();
+        let of_guides = guided.filter_map(|(number, body)| {
+            let load = body.guide_load(&under_way.simulation)?;
+            Some(LoadRow {
+                t,
+                on: LoadKind::Guide,
+                number,
+                force: load.force,
+                torque: load.torque,
+            })
+        });
+        for row in on_supports
+            .chain(on_obstacles)
+            .chain(on_bodies)
+            .chain(of_guides)
+        {
+            loads.append(&row)?;
+            if let Some(tables) = &mut self.tables {
+                tables.loads.push(row);
+            }
+        }
+        Ok(())
+    }
+
+    /// Records what the gauges show.
+    fn record_measures(&mut self, under_way: &UnderWay) -> Result<(), RunError> {
+        let Some(measures) = &mut self.measures else {
+            return Ok(());
+        };
+        let state = under_way.simulation.state();
+        let x = under_way.facts.shown(&state.x);
+        for gauge in &under_way.facts.measures {
+            let row = MeasureRow {
+                t: state.t,
+                name: gauge.name.clone(),
+                value: gauge.value(&x),
+            };
+            measures.append(&row)?;
+            if let Some(tables) = &mut self.tables {
+                tables.measures.push(row.clone());
+            }
+            let first = Measured {
+                last: row.value,
+                least: row.value,
+                largest: row.value,
+            };
+            let measured = self.progress.measured.entry(row.name).or_insert(first);
+            measured.last = row.value;
+            measured.least = measured.least.min(row.value);
+            measured.largest = measured.largest.max(row.value);
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, scene: &Scene, under_way: &UnderWay, report: &StepReport) {
+        let displacement = displacement(under_way);
+        let mass = under_way.simulation.model().mass().total();
+        let coordinates = under_way.simulation.state().x.iter();
+        let size = coordinates.fold(0.0, |size: f64, c| size.max(c.abs()));
+        let progress = &mut self.progress;
+        progress.strain = progress.strain.max(report.strain);
+        progress.displacement = progress.displacement.max(displacement);
+        progress.energy.observe(report, mass, size);
+        // Whoever looks for a state of rest needs no vibrations on the way.
+        if scene.method.integrator == Integrator::Bdf2 && scene.stop.rest.is_none() {
+            let (t, h) = (report.t, report.h);
+            progress.vibrations.observe(t, h, report.kinetic);
+        }
+        progress.iterations += report.iterations as u64;
+        progress.factorisations += report.factorisations as u64;
+        progress.rejected += report.rejected as u64;
+        // An infinite gap means that nothing is within reach.
+        if let Some(gap) = report.gap.filter(|gap| gap.is_finite()) {
+            progress.gap = Some(progress.gap.map_or(gap, |least| least.min(gap)));
+        }
+    }
+
+    /// Takes in the strain of each of several sheets.
+    fn observe_sheets(&mut self, under_way: &UnderWay) {
+        let facts = &under_way.facts;
+        let strains = &mut self.progress.sheet_strains;
+        // Bodies and obstacles in motion come last.
+        let others = facts.bodies.len() + facts.origins.driven.len();
+        strains.resize(facts.parts.len() - others, 0.0);
+        let (edges, x) = (
+            under_way.simulation.model().edges(),
+            &under_way.simulation.state().x,
+        );
+        for (strain, (_, part)) in strains.iter_mut().zip(&facts.parts) {
+            *strain = strain.max(edges.max_strain_among(part.edges.clone(), x));
+        }
+    }
+
+    fn observe_elastic(&mut self, under_way: &UnderWay) {
+        if let Some(elastic) = &mut self.progress.elastic {
+            elastic.observe(&under_way.simulation);
+        }
+    }
+
+    /// Whether a condition to stop holds after a step.
+    pub(super) fn end_reason(
+        &mut self,
+        scene: &Scene,
+        under_way: &UnderWay,
+        report: &StepReport,
+    ) -> Option<EndReason> {
+        if report.taut.is_some() {
+            return Some(EndReason::Taut);
+        }
+        if scene.stop.is_force_reached(|| under_way.support_forces()) {
+            return Some(EndReason::SupportForce);
+        }
+        if let Some(rest) = &scene.stop.rest {
+            // A sheet at rest that a support is about to release is not at its end.
+            let is_due = under_way.switches.are_due(scene);
+            if is_due || largest_speed(under_way) > rest.speed {
+                self.progress.slow_since = None;
+            } else {
+                let since = *self.progress.slow_since.get_or_insert(report.t);
+                if report.t - since >= rest.duration {
+                    return Some(EndReason::Rest);
+                }
+            }
+        }
+        (self.progress.steps >= step_count(scene)).then_some(EndReason::Time)
+    }
+
+    /// Writes a checkpoint of the simulation after the steps that are recorded, after everything that it counts is on
+    /// the disk.
+    pub(super) fn save(&mut self, simulation: &Checkpoint) -> Result<(), RunError> {
+        self.history.sync()?;
+        self.frames.sync()?;
+        self.progress.history = self.history.written();
+        if let Some(loads) = &self.loads {
+            loads.sync()?;
+            self.progress.loads = Some(loads.written());
+        }
+        if let Some(measures) = &self.measures {
+            measures.sync()?;
+            self.progress.measures = Some(measures.written());
+        }
+        if let Some(events) = &self.events {
+            events.sync()?;
+            self.progress.events = Some(events.written());
+        }
+        self.progress.frames = self.frames.count();
+        self.progress.wall += self.clock.elapsed().as_secs_f64();
+        self.clock = Instant::now();
+        checkpoint::write(&self.checkpoint, &self.progress, simulation)
+    }
+}
+
+/// Largest distance of a vertex from its place at the start, metres.
+fn displacement(under_way: &UnderWay) -> f64 {
+    let now = under_way.facts.shown(&under_way.simulation.state().x);
+    let pairs = now
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .zip(under_way.facts.start.as_chunks::<3>().0);
+    let distances = pairs.map(|(p, q)| (Vector3::from(*p) - Vector3::from(*q)).norm());
+    distances.fold(0.0, f64::max)
+}
+
+/// Largest speed of a vertex, m/s.
+fn largest_speed(under_way: &UnderWay) -> f64 {
+    let velocities = under_way.facts.shown(&under_way.simulation.state().v);
+    let speeds = velocities
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .map(|v| Vector3::from(*v).norm());
+    speeds.fold(0.0, f64::max)
+}
+
+/// The state at the end of a step, which ends a run for a reason.
+pub(super) fn ending(under_way: &UnderWay, reason: EndReason, report: &StepReport) -> Ending {
+    let loads = under_way.facts.obstacle_loads(&under_way.simulation);
+    Ending {
+        reason,
+        t: report.t,
+        kinetic: report.kinetic,
+        potential: report.potential,
+        plastic: dissipated(under_way.simulation.model(), report.plastic),
+        energy_drift: report.energy_drift,
+        largest_speed: largest_speed(under_way),
+        supports: under_way.support_forces(),
+        obstacles: loads.iter().map(|load| load.force).collect(),
+        bodies: CarriedBody::contact_loads(&under_way.facts.bodies, &under_way.simulation)
+            .iter()
+            .map(|load| load.force)
+            .collect(),
+        taut: report.taut.as_ref().map(|demand| demand.to_string()),
+        residuals: {
+            let State { t, x, .. } = under_way.simulation.state();
+            under_way
+                .facts
+                .targets
+                .residuals(under_way.simulation.model().topology(), *t, x)
+        },
+    }
+}
