@@ -26,7 +26,7 @@ type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 /// faces: array of whole numbers of shape (F, 3), the corners of each triangle, all counter-clockwise as seen
 ///     from the same side.
 ///
-/// A mesh of trimesh, meshio or PyVista may be given alone: ``Mesh(trimesh.load("cloth.ply"))``; it is known by its
+/// A mesh of trimesh, meshio or pyvista may be given alone: ``Mesh(trimesh.load("cloth.ply"))``; it is known by its
 /// attributes. What these libraries make of one:
 ///
 ///     trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
@@ -126,7 +126,7 @@ impl Mesh {
             return Self::of_arrays(vertices, faces);
         }
         let Some([vertices, faces]) = foreign::arrays(vertices)? else {
-            let message = "give vertices and faces, or a mesh of trimesh, meshio or PyVista";
+            let message = "give vertices and faces, or a mesh of trimesh, meshio or pyvista";
             return Err(PyTypeError::new_err(message));
         };
         Self::of_arrays(&vertices, &faces)
