@@ -137,7 +137,8 @@ impl Recording {
         (recording, frames)
     }
 
-    /// The frames for files of other programs, with bodies, the names of sheets and what edges are meant to do.
+    /// The frames for files of other programs, with bodies, the names of sheets and what edges are meant to
+    /// do.
     ///
     /// # Errors
     /// [`ExportError`] for options that choose no frames.
