@@ -9,8 +9,9 @@ import numpy as np
 
 
 def show(page):
-    """Opens a page in the browser; returns its file. It is in the folder of temporary files and stays there, because the
-    browser reads it later."""
+    """Opens a page in the browser; returns its file.
+
+    It is in the folder of temporary files and stays there, because the browser reads it later."""
     number, path = tempfile.mkstemp(prefix="isosheet-", suffix=".html")
     with os.fdopen(number, "w", encoding="utf-8") as file:
         file.write(page)

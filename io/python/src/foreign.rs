@@ -1,4 +1,4 @@
-//! Meshes of other libraries, by their conventions: trimesh, meshio, PyVista.
+//! Meshes of other libraries, by their conventions: trimesh, meshio, pyvista.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 ///
 /// - `vertices` and `faces`: trimesh, and everything like it,
 /// - `points` and `cells_dict["triangle"]`: meshio,
-/// - `points`, `faces` and `is_all_triangles`: PyVista.
+/// - `points`, `faces` and `is_all_triangles`: pyvista.
 pub(crate) fn arrays<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {
     let py = object.py();
     let both = |vertices, faces: &str| -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {

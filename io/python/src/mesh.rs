@@ -26,15 +26,15 @@ type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 /// faces: array of whole numbers of shape (F, 3), the corners of each triangle, all counter-clockwise as seen
 ///     from the same side.
 ///
-/// A mesh of trimesh, meshio or PyVista may be given alone: ``Mesh(trimesh.load("cloth.ply"))``; it is known by its
-/// attributes. What these libraries make of one:
+/// A mesh of trimesh, meshio or pyvista may be given alone: ``Mesh(trimesh.load("cloth.ply"))``; it is known
+/// by its attributes. What these libraries make of one:
 ///
 ///     trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
 ///     meshio.Mesh(mesh.vertices, [("triangle", mesh.faces)])
 ///     pyvista.PolyData.from_regular_faces(mesh.vertices, mesh.faces)
 ///
-/// A mesh, also one of these libraries, takes the place of a mesh in a scene: ``Scene.from_dict({"sheet": {"mesh": mesh}, ...})``. Raises
-/// Error for what is no oriented surface.
+/// A mesh, also one of these libraries, takes the place of a mesh in a scene:
+/// ``Scene(sheet={"mesh": mesh, ...})``. Raises Error for what is no oriented surface.
 #[pyclass(frozen, module = "isosheet")]
 pub(crate) struct Mesh {
     sheet: Sheet,
@@ -126,7 +126,7 @@ impl Mesh {
             return Self::of_arrays(vertices, faces);
         }
         let Some([vertices, faces]) = foreign::arrays(vertices)? else {
-            let message = "give vertices and faces, or a mesh of trimesh, meshio or PyVista";
+            let message = "give vertices and faces, or a mesh of trimesh, meshio or pyvista";
             return Err(PyTypeError::new_err(message));
         };
         Self::of_arrays(&vertices, &faces)

@@ -10,7 +10,8 @@ use std::sync::{Mutex, PoisonError};
 
 /// What records the steps of a simulation in a folder; Simulation.record makes it.
 ///
-/// Leaving the `with` statement ends the recording, after an exception too, and writes the page and the summary:
+/// Leaving the `with` statement ends the recording, after an exception too, and writes the page and the
+/// summary:
 ///
 ///     >>> simulation = isosheet.Simulation(isosheet.Scene.new("hanging"))
 ///     >>> with simulation.record("hanging-run") as recorder:

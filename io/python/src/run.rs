@@ -297,8 +297,9 @@ impl Run {
         py.import("isosheet._show")?.call_method1("show", (page,))
     }
 
-    /// Writes frames as a file of another program, whose format the extension says: .usda, .glb, .pvd, .pc2, .obj,
-    /// .fold, .csv or .npz; see `isosheet convert`. A picture or a film is written by `picture` and `film`.
+    /// Writes frames as a file of another program, whose format the extension says: .usda, .glb, .pvd, .pc2,
+    /// .obj, .fold, .csv or .npz; see `isosheet convert`. A picture or a film is written by `picture` and
+    /// `film`.
     ///
     /// every: every so many frames one.
     ///
@@ -343,8 +344,8 @@ impl Run {
         shown.write(py, &path, Kind::Picture)
     }
 
-    /// Writes shaded pictures of the frames as an animated PNG file in real time, which browsers and notebooks show:
-    /// ``run.film("cloth.apng")``.
+    /// Writes shaded pictures of the frames as an animated PNG file in real time, which browsers and
+    /// notebooks show: ``run.film("cloth.apng")``.
     ///
     /// every: every so many frames one; height and view are those of `picture`.
     #[pyo3(signature = (path, *, every = 1, height = 480, view = None))]
@@ -371,10 +372,11 @@ impl Run {
         shown.write(py, &path, Kind::Film)
     }
 
-    /// Plots quantities over time with matplotlib, which is no part of isosheet: ``run.plot("tip", "total")``.
+    /// Plots quantities over time with matplotlib, which is no part of isosheet:
+    /// ``run.plot("tip", "total")``.
     ///
-    /// names: measures, columns of the history, or bodies of `loads`, of which the size of the force is shown; by
-    ///     default all measures, or the energies.
+    /// names: measures, columns of the history, or bodies of `loads`, of which the size of the force is
+    ///     shown; by default all measures, or the energies.
     /// ax: the axes of matplotlib, by default the current ones.
     ///
     /// Returns the axes. Raises `KeyError` for a name that there is not.

@@ -16,8 +16,8 @@ use toml::Value;
 
 /// A scene: everything that decides how a simulation goes. The keys are those of scene files.
 ///
-/// The keys are given as keyword arguments, see `Scene.from_dict`. `Scene.from_toml` reads a file, `Scene.new` makes a
-/// scene to start from. A scene never changes; Scene.edit makes another one.
+/// The keys are given as keyword arguments, see `Scene.from_dict`. `Scene.from_toml` reads a file,
+/// `Scene.new` makes a scene to start from. A scene never changes; Scene.edit makes another one.
 ///
 ///     >>> scene = isosheet.Scene(
 ///     ...     sheet={"mesh": {"square": {"side": 0.2, "level": 2}}, "density": 0.08},
@@ -112,9 +112,8 @@ impl Scene {
 
     /// The scene of a dictionary, which has the keys of a scene file; `version` may be left out.
     ///
-    /// Values are numbers, texts, lists, dictionaries, objects of dataclasses, numpy arrays, paths and meshes; what is
-    /// None is left out. Paths are relative to
-    /// `folder`.
+    /// Values are numbers, texts, lists, dictionaries, objects of dataclasses, numpy arrays, paths and
+    /// meshes; what is None is left out. Paths are relative to `folder`.
     #[staticmethod]
     #[pyo3(signature = (scene, folder = PathBuf::new()))]
     fn from_dict(py: Python<'_>, scene: &Bound<'_, PyDict>, folder: PathBuf) -> PyResult<Self> {

@@ -232,16 +232,17 @@ impl Simulation {
         Ok(reports)
     }
 
-    /// Records all steps from now on in a folder, as `isosheet simulate` does: page, frames, history, loads, measures,
-    /// summary. Use it in a ``with`` statement, or call its `close`.
+    /// Records all steps from now on in a folder, as `isosheet simulate` does: page, frames, history, loads,
+    /// measures, summary. Use it in a ``with`` statement, or call its `close`.
     ///
     /// fps: frames per second of simulated time, by default those of the scene.
     /// every: the number of steps from one frame to the next, in place of `fps`.
-    /// replace: whether a run that the folder holds is deleted; without it, it is kept, and `RunFailed` raised.
+    /// replace: whether a run that the folder holds is deleted; without it, it is kept, and `RunFailed`
+    /// raised.
     ///
-    /// Without changes between the steps the files have the bits of those of the command, but for wall times. The scene
-    /// in the folder has what was driven as it went, and ends where the recording does; what else was changed is in
-    /// ``run.summary["control"]``.
+    /// Without changes between the steps the files have the bits of those of the command, but for wall times.
+    /// The scene in the folder has what was driven as it went, and ends where the recording does; what else
+    /// was changed is in ``run.summary["control"]``.
     ///
     ///     >>> simulation = isosheet.Simulation(isosheet.Scene.new("hanging"))
     ///     >>> with simulation.record("hanging-run", every=1):

@@ -15,9 +15,9 @@ const MOST_LEVELS: usize = 64;
 /// The values of further classes: those of meshes, or none.
 pub(crate) type Further = fn(&Bound<'_, PyAny>) -> PyResult<Option<Value>>;
 
-/// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries, objects of
-/// dataclasses, numpy arrays and numbers, and what `further` knows. Entries of dictionaries that are `None` are left out. It is
-/// so many levels deep in others.
+/// The value of TOML that stands for one of Python: truth values, numbers, texts, paths, lists, dictionaries,
+/// objects of dataclasses, numpy arrays and numbers, and what `further` knows. Entries of dictionaries that
+/// are `None` are left out. It is so many levels deep in others.
 fn nested(value: &Bound<'_, PyAny>, further: Further, level: usize) -> PyResult<Value> {
     let py = value.py();
     if level > MOST_LEVELS {

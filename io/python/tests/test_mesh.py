@@ -27,14 +27,13 @@ def test_meshes_of_other_libraries_are_taken(library):
     assert np.array_equal(isosheet.Simulation(scene).x, VERTICES)
 
 
-@pytest.mark.parametrize("library", LIKE)
+@pytest.mark.parametrize("library", ["trimesh", "meshio"])
 def test_the_libraries_themselves(library):
     module = pytest.importorskip(library)
     ours = isosheet.Mesh(VERTICES, FACES)
     theirs = {
         "trimesh": lambda: module.Trimesh(ours.vertices, ours.faces, process=False),
         "meshio": lambda: module.Mesh(ours.vertices, [("triangle", ours.faces)]),
-        "pyvista": lambda: module.PolyData.from_regular_faces(ours.vertices, ours.faces),
     }[library]()
     back = isosheet.Mesh(theirs)
     assert np.array_equal(back.vertices, VERTICES) and np.array_equal(back.faces, FACES)

@@ -17,8 +17,8 @@ pub struct Intervention {
     pub last: f64,
     /// How often.
     pub times: u64,
-    /// Whether the scene in the folder of the run has it: functions of time are there as they went, at the ends of
-    /// the steps.
+    /// Whether the scene in the folder of the run has it: functions of time are there as they went, at the
+    /// ends of the steps.
     pub in_scene: bool,
 }
 
@@ -76,8 +76,8 @@ impl Control {
     /// Takes in that a scene is another one from a time on, and notes what has changed.
     ///
     /// # Errors
-    /// [`RunError::NotRecordable`] for changes after which the files of the run would have other columns; then nothing
-    /// is noted.
+    /// [`RunError::NotRecordable`] for changes after which the files of the run would have other columns;
+    /// then nothing is noted.
     pub(super) fn change(
         &mut self,
         before: &Scene,
@@ -127,8 +127,8 @@ impl Control {
         self.courses.is_empty()
     }
 
-    /// The scene that a run began with, with the functions of time as they went at these times, and with this time
-    /// to stop.
+    /// The scene that a run began with, with the functions of time as they went at these times, and with this
+    /// time to stop.
     pub(super) fn scene(&self, begun: &SceneFile, times: &[f64], stop: f64) -> Option<SceneFile> {
         let mut scene = begun.scene().clone();
         let mut keys = Vec::new();

@@ -70,12 +70,13 @@ impl Advice for RecordedStepError {
     }
 }
 
-/// Writes the folder of a run, see [`simulate`](super::simulate), of a simulation whose steps a program takes and
-/// whose scene it may change in between. Without changes the files have the bits of [`simulate`](super::simulate)
-/// up to the wall times.
+/// Writes the folder of a run, see [`simulate`](super::simulate), of a simulation whose steps a program takes
+/// and whose scene it may change in between. Without changes the files have the bits of
+/// [`simulate`](super::simulate) up to the wall times.
 ///
-/// The scene in the folder is the one at the beginning, with functions of time as they were driven and with the time at
-/// which the recording ended. What else was changed is in [`Summary::control`](super::Summary::control).
+/// The scene in the folder is the one at the beginning, with functions of time as they were driven and with
+/// the time at which the recording ended. What else was changed is in
+/// [`Summary::control`](super::Summary::control).
 ///
 /// ```
 /// use isosheet_io::run::{Recorder, RecorderOptions, RecordingEnd};
@@ -351,8 +352,8 @@ impl Recorder {
         Ok(went)
     }
 
-    /// Ends the recording and writes what a complete run has, the summary last; returns what was recorded. Without a
-    /// step there is no run, and what it has is its start.
+    /// Ends the recording and writes what a complete run has, the summary last; returns what was recorded.
+    /// Without a step there is no run, and what it has is its start.
     ///
     /// # Errors
     /// [`RunError`] if a file cannot be written.

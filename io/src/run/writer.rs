@@ -392,8 +392,8 @@ impl RunWriter {
         (self.progress.steps >= step_count(scene)).then_some(EndReason::Time)
     }
 
-    /// Writes a checkpoint of the simulation after the steps that are recorded, after everything that it counts is on
-    /// the disk.
+    /// Writes a checkpoint of the simulation after the steps that are recorded, after everything that it
+    /// counts is on the disk.
     pub(super) fn save(&mut self, simulation: &Checkpoint) -> Result<(), RunError> {
         self.history.sync()?;
         self.frames.sync()?;

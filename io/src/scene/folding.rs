@@ -92,7 +92,7 @@ pub struct FoldResidual {
     pub rms: f64,
     /// Largest fold angle of an edge that should stay flat.
     pub largest_flat: f64,
-    /// Number of driven creases that are folded to the other side.
+    /// Number of driven creases that are folded to the other side: further from their angles than a flat sheet is.
     pub wrong_side: usize,
 }
 
@@ -119,7 +119,9 @@ impl FoldTargets {
             residual.largest = residual.largest.max(d);
             squares += d * d;
             let angle = fold_angle(t, x, e).unwrap_or(0.0);
-            residual.wrong_side += usize::from(angle.sin() * target < -FLAT * target.abs());
+            // A crease that is folded by nearly 180 degrees may have passed them.
+            let is_other = angle.sin() * target < -FLAT * target.abs();
+            residual.wrong_side += usize::from(is_other && d > target.abs().to_degrees());
         }
         residual.rms = (squares / self.creases.len().max(1) as f64).sqrt();
         for &e in &self.flat {

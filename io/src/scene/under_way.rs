@@ -47,7 +47,8 @@ impl UnderWay {
         }
     }
 
-    /// Takes a step, see [`Simulation::step_watched`]; the forces of the supports are those of this step then.
+    /// Takes a step, see [`Simulation::step_watched`]; the forces of the supports are those of this step
+    /// then.
     pub(crate) fn step_watched(
         &mut self,
         h: f64,
