@@ -203,6 +203,17 @@ mod tests {
         Triangles::new(&topology, x.as_flattened(), &[], &[0.0; 3], 1.0)
     }
 
+    /// Two faces that meet at an angle, radians.
+    fn hinge(slope: f64) -> Triangles {
+        let x = [
+            [0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [-1.0, 0.5, 0.0],
+            [slope.cos(), 0.5, slope.sin()],
+        ];
+        scene(&[[0, 1, 2], [1, 0, 3]], &x)
+    }
+
     fn pieces(scene: &Triangles, back: impl Fn(usize) -> bool) -> Vec<Piece> {
         let faces = scene.faces.iter().enumerate();
         let piece = |(face, corners): (usize, &[usize; 3])| Piece {
@@ -241,13 +252,7 @@ mod tests {
     #[test]
     fn creases_are_dark_inside_and_bends_are_not() {
         let at = |slope: f64| {
-            let x = [
-                [0.0, 0.0, 0.0],
-                [0.0, 1.0, 0.0],
-                [-1.0, 0.5, 0.0],
-                [slope.cos(), 0.5, slope.sin()],
-            ];
-            let scene = scene(&[[0, 1, 2], [1, 0, 3]], &x);
+            let scene = hinge(slope);
             openness(&pieces(&scene, |_| false), &scene, 1.0)
         };
         let [bent, folded] = [0.3, 1.6].map(at);
@@ -260,13 +265,7 @@ mod tests {
     #[test]
     fn bends_have_one_normal_and_folds_two() {
         for (slope, expected) in [(0.3_f64, [0.0, 0.3]), (1.6, [0.0, 1.6])] {
-            let x = [
-                [0.0, 0.0, 0.0],
-                [0.0, 1.0, 0.0],
-                [-1.0, 0.5, 0.0],
-                [slope.cos(), 0.5, slope.sin()],
-            ];
-            let scene = scene(&[[0, 1, 2], [1, 0, 3]], &x);
+            let scene = hinge(slope);
             let around = Occlusion::new(&scene, 1.0).of_corners(&pieces(&scene, |_| false), &scene);
             let shared = if slope < 1.0 {
                 [slope / 2.0; 2]
