@@ -16,8 +16,8 @@ mod loads;
 mod measures;
 pub(crate) mod memory;
 mod mesh_file;
-mod pattern;
 mod trajectory;
+mod vector;
 
 pub use atomic::{FileWriter, write_atomically};
 #[cfg(feature = "run")]

@@ -47,6 +47,7 @@ mod frame_field;
 mod frames;
 #[cfg(feature = "picture")]
 mod gallery;
+mod intervention;
 mod page;
 mod recorder;
 mod recording;
@@ -69,7 +70,6 @@ pub use collect::Collection;
 pub use commit::note_commit;
 #[cfg(feature = "cli")]
 pub(crate) use constraints::HoldingBody;
-pub use control::Intervention;
 pub use elastic::{Bend, ElasticSummary};
 pub use energy::EnergySummary;
 pub use error::RunError;
@@ -82,6 +82,7 @@ pub use fold_verdict::FoldVerdict;
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
+pub use intervention::Intervention;
 pub use page::write_page;
 pub use recorder::{ExistingRun, RecordedStepError, Recorder, RecorderOptions, RecordingEnd};
 pub use recording::Recording;

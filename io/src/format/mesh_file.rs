@@ -13,6 +13,7 @@ mod mesh;
 mod obj;
 mod off;
 mod options;
+mod pattern;
 mod plane;
 mod ply;
 mod polygon;

@@ -1,10 +1,10 @@
 //! The checkpoint of a run: how far it has come, with the checkpoint of its simulation.
 
 use super::RunError;
-use super::control::Intervention;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::error::BEGIN_ANEW;
+use super::intervention::Intervention;
 use super::summary::{Ending, Measured};
 use super::vibration::Vibrations;
 use crate::format::{FileError, Written, input, write_atomically};

@@ -1,8 +1,9 @@
 //! Recordings of simulations whose steps a program takes.
 
-use super::control::{Control, note};
+use super::control::Control;
 use super::folder::{Existing, FolderState, RunFolder, RunInputs, SceneHash, stored_scene};
 use super::frames::FrameShape;
+use super::intervention::note;
 use super::recording::Recording;
 use super::stepping::Plan;
 use super::steps::{ROUND_OFF, step_length};

@@ -1,8 +1,8 @@
 //! What a complete run says of itself.
 
-use super::control::Intervention;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
+use super::intervention::Intervention;
 use super::vibration::Vibration;
 use crate::scene::Residuals;
 use isosheet_mesh::Part;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 14] = [
+const ALL_KEYS: [&str; 15] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -418,6 +418,44 @@ const ALL_KEYS: [&str; 14] = [
     [stop]
     time = 1
     "#,
+    r##"version = 1
+    [[sheet]]
+    name = "drawn"
+    mesh = { drawing = { path = "a.svg", spacing = 0.01, snap = 1e-4, unit = "mm", scale = 2, cut = ["black"],
+        crease = ["layer:fold"], mountain = ["red"], valley = ["#0000ff"], flat = ["solid"], ignore = ["dashed"], seed = 1 } }
+    density = 0.1
+    [[sheet]]
+    name = "in cm"
+    mesh = { drawing = { path = "a.svg", spacing = 0.01, unit = "cm" } }
+    density = 0.1
+    [[sheet]]
+    name = "in in"
+    mesh = { drawing = { path = "a.svg", spacing = 0.01, unit = "in" } }
+    density = 0.1
+    [[sheet]]
+    name = "in m"
+    mesh = { drawing = { path = "a.svg", spacing = 0.01, unit = "m" } }
+    density = 0.1
+    [[sheet]]
+    name = "in pt"
+    mesh = { drawing = { path = "a.svg", spacing = 0.01, unit = "pt" } }
+    density = 0.1
+    [[sheet]]
+    name = "in px"
+    mesh = { drawing = { path = "a.svg", spacing = 0.01, unit = "px" } }
+    density = 0.1
+    [[sheet]]
+    name = "listed"
+    mesh = { triangles = { vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] } }
+    density = 0.1
+    start = { positions = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], velocities = [[0, 0, 0], [0, 0, 0], [0, 0, 1]] }
+    [[crease]]
+    sheet = "drawn"
+    at = { pattern = "unassigned" }
+    stiffness = 0.1
+    angle = 10
+    [[obstacle]]
+    shape = { triangles = { vertices = [[0, 0, -1], [1, 0, -1], [0, 1, -1]], faces = [[0, 1, 2]] } }"##,
 ];
 
 /// Scenes that have every key of the reference between them.

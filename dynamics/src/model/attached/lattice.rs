@@ -1,6 +1,6 @@
 //! The lattice of vortex rings on the faces of a sheet.
 
-use super::AttachedFlowError;
+use super::error::AttachedFlowError;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Topology, VertexId};
 use nalgebra::Vector3;

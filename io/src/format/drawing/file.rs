@@ -1,8 +1,7 @@
 //! Files of drawings.
 
-use super::lines::Drawing;
 use super::options::DrawingOptions;
-use super::{dxf, svg};
+use crate::format::vector::{Drawing, dxf, svg};
 use crate::format::{DataError, FileError, input};
 use std::path::Path;
 
@@ -48,7 +47,7 @@ pub fn parse_drawing(
 ) -> Result<Drawing, FileError> {
     let drawing = match DrawingFormat::of(path) {
         Some(DrawingFormat::Svg) => svg::parse(bytes, options.unit, options.scale),
-        Some(DrawingFormat::Dxf) => dxf::parse(bytes, options),
+        Some(DrawingFormat::Dxf) => dxf::parse(bytes, options.unit, options.scale),
         None => {
             let message = "it is no drawing by its name";
             Err(DataError::new(message, "name a file .svg or .dxf"))

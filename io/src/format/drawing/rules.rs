@@ -1,8 +1,8 @@
 //! Which lines are cuts, creases and so on.
 
 use super::class::LineClass;
-use super::lines::Pen;
 use super::selector::Selector;
+use crate::format::vector::Pen;
 
 /// What lines are taken for. A selector by layer counts before one by colour, and that before one by dash;
 /// what is selected by none goes by the words in the names of its layers, then by its colour as in Origami
@@ -121,8 +121,8 @@ fn class_of_name(name: &str) -> Option<LineClass> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::colour::Colour;
     use super::*;
+    use crate::format::vector::Colour;
 
     fn pen(colour: [u8; 3], dashed: bool, layers: &[&str]) -> Pen {
         Pen {

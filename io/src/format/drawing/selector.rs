@@ -1,7 +1,6 @@
 //! Lines that are meant, by layer, colour or dash.
 
-use super::colour::Colour;
-use super::lines::Pen;
+use crate::format::vector::{Colour, Pen};
 use std::fmt;
 use std::str::FromStr;
 

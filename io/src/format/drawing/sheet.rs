@@ -2,9 +2,9 @@
 
 use super::class::LineClass;
 use super::file::read_drawing;
-use super::lines::{Drawing, DrawnLine};
 use super::options::DrawingOptions;
 use super::report::{ClassCount, DrawingReport, Places};
+use crate::format::vector::{Drawing, DrawnLine};
 use crate::format::{DataError, EdgeAssignment, FileCrease, FileError, MeshFile};
 use isosheet_mesh::plane::{Piece, PlaneError, PlaneGraph, PlaneMesh, PlaneOptions, Role};
 use isosheet_mesh::wording::counted;

@@ -4,7 +4,7 @@ use super::error::{Located, Location};
 use super::faces::Polyhedron;
 use super::{MeshFile, MeshFormat, MeshOptions};
 use crate::format::DataError;
-use crate::format::pattern::{self, Planar, Segment};
+use crate::format::mesh_file::pattern::{self, Planar, Segment};
 
 /// Reads a drawing. Its faces are what its lines enclose, in the plane z = 0 as seen on the screen; points that are
 /// within the tolerance for welding of each other are one.

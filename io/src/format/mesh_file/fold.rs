@@ -12,7 +12,7 @@ use super::faces::Polyhedron;
 use super::plane::{self, NEAR, Point};
 use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
 use crate::format::DataError;
-use crate::format::pattern::{Planar, planar};
+use crate::format::mesh_file::pattern::{Planar, planar};
 use frames::FrameRecord;
 use isosheet_mesh::wording::brief;
 use std::collections::HashMap;

@@ -29,7 +29,11 @@ const EXPORT: &str = "export it again as plain SVG";
 
 /// Reads the shapes of a drawing, `scale` times as large, by the unit of the file unless another is given. Its y axis
 /// points upwards, from the lower edge of the page.
-pub(in crate::format) fn parse(bytes: &[u8], unit: Option<DrawingUnit>, scale: f64) -> Result<Drawing, DataError> {
+pub(in crate::format) fn parse(
+    bytes: &[u8],
+    unit: Option<DrawingUnit>,
+    scale: f64,
+) -> Result<Drawing, DataError> {
     let text = std::str::from_utf8(bytes)
         .map_err(|e| DataError::new(format!("byte {} is not UTF-8", e.valid_up_to()), EXPORT))?;
     let parsing = ParsingOptions {

@@ -2,9 +2,8 @@
 
 use super::Segment;
 use crate::format::DataError;
-use crate::format::drawing::svg;
-use crate::format::drawing::Pen;
 use crate::format::mesh_file::EdgeAssignment;
+use crate::format::vector::{Pen, svg};
 use std::f64::consts::PI;
 
 /// Curves become lines that turn by so much at most, radians: 10 degrees.

@@ -9,7 +9,6 @@ mod layers;
 mod spline;
 
 use super::lines::Drawing;
-use super::options::DrawingOptions;
 use super::unit::DrawingUnit;
 use crate::format::DataError;
 use entity::Entity;
@@ -17,11 +16,15 @@ use groups::{Record, section};
 use layers::Layers;
 
 /// Reads the entities of a drawing.
-pub(super) fn parse(bytes: &[u8], options: &DrawingOptions) -> Result<Drawing, DataError> {
+pub(in crate::format) fn parse(
+    bytes: &[u8],
+    unit: Option<DrawingUnit>,
+    scale: f64,
+) -> Result<Drawing, DataError> {
     let text = String::from_utf8_lossy(bytes);
     let records = groups::records(&text)?;
     let mut drawing = Drawing::default();
-    let unit = match options.unit {
+    let unit = match unit {
         Some(unit) => unit.metres(1.0),
         None => match metres(&records)? {
             Some(metres) => metres,
@@ -31,7 +34,7 @@ pub(super) fn parse(bytes: &[u8], options: &DrawingOptions) -> Result<Drawing, D
             }
         },
     };
-    let scale = unit * options.scale;
+    let scale = unit * scale;
     let layers = Layers::of(&records)?;
     let mut entities = section(&records, "ENTITIES").iter();
     while let Some(record) = entities.next() {

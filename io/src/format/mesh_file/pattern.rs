@@ -11,8 +11,8 @@ pub(super) mod svg;
 #[cfg(test)]
 mod tests;
 
-use super::DataError;
-use super::mesh_file::{EdgeAssignment, FileCrease};
+use super::{EdgeAssignment, FileCrease};
+use crate::format::DataError;
 pub(super) use faces::faces;
 pub(super) use planar::{Planar, planar};
 
