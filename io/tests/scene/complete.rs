@@ -88,6 +88,8 @@ const ALL_KEYS: [&str; 15] = [
     shape = { file = { path = "b.obj" } }
     [[obstacle]]
     shape = "half_space"
+    [[obstacle]]
+    shape = { triangles = { vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] } }
     [forces]
     gravity = [0, 0, -9.81]
     [[forces.load]]
@@ -235,6 +237,7 @@ const ALL_KEYS: [&str; 15] = [
     [sheet]
     mesh = { square = { side = 0.2, level = 1 } }
     rest = "flat"
+    start = { positions = [[0, 0, 0], [1, 0, 0]], velocities = [[0, 0, 1], [0, 1, 0]] }
     bending = { orthotropic = { direction = [1, 0, 0], along = 2e-3, across = 1e-3, twist = 1e-3, coupling = 3e-4 } }
     curl = { along = [1, 0, 0], radius = 0.1, across_radius = 1.0, profile = { ramp = { from = 0, to = 1, begin = 0, end = 1 } } }
     [[support]]
