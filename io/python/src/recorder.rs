@@ -1,12 +1,14 @@
 //! Recordings of simulations.
 
 use crate::recorded::Run;
-use crate::simulation::Simulation;
-use isosheet_io::run::RecordingEnd;
+use isosheet_io::run::{Recording, RecordingEnd};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
+
+/// What ends a recording; `None` if it has been ended already.
+type End = dyn Fn(Python<'_>, RecordingEnd) -> PyResult<Option<Recording>> + Send + Sync;
 
 /// What records the steps of a simulation in a folder; Simulation.record makes it.
 ///
@@ -21,19 +23,15 @@ use std::sync::{Mutex, PoisonError};
 ///     10
 #[pyclass(frozen, module = "isosheet")]
 pub(crate) struct Recorder {
-    simulation: Py<Simulation>,
+    end: Box<End>,
     folder: PathBuf,
     run: Mutex<Option<Py<Run>>>,
 }
 
 impl Recorder {
-    pub(crate) fn new(simulation: Py<Simulation>, folder: PathBuf) -> Self {
+    pub(crate) fn new(end: Box<End>, folder: PathBuf) -> Self {
         let run = Mutex::new(None);
-        Self {
-            simulation,
-            folder,
-            run,
-        }
+        Self { end, folder, run }
     }
 
     fn ended(&self) -> Option<Py<Run>> {
@@ -46,7 +44,7 @@ impl Recorder {
         if let Some(run) = self.ended() {
             return Ok(run);
         }
-        let Some(recording) = self.simulation.get().end_recording(py, end)? else {
+        let Some(recording) = (self.end)(py, end)? else {
             return Err(PyValueError::new_err(
                 "the recording has been ended already",
             ));

@@ -79,11 +79,7 @@ impl Simulation {
     }
 
     /// Ends the recording; nothing if there is none.
-    pub(crate) fn end_recording(
-        &self,
-        py: Python<'_>,
-        end: RecordingEnd,
-    ) -> PyResult<Option<Recording>> {
+    fn end_recording(&self, py: Python<'_>, end: RecordingEnd) -> PyResult<Option<Recording>> {
         let ended = self.with_recorder(py, |inner| {
             let recorder = inner.recorder.take()?;
             Some(recorder.finish(&inner.live, end))
@@ -277,7 +273,11 @@ impl Simulation {
             Ok(None)
         });
         match begun.map_err(|e| of_run(py, &e))? {
-            None => Ok(recorder::Recorder::new(slf.clone().unbind(), folder)),
+            None => {
+                let simulation = slf.clone().unbind();
+                let end = move |py: Python<'_>, end| simulation.get().end_recording(py, end);
+                Ok(recorder::Recorder::new(Box::new(end), folder))
+            }
             Some(other) => Err(PyValueError::new_err(format!(
                 "the simulation is recorded in {} already; end that recording first",
                 other.display()
