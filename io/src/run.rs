@@ -58,6 +58,7 @@ mod stepping;
 mod steps;
 mod summary;
 mod sweep;
+#[cfg(feature = "cli")]
 mod trial;
 mod vibration;
 #[cfg(feature = "picture")]

@@ -170,6 +170,7 @@ pub use yields::{CreaseYield, SheetYield};
 pub(crate) use build::Kept;
 #[cfg(feature = "run")]
 pub(crate) use bytes::bytes_in_words;
+#[cfg(feature = "run")]
 pub(crate) use mesh_file::Files;
 #[cfg(feature = "run")]
 pub(crate) use resolution::check_positions;

@@ -188,6 +188,7 @@ impl Trajectory {
     }
 
     /// The trajectory of the first vertices, edges and faces of the mesh, which belong together.
+    #[cfg(feature = "run")]
     pub(crate) fn of_first(&self, counts: MeshCounts) -> Self {
         let frames = |values: &[f64], size: usize, first: usize| -> Vec<f64> {
             let frames = values.chunks_exact(size.max(1));

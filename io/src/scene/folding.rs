@@ -257,6 +257,7 @@ impl Folding {
     }
 
     /// The part of the way to their angles that the springs have gone at a time (seconds), from 0 to 1.
+    #[cfg(feature = "run")]
     pub(crate) fn progress(&self, t: f64) -> f64 {
         self.course(0.0, 1.0).at(t)
     }

@@ -4,6 +4,8 @@ mod hand;
 
 pub use hand::HoldError;
 
+#[cfg(feature = "run")]
+use super::Files;
 use super::build::Kept;
 use super::changed::edited;
 use super::edit::{Edit, EditError, no_function};
@@ -12,7 +14,7 @@ use super::profile::{Change, Course};
 use super::sheets::sheet_key;
 use super::under_way::UnderWay;
 use super::{
-    Body, BodyLoad, CarriedBody, Files, Method, Problem, Profile, Scene, SceneError, SceneFile,
+    Body, BodyLoad, CarriedBody, Method, Problem, Profile, Scene, SceneError, SceneFile,
     SceneFileError, Setup,
 };
 use crate::format::EventRow;
@@ -125,11 +127,13 @@ impl LiveScene {
     }
 
     /// The simulation with what is known of its scene.
+    #[cfg(feature = "run")]
     pub(crate) fn under_way(&self) -> &UnderWay {
         &self.under_way
     }
 
     /// The files that the scene names, as they were read.
+    #[cfg(feature = "run")]
     pub(crate) fn files(&mut self) -> &mut Files {
         &mut self.kept.files
     }

@@ -317,7 +317,8 @@ fn crossing(a: &Chord, b: &Chord, curves: &[PlaneCurve], snap: f64) -> Option<[f
         );
         let turn = cross(d, e);
         let next = [t + cross(w, e) / turn, u + cross(w, d) / turn].map(|t| t.clamp(0.0, 1.0));
-        if !(apart(next) < apart(best)) {
+        let is_nearer = apart(next) < apart(best);
+        if !is_nearer {
             break;
         }
         best = next;

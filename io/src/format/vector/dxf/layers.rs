@@ -74,7 +74,7 @@ fn own_colour(record: &Record<'_>) -> Result<Option<Colour>, DataError> {
     })
 }
 
-/// The colours of AutoCAD by their index, about: six of them, black, greys, and 24 hues in five shades, each
+/// The colours of `AutoCAD` by their index, about: six of them, black, greys, and 24 hues in five shades, each
 /// full and half.
 fn of_index(index: u8) -> Colour {
     let hue = |degrees: f64, chroma: f64, value: f64| {
@@ -90,7 +90,7 @@ fn of_index(index: u8) -> Colour {
         10..=249 => {
             let degrees = 15.0 * f64::from((index - 10) / 10);
             let shade = [1.0, 0.65, 0.5, 0.3, 0.15][usize::from(index % 10 / 2)];
-            let chroma = if index % 2 == 0 { 1.0 } else { 0.5 };
+            let chroma = if index.is_multiple_of(2) { 1.0 } else { 0.5 };
             hue(degrees, chroma, shade)
         }
         250.. => Colour([51 + 40 * (index - 250); 3]),
