@@ -123,6 +123,8 @@ pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use fold_scene::{FoldScene, Panels, Touch};
 #[cfg(feature = "run")]
+pub(crate) use folding::FollowedFolds;
+#[cfg(feature = "run")]
 pub(crate) use folding::off_target;
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use follower_loads::{Gas, Moment, Pressure};

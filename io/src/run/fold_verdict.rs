@@ -1,7 +1,7 @@
 //! What came of the folding of a crease pattern, in words.
 
 use super::Recording;
-use crate::scene::{FoldResidual, Isometry, off_target};
+use crate::scene::{FoldResidual, FollowedFolds, Isometry};
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{EdgeId, fold_angle};
 
@@ -42,12 +42,20 @@ impl FoldVerdict {
         let frames = (0..recording.trajectory.len()).filter_map(|k| recording.trajectory.frame(k));
         let strains = frames.map(|x| recording.model.max_strain(x));
         let strain = [recording.model.max_strain(x), strains.fold(0.0, f64::max)];
-        let off = |&(e, target): &(EdgeId, f64)| (off_target(topology, x, e, target), e);
+        let frame = |k: usize| recording.trajectory.frame(k).unwrap_or_default();
+        let mut folds = FollowedFolds::begin(targets, topology, frame(0));
+        for k in 1..recording.trajectory.len() {
+            folds.follow(targets, topology, frame(k));
+        }
+        let off: Vec<(f64, EdgeId)> = {
+            let edges = targets.creases.iter().map(|(e, _)| *e);
+            folds.off(targets).into_iter().zip(edges).collect()
+        };
         let refine = recording.scene.scene().sheet[0].refine;
         // The parts of a crease follow one another.
-        let creases = targets.creases.chunks(1 << refine);
+        let creases = off.chunks(1 << refine);
         let creases = creases.filter_map(|parts| {
-            let parts = parts.iter().map(off);
+            let parts = parts.iter().copied();
             parts.max_by(|a, b| a.0.total_cmp(&b.0))
         });
         let creases: Vec<(f64, EdgeId)> = creases.collect();
@@ -85,7 +93,7 @@ impl FoldVerdict {
             .filter(|&f| root(&mut panel, f) == f)
             .count();
         Some(Self {
-            residual: targets.residual(topology, x),
+            residual: folds.residual(targets, topology, x),
             open: creases.iter().filter(|(off, _)| *off > Self::OPEN).count(),
             furthest,
             panels: [count, bends.iter().filter(|b| **b).count()],

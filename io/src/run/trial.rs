@@ -1,6 +1,6 @@
 //! How far a scene folds, found without a folder.
 
-use crate::scene::{FoldResidual, SceneError, SceneFile};
+use crate::scene::{FoldResidual, FollowedFolds, SceneError, SceneFile};
 use isosheet_dynamics::StepProgress;
 use std::ops::ControlFlow;
 
@@ -31,6 +31,11 @@ impl SceneFile {
         let Ok(mut simulation) = setup.start() else {
             return Ok(None);
         };
+        let Some(targets) = targets else {
+            return Ok(None);
+        };
+        let topology = simulation.model().topology();
+        let mut folds = FollowedFolds::begin(&targets, topology, &simulation.state().x);
         let scene = self.scene();
         let vertices = simulation.model().topology().vertex_count();
         let mut left = MOST_WORK / vertices.max(1);
@@ -43,12 +48,14 @@ impl SceneFile {
                 Ok(report) => left = left.saturating_sub(report.factorisations),
                 Err(_) => return Ok(None),
             }
+            let topology = simulation.model().topology();
+            folds.follow(&targets, topology, &simulation.state().x);
         }
         let topology = simulation.model().topology();
         let x = &simulation.state().x;
         let strain = simulation.model().max_strain(x);
-        Ok(targets.map(|targets| FoldTrial {
-            residual: targets.residual(topology, x),
+        Ok(Some(FoldTrial {
+            residual: folds.residual(&targets, topology, x),
             strain,
         }))
     }

@@ -131,6 +131,59 @@ impl FoldTargets {
     }
 }
 
+/// The fold angles of driven creases, followed through a motion: one that was folded the other way round is at -180
+/// degrees, and not at 180.
+#[cfg(feature = "run")]
+#[derive(Clone, Debug)]
+pub(crate) struct FollowedFolds {
+    /// Radians, in the order of the creases.
+    angles: Vec<f64>,
+}
+
+#[cfg(feature = "run")]
+impl FollowedFolds {
+    /// Where the motion begins, at positions `x` (`3V`, metres).
+    pub(crate) fn begin(targets: &FoldTargets, t: &Topology, x: &[f64]) -> Self {
+        let creases = targets.creases.iter();
+        let angles = creases.map(|&(e, _)| fold_angle(t, x, e).unwrap_or(0.0));
+        Self {
+            angles: angles.collect(),
+        }
+    }
+
+    /// At the next positions, where no angle has changed by more than 180 degrees.
+    pub(crate) fn follow(&mut self, targets: &FoldTargets, t: &Topology, x: &[f64]) {
+        for (angle, &(e, _)) in self.angles.iter_mut().zip(&targets.creases) {
+            let turned = fold_angle(t, x, e).unwrap_or(0.0) - *angle;
+            *angle += turned - TAU * (turned / TAU).round();
+        }
+    }
+
+    /// How far each crease is from its target, degrees.
+    pub(crate) fn off(&self, targets: &FoldTargets) -> Vec<f64> {
+        let targets = targets.creases.iter().map(|(_, target)| target);
+        let off = |(angle, target): (&f64, &f64)| (angle - target).abs().to_degrees();
+        self.angles.iter().zip(targets).map(off).collect()
+    }
+
+    /// The differences at positions `x`, those of creases as they were followed.
+    pub(crate) fn residual(&self, targets: &FoldTargets, t: &Topology, x: &[f64]) -> FoldResidual {
+        let off = self.off(targets);
+        let squares: f64 = off.iter().map(|d| d * d).sum();
+        let creases = self.angles.iter().zip(&targets.creases).zip(&off);
+        let is_other = |((angle, (_, target)), off): &((&f64, &(EdgeId, f64)), &f64)| {
+            **angle * target < 0.0 && **off > target.abs().to_degrees()
+        };
+        let others = creases.filter(is_other);
+        FoldResidual {
+            largest: off.iter().copied().fold(0.0, f64::max),
+            rms: (squares / off.len().max(1) as f64).sqrt(),
+            wrong_side: others.count(),
+            ..targets.residual(t, x)
+        }
+    }
+}
+
 impl Folding {
     pub(crate) fn check(&self, mesh: &Mesh, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("time"), self.time, Unit::Second);

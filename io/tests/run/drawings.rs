@@ -414,6 +414,24 @@ fn gaps_and_double_lines_are_told() {
     assert!((length(&mesh, EdgeAssignment::Unassigned) - 0.01).abs() < 1e-9);
 }
 
+/// A line of ten thousand parts is a line, though each of them is shorter than the tolerance for snapping.
+#[test]
+fn fine_lines_are_kept() {
+    let dir = tempfile::tempdir().unwrap();
+    let points: Vec<String> = (0..=10_000)
+        .map(|k| format!("50,{}", 0.01 * f64::from(k)))
+        .collect();
+    let shapes = format!(
+        "<rect width='100' height='100' fill='none' stroke='black'/>\
+         <polyline points='{}' fill='none' stroke='blue'/>",
+        points.join(" ")
+    );
+    fs::write(dir.path().join("fine.svg"), svg(&shapes)).unwrap();
+    let (mesh, said) = meshed(dir.path(), "fine.svg", &["--spacing", "10mm"]);
+    let found = length(&mesh, EdgeAssignment::Valley);
+    assert!((found - 0.1).abs() < 1e-6, "{found} {said}");
+}
+
 #[test]
 fn what_is_no_sheet_is_refused() {
     let dir = tempfile::tempdir().unwrap();

@@ -100,6 +100,19 @@ fn panels_are_elastic_where_rigid_ones_do_not_close() {
     );
 }
 
+/// A mountain at -180 degrees is not where a valley at 180 degrees is: with its odd crease in the wrong place a vertex
+/// has no motion of rigid panels to its angles, though some motion leads to a flat shape.
+#[test]
+fn creases_are_folded_to_their_own_sides() {
+    let dir = tempfile::tempdir().unwrap();
+    let wrong = "1 0 0 2 0\n1 2 0 2 2\n1 2 2 0 2\n1 0 2 0 0\n2 1 1 1.577 2\n2 1 1 1.577 0\n2 1 1 2 1\n3 1 1 0 1\n";
+    fs::write(dir.path().join("wrong.cp"), wrong).unwrap();
+    let (said, _, verdict) = folded(dir.path(), &["wrong.cp", "out"]);
+    assert!(said.contains("rigid panels do not close"), "{said}");
+    assert_eq!(verdict.residual.wrong_side, 0);
+    assert!(verdict.is_elastic);
+}
+
 #[test]
 fn misuse_of_fold_says_what_to_do() {
     let dir = tempfile::tempdir().unwrap();

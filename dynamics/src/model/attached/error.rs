@@ -37,7 +37,7 @@ pub enum AttachedFlowError {
         /// The edge.
         edge: EdgeId,
     },
-    /// The wake has too few rows.
+    /// The wake has too few rows, or too many.
     #[error("the wake has {rows} rows")]
     Rows {
         /// Their number.
@@ -53,7 +53,7 @@ impl Advice for AttachedFlowError {
                 Some("name edges of the boundary, where the air leaves the sheet")
             }
             Self::TooManyFaces { .. } => Some("take a coarser mesh, or separated flow"),
-            Self::Rows { .. } => Some("give it two rows at least"),
+            Self::Rows { .. } => Some("give it from 2 to 10000 rows"),
             Self::NoSuchFace { .. } => None,
         }
     }

@@ -34,6 +34,10 @@ impl AttachedFlow {
     /// The largest number of faces: a step solves a dense system of as many equations, and its matrix couples
     /// all vertices of these faces.
     pub const MOST_FACES: usize = 2000;
+    /// The largest number of rows of the wake, each of which takes part in the flow at every face: minutes of steps of
+    /// a hundredth of a second.
+    pub const MOST_ROWS: usize = 10_000;
+
     /// The default of [`AttachedFlow::rows`].
     pub const ROWS: usize = 80;
 }
@@ -72,7 +76,7 @@ impl SheetModel {
             let most = AttachedFlow::MOST_FACES;
             return Err(AttachedFlowError::TooManyFaces { faces, most });
         }
-        if flow.rows < 2 {
+        if !(2..=AttachedFlow::MOST_ROWS).contains(&flow.rows) {
             return Err(AttachedFlowError::Rows { rows: flow.rows });
         }
         let lengths = self.edges().lengths();

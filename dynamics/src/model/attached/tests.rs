@@ -234,6 +234,13 @@ fn flows_that_cannot_be_are_refused() {
             AttachedFlow { rows: 1, ..flow() },
             AttachedFlowError::Rows { rows: 1 },
         ),
+        (
+            AttachedFlow {
+                rows: usize::MAX,
+                ..flow()
+            },
+            AttachedFlowError::Rows { rows: usize::MAX },
+        ),
     ] {
         assert_eq!(refused(&flow), Some(error));
     }

@@ -106,7 +106,10 @@ impl LineRules {
 fn class_of_name(name: &str) -> Option<LineClass> {
     let name = name.to_lowercase();
     let words: Vec<&str> = name.split(|c: char| !c.is_alphabetic()).collect();
-    let is_said = |known: &[&str]| words.iter().any(|w| known.contains(w));
+    // Long words may begin others: `foldlines`, `scored`.
+    let begins =
+        |word: &str, known: &&str| word == *known || known.len() > 3 && word.starts_with(known);
+    let is_said = |known: &[&str]| words.iter().any(|w| known.iter().any(|k| begins(w, k)));
     let said = WORDS.iter().filter(|(_, known)| is_said(known));
     let said: Vec<LineClass> = said.map(|(class, _)| *class).collect();
     match said[..] {
@@ -157,6 +160,8 @@ mod tests {
                 pen([0, 0, 255], false, &["cut and crease"]),
                 Some(LineClass::Valley),
             ),
+            (pen([0; 3], false, &["foldlines"]), Some(LineClass::Crease)),
+            (pen([0; 3], false, &["Scored"]), Some(LineClass::Crease)),
             (pen([255, 128, 0], false, &["Layer 1"]), None),
             (
                 pen([128; 3], false, &["dimensions"]),

@@ -6,7 +6,9 @@ use super::options::DrawingOptions;
 use super::report::{ClassCount, DrawingReport, Places};
 use crate::format::vector::{Drawing, DrawnLine};
 use crate::format::{DataError, EdgeAssignment, FileCrease, FileError, MeshFile};
-use isosheet_mesh::plane::{Piece, PlaneError, PlaneGraph, PlaneMesh, PlaneOptions, Role};
+use isosheet_mesh::plane::{
+    Piece, PlaneCurve, PlaneError, PlaneGraph, PlaneMesh, PlaneOptions, Role,
+};
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, MeshError, Sheet};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -75,9 +77,12 @@ pub fn mesh_drawing(
         };
         return Err(DataError::new(message, "draw the outline of the sheet as lines").into());
     }
-    let curves: Vec<_> = lines.iter().map(|l| l.curve).collect();
     let snap = options.snap.unwrap_or_else(|| SNAP * diagonal(&lines));
-    let graph = PlaneGraph::new(&curves, snap.max(f64::MIN_POSITIVE))?;
+    let snap = snap.max(f64::MIN_POSITIVE);
+    let lines = without_short_ones(&lines, snap);
+    let lines: Vec<&DrawnLine> = lines.iter().collect();
+    let curves: Vec<_> = lines.iter().map(|l| l.curve).collect();
+    let graph = PlaneGraph::new(&curves, snap)?;
     refuse_self_crossing(&graph, &lines, of_line)?;
     let classes: Vec<LineClass> = graph
         .pieces
@@ -142,6 +147,46 @@ impl DrawnSheet {
     pub fn read(path: &Path, options: &DrawingOptions) -> Result<Self, DrawingError> {
         options.validate()?;
         mesh_drawing(&read_drawing(path, options)?, options)
+    }
+}
+
+/// The lines of paths with fine parts in longer ones: as many of them become one straight line as are needed for its ends
+/// to be further apart than four times the tolerance within which ends become one.
+fn without_short_ones(lines: &[&DrawnLine], snap: f64) -> Vec<DrawnLine> {
+    let least = 4.0 * snap;
+    let apart = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
+    let mut kept: Vec<DrawnLine> = Vec::new();
+    let mut open: Option<(DrawnLine, [[f64; 2]; 2])> = None;
+    for line in lines {
+        let ends = line.curve.ends();
+        let bulges = apart([line.curve.point(0.5), ends[0]]) > least;
+        let is_long = apart(ends) > least || bulges;
+        if let Some((first, [begin, end])) = open.take() {
+            let goes_on = first.path == line.path && first.pen == line.pen && end == ends[0];
+            match goes_on && !is_long {
+                true => open = Some((first, [begin, ends[1]])),
+                false => kept.push(straight(first, [begin, end])),
+            }
+            if goes_on && !is_long {
+                if let Some((first, ends)) = open.take_if(|(_, ends)| apart(*ends) > least) {
+                    kept.push(straight(first, ends));
+                }
+                continue;
+            }
+        }
+        match is_long {
+            true => kept.push(**line),
+            false => open = Some((**line, ends)),
+        }
+    }
+    kept.extend(open.map(|(first, ends)| straight(first, ends)));
+    kept
+}
+
+fn straight(line: DrawnLine, ends: [[f64; 2]; 2]) -> DrawnLine {
+    DrawnLine {
+        curve: PlaneCurve::Line(ends),
+        ..line
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::error::{Located, Location};
 use super::faces::Polyhedron;
-use super::{MeshFile, MeshFormat, MeshOptions};
+use super::{EdgeAssignment, MeshFile, MeshFormat, MeshOptions};
 use crate::format::DataError;
 use crate::format::mesh_file::pattern::{self, Planar, Segment};
+use std::collections::BTreeMap;
 
 /// Reads a drawing. Its faces are what its lines enclose, in the plane z = 0 as seen on the screen; points that are
 /// within the tolerance for welding of each other are one.
@@ -46,6 +47,20 @@ impl MeshFile {
         self.changes.loose_lines = planar.loose;
         self.changes.double_lines = planar.double;
         self.creases = planar.edges;
+        // What is drawn as the outline and has the sheet on both sides is a cut.
+        let mut sides = BTreeMap::new();
+        for &[a, b, c] in &self.faces {
+            for [a, b] in [[a, b], [b, c], [c, a]] {
+                *sides.entry([a.min(b), a.max(b)]).or_insert(0) += 1;
+            }
+        }
+        for crease in &mut self.creases {
+            let [a, b] = crease.ends;
+            let is_inside = sides.get(&[a.min(b), a.max(b)]) == Some(&2);
+            if crease.assignment == EdgeAssignment::Boundary && is_inside {
+                crease.assignment = EdgeAssignment::Cut;
+            }
+        }
         self.add_diagonals();
     }
 }

@@ -169,3 +169,13 @@ fn curves_of_svg_drawings_become_lines_near_them() {
     let share = area(&mesh) / (PI * 2500.0 * PIXEL * PIXEL);
     assert!((0.99..1.0).contains(&share), "{share}");
 }
+
+/// A line of the kind of the outline with the sheet on both of its sides is a cut.
+#[test]
+fn outlines_inside_the_sheet_are_cuts() {
+    let square = "1 0 0 2 0\n1 2 0 2 2\n1 2 2 0 2\n1 0 2 0 0\n";
+    let vertices = |text: &str| read(MeshFormat::Cp, text).unwrap().positions.len() / 3;
+    let whole = vertices(&format!("{square}3 0 1 2 1\n"));
+    let cut = vertices(&format!("{square}1 0 1 2 1\n"));
+    assert_eq!([whole, cut], [6, 8]);
+}
