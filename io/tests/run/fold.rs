@@ -15,7 +15,7 @@ const VERTEX: &str = r#"{
 }"#;
 
 /// Miura's pattern of 2 by 2 panels as CP.
-const MIURA: &str = "1 0 0 2 1\n1 2 1 4 0\n1 4 0 4 3\n1 4 3 2 4\n1 2 4 0 3\n1 0 3 0 0\n2 2 1 2 2.5\n3 2 2.5 2 4\n\
+const MIURA: &str = "1 0 0 2 1\n1 2 1 4 0\n1 4 0 4 3\n1 4 3 2 4\n1 2 4 0 3\n1 0 3 0 0\n3 2 1 2 2.5\n2 2 2.5 2 4\n\
                      2 0 1.5 2 2.5\n2 2 2.5 4 1.5\n";
 
 fn folded(folder: &Path, words: &[&str]) -> (String, Summary, FoldVerdict) {
