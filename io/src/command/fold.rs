@@ -38,7 +38,7 @@ pub(crate) struct Fold {
     pattern: PathBuf,
     /// The folder to write to [default: the name of the pattern with `-run`, in the current folder]
     out: Option<PathBuf>,
-    /// Which part of its angle each crease is folded by, from 0 to 1
+    /// Which part of its angle each crease is folded by, above 0 and at most 1
     #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part)]
     part: f64,
     /// Panels touch each other, and do not pass through each other
