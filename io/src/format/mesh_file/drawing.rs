@@ -26,6 +26,7 @@ pub(super) fn parse(
     }
     let mut mesh = polyhedron.assemble(options)?;
     mesh.take_edges(planar);
+    mesh.cut_along_outlines_inside();
     mesh.drop_unreferenced();
     mesh.separate_cuts();
     Ok(mesh)
@@ -47,7 +48,11 @@ impl MeshFile {
         self.changes.loose_lines = planar.loose;
         self.changes.double_lines = planar.double;
         self.creases = planar.edges;
-        // What is drawn as the outline and has the sheet on both sides is a cut.
+        self.add_diagonals();
+    }
+
+    /// Makes cuts of the edges that are drawn as the outline and have the sheet on both sides.
+    fn cut_along_outlines_inside(&mut self) {
         let mut sides = BTreeMap::new();
         for &[a, b, c] in &self.faces {
             for [a, b] in [[a, b], [b, c], [c, a]] {
@@ -61,6 +66,5 @@ impl MeshFile {
                 crease.assignment = EdgeAssignment::Cut;
             }
         }
-        self.add_diagonals();
     }
 }
