@@ -161,22 +161,23 @@ fn without_short_ones(lines: &[&DrawnLine], snap: f64) -> Vec<DrawnLine> {
         let ends = line.curve.ends();
         let bulges = apart([line.curve.point(0.5), ends[0]]) > least;
         let is_long = apart(ends) > least || bulges;
-        if let Some((first, [begin, end])) = open.take() {
-            let goes_on = first.path == line.path && first.pen == line.pen && end == ends[0];
-            match goes_on && !is_long {
-                true => open = Some((first, [begin, ends[1]])),
-                false => kept.push(straight(first, [begin, end])),
-            }
-            if goes_on && !is_long {
-                if let Some((first, ends)) = open.take_if(|(_, ends)| apart(*ends) > least) {
-                    kept.push(straight(first, ends));
+        let goes_on = |first: &DrawnLine, end: [f64; 2]| {
+            !is_long && (first.path, first.pen) == (line.path, line.pen) && end == ends[0]
+        };
+        let (first, run) = match open.take() {
+            Some((first, [begin, end])) if goes_on(&first, end) => (first, [begin, ends[1]]),
+            ended => {
+                kept.extend(ended.map(|(first, ends)| straight(first, ends)));
+                if is_long {
+                    kept.push(**line);
+                    continue;
                 }
-                continue;
+                (**line, ends)
             }
-        }
-        match is_long {
-            true => kept.push(**line),
-            false => open = Some((**line, ends)),
+        };
+        match apart(run) > least {
+            true => kept.push(straight(first, run)),
+            false => open = Some((first, run)),
         }
     }
     kept.extend(open.map(|(first, ends)| straight(first, ends)));
