@@ -2,7 +2,8 @@
 
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{
-    CreaseSprings, Method, SheetModel, Simulation, State, StepControl, StepError, StepProgress,
+    CreaseSprings, ImplicitOptions, Method, PlateBending, SheetModel, Simulation, State,
+    StepControl, StepError, StepProgress, leave_flat,
 };
 use isosheet_mesh::{Advice, MassKind, Sheet, VertexId, generate};
 use nalgebra::Isometry3;
@@ -135,4 +136,64 @@ fn locks_are_told_in_moving_clamps_above_floors_and_where_sheets_hang_taut() {
             "{what}: {error}"
         );
     }
+}
+
+/// A sheet of rods that is pushed against a wall jams. Rounds of multipliers that rods which depend on each other
+/// do not have end early: in the mean a step takes no more than one restoration that fails, and a run that ends
+/// before its time says that the sheet locks.
+#[test]
+fn a_sheet_that_jams_is_moved_or_refused_with_bounded_effort() {
+    const STARTS: u64 = 8;
+    const STEPS: usize = 60;
+    let restoration = ImplicitOptions::default().max_projections;
+    let sheet = generate::isotropic_square(2, 0.2).expect("valid");
+    let sheet = sheet.map_positions(|[x, y, z]| [x, y, z + 0.004]);
+    let sheet = sheet.expect("the same lengths");
+    let model = || {
+        let model = SheetModel::new(&sheet, 3.2e-3, MassKind::Lumped).expect("valid");
+        let plate = PlateBending::new(&sheet, 1e-3).expect("valid");
+        let model = model.with_gravity().with_potential(plate);
+        let clamp = sheet.topology().vertex_ids();
+        let clamp = clamp.filter(|v| sheet.position(*v)[0] > 0.199);
+        clamp.fold(model, |model, v| {
+            let [x, y, z] = sheet.position(v);
+            let pushed = move |t: f64| [x - 0.05 * t, y, z];
+            model.with_moving_pin(v, pushed).expect("valid")
+        })
+    };
+    let solid = |half: [f64; 3], at: [f64; 3]| {
+        let pose = Isometry3::translation(at[0], at[1], at[2]);
+        Obstacle::fixed(Shape::Cuboid { half }, pose).expect("valid")
+    };
+    let contacts = |model: &SheetModel| {
+        let friction = Coefficients::equal(0.3);
+        Contacts::new(model, ContactOptions::for_sheet(model))
+            .and_then(|c| c.with_body(solid([0.3, 0.3, 0.02], [0.0, 0.1, -0.02]), friction))
+            .and_then(|c| c.with_body(solid([0.02, 0.3, 0.05], [-0.03, 0.1, 0.05]), friction))
+            .expect("valid")
+    };
+    let mut spent = 0;
+    for seed in 1..=STARTS {
+        let model = model();
+        let mut x = sheet.positions().to_vec();
+        leave_flat(&model, &mut x, 1e-4, seed).expect("positions with the lengths");
+        let contacts = contacts(&model);
+        let run = Simulation::new(model, State::at_rest(x), Method::default());
+        let run = run.expect("valid").with_contact(contacts);
+        let mut run = run.expect("nothing touches");
+        for _ in 0..STEPS {
+            let mut in_step = 0;
+            let mut watch = |progress: &StepProgress| {
+                in_step = progress.factorisations;
+                ControlFlow::Continue(())
+            };
+            let step = run.step_watched(STEP, &mut watch);
+            spent += in_step;
+            if let Err(error) = step {
+                assert!(matches!(error, StepError::Locked { .. }), "{seed}: {error}");
+                break;
+            }
+        }
+    }
+    assert!(spent < STARTS as usize * STEPS * restoration, "{spent}");
 }

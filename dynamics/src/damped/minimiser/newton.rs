@@ -68,6 +68,10 @@ pub(super) struct Newton<'a, 'b, 'w> {
     effort: &'a mut SolverEffort<'w>,
     phase: Phase,
     round: usize,
+    /// Strain before the last restoration at the end of a round, which failed.
+    unrestored: f64,
+    /// Such rounds in a row that have left most of the strain of the one before.
+    stalled: usize,
     /// Penalty of the rods in the merit function of this round.
     penalty: f64,
     /// Iterations since the last round, continuation or the start.
@@ -96,6 +100,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             problem,
             effort,
             round: 0,
+            unrestored: f64::INFINITY,
+            stalled: 0,
             penalty: phase.merit_penalty,
             phase,
             iterations: 0,
@@ -568,18 +574,33 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 return Ok(false);
             }
         }
+        let strain = self.strain();
         if self.restore_lengths() {
             return Ok(true);
         }
         self.work.lagrangian.merit(self.problem);
+        let is_over = is_last || self.has_stalled(strain);
         match self.phase.multipliers {
             MultiplierUpdate::Solved => {}
-            MultiplierUpdate::Rounds if is_last => {
+            MultiplierUpdate::Rounds if is_over => {
                 return Err(self.effort.failed(Reason::DependentRods));
             }
             MultiplierUpdate::Rounds => self.begin_round(),
         }
         Ok(false)
+    }
+
+    /// Whether round after round has left most of the strain, and its lengths could not be restored: multipliers
+    /// that exist gain a digit in each round, and where rods depend on each other there are none. (A sheet that
+    /// jams took fifty thousand factorisations for a step of eighty rounds.)
+    fn has_stalled(&mut self, strain: f64) -> bool {
+        let tuning = &self.work.tuning;
+        self.stalled = match strain > tuning.slow * self.unrestored {
+            true => self.stalled + 1,
+            false => 0,
+        };
+        self.unrestored = strain;
+        self.stalled >= tuning.patience as usize
     }
 
     fn begin_round(&mut self) {
