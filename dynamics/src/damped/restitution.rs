@@ -255,7 +255,8 @@ impl Body {
         for constraint in model.constraints() {
             let v = constraint.vertex().index();
             if (first..first + 4).contains(&v) {
-                let rows = constraint.at(state.t, &place(v - first)).independent();
+                let equations = constraint.at(state.t, &place(v - first));
+                let rows = equations.independent() * equations.jacobian;
                 for row in rows.row_iter() {
                     fix(v - first, &row.transpose());
                 }
