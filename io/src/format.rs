@@ -16,6 +16,8 @@ mod loads;
 mod measures;
 pub(crate) mod memory;
 mod mesh_file;
+#[cfg(feature = "scene")]
+mod motion_file;
 mod trajectory;
 mod vector;
 
@@ -45,7 +47,9 @@ pub use mesh_file::{
     parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
 #[cfg(feature = "scene")]
-pub(crate) use trajectory::MovingMesh;
+pub(crate) use motion_file::motion_archive;
+#[cfg(feature = "scene")]
+pub(crate) use trajectory::{Clock, MovingMesh};
 pub use trajectory::{FrameData, Trajectory};
 #[cfg(feature = "run")]
 pub(crate) use trajectory::{FrameQuantity, MeshCounts, MotionError};

@@ -47,6 +47,7 @@ mod frame_field;
 mod frames;
 #[cfg(feature = "picture")]
 mod gallery;
+mod incidence;
 mod intervention;
 mod page;
 mod recorder;
@@ -83,6 +84,7 @@ pub use fold_verdict::FoldVerdict;
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
+pub use incidence::Incidence;
 pub use intervention::Intervention;
 pub use page::write_page;
 pub use recorder::{ExistingRun, RecordedStepError, Recorder, RecorderOptions, RecordingEnd};
@@ -436,6 +438,7 @@ fn finish(
         largest_strain: progress.strain,
         largest_displacement: progress.displacement,
         energy: progress.energy,
+        incidence: progress.incidence,
         vibration: progress
             .vibrations
             .fastest(facts.mass, facts.sheet.mean_length()),

@@ -63,6 +63,7 @@ mod measure;
 mod mesh;
 mod mesh_file;
 mod method;
+mod named_file;
 mod obstacle_names;
 mod obstacles;
 mod outline;
@@ -151,7 +152,7 @@ pub use problem::Problem;
 pub use profile::{Change, Course, Interpolation, Profile};
 pub use schema::{as_written, documented_schema, schema};
 pub use selection::Selection;
-pub use sequence::Sequence;
+pub use sequence::{Outside, Sequence};
 pub use setup::Setup;
 pub use sheet::{Bending, Elasticity, Isometry, RestShape, Sheet};
 pub use source::{SceneFile, SceneFileError};
@@ -174,6 +175,8 @@ pub(crate) use build::Kept;
 pub(crate) use bytes::bytes_in_words;
 #[cfg(feature = "run")]
 pub(crate) use mesh_file::Files;
+pub(crate) use named_file::FileKind;
+use named_file::NamedFile;
 #[cfg(feature = "run")]
 pub(crate) use resolution::check_positions;
 #[cfg(feature = "run")]
@@ -342,8 +345,16 @@ impl Scene {
             let key = root.name("contact.pair").entry(k).name("sheets");
             for (i, name) in pair.sheets.iter().enumerate() {
                 let key = key.entry(i);
-                if obstacle_names::number_of(&self.obstacle, name).is_none() {
-                    bodies::check_reference(&self.sheet, &self.body, Some(name), &key, &mut checks);
+                let of_sheets = self.sheet.iter().filter_map(|sheet| sheet.name.clone());
+                let of_obstacles = self.obstacle.iter().filter_map(|o| o.name.clone());
+                let known = of_sheets
+                    .chain(bodies::names(&self.body))
+                    .chain(of_obstacles);
+                let known: Vec<String> = known.collect();
+                if !known.contains(name) {
+                    let meant = "sheet, body or obstacle";
+                    let problem = sheets::unknown_name(meant, known.into_iter(), name, &key);
+                    checks.problems.push(problem);
                 }
             }
         }
@@ -417,26 +428,30 @@ impl Scene {
     pub fn files(&self) -> Vec<(Key, PathBuf)> {
         let mut scene = self.clone();
         let files = scene.files_mut().into_iter();
-        files.map(|(key, path)| (key, path.clone())).collect()
+        files.map(|file| (file.key, file.path.clone())).collect()
     }
 
-    /// The paths of the files that the scene names, with their places.
-    pub(crate) fn files_mut(&mut self) -> Vec<(Key, &mut PathBuf)> {
+    /// The files that the scene names.
+    pub(crate) fn files_mut(&mut self) -> Vec<NamedFile<'_>> {
         let (root, mut files) = (Key::root(), Vec::new());
         let count = self.sheet.len();
         for (k, sheet) in self.sheet.iter_mut().enumerate() {
             let key = sheets::sheet_key(count, k);
             match &mut sheet.mesh {
-                Mesh::File(file) => files.push((key.name("mesh.file"), &mut file.path)),
-                Mesh::Drawing(file) => files.push((key.name("mesh.drawing"), &mut file.path)),
+                Mesh::File(file) => {
+                    files.push(NamedFile::mesh(key.name("mesh.file"), &mut file.path))
+                }
+                Mesh::Drawing(file) => {
+                    files.push(NamedFile::mesh(key.name("mesh.drawing"), &mut file.path))
+                }
                 _ => {}
             }
             if let Some(file) = &mut sheet.start.file {
-                files.push((key.name("start.file"), &mut file.path));
+                files.push(NamedFile::mesh(key.name("start.file"), &mut file.path));
             }
             let curl = sheet.curl.as_mut();
             if let Some(file) = curl.and_then(|curl| curl.shape.as_mut()) {
-                files.push((key.name("curl.shape"), &mut file.path));
+                files.push(NamedFile::mesh(key.name("curl.shape"), &mut file.path));
             }
         }
         for (k, obstacle) in self.obstacle.iter_mut().enumerate() {
@@ -450,7 +465,7 @@ impl Scene {
         for (k, support) in self.support.iter_mut().enumerate() {
             if let Hold::Follow { sequence, .. } = &mut support.hold {
                 let key = root.name("support").entry(k).name("hold.follow.sequence");
-                files.push((key, &mut sequence.path));
+                files.push(NamedFile::motion(key, &mut sequence.path));
             }
         }
         files

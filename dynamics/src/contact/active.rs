@@ -107,7 +107,11 @@ impl ActiveContact {
     }
 
     /// Calls `add` with vertices and the barrier's gradients (newtons).
-    fn gradient(&self, barrier: &BarrierPotential, mut add: impl FnMut(u32, Vector3<f64>)) {
+    pub(crate) fn gradient(
+        &self,
+        barrier: &BarrierPotential,
+        mut add: impl FnMut(u32, Vector3<f64>),
+    ) {
         let [value, slope, _] = barrier.derivatives(self.gap);
         let along = self.factor() * slope * self.normal;
         let mut parts = self.weights.map(|w| w * along);

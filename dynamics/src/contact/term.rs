@@ -370,10 +370,19 @@ impl Term for ContactTerm {
         }
     }
 
-    /// By the motions of the bodies. (What pins change is left out.)
+    /// By the motions of the bodies, and by those of pins, such as the vertices of meshes in motion.
     fn add_drive(&mut self, at: Iterate<'_>, product: &mut HessianProduct<'_>) {
         let step = self.at(at.x);
         let scale = product.scale;
+        if product.vector.iter().any(|c| *c != 0.0) {
+            match &step.points {
+                None => step.terms().add_hessian(product),
+                Some(points) => step.terms().add_hessian(&mut CarriedSink {
+                    points,
+                    sink: product,
+                }),
+            }
+        }
         step.add_carried(product.product, |step, out| {
             step.terms().add_drive(scale, out);
         });

@@ -1,7 +1,9 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
+use crate::contact::ContactTerm;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
+use crate::damped::restitution::FormulaStep;
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
@@ -57,10 +59,36 @@ impl Integrator for Implicit {
         let previous = attempt
             .previous()
             .filter(|before| h <= MAX_STEP_RATIO * (state.t - before.t));
-        let model = scene.model;
-        two_step(minimiser, scene, attempt, previous, proposal, effort)?;
+        let Scene { model, objective } = scene;
+        let inner = Scene {
+            model,
+            objective: &mut *objective,
+        };
+        two_step(minimiser, inner, attempt, previous, proposal, effort)?;
+        let points = objective.contact.as_ref().and_then(ContactTerm::points);
+        let corrections = match (points, attempt.contacts, &proposal.motion.contacts) {
+            (Some(points), Some(before), Some(after)) => FormulaStep {
+                model,
+                points,
+                span: h,
+                formula: coefficients(previous, state, h),
+                before: previous.unwrap_or(state),
+                start: state,
+                end: &proposal.motion.state,
+                contacts: [before, after],
+            }
+            .corrections(),
+            _ => Vec::new(),
+        };
         let history = &mut proposal.motion.history;
         history.set_previous(Some(state));
+        if let Some(before) = &mut history.previous {
+            for (v, change) in corrections {
+                for k in 0..3 {
+                    before.v[3 * v + k] += change[k];
+                }
+            }
+        }
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
         // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
         if let Some(before) = &mut history.previous {
@@ -68,6 +96,12 @@ impl Integrator for Implicit {
         }
         Ok(())
     }
+}
+
+/// `b` and `k` of the formula of a step of `h` seconds; those of implicit Euler without a state before the present one.
+fn coefficients(previous: Option<&State>, state: &State, h: f64) -> [f64; 2] {
+    let w = previous.map_or(0.0, |before| h / (state.t - before.t));
+    [w * w, 1.0 + w].map(|c| c / (1.0 + 2.0 * w))
 }
 
 /// Proposes the step of the two-step formula, or of implicit Euler where there is no state before the present
@@ -81,10 +115,8 @@ fn two_step(
     effort: &mut SolverEffort<'_>,
 ) -> Result<(), StepError> {
     let (state, h) = (attempt.state, attempt.h);
-    let w = previous.map_or(0.0, |before| h / (state.t - before.t));
     // a = 1 + b: differences keep pinned vertices where they are to the last bit.
-    let b = w * w / (1.0 + 2.0 * w);
-    let k = (1.0 + w) / (1.0 + 2.0 * w);
+    let [b, k] = coefficients(previous, state, h);
     let before = previous.unwrap_or(state);
     let formula = previous.map_or(Formula::OneStep, |_| Formula::TwoStep);
     let model = scene.model;

@@ -2,6 +2,7 @@
 pub(crate) mod implicit;
 pub(crate) mod minimiser;
 pub(crate) mod options;
+pub(crate) mod restitution;
 pub(crate) mod restoration;
 pub(crate) mod start;
 

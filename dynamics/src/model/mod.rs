@@ -344,6 +344,11 @@ impl SheetModel {
         self.sheet_vertices
     }
 
+    /// The first vertices of rigid bodies and of surfaces in prescribed motion.
+    pub(crate) fn sheets_end(&self) -> [usize; 2] {
+        [self.sheet_vertices, self.driven_from]
+    }
+
     /// Number of vertices that are not pinned.
     pub(crate) fn free_count(&self) -> usize {
         self.free_count

@@ -1,5 +1,6 @@
 //! What all chart-free integrators have in common: they propose, and leave it to the step control to commit.
 
+use crate::contact::ContactState;
 use crate::objective::Objective;
 use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
@@ -73,6 +74,8 @@ pub(crate) struct Attempt<'a> {
     pub(crate) phases: Phases,
     /// What the potentials remember.
     pub(crate) memories: &'a Memories,
+    /// The contacts at its beginning.
+    pub(crate) contacts: Option<&'a ContactState>,
     history: &'a History,
     memory: Memory,
 }
@@ -112,6 +115,7 @@ impl<'a> Attempt<'a> {
             h,
             phases: Phases::All,
             memories: &start.memories,
+            contacts: start.contacts.as_ref(),
             history: &start.history,
             memory,
         }

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 /// What is read and written, as `--help` shows it.
 const FORMATS: &str = "\
 Mesh files that are read:
-  .obj .off .stl .ply .fold .gltf .glb
+  .obj .off .stl .ply .fold .gltf .glb .vtk .vtp
   .svg .cp .opx           crease patterns
 Mesh files that are written, also of one frame of a run (--frame K):
   .obj .off .ply .fold    all digits; .fold with edges, assignments and fold angles

@@ -21,6 +21,7 @@ mod repair;
 mod stl;
 #[cfg(test)]
 mod tests;
+mod vtk;
 mod weld;
 
 pub use assignment::EdgeAssignment;
@@ -140,6 +141,8 @@ fn parse(
         MeshFormat::Gltf | MeshFormat::Glb => {
             gltf::parse(bytes, path, options)?.assemble_copies(options)?
         }
+        MeshFormat::Vtk => timed(vtk::parse_legacy(bytes)?, options)?,
+        MeshFormat::Vtp => timed(vtk::parse_xml(bytes)?, options)?,
         MeshFormat::Svg | MeshFormat::Cp | MeshFormat::Opx => {
             drawing::parse(bytes, format, options)?
         }
@@ -149,4 +152,29 @@ fn parse(
         mesh.weld(tolerance, &[]);
     }
     Ok(mesh)
+}
+
+/// The mesh of polygons that a file gives a time.
+fn timed(polygons: vtk::TimedPolygons, options: &MeshOptions) -> Result<MeshFile, Located> {
+    let mut mesh = polygons.mesh.assemble(options)?;
+    mesh.time = polygons.time;
+    Ok(mesh)
+}
+
+/// The mesh of polygons, given by the numbers of their corners and these corners one after the other.
+#[cfg(feature = "scene")]
+pub(super) fn polygon_mesh(
+    points: &[f64],
+    counts: &[i64],
+    corners: &[i64],
+) -> Result<MeshFile, MeshFileProblem> {
+    let mut polygons = vtk::TimedPolygons::default();
+    let mut end = 0_i64;
+    let ends = counts.iter().map(|count| {
+        end = end.saturating_add(*count);
+        end
+    });
+    polygons.add(points, corners, &ends.collect::<Vec<_>>())?;
+    let mesh = polygons.mesh.assemble(&MeshOptions::default());
+    mesh.map_err(|(_, problem)| problem)
 }

@@ -11,7 +11,7 @@ pub use data::FrameData;
 pub(crate) use data::{FrameQuantity, MeshCounts};
 pub(crate) use motion::{Motion, MotionError, MotionFrame};
 #[cfg(feature = "scene")]
-pub(crate) use moving_mesh::MovingMesh;
+pub(crate) use moving_mesh::{Clock, MovingMesh};
 
 use crate::format::atomic::write_atomically;
 use crate::format::{DataError, FileError};

@@ -4,6 +4,7 @@ use super::RunError;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::error::BEGIN_ANEW;
+use super::incidence::Incidence;
 use super::intervention::Intervention;
 use super::summary::{Ending, Measured};
 use super::vibration::Vibrations;
@@ -62,6 +63,9 @@ pub(crate) struct RunProgress {
     /// Vibrations so far.
     #[serde(default)]
     pub(crate) vibrations: Vibrations,
+    /// The largest angle of attached flow so far.
+    #[serde(default)]
+    pub(crate) incidence: Option<Incidence>,
     /// Smallest gap so far, metres.
     pub(crate) gap: Option<f64>,
     /// Newton iterations so far.

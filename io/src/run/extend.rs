@@ -33,7 +33,7 @@ pub fn extend_folder(
         return Err(refuse(ExtensionError::NotFinite));
     }
     let text = stored.text();
-    let edit = format!("stop.time={until}");
+    let edit = format!("stop.time={until:?}");
     let longer = SceneFile::parse(text.text.clone(), &text.path, &[edit])?;
     let mut files = Files::in_folder(folder);
     let inputs = RunInputs::read(&stored, &mut files)?;

@@ -4,7 +4,7 @@ use super::error::BEGIN_ANEW;
 use super::{RunError, Summary};
 use crate::format::atomic::is_unfinished;
 use crate::format::{FileError, frame_number, input, read_json, write_atomically};
-use crate::scene::{Files, Problem, Scene, SceneError, SceneFile};
+use crate::scene::{FileKind, Files, Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use std::ffi::OsString;
 use std::fmt;
@@ -43,17 +43,28 @@ impl<'a> RunInputs<'a> {
     /// Reads the mesh files of a scene.
     pub(crate) fn read(file: &'a SceneFile, files: &mut Files) -> Result<Self, RunError> {
         let (mut meshes, mut names) = (Vec::new(), Vec::new());
-        for (k, (key, path)) in file.scene().files().into_iter().enumerate() {
-            let bytes = files.contents(&path).map_err(|e| {
-                let path = file.folder().join(&path);
-                let message = format!("cannot read {}: {e}", path.display());
-                let remedy = "check the path, which is relative to the scene";
-                let problem = Problem::new(key.name("path"), message, remedy);
-                SceneError::from(problem).in_text(file.text())
-            })?;
+        let mut scene = file.scene().clone();
+        for (k, of) in scene.files_mut().into_iter().enumerate() {
+            let in_scene = |problem: Problem| SceneError::from(problem).in_text(file.text());
+            let name = of.path.file_name().unwrap_or_default().to_string_lossy();
+            let (bytes, name) = match of.kind {
+                FileKind::Mesh => {
+                    let bytes = files.contents(of.path).map_err(|e| {
+                        let path = file.folder().join(&*of.path);
+                        let message = format!("cannot read {}: {e}", path.display());
+                        let remedy = "check the path, which is relative to the scene";
+                        in_scene(Problem::new(of.key.name("path"), message, remedy))
+                    })?;
+                    (bytes, format!("{k}-{name}"))
+                }
+                FileKind::Motion => {
+                    let bytes = files.motion(of.path, &of.key).map_err(in_scene)?;
+                    let stem = name.strip_suffix(".npz").unwrap_or(&name);
+                    (bytes, format!("{k}-{}.npz", stem.replace('*', "")))
+                }
+            };
             meshes.push(bytes);
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            names.push(Path::new(MESHES).join(format!("{k}-{name}")));
+            names.push(Path::new(MESHES).join(name));
         }
         Ok(Self {
             hash: hash(file.scene(), &meshes),
@@ -80,8 +91,8 @@ impl<'a> RunInputs<'a> {
 fn hash(scene: &Scene, meshes: &[Arc<[u8]>]) -> SceneHash {
     const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
     let mut scene = scene.clone();
-    for (_, file) in scene.files_mut() {
-        *file = PathBuf::new();
+    for file in scene.files_mut() {
+        *file.path = PathBuf::new();
     }
     let mut sum = SUM.digest();
     let canonical = serde_json::to_vec(&scene);

@@ -2,6 +2,7 @@
 
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
+use super::incidence::Incidence;
 use super::intervention::Intervention;
 use super::vibration::Vibration;
 use crate::scene::Residuals;
@@ -46,6 +47,9 @@ pub struct Summary {
     /// differentiation formula and no state of rest is asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vibration: Option<Vibration>,
+    /// The largest angle between sheet and relative wind after any step, where the flow is attached.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub incidence: Option<Incidence>,
     /// Smallest gap in any step, metres; none without contact, or if nothing ever came close.
     pub smallest_gap: Option<f64>,
     /// Newton iterations.

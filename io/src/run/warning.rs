@@ -22,6 +22,9 @@ impl Summary {
     /// Part by which steps may make a vibration slower.
     pub const SLOWING: f64 = 0.03;
 
+    /// Angle between sheet and relative wind, degrees, from which real flow separates from a sheet.
+    pub const SEPARATION: f64 = 15.0;
+
     /// What to know before the results are used.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
@@ -79,6 +82,16 @@ impl Summary {
                 brief(vibration.step_for(0.01)),
             );
             let remedy = "take a smaller `method.step` if vibrations matter; states of rest do not depend on it";
+            warnings.push(Warning::new(message, remedy));
+        }
+        if let Some(incidence) = self.incidence.filter(|i| i.angle > Self::SEPARATION) {
+            let message = format!(
+                "the air comes to the sheet at up to {incidence}, on the mean of its faces: real flow separates from {} \
+                 degrees on, and has less lift than attached flow",
+                Self::SEPARATION
+            );
+            let remedy = "keep to smaller angles, or leave out `air.attached`: the drag across faces holds for separated \
+                          flow";
             warnings.push(Warning::new(message, remedy));
         }
         if let Some(f) = self.ending.residuals.folding.filter(|f| f.wrong_side > 0) {

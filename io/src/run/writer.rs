@@ -6,6 +6,7 @@ use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::folder::{RunFolder, SceneHash};
 use super::frames::{FrameFile, FrameShape};
+use super::incidence::Incidence;
 use super::recording::Tables;
 use super::row::dissipated;
 use super::steps::step_count;
@@ -332,6 +333,9 @@ impl RunWriter {
         if scene.method.integrator == Integrator::Bdf2 && scene.stop.rest.is_none() {
             let (t, h) = (report.t, report.h);
             progress.vibrations.observe(t, h, report.kinetic);
+        }
+        if let Some(incidence) = Incidence::after(scene, under_way) {
+            progress.incidence = Some(incidence.larger(progress.incidence));
         }
         progress.iterations += report.iterations as u64;
         progress.factorisations += report.factorisations as u64;

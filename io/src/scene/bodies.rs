@@ -205,7 +205,22 @@ pub(super) fn check_reference(
     key: &Key,
     checks: &mut Checks,
 ) {
-    if name.is_none_or(|name| number_of(bodies, name).is_none()) {
-        sheets::check_reference(all, name, key, checks);
+    let Some(name) = name else {
+        return;
+    };
+    let of_sheets = all.iter().filter_map(|sheet| sheet.name.clone());
+    let known: Vec<String> = of_sheets.chain(names(bodies)).collect();
+    if !known.iter().any(|known| known == name) {
+        let meant = match bodies.is_empty() {
+            true => "sheet",
+            false => "sheet or body",
+        };
+        let problem = sheets::unknown_name(meant, known.into_iter(), name, key);
+        checks.problems.push(problem);
     }
+}
+
+/// The names of all bodies.
+pub(super) fn names(bodies: &[Body]) -> impl Iterator<Item = String> + '_ {
+    bodies.iter().enumerate().map(|(k, body)| body.name(k))
 }

@@ -2,10 +2,10 @@
 
 use super::driven_surface::DrivenSurface;
 use super::key::Key;
-use super::mesh_file::Files;
 use super::obstacles::{Obstacle, Shape};
 use super::problem::Problem;
 use super::resolution::check_shape;
+use super::sequence::Sequence;
 use crate::format::MovingMesh;
 use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::contact::CarriedPoint;
@@ -29,12 +29,12 @@ pub(super) struct DrivenObstacles {
 
 impl DrivenObstacles {
     /// Puts obstacles beside surfaces that end with vertex, edge and face of these numbers, and a model with so many
-    /// vertices.
+    /// vertices; `motion` reads a mesh in motion at a place of the scene.
     pub(super) fn new(
         obstacles: &[Obstacle],
         mut end: [usize; 3],
         model_vertices: usize,
-        files: &mut Files,
+        motion: &mut dyn FnMut(&Sequence, &Key) -> Result<Arc<MovingMesh>, Problem>,
     ) -> Result<Self, Problem> {
         let mut list = Vec::new();
         let mut first = model_vertices;
@@ -43,7 +43,7 @@ impl DrivenObstacles {
                 continue;
             };
             let key = key.name("shape.sequence");
-            let motion = files.sequence(sequence, &key)?;
+            let motion = motion(sequence, &key)?;
             let at = key.name("path");
             let motion = Arc::new(MovingMesh::clone(&motion).map(|p| of.pose.place(p)));
             let sheet = Sheet::new(motion.positions(0.0), motion.faces());

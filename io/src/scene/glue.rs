@@ -118,6 +118,16 @@ impl Glue {
             .filter(|name| bodies::number_of(bodies, name).is_some());
         for (i, name) in self.sheets.iter().flatten().enumerate() {
             let key = key.name("sheets").entry(i);
+            if i == 0
+                && let Some([first, second]) = &self.sheets
+                && bodies::number_of(bodies, first).is_some()
+            {
+                let message = format!("the body `{first}` stands before the sheet `{second}`");
+                let remedy =
+                    format!("write the sheet first, `sheets = [\"{second}\", \"{first}\"]`");
+                checks.report(key, message, remedy);
+                return;
+            }
             // A scene of one sheet need not name it.
             let is_only = i == 0 && body.is_some() && all.len() == 1 && name == "sheet";
             if (i == 0 || body.is_none()) && !is_only {

@@ -6,8 +6,8 @@ use super::sequence::Sequence;
 use super::unit::Unit;
 use super::up_axis::UpAxis;
 use crate::format::{
-    self, FileError, FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions,
-    MovingMesh, Polygons, SeparateBuffers, input, parse_mesh, read_mesh_with,
+    self, FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, MovingMesh, Polygons,
+    SeparateBuffers, input, motion_archive, parse_mesh, read_mesh_with,
 };
 use isosheet_mesh::Advice;
 use schemars::JsonSchema;
@@ -109,6 +109,8 @@ pub(crate) struct Files {
     /// The folder that their paths are relative to.
     folder: PathBuf,
     contents: BTreeMap<PathBuf, Arc<[u8]>>,
+    /// The archives of meshes in motion.
+    motions: BTreeMap<PathBuf, Arc<[u8]>>,
     meshes: Vec<(MeshFile, Arc<format::MeshFile>)>,
     sequences: Vec<(Sequence, Arc<MovingMesh>)>,
 }
@@ -131,6 +133,18 @@ impl Files {
         Ok(contents)
     }
 
+    /// The archive of a mesh in motion; `key` is the place of the file in the scene.
+    pub(crate) fn motion(&mut self, path: &Path, key: &Key) -> Result<Arc<[u8]>, Problem> {
+        if let Some(archive) = self.motions.get(path) {
+            return Ok(archive.clone());
+        }
+        let archive = motion_archive(&self.folder.join(path));
+        let archive = archive.map_err(|e| Problem::from_error(key.name("path"), &e))?;
+        let archive: Arc<[u8]> = archive.into();
+        self.motions.insert(path.to_owned(), archive.clone());
+        Ok(archive)
+    }
+
     /// The mesh of a file, in metres and with z upwards; `key` is the place of the file in the scene.
     pub(crate) fn read(
         &mut self,
@@ -147,24 +161,24 @@ impl Files {
         })
     }
 
-    /// A mesh in motion, in metres and with z upwards, at times of the simulation; `key` is the place of the file in
-    /// the scene.
+    /// A mesh in motion, in metres and with z upwards, at times of a run to the time `end`, in seconds; `key` is the
+    /// place of the file in the scene.
     pub(crate) fn sequence(
         &mut self,
         of: &Sequence,
+        end: f64,
         key: &Key,
     ) -> Result<Arc<MovingMesh>, Problem> {
         if let Some((_, mesh)) = self.sequences.iter().find(|(known, _)| known == of) {
+            of.check_times(mesh, end, key)?;
             return Ok(mesh.clone());
         }
-        let path = self.folder.join(&of.path);
-        let contents = self.contents(&of.path);
-        let read = contents.map_err(|e| FileError::unreadable(&path, e));
-        let read = read.and_then(|contents| MovingMesh::parse(&contents, &path));
+        let archive = self.motion(&of.path, key)?;
+        let read = MovingMesh::parse(&archive, &self.folder.join(&of.path));
         let mesh = read.map_err(|e| Problem::from_error(key.name("path"), &e))?;
-        let placed = mesh.map(|p| of.up.place(p.map(|c| of.scale * c)));
-        let mesh = Arc::new(placed.delayed(of.delay));
+        let mesh = Arc::new(of.place(mesh, key)?);
         self.sequences.push((of.clone(), mesh.clone()));
+        of.check_times(&mesh, end, key)?;
         Ok(mesh)
     }
 

@@ -2,6 +2,7 @@
 
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
+use super::named_file::NamedFile;
 use super::outline::Outline;
 use super::pose::{Motion, Pose};
 use super::problem::{Checks, Problem};
@@ -11,7 +12,6 @@ use isosheet_collide as collide;
 use isosheet_collide::{SurfaceError, TriangleSurface, rounded_line};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A body at rest or in prescribed motion.
@@ -203,7 +203,13 @@ impl Shape {
                 length: distance,
             } => {
                 length("radius", *radius);
-                length("length", *distance);
+                if *distance == 0.0 {
+                    let message = "the capsule has no length: it is a sphere";
+                    let remedy = "write `sphere = { radius = ... }`, or give a length above 0";
+                    checks.report(shape.name("length"), message, remedy);
+                } else {
+                    checks.positive(shape.name("length"), *distance, Unit::Metre);
+                }
             }
             Shape::Prism { outline, height } => {
                 length("height", *height);
@@ -248,12 +254,12 @@ impl Shape {
         }
     }
 
-    /// The path of the file that it is, with the place of the file; `key` is its own.
-    pub(super) fn file_mut(&mut self, key: &Key) -> Option<(Key, &mut PathBuf)> {
+    /// The file that it is; `key` is its own place.
+    pub(super) fn file_mut(&mut self, key: &Key) -> Option<NamedFile<'_>> {
         let key = key.name(self.name());
         match self {
-            Self::File(file) => Some((key, &mut file.path)),
-            Self::Sequence(sequence) => Some((key, &mut sequence.path)),
+            Self::File(file) => Some(NamedFile::mesh(key, &mut file.path)),
+            Self::Sequence(sequence) => Some(NamedFile::motion(key, &mut sequence.path)),
             _ => None,
         }
     }

@@ -1,17 +1,17 @@
 //! Meshes in motion, from files.
 
 use super::key::Key;
-use super::problem::Checks;
+use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use super::up_axis::UpAxis;
+use crate::format::{Clock, MovingMesh};
+use isosheet_mesh::wording::brief;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// A mesh in motion: the positions of its vertices at several times, in an archive of numpy (`.npz`) with the arrays
-/// `t` (T times, seconds), `x` (T x V x 3) and `faces` (F x 3, from 0). The `trajectory.npz` of a run is one, and
-/// `numpy.savez("body.npz", t=t, x=x, faces=faces)` writes one. Between these times vertices go straight on at
-/// constant speed, before and after they rest.
+/// A mesh in motion: the positions of its vertices at several times, between which they go straight on at constant
+/// speed.
 ///
 /// ```toml
 /// [[obstacle]]
@@ -20,8 +20,19 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sequence {
-    /// Path of the file, relative to the scene file.
+    /// Path, relative to the scene file, of
+    ///
+    /// - the folder of a run, whose trajectory is taken;
+    /// - an archive of numpy (`.npz`) with the arrays `t` (T times, seconds), `x` (T x V x 3) and `faces` (F x 3, from 0),
+    ///   which `numpy.savez("body.npz", t=t, x=x, faces=faces)` writes;
+    /// - text of Universal Scene Description (`.usda`): all meshes that it shows, in metres and with z upwards;
+    /// - a list of mesh files with their times in seconds (`.pvd`, `.vtk.series`);
+    /// - a folder of mesh files whose names end in the numbers of frames, or a pattern with one `*` for these numbers,
+    ///   `walk/walk_*.obj`. VTK files may have times.
     pub path: PathBuf,
+    /// Frames a second, of files that have numbers and no times; the first one is at 0 s.
+    #[serde(default)]
+    pub rate: Option<f64>,
     /// Length of one unit of the file, metres: 0.001 for a file in millimetres.
     #[serde(default = "one")]
     pub scale: f64,
@@ -31,6 +42,20 @@ pub struct Sequence {
     /// What is added to the times of the file, seconds.
     #[serde(default)]
     pub delay: f64,
+    /// What the mesh does in a run that begins before its first time or goes on after its last one.
+    #[serde(default)]
+    pub outside: Outside,
+}
+
+/// What a mesh in motion does before its first and after its last time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Outside {
+    /// Nothing: a run that needs it is refused. A mesh at one time alone rests.
+    #[default]
+    Refuse,
+    /// It rests where it is at that time.
+    Rest,
 }
 
 fn one() -> f64 {
@@ -43,16 +68,68 @@ impl Sequence {
         Self {
             path: path.into(),
             scale: 1.0,
+            rate: None,
             up: UpAxis::Z,
             delay: 0.0,
+            outside: Outside::Refuse,
         }
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("scale"), self.scale, Unit::Metre);
         checks.number(key.name("delay"), self.delay, Unit::Second);
-        if self.path.as_os_str().is_empty() {
-            checks.report(key.name("path"), "the path is empty", "name an .npz file");
+        if let Some(rate) = self.rate {
+            checks.positive(key.name("rate"), rate, Unit::PerSecond);
         }
+        if self.path.as_os_str().is_empty() {
+            checks.report(
+                key.name("path"),
+                "the path is empty",
+                "name a mesh in motion",
+            );
+        }
+    }
+
+    /// What a file has, in metres, with z upwards and at times of the simulation; `key` is its place.
+    pub(super) fn place(&self, mesh: MovingMesh, key: &Key) -> Result<MovingMesh, Problem> {
+        let mesh = match (mesh.clock(), self.rate) {
+            (Clock::Seconds, None) => mesh,
+            (Clock::Frames, Some(rate)) => mesh.at_rate(rate),
+            (Clock::Seconds, Some(_)) => {
+                let message = "the mesh in motion has times in seconds besides";
+                return Err(Problem::new(key.name("rate"), message, "leave `rate` out"));
+            }
+            (Clock::Frames, None) => {
+                let message = "the files of the mesh in motion have numbers and no times";
+                let remedy = "write the frames a second beside `path`, such as `rate = 24`";
+                return Err(Problem::new(key.name("path"), message, remedy));
+            }
+        };
+        let placed = mesh.map(|p| self.up.place(p.map(|c| self.scale * c)));
+        Ok(placed.delayed(self.delay))
+    }
+
+    /// Refuses a run to a time, in seconds, that goes beyond the times of the mesh; `key` is its place.
+    pub(super) fn check_times(
+        &self,
+        mesh: &MovingMesh,
+        end: f64,
+        key: &Key,
+    ) -> Result<(), Problem> {
+        let [first, .., last] = mesh.times() else {
+            return Ok(());
+        };
+        let round_off = 4.0 * f64::EPSILON * first.abs().max(last.abs()).max(self.delay.abs());
+        let is_inside = *first <= round_off && *last >= end - round_off;
+        if is_inside || self.outside == Outside::Rest {
+            return Ok(());
+        }
+        let [first, last, end] = [*first, *last, end].map(brief);
+        let message = format!(
+            "the mesh in motion goes from {first} s to {last} s, and the run from 0 s to {end} s"
+        );
+        let remedy = "shift it by `delay`, end the run earlier (`stop.time`), or write `outside = \"rest\"`, so that it \
+                      rests before and after";
+        Err(Problem::new(key.name("path"), message, remedy))
     }
 }

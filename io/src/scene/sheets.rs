@@ -120,15 +120,29 @@ pub(super) fn number_of<'a>(
         return Ok((names.len() == 1).then_some(0));
     };
     let found = names.iter().position(|n| *n == Some(name));
-    found.map(Some).ok_or_else(|| {
-        let known: Vec<String> = names.iter().flatten().map(|n| format!("`{n}`")).collect();
-        let remedy = match known.is_empty() {
-            true => "leave the key out, or give the sheet this `name`".to_owned(),
-            false => format!("give one of these: {}", known.join(", ")),
-        };
-        let message = format!("no sheet has the name `{name}`");
-        Problem::new(key.clone(), message, remedy)
-    })
+    let known = names.iter().flatten().map(|n| (*n).to_owned());
+    found
+        .map(Some)
+        .ok_or_else(|| unknown_name("sheet", known, name, key))
+}
+
+/// Nothing of what may be meant has a name; `known` are the names of all of it.
+pub(super) fn unknown_name(
+    meant: &str,
+    known: impl Iterator<Item = String>,
+    name: &str,
+    key: &Key,
+) -> Problem {
+    let known: Vec<String> = known.map(|name| format!("`{name}`")).collect();
+    let remedy = match known.is_empty() {
+        true => "leave the key out, or give the sheet this `name`".to_owned(),
+        false => format!("give one of these: {}", known.join(", ")),
+    };
+    Problem::new(
+        key.clone(),
+        format!("no {meant} has the name `{name}`"),
+        remedy,
+    )
 }
 
 /// The number of the sheet that is meant, which has to be said if there are several.

@@ -235,9 +235,9 @@ impl SceneFile {
     pub fn with_files(&self, names: &[PathBuf]) -> Result<Self, SceneError> {
         let mut scene = self.scene.clone();
         let mut keys = Vec::new();
-        for ((key, file), name) in scene.files_mut().into_iter().zip(names) {
-            *file = name.clone();
-            keys.push(key.name("path"));
+        for (file, name) in scene.files_mut().into_iter().zip(names) {
+            *file.path = name.clone();
+            keys.push(file.key.name("path"));
         }
         self.changed(scene, keys)
     }

@@ -25,7 +25,9 @@ pub(crate) fn toml_problem(error: &toml::de::Error) -> Problem {
 /// Message and remedy.
 fn in_words(full: &str) -> (String, String) {
     let message = full.lines().next().unwrap_or_default();
-    if let Some((found, expected)) = wrong_type(message) {
+    // An empty table is found where an enum is expected.
+    let wrong = wrong_type(message).filter(|(_, expected)| *expected != "enum");
+    if let Some((found, expected)) = wrong {
         let (expected, remedy) = expected_in_words(expected);
         let message = match found {
             "" => format!("expected {expected}"),
@@ -47,10 +49,14 @@ fn in_words(full: &str) -> (String, String) {
             "this is one choice among several, and more than one is given".to_owned(),
             "keep one of them".to_owned(),
         ),
-        _ if message.starts_with("wanted exactly 1 element, found 0") => (
-            "this is one choice among several, and none is given".to_owned(),
-            "docs/scene.md has the choices".to_owned(),
-        ),
+        _ if message.starts_with("wanted exactly 1 element, found 0")
+            || message.ends_with(", expected enum") =>
+        {
+            (
+                "this is one choice among several, and none is given".to_owned(),
+                "docs/scene.md has the choices".to_owned(),
+            )
+        }
         _ => (
             message.to_owned(),
             "docs/scene.md describes all keys, https://toml.io the syntax".to_owned(),

@@ -214,3 +214,52 @@ fn ctrl_c_is_heard_within_a_step() {
         assert_eq!(history.lines().count(), 2, "{history}");
     }
 }
+
+/// The folder of one run is the obstacle of another, which keeps a copy of the motion and continues without that folder.
+#[test]
+fn the_folder_of_a_run_is_the_obstacle_of_another() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let cloth = |side: f64, z: f64, time: f64, more: &str| {
+        format!(
+            "version = 1\n[sheet]\nmaterial = \"cotton\"\ndamping = 4\n\
+             mesh = {{ rectangle = {{ width = {side}, height = {side}, columns = 4, rows = 4 }} }}\n\
+             placement = {{ position = [{0}, {0}, {z}] }}\n[forces]\ngravity = [0, 0, -9.81]\n\
+             [stop]\ntime = {time}\n{more}",
+            -0.5 * side
+        )
+    };
+    let held = "[[support]]\nat = { vertices = [0, 4, 20, 24] }\n";
+    let lies = "[[obstacle]]\nshape = { sequence = { path = \"hammock-run\" } }\nfriction = 0.5\n";
+    std::fs::write(dir.join("hammock.toml"), cloth(0.2, 0.0, 0.2, held)).unwrap();
+    std::fs::write(dir.join("on.toml"), cloth(0.1, 0.01, 0.2, lies)).unwrap();
+    let runs = |arguments: &[&str]| {
+        let done = run(dir, arguments);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    };
+    runs(&["simulate", "hammock.toml", "-o", "hammock-run"]);
+    runs(&["simulate", "on.toml", "-o", "whole"]);
+    runs(&[
+        "simulate",
+        "on.toml",
+        "-o",
+        "part",
+        "--set",
+        "stop.time=0.1",
+    ]);
+    std::fs::rename(dir.join("hammock-run"), dir.join("away")).unwrap();
+    runs(&["resume", "part", "--until", "0.2"]);
+    let last = |folder: &str| Trajectory::read(&dir.join(folder).join("trajectory.npz")).unwrap();
+    let (whole, part) = (last("whole"), last("part"));
+    assert_eq!(
+        whole.frame(whole.len() - 1).unwrap(),
+        part.frame(part.len() - 1).unwrap()
+    );
+    let done = run(dir, &["resume", "part", "--until", "0.3"]);
+    assert_ne!(code(&done), Some(0));
+    let said = stderr(&done);
+    assert!(
+        said.contains("the mesh in motion goes from 0 s to 0.2 s"),
+        "{said}"
+    );
+}

@@ -299,3 +299,38 @@ fn a_mesh_too_coarse_for_the_bends_is_named() {
     assert_eq!(code(&fine), Some(0), "{}", stderr(&fine));
     assert!(!stderr(&fine).contains("warning"), "{}", stderr(&fine));
 }
+
+/// Air that comes to a plate at 20 degrees separates from a real one, and a run says when; at 10 degrees it does not.
+#[test]
+fn flow_that_would_separate_is_told_with_its_angle() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    for (degrees, is_told) in [(10.0_f64, false), (20.0, true)] {
+        let scene = format!(
+            "version = 1
+            [sheet]
+            mesh = {{ rectangle = {{ width = 0.1, height = 0.1, columns = 2, rows = 2 }} }}
+            [[support]]
+            at = \"boundary\"
+            [air]
+            wind = [6, 0, {}]
+            [air.attached]
+            trailing = {{ half_space = {{ point = [0.0999, 0, 0], normal = [1, 0, 0] }} }}
+            [stop]
+            time = 0.05",
+            6.0 * degrees.to_radians().tan()
+        );
+        fs::write(dir.join("plate.toml"), scene).unwrap();
+        let out = format!("out-{degrees}");
+        let done = run(dir, &["simulate", "plate.toml", "--out", &out]);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        let said = stderr(&done);
+        assert_eq!(said.contains("real flow separates"), is_told, "{said}");
+        let incidence = summary(&dir.join(&out)).incidence.unwrap();
+        // Vertices inside yield a little.
+        assert!(
+            (incidence.angle - degrees).abs() < 0.1 * degrees,
+            "{incidence:?}"
+        );
+    }
+}

@@ -70,6 +70,7 @@ fn a_run_does_not_go_on_where_that_makes_no_sense() {
             "the sheet was at rest",
         ),
         ("nan", vec!["stop.time=0.1"], "nan", "that is no time"),
+        ("far", vec!["stop.time=0.1"], "1e300", "is 1e300 s"),
     ] {
         let mut arguments = vec!["simulate", "scene.toml", "--out", out];
         arguments.extend(edits.iter().flat_map(|edit| ["--set", edit]));

@@ -53,7 +53,7 @@ pub(crate) fn centre(live: &LiveScene, body: usize) -> Vector3<f64> {
         .into()
 }
 
-fn velocity(live: &LiveScene, body: usize) -> Vector3<f64> {
+pub(crate) fn velocity(live: &LiveScene, body: usize) -> Vector3<f64> {
     live.bodies()[body]
         .centre(&live.simulation().state().v)
         .into()
@@ -439,7 +439,7 @@ fn bodies_that_cannot_be_are_refused_with_the_cause() {
             format!(
                 "{cube}\nmass = 1\n[[measure]]\nname = \"m\"\nsheet = \"b\"\nat = \"all\"\nquantity = \"x\""
             ),
-            ["measure[0].sheet", "no sheet has the name `b`"],
+            ["measure[0].sheet", "no sheet or body has the name `b`"],
         ),
     ] {
         let problem = problem(&with(&body));

@@ -403,10 +403,10 @@ const ALL_KEYS: [&str; 15] = [
     at = { vertices = [5] }
     hold = { follow = { sequence = { path = "body.npz" }, vertices = "nearest" } }
     [[obstacle]]
-    shape = { sequence = { path = "body.npz", scale = 0.01, up = "y", delay = 0.5 } }
+    shape = { sequence = { path = "body.npz", scale = 0.01, up = "y", delay = 0.5, outside = "rest" } }
     [[support]]
     at = { group = "hem" }
-    hold = { follow = { sequence = { path = "body.npz", scale = 0.01, up = "y", delay = 0.5 }, vertices = "same_number" } }
+    hold = { follow = { sequence = { path = "walk/walk_*.obj", rate = 24, scale = 0.01, up = "y", delay = 0.5, outside = "refuse" }, vertices = "same_number" } }
     [[support]]
     at = { vertices = [3] }
     hold = { follow = { sequence = { path = "body.npz" }, vertices = { numbers = [7] } } }

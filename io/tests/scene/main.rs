@@ -23,6 +23,7 @@ mod pairs;
 mod patches;
 mod peel;
 mod random_bodies;
+mod restitution;
 mod seams;
 mod sequences;
 mod several_materials;

@@ -444,3 +444,60 @@ fn whole_numbers_beyond_those_of_toml_are_refused() {
         assert!(error.to_string().contains(part), "{error}");
     }
 }
+
+/// Names and choices that are not there are told with those that are.
+#[test]
+fn names_of_bodies_and_choices_are_told() {
+    let capsule = "capsule = { radius = 0.1, length = 0 }";
+    let body = "name = \"sheet\"\n[[body]]\nname = \"pole\"\nmass = 1\nshape = { sphere = { radius = 0.01 } }\n\
+                pose = { position = [0, 0, 3] }\n";
+    let with_body = RIGHT.replace("[[support]]", &format!("{body}[[support]]"));
+    let measure = "[[measure]]\nname = \"x\"\nsheet = \"pol\"\nat = \"all\"\nquantity = \"x\"\n";
+    let pair = "[[contact.pair]]\nsheets = [\"pole\", \"floor\"]\nfriction = 0.1\n";
+    let glue = "[[glue]]\nsheets = [\"pole\", \"sheet\"]\nfirst = { vertices = [0] }\n";
+    for (text, message, remedy) in [
+        (
+            RIGHT.replace(
+                "at = { vertices = [0] }",
+                "at = { vertices = [0] }\nuntil = {}",
+            ),
+            "one choice among several, and none is given",
+            "docs/scene.md has the choices",
+        ),
+        (
+            RIGHT.replace("sphere = { radius = 0.1 }", capsule),
+            "has no length: it is a sphere",
+            "`sphere = { radius = ... }`",
+        ),
+        (
+            format!("{with_body}{measure}"),
+            "no sheet or body has the name `pol`",
+            "give one of these: `sheet`, `pole`",
+        ),
+        (
+            format!("{with_body}{pair}"),
+            "no sheet, body or obstacle has the name `floor`",
+            "give one of these: `sheet`, `pole`",
+        ),
+        (
+            format!("{with_body}{glue}"),
+            "the body `pole` stands before the sheet `sheet`",
+            "`sheets = [\"sheet\", \"pole\"]`",
+        ),
+        (
+            format!(
+                "{RIGHT}[air]\nwind = [6, 0, 0]\n[air.attached]\n\
+                 trailing = {{ half_space = {{ point = [1e-6, 0, 0], normal = [-1, 0, 0] }} }}\n"
+            ),
+            "the air comes from the trailing edge",
+            "the edge on the other side",
+        ),
+    ] {
+        let found = problems(&text);
+        let is_told = found.iter().any(|problem| {
+            let said = problem.remedy.as_deref().unwrap_or_default();
+            problem.message.contains(message) && said.contains(remedy)
+        });
+        assert!(is_told, "{message}: {found:?}");
+    }
+}

@@ -108,7 +108,10 @@ fn pairs_that_cannot_be_are_refused_with_the_cause() {
         ),
         (
             floor("floor") + &pair("sheet", "flor"),
-            ["contact.pair[0].sheets[1]", "no sheet has the name `flor`"],
+            [
+                "contact.pair[0].sheets[1]",
+                "no sheet, body or obstacle has the name `flor`",
+            ],
         ),
         (
             floor("sheet"),

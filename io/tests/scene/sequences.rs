@@ -1,9 +1,10 @@
 //! Vertices and obstacles that follow meshes in motion, from files.
 
-use isosheet_io::Trajectory;
+use crate::bodies::{ASIDE, play, velocity};
 use isosheet_io::dynamics::Simulation;
 use isosheet_io::mesh::{Sheet, generate};
 use isosheet_io::scene::{LiveScene, SceneFile};
+use isosheet_io::{Series, SeriesOptions, Trajectory, write_series};
 use std::path::Path;
 
 /// The simulation of a scene in a folder.
@@ -306,7 +307,7 @@ fn the_motion_of_one_sheet_is_the_obstacle_of_another() {
          mesh = { rectangle = { width = 0.1, height = 0.1, columns = 5, rows = 5 } }\n\
          placement = { position = [-0.05, -0.05, 0.01] }\n[forces]\ngravity = [0, 0, -9.81]\n\
          [[obstacle]]\nshape = \"half_space\"\npose = { position = [0, 0, -0.01] }\n\
-         [[obstacle]]\nshape = { sequence = { path = \"hammock.npz\", delay = 0.1 } }\nfriction = 0.5";
+         [[obstacle]]\nshape = { sequence = { path = \"hammock.npz\", delay = 0.1, outside = \"rest\" } }\nfriction = 0.5";
     let build = || {
         let scene = SceneFile::parse(text.into(), &dir.path().join("b.toml"), &[]);
         scene.unwrap().build().unwrap()
@@ -331,6 +332,131 @@ fn the_motion_of_one_sheet_is_the_obstacle_of_another() {
         .zip(trajectory.frame(k).unwrap())
         .map(|(a, b)| (a - b).abs());
     assert!(off.fold(0.0, f64::max) < 1e-12);
+}
+
+/// A ball that comes up in files of all kinds lifts the same cloth to the same bits, as an obstacle and with corners that
+/// follow it.
+#[test]
+fn the_same_motion_in_any_file_is_the_same_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    let ball = ball(0.05);
+    let mut trajectory = Trajectory::new(&ball);
+    for frame in 0..=6 {
+        let t = f64::from(frame) / 24.0;
+        let size = 1.0 + 0.5 * t;
+        let x = scaled(ball.positions(), size, [0.0, 0.0, -0.06 + 0.02 * t]);
+        // USD has 32-bit floats.
+        let x: Vec<f64> = x.iter().map(|c| f64::from(*c as f32)).collect();
+        trajectory.push(t, &x).unwrap();
+    }
+    trajectory.write(&folder.join("ball.npz")).unwrap();
+    trajectory
+        .write(&folder.join("run/trajectory.npz"))
+        .unwrap();
+    let series = Series::new(&trajectory, &SeriesOptions::default()).unwrap();
+    for name in ["ball.usda", "list.pvd", "numbered.obj"] {
+        write_series(&folder.join(name), &series).unwrap();
+    }
+    let start = |source: &str| {
+        let cloth = HELD.split("[[support]]").next().unwrap();
+        let text = format!(
+            "{cloth}[stop]\ntime = 0.25\n[[obstacle]]\nshape = {{ sequence = {{ {source} }} }}\nfriction = 0.5\n\
+             [[support]]\nat = {{ vertices = [0] }}\n\
+             hold = {{ follow = {{ sequence = {{ {source} }} }} }}"
+        );
+        simulation(folder, &text)
+    };
+    let mut expected = start("path = \"ball.npz\"").unwrap();
+    for _ in 0..10 {
+        let report = expected.step(1.0 / 60.0).unwrap();
+        assert!(report.gap.unwrap() > 0.0);
+    }
+    for source in [
+        "path = \"run\"",
+        "path = \"ball.usda\"",
+        "path = \"list.pvd\"",
+        "path = \"list\"",
+        "path = \"numbered\", rate = 24",
+        "path = \"numbered/frame_*.obj\", rate = 24",
+    ] {
+        let mut found = start(source).unwrap();
+        for _ in 0..10 {
+            found.step(1.0 / 60.0).unwrap();
+        }
+        assert!(off(&expected, &found) < 1e-12, "{source}");
+    }
+    for (source, reason) in [
+        ("path = \"numbered\"", "numbers and no times"),
+        ("path = \"list\", rate = 24", "has times in seconds"),
+        (
+            "path = \"numbered\", rate = 48",
+            "goes from 0 s to 0.125 s, and the run from 0 s to 0.25 s",
+        ),
+        ("path = \"ball.npz\", delay = 0.01", "goes from 0.01 s"),
+        ("path = \".\"", "no mesh files whose names end with"),
+    ] {
+        let message = start(source).err().unwrap();
+        assert!(message.contains(reason), "{source}: {message}");
+    }
+    assert!(start("path = \"numbered\", rate = 48, outside = \"rest\"").is_ok());
+}
+
+/// A box that hits a ball pushes it away whether it is a mesh in motion or a rigid obstacle, at speeds at which the two
+/// meet within a step.
+#[test]
+fn a_mesh_in_motion_hits_a_body_as_a_rigid_obstacle_does() {
+    let dir = tempfile::tempdir().unwrap();
+    let faces = [
+        [0, 1, 3],
+        [0, 3, 2],
+        [4, 6, 7],
+        [4, 7, 5],
+        [0, 4, 5],
+        [0, 5, 1],
+        [2, 3, 7],
+        [2, 7, 6],
+        [0, 2, 6],
+        [0, 6, 4],
+        [1, 5, 7],
+        [1, 7, 3],
+    ];
+    let corner = |k: usize, axis: usize| {
+        if k >> (2 - axis) & 1 == 1 {
+            0.05
+        } else {
+            -0.05
+        }
+    };
+    let x: Vec<f64> = (0..24).map(|i| corner(i / 3, i % 3)).collect();
+    let mesh = Sheet::new(x, &faces).unwrap();
+    let start = |obstacle: &str| {
+        let text = format!(
+            "{}[[body]]\nname = \"ball\"\nshape = {{ sphere = {{ radius = 0.02 }} }}\nsides = 24\nmass = 0.02\n\
+             [[obstacle]]\n{obstacle}\n[stop]\ntime = 0.5\n",
+            ASIDE
+        );
+        let scene = SceneFile::parse(text, &dir.path().join("scene.toml"), &[]).unwrap();
+        LiveScene::start(scene).unwrap()
+    };
+    for speed in [0.1, 0.2, 0.5, 1.0, 2.0] {
+        let frames = [0.0, 1.0].map(|t| (t, moved(mesh.positions(), [-0.1 + speed * t, 0.0, 0.0])));
+        write(&dir.path().join("box.npz"), &mesh, &frames);
+        let by_mesh = start("shape = { sequence = { path = \"box.npz\" } }");
+        let by_motion = start(&format!(
+            "shape = {{ box = {{ size = [0.1, 0.1, 0.1] }} }}\npose = {{ position = [-0.1, 0, 0] }}\n\
+             motion = {{ x = {{ ramp = {{ to = {speed}, end = 1 }} }} }}"
+        ));
+        // Between a ball that goes with the box and one that is thrown off without loss.
+        for mut live in [by_mesh, by_motion] {
+            play(&mut live, 0.5);
+            let found = velocity(&live, 0).x;
+            assert!(
+                found > 0.99 * speed && found <= 2.0 * speed,
+                "{speed}: {found}"
+            );
+        }
+    }
 }
 
 #[test]

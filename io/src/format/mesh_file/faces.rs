@@ -124,6 +124,7 @@ impl Polyhedron {
             texture: Vec::new(),
             changes: ReadingChanges::default(),
             path: PathBuf::new(),
+            time: None,
             positions: Vec::new(),
         };
         let mut start = 0;

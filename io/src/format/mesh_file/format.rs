@@ -20,6 +20,10 @@ pub enum MeshFormat {
     Gltf,
     /// The same in one binary file, `.glb`.
     Glb,
+    /// Polygons of VTK, legacy files as text or binary, `.vtk`.
+    Vtk,
+    /// Polygons of VTK, XML files, `.vtp`.
+    Vtp,
     /// Scalable Vector Graphics, `.svg`: a crease pattern by the colours of Origami Simulator.
     Svg,
     /// Crease patterns of ORIPA and Oriedita as text, `.cp`.
@@ -30,7 +34,7 @@ pub enum MeshFormat {
 
 impl MeshFormat {
     /// All formats that are read.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Obj,
         Self::Off,
         Self::Stl,
@@ -38,6 +42,8 @@ impl MeshFormat {
         Self::Fold,
         Self::Gltf,
         Self::Glb,
+        Self::Vtk,
+        Self::Vtp,
         Self::Svg,
         Self::Cp,
         Self::Opx,
@@ -53,6 +59,8 @@ impl MeshFormat {
             Self::Fold => "fold",
             Self::Gltf => "gltf",
             Self::Glb => "glb",
+            Self::Vtk => "vtk",
+            Self::Vtp => "vtp",
             Self::Svg => "svg",
             Self::Cp => "cp",
             Self::Opx => "opx",

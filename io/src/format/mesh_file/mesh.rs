@@ -98,6 +98,8 @@ pub struct MeshFile {
     /// What reading changed.
     pub changes: ReadingChanges,
     pub(super) path: PathBuf,
+    /// The time that a VTK file gives its polygons, in its unit.
+    pub(super) time: Option<f64>,
 }
 
 impl MeshFile {
@@ -117,6 +119,7 @@ impl MeshFile {
             texture: Vec::new(),
             changes: ReadingChanges::default(),
             path: PathBuf::new(),
+            time: None,
         }
     }
 
@@ -138,6 +141,12 @@ impl MeshFile {
     /// The file that the mesh was read from; empty for a frame of a run.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The time that the file gives the mesh, in its unit.
+    #[cfg(feature = "scene")]
+    pub(in crate::format) fn time(&self) -> Option<f64> {
+        self.time
     }
 
     /// Removes vertices that belong to no face and renumbers the rest in order; returns how many were

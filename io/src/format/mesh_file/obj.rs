@@ -12,7 +12,7 @@ use isosheet_mesh::wording::given;
 ///
 /// Understood: `v`, `vt`, `f` (indices from 1, or negative and counted backwards; those of normals are skipped),
 /// `g`, `o` and `usemtl` as groups of the faces that follow, line continuation by a backslash, comments. Normals,
-/// colours, lines and points are skipped. Texture coordinates that are no numbers or not there are none.
+/// colours, lines and points are skipped. Texture coordinates that are not finite or not there are none.
 pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     let mut parser = Parser {
         mesh: Polyhedron::counted_from(1),
@@ -100,7 +100,7 @@ impl Parser {
                     self.mesh.push_group(name);
                 }
             }
-            Some("vt") => self.texture.push(texture(words)),
+            Some("vt") => self.texture.push(texture(words)?),
             Some("g") => self.groups[0] = words.map(str::to_owned).collect(),
             // Their names may have spaces.
             Some("o") => self.groups[1] = name(words),
@@ -191,11 +191,21 @@ fn name<'a>(words: impl Iterator<Item = &'a str>) -> Vec<String> {
     Vec::from_iter((!name.is_empty()).then_some(name))
 }
 
-/// The texture coordinates on a line, the second of which may be left out.
-fn texture<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<[f64; 2]> {
-    let u = words.next()?.parse::<f64>().ok()?;
-    let v = words.next().map_or(Ok(0.0), str::parse::<f64>).ok()?;
-    (u.is_finite() && v.is_finite()).then_some([u, v])
+/// The texture coordinates on a line, the second of which may be left out; none where they are not finite.
+fn texture<'a>(
+    words: impl Iterator<Item = &'a str> + Clone,
+) -> Result<Option<[f64; 2]>, DataError> {
+    let numbers = words.clone().map(str::parse::<f64>);
+    match numbers.collect::<Result<Vec<_>, _>>().as_deref() {
+        Ok([u]) => Ok(Some([*u, 0.0])),
+        Ok([u, v, ..]) => Ok(Some([*u, *v])),
+        Ok([]) | Err(_) => {
+            let found = excerpt(&words.collect::<Vec<_>>().join(" "));
+            let message = format!("texture coordinates are numbers, found {found:?}");
+            Err(DataError::new(message, "write `vt u v`"))
+        }
+    }
+    .map(|uv| uv.filter(|uv| uv.iter().all(|c| c.is_finite())))
 }
 
 #[cfg(test)]

@@ -1,15 +1,35 @@
 //! Meshes in motion, of archives of numpy.
 
-use super::archive::{ArchiveReader, Shaped};
+use super::archive::{ArchiveReader, ArchiveWriter, Shaped};
 use crate::format::FileError;
 use isosheet_mesh::wording::given;
-use std::io::Cursor;
+use std::io::{self, Cursor};
 use std::path::Path;
+
+/// The unit of the times of a mesh in motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Clock {
+    /// They are seconds.
+    Seconds,
+    /// They count frames, of which nothing says how many a second has.
+    Frames,
+}
+
+impl Clock {
+    /// The name of the array of the times in an archive.
+    fn array(self) -> &'static str {
+        match self {
+            Self::Seconds => "t",
+            Self::Frames => "frame",
+        }
+    }
+}
 
 /// The positions of the vertices of a mesh at several times, between which they go straight on.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MovingMesh {
-    /// Seconds, increasing.
+    clock: Clock,
+    /// In the unit of the clock, increasing.
     times: Vec<f64>,
     /// `3V` for each time, metres.
     x: Vec<f64>,
@@ -19,7 +39,7 @@ pub(crate) struct MovingMesh {
 
 impl MovingMesh {
     /// Reads the arrays `t`, `x` and `faces` of an archive as [`Trajectory::write`](super::Trajectory::write) makes
-    /// it; `path` is used in errors only.
+    /// it, or as [`Self::archive`] does, with `frame` in place of `t`; `path` is used in errors only.
     ///
     /// # Errors
     /// [`FileError::Read`], naming the array and the place in it.
@@ -29,7 +49,13 @@ impl MovingMesh {
         let wrong = |problem: String| FileError::content(path, problem, ARRAYS);
         let mut npz =
             ArchiveReader::new(Cursor::new(bytes), path).map_err(|e| wrong(e.to_string()))?;
-        let (t_shape, times) = floats(&mut npz, "t", 1)?;
+        let (clock, (t_shape, times)) = match floats(&mut npz, Clock::Seconds.array(), 1) {
+            Ok(times) => (Clock::Seconds, times),
+            Err(missing) => match floats(&mut npz, Clock::Frames.array(), 1) {
+                Ok(numbers) => (Clock::Frames, numbers),
+                Err(_) => return Err(missing),
+            },
+        };
         let (x_shape, x) = floats(&mut npz, "x", 3)?;
         let (faces_shape, corners) = integers(&mut npz, "faces", 2)?;
         let (frames, vertices) = (t_shape[0], x_shape[1]);
@@ -43,16 +69,29 @@ impl MovingMesh {
                 )));
             }
         }
+        Self::new(path, (clock, times), x, &corners)
+    }
+
+    /// Frames at some times: the positions of all vertices in each, one frame after the other, and the corners of the
+    /// faces between them. `path` is used in errors only.
+    ///
+    /// # Errors
+    /// [`FileError::Read`], naming the frame and the vertex.
+    pub(crate) fn new(
+        path: &Path,
+        (clock, times): (Clock, Vec<f64>),
+        x: Vec<f64>,
+        corners: &[i64],
+    ) -> Result<Self, FileError> {
+        let frames = times.len();
+        let vertices = x.len() / 3 / frames.max(1);
         if frames == 0 || vertices == 0 {
-            return Err(wrong(format!(
-                "it has {frames} frames of {vertices} vertices"
-            )));
+            let problem = format!("it has {frames} frames of {vertices} vertices");
+            return Err(FileError::content(path, problem, "give frames of a mesh"));
         }
         if let Some(k) = times.iter().position(|t| !t.is_finite()) {
-            return Err(wrong(format!(
-                "the time of frame {k} is {}",
-                given(times[k])
-            )));
+            let problem = format!("the time of frame {k} is {}", given(times[k]));
+            return Err(FileError::content(path, problem, "give finite times"));
         }
         if let Some(k) = times.windows(2).position(|t| t[0] >= t[1]) {
             let [before, now] = [times[k], times[k + 1]].map(given);
@@ -64,7 +103,7 @@ impl MovingMesh {
             ));
         }
         if let Some(k) = x.iter().position(|c| !c.is_finite()) {
-            let (axis, v, value) = (["x", "y", "z"][k % 3], k as u64 / 3, given(x[k]));
+            let (axis, v, value) = (["x", "y", "z"][k % 3], k / 3, given(x[k]));
             let (frame, vertex) = (v / vertices, v % vertices);
             let problem =
                 format!("coordinate {axis} of vertex {vertex} in frame {frame} is {value}");
@@ -75,20 +114,57 @@ impl MovingMesh {
             ));
         }
         let corner = |(k, v): (usize, &i64)| match u32::try_from(*v) {
-            Ok(corner) if u64::from(corner) < vertices => Ok(corner),
-            _ => Err(wrong(format!(
-                "face {} refers to vertex {v} of {vertices}",
-                k / 3
-            ))),
+            Ok(corner) if (corner as usize) < vertices => Ok(corner),
+            _ => {
+                let problem = format!("face {} refers to vertex {v} of {vertices}", k / 3);
+                Err(FileError::content(
+                    path,
+                    problem,
+                    "number the vertices from 0",
+                ))
+            }
         };
         let corners = corners.iter().enumerate().map(corner);
         let corners: Vec<u32> = corners.collect::<Result<_, _>>()?;
         Ok(Self {
+            clock,
             times,
             x,
-            vertex_count: vertices as usize,
+            vertex_count: vertices,
             faces: corners.as_chunks().0.to_vec(),
         })
+    }
+
+    /// The archive that [`Self::parse`] reads.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub(crate) fn archive(&self) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        let mut npz = ArchiveWriter::new(Cursor::new(&mut bytes));
+        let [frames, vertices, faces] =
+            [self.times.len(), self.vertex_count, self.faces.len()].map(|n| n as u64);
+        npz.put(self.clock.array(), &[frames], self.times.iter().copied())?;
+        npz.put("x", &[frames, vertices, 3], self.x.iter().copied())?;
+        npz.put(
+            "faces",
+            &[faces, 3],
+            self.faces.as_flattened().iter().copied(),
+        )?;
+        npz.finish()?;
+        Ok(bytes)
+    }
+
+    /// The unit of the times.
+    pub(crate) fn clock(&self) -> Clock {
+        self.clock
+    }
+
+    /// The same with seconds as its times, if so many frames are one.
+    pub(crate) fn at_rate(mut self, rate: f64) -> Self {
+        self.times.iter_mut().for_each(|t| *t /= rate);
+        self.clock = Clock::Seconds;
+        self
     }
 
     /// The same with each position changed.

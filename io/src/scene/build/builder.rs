@@ -9,6 +9,7 @@ use crate::scene::obstacles;
 use crate::scene::placed::{Form, PlacedSheets};
 use crate::scene::placed_bodies::{PlacedBodies, Surface};
 use crate::scene::problem::Problem;
+use crate::scene::sequence::Sequence;
 use crate::scene::slots::Slots;
 use crate::scene::switch::Holder;
 use crate::scene::switches::Switches;
@@ -107,7 +108,9 @@ impl<'a> Builder<'a> {
         let sheets = PlacedSheets::new(&scene.sheet, &mut kept.forms, &mut kept.files)?;
         let bodies = PlacedBodies::new(&scene.body, &sheets, &mut kept.files)?;
         let (end, model_vertices) = bodies.counts(&sheets.union);
-        let driven = DrivenObstacles::new(&scene.obstacle, end, model_vertices, &mut kept.files)?;
+        let mut motion =
+            |sequence: &Sequence, key: &Key| kept.files.sequence(sequence, scene.stop.time, key);
+        let driven = DrivenObstacles::new(&scene.obstacle, end, model_vertices, &mut motion)?;
         let mass = driven.mass(bodies.mass(&sheets.union, sheets.mass(&scene.weight)?));
         let mut model = SheetModel::with_mass(&bodies.mesh(&sheets.union, &driven)?, mass)
             .and_then(|m| m.with_dampings(sheets.dampings()))

@@ -20,7 +20,8 @@ impl Builder<'_> {
         (sequence, followed): (&Sequence, &Followed),
         key: &Key,
     ) -> Result<(), SceneError> {
-        let mesh = self.kept.files.sequence(sequence, &key.name("sequence"))?;
+        let (files, end) = (&mut self.kept.files, self.scene.stop.time);
+        let mesh = files.sequence(sequence, end, &key.name("sequence"))?;
         let followed = self.followed(vertices, followed, &mesh, key)?;
         for (&v, followed) in vertices.iter().zip(followed) {
             let motion = following(&mesh, followed, self.position(v));

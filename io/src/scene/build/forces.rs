@@ -3,11 +3,13 @@
 use super::builder::{Builder, at};
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
-use crate::scene::{Air, Frame, Selection};
+use crate::scene::problem::Problem;
+use crate::scene::{Air, Frame, Selection, sheets};
 use isosheet_dynamics::{
     AccelerationField, AttachedFlow, SimulationError, TurningLoad, VertexLoad,
 };
 use isosheet_mesh::VertexId;
+use nalgebra::Vector3;
 
 impl Builder<'_> {
     pub(super) fn add_forces(&mut self) -> Result<(), SceneError> {
@@ -70,6 +72,7 @@ impl Builder<'_> {
         let shedding = self
             .sheets
             .vertices(name, &attached.trailing, &key.name("trailing"))?;
+        self.check_leeward(air, name, [&vertices, &shedding], &key)?;
         let topology = self.model().topology();
         let among = |some: &[VertexId], corners: &[VertexId]| {
             corners.iter().all(|v| some.binary_search(v).is_ok())
@@ -90,5 +93,30 @@ impl Builder<'_> {
         self.change(|m| m.with_attached_flow(air.as_engine(), &flow), at(&key))?;
         self.modelled.push("air with attached flow".into());
         Ok(())
+    }
+
+    /// Refuses a trailing edge all of which is on the windward half of the sheet at the start.
+    fn check_leeward(
+        &self,
+        air: &Air,
+        name: Option<&str>,
+        [all, trailing]: [&[VertexId]; 2],
+        key: &Key,
+    ) -> Result<(), SceneError> {
+        let Some(number) = sheets::number_of(&self.scene.sheet, name, key)? else {
+            return Ok(());
+        };
+        let velocity = self.scene.sheet[number].start.velocity;
+        let place = |v: &VertexId| Vector3::from(self.position(*v));
+        let middle = all.iter().map(place).sum::<Vector3<f64>>() / all.len().max(1) as f64;
+        let wind = air.wind.each_ref().map(|component| component.value(0.0));
+        let flow = Vector3::from(wind) - Vector3::from(velocity);
+        let is_windward = |v: &VertexId| flow.dot(&(place(v) - middle)) < 0.0;
+        if !trailing.iter().all(is_windward) {
+            return Ok(());
+        }
+        let message = "the air comes from the trailing edge at the start";
+        let remedy = "name the edge on the other side, where the air leaves the sheet, or turn `air.wind` round";
+        Err(Problem::new(key.name("trailing"), message, remedy).into())
     }
 }

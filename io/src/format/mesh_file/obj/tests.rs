@@ -53,6 +53,13 @@ fn reads_what_the_format_allows() {
         parse("f 1 2 3\nv 0 0 0 nan nan nan\nv 1e0 0 0 0.1 0.2 0.3\nv 0 +1.0E+0 0 1.0\n").unwrap();
     assert_eq!(m.positions, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
     assert_eq!(m.faces, [[0, 1, 2]]);
+    // Texture coordinates that are not finite are none.
+    let uv = format!("{SQUARE}vt 0 nan\nvt 1\nvt 1 1 0\nf 1/2 2/2 3/3\nf 1/1 3/3 4/3\n");
+    let m = parse(&uv).unwrap();
+    assert_eq!(
+        m.texture,
+        [Some([[1.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), None]
+    );
     // Bytes that are not UTF-8 in a name.
     let mut bytes = b"o \xff\xfe\n".to_vec();
     bytes.extend(format!("{SQUARE}f 1 2 3\n").into_bytes());
@@ -239,5 +246,20 @@ proptest! {
     #[test]
     fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
         let _ = parse_obj(&bytes, Polygons::Refuse);
+    }
+}
+
+#[test]
+fn broken_texture_coordinates_are_refused_with_their_line() {
+    for (line, found) in [
+        ("vt", ""),
+        ("vt a b", "a b"),
+        ("vt 0 0,5", "0 0,5"),
+        ("vt 1 2 x", "1 2 x"),
+    ] {
+        let (number, problem) = problem(&format!("{SQUARE}{line}\nf 1/1 2/1 3/1\n"));
+        assert_eq!(number, Some(5), "{line}");
+        let expected = format!("texture coordinates are numbers, found {found:?}");
+        assert_eq!(problem.to_string(), expected);
     }
 }

@@ -1,0 +1,60 @@
+//! Meshes in motion from files of other programs and from runs, each made one archive of numpy.
+
+mod listed;
+mod named;
+mod samples;
+#[cfg(test)]
+mod tests;
+mod usda;
+
+use super::{FileError, input};
+use std::path::Path;
+
+/// The name of the trajectory in the folder of a run.
+const TRAJECTORY: &str = "trajectory.npz";
+
+/// The archive that [`MovingMesh::parse`](super::MovingMesh::parse) reads of the mesh in motion at a path:
+///
+/// - an archive itself (`.npz`), or the folder of a run, which has one;
+/// - a list of mesh files with their times, `.pvd` or `.series`;
+/// - a folder of numbered mesh files, or such files by a pattern with one `*` for their numbers;
+/// - a file of Universal Scene Description as text, `.usda`.
+///
+/// # Errors
+/// [`FileError::Read`], naming the file and the sample.
+pub(crate) fn motion_archive(path: &Path) -> Result<Vec<u8>, FileError> {
+    let has = |extension: &str| {
+        path.extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case(extension))
+    };
+    let read = |path: &Path| input::read(path).map_err(|e| FileError::unreadable(path, e));
+    let mesh = if named::is_pattern(path) {
+        named::of_pattern(path)?
+    } else if path.is_dir() {
+        match path.join(TRAJECTORY) {
+            trajectory if trajectory.is_file() => return read(&trajectory),
+            _ if path.join("scene.toml").is_file() => {
+                let remedy = "continue the run by `isosheet resume`, or let its scene have `output.trajectory`";
+                let problem = format!("the folder of the run has no {TRAJECTORY}");
+                return Err(FileError::content(path, problem, remedy));
+            }
+            _ => named::of_folder(path)?,
+        }
+    } else if has("npz") {
+        return read(path);
+    } else if has("pvd") || has("series") {
+        listed::read(path)?
+    } else if has("usda") {
+        usda::read(path)?
+    } else {
+        // Of a path that leads nowhere the extension is not the problem.
+        std::fs::metadata(path).map_err(|e| FileError::unreadable(path, e))?;
+        return Err(FileError::content(
+            path,
+            "it is no mesh in motion",
+            "give an .npz, .usda, .pvd or .series file, the folder of a run, a folder of numbered mesh files, or a \
+             pattern of their names such as `walk_*.obj`",
+        ));
+    };
+    mesh.archive().map_err(|e| FileError::unreadable(path, e))
+}

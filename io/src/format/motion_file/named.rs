@@ -1,0 +1,107 @@
+//! Mesh files whose names have the number of their sample.
+
+use super::samples::{self, SampleTime};
+use crate::format::{FileError, MeshFormat, MovingMesh};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Files by their numbers.
+type Numbered = BTreeMap<u64, PathBuf>;
+
+/// Whether a path is a pattern of names.
+pub(super) fn is_pattern(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().contains('*') && !path.exists()
+}
+
+/// The files whose names are a pattern with a number in place of its `*`.
+pub(super) fn of_pattern(path: &Path) -> Result<MovingMesh, FileError> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let halves = name.split_once('*').filter(|(_, end)| !end.contains('*'));
+    let (begin, end) = halves.ok_or_else(|| {
+        let remedy = "write one, such as `walk_*.obj` for walk_0001.obj, walk_0002.obj, ...";
+        FileError::content(path, "the pattern has several *", remedy)
+    })?;
+    let mut files = Numbered::new();
+    for file in files_in(path.parent().unwrap_or(Path::new("")))? {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let digits = name.strip_prefix(begin).and_then(|n| n.strip_suffix(end));
+        if let Some(number) = digits.and_then(number) {
+            add(&mut files, number, &file)?;
+        }
+    }
+    read(path, files)
+}
+
+/// The numbered mesh files of a folder, whose names differ in the number alone.
+pub(super) fn of_folder(path: &Path) -> Result<MovingMesh, FileError> {
+    let mut all: BTreeMap<String, Numbered> = BTreeMap::new();
+    for file in files_in(path)? {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        let extension = file.extension().unwrap_or_default().to_string_lossy();
+        let begin = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+        let is_mesh = MeshFormat::of(&file).is_some_and(|format| !format.is_drawing());
+        if let (Some(number), true) = (number(&stem[begin.len()..]), is_mesh) {
+            let files = all.entry(format!("{begin}*.{extension}")).or_default();
+            add(files, number, &file)?;
+        }
+    }
+    if all.len() > 1 {
+        let patterns: Vec<&str> = all.keys().map(String::as_str).collect();
+        let problem = format!(
+            "the folder has several meshes in motion: {}",
+            patterns.join(", ")
+        );
+        let remedy = "name one of them by its pattern after the folder";
+        return Err(FileError::content(path, problem, remedy));
+    }
+    read(path, all.into_values().next().unwrap_or_default())
+}
+
+fn read(path: &Path, files: Numbered) -> Result<MovingMesh, FileError> {
+    if files.is_empty() {
+        let problem = "there are no mesh files whose names end with the number of a sample";
+        let remedy =
+            "export one mesh file for each sample, such as walk_0001.obj, walk_0002.obj, ...";
+        return Err(FileError::content(path, problem, remedy));
+    }
+    let first = files.keys().next().copied().unwrap_or_default();
+    let sample = |(number, file): (u64, PathBuf)| {
+        let since_first = (number - first) as f64;
+        (SampleTime::Number(since_first), file)
+    };
+    let files: Vec<_> = files.into_iter().map(sample).collect();
+    samples::read(path, &files)
+}
+
+fn add(files: &mut Numbered, number: u64, file: &Path) -> Result<(), FileError> {
+    match files.insert(number, file.to_owned()) {
+        None => Ok(()),
+        Some(other) => {
+            let other = other.file_name().unwrap_or_default().to_string_lossy();
+            let problem = format!("it has the number {number}, which {other} has too");
+            let remedy = "remove or rename one of them";
+            Err(FileError::content(file, problem, remedy))
+        }
+    }
+}
+
+fn number(digits: &str) -> Option<u64> {
+    let all_digits = digits.bytes().all(|b| b.is_ascii_digit());
+    digits.parse().ok().filter(|_| all_digits)
+}
+
+fn files_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let here = Path::new(".");
+    let folder = if folder.as_os_str().is_empty() {
+        here
+    } else {
+        folder
+    };
+    let unreadable = |e| FileError::unreadable(folder, e);
+    let entries = fs::read_dir(folder).map_err(unreadable)?;
+    let paths = entries.map(|entry| Ok(entry.map_err(unreadable)?.path()));
+    let paths: Vec<PathBuf> = paths.collect::<Result<_, FileError>>()?;
+    Ok(paths.into_iter().filter(|path| path.is_file()).collect())
+}
