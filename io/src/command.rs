@@ -2,16 +2,22 @@
 //!
 //! The program `isosheet` and the Python module of the same name are thin shells around [`run`].
 
+mod acting;
 #[cfg(test)]
 mod book_tests;
 mod check;
 mod collect;
+mod composing;
 mod convert;
+mod crumple;
+mod drape;
 mod exit;
 mod failure;
 mod fold;
 mod frames;
 mod gallery;
+mod given;
+mod hang;
 mod info;
 mod interrupt;
 mod live;
@@ -40,6 +46,7 @@ const EXAMPLES: &str = "\
 Examples:
   isosheet new cloth --kind drape              write a scene to start from: cloth.toml
   isosheet fold crane.svg --open               fold a crease pattern, and look at it
+  isosheet drape cloth.obj --on vase.obj       let a sheet fall on a body; also `hang` and `crumple`
   isosheet simulate cloth.toml --open          run it in the folder cloth-run, and open its 3D page
   isosheet info cloth-run                      say what came of it
   isosheet convert cloth-run cloth.usda        write it for Blender; .pvd for ParaView, .apng as a film ...
@@ -65,6 +72,12 @@ enum Command {
     Simulate(simulate::Simulate),
     /// Fold a crease pattern (FOLD, SVG, CP, OPX) without a scene file
     Fold(fold::Fold),
+    /// Let the sheet of a mesh or a drawing fall on a table or a body, without a scene file
+    Drape(drape::Drape),
+    /// Hang the sheet of a mesh or a drawing by its corners, without a scene file
+    Hang(hang::Hang),
+    /// Crumple the sheet of a mesh or a drawing, without a scene file
+    Crumple(crumple::Crumple),
     /// Play a scene in the browser while it is computed, and pull at its sheet
     Live(live::Live),
     /// Continue the run in a folder, with the scene that is stored there
@@ -117,6 +130,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
     let done = match cli.command {
         Command::Simulate(simulate) => simulate.run(),
         Command::Fold(fold) => fold.run(),
+        Command::Drape(drape) => drape.run(),
+        Command::Hang(hang) => hang.run(),
+        Command::Crumple(crumple) => crumple.run(),
         Command::Live(live) => live.run(),
         Command::Resume(resume) => resume.run(),
         Command::Sweep(sweep) => sweep.run(program),

@@ -28,6 +28,8 @@
 //! A [`Sweep`] makes many runs of one scene, and [`Collection`] makes one table of their summaries.
 //! With the feature `picture` a `Gallery` is one page of many runs.
 
+#[cfg(feature = "cli")]
+mod action_verdict;
 mod checkpoint;
 mod collect;
 mod commit;
@@ -68,6 +70,8 @@ mod warning;
 mod watch;
 mod writer;
 
+#[cfg(feature = "cli")]
+pub(crate) use action_verdict::ActionVerdict;
 pub use collect::Collection;
 pub use commit::note_commit;
 #[cfg(feature = "cli")]
@@ -81,6 +85,8 @@ pub use extension_error::ExtensionError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
 pub use fold_verdict::FoldVerdict;
+#[cfg(feature = "cli")]
+pub(crate) use folder::check_folder;
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};

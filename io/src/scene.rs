@@ -27,6 +27,8 @@
 //! # }
 //! ```
 
+#[cfg(feature = "cli")]
+mod action_scene;
 mod air;
 mod attached_flow;
 mod bodies;
@@ -106,6 +108,8 @@ mod warnings;
 mod weight;
 mod yields;
 
+#[cfg(feature = "cli")]
+pub(crate) use action_scene::{Action, ActionScene, DrapedBody, HeldCorners, SheetSource};
 pub use air::Air;
 pub use attached_flow::AttachedFlow;
 pub use bodies::Body;

@@ -1,17 +1,17 @@
 //! `isosheet fold`.
 
-use super::failure::{Code, Done, Failure, Format};
+use super::composing::Composing;
+use super::failure::{Code, Done, Failure};
 use super::interrupt;
-use super::message::{print_progress, print_result};
-use super::simulate::{How, default_folder};
+use super::message::print_progress;
+use super::progress::{LINES, go_on};
+use crate::MeshOptions;
 use crate::format::read_mesh_with;
-use crate::run::{FoldTrial, FoldVerdict, Recording, simulate, simulate_anew};
+use crate::run::{FoldTrial, FoldVerdict, Recording};
 use crate::scene::{FoldResidual, FoldScene, Panels, SceneFile, Touch, bounds};
-use crate::{MeshOptions, write_atomically};
 use clap::Args;
-use std::io::Write;
-use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::time::Instant;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -24,7 +24,7 @@ const NOTES: &str = "\
 The pattern is a FOLD file, an SVG drawing by the colours of Origami Simulator (black the outline, red mountains, blue
 valleys, green cuts, yellow what stays flat, magenta what folds freely; opacity is the fold angle as a part of 180
 degrees), a CP file of ORIPA or Oriedita, or an OPX file of ORIPA. Where it gives no angles, mountains and valleys are
-folded by 180 degrees.
+folded by 180 degrees. The sheet is of office paper and 0.2 m long, where nothing else is said.
 
 Rigid panels are tried first. Where they do not close, the panels are an elastic sheet, then one that is soft in its
 plane and stretches on the way, and at last an elastic one whose triangles are divided. The last line says which it was, which panels
@@ -36,31 +36,17 @@ bend and stretch, and which creases stay open.";
 pub(crate) struct Fold {
     /// The crease pattern (FOLD, SVG, CP, OPX)
     pattern: PathBuf,
-    /// The folder to write to [default: the name of the pattern with `-run`, in the current folder]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    composing: Composing,
     /// Which part of its angle each crease is folded by, above 0 and at most 1
     #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part)]
     part: f64,
     /// Panels touch each other, and do not pass through each other
     #[arg(long)]
     contact: bool,
-    /// What the sheet is made of: a name of the page "Materials" of the book
-    #[arg(long, value_name = "NAME", default_value = "office paper")]
-    material: String,
-    /// The longest side of the sheet, metres
-    #[arg(long, value_name = "METRES", default_value_t = 0.2, value_parser = length)]
-    size: f64,
     /// Which frame of a FOLD file, by its number from 0 [default: the first one with vertices]
     #[arg(long, value_name = "NUMBER")]
     frame: Option<usize>,
-    /// Write the scene to a file, which `isosheet simulate` runs again
-    #[arg(short = 'o', long = "scene", value_name = "FILE")]
-    scene: Option<PathBuf>,
-    /// Delete the run that the folder holds before
-    #[arg(long)]
-    force: bool,
-    #[command(flatten)]
-    how: How,
 }
 
 /// A number from 0 to 1 that is not 0.
@@ -70,13 +56,9 @@ fn part(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "give a number above 0 and at most 1".to_owned())
 }
 
-/// A length in metres.
-fn length(text: &str) -> Result<f64, String> {
-    let length: Option<f64> = text.parse().ok();
-    length
-        .filter(|l| (1e-4..=1e3).contains(l))
-        .ok_or_else(|| "give a length from 0.0001 to 1000 metres".to_owned())
-}
+/// The material and the longest side (metres) of a sheet of which nothing is said.
+const MATERIAL: &str = "office paper";
+const SIZE: f64 = 0.2;
 
 /// Creases that are so far from their angles in the mean, degrees, are closed: no other panels are tried.
 const CLOSED: f64 = 1.0;
@@ -89,44 +71,19 @@ const MOST_FACES: usize = 3000;
 
 impl Fold {
     pub(crate) fn run(&self) -> Done {
-        let format = self.how.format();
+        let format = self.composing.format();
         self.fold().map_err(|failure| failure.in_format(format))
     }
 
     fn fold(&self) -> Done {
         let scene = self.composed()?;
-        self.how.prepare()?;
+        self.composing.begin(&self.pattern)?;
         let (scene, rigid) = self.chosen(scene)?;
-        let at = self.scene_path();
-        if self.scene.is_some() {
-            let text = text_of(&scene)?;
-            write_atomically(&at, |w| w.write_all(text.as_bytes()))
-                .map_err(|e| Failure::of(Code::Output, &e))?;
-        }
-        let file = parsed(&scene, &at)?;
-        let folder = self
-            .out
-            .clone()
-            .unwrap_or_else(|| default_folder(&self.pattern));
-        let run = if self.force { simulate_anew } else { simulate };
-        self.how
-            .show(&folder, |progress| run(&file, &folder, progress))?;
-        if self.how.format() == Format::Text {
-            let recording = Recording::read(&folder)?;
-            if let Some(verdict) = FoldVerdict::of(&recording) {
-                print_result(format_args!("{}", verdict.in_words(rigid.as_ref())))?;
-            }
-        }
-        if self.scene.is_some() {
-            print_result(format_args!("scene: {}", at.display()))?;
-        }
-        Ok(())
-    }
-
-    /// Where the scene is, or would be: its paths are relative to that.
-    fn scene_path(&self) -> PathBuf {
-        let beside = || self.pattern.with_extension("toml");
-        self.scene.clone().unwrap_or_else(beside)
+        let verdict = |recording: &Recording| {
+            let verdict = FoldVerdict::of(recording)?;
+            Some(verdict.in_words(rigid.as_ref()))
+        };
+        self.composing.run(&self.pattern, text_of(&scene)?, verdict)
     }
 
     /// The scene of rigid panels.
@@ -151,12 +108,15 @@ impl Fold {
             let message = format!("{} has no extent", self.pattern.display());
             return Err(Failure::new(Code::Input, message).remedy("correct its coordinates"));
         }
+        let size = self.composing.size().unwrap_or(SIZE);
         Ok(FoldScene {
-            pattern: named_from(&self.scene_path(), &self.pattern)?,
+            pattern: self
+                .composing
+                .named_from_scene(&self.pattern, &self.pattern)?,
             frame: self.frame,
-            scale: self.size / side,
-            size: self.size,
-            material: self.material.clone(),
+            scale: size / side,
+            size,
+            material: self.composing.material_or(MATERIAL),
             panels: Panels::Rigid,
             part: self.part,
             touch: match self.contact {
@@ -182,7 +142,7 @@ impl Fold {
         if first.is_some_and(|trial| closes(&trial, CLOSED)) {
             return Ok((rigid, residual));
         }
-        let faces = parsed(&rigid, &self.scene_path())?.build()?;
+        let faces = self.parsed(&rigid)?.build()?;
         let faces = faces.model.topology().face_count();
         let refined = (faces * 4 <= MOST_FACES).then_some(Panels::Elastic { refine: 1 });
         let others = [
@@ -197,7 +157,7 @@ impl Fold {
             };
             let found = self.tried(&scene)?;
             let rank = |trial: Option<FoldTrial>| match trial {
-                Some(trial) => (!closes(&trial, WELL), trial.residual.rms),
+                Some(trial) => (!closes(&trial, WELL), trial.error()),
                 None => (true, f64::INFINITY),
             };
             let is_first = best.1.panels == Panels::Rigid && best.0.is_none();
@@ -209,6 +169,10 @@ impl Fold {
             }
         }
         Ok((best.1, residual))
+    }
+
+    fn parsed(&self, scene: &FoldScene) -> Result<SceneFile, Failure> {
+        self.composing.parsed(&self.pattern, text_of(scene)?)
     }
 
     /// How far the creases of a scene are from their angles in the end, without contact.
@@ -223,11 +187,15 @@ impl Fold {
             Panels::Elastic { .. } => "elastic panels with divided triangles",
             Panels::Soft => "soft panels",
         };
-        let mut watch = || match interrupt::requested() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        let mut told = Instant::now();
+        let mut watch = |done: f64| {
+            if told.elapsed() >= LINES {
+                told = Instant::now();
+                print_progress(format_args!("{what}: {:.0} % of the trial", 100.0 * done));
+            }
+            go_on()
         };
-        let found = parsed(&alone, &self.scene_path())?.folds_to(&mut watch)?;
+        let found = self.parsed(&alone)?.folds_to(&mut watch)?;
         if interrupt::requested() {
             return Err(Failure::new(Code::Interrupted, "stopped by Ctrl-C"));
         }
@@ -245,20 +213,4 @@ impl Fold {
 
 fn text_of(scene: &FoldScene) -> Result<String, Failure> {
     scene.text().map_err(|e| Failure::of(Code::Input, &e))
-}
-
-/// A scene with its text, as if it were in a file.
-fn parsed(scene: &FoldScene, at: &Path) -> Result<SceneFile, Failure> {
-    Ok(SceneFile::parse(text_of(scene)?, at, &[])?)
-}
-
-/// How a scene names a file: by its name where both are in one folder, and otherwise by its whole path.
-fn named_from(scene: &Path, file: &Path) -> Result<PathBuf, Failure> {
-    if let Some(name) = file.file_name()
-        && scene.parent() == file.parent()
-    {
-        return Ok(name.into());
-    }
-    let whole = std::path::absolute(file);
-    whole.map_err(|e| Failure::new(Code::Input, format!("{}: {e}", file.display())))
 }

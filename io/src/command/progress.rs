@@ -14,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time between two lines where there is no terminal: a log of a long run stays readable.
-const LINES: Duration = Duration::from_secs(5);
+pub(super) const LINES: Duration = Duration::from_secs(5);
 
 /// Time between two JSON lines, which programs read.
 const EVENTS: Duration = Duration::from_secs(1);
@@ -181,7 +181,7 @@ fn in_words(part: &StepPart) -> String {
 }
 
 /// Whether Ctrl-C was not pressed.
-fn go_on() -> ControlFlow<()> {
+pub(super) fn go_on() -> ControlFlow<()> {
     match interrupt::requested() {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),

@@ -31,10 +31,15 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// The bytes of a text without the mark of their order, with which some programs begin UTF-8.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 /// Reads a regular file of text as a whole.
 #[cfg(feature = "scene")]
 pub(crate) fn read_text(path: &Path) -> io::Result<String> {
-    String::from_utf8(read(path)?).map_err(|error| {
+    String::from_utf8(without_mark(&read(path)?).to_vec()).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let problem = format!("byte {at} is not UTF-8, as text has to be");
         io::Error::new(ErrorKind::InvalidData, problem)

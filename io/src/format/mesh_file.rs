@@ -132,6 +132,13 @@ fn parse(
         let error = DataError::new(message, "leave the name out");
         return Err((None, MeshFileProblem::Name(error)));
     }
+    let text = input::without_mark(bytes);
+    let bytes = match format {
+        // A binary file may begin with any bytes.
+        MeshFormat::Glb => bytes,
+        MeshFormat::Stl if !text.starts_with(b"solid") => bytes,
+        _ => text,
+    };
     let mut mesh = match format {
         MeshFormat::Obj => obj::parse(bytes)?.assemble(options)?,
         MeshFormat::Off => off::parse(bytes)?.assemble(options)?,

@@ -140,20 +140,20 @@ impl Advice for RunError {
             Self::Step(error) => error.advice(),
             Self::SceneFile(error) => error.advice(),
             Self::OtherScene { .. } => {
-                Some("replace it with --force, or choose another folder with --out")
+                Some("replace it with --force, or choose another folder for the run")
             }
             Self::NoFolder => Some("name a folder; `.` is the current one"),
-            Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
+            Self::Foreign { .. } => Some("choose an empty or a new folder for the run"),
             Self::NotOwn { .. } => Some(
-                "a run writes to no other files than its own: remove it, or choose another folder with --out",
+                "a run writes to no other files than its own: remove it, or choose another folder for the run",
             ),
-            Self::Busy { .. } => Some("wait for it or choose another folder with --out"),
+            Self::Busy { .. } => Some("wait for it or choose another folder for the run"),
             Self::Unwritable { .. } => Some(
-                "check the permissions and the free space, or choose another folder with --out",
+                "check the permissions and the free space, or choose another folder for the run",
             ),
             Self::NoRun { .. } => Some("name the folder that `isosheet simulate` wrote"),
             Self::OtherVersion { .. } => Some(
-                "continue it with that version, replace it with --force, or choose another folder with --out",
+                "continue it with that version, replace it with --force, or choose another folder for the run",
             ),
             Self::Taken { .. } => {
                 Some("choose another folder, or have the run replaced: `replace=True` in Python")

@@ -194,12 +194,8 @@ impl RunFolder {
         root.join(Self::CHECKPOINT).is_file()
     }
 
-    /// Creates the folder when missing, locks it and says what is in it.
-    pub(crate) fn open(
-        root: &Path,
-        material: &RunInputs<'_>,
-        existing: Existing,
-    ) -> Result<FolderState, RunError> {
+    /// Creates the folder when missing, and locks it.
+    fn claim(root: &Path) -> Result<Self, RunError> {
         let unwritable = |source| RunError::Unwritable {
             folder: root.to_owned(),
             source,
@@ -222,10 +218,23 @@ impl RunFolder {
             }
             Err(TryLockError::Error(source)) => return Err(unwritable(source)),
         }
-        let folder = Self {
+        Ok(Self {
             root: root.to_owned(),
             lock,
+        })
+    }
+
+    /// Claims the folder and says what is in it.
+    pub(crate) fn open(
+        root: &Path,
+        material: &RunInputs<'_>,
+        existing: Existing,
+    ) -> Result<FolderState, RunError> {
+        let unwritable = |source| RunError::Unwritable {
+            folder: root.to_owned(),
+            source,
         };
+        let folder = Self::claim(root)?;
         folder.remove_parts().map_err(unwritable)?;
         if existing == Existing::Delete {
             folder.delete_run().map_err(unwritable)?;
@@ -294,6 +303,20 @@ impl RunFolder {
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.root.join(name)
+    }
+}
+
+/// Refuses a folder that no run can be written to: one that has other files, or in which another process works. One that
+/// does not exist is not made.
+///
+/// # Errors
+/// As [`simulate`](super::simulate) refuses it.
+#[cfg(feature = "cli")]
+pub(crate) fn check_folder(root: &Path) -> Result<(), RunError> {
+    match root.try_exists() {
+        _ if root.as_os_str().is_empty() => Err(RunError::NoFolder),
+        Ok(false) => Ok(()),
+        _ => RunFolder::claim(root).map(drop),
     }
 }
 

@@ -16,15 +16,24 @@ pub(crate) struct FoldTrial {
     pub(crate) strain: f64,
 }
 
+impl FoldTrial {
+    /// How far the end is from the folded shape of a sheet that does not stretch: the angles (radians, root of the mean
+    /// square) and the largest strain together. A strain is an angle by which a face has the wrong form.
+    pub(crate) fn error(&self) -> f64 {
+        self.residual.rms.to_radians().hypot(self.strain)
+    }
+}
+
 impl SceneFile {
     /// How far the creases are from the angles that the scene folds to at its end. `None` if it cannot start, a step fails,
-    /// or the end takes too much work; the clock has no part in that.
+    /// or the end takes too much work; the clock has no part in that. `watch` is told the part of the time that is done, and
+    /// ends the trial.
     ///
     /// # Errors
     /// [`SceneError`] if the scene cannot be built.
     pub(crate) fn folds_to(
         &self,
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
+        watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Option<FoldTrial>, SceneError> {
         let setup = self.build()?;
         let targets = setup.targets.folding.clone();
@@ -40,9 +49,10 @@ impl SceneFile {
         let vertices = simulation.model().topology().vertex_count();
         let mut left = MOST_WORK / vertices.max(1);
         while simulation.state().t < scene.stop.time {
+            let done = simulation.state().t / scene.stop.time;
             let mut within = |progress: &StepProgress| match progress.factorisations > left {
                 true => ControlFlow::Break(()),
-                false => watch(),
+                false => watch(done),
             };
             match simulation.step_watched(scene.method.step, &mut within) {
                 Ok(report) => left = left.saturating_sub(report.factorisations),

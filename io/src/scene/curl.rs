@@ -123,6 +123,7 @@ impl Curl {
             let message = "the curvature has no direction";
             checks.report(key.clone(), message, "give `along`, for instance [1, 0, 0]");
         }
-        self.profile.check(key.name("profile"), Unit::One, checks);
+        self.profile
+            .check(key.name("profile"), Unit::Factor, checks);
     }
 }

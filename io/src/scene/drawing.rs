@@ -66,6 +66,24 @@ fn one() -> f64 {
 }
 
 impl DrawingFile {
+    /// A drawing whose mesh has edges of about a length, metres.
+    pub fn new(path: impl Into<PathBuf>, spacing: f64) -> Self {
+        Self {
+            path: path.into(),
+            spacing,
+            snap: None,
+            unit: None,
+            scale: one(),
+            cut: Vec::new(),
+            crease: Vec::new(),
+            mountain: Vec::new(),
+            valley: Vec::new(),
+            flat: Vec::new(),
+            ignore: Vec::new(),
+            seed: 0,
+        }
+    }
+
     fn lists(&self) -> [(&'static str, &[String], LineClass); 6] {
         [
             ("cut", &self.cut, LineClass::Cut),

@@ -72,11 +72,7 @@ impl FoldScene {
     /// # Errors
     /// [`FileError`] if the path of the pattern cannot be written.
     pub fn text(&self) -> Result<String, FileError> {
-        let path = self.pattern.to_str().ok_or_else(|| {
-            let problem = "its path is not valid UTF-8, so that no scene can name it";
-            FileError::content(&self.pattern, problem, "give it another name")
-        })?;
-        let path = toml::Value::from(path);
+        let path = path_value(&self.pattern)?;
         let frame = self
             .frame
             .map_or(String::new(), |k| format!(", frame = {k}"));
@@ -139,7 +135,19 @@ impl FoldScene {
     }
 }
 
+/// A path as the text of a scene has it.
+///
+/// # Errors
+/// [`FileError`] if it is not valid UTF-8.
+pub(super) fn path_value(path: &Path) -> Result<toml::Value, FileError> {
+    let text = path.to_str().ok_or_else(|| {
+        let problem = "its path is not valid UTF-8, so that no scene can name it";
+        FileError::content(path, problem, "give it another name")
+    })?;
+    Ok(toml::Value::from(text))
+}
+
 /// A number as a scene shows it: with two digits.
-fn two_digits(number: f64) -> f64 {
+pub(super) fn two_digits(number: f64) -> f64 {
     format!("{number:.1e}").parse().unwrap_or(number)
 }

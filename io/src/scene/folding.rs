@@ -16,7 +16,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Folding to the angles of the crease pattern that is the mesh of the sheet: a FOLD, SVG, CP or OPX file.
+/// Folding to the angles of the crease pattern that is the mesh of the sheet: a FOLD, SVG, CP or OPX file, or a drawing
+/// with mountains and valleys.
 ///
 /// A torsion spring at each crease drives it from the angle that it has at the start (before a perturbation)
 /// to its target. Panels of rods are kept flat, or made flat, by a stiffer spring at each edge inside of
@@ -194,28 +195,42 @@ impl Folding {
             Unit::Newton,
         );
         checks.within(key.name("part"), self.part, [-1.0, 1.0]);
-        if !matches!(mesh, Mesh::File(_)) {
-            let message = "the angles are those of a FOLD file, and `sheet.mesh` is no file";
-            let remedy = "write `mesh = { file = { path = ... } }`, or fold by `[[crease]]`";
-            checks.report(key.clone(), message, remedy);
+        match mesh {
+            Mesh::File(_) => {}
+            Mesh::Drawing(_) if self.frame.is_none() => {}
+            Mesh::Drawing(_) => {
+                let message = "a frame is asked for, and a drawing has none";
+                checks.report(key.name("frame"), message, "leave it out");
+            }
+            _ => {
+                let message = "the angles are those of a file, and `sheet.mesh` is no file";
+                let remedy = "write `mesh = { file = { path = ... } }` or `mesh = { drawing = { ... } }`, or fold by \
+                              `[[crease]]`";
+                checks.report(key.clone(), message, remedy);
+            }
         }
     }
 
-    /// Where the edges of the sheet are driven, which was read from `file`.
+    /// Where the edges of the sheet are driven, whose mesh is `mesh`: a file or a drawing.
     pub(super) fn targets(
         &self,
         key: &Key,
-        file: &MeshFile,
+        mesh: &Mesh,
         refined: &Refined,
         files: &mut Files,
     ) -> Result<FoldTargets, Problem> {
         let t = refined.mesh().topology();
-        let (frame, name) = match &self.frame {
-            None => {
-                let key = Key::root().name("sheet.mesh.file");
-                (files.read(file, &key)?, "the frame of the sheet".to_owned())
+        let of_mesh = |name: &str| Key::root().name("sheet.mesh").name(name);
+        let (frame, name) = match (mesh, &self.frame) {
+            (Mesh::Drawing(drawing), _) => {
+                let drawn = drawing.sheet(&of_mesh("drawing"), files)?;
+                (Arc::new(drawn.mesh), "the drawing".to_owned())
             }
-            Some(number) => {
+            (Mesh::File(file), None) => {
+                let read = files.read(file, &of_mesh("file"))?;
+                (read, "the frame of the sheet".to_owned())
+            }
+            (Mesh::File(file), Some(number)) => {
                 let frame = Some(number.clone());
                 let file = MeshFile {
                     frame,
@@ -225,6 +240,8 @@ impl Folding {
                 let read = read.map_err(|e| Problem::from_error(key.name("frame"), &e))?;
                 (read, format!("frame {number}"))
             }
+            // Refused by the checks.
+            _ => return Ok(FoldTargets::default()),
         };
         let mut frame = Arc::unwrap_or_clone(frame);
         if frame.vertex_count() != t.vertex_count() {
@@ -271,10 +288,7 @@ impl Folding {
             }
         }
         if targets.creases.is_empty() {
-            let message = format!(
-                "{name} in {} gives no crease inside the sheet a fold angle",
-                file.path.display()
-            );
+            let message = format!("{name} gives no crease inside the sheet a fold angle");
             let remedy = "take a file with mountains and valleys, or with `edges_foldAngle`";
             return Err(Problem::new(key.clone(), message, remedy));
         }

@@ -112,7 +112,7 @@ impl Gas {
         check_names(&self.sheets, all, key, checks);
         checks.positive(key.name("ambient"), self.ambient, Unit::Pascal);
         checks.positive(key.name("pressure"), self.pressure, Unit::Pascal);
-        checks.positive(key.name("exponent"), self.exponent, Unit::One);
+        checks.positive(key.name("exponent"), self.exponent, Unit::Factor);
         self.added
             .check(key.name("added"), Unit::CubicMetre, checks);
     }

@@ -193,7 +193,8 @@ impl Glue {
                 checks.line(&key.name("line"), from, to);
             }
         }
-        self.closing.check(key.name("closing"), Unit::One, checks);
+        self.closing
+            .check(key.name("closing"), Unit::Factor, checks);
         checks.positive(key.name("stiffness"), self.stiffness, Unit::NewtonPerMetre);
     }
 

@@ -546,7 +546,7 @@ impl Sheet {
         }
         if let Some(swell) = &self.swell {
             let key = key.name("swell");
-            swell.check(key.clone(), Unit::One, checks);
+            swell.check(key.clone(), Unit::Factor, checks);
             if swell.as_given().validate().is_ok() {
                 for part in swell.range(0.0) {
                     checks.within(key.clone(), part, engine::ElasticSheet::SWELLING);
@@ -562,10 +562,10 @@ impl Sheet {
         }
         if let Some(stiffening) = &self.stiffening {
             let key = key.name("stiffening");
-            stiffening.check(key.clone(), Unit::One, checks);
+            stiffening.check(key.clone(), Unit::Factor, checks);
             if stiffening.as_given().validate().is_ok() {
                 let [least, _] = stiffening.range(0.0);
-                checks.positive(key.clone(), least, Unit::One);
+                checks.positive(key.clone(), least, Unit::Factor);
             }
             if self.bending() == Bending::None {
                 let message = "the stiffness changes, and nothing resists bending";

@@ -21,13 +21,15 @@ pub(crate) enum Unit {
     Degree,
     /// Of coefficients of friction.
     One,
+    /// Of factors by which something else is multiplied.
+    Factor,
 }
 
 /// The sizes of the numbers of a unit: far beyond those of any sheet, and near enough for the squares, cubes
 /// and quotients of a step neither to overflow nor to vanish.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitRange {
-    /// The unit as it is written behind a number; nothing for coefficients of friction and drag.
+    /// The unit as it is written behind a number; nothing for coefficients and factors.
     pub symbol: &'static str,
     /// The smallest size besides zero, where zero is allowed.
     pub least: f64,
@@ -45,7 +47,7 @@ impl UnitRange {
 }
 
 impl Unit {
-    pub(crate) const ALL: [Self; 17] = [
+    pub(crate) const ALL: [Self; 18] = [
         Self::Metre,
         Self::CubicMetre,
         Self::PerMetre,
@@ -63,6 +65,7 @@ impl Unit {
         Self::PerSecond,
         Self::Degree,
         Self::One,
+        Self::Factor,
     ];
 
     /// As it is written behind a number.
@@ -169,6 +172,7 @@ impl Unit {
                 1e3,
                 "rubber on rubber has a coefficient of friction of about 1",
             ),
+            Self::Factor => ("", 0.0, 1e3, "a factor of 1 leaves everything as it is"),
         };
         UnitRange {
             symbol,

@@ -137,6 +137,6 @@ fn misuse_of_fold_says_what_to_do() {
     );
     let said = refused("m.cp", MIURA, 2, &["--part", "2"]);
     assert!(said.contains("above 0 and at most 1"), "{said}");
-    let said = refused("m.cp", MIURA, 3, &["--material", "paperr"]);
+    let said = refused("m.cp", MIURA, 2, &["--material", "paperr"]);
     assert!(said.contains("office paper"), "{said}");
 }

@@ -37,7 +37,7 @@ fn a_folder_in_use_a_foreign_one_and_one_of_another_scene_are_refused() {
     assert_eq!(
         stderr(&foreign),
         "error: mine holds files and is not the folder of a run\n  \
-         = help: choose an empty or a new folder with --out\n"
+         = help: choose an empty or a new folder for the run\n"
     );
     let foreign = run(dir, &["simulate", "scene.toml", "--out", "mine", "--json"]);
     let line: Value = serde_json::from_slice(&foreign.stdout).unwrap();
@@ -48,7 +48,7 @@ fn a_folder_in_use_a_foreign_one_and_one_of_another_scene_are_refused() {
     );
     assert_eq!(
         problem["remedy"],
-        "choose an empty or a new folder with --out"
+        "choose an empty or a new folder for the run"
     );
     assert_eq!(fs::read_dir(dir.join("mine")).unwrap().count(), 1);
 }

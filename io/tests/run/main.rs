@@ -1,5 +1,6 @@
 //! The command: runs that are killed and continued, folders in use, exit codes.
 
+mod acting;
 mod asked_too_much;
 mod bodies;
 mod command_line;

@@ -605,3 +605,34 @@ fn clockwise_faces_fold_to_the_other_side() {
         ]
     );
 }
+
+/// A drawing has mountains and valleys, too: a square that is folded along its diagonal by 90 degrees.
+#[test]
+fn a_drawing_is_folded() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawing = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100' fill='none'>\
+                   <rect width='100' height='100' stroke='black'/><path d='M0 0 L100 100' stroke='blue'/></svg>";
+    fs::write(folder.path().join("a.svg"), drawing).unwrap();
+    let scene = |more: &str| {
+        format!(
+            "version = 1\n[sheet]\nmesh = {{ drawing = {{ path = \"a.svg\", spacing = 0.05 }} }}\nmaterial = \"office paper\"\n\
+             damping = 10\n[folding]\ntime = 1\nstiffness = 0.05\npart = 0.5\n{more}[method]\nstep = 0.03\n[stop]\ntime = 2\n"
+        )
+    };
+    let parse = |text: String| SceneFile::parse(text, &folder.path().join("scene.toml"), &[]);
+    let setup = parse(scene("")).unwrap().build().unwrap();
+    let targets = setup.targets.folding.clone().unwrap();
+    assert!(
+        targets
+            .creases
+            .iter()
+            .all(|(_, angle)| *angle == std::f64::consts::FRAC_PI_2)
+    );
+    let mut simulation = setup.start().unwrap();
+    simulation.run(2.0, 0.03, &mut []).unwrap();
+    let (topology, x) = (simulation.model().topology(), &simulation.state().x);
+    let residual = targets.residual(topology, x);
+    assert!(residual.largest < 2.0, "{residual:?}");
+    let error = parse(scene("frame = 1\n")).unwrap_err().to_string();
+    assert!(error.contains("a drawing has none"), "{error}");
+}

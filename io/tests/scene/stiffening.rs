@@ -41,6 +41,8 @@ fn what_cannot_stiffen_is_refused() {
         let error = parse(&strip(lines)).unwrap_err().to_string();
         assert!(error.contains(reason), "{error}");
     }
+    let error = parse(&strip("stiffening = 1e4")).unwrap_err();
+    assert!(!format!("{error:?}").contains("friction"), "{error:?}");
     let text = "version = 1\n[sheet]\nmesh = { square = { side = 0.2, level = 1 } }\ndensity = 0.1\nstiffening = 2\n";
     let error = parse(text).unwrap_err().to_string();
     assert!(error.contains("nothing resists bending"), "{error}");

@@ -68,12 +68,12 @@ pub enum PlaneError {
         at: [f64; 2],
     },
     /// The result would be too large to handle.
-    #[error("the mesh would have about {faces} triangles, more than the {limit} that are allowed")]
+    #[error("the mesh would have about {} triangles, more than the {limit} that are allowed", brief(*faces))]
     TooManyFaces {
         /// About so many.
-        faces: u128,
+        faces: f64,
         /// The largest number allowed.
-        limit: u128,
+        limit: usize,
     },
 }
 

@@ -58,7 +58,7 @@ pub struct PlaneMesh {
 }
 
 /// As many triangles are made at most: some minutes of work, and more than any simulation bears.
-const MOST_FACES: u128 = 1 << 21;
+const MOST_FACES: usize = 1 << 21;
 
 /// Triangles of a lattice for each square of the spacing: 4 / sqrt 3.
 const DENSITY: f64 = 2.31;
@@ -86,7 +86,7 @@ impl PlaneMesh {
         options.validate()?;
         let spacing = options.spacing;
         let length: f64 = graph.pieces.iter().map(|p| p.length()).sum();
-        check_faces((length / spacing) as u128)?;
+        check_faces(length / spacing)?;
         let is_cut = |s: &Segment| roles[s.piece] == Role::Cut;
         let keep = sheet(graph, roles, spacing)?;
         let mut net = Net::new(graph, &keep, spacing)?;
@@ -96,7 +96,7 @@ impl PlaneMesh {
             net.add(p, Place::Free)?;
         }
         let inside: Vec<bool> = net.depths(is_cut).iter().map(|d| d % 2 == 1).collect();
-        let most = (MOST_FACES / 2) as usize;
+        let most = MOST_FACES / 2;
         Refiner::new(&mut net, graph, spacing, most).refine(&inside)?;
         let inside = net.depths(is_cut).iter().map(|d| d % 2 == 1).collect();
         let outside = (0..keep.len()).filter(|&k| !keep[k]).collect();
@@ -125,9 +125,9 @@ impl PlaneMesh {
     }
 }
 
-fn check_faces(faces: u128) -> Result<(), PlaneError> {
+fn check_faces(faces: f64) -> Result<(), PlaneError> {
     let limit = MOST_FACES;
-    match faces <= limit {
+    match faces <= limit as f64 {
         true => Ok(()),
         false => Err(PlaneError::TooManyFaces { faces, limit }),
     }
@@ -160,7 +160,7 @@ fn sheet(graph: &PlaneGraph, roles: &[Role], spacing: f64) -> Result<Vec<bool>, 
     if area <= 0.0 {
         return Err(PlaneError::NoOutline);
     }
-    check_faces((DENSITY * area / (spacing * spacing)) as u128)?;
+    check_faces(DENSITY * area / spacing / spacing)?;
     Ok(keep)
 }
 
@@ -537,7 +537,15 @@ mod tests {
         let Err(PlaneError::TooManyFaces { faces, .. }) = fine else {
             panic!("{fine:?}");
         };
-        assert!((faces as f64 / (2.31 * 4e6) - 1.0).abs() < 1e-6, "{faces}");
+        assert!((faces / (2.31 * 4e6) - 1.0).abs() < 1e-6, "{faces}");
+        // More than any whole number holds.
+        let Err(error) = made(&[Role::Cut; 4], 1e-30) else {
+            panic!("a spacing of 1e-30 m is accepted");
+        };
+        assert!(
+            error.to_string().contains("about 4e29 triangles"),
+            "{error}"
+        );
         for spacing in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
                 made(&[Role::Cut; 4], spacing),

@@ -78,7 +78,8 @@ impl<'a> Refiner<'a> {
             }
             let vertices = self.net.places.len();
             if vertices > self.most_vertices {
-                let [faces, limit] = [vertices, self.most_vertices].map(|n| 2 * n as u128);
+                let [faces, limit] = [vertices, self.most_vertices].map(|n| 2 * n);
+                let faces = faces as f64;
                 return Err(PlaneError::TooManyFaces { faces, limit });
             }
         }

@@ -45,6 +45,7 @@ pub fn parse_drawing(
     path: &Path,
     options: &DrawingOptions,
 ) -> Result<Drawing, FileError> {
+    let bytes = input::without_mark(bytes);
     let drawing = match DrawingFormat::of(path) {
         Some(DrawingFormat::Svg) => svg::parse(bytes, options.unit, options.scale),
         Some(DrawingFormat::Dxf) => dxf::parse(bytes, options.unit, options.scale),

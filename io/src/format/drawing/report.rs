@@ -105,7 +105,7 @@ impl fmt::Display for DrawingReport {
             (
                 &self.contradicting,
                 ["of them is", "of them are"],
-                "of several classes, of which the first of this list counts, the longest",
+                "of several classes (a cut counts before a fold, and a mountain on a valley is a crease), the longest",
             ),
             (
                 &self.beyond,

@@ -104,8 +104,8 @@ impl LineRules {
 /// What the words of a name say; nothing if they say several things, but that mountains and valleys are
 /// creases.
 fn class_of_name(name: &str) -> Option<LineClass> {
-    let name = name.to_lowercase();
-    let words: Vec<&str> = name.split(|c: char| !c.is_alphabetic()).collect();
+    let name = spaced(name).replace("half cut", "score");
+    let words: Vec<&str> = name.split(' ').collect();
     // Long words may begin others: `foldlines`, `scored`.
     let begins =
         |word: &str, known: &&str| word == *known || known.len() > 3 && word.starts_with(known);
@@ -120,6 +120,20 @@ fn class_of_name(name: &str) -> Option<LineClass> {
         ] => Some(class),
         _ => None,
     }
+}
+
+/// The words of a name in small letters with blanks between them: what has capitals inside is several words.
+fn spaced(name: &str) -> String {
+    let (mut words, mut before) = (String::new(), ' ');
+    for c in name.chars() {
+        let c = if c.is_alphabetic() { c } else { ' ' };
+        if c.is_uppercase() && before.is_lowercase() || c == ' ' {
+            words.push(' ');
+        }
+        words.extend(c.to_lowercase().filter(|c| *c != ' '));
+        before = c;
+    }
+    words.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -162,6 +176,12 @@ mod tests {
             ),
             (pen([0; 3], false, &["foldlines"]), Some(LineClass::Crease)),
             (pen([0; 3], false, &["Scored"]), Some(LineClass::Crease)),
+            (pen([255; 3], false, &["cutLines"]), Some(LineClass::Cut)),
+            (pen([255; 3], false, &["OuterCUT"]), Some(LineClass::Cut)),
+            (pen([0; 3], false, &["halfCut"]), Some(LineClass::Crease)),
+            (pen([0; 3], false, &["HalfCut"]), Some(LineClass::Crease)),
+            (pen([0; 3], false, &["half cut"]), Some(LineClass::Crease)),
+            (pen([0; 3], false, &["half-cut 2"]), Some(LineClass::Crease)),
             (pen([255, 128, 0], false, &["Layer 1"]), None),
             (
                 pen([128; 3], false, &["dimensions"]),

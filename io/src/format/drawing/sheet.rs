@@ -4,6 +4,7 @@ use super::class::LineClass;
 use super::file::read_drawing;
 use super::options::DrawingOptions;
 use super::report::{ClassCount, DrawingReport, Places};
+use super::selector::Selector;
 use crate::format::vector::{Drawing, DrawnLine};
 use crate::format::{DataError, EdgeAssignment, FileCrease, FileError, MeshFile};
 use isosheet_mesh::plane::{
@@ -197,6 +198,7 @@ fn classify(
     drawing: &Drawing,
     options: &DrawingOptions,
 ) -> Result<Vec<(LineClass, String)>, DataError> {
+    refuse_idle_selectors(drawing, options)?;
     let known: Vec<_> = drawing
         .pens
         .iter()
@@ -225,6 +227,39 @@ fn classify(
         .map(|k| k.unwrap_or_else(outline))
         .collect())
 }
+
+/// Refuses selectors that select nothing: what they were meant for would be taken for something else.
+fn refuse_idle_selectors(drawing: &Drawing, options: &DrawingOptions) -> Result<(), DataError> {
+    let is_idle = |selector: &Selector| !drawing.pens.iter().any(|pen| selector.selects(pen));
+    let mut selectors = options.rules.selectors.iter().map(|(s, _)| s);
+    let Some(index) = selectors.clone().position(is_idle) else {
+        return Ok(());
+    };
+    let selector = selectors
+        .nth(index)
+        .map_or(String::new(), Selector::to_string);
+    let pens = || drawing.pens.iter();
+    let colours: BTreeSet<String> = pens().map(|p| p.colour.to_string()).collect();
+    let layers: BTreeSet<&str> = pens().flat_map(|p| &p.layers).map(String::as_str).collect();
+    let listed = |names: Vec<String>| match names.len() {
+        0 => "none".to_owned(),
+        n if n > MOST_LISTED => format!(
+            "{} and {} more",
+            names[..MOST_LISTED].join(", "),
+            n - MOST_LISTED
+        ),
+        _ => names.join(", "),
+    };
+    let message = format!(
+        "{selector} selects no line: the colours are {}, and the layers and names {}",
+        listed(colours.into_iter().collect()),
+        listed(layers.iter().map(|name| format!("{name:?}")).collect())
+    );
+    Err(DataError::new(message, "name lines that the drawing has, or leave it out").at(index))
+}
+
+/// Most names that an error lists.
+const MOST_LISTED: usize = 12;
 
 /// The class of lines that lie on each other: a mountain on a valley is a crease.
 fn class_of(classes: impl Iterator<Item = LineClass>) -> LineClass {

@@ -4,7 +4,7 @@ use super::error::{Located, Location};
 use super::faces::Polyhedron;
 use super::{EdgeAssignment, MeshFile, MeshFormat, MeshOptions};
 use crate::format::DataError;
-use crate::format::mesh_file::pattern::{self, Planar, Segment};
+use crate::format::mesh_file::pattern::{self, FileUnit, PatternLines, Planar};
 use std::collections::BTreeMap;
 
 /// Reads a drawing. Its faces are what its lines enclose, in the plane z = 0 as seen on the screen; points that are
@@ -15,8 +15,10 @@ pub(super) fn parse(
     options: &MeshOptions,
 ) -> Result<MeshFile, Located> {
     let plain = |e: DataError| (None, e.into());
-    let segments = segments(bytes, format)?;
-    let planar = pattern::of_segments(&segments, options.weld).map_err(plain)?;
+    let lines = lines(bytes, format)?;
+    let planar = pattern::of_segments(&lines.segments, options.weld);
+    let planar = planar.and_then(|planar| planar.closed(unit(format)));
+    let planar = planar.map_err(plain)?;
     let mut polyhedron = Polyhedron::default();
     for p in &planar.points {
         polyhedron.push_vertex(*p).map_err(plain)?;
@@ -26,18 +28,40 @@ pub(super) fn parse(
     }
     let mut mesh = polyhedron.assemble(options)?;
     mesh.take_edges(planar);
+    mesh.changes.other_lines = lines.of_other_colours;
+    mesh.changes.other_elements = lines.other_elements;
     mesh.cut_along_outlines_inside();
     mesh.drop_unreferenced();
     mesh.separate_cuts();
     Ok(mesh)
 }
 
-fn segments(bytes: &[u8], format: MeshFormat) -> Result<Vec<Segment>, Located> {
+fn lines(bytes: &[u8], format: MeshFormat) -> Result<PatternLines, Located> {
     let plain = |e: DataError| (None, e.into());
+    let segments = match format {
+        MeshFormat::Svg => return pattern::svg::parse(bytes).map_err(plain),
+        MeshFormat::Opx => pattern::opx::parse(bytes).map_err(plain)?,
+        _ => {
+            pattern::cp::parse(bytes).map_err(|(line, e)| (Some(Location::Line(line)), e.into()))?
+        }
+    };
+    Ok(PatternLines {
+        segments,
+        ..PatternLines::default()
+    })
+}
+
+/// How a format writes coordinates: SVG files are told in millimetres, and in the others y points downwards.
+fn unit(format: MeshFormat) -> FileUnit {
     match format {
-        MeshFormat::Opx => pattern::opx::parse(bytes).map_err(plain),
-        MeshFormat::Svg => pattern::svg::parse(bytes).map_err(plain),
-        _ => pattern::cp::parse(bytes).map_err(|(line, e)| (Some(Location::Line(line)), e.into())),
+        MeshFormat::Svg => FileUnit {
+            along: [1e3, 1e3],
+            name: " mm",
+        },
+        _ => FileUnit {
+            along: [1.0, -1.0],
+            ..FileUnit::SAME
+        },
     }
 }
 
@@ -46,6 +70,7 @@ impl MeshFile {
     pub(super) fn take_edges(&mut self, planar: Planar) {
         self.changes.divided_lines = planar.divided;
         self.changes.loose_lines = planar.loose;
+        self.changes.loose_cuts = planar.loose_cuts;
         self.changes.double_lines = planar.double;
         self.creases = planar.edges;
         self.add_diagonals();
@@ -53,18 +78,26 @@ impl MeshFile {
 
     /// Makes cuts of the edges that are drawn as the outline and have the sheet on both sides.
     fn cut_along_outlines_inside(&mut self) {
+        let inside: Vec<usize> = self.boundaries_inside().collect();
+        for k in inside {
+            self.creases[k].assignment = EdgeAssignment::Cut;
+        }
+    }
+
+    /// The numbers of the edges that are named boundary and have the sheet on both sides.
+    pub(super) fn boundaries_inside(&self) -> impl Iterator<Item = usize> {
         let mut sides = BTreeMap::new();
         for &[a, b, c] in &self.faces {
             for [a, b] in [[a, b], [b, c], [c, a]] {
                 *sides.entry([a.min(b), a.max(b)]).or_insert(0) += 1;
             }
         }
-        for crease in &mut self.creases {
+        let creases = self.creases.iter().enumerate();
+        let inside = creases.filter(move |(_, crease)| {
             let [a, b] = crease.ends;
             let is_inside = sides.get(&[a.min(b), a.max(b)]) == Some(&2);
-            if crease.assignment == EdgeAssignment::Boundary && is_inside {
-                crease.assignment = EdgeAssignment::Cut;
-            }
-        }
+            crease.assignment == EdgeAssignment::Boundary && is_inside
+        });
+        inside.map(|(k, _)| k)
     }
 }

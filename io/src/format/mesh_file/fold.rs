@@ -12,7 +12,7 @@ use super::faces::Polyhedron;
 use super::plane::{self, NEAR, Point};
 use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
 use crate::format::DataError;
-use crate::format::mesh_file::pattern::{Planar, planar};
+use crate::format::mesh_file::pattern::{FileUnit, Planar, planar};
 use frames::FrameRecord;
 use isosheet_mesh::wording::brief;
 use std::collections::HashMap;
@@ -85,6 +85,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     drawing.edges = edges;
     mesh.take_edges(drawing);
     mesh.changes.reversed_faces = reversed_faces;
+    mesh.changes.inner_boundaries = mesh.boundaries_inside().count();
     mesh.separate_cuts();
     Ok(mesh)
 }
@@ -101,6 +102,7 @@ fn of_drawing(points: &[Point], edges: &[FileCrease]) -> Result<Planar, DataErro
     };
     let near = NEAR * extent(0).max(extent(1));
     let made = planar(points.to_vec(), edges, near);
+    let made = made.and_then(|planar| planar.closed(FileUnit::SAME));
     made.map_err(|e| DataError {
         message: format!("the file has no `faces_vertices`, and {}", e.message),
         ..e

@@ -38,8 +38,16 @@ pub struct ReadingChanges {
     pub divided_lines: usize,
     /// Lines of drawings that were left out because they lead nowhere.
     pub loose_lines: usize,
+    /// Those of them that are cuts or drawn as the outline, inside the sheet.
+    pub loose_cuts: usize,
     /// Lines of drawings that were left out because they lie on others.
     pub double_lines: usize,
+    /// Lines of drawings that were left out because their colours mean nothing in a crease pattern.
+    pub other_lines: usize,
+    /// Elements of drawings that were left out because they are no lines: texts, images, what is hidden.
+    pub other_elements: usize,
+    /// Edges of FOLD files that are named boundary and have faces on both sides, which stay joined.
+    pub inner_boundaries: usize,
 }
 
 impl ReadingChanges {
@@ -66,7 +74,27 @@ impl fmt::Display for ReadingChanges {
             (self.vertices_at_cuts, VERTICES, "added at cuts"),
             (self.divided_lines, LINES, "divided where others meet"),
             (self.loose_lines, LINES, "that lead nowhere left out"),
+            (
+                self.loose_cuts,
+                ["of them is a cut", "of them are cuts"],
+                "(`isosheet mesh` cuts slits)",
+            ),
             (self.double_lines, LINES, "that lie on others left out"),
+            (
+                self.other_lines,
+                LINES,
+                "left out, of colours that mean nothing in a crease pattern",
+            ),
+            (
+                self.other_elements,
+                ["element", "elements"],
+                "left out that are no lines",
+            ),
+            (
+                self.inner_boundaries,
+                ["edge", "edges"],
+                "named boundary inside the sheet, which stay joined (cuts are named C)",
+            ),
         ];
         let made = changes.iter().filter(|(count, ..)| *count > 0);
         let made =

@@ -14,7 +14,7 @@ mod tests;
 use super::{EdgeAssignment, FileCrease};
 use crate::format::DataError;
 pub(super) use faces::faces;
-pub(super) use planar::{Planar, planar};
+pub(super) use planar::{FileUnit, Planar, planar};
 
 /// A straight line of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +24,16 @@ pub(super) struct Segment {
     pub(super) assignment: EdgeAssignment,
     /// The fold angle in radians, positive for a valley, where the drawing says it.
     pub(super) angle: Option<f64>,
+}
+
+/// The lines of a drawing, and how much of it is something else.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct PatternLines {
+    pub(super) segments: Vec<Segment>,
+    /// Visible lines of colours that mean nothing.
+    pub(super) of_other_colours: usize,
+    /// Elements that are no lines: texts, images, what is hidden.
+    pub(super) other_elements: usize,
 }
 
 /// Ends of lines that are so near each other become one point, as a part of the longer side of the drawing, unless

@@ -36,7 +36,7 @@ pub(in crate::format) fn parse(
     };
     let scale = unit * scale;
     let layers = Layers::of(&records)?;
-    let mut entities = section(&records, "ENTITIES").iter();
+    let mut entities = section(&records, "ENTITIES")?.iter();
     while let Some(record) = entities.next() {
         let mut vertices = Vec::new();
         if record.kind == "POLYLINE" {

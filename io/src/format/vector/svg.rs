@@ -57,13 +57,14 @@ pub(in crate::format) fn parse(
         sheet.parse_more(text);
     }
     let mut drawing = Drawing::default();
-    let (size, is_absolute) = page_size(root);
+    let (size, is_absolute) = page_size(root).map_err(|e| wrong(root, &e))?;
+    let of_page = |size| content(root, size).map_err(|e| wrong(root, &e));
     let (length, size) = match unit {
         // A unit of the drawing is known, whatever the page says.
-        Some(unit) => (unit, content(root, size).1.size),
+        Some(unit) => (unit, of_page(size)?.1.size),
         None => (DrawingUnit::Pixel, size),
     };
-    let (place, viewport) = content(root, size);
+    let (place, viewport) = of_page(size)?;
     if unit.is_none() && !is_absolute {
         drawing.assumed_unit = Some("1 px is 1/96 in");
     }
@@ -86,6 +87,13 @@ pub(in crate::format) fn parse(
         reader.element(child, &state)?;
     }
     Ok(reader.drawing)
+}
+
+/// The error of an element.
+fn wrong(node: Node<'_, '_>, problem: &str) -> DataError {
+    let line = node.document().text_pos_at(node.range().start).row;
+    let name = node.tag_name().name();
+    DataError::new(format!("line {line}: <{name}>: {problem}"), EXPORT).at(line as usize)
 }
 
 struct Reader<'a, 'input> {
@@ -129,8 +137,7 @@ impl Reader<'_, '_> {
         };
         if let Some(text) = node.attribute("transform") {
             let Some(matrix) = matrix::parse(text) else {
-                let message = format!("line {}: {text:?} is no transform", self.line(node));
-                return Err(DataError::new(message, EXPORT));
+                return Err(wrong(node, &format!("{text:?} is no transform")));
             };
             state.matrix = compose(state.matrix, matrix);
         }
@@ -141,20 +148,7 @@ impl Reader<'_, '_> {
                 Some(first) => self.element(first, &state),
                 None => Ok(()),
             },
-            "svg" => {
-                let get = |name, along| state.viewport.attribute(node, name, along);
-                let [w, h] = state.viewport.size;
-                let size = [
-                    get("width", Along::X).unwrap_or(w),
-                    get("height", Along::Y).unwrap_or(h),
-                ];
-                let at = [get("x", Along::X), get("y", Along::Y)].map(|c| c.unwrap_or(0.0));
-                let (place, viewport) = content(node, size);
-                let place = compose(translation(at[0], at[1]), place);
-                state.matrix = compose(state.matrix, place);
-                state.viewport = viewport;
-                self.children(node, &state)
-            }
+            "svg" => self.nested(node, node, state),
             "use" => self.used(node, state),
             "text" => {
                 self.drawing.leave_out("text");
@@ -165,7 +159,8 @@ impl Reader<'_, '_> {
                 Ok(())
             }
             _ => {
-                if let Some(paths) = shapes::paths(node, state.viewport) {
+                let paths = shapes::paths(node, state.viewport).map_err(|e| wrong(node, &e))?;
+                if let Some(paths) = paths {
                     self.shape(node, paths, &state);
                 }
                 Ok(())
@@ -176,6 +171,33 @@ impl Reader<'_, '_> {
     fn children(&mut self, node: Node<'_, '_>, state: &State) -> Result<(), DataError> {
         node.children()
             .try_for_each(|child| self.element(child, state))
+    }
+
+    /// Draws what is in an element with a viewport of its own, whose size `sized` says where it has one, and otherwise the
+    /// element itself.
+    fn nested(
+        &mut self,
+        node: Node<'_, '_>,
+        sized: Node<'_, '_>,
+        mut state: State,
+    ) -> Result<(), DataError> {
+        let outer = state.viewport;
+        let get = |of: Node<'_, '_>, name, along| {
+            let found = outer.attribute(of, name, along);
+            found.map_err(|e| wrong(of, &e))
+        };
+        let side = |name, along, all: f64| {
+            let own = get(node, name, along)?.unwrap_or(all);
+            Ok::<_, DataError>(get(sized, name, along)?.unwrap_or(own))
+        };
+        let [w, h] = outer.size;
+        let size = [side("width", Along::X, w)?, side("height", Along::Y, h)?];
+        let at = [get(node, "x", Along::X)?, get(node, "y", Along::Y)?];
+        let [x, y] = at.map(|c| c.unwrap_or(0.0));
+        let (place, viewport) = content(node, size).map_err(|e| wrong(node, &e))?;
+        state.matrix = compose(state.matrix, compose(translation(x, y), place));
+        state.viewport = viewport;
+        self.children(node, &state)
     }
 
     /// Draws the element that another one uses.
@@ -192,11 +214,18 @@ impl Reader<'_, '_> {
             self.drawing.leave_out("use of what is not in the file");
             return Ok(());
         };
-        let get = |name, along| state.viewport.attribute(node, name, along).unwrap_or(0.0);
-        let [x, y] = [get("x", Along::X), get("y", Along::Y)];
+        let get = |name, along| {
+            let found = state.viewport.attribute(node, name, along);
+            found.map_err(|e| wrong(node, &e))
+        };
+        let [x, y] = [get("x", Along::X)?, get("y", Along::Y)?].map(|c| c.unwrap_or(0.0));
         state.matrix = compose(state.matrix, translation(x, y));
         match target.tag_name().name() {
-            "symbol" => self.children(target, &state),
+            "symbol" | "svg" => {
+                state.style = state.style.of(target, &self.sheet);
+                state.layers.extend(names(target));
+                self.nested(target, node, state)
+            }
             _ => self.element(target, &state),
         }
     }
@@ -227,10 +256,6 @@ impl Reader<'_, '_> {
             let curves = path.iter().map(|c| c.transformed(state.matrix));
             self.drawing.push(pen(colour, state), curves);
         }
-    }
-
-    fn line(&self, node: Node<'_, '_>) -> u32 {
-        self.document.text_pos_at(node.range().start).row
     }
 }
 

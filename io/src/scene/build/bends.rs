@@ -6,7 +6,6 @@ use crate::scene::error::SceneError;
 use crate::scene::folding::{FLAT_STIFFNESS, FoldTargets};
 use crate::scene::in_words::elastic_in_words;
 use crate::scene::key::Key;
-use crate::scene::mesh::Mesh;
 use crate::scene::placed::PlacedSheet;
 use crate::scene::sheet::{Bending, Elasticity, Isometry, RestShape};
 use crate::scene::targets::DrivenCrease;
@@ -233,11 +232,11 @@ impl Builder<'_> {
                 springs.add(key, crease.folds(), found);
             }
         }
-        if let (Some(folding), Mesh::File(file)) = (&self.scene.folding, &own.of.mesh) {
+        if let Some(folding) = &self.scene.folding {
             let key = Key::root().name("folding");
             if is_own(folding.sheet.as_deref(), &key, "the creases")? {
-                let mut targets =
-                    folding.targets(&key, file, &own.form.unplaced, &mut self.kept.files)?;
+                let (mesh, refined) = (&own.of.mesh, &own.form.unplaced);
+                let mut targets = folding.targets(&key, mesh, refined, &mut self.kept.files)?;
                 let model = self.model.as_ref().expect("it is there between changes");
                 let x = &mut self.x[own.part.coordinates()];
                 if own.of.isometry() == Isometry::Rods

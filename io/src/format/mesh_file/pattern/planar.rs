@@ -4,8 +4,9 @@ use super::faces::{MOST_EDGES, bounds};
 use crate::format::DataError;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease};
 use crate::format::mesh_file::{Point, distance, twice_area};
-use std::collections::HashMap;
+use isosheet_mesh::wording::{brief, counted};
 use std::collections::hash_map::Entry;
+use std::collections::{BTreeSet, HashMap};
 
 /// A drawing whose edges meet at their ends alone, and each of which is beside a face.
 #[derive(Debug, Default)]
@@ -20,6 +21,27 @@ pub(in crate::format) struct Planar {
     /// Edges that were left out because they lead nowhere, and those that lie on another one.
     pub(in crate::format) loose: usize,
     pub(in crate::format) double: usize,
+    /// Lines of the outline or of cuts among those that lead nowhere.
+    pub(in crate::format) loose_cuts: usize,
+    /// Their ends outside of the faces where no other such line goes on.
+    open: Vec<Point>,
+}
+
+/// How coordinates are written in the file of a drawing.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::format) struct FileUnit {
+    /// Units of the file for one of the drawing, along x and along y.
+    pub(in crate::format) along: [f64; 2],
+    /// The name of the unit, with a blank before it, if it has one.
+    pub(in crate::format) name: &'static str,
+}
+
+impl FileUnit {
+    /// Coordinates that are those of the file.
+    pub(in crate::format) const SAME: Self = Self {
+        along: [1.0, 1.0],
+        name: "",
+    };
 }
 
 /// Points, of which those within a distance are one: the first of them.
@@ -78,8 +100,8 @@ impl Points {
 /// leaves out those that lead nowhere, and finds the faces.
 ///
 /// # Errors
-/// [`DataError`] for edges without length, for creases on each other that are meant to do different things, for a
-/// drawing that encloses no face, and for one with a part inside of a face of another part.
+/// [`DataError`] for edges without length, for creases on each other that are meant to do different things, and for a
+/// drawing with a part inside of a face of another part.
 pub(in crate::format) fn planar(
     given: Vec<Point>,
     edges: &[FileCrease],
@@ -117,15 +139,24 @@ pub(in crate::format) fn planar(
     };
     planar.divide(edges, on)?;
     planar.drop_loose();
-    if planar.edges.is_empty() {
-        let message =
-            "the lines of the drawing enclose no face: the outline of the sheet is missing or open";
-        let remedy =
-            "draw the outline as a closed line, or move ends that are meant to meet together";
-        return Err(DataError::new(message, remedy));
+    if !planar.edges.is_empty() {
+        planar.faces = super::faces(&planar.points, &planar.edges)?;
     }
-    planar.faces = super::faces(&planar.points, &planar.edges)?;
+    let (points, faces) = (&planar.points, &planar.faces);
+    let is_outside = |p: &Point| !faces.iter().any(|face| is_within(p, face, points));
+    planar.open.retain(is_outside);
     Ok(planar)
+}
+
+/// Whether a point is in a polygon: whether a ray from it to the right crosses an odd number of sides.
+fn is_within(p: &Point, polygon: &[i64], points: &[Point]) -> bool {
+    let corner = |k: usize| points[polygon[k % polygon.len()] as usize];
+    let sides = (0..polygon.len()).map(|k| [corner(k), corner(k + 1)]);
+    let crossed = sides.filter(|[a, b]| {
+        let at = (p[1] - a[1]) / (b[1] - a[1]);
+        (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + at * (b[0] - a[0])
+    });
+    crossed.count() % 2 == 1
 }
 
 /// Of each edge the points between its ends that are on it: ends of other edges, and where others cross it.
@@ -193,6 +224,43 @@ fn rank(assignment: EdgeAssignment) -> u8 {
 }
 
 impl Planar {
+    /// The same, if it is a sheet.
+    ///
+    /// # Errors
+    /// [`DataError`] for a drawing whose outline is open, or that encloses no face.
+    pub(in crate::format) fn closed(self, unit: FileUnit) -> Result<Self, DataError> {
+        let away = |p: &Point, q: &Point| (p[0] - q[0]).hypot(p[1] - q[1]);
+        let gaps = self.open.iter().enumerate().map(|(k, p)| {
+            let others = self.open.iter().enumerate().filter(|(j, _)| *j != k);
+            let width = others
+                .map(|(_, q)| away(p, q))
+                .fold(f64::INFINITY, f64::min);
+            (width, p)
+        });
+        if let Some((width, p)) = gaps.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            let [x, y] = [0, 1].map(|k| brief(unit.along[k] * p[k]));
+            let name = unit.name;
+            let next = match width.is_finite() {
+                true => format!(", {}{name} from the next", brief(unit.along[0] * width)),
+                false => String::new(),
+            };
+            let message = format!(
+                "the outline is not closed: {} of its lines lead nowhere, one at ({x}, {y}){name}{next}",
+                counted(self.open.len(), "end", "ends"),
+            );
+            let remedy = "close it there, or join the ends by `isosheet convert PATTERN OUT.fold --weld LENGTH`";
+            return Err(DataError::new(message, remedy));
+        }
+        match self.edges.is_empty() {
+            false => Ok(self),
+            true => {
+                let message =
+                    "the lines of the drawing enclose no face: the outline of the sheet is missing";
+                Err(DataError::new(message, "draw the outline as a closed line"))
+            }
+        }
+    }
+
     /// Makes the parts of the edges between the points on them.
     fn divide(&mut self, edges: &[FileCrease], on: Vec<Vec<u32>>) -> Result<(), DataError> {
         let mut known: HashMap<[u32; 2], (usize, usize)> = HashMap::new();
@@ -257,6 +325,16 @@ impl Planar {
                 }
             }
         }
+        let is_outline = |e: &usize| {
+            let assignment = self.edges[*e].assignment;
+            matches!(assignment, EdgeAssignment::Boundary | EdgeAssignment::Cut)
+        };
+        let goes_on = |v: usize| at[v].iter().filter(|e| is_outline(e)).count() > 1;
+        let dropped = (0..self.edges.len()).filter(|e| is_loose[*e] && is_outline(e));
+        self.loose_cuts = dropped.clone().count();
+        let ends = dropped.flat_map(|e| self.edges[e].ends.map(|v| v as usize));
+        let open: BTreeSet<usize> = ends.filter(|v| !goes_on(*v)).collect();
+        self.open = open.into_iter().map(|v| self.points[v]).collect();
         let mut of_edges = is_loose.iter();
         self.edges.retain(|_| of_edges.next() == Some(&false));
     }

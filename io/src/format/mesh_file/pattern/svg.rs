@@ -1,6 +1,6 @@
 //! Crease patterns as SVG drawings by the colours of Origami Simulator.
 
-use super::Segment;
+use super::{PatternLines, Segment};
 use crate::format::DataError;
 use crate::format::mesh_file::EdgeAssignment;
 use crate::format::vector::{Pen, svg};
@@ -11,13 +11,16 @@ const TURN: f64 = PI / 18.0;
 
 /// The lines of the drawing: black the outline, red a mountain, blue a valley, green a cut, yellow what stays flat,
 /// magenta what folds freely. The opacity of mountains and valleys is their fold angle as a part of 180 degrees. Lines of
-/// other colours are none of the pattern.
-pub(in crate::format) fn parse(bytes: &[u8]) -> Result<Vec<Segment>, DataError> {
+/// other colours are none of the pattern, and counted.
+pub(in crate::format) fn parse(bytes: &[u8]) -> Result<PatternLines, DataError> {
     let drawing = svg::parse(bytes, None, 1.0)?;
     let mut segments = Vec::new();
+    let mut of_other_colours = 0;
     for line in &drawing.lines {
         let pen = &drawing.pens[line.pen];
         let Some(assignment) = assignment(pen) else {
+            // White ones cannot be seen.
+            of_other_colours += usize::from(pen.colour.name() != Some("white"));
             continue;
         };
         let angle = match assignment {
@@ -33,7 +36,11 @@ pub(in crate::format) fn parse(bytes: &[u8]) -> Result<Vec<Segment>, DataError> 
         };
         segments.extend(places.windows(2).map(segment));
     }
-    Ok(segments)
+    Ok(PatternLines {
+        segments,
+        of_other_colours,
+        other_elements: drawing.left_out.values().sum(),
+    })
 }
 
 /// What a line is meant to do by its colour.

@@ -67,6 +67,104 @@ fn a_square_with_a_diagonal_is_the_same_in_all_formats() {
     assert_eq!(opx.creases, cp.creases);
 }
 
+/// The lower side of the square is open by a fifth, and a crease cuts off the corner there: what is left is a sheet that
+/// nobody has drawn.
+#[test]
+fn an_open_outline_is_told_with_its_place() {
+    let open = "1 0 0 0.4 0\n1 0.6 0 1 0\n1 1 0 1 -1\n1 1 -1 0 -1\n1 0 -1 0 0\n3 0 0 1 -1\n";
+    let said = refusal(MeshFormat::Cp, open);
+    assert!(
+        said.contains("the outline is not closed: 2 ends of its lines lead nowhere"),
+        "{said}"
+    );
+    assert!(
+        said.contains("(0.4, 0), 0.2 from the next") || said.contains("(0.6, 0), 0.2"),
+        "{said}"
+    );
+    // Without the crease nothing is enclosed, for the same reason.
+    let said = refusal(MeshFormat::Cp, &open.replace("3 0 0 1 -1\n", ""));
+    assert!(said.contains("0.2 from the next"), "{said}");
+    let fold = r#"{"vertices_coords": [[0, 0], [0.4, 0], [0.6, 0], [1, 0], [1, 1], [0, 1]],
+        "edges_vertices": [[0, 1], [2, 3], [3, 4], [4, 5], [5, 0], [0, 4]],
+        "edges_assignment": ["B", "B", "B", "B", "B", "V"]}"#;
+    let said = refusal(MeshFormat::Fold, fold);
+    assert!(said.contains("the outline is not closed"), "{said}");
+    let svg = |path: &str| {
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100'>\
+             <path d='{path}' stroke='black' fill='none'/><path d='M0 0 L100 100' stroke='blue'/></svg>"
+        )
+    };
+    let said = refusal(MeshFormat::Svg, &svg("M0 0 H100 V100 H60 M40 100 H0 Z"));
+    assert!(said.contains("20 mm from the next"), "{said}");
+    // The tolerance closes it.
+    let closed = parse_mesh(
+        svg("M0 0 H100 V100 H60 M40 100 H0 Z").as_bytes(),
+        MeshFormat::Svg,
+        Path::new("drawing"),
+        &MeshOptions {
+            weld: Some(0.021),
+            ..MeshOptions::default()
+        },
+    );
+    assert!((area(&closed.unwrap()) - 0.01).abs() < 2e-4);
+    // A slit within the sheet opens no outline, and is counted.
+    let slit = read(MeshFormat::Cp, &format!("{SQUARE}1 0.6 -0.2 0.8 -0.2\n")).unwrap();
+    assert_eq!((slit.changes.loose_lines, slit.changes.loose_cuts), (1, 1));
+    assert_eq!(area(&slit), 1.0);
+}
+
+#[test]
+fn lines_of_other_colours_are_counted() {
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 1 1' fill='none'><rect width='1' height='1' stroke='black'/>\
+               <path d='M0 0 L1 1' stroke='blue'/><path d='M0 1 L1 0' stroke='#00ffff'/><text>a</text></svg>";
+    let mesh = read(MeshFormat::Svg, svg).unwrap();
+    assert_eq!(
+        (mesh.changes.other_lines, mesh.changes.other_elements),
+        (1, 1)
+    );
+    assert!(
+        mesh.changes
+            .to_string()
+            .contains("1 line left out, of colours that mean nothing")
+    );
+}
+
+#[test]
+fn texts_may_begin_with_the_mark_of_their_order() {
+    let fold = r#"{"vertices_coords": [[0, 0], [1, 0], [0, 1]], "faces_vertices": [[0, 1, 2]]}"#;
+    let svg =
+        "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0 H9 V9 Z' stroke='black'/></svg>";
+    let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for (format, text) in [
+        (MeshFormat::Cp, SQUARE),
+        (MeshFormat::Fold, fold),
+        (MeshFormat::Svg, svg),
+        (MeshFormat::Obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        (
+            MeshFormat::Off,
+            "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        ),
+        (MeshFormat::Stl, stl),
+        (MeshFormat::Ply, ply),
+    ] {
+        let plain = read(format, text).unwrap();
+        let marked = read(format, &format!("\u{feff}{text}"));
+        assert_eq!(marked.unwrap(), plain, "{format:?}");
+    }
+}
+
+#[test]
+fn inner_edges_of_the_boundary_are_told() {
+    let fold = r#"{"vertices_coords": [[0, 0], [1, 0], [1, 1], [0, 1]], "faces_vertices": [[0, 1, 2], [0, 2, 3]],
+        "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2]], "edges_assignment": ["B", "B", "B", "B", "B"]}"#;
+    let mesh = read(MeshFormat::Fold, fold).unwrap();
+    assert_eq!(mesh.changes.inner_boundaries, 1);
+    assert_eq!(mesh.vertex_count(), 4);
+}
+
 #[test]
 fn lines_are_divided_where_they_cross_and_united_where_they_coincide() {
     // A waterbomb: both diagonals and a middle line in one piece each, and the diagonal twice.

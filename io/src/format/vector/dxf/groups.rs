@@ -24,14 +24,16 @@ pub(super) fn records(text: &str) -> Result<Vec<Record<'_>>, DataError> {
     let mut records: Vec<Record<'_>> = Vec::new();
     let mut lines = text.lines().map(str::trim).zip(1..);
     while let Some((code, line)) = lines.next() {
-        let Some((value, _)) = lines.next() else {
+        let value = lines.next().map(|(value, _)| value);
+        if value.is_none() && code.is_empty() {
             break;
-        };
+        }
         let Ok(code) = code.parse::<i32>() else {
             let found: String = code.chars().take(30).collect();
             let message = format!("line {line}: {found:?} is no number of a group");
             return Err(DataError::new(message, EXPORT).at(line));
         };
+        let value = value.ok_or_else(|| truncated(line))?;
         match (code, records.last_mut()) {
             (0, _) => records.push(Record {
                 kind: value,
@@ -48,15 +50,30 @@ pub(super) fn records(text: &str) -> Result<Vec<Record<'_>>, DataError> {
     }
 }
 
-/// The records of a section.
-pub(super) fn section<'a, 'b>(records: &'b [Record<'a>], name: &str) -> &'b [Record<'a>] {
+/// The records of a section; none if there is no such section.
+///
+/// # Errors
+/// [`DataError`] for a section without an end.
+pub(super) fn section<'a, 'b>(
+    records: &'b [Record<'a>],
+    name: &str,
+) -> Result<&'b [Record<'a>], DataError> {
     let is_begin = |r: &Record<'_>| r.kind == "SECTION" && r.text(2) == Some(name);
     let Some(begin) = records.iter().position(is_begin) else {
-        return &[];
+        return Ok(&[]);
     };
     let rest = &records[begin + 1..];
-    let end = rest.iter().position(|r| r.kind == "ENDSEC");
-    &rest[..end.unwrap_or(rest.len())]
+    match rest.iter().position(|r| r.kind == "ENDSEC") {
+        Some(end) => Ok(&rest[..end]),
+        None => Err(truncated(records[records.len() - 1].line)),
+    }
+}
+
+/// The error of a file that ends too early.
+fn truncated(line: usize) -> DataError {
+    let message = format!("line {line}: the file ends in the middle of a section");
+    let remedy = "it is not complete: copy or export it again";
+    DataError::new(message, remedy).at(line)
 }
 
 impl<'a> Record<'a> {

@@ -25,7 +25,7 @@ pub(super) struct Layers<'a>(HashMap<&'a str, Layer>);
 
 impl<'a> Layers<'a> {
     pub(super) fn of(records: &[Record<'a>]) -> Result<Self, DataError> {
-        let entries = section(records, "TABLES")
+        let entries = section(records, "TABLES")?
             .iter()
             .filter(|r| r.kind == "LAYER");
         let mut layers = HashMap::new();

@@ -44,19 +44,53 @@ impl Viewport {
         }
     }
 
-    /// An attribute that is a length; `None` if there is none or it cannot be read.
-    pub(super) fn attribute(self, node: Node<'_, '_>, name: &str, along: Along) -> Option<f64> {
-        let length = node.attribute(name)?.parse().ok()?;
-        Some(self.length(length, along))
+    /// An attribute that is a length; `None` if there is none.
+    ///
+    /// # Errors
+    /// What is wrong with its text.
+    pub(super) fn attribute(
+        self,
+        node: Node<'_, '_>,
+        name: &str,
+        along: Along,
+    ) -> Result<Option<f64>, String> {
+        let length = length(node, name)?;
+        Ok(length.map(|length| self.length(length, along)))
     }
 }
 
-/// Where the content of an element `svg` is drawn, in units of what it is in: the map there, and its
+/// An attribute that is a length with its unit; `None` if there is none, or the drawing leaves it open.
+fn length(node: Node<'_, '_>, name: &str) -> Result<Option<Length>, String> {
+    match node.attribute(name) {
+        None | Some("auto") => Ok(None),
+        Some(text) => match text.trim().parse::<Length>() {
+            Ok(length) => Ok(Some(length)),
+            Err(_) => Err(format!("`{name}` is {text:?}, which is no length")),
+        },
+    }
+}
+
+/// The part of the plane that an element shows, if it says it.
+fn view_box(node: Node<'_, '_>) -> Result<Option<ViewBox>, String> {
+    let Some(text) = node.attribute("viewBox") else {
+        return Ok(None);
+    };
+    match text.trim().parse::<ViewBox>() {
+        Ok(view) => Ok(Some(view)),
+        Err(_) => Err(format!(
+            "`viewBox` is {text:?}: two coordinates and two positive lengths are needed"
+        )),
+    }
+}
+
+/// Where the content of an element `svg` or `symbol` is drawn, in units of what it is in: the map there, and its
 /// viewport.
-pub(super) fn content(node: Node<'_, '_>, size: [f64; 2]) -> (Matrix, Viewport) {
-    let view: Option<ViewBox> = node.attribute("viewBox").and_then(|t| t.parse().ok());
-    let Some(view) = view else {
-        return (translation(0.0, 0.0), Viewport { size });
+///
+/// # Errors
+/// What is wrong with its attributes.
+pub(super) fn content(node: Node<'_, '_>, size: [f64; 2]) -> Result<(Matrix, Viewport), String> {
+    let Some(view) = view_box(node)? else {
+        return Ok((translation(0.0, 0.0), Viewport { size }));
     };
     let aspect = node.attribute("preserveAspectRatio");
     let aspect = aspect.and_then(|t| t.parse().ok()).unwrap_or(AspectRatio {
@@ -86,16 +120,17 @@ pub(super) fn content(node: Node<'_, '_>, size: [f64; 2]) -> (Matrix, Viewport) 
     let viewport = Viewport {
         size: [view.w, view.h],
     };
-    (compose(place, scaling(x, y)), viewport)
+    Ok((compose(place, scaling(x, y)), viewport))
 }
 
 /// The size of the page in units of 1/96 inch, and whether the file says it in units that are absolute.
-pub(super) fn page_size(root: Node<'_, '_>) -> ([f64; 2], bool) {
-    let view: Option<ViewBox> = root.attribute("viewBox").and_then(|t| t.parse().ok());
-    let of_view = view.map(|v| [v.w, v.h]);
-    let given = ["width", "height"].map(|name| {
-        let length: Length = root.attribute(name)?.parse().ok()?;
-        (length.unit != LengthUnit::Percent && length.number > 0.0).then_some(length)
+///
+/// # Errors
+/// What is wrong with its attributes.
+pub(super) fn page_size(root: Node<'_, '_>) -> Result<([f64; 2], bool), String> {
+    let of_view = view_box(root)?.map(|v| [v.w, v.h]);
+    let given = [length(root, "width")?, length(root, "height")?].map(|length| {
+        length.filter(|length| length.unit != LengthUnit::Percent && length.number > 0.0)
     });
     let is_absolute = |l: &Length| !matches!(l.unit, LengthUnit::None | LengthUnit::Px);
     let absolute = given.iter().flatten().any(is_absolute);
@@ -108,5 +143,5 @@ pub(super) fn page_size(root: Node<'_, '_>) -> ([f64; 2], bool) {
         (None, None, Some(size)) => size,
         (w, h, None) => [w.unwrap_or(0.0), h.unwrap_or(0.0)],
     };
-    (size, absolute)
+    Ok((size, absolute))
 }

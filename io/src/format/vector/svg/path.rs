@@ -6,18 +6,18 @@ use svgtypes::{PathParser, PathSegment};
 
 type Point = [f64; 2];
 
-/// The curves of the sub-paths of path data. As the standard demands, an error ends the path, and what comes
-/// before it is drawn.
-pub(super) fn sub_paths(data: &str) -> Vec<Vec<PlaneCurve>> {
+/// The curves of the sub-paths of path data.
+///
+/// # Errors
+/// What is wrong. (A program that shows drawings leaves out the rest of the path: here it would be lost to the sheet.)
+pub(super) fn sub_paths(data: &str) -> Result<Vec<Vec<PlaneCurve>>, String> {
     let mut pen = Drawn::default();
     for segment in PathParser::from(data) {
-        let Ok(segment) = segment else {
-            break;
-        };
+        let segment = segment.map_err(|e| format!("`d` is no path data: {e}"))?;
         pen.draw(segment);
     }
     pen.paths.retain(|path| !path.is_empty());
-    pen.paths
+    Ok(pen.paths)
 }
 
 /// A path that is being drawn.
@@ -212,6 +212,7 @@ mod tests {
     #[test]
     fn relative_smooth_and_closed_paths() {
         let paths = sub_paths("m1 1 h2 v3 z l1 0 M5 5 c0 1 1 2 2 2 s2 -1 2 -2 q1 1 2 0 t2 0");
+        let paths = paths.unwrap();
         assert_eq!(paths.len(), 3);
         assert_eq!(paths[0].len(), 3);
         assert_eq!(paths[0][2], PlaneCurve::Line([[3.0, 4.0], [1.0, 1.0]]));
@@ -229,7 +230,10 @@ mod tests {
         assert_eq!((d[0], d[3]), ([11.0, 5.0], [13.0, 5.0]));
         // The control point of the second quadratic curve is mirrored: (10, 6) to (12, 4).
         assert!(near(d[1], [(11.0 + 24.0) / 3.0, (5.0 + 8.0) / 3.0]));
-        assert_eq!(sub_paths("M0 0 L1 0 L nonsense").len(), 1);
-        assert!(sub_paths("").is_empty());
+        assert_eq!(sub_paths(""), Ok(Vec::new()));
+        for broken in ["M0 0 L1 0 L nonsense", "M0 0 L1", "M0 0 V nan", "L1 1"] {
+            let message = sub_paths(broken).unwrap_err();
+            assert!(message.starts_with("`d` is no path data"), "{message}");
+        }
     }
 }

@@ -5,48 +5,58 @@ use super::path::sub_paths;
 use isosheet_mesh::plane::{EllipticArc, PlaneCurve};
 use roxmltree::Node;
 use std::f64::consts::{FRAC_PI_2, TAU};
-use svgtypes::PointsParser;
+use svgtypes::NumberListParser;
 
 /// The paths of a shape in its own units; `None` for other elements.
-pub(super) fn paths(node: Node<'_, '_>, viewport: Viewport) -> Option<Vec<Vec<PlaneCurve>>> {
+///
+/// # Errors
+/// What is wrong with its attributes.
+pub(super) fn paths(
+    node: Node<'_, '_>,
+    viewport: Viewport,
+) -> Result<Option<Vec<Vec<PlaneCurve>>>, String> {
     let get = |name: &str, along| viewport.attribute(node, name, along);
-    let x = |name| get(name, Along::X).unwrap_or(0.0);
-    let y = |name| get(name, Along::Y).unwrap_or(0.0);
-    Some(match node.tag_name().name() {
-        "path" => sub_paths(node.attribute("d").unwrap_or_default()),
-        "line" => vec![lines(&[[x("x1"), y("y1")], [x("x2"), y("y2")]])],
-        "polyline" => vec![lines(&points(node))],
+    let x = |name| get(name, Along::X).map(|c| c.unwrap_or(0.0));
+    let y = |name| get(name, Along::Y).map(|c| c.unwrap_or(0.0));
+    // A radius that is not given is the other one.
+    let radii = || {
+        let [rx, ry] = [get("rx", Along::X)?, get("ry", Along::Y)?];
+        Ok::<_, String>([rx.or(ry), ry.or(rx)].map(|r| r.unwrap_or(0.0)))
+    };
+    Ok(Some(match node.tag_name().name() {
+        "path" => sub_paths(node.attribute("d").unwrap_or_default())?,
+        "line" => vec![lines(&[[x("x1")?, y("y1")?], [x("x2")?, y("y2")?]])],
+        "polyline" => vec![lines(&points(node)?)],
         "polygon" => {
-            let mut corners = points(node);
+            let mut corners = points(node)?;
             corners.extend(corners.first().copied());
             vec![lines(&corners)]
         }
-        "rect" => {
-            // A radius that is not given is the other one.
-            let [rx, ry] = [get("rx", Along::X), get("ry", Along::Y)];
-            let radii = [rx.or(ry), ry.or(rx)].map(|r| r.unwrap_or(0.0));
-            vec![rectangle(
-                [x("x"), y("y")],
-                [x("width"), y("height")],
-                radii,
-            )]
-        }
+        "rect" => vec![rectangle(
+            [x("x")?, y("y")?],
+            [x("width")?, y("height")?],
+            radii()?,
+        )],
         "circle" => {
-            let radius = get("r", Along::Diagonal).unwrap_or(0.0);
-            vec![ellipse([x("cx"), y("cy")], [radius; 2])]
+            let radius = get("r", Along::Diagonal)?.unwrap_or(0.0);
+            vec![ellipse([x("cx")?, y("cy")?], [radius; 2])]
         }
-        "ellipse" => {
-            let [rx, ry] = [get("rx", Along::X), get("ry", Along::Y)];
-            let radii = [rx.or(ry), ry.or(rx)].map(|r| r.unwrap_or(0.0));
-            vec![ellipse([x("cx"), y("cy")], radii)]
-        }
-        _ => return None,
-    })
+        "ellipse" => vec![ellipse([x("cx")?, y("cy")?], radii()?)],
+        _ => return Ok(None),
+    }))
 }
 
-fn points(node: Node<'_, '_>) -> Vec<[f64; 2]> {
+fn points(node: Node<'_, '_>) -> Result<Vec<[f64; 2]>, String> {
     let text = node.attribute("points").unwrap_or_default();
-    PointsParser::from(text).map(|(x, y)| [x, y]).collect()
+    let numbers: Result<Vec<f64>, _> = NumberListParser::from(text.trim()).collect();
+    let numbers = numbers.map_err(|e| format!("`points` is no list of numbers: {e}"))?;
+    match numbers.as_chunks::<2>() {
+        (points, []) => Ok(points.to_vec()),
+        _ => Err(format!(
+            "`points` has {} numbers, an odd number",
+            numbers.len()
+        )),
+    }
 }
 
 fn lines(corners: &[[f64; 2]]) -> Vec<PlaneCurve> {

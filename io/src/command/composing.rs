@@ -1,0 +1,148 @@
+//! What commands share that compose their scene themselves.
+
+use super::failure::{Code, Done, Failure, Format};
+use super::message::print_result;
+use super::progress::event;
+use super::simulate::{How, default_folder};
+use crate::dynamics::Material;
+use crate::format::FileError;
+use crate::run::{Recording, check_folder, simulate, simulate_anew};
+use crate::scene::SceneFile;
+use crate::{Advice, write_atomically};
+use clap::Args;
+use serde_json::json;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// How a scene that a command composes is made and run.
+#[derive(Debug, Args)]
+pub(super) struct Composing {
+    /// The folder to write to [default: the name of the first file with `-run`, in the current folder]
+    out: Option<PathBuf>,
+    /// What the sheet is made of: a name of the page "Materials" of the book [default: see below]
+    #[arg(long, value_name = "NAME", value_parser = material)]
+    material: Option<String>,
+    /// The longest side of the sheet, metres [default: see below]
+    #[arg(long, value_name = "METRES", value_parser = length)]
+    size: Option<f64>,
+    /// Write the scene to a file, which `isosheet simulate` runs again
+    #[arg(short = 'o', long = "scene", value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Delete the run that the folder holds before
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    how: How,
+}
+
+/// The name of a material.
+fn material(text: &str) -> Result<String, String> {
+    let found = Material::named(text).map(|_| text.to_owned());
+    found.map_err(|e| e.with_advice())
+}
+
+/// A length in metres.
+pub(super) fn length(text: &str) -> Result<f64, String> {
+    let length: Option<f64> = text.parse().ok();
+    length
+        .filter(|l| (1e-4..=1e3).contains(l))
+        .ok_or_else(|| "give a length from 0.0001 to 1000 metres".to_owned())
+}
+
+impl Composing {
+    pub(super) fn format(&self) -> Format {
+        self.how.format()
+    }
+
+    /// The material, or the one of a command.
+    pub(super) fn material_or(&self, default: &str) -> String {
+        self.material.clone().unwrap_or_else(|| default.to_owned())
+    }
+
+    /// The longest side of the sheet, if it was asked for, metres.
+    pub(super) fn size(&self) -> Option<f64> {
+        self.size
+    }
+
+    /// The folder of the run of a file.
+    fn folder(&self, of: &Path) -> PathBuf {
+        let beside = || default_folder(of);
+        self.out.clone().unwrap_or_else(beside)
+    }
+
+    /// Gets ready, and refuses what would be refused after the work: a folder in which nothing can be written, and a scene
+    /// file among those of the run.
+    pub(super) fn begin(&self, of: &Path) -> Done {
+        let folder = self.folder(of);
+        if let Some(scene) = &self.scene {
+            let [inner, outer] = [scene, &folder].map(std::path::absolute);
+            if let (Ok(inner), Ok(outer)) = (inner, outer)
+                && inner.starts_with(&outer)
+            {
+                let message = format!(
+                    "{} is in the folder of the run, {}",
+                    scene.display(),
+                    folder.display()
+                );
+                return Err(Failure::misuse(message).remedy(
+                    "write the scene to another folder; that of the run has a copy, `scene.toml`",
+                ));
+            }
+        }
+        check_folder(&folder)?;
+        self.how.prepare()
+    }
+
+    /// How the scene of a file names another file: by its name where both are in one folder, and otherwise by its whole path.
+    pub(super) fn named_from_scene(&self, of: &Path, file: &Path) -> Result<PathBuf, Failure> {
+        if let Some(name) = file.file_name()
+            && self.scene_path(of).parent() == file.parent()
+        {
+            return Ok(name.into());
+        }
+        let whole = std::path::absolute(file);
+        whole.map_err(|e| Failure::of(Code::Input, &FileError::unreadable(file, e)))
+    }
+
+    /// The file of the scene: its paths are relative to that. One that is not written has a name that no file has.
+    fn scene_path(&self, of: &Path) -> PathBuf {
+        let name = of.file_name().unwrap_or_default().to_string_lossy();
+        let beside = || of.with_file_name(format!("<scene of {name}>"));
+        self.scene.clone().unwrap_or_else(beside)
+    }
+
+    /// A scene by its text.
+    pub(super) fn parsed(&self, of: &Path, text: String) -> Result<SceneFile, Failure> {
+        Ok(SceneFile::parse(text, &self.scene_path(of), &[])?)
+    }
+
+    /// Writes the scene if that was asked for, runs it, and says what came of it in the words of `verdict`.
+    pub(super) fn run(
+        &self,
+        of: &Path,
+        text: String,
+        verdict: impl FnOnce(&Recording) -> Option<String>,
+    ) -> Done {
+        if let Some(scene) = &self.scene {
+            write_atomically(scene, |w| w.write_all(text.as_bytes()))
+                .map_err(|e| Failure::of(Code::Output, &e))?;
+        }
+        let file = self.parsed(of, text)?;
+        let folder = self.folder(of);
+        let run = if self.force { simulate_anew } else { simulate };
+        self.how
+            .show(&folder, |progress| run(&file, &folder, progress))?;
+        let words = verdict(&Recording::read(&folder)?);
+        if self.format() == Format::Json {
+            event(&json!({ "event": "verdict", "text": words, "scene": self.scene }));
+            return Ok(());
+        }
+        if let Some(words) = words {
+            print_result(format_args!("{words}"))?;
+        }
+        match &self.scene {
+            Some(scene) => print_result(format_args!("scene: {}", scene.display())),
+            None => Ok(()),
+        }
+    }
+}

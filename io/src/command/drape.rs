@@ -1,0 +1,80 @@
+//! `isosheet drape`.
+
+use super::acting::Acting;
+use super::composing::length;
+use super::failure::{Done, Failure};
+use super::given::{Given, GivenSheet, longest, scaled};
+use crate::run::ActionVerdict;
+use crate::scene::{Action, DrapedBody, SheetSource, bounds};
+use clap::Args;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  isosheet drape cloth.obj --open              a tablecloth falls on a round table, in the folder cloth-run
+  isosheet drape cloth.obj --on vase.glb --material cotton
+                                               over a body, which has the unit of the cloth
+  isosheet drape napkin.svg -o napkin.toml     the sheet of a drawing; write the scene that was run";
+
+const NOTES: &str = "\
+The sheet is any mesh file that a scene reads (OBJ, PLY, STL, OFF, glTF, FOLD ...), or a drawing (SVG, DXF), which is
+meshed. A flat one lies on its face, above the middle of the table or of the body, and falls. It is of polycarbonate
+film, and its longest side 0.5 m, where nothing else is said; a drawing has its own size. Faces of a coarse mesh are
+divided. The run ends when the sheet is at rest, or after a time. The last line says how deep the hem hangs.";
+
+/// Let a sheet fall on a table or a body, without a scene file
+#[derive(Debug, Args)]
+#[command(before_help = EXAMPLES, after_help = NOTES)]
+pub(crate) struct Drape {
+    #[command(flatten)]
+    acting: Acting,
+    /// The body that it falls on: a mesh file
+    #[arg(long, value_name = "TOOL")]
+    on: Option<PathBuf>,
+    /// It falls on a round table, six tenths as wide as the sheet, as it does without `--on`
+    #[arg(long, conflicts_with = "on")]
+    table: bool,
+    /// The longest side of the body, metres [default: it has the unit of the sheet, and metres where that is a drawing]
+    #[arg(long, value_name = "METRES", value_parser = length, requires = "on")]
+    tool_size: Option<f64>,
+}
+
+/// The body may be so many times longer or shorter than the sheet: what is beyond that has another unit.
+const LARGEST: f64 = 50.0;
+
+impl Drape {
+    pub(crate) fn run(&self) -> Done {
+        let action = |sheet: &GivenSheet| self.body(sheet).map(Action::Drape);
+        self.acting
+            .run("polycarbonate film", 0.5, action, ActionVerdict::draped)
+    }
+
+    fn body(&self, sheet: &GivenSheet) -> Result<DrapedBody, Failure> {
+        let Some(tool) = &self.on else {
+            return Ok(DrapedBody::Table);
+        };
+        let given = Given::read(tool, self.acting.up)?;
+        let scale = match (self.tool_size, &sheet.source) {
+            (Some(size), _) => size / longest(&given.positions),
+            (None, SheetSource::File(file)) => file.scale,
+            (None, SheetSource::Drawing(_)) => 1.0,
+        };
+        let positions = scaled(&given.positions, scale);
+        let [of_body, of_sheet] = [&positions, &sheet.positions].map(|p| longest(p));
+        if of_body > LARGEST * of_sheet || of_sheet > LARGEST * of_body {
+            let message = format!(
+                "{} is {of_body:.3} m long beside a sheet of {of_sheet:.3} m, as if it had another unit",
+                tool.display()
+            );
+            return Err(Failure::misuse(message).remedy("say how long it is by `--tool-size`"));
+        }
+        let path = self
+            .acting
+            .composing
+            .named_from_scene(&self.acting.mesh, tool)?;
+        Ok(DrapedBody::Tool {
+            file: given.file(&path, scale),
+            bounds: bounds(&positions),
+        })
+    }
+}

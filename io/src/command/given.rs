@@ -1,0 +1,141 @@
+//! The meshes of files for which a scene is composed.
+
+use super::composing::Composing;
+use super::failure::{Code, Failure};
+use super::info::refuse_folder;
+use super::message::print_progress;
+use crate::format::drawing::{DrawingFormat, DrawingOptions, DrawnSheet};
+use crate::format::read_mesh_with;
+use crate::scene::{DrawingFile, MeshFile, PolygonFaces, SheetSource, UpAxis, bounds};
+use crate::{MeshFormat, MeshOptions, Polygons};
+use std::path::Path;
+
+/// Edges of the mesh of a drawing are about this part of its longest side.
+const SPACING: f64 = 0.04;
+
+/// A mesh that a file gives.
+#[derive(Debug)]
+pub(super) struct Given {
+    /// The vertices with z upwards, in the unit of the file.
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) faces: usize,
+    up: UpAxis,
+}
+
+/// A sheet that a file gives, as a scene has it.
+pub(super) struct GivenSheet {
+    pub(super) source: SheetSource,
+    /// The vertices, metres.
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) faces: usize,
+}
+
+impl Given {
+    /// Reads a mesh file. If it is not said which axis points upwards, it is y in glTF files, as that format has it, and z
+    /// in others.
+    pub(super) fn read(file: &Path, up: Option<UpAxis>) -> Result<Self, Failure> {
+        refuse_folder(file)?;
+        let options = MeshOptions {
+            polygons: Polygons::Triangulate,
+            ..MeshOptions::default()
+        };
+        let mesh = read_mesh_with(file, &options).map_err(|e| Failure::of(Code::Input, &e))?;
+        if !mesh.changes.is_nothing() {
+            print_progress(format_args!("note: {}: {}", file.display(), mesh.changes));
+        }
+        let up = up.unwrap_or(match MeshFormat::of(file) {
+            Some(MeshFormat::Gltf | MeshFormat::Glb) => UpAxis::Y,
+            _ => UpAxis::Z,
+        });
+        let points = mesh.positions.as_chunks::<3>().0.iter();
+        let given = Self {
+            positions: points.map(|p| up.place(*p)).collect(),
+            faces: mesh.faces.len(),
+            up,
+        };
+        match longest(&given.positions) > 0.0 {
+            true => Ok(given),
+            false => {
+                let message = format!("{} has no extent", file.display());
+                Err(Failure::new(Code::Input, message).remedy("correct its coordinates"))
+            }
+        }
+    }
+
+    /// The file as a scene names it, with a unit of so many metres.
+    pub(super) fn file(&self, path: &Path, scale: f64) -> MeshFile {
+        MeshFile {
+            scale,
+            up: self.up,
+            polygons: PolygonFaces::Triangulate,
+            ..MeshFile::new(path)
+        }
+    }
+}
+
+impl GivenSheet {
+    /// Reads a mesh file or a drawing. The longest side is that of the command line; if that has none, of a mesh `size`
+    /// (metres), and of a drawing its own.
+    pub(super) fn read(
+        file: &Path,
+        composing: &Composing,
+        up: Option<UpAxis>,
+        size: f64,
+    ) -> Result<Self, Failure> {
+        let path = composing.named_from_scene(file, file)?;
+        if DrawingFormat::of(file).is_some() {
+            return Self::drawn(file, &path, composing.size());
+        }
+        let given = Given::read(file, up)?;
+        let scale = composing.size().unwrap_or(size) / longest(&given.positions);
+        Ok(Self {
+            source: SheetSource::File(given.file(&path, scale)),
+            positions: scaled(&given.positions, scale),
+            faces: given.faces,
+        })
+    }
+
+    fn drawn(file: &Path, path: &Path, size: Option<f64>) -> Result<Self, Failure> {
+        let read = |options: &DrawingOptions| {
+            DrawnSheet::read(file, options).map_err(|e| {
+                let failure = Failure::of(Code::Input, &e);
+                match failure.remedy {
+                    Some(_) => failure,
+                    None => failure.remedy(
+                        "make a mesh of it by `isosheet mesh`, which has options for that, and take the mesh",
+                    ),
+                }
+            })
+        };
+        let coarse = read(&DrawingOptions::with_spacing(COARSE))?.report.size;
+        let own = coarse[0].max(coarse[1]);
+        let size = size.unwrap_or(own);
+        let options = DrawingOptions {
+            scale: size / own,
+            ..DrawingOptions::with_spacing(SPACING * size)
+        };
+        let drawn = read(&options)?;
+        Ok(Self {
+            source: SheetSource::Drawing(DrawingFile {
+                scale: options.scale,
+                ..DrawingFile::new(path, options.spacing)
+            }),
+            positions: drawn.mesh.positions.as_chunks::<3>().0.to_vec(),
+            faces: drawn.mesh.faces.len(),
+        })
+    }
+}
+
+/// A spacing that no drawing is as large as, metres.
+const COARSE: f64 = 1e6;
+
+/// The longest side of a box about points.
+pub(super) fn longest(points: &[[f64; 3]]) -> f64 {
+    let [low, high] = bounds(points);
+    (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max)
+}
+
+/// Points in another unit.
+pub(super) fn scaled(points: &[[f64; 3]], scale: f64) -> Vec<[f64; 3]> {
+    points.iter().map(|p| p.map(|c| scale * c)).collect()
+}

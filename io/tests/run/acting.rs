@@ -1,0 +1,221 @@
+//! `isosheet drape`, `hang` and `crumple`.
+
+use crate::{code, run, stderr};
+use isosheet_io::read_mesh;
+use isosheet_io::run::Recording;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+/// A square of 6 by 6 quads of side 1 in the plane y = 0, as programs write it whose y axis points upwards.
+fn cloth() -> String {
+    let mut text = String::new();
+    for (i, j) in (0..7).flat_map(|j| (0..7).map(move |i| (i, j))) {
+        let _ = writeln!(text, "v {i} 0 {j}");
+    }
+    for a in (0..6).flat_map(|j| (0..6).map(move |i| 7 * j + i + 1)) {
+        let _ = writeln!(text, "f {a} {} {} {}", a + 1, a + 8, a + 7);
+    }
+    text
+}
+
+/// A box of 2 by 2 by 1 in the unit of the cloth.
+const BLOCK: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 2 1\nv 0 2 1\nf 1 4 3 2\nf 5 6 7 8\n\
+                     f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+/// A drawing of a rectangle of 120 by 80 mm with a round hole.
+const NAPKIN: &str = "<svg xmlns='http://www.w3.org/2000/svg' width='140mm' height='100mm' viewBox='0 0 140 100' fill='none'>\
+                      <rect stroke='black' x='10' y='10' width='120' height='80'/><circle stroke='black' cx='70' cy='50' r='10'/></svg>";
+
+/// What a command says in the end, and the folder `out` that it wrote.
+fn done(folder: &Path, words: &[&str]) -> (String, Recording) {
+    let output = run(folder, words);
+    assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    let recording = Recording::read(&folder.join("out")).unwrap();
+    (String::from_utf8(output.stdout).unwrap(), recording)
+}
+
+fn last(recording: &Recording) -> &[[f64; 3]] {
+    let frames = &recording.trajectory;
+    frames.frame(frames.len() - 1).unwrap().as_chunks::<3>().0
+}
+
+fn lowest(points: &[[f64; 3]]) -> f64 {
+    points.iter().map(|p| p[2]).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn a_cloth_drapes_over_a_table_and_over_a_body() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("cloth.obj"), cloth()).unwrap();
+    fs::write(dir.path().join("block.obj"), BLOCK).unwrap();
+    let (said, recording) = done(dir.path(), &["drape", "cloth.obj", "out", "--table"]);
+    // The cloth is 0.5 m wide, and the table 0.3 m.
+    assert!((recording.sheet.area() - 0.25).abs() < 1e-6);
+    let points = last(&recording);
+    assert!(
+        points
+            .iter()
+            .all(|p| p[0].hypot(p[1]) >= 0.15 || p[2] > 0.0)
+    );
+    let hem = format!(
+        "the hem hangs {:.0} mm below the top",
+        -1e3 * lowest(points)
+    );
+    assert!(said.contains(&hem), "{said}");
+    assert!(said.contains("vertices touch"), "{said}");
+
+    let words = [
+        "drape",
+        "cloth.obj",
+        "out",
+        "--on",
+        "block.obj",
+        "--force",
+        "-o",
+        "scene.toml",
+    ];
+    let (said, recording) = done(dir.path(), &words);
+    // In the unit of the cloth, which is a twelfth of a metre: a block of a sixth of a metre, under its middle.
+    let half = 1.0 / 12.0;
+    let points = last(&recording);
+    let is_within =
+        |p: &[f64; 3]| p[0].abs() < half && p[1].abs() < half && p[2] < 0.0 && p[2] > -half;
+    assert!(!points.iter().any(is_within));
+    assert!(
+        lowest(points) < -0.01 && said.contains("draped: the hem hangs"),
+        "{said}"
+    );
+    let scene = fs::read_to_string(dir.path().join("scene.toml")).unwrap();
+    let again = run(dir.path(), &["simulate", "scene.toml", "-o", "out"]);
+    assert_eq!(code(&again), Some(0), "{scene}{}", stderr(&again));
+    assert!(String::from_utf8_lossy(&again.stdout).contains("already complete"));
+}
+
+#[test]
+fn the_sheet_of_a_drawing_has_its_own_size() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("napkin.svg"), NAPKIN).unwrap();
+    let words = ["drape", "napkin.svg", "out", "--material", "cotton"];
+    let (said, recording) = done(dir.path(), &words);
+    let area = 0.12 * 0.08 - std::f64::consts::PI * 1e-4;
+    assert!((recording.sheet.area() / area - 1.0).abs() < 3e-3, "{said}");
+}
+
+#[test]
+fn a_towel_hangs_by_its_corners() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("towel.obj"), cloth()).unwrap();
+    let words = [
+        "hang",
+        "towel.obj",
+        "out",
+        "--material",
+        "cotton",
+        "--size",
+        "0.3",
+    ];
+    let (said, recording) = done(dir.path(), &words);
+    // The opposite corner is as far down as the diagonal is long, which stretches by a percent at most.
+    let diagonal = 0.3 * 2.0_f64.sqrt();
+    let depth = -lowest(last(&recording));
+    assert!(
+        depth > 0.97 * diagonal && depth < 1.01 * diagonal,
+        "{depth}"
+    );
+    let low = format!("its lowest point is {:.0} mm below", 1e3 * depth);
+    assert!(said.contains(&low), "{said}");
+    assert_eq!(recording.pins.len(), 1);
+}
+
+#[test]
+fn a_sheet_is_crumpled() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(
+        dir.path().join("foil.off"),
+        "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
+    )
+    .unwrap();
+    let words = ["crumple", "foil.off", "out", "--material", "aluminium foil"];
+    let (said, recording) = done(dir.path(), &words);
+    // Foil yields, so that it does not spread out again to its diagonal of 141 mm.
+    let points = last(&recording);
+    let extent = |k: usize| {
+        let along = || points.iter().map(|p| p[k]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    };
+    assert!(extent(0) < 0.12 && extent(1) < 0.12, "{said}");
+    assert!(
+        said.contains("crumpled: from 141 mm by 141 mm by 0 mm to"),
+        "{said}"
+    );
+}
+
+#[test]
+fn misuse_is_answered_before_anything_is_run() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("cloth.obj"), cloth()).unwrap();
+    fs::write(dir.path().join("block.obj"), BLOCK).unwrap();
+    fs::write(
+        dir.path().join("open.svg"),
+        NAPKIN
+            .replace("/></svg>", "/>")
+            .replace("<rect", "<path d='M0 0 H9'")
+            + "</svg>",
+    )
+    .unwrap();
+    fs::create_dir(dir.path().join("full")).unwrap();
+    fs::write(dir.path().join("full/letter.txt"), "x").unwrap();
+    let refused = |words: &[&str], exit: i32, expected: &[&str]| {
+        let output = run(dir.path(), words);
+        let said = stderr(&output);
+        assert_eq!(code(&output), Some(exit), "{words:?}: {said}");
+        for part in expected {
+            assert!(said.contains(part), "{words:?}: {said}");
+        }
+        assert!(!said.contains(" steps"), "{words:?}: {said}");
+    };
+    refused(
+        &["drape", "cloth.obj", "--material", "coton"],
+        2,
+        &["cotton"],
+    );
+    refused(
+        &["drape", "cloth.obj", "--size=-1"],
+        2,
+        &["0.0001 to 1000"],
+    );
+    refused(
+        &["drape", "cloth.obj", "--table", "--on", "block.obj"],
+        2,
+        &["cannot be used with"],
+    );
+    refused(&["drape", "none.obj"], 3, &["none.obj"]);
+    let far = [
+        "drape",
+        "cloth.obj",
+        "--on",
+        "block.obj",
+        "--tool-size",
+        "100",
+    ];
+    refused(&far, 2, &["as if it had another unit", "--tool-size"]);
+    refused(
+        &["drape", "cloth.obj", "full"],
+        4,
+        &["holds files", "help: choose an empty or a new folder"],
+    );
+    refused(
+        &["hang", "cloth.obj", "out", "-o", "out/scene.toml"],
+        2,
+        &["in the folder of the run"],
+    );
+    refused(&["crumple", "open.svg"], 3, &["not closed", "help:"]);
+    assert_eq!(
+        read_mesh(&dir.path().join("cloth.obj"))
+            .unwrap()
+            .vertex_count(),
+        49
+    );
+    assert!(!dir.path().join("out").exists() && !dir.path().join("cloth-run").exists());
+}
