@@ -38,6 +38,8 @@ pub(super) struct Stroke {
     pub(super) cover: f32,
     /// How much nearer the line counts than it is, where a face is seen that has a vertex with it in common.
     pub(super) lift: f64,
+    /// How much farther the line counts than it is, where another face is seen: what lies on it hides all of its width.
+    pub(super) sink: f64,
 }
 
 /// All that a picture shows, in pixels.
@@ -212,7 +214,7 @@ impl Band {
                     let has = stroke.vertices.map(|v| face.contains(&v));
                     usize::from(has[0]) + usize::from(has[1])
                 });
-                let lift = [0.0, stroke.lift, f64::INFINITY][common];
+                let lift = [-stroke.sink, stroke.lift, f64::INFINITY][common];
                 if nearness + lift > sample.nearness {
                     draw(sample);
                 }
