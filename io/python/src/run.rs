@@ -381,8 +381,8 @@ impl Run {
         shown.write(py, &path, Kind::Picture)
     }
 
-    /// Writes shaded pictures of the frames as an animated PNG file in real time, which browsers and
-    /// notebooks show: ``run.film("cloth.apng")``.
+    /// Writes shaded pictures of the frames in real time as an animated PNG file, which browsers and notebooks
+    /// show, or where ffmpeg is installed as an .mp4, .webm or .gif file: ``run.film("cloth.apng")``.
     ///
     /// every and fps are those of `save`, height and view those of `picture`.
     #[pyo3(signature = (path, *, every = 1, fps = None, height = 480, view = None))]

@@ -54,6 +54,11 @@ impl Image {
         [self.width, self.height]
     }
 
+    /// Three sRGB bytes for each pixel, row by row from above.
+    pub fn to_rgb(&self) -> Vec<u8> {
+        srgb_bytes(self)
+    }
+
     /// The picture as a PNG file, sRGB, eight bits.
     ///
     /// # Errors

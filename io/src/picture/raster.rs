@@ -334,10 +334,30 @@ mod tests {
                 width: 1.0,
                 cover: 1.0,
                 lift: 0.5,
+                sink: 0.0,
             });
             let image = drawing.picture();
             let expected = if is_seen { [0.0; 3] } else { [0.0, 1.0, 0.0] };
             assert!(is_like(&image.pixels[4 * 8 + 4], &expected));
+        }
+    }
+
+    /// A face that lies on an edge of a body hides it, however little it is in front; the faces of the body do not.
+    #[test]
+    fn what_lies_on_an_edge_hides_it() {
+        for (vertices, is_seen) in [([3, 4], false), ([0, 1], true)] {
+            let mut drawing = drawing([8, 8], vec![big(0, 1.0)]);
+            let end = |x: f64| corner(x, 4.5, 1.0 + 1e-9, [0.0; 3]);
+            drawing.strokes.push(Stroke {
+                ends: [end(0.0), end(8.0)],
+                vertices,
+                width: 1.0,
+                cover: 1.0,
+                lift: 0.0,
+                sink: 0.01,
+            });
+            let is_drawn = drawing.picture().pixels[4 * 8 + 4] == [0.0; 3];
+            assert_eq!(is_drawn, is_seen, "{vertices:?}");
         }
     }
 
@@ -352,6 +372,7 @@ mod tests {
                 width: 1.0,
                 cover: 0.5,
                 lift: 0.0,
+                sink: 0.0,
             });
         }
         let image = drawing.picture();
