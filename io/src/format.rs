@@ -21,6 +21,8 @@ mod motion_file;
 mod trajectory;
 mod vector;
 
+#[cfg(all(feature = "run", feature = "picture"))]
+pub(crate) use atomic::prepare_folder;
 pub use atomic::{FileWriter, write_atomically};
 #[cfg(feature = "run")]
 pub(crate) use cell::cell;

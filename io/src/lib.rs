@@ -3,7 +3,7 @@
 //! Without features the crate has the formats of files and needs the mesh alone. The feature `scene` adds
 //! scene files, `run` runs that survive being killed, and `cli` the command `isosheet`; each implies the ones
 //! before it. With them the crate re-exports all others, so that a program needs to name this one alone. The
-//! feature `picture`, which implies `scene`, draws shaded pictures.
+//! feature `picture`, which implies `scene`, draws shaded pictures, and `labels` puts many with labels into one.
 //!
 //! # Formats
 //!

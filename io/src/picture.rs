@@ -28,6 +28,7 @@ mod animation;
 mod camera;
 mod canvas;
 mod error;
+#[cfg(feature = "labels")]
 mod montage;
 mod occlusion;
 mod pieces;
@@ -35,13 +36,16 @@ mod raster;
 mod sheet;
 mod solid;
 mod vector;
+#[cfg(feature = "labels")]
 mod vector_drawing;
 
 pub use animation::animated_png;
 pub use camera::Camera;
 pub use canvas::Image;
 pub use error::PictureError;
+#[cfg(feature = "labels")]
 pub use montage::{Labelled, montage};
 pub use sheet::{Look, SheetPicture, render};
 pub use solid::Solid;
+#[cfg(feature = "labels")]
 pub use vector_drawing::svg_to_png;

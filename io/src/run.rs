@@ -43,6 +43,8 @@ mod extend;
 mod extension_error;
 #[cfg(feature = "picture")]
 mod film;
+#[cfg(feature = "picture")]
+mod film_encoder;
 mod fold_verdict;
 mod folder;
 mod frame_field;
@@ -84,6 +86,8 @@ pub use extend::extend_folder;
 pub use extension_error::ExtensionError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
+#[cfg(feature = "picture")]
+pub use film_encoder::FilmError;
 pub use fold_verdict::FoldVerdict;
 #[cfg(feature = "cli")]
 pub(crate) use folder::check_folder;

@@ -1,14 +1,18 @@
 //! `gallery`: scenes that anybody can run, each as a labelled picture, and a film of one of them.
+//!
+//! `xtask/scenes/gallery.toml` says which, and how they are shown. It is read when the command runs, so that the runs that
+//! are there are drawn anew without a build.
 
-use crate::draw::Viewpoint;
-use crate::figures::shots;
 use crate::progress::Progress;
 use crate::report::Options;
-use crate::runs::{FigureScene, Run};
+use crate::runs::{FigureScene, recorded};
 use crate::store::Store;
 use anyhow::{Context, Result};
 use clap::Args;
-use isosheet_io::picture::{Labelled, animated_png, montage};
+use isosheet_io::picture::{Labelled, montage};
+use isosheet_io::run::{Film, FilmOptions, Recording, Viewpoint};
+use serde::Deserialize;
+use std::fs;
 
 /// Arguments of `gallery`.
 #[derive(Debug, Args)]
@@ -17,117 +21,93 @@ pub(crate) struct GalleryArgs {
     options: Options,
 }
 
+/// What is shown.
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/gallery.toml");
+
+/// The gallery.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Gallery {
+    /// Pictures in a row.
+    columns: usize,
+    /// Width and height of one, pixels.
+    size: [usize; 2],
+    film: Filmed,
+    picture: Vec<Shown>,
+}
+
+/// The film.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Filmed {
+    /// The scene of a picture.
+    scene: String,
+    /// From the start to this part of the run.
+    until: f64,
+    /// Frames of it.
+    frames: usize,
+    /// Width and height, pixels.
+    size: [usize; 2],
+}
+
 /// A scene, and how it is shown.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Shown {
     /// `--kind` of `isosheet new`, or the name of a file of `xtask/scenes`.
-    scene: &'static str,
+    scene: String,
     /// What is written below the picture.
-    label: &'static str,
-    /// Where the viewer is, degrees.
-    seen_from: [f64; 2],
+    label: String,
+    /// Edits of the scene, as `--set` of `isosheet simulate` makes them.
+    #[serde(default)]
+    set: Vec<String>,
+    /// Where the viewer is: azimuth and elevation, degrees.
+    view: [f64; 2],
     /// The moment that is shown, as a part of the run.
     moment: f64,
-    /// Bodies that are drawn, by number.
-    bodies: &'static [usize],
+    /// Obstacles that are drawn, by number; all if left out.
+    bodies: Option<Vec<usize>>,
 }
 
-/// Scene, label, azimuth and elevation, moment and bodies, as [`Shown`] has them.
-type GalleryRow = (&'static str, &'static str, [f64; 2], f64, &'static [usize]);
-
-/// The scenes in the order of the picture.
-const SCENES: [GalleryRow; 20] = [
-    ("drape", "new --kind drape", [-62.0, 24.0], 1.0, &[0]),
-    ("stamp", "new --kind stamp", [-65.0, 20.0], 1.0, &[0, 1, 2]),
-    ("feed", "new --kind feed", [-70.0, 18.0], 1.0, &[1]),
-    ("fig12", "fig12: crumpling", [-62.0, 17.0], 0.125, &[]),
-    ("fig13", "fig13: stamping", [-58.0, 30.0], 1.0, &[0, 1]),
-    (
-        "fig15-rings",
-        "fig15-rings: draping",
-        [-62.0, 24.0],
-        1.0,
-        &[0],
-    ),
-    ("fig16", "fig16: a paper jam", [-72.0, 12.0], 1.0, &[0, 2]),
-    ("fig17", "fig17: Miura's folds", [-58.0, 38.0], 0.5, &[]),
-    ("clamp", "new --kind clamp", [-62.0, 17.0], 1.0, &[]),
-    ("flag", "new --kind flag", [-50.0, 17.0], 0.42, &[]),
-    ("leaf", "new --kind leaf", [-62.0, 24.0], 0.4, &[]),
-    ("stack", "new --kind stack", [-60.0, 20.0], 0.9, &[1]),
-    ("moebius", "new --kind moebius", [-62.0, 30.0], 1.0, &[]),
-    ("hypar", "new --kind hypar", [-62.0, 25.0], 1.0, &[]),
-    ("hammock", "new --kind hammock", [-62.0, 25.0], 1.0, &[]),
-    ("vase", "new --kind vase", [-62.0, 22.0], 0.6, &[0]),
-    (
-        "book",
-        "book: opened by its cover",
-        [-60.0, 20.0],
-        0.5,
-        &[0],
-    ),
-    ("roller", "roller: driven by paper", [-60.0, 15.0], 1.0, &[]),
-    ("pillow", "new --kind pillow", [-62.0, 25.0], 1.0, &[]),
-    ("peel", "new --kind peel", [-62.0, 20.0], 0.7, &[]),
-];
-
-/// All of them.
-fn scenes() -> impl Iterator<Item = Shown> {
-    SCENES
-        .into_iter()
-        .map(|(scene, label, seen_from, moment, bodies)| Shown {
-            scene,
-            label,
-            seen_from,
-            moment,
-            bodies,
-        })
+impl Gallery {
+    fn read() -> Result<Self> {
+        let text = fs::read_to_string(FILE).context(FILE)?;
+        toml::from_str(&text).context(FILE)
+    }
 }
-
-/// Pictures in a row, and the size of one, pixels.
-const COLUMNS: usize = 5;
-const SIZE: [usize; 2] = [480, 400];
-
-/// The scene of the film, by its number, its part of the run, and its frames; the size and the time of one
-/// (pixels, milliseconds).
-const FILMED: usize = 5;
-const END: f64 = 0.1;
-const FRAMES: usize = 36;
-const FILM: [usize; 2] = [368, 276];
-const DELAY: u16 = 50;
-
-/// The viewer is so many times as far away as the sheet is large: little perspective.
-const DISTANCE: f64 = 6.0;
 
 /// Runs the command.
 pub(crate) fn run(args: &GalleryArgs) -> Result<()> {
     let store = args.options.open("gallery")?;
-    let mut runs = Vec::new();
-    for shown in scenes() {
-        runs.push(Run::of(&store, shown.scene(&store)?)?);
+    let gallery = Gallery::read()?;
+    for shown in &gallery.picture {
+        recorded(&store, &shown.scene(&store)?)?;
     }
-    let bar = Progress::start("pictures", SCENES.len() + FRAMES);
+    let bar = Progress::start("pictures", gallery.picture.len());
     let mut pictures = Vec::new();
-    for (shown, run) in scenes().zip(&runs) {
-        let last = run.trajectory.len() - 1;
-        let frame = (shown.moment * last as f64).round() as usize;
-        let shots = shots(run, &[frame], shown.bodies)?;
-        let image = shown.view(run).frame(&shots, SIZE)?.remove(0);
-        let label = shown.label.to_owned();
+    for shown in &gallery.picture {
+        let run = shown.recording(&store)?;
+        let frame = at(&run, shown.moment);
+        let image = shown.film(&run, vec![frame], gallery.size)?.picture(0)?;
+        let label = shown.label.clone();
         pictures.push(Labelled { image, label });
         bar.step();
     }
-    store.write("gallery.png", &montage(&pictures, COLUMNS)?.to_png()?)?;
-    let filmed = scenes().zip(&runs).nth(FILMED);
-    let (shown, run) = filmed.context("the scene of the film")?;
-    let last = END * (run.trajectory.len() - 1) as f64;
-    let frame = |k: usize| (last * k as f64 / (FRAMES - 1) as f64).round() as usize;
-    let frames: Vec<usize> = (0..FRAMES).map(frame).collect();
-    let shots = shots(run, &frames, shown.bodies)?;
-    let images = shown.view(run).frame(&shots, FILM)?;
-    let film = animated_png(FILM, DELAY, FRAMES, |k| {
-        bar.step();
-        Ok(images[k].clone())
-    })?;
+    let all = montage(&pictures, gallery.columns)?;
+    store.write("gallery.png", &all.to_png()?)?;
+    let Filmed {
+        scene,
+        until,
+        frames,
+        size,
+    } = &gallery.film;
+    let shown = gallery.picture.iter().find(|shown| shown.scene == *scene);
+    let shown =
+        shown.with_context(|| format!("the film shows {scene}, of which there is no picture"))?;
+    let run = shown.recording(&store)?;
+    let part = |k: usize| until * k as f64 / (frames - 1).max(1) as f64;
+    let chosen = (0..*frames).map(|k| at(&run, part(k))).collect();
+    let film = shown.film(&run, chosen, *size)?.animation(|_| ())?;
     store.write("film.png", &film)?;
     bar.finish("drawn");
     for file in ["gallery.png", "film.png"] {
@@ -136,44 +116,65 @@ pub(crate) fn run(args: &GalleryArgs) -> Result<()> {
     Ok(())
 }
 
+/// The frame at a part of a run.
+fn at(run: &Recording, part: f64) -> usize {
+    let last = run.trajectory.len().saturating_sub(1);
+    (part * last as f64).round() as usize
+}
+
 impl Shown {
     fn scene(&self, store: &Store) -> Result<FigureScene> {
         let quick = ["stop.time=0.1".to_owned()];
-        let edits = store.effort.quick_or(&quick[..], &[]);
-        FigureScene::named(self.scene, self.scene, edits)
+        let edits = [&self.set[..], store.effort.quick_or(&quick[..], &[])].concat();
+        FigureScene::named(&self.scene, &self.scene.replace('/', "-"), &edits)
     }
 
-    fn view(&self, run: &Run) -> Viewpoint {
-        let points = run.sheet.positions().as_chunks::<3>().0;
-        let size = (0..3).map(|k| {
-            let along = points.iter().map(|p| p[k]);
-            along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
-        });
-        let size = size.fold(0.0, f64::max);
-        Viewpoint {
-            azimuth: self.seen_from[0],
-            elevation: self.seen_from[1],
-            distance: DISTANCE * size,
-            depth: 0.5 * size,
+    /// What is shown of the run: some of the obstacles, and no marks at supports.
+    fn recording(&self, store: &Store) -> Result<Recording> {
+        let mut run = recorded(store, &self.scene(store)?)?;
+        if let Some(bodies) = &self.bodies {
+            let mut number = 0..;
+            run.obstacles
+                .retain(|_| number.next().is_some_and(|k| bodies.contains(&k)));
         }
+        run.pins.clear();
+        run.immobile.clear();
+        Ok(run)
+    }
+
+    fn film<'a>(
+        &self,
+        run: &'a Recording,
+        frames: Vec<usize>,
+        size: [usize; 2],
+    ) -> Result<Film<'a>> {
+        let [azimuth, elevation] = self.view;
+        let options = FilmOptions {
+            width: Some(size[0]),
+            height: size[1],
+            view: Some(Viewpoint { azimuth, elevation }),
+        };
+        Ok(Film::new(run, frames, &options)?)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isosheet_io::picture::Solid;
 
     #[test]
     fn every_scene_is_there_with_the_bodies_that_are_drawn() {
         let folder = tempfile::tempdir().unwrap();
         let (effort, remake) = (crate::report::Effort::Quick, crate::store::Remake::Never);
         let store = Store::open(folder.path(), "gallery", effort, remake).unwrap();
-        for shown in scenes() {
+        let gallery = Gallery::read().unwrap();
+        for shown in &gallery.picture {
             let bodies = shown.scene(&store).unwrap().setup().unwrap().obstacles;
-            for body in shown.bodies {
-                assert!(Solid::of(&bodies[*body], 0.0).is_ok(), "{}", shown.scene);
+            for body in shown.bodies.iter().flatten() {
+                assert!(*body < bodies.len(), "{}: {body}", shown.scene);
             }
         }
+        let filmed = |shown: &Shown| shown.scene == gallery.film.scene;
+        assert!(gallery.picture.iter().any(filmed));
     }
 }

@@ -15,6 +15,6 @@ pub(crate) use chart_run::{ChartSummary, chart_run};
 pub(crate) use course::{Course, Ending, Plan, unseen};
 pub(crate) use ensemble::{Member, ensemble};
 pub(crate) use hanging::{Hanging, mass};
-pub(crate) use record::{Run, RunSummary};
+pub(crate) use record::{Run, RunSummary, recorded};
 pub(crate) use scene::{FigureScene, displaced, scene_fingerprint};
 pub(crate) use shape::{PLATE, SheetShape};

@@ -9,19 +9,59 @@ use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-create_exception!(isosheet, Error, PyException, "An error of isosheet.");
+create_exception!(
+    isosheet,
+    Error,
+    PyException,
+    "An error of isosheet.\n\n\
+     It has `advice`, the `key` of the scene and the `time` where these are known, and None else:\n\n\
+     >>> try:\n\
+     ...     isosheet.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]])\n\
+     ... except isosheet.Error as error:\n\
+     ...     print(error.key)\n\
+     None"
+);
 create_exception!(
     isosheet,
     SceneError,
     Error,
-    "A scene that is wrong, or cannot be changed so."
+    "A scene that is wrong, or cannot be changed so.\n\n\
+     `problems` has all that was found, each with file, line, key, message and remedy:\n\n\
+     >>> try:\n\
+     ...     isosheet.Scene.new(\"hanging\", {\"sheet.density\": -1})\n\
+     ... except isosheet.SceneError as error:\n\
+     ...     print([problem[\"key\"] for problem in error.problems])\n\
+     ['sheet.density']"
 );
-create_exception!(isosheet, StepFailed, Error, "A step that failed.");
+create_exception!(
+    isosheet,
+    StepFailed,
+    Error,
+    "A step that failed; the simulation is as it was before it.\n\n\
+     A pin pulls harder than the limit of the strain allows:\n\n\
+     >>> scene = isosheet.Scene(\n\
+     ...     sheet={\"mesh\": {\"square\": {\"side\": 0.1, \"level\": 1}}, \"material\": \"office paper\"},\n\
+     ...     support=[\n\
+     ...         {\"at\": {\"vertices\": [0]}},\n\
+     ...         {\"at\": {\"vertices\": [24]}, \"hold\": {\"moving_pin\": {\"x\": {\"ramp\": {\"to\": 0.1, \"end\": 0.1}}}}},\n\
+     ...     ],\n\
+     ... )\n\
+     >>> try:\n\
+     ...     isosheet.Simulation(scene).run(0.1)\n\
+     ... except isosheet.StepFailed as error:\n\
+     ...     print(error.key)\n\
+     support[1]"
+);
 create_exception!(
     isosheet,
     RunFailed,
     Error,
-    "A run that cannot start, go on or be read."
+    "A run that cannot start, go on or be read.\n\n\
+     >>> try:\n\
+     ...     isosheet.Run(\"nowhere\")\n\
+     ... except isosheet.RunFailed as error:\n\
+     ...     print(\"no run\")\n\
+     no run"
 );
 
 /// What an exception says besides its text.

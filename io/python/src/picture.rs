@@ -2,7 +2,7 @@
 
 use crate::error::plain;
 use isosheet_io::picture::PictureError;
-use isosheet_io::run::{Film, FilmOptions, Recording, Viewpoint};
+use isosheet_io::run::{Film, FilmError, FilmOptions, Recording, Viewpoint};
 use isosheet_io::write_atomically;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -41,12 +41,19 @@ impl Shown<'_> {
             Kind::Picture => (["png", "png"], "a picture is a .png file"),
             Kind::Film => (
                 ["apng", "png"],
-                "a film is an .apng file; `isosheet convert` says how ffmpeg makes others of pictures",
+                "a film is an .apng file, or with ffmpeg an .mp4, .webm, .mov, .mkv, .avi or .gif file",
             ),
         };
-        if !known.iter().any(|known| extension == *known) {
+        let is_encoded = kind == Kind::Film && Film::is_encoded(path);
+        if !is_encoded && !known.iter().any(|known| extension == *known) {
             let message = format!("{} has another extension: {remedy}", path.display());
             return Err(PyValueError::new_err(message));
+        }
+        if is_encoded {
+            let encoded = py.detach(|| {
+                Film::new(self.recording, self.frames, &self.options)?.encode(path, |_| ())
+            });
+            return encoded.map_err(|e: FilmError| plain(py, &e));
         }
         let bytes = py.detach(|| -> Result<Vec<u8>, PictureError> {
             let film = Film::new(self.recording, self.frames, &self.options)?;

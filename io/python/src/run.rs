@@ -12,7 +12,7 @@ use isosheet_io::{HistoryRow, LoadKind, LoadRow, SeriesOptions, write_series};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyTuple, PyType};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toml::Value;
@@ -26,6 +26,26 @@ impl Run {
         let recording = py.detach(|| Recording::read(&folder));
         let recording = recording.map_err(|e| of_run(py, &e))?;
         Ok(Self { folder, recording })
+    }
+
+    /// The run with so many frames a second, if that is asked for.
+    fn at_rate(
+        &self,
+        py: Python<'_>,
+        every: usize,
+        fps: Option<f64>,
+    ) -> PyResult<Option<Recording>> {
+        let Some(rate) = fps else { return Ok(None) };
+        if every != 1 {
+            return Err(PyValueError::new_err(
+                "every and fps both choose frames; give one of them",
+            ));
+        }
+        let mut run = Self::read(py, self.folder.clone())?.recording;
+        let all = [0, self.recording.trajectory.len().saturating_sub(1)];
+        let changed = py.detach(|| self.recording.trajectory.at_rate(rate, all));
+        run.trajectory = changed.map_err(|e| plain(py, &e))?;
+        Ok(Some(run))
     }
 
     /// The values of all frames one after the other, and how many each frame has; `None` if frames have none.
@@ -80,6 +100,13 @@ impl Run {
     #[new]
     fn new(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
         Self::read(py, folder)
+    }
+
+    /// For `pickle` and `copy`: the folder, from which the run is read again.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyType>, (PathBuf,))> {
+        let folder = &slf.get().folder;
+        let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
+        Ok((slf.get_type(), (whole,)))
     }
 
     /// The folder.
@@ -302,15 +329,25 @@ impl Run {
     /// `film`.
     ///
     /// every: every so many frames one.
+    /// fps: frames a second in place of those that were recorded, between which vertices go straight on.
     ///
-    /// Returns the files, the one with that name last. ``run.save("cloth.usda")``
-    #[pyo3(signature = (path, *, every = 1))]
-    fn save(&self, py: Python<'_>, path: PathBuf, every: usize) -> PyResult<Vec<PathBuf>> {
+    /// Returns the files, the one with that name last. ``run.save("cloth.usda", fps=24)``
+    #[pyo3(signature = (path, *, every = 1, fps = None))]
+    fn save(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        every: usize,
+        fps: Option<f64>,
+    ) -> PyResult<Vec<PathBuf>> {
         let options = SeriesOptions {
             every,
+            rate: fps.unwrap_or(SeriesOptions::default().rate),
             ..SeriesOptions::default()
         };
-        let saved = py.detach(|| write_series(&path, &self.recording.series(&options)?));
+        let other = self.at_rate(py, every, fps)?;
+        let recording = other.as_ref().unwrap_or(&self.recording);
+        let saved = py.detach(|| write_series(&path, &recording.series(&options)?));
         saved.map(|saved| saved.files).map_err(|e| plain(py, &e))
     }
 
@@ -344,16 +381,17 @@ impl Run {
         shown.write(py, &path, Kind::Picture)
     }
 
-    /// Writes shaded pictures of the frames as an animated PNG file in real time, which browsers and
-    /// notebooks show: ``run.film("cloth.apng")``.
+    /// Writes shaded pictures of the frames in real time as an animated PNG file, which browsers and notebooks
+    /// show, or where ffmpeg is installed as an .mp4, .webm or .gif file: ``run.film("cloth.apng")``.
     ///
-    /// every: every so many frames one; height and view are those of `picture`.
-    #[pyo3(signature = (path, *, every = 1, height = 480, view = None))]
+    /// every and fps are those of `save`, height and view those of `picture`.
+    #[pyo3(signature = (path, *, every = 1, fps = None, height = 480, view = None))]
     fn film(
         &self,
         py: Python<'_>,
         path: PathBuf,
         every: usize,
+        fps: Option<f64>,
         height: usize,
         view: Option<(f64, f64)>,
     ) -> PyResult<()> {
@@ -362,11 +400,11 @@ impl Run {
                 "every is 0; give a number of frames from 1",
             ));
         }
+        let other = self.at_rate(py, every, fps)?;
+        let recording = other.as_ref().unwrap_or(&self.recording);
         let shown = Shown {
-            recording: &self.recording,
-            frames: (0..self.recording.trajectory.len())
-                .step_by(every)
-                .collect(),
+            recording,
+            frames: (0..recording.trajectory.len()).step_by(every).collect(),
             options: options(height, view),
         };
         shown.write(py, &path, Kind::Film)

@@ -1,7 +1,9 @@
 """Runs: what the command wrote, compared bit for bit with the module."""
 
+import copy
 import json
 import os
+import pickle
 import subprocess
 import sys
 
@@ -152,3 +154,30 @@ def test_a_run_has_its_measures_and_loads(folder):
         assert load["torque"].shape == load["force"].shape == support["force"].shape
     ending = run.summary["ending"]
     assert ending["supports"][0] == pytest.approx(support["force"][-1])
+
+
+def test_films_and_files_have_the_frames_a_second_that_are_asked_for(tmp_path):
+    run = isosheet.Scene.new("hanging", {"stop.time": 0.5}).simulate(tmp_path / "run")
+    files = run.save(tmp_path / "slow.npz", fps=10)
+    assert files == [tmp_path / "slow.npz"]
+    slow = np.load(tmp_path / "slow.npz")
+    assert slow["t"] == pytest.approx(np.arange(6) / 10)
+    expected = [np.interp(slow["t"], run.time, along) for along in run.x.reshape(run.time.size, -1).T]
+    assert slow["x"].reshape(6, -1).T == pytest.approx(np.array(expected), abs=1e-15)
+    run.film(tmp_path / "slow.apng", fps=10, height=40)
+    # The number of frames is in the chunk acTL.
+    film = (tmp_path / "slow.apng").read_bytes()
+    at = film.index(b"acTL") + 4
+    assert int.from_bytes(film[at : at + 4], "big") == 6
+    with pytest.raises(ValueError, match="give one of them"):
+        run.film(tmp_path / "both.apng", fps=10, every=2)
+    with pytest.raises(isosheet.Error, match="frames a second"):
+        run.save(tmp_path / "none.npz", fps=0.0)
+
+
+def test_runs_are_copied_and_pickled_as_their_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run = isosheet.Scene.new("hanging", {"stop.time": 0.05}).simulate("run")
+    for other in (pickle.loads(pickle.dumps(run)), copy.copy(run), copy.deepcopy(run)):
+        assert other.folder == tmp_path / "run"
+        assert np.array_equal(other.x, run.x) and other.summary == run.summary

@@ -44,7 +44,7 @@ def test_every_second_frame_is_saved(run, tmp_path):
         run.save(tmp_path / "none.npz", every=0)
 
 
-def test_pictures_and_films(run, tmp_path):
+def test_pictures_and_films(run, tmp_path, monkeypatch):
     run.picture(tmp_path / "end.png", height=200, view=(30, 40))
     run.picture(tmp_path / "same.png", run.time.size - 1, height=200, view=(30, 40))
     (width, height), names = png(tmp_path / "end.png")
@@ -56,8 +56,11 @@ def test_pictures_and_films(run, tmp_path):
     for frame in (run.time.size, -run.time.size - 1):
         with pytest.raises(IndexError, match="no frame"):
             run.picture(tmp_path / "none.png", frame)
-    with pytest.raises(ValueError, match="ffmpeg"):
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(isosheet.Error, match="ffmpeg"):
         run.film(tmp_path / "film.mp4")
+    with pytest.raises(ValueError, match="ffmpeg"):
+        run.film(tmp_path / "film.txt")
     with pytest.raises(ValueError, match="every is 0"):
         run.film(tmp_path / "film.apng", every=0)
     with pytest.raises(isosheet.Error, match="elevation"):

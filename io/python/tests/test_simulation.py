@@ -3,6 +3,7 @@
 import copy
 import multiprocessing
 import pickle
+import sys
 import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -224,10 +225,9 @@ def test_ctrl_c_ends_a_run_and_it_goes_on():
 
 
 def test_other_threads_run_during_a_step():
-    """A thread counts during one long step. With the interpreter locked it would count nothing."""
-    scene = hanging(sheet={"mesh": {"square": {"side": 0.2, "level": 3}}, "density": 0.08},
-                    support=[{"at": {"nearest": [[0, 0.2, 0]]}}])
-    simulation = isosheet.Simulation(scene)
+    """Python changes threads where one waits or lets others run. This one does so in steps alone: while they lock the
+    interpreter, the other thread counts nothing, in however many steps."""
+    simulation = isosheet.Simulation(hanging())
     counted, stop = [], threading.Event()
 
     def count():
@@ -236,13 +236,20 @@ def test_other_threads_run_during_a_step():
             time.sleep(0)
 
     thread = threading.Thread(target=count)
-    thread.start()
-    before = len(counted)
-    simulation.step(0.05)
-    during = len(counted) - before
-    stop.set()
-    thread.join()
-    assert during > 10
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(3600)
+    try:
+        thread.start()
+        before, steps = len(counted), 0
+        while len(counted) == before and steps < 1000:
+            simulation.step()
+            steps += 1
+        within = len(counted) - before
+    finally:
+        stop.set()
+        sys.setswitchinterval(interval)
+        thread.join()
+    assert within > 0
 
 
 def test_a_simulation_that_threads_share_takes_their_steps_in_turn():

@@ -37,6 +37,7 @@ Files that are written of a run:
   .png    a shaded picture of one frame (--frame K, the last one without it); with --frames, --every or --fps
           numbered pictures in a folder of that name
   .apng   shaded pictures of all frames as an animation in real time (browsers)
+  .mp4 .webm .mov .mkv .avi .gif   the same as a film, encoded by ffmpeg where it is installed
 A file that exists is replaced, unless it is the one that is read. docs/formats.md says more.";
 
 const EXAMPLES: &str = "\
@@ -97,9 +98,6 @@ impl Convert {
 
     pub(crate) fn run(&self) -> Done {
         self.check_output()?;
-        if pictures::is_film(self.output()) {
-            return Err(pictures::no_film(&self.input, self.output()));
-        }
         if self.input.is_dir() {
             return self.convert_run();
         }
@@ -188,7 +186,7 @@ impl Convert {
         ];
         match options.iter().find(|(_, given)| *given) {
             Some((option, _)) => Err(wrong(
-                &format!("{option} is for pictures of runs: .png and .apng"),
+                &format!("{option} is for pictures and films of runs: .png, .apng, .mp4"),
                 "leave it out",
             )),
             None => Ok(()),
@@ -271,7 +269,7 @@ impl Convert {
         let count = recording.trajectory.len();
         let choice = match self.frame {
             Some(frame) => FrameChoice::One(frame),
-            None if is_many || format == PictureFormat::AnimatedPng => {
+            None if is_many || format != PictureFormat::Png => {
                 let [first, last] = self.range().of(count);
                 FrameChoice::Many {
                     first,

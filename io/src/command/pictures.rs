@@ -20,6 +20,8 @@ pub(crate) enum PictureFormat {
     Png,
     /// All frames, animated.
     AnimatedPng,
+    /// All frames, as another program encodes them.
+    Film,
 }
 
 impl PictureFormat {
@@ -29,7 +31,7 @@ impl PictureFormat {
         match extension.as_str() {
             "png" => Some(Self::Png),
             "apng" => Some(Self::AnimatedPng),
-            _ => None,
+            _ => Film::is_encoded(path).then_some(Self::Film),
         }
     }
 }
@@ -47,31 +49,6 @@ pub(crate) enum FrameChoice {
     },
 }
 
-/// Whether a file is a film, which this program does not encode.
-pub(crate) fn is_film(path: &Path) -> bool {
-    let films = ["mp4", "m4v", "mov", "webm", "mkv", "avi", "gif"];
-    let extension = path.extension().unwrap_or_default();
-    films
-        .iter()
-        .any(|film| extension.eq_ignore_ascii_case(film))
-}
-
-/// How a film is made with another program.
-pub(crate) fn no_film(input: &Path, output: &Path) -> Failure {
-    let pictures = output.with_extension("png");
-    let folder = output.with_extension("");
-    let message = format!("isosheet has no encoder for {}", output.display());
-    let remedy = format!(
-        "write numbered pictures, `isosheet convert {} {} --fps 30`, and join them, `ffmpeg -framerate 30 -i \
-         {}/frame_%05d.png -pix_fmt yuv420p {}`; or write an animation for browsers, .apng",
-        input.display(),
-        pictures.display(),
-        folder.display(),
-        output.display()
-    );
-    Failure::misuse(message).remedy(remedy)
-}
-
 /// Draws frames of a run.
 pub(crate) fn write(
     recording: &Recording,
@@ -82,8 +59,8 @@ pub(crate) fn write(
 ) -> Done {
     let count = recording.trajectory.len();
     let frames: Vec<usize> = match (format, choice) {
-        (PictureFormat::AnimatedPng, FrameChoice::One(_)) => {
-            let message = "--frame is for .png: an .apng file has many frames";
+        (PictureFormat::AnimatedPng | PictureFormat::Film, FrameChoice::One(_)) => {
+            let message = "--frame is for .png: a film has many frames";
             return Err(wrong(
                 message,
                 "choose frames with --frames A..B or --every N",
@@ -113,6 +90,10 @@ pub(crate) fn write(
         written.map_err(|e| Failure::of(Code::Output, &e))
     };
     let saved = match (format, choice) {
+        (PictureFormat::Film, _) => {
+            let encoded = film.encode(path, |k| progress.drawn(k));
+            encoded.map_err(|e| Failure::of(Code::Output, &e))
+        }
         (PictureFormat::AnimatedPng, _) => save(path, film.animation(|k| progress.drawn(k))),
         (_, FrameChoice::One(_)) => save(path, picture(0)),
         (_, FrameChoice::Many { .. }) => {

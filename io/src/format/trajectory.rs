@@ -5,6 +5,7 @@ mod data;
 mod motion;
 #[cfg(feature = "scene")]
 mod moving_mesh;
+mod npy;
 mod rate;
 
 pub use data::FrameData;

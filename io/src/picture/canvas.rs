@@ -49,19 +49,14 @@ impl Image {
         }
     }
 
-    /// Copies another picture in, its upper left corner at (x, y).
-    pub(super) fn paste(&mut self, other: &Self, x: usize, y: usize) {
-        for row in 0..other.height.min(self.height.saturating_sub(y)) {
-            let width = other.width.min(self.width.saturating_sub(x));
-            let to = (y + row) * self.width + x;
-            self.pixels[to..to + width]
-                .copy_from_slice(&other.pixels[row * other.width..row * other.width + width]);
-        }
-    }
-
     /// Width and height, pixels.
     pub fn size(&self) -> [usize; 2] {
         [self.width, self.height]
+    }
+
+    /// Three sRGB bytes for each pixel, row by row from above.
+    pub fn to_rgb(&self) -> Vec<u8> {
+        srgb_bytes(self)
     }
 
     /// The picture as a PNG file, sRGB, eight bits.

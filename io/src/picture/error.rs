@@ -18,6 +18,7 @@ pub enum PictureError {
     #[error(transparent)]
     Body(#[from] ObstacleError),
     /// A vector drawing cannot be read.
+    #[cfg(feature = "labels")]
     #[error("cannot read the vector drawing: {0}")]
     Svg(#[from] resvg::usvg::Error),
     /// A PNG file cannot be made.
@@ -45,6 +46,7 @@ impl Advice for PictureError {
         match self {
             Self::Options(error) | Self::Data(error) => error.advice(),
             Self::Body(error) => error.advice(),
+            #[cfg(feature = "labels")]
             Self::Svg(..) => Some("give an SVG document"),
             Self::Png(..) => None,
         }

@@ -43,6 +43,16 @@ impl Image {
         }
         out
     }
+
+    /// Copies another picture in, its upper left corner at (x, y).
+    fn paste(&mut self, other: &Self, x: usize, y: usize) {
+        for row in 0..other.height.min(self.height.saturating_sub(y)) {
+            let width = other.width.min(self.width.saturating_sub(x));
+            let to = (y + row) * self.width + x;
+            self.pixels[to..to + width]
+                .copy_from_slice(&other.pixels[row * other.width..row * other.width + width]);
+        }
+    }
 }
 
 /// Puts pictures of one size into rows of `columns`.

@@ -14,6 +14,10 @@ use rayon::prelude::*;
 /// Rays sent from every point, on a fixed spiral: pictures are the same at every run.
 const RAYS: usize = 40;
 
+/// Faces that are nearer than this part of the reach lie on the point: the other layer of a seam or of a flat fold, which
+/// is either hidden by the point or hides it.
+const TOUCHING: f64 = 2e-3;
+
 /// How far in from a crease a point lies, as part of the way to the centroid of its faces: a point on the
 /// crease would count the faces on the other side as touching.
 const INSET: f64 = 0.25;
@@ -117,7 +121,7 @@ impl Occlusion {
                 let t = local_ray_intersection_with_triangle(a, b, c, &ray)?
                     .0
                     .time_of_impact;
-                (t > 0.0).then_some(t)
+                (t > TOUCHING * self.reach).then_some(t)
             });
             nearest.map_or(1.0, |(_, t)| (t.min(self.reach) / self.reach).sqrt())
         });

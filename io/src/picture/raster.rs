@@ -38,6 +38,8 @@ pub(super) struct Stroke {
     pub(super) cover: f32,
     /// How much nearer the line counts than it is, where a face is seen that has a vertex with it in common.
     pub(super) lift: f64,
+    /// How much farther the line counts than it is, where another face is seen: what lies on it hides all of its width.
+    pub(super) sink: f64,
 }
 
 /// All that a picture shows, in pixels.
@@ -212,7 +214,7 @@ impl Band {
                     let has = stroke.vertices.map(|v| face.contains(&v));
                     usize::from(has[0]) + usize::from(has[1])
                 });
-                let lift = [0.0, stroke.lift, f64::INFINITY][common];
+                let lift = [-stroke.sink, stroke.lift, f64::INFINITY][common];
                 if nearness + lift > sample.nearness {
                     draw(sample);
                 }
@@ -332,10 +334,30 @@ mod tests {
                 width: 1.0,
                 cover: 1.0,
                 lift: 0.5,
+                sink: 0.0,
             });
             let image = drawing.picture();
             let expected = if is_seen { [0.0; 3] } else { [0.0, 1.0, 0.0] };
             assert!(is_like(&image.pixels[4 * 8 + 4], &expected));
+        }
+    }
+
+    /// A face that lies on an edge of a body hides it, however little it is in front; the faces of the body do not.
+    #[test]
+    fn what_lies_on_an_edge_hides_it() {
+        for (vertices, is_seen) in [([3, 4], false), ([0, 1], true)] {
+            let mut drawing = drawing([8, 8], vec![big(0, 1.0)]);
+            let end = |x: f64| corner(x, 4.5, 1.0 + 1e-9, [0.0; 3]);
+            drawing.strokes.push(Stroke {
+                ends: [end(0.0), end(8.0)],
+                vertices,
+                width: 1.0,
+                cover: 1.0,
+                lift: 0.0,
+                sink: 0.01,
+            });
+            let is_drawn = drawing.picture().pixels[4 * 8 + 4] == [0.0; 3];
+            assert_eq!(is_drawn, is_seen, "{vertices:?}");
         }
     }
 
@@ -350,6 +372,7 @@ mod tests {
                 width: 1.0,
                 cover: 0.5,
                 lift: 0.0,
+                sink: 0.0,
             });
         }
         let image = drawing.picture();

@@ -31,9 +31,17 @@ const CONTRAST: f64 = 0.12;
 /// How far lines are drawn in front of what they lie on, as part of what the picture shows.
 const LIFT: f64 = 0.004;
 
+/// How far edges of bodies are drawn behind what lies on them, pixels.
+const SINK: f64 = 2.0;
+
 /// Edges within a sheet are not drawn where they are shorter than the first of so many pixels in the mean, and in full
 /// where they are longer than the second: fine meshes look like a sheet.
-const FADING: [f64; 2] = [6.0, 24.0];
+const FADING: [f64; 2] = [10.0, 30.0];
+
+/// The width of dots, as part of the mean length of edges in the picture, and its bounds, pixels.
+const DOT: f64 = 0.4;
+const SMALLEST_DOT: f64 = 2.0;
+const LARGEST_DOT: f64 = 9.0;
 
 /// sRGB colours of lines, of pins and of immobile vertices.
 const INK: [u8; 3] = [38, 42, 48];
@@ -177,10 +185,10 @@ pub fn render(
 /// brighter above, and that of a key light at the upper left.
 pub(super) fn light_on(camera: &Camera, n: &[f64; 3], p: &[f64; 3]) -> [f64; 2] {
     let facing = dot(n, &camera.viewer(p)).max(0.0);
-    let key = camera.direction([-0.55, 0.75, 0.65]);
+    let key = camera.direction([-0.66, 0.62, 0.42]);
     [
-        0.56 + 0.10 * n[2] + 0.12 * facing,
-        0.42 * dot(n, &key).max(0.0),
+        0.34 + 0.10 * n[2] + 0.10 * facing,
+        0.68 * dot(n, &key).max(0.0),
     ]
 }
 
@@ -318,25 +326,19 @@ impl<'a> Painter<'a> {
             width: width * self.look.wire,
             cover: cover as f32,
             lift: LIFT * self.scale,
+            sink: 0.0,
         };
         let cutter = self.cutter(GRAIN);
         let mut strokes = Vec::new();
         for (vertices, skin) in &scene.ridges {
             let parts = cutter.parts(vertices.map(|v| scene.x[v]), skin).into_iter();
-            strokes.extend(parts.map(|ends| stroke(ends, *vertices, 1.0, 0.8)));
+            strokes.extend(parts.map(|ends| Stroke {
+                sink: SINK * self.scale / self.size[1],
+                ..stroke(ends, *vertices, 1.0, 0.8)
+            }));
         }
-        let seen =
-            |vertices: &[usize; 2]| !vertices.iter().any(|v| self.camera.is_behind(&scene.x[*v]));
-        let edges = topology.edge_ids().map(|e| {
-            let ends = topology.edges()[e.index()].map(VertexId::index);
-            (ends, topology.is_boundary_edge(e))
-        });
-        let edges: Vec<([usize; 2], bool)> = edges.filter(|(ends, _)| seen(ends)).collect();
-        let length = |(ends, _): &([usize; 2], bool)| {
-            let [a, b] = ends.map(|v| self.place(&scene.x[v]));
-            (b[0] - a[0]).hypot(b[1] - a[1])
-        };
-        let mean = edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64;
+        let edges = self.seen_edges(topology, scene);
+        let mean = self.mean_length(&edges, scene);
         let [none, full] = FADING;
         let inner = 0.55 * ((mean - none) / (full - none)).clamp(0.0, 1.0);
         strokes.extend(edges.iter().map(|(vertices, is_boundary)| {
@@ -350,9 +352,31 @@ impl<'a> Painter<'a> {
         strokes
     }
 
-    /// Dots with a rim.
+    /// The edges of the sheet that are not behind the camera, and whether they are of its boundary.
+    fn seen_edges(&self, topology: &Topology, scene: &Triangles) -> Vec<([usize; 2], bool)> {
+        let seen =
+            |vertices: &[usize; 2]| !vertices.iter().any(|v| self.camera.is_behind(&scene.x[*v]));
+        let edges = topology.edge_ids().map(|e| {
+            let ends = topology.edges()[e.index()].map(VertexId::index);
+            (ends, topology.is_boundary_edge(e))
+        });
+        edges.filter(|(ends, _)| seen(ends)).collect()
+    }
+
+    /// The mean length of edges in the picture, pixels.
+    fn mean_length(&self, edges: &[([usize; 2], bool)], scene: &Triangles) -> f64 {
+        let length = |(ends, _): &([usize; 2], bool)| {
+            let [a, b] = ends.map(|v| self.place(&scene.x[v]));
+            (b[0] - a[0]).hypot(b[1] - a[1])
+        };
+        edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64
+    }
+
+    /// Dots with a rim, smaller where the mesh is finer.
     fn dots(&self, picture: &SheetPicture<'_>, scene: &Triangles) -> Vec<Stroke> {
         let mut strokes = Vec::new();
+        let mean = self.mean_length(&self.seen_edges(picture.topology, scene), scene);
+        let widest = (DOT * mean).clamp(SMALLEST_DOT, LARGEST_DOT);
         for (v, colour) in picture.dots() {
             let vertex = v.index();
             let p = &scene.x[vertex];
@@ -360,7 +384,7 @@ impl<'a> Painter<'a> {
                 continue;
             }
             let raised = axpy(p, 3.0 * LIFT * self.scale, &self.camera.viewer(p));
-            for (width, colour) in [(9.0, INK), (6.0, colour)] {
+            for (width, colour) in [(widest, INK), (widest * 2.0 / 3.0, colour)] {
                 let [x, y, _] = self.place(p);
                 let end = Corner {
                     x,
@@ -373,6 +397,7 @@ impl<'a> Painter<'a> {
                     width,
                     cover: 1.0,
                     lift: 0.0,
+                    sink: 0.0,
                 });
             }
         }

@@ -158,6 +158,23 @@ impl<'a> Film<'a> {
         self.frames.len()
     }
 
+    /// Width and height of the pictures, pixels.
+    pub fn size(&self) -> [usize; 2] {
+        self.look.size
+    }
+
+    /// Pictures a second, in real time; one for a single picture.
+    pub fn rate(&self) -> f64 {
+        let times = self.recording.trajectory.times();
+        let [first, last] =
+            [self.frames.first(), self.frames.last()].map(|f| f.map_or(0.0, |f| times[*f]));
+        let duration = last - first;
+        match duration > 0.0 {
+            true => (self.frames.len() - 1) as f64 / duration,
+            false => 1.0,
+        }
+    }
+
     /// Whether there are no frames; a film has at least one.
     pub fn is_empty(&self) -> bool {
         self.frames.is_empty()
@@ -191,11 +208,7 @@ impl<'a> Film<'a> {
     /// # Errors
     /// [`PictureError`] if a frame cannot be drawn.
     pub fn animation(&self, drawn: impl Fn(usize) + Sync) -> Result<Vec<u8>, PictureError> {
-        let times = self.recording.trajectory.times();
-        let [first, last] =
-            [self.frames.first(), self.frames.last()].map(|f| f.map_or(0.0, |f| times[*f]));
-        let steps = (self.frames.len() - 1).max(1);
-        let delay = 1000.0 * (last - first) / steps as f64;
+        let delay = 1000.0 / self.rate();
         // Conversion from floats saturates: the longest time of a picture is a minute.
         let delay = delay.round().max(1.0) as u16;
         let count = AtomicUsize::new(0);

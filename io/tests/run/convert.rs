@@ -1,6 +1,6 @@
 //! `isosheet convert`.
 
-use crate::{code, run, stderr, with_scene};
+use crate::{code, isosheet, run, stderr, with_scene};
 use isosheet_io::run::Recording;
 use isosheet_io::scene::{SceneFile, StartingPoint};
 use isosheet_io::{
@@ -366,17 +366,81 @@ fn films_are_numbered_pictures() {
     ] {
         assert!(usda.contains(part), "{part}");
     }
-    let said = refused(dir, &["convert", "run", "film.mp4"], 2);
-    assert!(
-        said.contains("ffmpeg") && said.contains("film/frame_%05d.png"),
-        "{said}"
-    );
     refused(dir, &["convert", "run", "x.usda", "--fps", "0"], 2);
     refused(
         dir,
         &["convert", "run", "x.usda", "--fps", "10", "--every", "2"],
         2,
     );
+}
+
+/// A program in place of ffmpeg keeps what it is told and what it is given.
+#[cfg(unix)]
+#[test]
+fn films_are_encoded_by_ffmpeg_where_it_is() {
+    use std::os::unix::fs::PermissionsExt;
+    let dir = with_scene(StartingPoint::Drape);
+    let dir = dir.path();
+    done(
+        dir,
+        &[
+            "simulate",
+            "scene.toml",
+            "--out",
+            "run",
+            "--set",
+            "stop.time=0.1",
+        ],
+    );
+    let convert = |path: &str, film: &str| {
+        let mut command = isosheet(dir);
+        command.env("PATH", path);
+        let output = command
+            .args(["convert", "run", film, "--fps", "20", "--size", "41x30"])
+            .output();
+        output.expect("the command starts")
+    };
+    let none = convert("", "films/a.mp4");
+    assert_eq!(code(&none), Some(6), "{}", stderr(&none));
+    let said = stderr(&none);
+    assert!(
+        said.contains("encoded by ffmpeg") && said.contains(".apng"),
+        "{said}"
+    );
+    assert_eq!(fs::read_dir(dir.join("films")).unwrap().count(), 0);
+
+    let bin = dir.join("bin");
+    fs::create_dir(&bin).unwrap();
+    let program = |script: &str| {
+        let path = bin.join("ffmpeg");
+        fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    };
+    let path = format!("{}:/usr/bin:/bin", bin.display());
+    program("echo \"$@\" > arguments; for film; do :; done; cat > \"$film\"");
+    let film = convert(&path, "films/a.mp4");
+    assert_eq!(code(&film), Some(0), "{}", stderr(&film));
+    // A tenth of a second has the frames at 0, 0.05 and 0.1 s.
+    let bytes = fs::read(dir.join("films/a.mp4")).unwrap();
+    assert_eq!(bytes.len(), 3 * 41 * 30 * 3);
+    let arguments = fs::read_to_string(dir.join("arguments")).unwrap();
+    for part in [
+        "-video_size 41x30",
+        "-framerate 20.000000",
+        "rgb24",
+        "yuv420p",
+    ] {
+        assert!(arguments.contains(part), "{part}: {arguments}");
+    }
+    program("echo 'no such codec' >&2; exit 1");
+    let failed = convert(&path, "films/b.webm");
+    assert_eq!(code(&failed), Some(6));
+    assert!(
+        stderr(&failed).contains("no such codec"),
+        "{}",
+        stderr(&failed)
+    );
+    assert_eq!(fs::read_dir(dir.join("films")).unwrap().count(), 1);
 }
 
 /// The frame that is asked for, animations of all frames, and what cannot be drawn.

@@ -127,7 +127,8 @@ fn every_body_is_drawn_and_moves() {
     }
     assert_eq!(number(&result["looks"]), 3.0, "solid, see-through, hidden");
     assert_eq!(number(&result["pictures"]["frames"]), 5.0);
-    let played = serde_json::json!({ "starts": true, "middle": 2, "end": 4, "ends": true });
+    let played =
+        serde_json::json!({ "starts": true, "middle": 2, "end": 4, "ends": true, "again": 0 });
     assert_eq!(result["played"], played);
     assert!(
         number(&result["coveredFitted"]) > 0.2,

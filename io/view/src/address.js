@@ -5,7 +5,7 @@
 const DELAY = 250;
 
 /** The boxes with their states at the start. */
-const BOXES = { edges: true, wireframe: false, rest: false };
+const BOXES = { edges: true, wireframe: false, rest: false, loop: false };
 
 const $ = (id) => document.getElementById(id);
 

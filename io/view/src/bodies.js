@@ -41,7 +41,8 @@ export function makeBody(body) {
       flatShading: body.shape.kind === "mesh",
       // Of what is in the same place, the sheet is in front.
       polygonOffset: true,
-      polygonOffsetUnits: 4,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 32,
     });
     const geometry = geometryOf(body.shape).toNonIndexed();
     group.sides = outline(geometry, OUTLINED);

@@ -87,8 +87,9 @@ export class Hover {
     return null;
   }
 
-  /** After a change of the frame, something else may be under the pointer. */
-  update() {
-    if (this.found) this.show(...this.place);
+  /** After a change of the frame, something else may be under the pointer. While the run plays nothing is said. */
+  update(isPlaying = false) {
+    if (this.found && isPlaying) this.hide();
+    else if (this.found) this.show(...this.place);
   }
 }

@@ -42,6 +42,7 @@ export class Live {
     document.body.classList.add("live");
     $("scrub").hidden = true;
     $("speed").parentElement.hidden = true;
+    $("loop-label").hidden = true;
     const button = (id, text, title, act) => {
       const made = element("button", { id, type: "button", title }, text);
       made.addEventListener("click", act);

@@ -54,7 +54,7 @@ class Page {
   changed() {
     const { replay, player } = this;
     this.stage.update();
-    this.hover.update();
+    this.hover.update(player.playing);
     this.plots.setTime(replay.time);
     $("scrub").value = replay.frame;
     $("time").textContent = player.timeText?.() ?? replay.frameText;
@@ -89,6 +89,9 @@ class Page {
       wireframe: (on) => stage.sheet.setWireframe(on),
       rest: (on) => {
         stage.sheet.ghost.visible = on;
+      },
+      loop: (on) => {
+        player.loops = on;
       },
     };
     for (const [id, act] of Object.entries(boxes)) {

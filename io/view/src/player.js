@@ -6,6 +6,7 @@ export class Player {
     this.replay = replay;
     this.onChange = onChange;
     this.speed = 1;
+    this.loops = false;
     this.playing = false;
   }
 
@@ -36,7 +37,7 @@ export class Player {
     this.onChange();
   }
 
-  /** Goes on in the time of the run by the time that passed, times the speed; stops at the last frame. */
+  /** Goes on in the time of the run by the time that passed, times the speed; at the last frame it stops, or begins anew. */
   tick(now) {
     if (!this.playing) return;
     const { times } = this.replay.data,
@@ -44,11 +45,12 @@ export class Player {
     if (this.clock !== null) this.time += ((now - this.clock) / 1000) * this.speed;
     this.clock = now;
     this.show(this.replay.frameAt(this.time));
-    if (this.time >= end) {
+    if (this.time >= end && !this.loops) {
       this.playing = false;
       this.onChange();
-    } else {
-      requestAnimationFrame((then) => this.tick(then));
+      return;
     }
+    if (this.time >= end) this.time = times[0];
+    requestAnimationFrame((then) => this.tick(then));
   }
 }

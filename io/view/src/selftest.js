@@ -180,7 +180,7 @@ export async function selfTest(page, exceptions) {
   };
 }
 
-/** Plays to a little after the middle and beyond the end, by a clock that starts at one second. */
+/** Plays to a little after the middle and beyond the end, once and in a loop, by a clock that starts at one second. */
 function play(page) {
   const { player, replay } = page,
     { times } = replay.data,
@@ -192,7 +192,17 @@ function play(page) {
   player.tick(1000 + 550 * duration);
   const middle = replay.frame;
   player.tick(1001 + 1000 * duration);
-  return { starts, middle, end: replay.frame, ends: !player.playing };
+  const played = { starts, middle, end: replay.frame, ends: !player.playing };
+  player.loops = true;
+  player.toggle();
+  player.tick(1000);
+  player.tick(1001 + 1000 * duration);
+  player.tick(1001 + 1000 * duration);
+  const again = player.playing && replay.frame;
+  player.toggle();
+  player.seek(replay.frames - 1);
+  player.loops = false;
+  return { ...played, again };
 }
 
 /** Clicks at three quarters of the width of a plot; the frame nearest to the time there has to be shown. */

@@ -75,10 +75,10 @@ export class Stage {
   }
 
   addLights() {
-    this.scene.add(new HemisphereLight(0xffffff, 0xb5b0a8, 1.5));
+    this.scene.add(new HemisphereLight(0xffffff, 0xb0aca6, 1.2));
     // One light stands beside the camera and moves with it, so that no side of the sheet is dark; one stands above the
     // stage and casts soft shadows.
-    const sun = new DirectionalLight(0xffffff, 1.4);
+    const sun = new DirectionalLight(0xffffff, 1.2);
     const aside = new Vector3().setComponent((this.replay.up + 1) % 3, -0.5).setComponent((this.replay.up + 2) % 3, -0.4);
     sun.position.copy(this.up).multiplyScalar(2).add(aside).multiplyScalar(SUN_DISTANCE / 2);
     sun.castShadow = true;
@@ -90,8 +90,8 @@ export class Stage {
     }
     this.renderer.shadowMap.enabled = true;
     this.scene.add(sun);
-    const light = new DirectionalLight(0xffffff, 0.7);
-    light.position.set(-0.6, 0.9, 0.6);
+    const light = new DirectionalLight(0xffffff, 1.3);
+    light.position.set(-0.8, 0.75, 0.6);
     this.camera.add(light, light.target);
     light.target.position.set(0, 0, -1);
     this.scene.add(this.camera);

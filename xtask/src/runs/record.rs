@@ -168,13 +168,7 @@ impl Run {
     /// # Errors
     /// [`Interrupted`](interrupt::Interrupted) after Ctrl-C; those of the simulation.
     pub(crate) fn of(store: &Store, scene: FigureScene) -> Result<Self> {
-        let unit = Unit {
-            name: format!("run-{}", scene.name()),
-            title: format!("run {}", scene.name()),
-            options: scene.options(),
-        };
-        let (summary, times) = store.keep(&unit, |files| record(&scene, files))?;
-        let recorded = Recording::read(&store.path(&folder(&scene)))?;
+        let (summary, times, recorded) = kept(store, &scene)?;
         let summary = RunSummary::new(&summary, &recorded.history, times);
         summary.check()?;
         Ok(Self {
@@ -203,6 +197,25 @@ impl Run {
         let is_of_body = |row: &&LoadRow| row.on == LoadKind::Obstacle && row.number == body;
         self.loads.iter().filter(is_of_body).map(timed).collect()
     }
+}
+
+/// What a run recorded, which is made if it is not there.
+///
+/// # Errors
+/// As [`Run::of`].
+pub(crate) fn recorded(store: &Store, scene: &FigureScene) -> Result<Recording> {
+    kept(store, scene).map(|(_, _, recording)| recording)
+}
+
+fn kept(store: &Store, scene: &FigureScene) -> Result<(Summary, Times, Recording)> {
+    let unit = Unit {
+        name: format!("run-{}", scene.name()),
+        title: format!("run {}", scene.name()),
+        options: scene.options(),
+    };
+    let (summary, times) = store.keep(&unit, |files| record(scene, files))?;
+    let recording = Recording::read(&store.path(&folder(scene)))?;
+    Ok((summary, times, recording))
 }
 
 /// Time and force of a load.

@@ -1,11 +1,10 @@
 //! Arrays in an archive of numpy: a zip file with one `.npy` file for each.
 
+use super::npy::{ArrayWriter, Header, Number, read_entries};
 use crate::format::FileError;
 use crate::format::{input, memory};
-use npyz::npz::file_name_from_array_name;
-use npyz::{AutoSerialize, Deserialize, NpyFile, Order, WriteOptions, WriterBuilder};
 use std::fs::File;
-use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
@@ -96,16 +95,17 @@ impl<W: Write + Seek> ArchiveWriter<W> {
     }
 
     /// Adds an array with the values of its entries by rows.
-    pub(super) fn put<T: AutoSerialize>(
+    pub(super) fn put<T: Number>(
         &mut self,
         name: &str,
         shape: &[u64],
         values: impl Iterator<Item = T>,
     ) -> io::Result<()> {
         self.begin::<T>(name, shape)?;
-        let options = WriteOptions::new().default_dtype().shape(shape);
-        let mut writer = options.writer(&mut self.0).begin_nd()?;
-        writer.extend(values)?;
+        let mut writer = ArrayWriter::new::<T>(&mut self.0, shape)?;
+        values
+            .into_iter()
+            .try_for_each(|value| writer.push(value))?;
         writer.finish()
     }
 
@@ -117,9 +117,8 @@ impl<W: Write + Seek> ArchiveWriter<W> {
         rows: impl FnOnce(&mut dyn FnMut(&[f64]) -> io::Result<()>) -> io::Result<()>,
     ) -> io::Result<()> {
         self.begin::<f64>(name, shape)?;
-        let options = WriteOptions::new().default_dtype().shape(shape);
-        let mut writer = options.writer(&mut self.0).begin_nd()?;
-        rows(&mut |row| row.iter().try_for_each(|value| writer.push(value)))?;
+        let mut writer = ArrayWriter::new::<f64>(&mut self.0, shape)?;
+        rows(&mut |row| row.iter().try_for_each(|value| writer.push(*value)))?;
         writer.finish()
     }
 
@@ -133,7 +132,7 @@ impl<W: Write + Seek> ArchiveWriter<W> {
             // An entry of more than 4 GiB, with its header, has another form.
             .large_file(bytes > u64::from(u32::MAX) / 2);
         self.0
-            .start_file(file_name_from_array_name(name), options)
+            .start_file(file_of(name), options)
             .map_err(of_archive)
     }
 
@@ -170,7 +169,7 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
     }
 
     /// An array of so many dimensions.
-    pub(super) fn get<T: Deserialize>(
+    pub(super) fn get<T: Number>(
         &mut self,
         name: &'static str,
         dimensions: usize,
@@ -180,27 +179,26 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
     }
 
     /// An array of so many dimensions, which need not be there.
-    pub(super) fn get_if_there<T: Deserialize>(
+    pub(super) fn get_if_there<T: Number>(
         &mut self,
         name: &'static str,
         dimensions: usize,
     ) -> Result<Option<Shaped<T>>, FileError> {
         let error = |problem: String| wrong_array(self.path, name, &problem);
-        let entry = match self.zip.by_name(&file_name_from_array_name(name)) {
+        let mut entry = match self.zip.by_name(&file_of(name)) {
             Err(ZipError::FileNotFound) => return Ok(None),
             other => other.map_err(|e| error(e.to_string()))?,
         };
         let announced = entry.size();
-        let npy = whole_header(entry).and_then(NpyFile::new);
-        let npy = npy.map_err(|e| error(e.to_string()))?;
-        let shape = npy.shape().to_vec();
+        let header = Header::read(&mut entry).map_err(|e| error(e.to_string()))?;
+        let shape = &header.shape;
         if shape.len() != dimensions {
             return Err(error(format!(
                 "it has {} dimensions, {dimensions} expected",
                 shape.len()
             )));
         }
-        if npy.header().order() != Order::C {
+        if header.by_columns {
             return Err(error(
                 "it is stored by columns; save it with numpy.ascontiguousarray".to_owned(),
             ));
@@ -208,9 +206,9 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
         let expected = shape.iter().try_fold(1u64, |n, &k| n.checked_mul(k));
         let expected =
             expected.ok_or_else(|| error(format!("its shape {shape:?} is impossible")))?;
-        let values = npy
-            .try_data::<T>()
-            .map_err(|npy| error(format!("its type is {:?}", npy.dtype().descr())))?;
+        let order = header
+            .order_of::<T>()
+            .ok_or_else(|| error(format!("its type is {}", header.kind)))?;
         let bytes = expected.saturating_mul(size_of::<T>() as u64);
         if bytes > announced {
             return Err(error(format!(
@@ -226,31 +224,16 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
         let mut read = Vec::new();
         let reserved = read.try_reserve_exact(expected as usize);
         reserved.map_err(|e| error(e.to_string()))?;
-        for value in values {
-            read.push(value.map_err(|e| error(e.to_string()))?);
-        }
+        let done = read_entries(&mut entry, order, expected as usize, &mut read);
+        done.map_err(|e| error(e.to_string()))?;
         self.left -= bytes;
-        Ok(Some((shape, read)))
+        Ok(Some((header.shape, read)))
     }
 }
 
-/// The longest header of an array, bytes: that of version 1 of the format.
-const LONGEST_HEADER: u32 = 65_535;
-
-/// The content of an array, whose header has at most [`LONGEST_HEADER`] bytes.
-fn whole_header(mut array: impl Read) -> io::Result<impl Read> {
-    // Six bytes of magic, two of the version, and the length of the header in two or four bytes.
-    let mut start = [0; 12];
-    array.read_exact(&mut start)?;
-    let length = match start[6] {
-        1 => u32::from(u16::from_le_bytes([start[8], start[9]])),
-        _ => u32::from_le_bytes([start[8], start[9], start[10], start[11]]),
-    };
-    if length > LONGEST_HEADER {
-        let problem = format!("its header announces {length} bytes");
-        return Err(io::Error::new(io::ErrorKind::InvalidData, problem));
-    }
-    Ok(Cursor::new(start).chain(array))
+/// The file of an array in an archive.
+fn file_of(array: &str) -> String {
+    format!("{array}.npy")
 }
 
 /// An array of a file that is missing or of another type or shape.
