@@ -211,10 +211,66 @@ fn used(carriers: &CarriedPoint) -> impl Iterator<Item = (VertexId, f64)> {
     carriers.iter().copied().filter(is_used)
 }
 
-/// Receives blocks of points, and hands them on to the vertices that carry these.
+/// The vertices of two rigid bodies.
+const GATHERED: usize = 8;
+
+/// Receives blocks of points, and hands them on to the vertices that carry these. The blocks of contacts one
+/// after the other that the same few vertices carry, as those of two bodies, are gathered and handed on once.
 pub(super) struct CarriedSink<'a> {
-    pub(super) points: &'a SurfacePoints,
-    pub(super) sink: &'a mut dyn CouplingSink,
+    points: &'a SurfacePoints,
+    sink: &'a mut dyn CouplingSink,
+    vertices: Vec<u32>,
+    /// By the places of the two vertices, the one of the lower number first.
+    blocks: [[Option<Matrix3<f64>>; GATHERED]; GATHERED],
+}
+
+impl<'a> CarriedSink<'a> {
+    /// Hands on to `sink` what `add` adds.
+    pub(super) fn hand_on(
+        points: &'a SurfacePoints,
+        sink: &'a mut dyn CouplingSink,
+        add: impl FnOnce(&mut dyn CouplingSink),
+    ) {
+        let mut carried = Self {
+            points,
+            sink,
+            vertices: Vec::with_capacity(GATHERED),
+            blocks: Default::default(),
+        };
+        add(&mut carried);
+        carried.flush();
+    }
+
+    /// Gathers a block of vertices, that of the lower number first.
+    fn gather(&mut self, i: u32, j: u32, block: &Matrix3<f64>) {
+        let is_new = |v: &u32| !self.vertices.contains(v);
+        let added = usize::from(is_new(&i)) + usize::from(i != j && is_new(&j));
+        if self.vertices.len() + added > GATHERED {
+            self.flush();
+        }
+        let [a, b] = [i, j].map(|v| self.place(v));
+        *self.blocks[a][b].get_or_insert_with(Matrix3::zeros) += block;
+    }
+
+    /// The place of a vertex among those that are gathered.
+    fn place(&mut self, vertex: u32) -> usize {
+        let found = self.vertices.iter().position(|v| *v == vertex);
+        found.unwrap_or_else(|| {
+            self.vertices.push(vertex);
+            self.vertices.len() - 1
+        })
+    }
+
+    fn flush(&mut self) {
+        for (row, i) in self.blocks.iter_mut().zip(&self.vertices) {
+            for (block, j) in row.iter_mut().zip(&self.vertices) {
+                if let Some(block) = block.take() {
+                    self.sink.add(*i, *j, &block);
+                }
+            }
+        }
+        self.vertices.clear();
+    }
 }
 
 impl CouplingSink for CarriedSink<'_> {
@@ -224,13 +280,13 @@ impl CouplingSink for CarriedSink<'_> {
             for (j, c) in points.carriers(q) {
                 let weighted = b * c * block;
                 if i == j && p == q {
-                    self.sink.add(i, i, &weighted);
+                    self.gather(i, i, &weighted);
                 } else if i == j {
-                    self.sink.add(i, i, &(weighted + weighted.transpose()));
+                    self.gather(i, i, &(weighted + weighted.transpose()));
                 } else if i < j {
-                    self.sink.add(i, j, &weighted);
+                    self.gather(i, j, &weighted);
                 } else if p != q {
-                    self.sink.add(j, i, &weighted.transpose());
+                    self.gather(j, i, &weighted.transpose());
                 }
             }
         }
@@ -298,15 +354,43 @@ mod tests {
             (Dense(DMatrix::zeros(9, 9)), Dense(DMatrix::zeros(15, 15)));
         for (p, q) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
             of_points.add(p, q, &block(p, q));
-            let sink = &mut of_vertices;
-            CarriedSink {
-                points: &points,
-                sink,
-            }
-            .add(p, q, &block(p, q));
+            CarriedSink::hand_on(&points, &mut of_vertices, |sink| {
+                sink.add(p, q, &block(p, q));
+            });
         }
         let expected = weights.transpose() * of_points.0 * weights;
         assert!((of_vertices.0 - &expected).norm() < 1e-13 * expected.norm());
+    }
+
+    /// Blocks of more bodies than are gathered at a time, some of them twice, are those that are handed on
+    /// one by one.
+    #[test]
+    fn gathered_blocks_are_all_handed_on() {
+        let body = |first: u32| std::array::from_fn(|k| (VertexId(first + k as u32), 0.25));
+        let bodies = (0..4).map(|k| body(4 * k)).collect();
+        let points = SurfacePoints::new(16, 0, bodies).unwrap();
+        let pairs = [(0, 1), (0, 1), (2, 3), (1, 2), (0, 3), (3, 3), (0, 1)];
+        let block = |p: u32, q: u32| {
+            let half = Matrix3::from_fn(|i, j| f64::from(p * 5 + q * 3 + 1) + (3 * i + j) as f64);
+            if p == q {
+                half + half.transpose()
+            } else {
+                half
+            }
+        };
+        let mut whole = Dense(DMatrix::zeros(48, 48));
+        CarriedSink::hand_on(&points, &mut whole, |sink| {
+            pairs
+                .iter()
+                .for_each(|(p, q)| sink.add(*p, *q, &block(*p, *q)));
+        });
+        let mut one_by_one = Dense(DMatrix::zeros(48, 48));
+        for (p, q) in pairs {
+            CarriedSink::hand_on(&points, &mut one_by_one, |sink| {
+                sink.add(p, q, &block(p, q))
+            });
+        }
+        assert!((whole.0 - &one_by_one.0).norm() < 1e-13 * one_by_one.0.norm());
     }
 
     /// An unused place may name a vertex that there is not.

@@ -303,7 +303,9 @@ impl Term for ContactTerm {
         let step = self.at(at.x);
         match &step.points {
             None => step.terms().add_hessian(sink),
-            Some(points) => step.terms().add_hessian(&mut CarriedSink { points, sink }),
+            Some(points) => {
+                CarriedSink::hand_on(points, sink, |sink| step.terms().add_hessian(sink))
+            }
         }
     }
 
@@ -377,9 +379,8 @@ impl Term for ContactTerm {
         if product.vector.iter().any(|c| *c != 0.0) {
             match &step.points {
                 None => step.terms().add_hessian(product),
-                Some(points) => step.terms().add_hessian(&mut CarriedSink {
-                    points,
-                    sink: product,
+                Some(points) => CarriedSink::hand_on(points, product, |sink| {
+                    step.terms().add_hessian(sink);
                 }),
             }
         }

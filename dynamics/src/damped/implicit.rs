@@ -98,7 +98,8 @@ impl Integrator for Implicit {
     }
 }
 
-/// `b` and `k` of the formula of a step of `h` seconds; those of implicit Euler without a state before the present one.
+/// `b` and `k` of the formula of a step of `h` seconds; those of implicit Euler without a state before the
+/// present one.
 fn coefficients(previous: Option<&State>, state: &State, h: f64) -> [f64; 2] {
     let w = previous.map_or(0.0, |before| h / (state.t - before.t));
     [w * w, 1.0 + w].map(|c| c / (1.0 + 2.0 * w))

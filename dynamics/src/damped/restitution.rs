@@ -1,23 +1,25 @@
 //! Restitution of rigid bodies: contact gives back at most the energy that it took.
 //!
-//! In a step of a backward differentiation formula, `v1 = v0 + b (v0 - v_) + k h M^-1 f(x1)`, a force acts on in the
-//! steps to come: a third of its impulse is still on its way. With `w1 = v0 + 3/2 (v1 - v0)`, the velocity that equal steps
-//! lead to if no other force follows, its whole impulse is `J = 3/2 k h f`, and the contact of two bodies makes the energy
+//! In a step of a backward differentiation formula, `v1 = v0 + b (v0 - v_) + k h M^-1 f(x1)`, a force acts on
+//! in the steps to come: a third of its impulse is still on its way. With `w1 = v0 + 3/2 (v1 - v0)`, the
+//! velocity that equal steps lead to if no other force follows, its whole impulse is `J = 3/2 k h f`, and the
+//! contact of two bodies makes the energy
 //!
 //! ```text
 //! E = sum_i J_i . (w0_i + w1_i) / 2 + B1 - B0
 //! ```
 //!
-//! in every frame of reference, with the energy `B` of its barrier. Where two meet within a step, the impulse that keeps
-//! them apart at its end is 9/4 of that which stops them, `E` is positive, and they would part faster than they met. Then
-//! so much of what is on its way is taken back, from both alike, that the contact makes no energy: with the part `s` of
-//! its impulse,
+//! in every frame of reference, with the energy `B` of its barrier. Where two meet within a step, the impulse
+//! that keeps them apart at its end is 9/4 of that which stops them, `E` is positive, and they would part
+//! faster than they met. Then so much of what is on its way is taken back, from both alike, that the contact
+//! makes no energy: with the part `s` of its impulse,
 //!
 //! ```text
 //! s (E - B1 + B0) - s (1 - s) q / 2 + B1 - B0 = 0,     q = sum J . A J,
 //! ```
 //!
-//! where `A` is the change of the velocities of a body by an impulse. What has been given, `s = 2/3`, remains.
+//! where `A` is the change of the velocities of a body by an impulse. What has been given, `s = 2/3`,
+//! remains.
 
 use crate::contact::{ActiveContact, ContactState, SurfacePoints};
 use crate::{SheetModel, State};
@@ -69,8 +71,8 @@ struct Meeting {
 }
 
 impl FormulaStep<'_> {
-    /// What the velocities before the end are to be changed by (vertex, metres per second), so that contact between
-    /// bodies makes no energy.
+    /// What the velocities before the end are to be changed by (vertex, metres per second), so that contact
+    /// between bodies makes no energy.
     pub(super) fn corrections(&self) -> Vec<(usize, Vector3<f64>)> {
         let mut changes = Vec::new();
         for meeting in self.meetings().values() {
@@ -190,8 +192,8 @@ impl FormulaStep<'_> {
     }
 }
 
-/// The part of an impulse that is kept, at least what has been given: the largest with which the contact makes no energy,
-/// or else that with which it makes least.
+/// The part of an impulse that is kept, at least what has been given: the largest with which the contact
+/// makes no energy, or else that with which it makes least.
 fn kept(work: f64, stored: f64, q: f64) -> f64 {
     let linear = 0.5 * q - work;
     let root = (linear * linear - 2.0 * q * stored).max(0.0).sqrt();
@@ -316,7 +318,8 @@ fn allowed(rows: &[[f64; 6]]) -> DMatrix<f64> {
 mod tests {
     use super::*;
 
-    /// Without a barrier that stores energy bodies that met and were kept apart part as fast as they met, or slower.
+    /// Without a barrier that stores energy bodies that met and were kept apart part as fast as they met, or
+    /// slower.
     #[test]
     fn so_much_is_kept_that_no_energy_is_made() {
         // A ball of mass 1 at rest is met by a wall at speed 1, and is to have the velocity w.

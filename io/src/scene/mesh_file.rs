@@ -161,8 +161,8 @@ impl Files {
         })
     }
 
-    /// A mesh in motion, in metres and with z upwards, at times of a run to the time `end`, in seconds; `key` is the
-    /// place of the file in the scene.
+    /// A mesh in motion, in metres and with z upwards, at times of a run to the time `end`, in seconds; `key`
+    /// is the place of the file in the scene.
     pub(crate) fn sequence(
         &mut self,
         of: &Sequence,

@@ -10,8 +10,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// A mesh in motion: the positions of its vertices at several times, between which they go straight on at constant
-/// speed.
+/// A mesh in motion: the positions of its vertices at several times, between which they go straight on at
+/// constant speed.
 ///
 /// ```toml
 /// [[obstacle]]
@@ -20,15 +20,12 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sequence {
-    /// Path, relative to the scene file, of
-    ///
-    /// - the folder of a run, whose trajectory is taken;
-    /// - an archive of numpy (`.npz`) with the arrays `t` (T times, seconds), `x` (T x V x 3) and `faces` (F x 3, from 0),
-    ///   which `numpy.savez("body.npz", t=t, x=x, faces=faces)` writes;
-    /// - text of Universal Scene Description (`.usda`): all meshes that it shows, in metres and with z upwards;
-    /// - a list of mesh files with their times in seconds (`.pvd`, `.vtk.series`);
-    /// - a folder of mesh files whose names end in the numbers of frames, or a pattern with one `*` for these numbers,
-    ///   `walk/walk_*.obj`. VTK files may have times.
+    /// Path, relative to the scene file: the folder of a run, whose trajectory is taken; an archive of numpy
+    /// (`.npz`) with the arrays `t` (T times, seconds), `x` (T x V x 3) and `faces` (F x 3, from 0), which
+    /// `numpy.savez("body.npz", t=t, x=x, faces=faces)` writes; text of Universal Scene Description (`.usda`),
+    /// of which all meshes that it shows are taken, in metres and with z upwards; a list of mesh files with
+    /// their times in seconds (`.pvd`, `.vtk.series`); or a folder of mesh files whose names end in the numbers
+    /// of frames, or a pattern with one `*` for these numbers, `walk/walk_*.obj`. VTK files may have times.
     pub path: PathBuf,
     /// Frames a second, of files that have numbers and no times; the first one is at 0 s.
     #[serde(default)]

@@ -33,11 +33,13 @@ pub enum StartingPoint {
     Pillow,
     /// A cloth that is pulled away from under a vase.
     Vase,
+    /// A flying wing of card that glides.
+    Plane,
 }
 
 impl StartingPoint {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Hanging,
         Self::Clamp,
         Self::Drape,
@@ -53,6 +55,7 @@ impl StartingPoint {
         Self::Peel,
         Self::Pillow,
         Self::Vase,
+        Self::Plane,
     ];
 
     /// Its name.
@@ -73,6 +76,7 @@ impl StartingPoint {
             Self::Peel => "peel",
             Self::Pillow => "pillow",
             Self::Vase => "vase",
+            Self::Plane => "plane",
         }
     }
 
@@ -94,6 +98,7 @@ impl StartingPoint {
             Self::Peel => "A strip of film that is peeled off a plate",
             Self::Pillow => "Two squares of film that are glued to a pillow and blown up",
             Self::Vase => "A cloth that is pulled away from under a vase",
+            Self::Plane => "A flying wing of card that glides",
         }
     }
 
@@ -115,6 +120,7 @@ impl StartingPoint {
             Self::Peel => include_str!("starting_point/peel.toml"),
             Self::Pillow => include_str!("starting_point/pillow.toml"),
             Self::Vase => include_str!("starting_point/vase.toml"),
+            Self::Plane => include_str!("starting_point/plane.toml"),
         }
     }
 }

@@ -215,7 +215,8 @@ fn ctrl_c_is_heard_within_a_step() {
     }
 }
 
-/// The folder of one run is the obstacle of another, which keeps a copy of the motion and continues without that folder.
+/// The folder of one run is the obstacle of another, which keeps a copy of the motion and continues without
+/// that folder.
 #[test]
 fn the_folder_of_a_run_is_the_obstacle_of_another() {
     let dir = tempfile::tempdir().unwrap();

@@ -300,7 +300,8 @@ fn a_mesh_too_coarse_for_the_bends_is_named() {
     assert!(!stderr(&fine).contains("warning"), "{}", stderr(&fine));
 }
 
-/// Air that comes to a plate at 20 degrees separates from a real one, and a run says when; at 10 degrees it does not.
+/// Air that comes to a plate at 20 degrees separates from a real one, and a run says when; at 10 degrees it
+/// does not.
 #[test]
 fn flow_that_would_separate_is_told_with_its_angle() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,7 +1,8 @@
 //! Everyday scenes with rigid bodies, against what mechanics says of them.
 
 use crate::bodies::{ASIDE, G, centre, live, play};
-use isosheet_io::scene::LiveScene;
+use isosheet_io::scene::{LiveScene, StartingPoint};
+use std::f64::consts::PI;
 use std::fmt::Write;
 
 /// Height of the highest vertex of a body.
@@ -165,4 +166,38 @@ fn dominoes_fall_in_a_row() {
         speed > pitch / steps[0] && speed < 4.0 * scale,
         "{steps:?} {speed} {scale}"
     );
+}
+
+/// The plane to start from glides straight on. A wing of its aspect ratio has the lift of Helmbold, a bent-up
+/// flap of a quarter of the chord takes 0.61 of its angle off (Glauert), and the drag of lift is between that
+/// of a force across the wing, without the suction of its sharp leading edge, and that of an elliptic wing
+/// with all of it.
+#[test]
+fn a_plane_glides_as_far_as_its_lift_allows() {
+    let (chord, span, friction, bend, duration) = (0.12, 0.3, 0.02, 4.0_f64.to_radians(), 2.0);
+    let mut live = live(StartingPoint::Plane.text());
+    let weight = G * live.masses().iter().sum::<f64>();
+    let place = |live: &LiveScene| {
+        let x = live.positions();
+        let points = x.as_chunks::<3>().0;
+        [0, 1, 2].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64)
+    };
+    play(&mut live, 2.0);
+    let begin = place(&live);
+    play(&mut live, duration);
+    let end = place(&live);
+    let [ahead, aside, down] = [0, 1, 2].map(|k| begin[k] - end[k]);
+    let speed = ahead.hypot(down) / duration;
+    let aspect = span / chord;
+    let lift = 2.0 * weight / (1.2 * speed * speed * chord * span);
+    let slope = 2.0 * PI * aspect / (2.0 + (4.0 + aspect * aspect).sqrt());
+    let angle = lift / slope + 0.61 * bend;
+    let without_suction = lift / (friction + lift * angle.tan());
+    let with_suction = lift / (friction + lift * lift / (PI * aspect));
+    let ratio = ahead / down;
+    assert!(
+        ratio > 0.75 * without_suction && ratio < with_suction,
+        "{ratio}: {without_suction} {with_suction}"
+    );
+    assert!(aside.abs() < 1e-3, "{aside}");
 }

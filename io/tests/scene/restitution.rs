@@ -3,7 +3,8 @@
 use crate::bodies::{ASIDE, centre, live, velocity};
 use isosheet_io::scene::LiveScene;
 
-/// A ball at `boost` is hit by a box that comes with `speed` more, in steps of 1/60 s, until they have parted.
+/// A ball at `boost` is hit by a box that comes with `speed` more, in steps of 1/60 s, until they have
+/// parted.
 fn hit(mass: f64, speed: f64, boost: f64, guide: &str) -> (LiveScene, f64) {
     let scene = format!(
         "{ASIDE}[[body]]\nshape = {{ sphere = {{ radius = 0.02 }} }}\nsides = 24\nmass = {mass}\n\

@@ -334,8 +334,8 @@ fn the_motion_of_one_sheet_is_the_obstacle_of_another() {
     assert!(off.fold(0.0, f64::max) < 1e-12);
 }
 
-/// A ball that comes up in files of all kinds lifts the same cloth to the same bits, as an obstacle and with corners that
-/// follow it.
+/// A ball that comes up in files of all kinds lifts the same cloth to the same bits, as an obstacle and with
+/// corners that follow it.
 #[test]
 fn the_same_motion_in_any_file_is_the_same_run() {
     let dir = tempfile::tempdir().unwrap();
@@ -402,8 +402,8 @@ fn the_same_motion_in_any_file_is_the_same_run() {
     assert!(start("path = \"numbered\", rate = 48, outside = \"rest\"").is_ok());
 }
 
-/// A box that hits a ball pushes it away whether it is a mesh in motion or a rigid obstacle, at speeds at which the two
-/// meet within a step.
+/// A box that hits a ball pushes it away whether it is a mesh in motion or a rigid obstacle, at speeds at
+/// which the two meet within a step.
 #[test]
 fn a_mesh_in_motion_hits_a_body_as_a_rigid_obstacle_does() {
     let dir = tempfile::tempdir().unwrap();

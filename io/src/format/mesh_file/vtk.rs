@@ -21,7 +21,8 @@ pub(super) struct TimedPolygons {
 }
 
 impl TimedPolygons {
-    /// Adds points, and polygons between them: their corners one after the other, and where each polygon ends.
+    /// Adds points, and polygons between them: their corners one after the other, and where each polygon
+    /// ends.
     pub(super) fn add(
         &mut self,
         points: &[f64],

@@ -16,7 +16,8 @@ pub(super) enum SampleTime {
     Number(f64),
 }
 
-/// Reads the samples of the mesh in motion at `path`. Polygons are cut into triangles as they are in the first one.
+/// Reads the samples of the mesh in motion at `path`. Polygons are cut into triangles as they are in the
+/// first one.
 pub(super) fn read(path: &Path, files: &[(SampleTime, PathBuf)]) -> Result<MovingMesh, FileError> {
     let Some(((_, first_file), others)) = files.split_first() else {
         return Err(FileError::content(

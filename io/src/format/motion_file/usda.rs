@@ -11,8 +11,8 @@ use layer::{Attribute, Layer, Prim};
 use std::path::Path;
 use transform::Placing;
 
-/// Reads all meshes that a file shows, one after the other, at the times of all its samples, in metres and with z
-/// upwards: points go straight on between samples.
+/// Reads all meshes that a file shows, one after the other, at the times of all its samples, in metres and
+/// with z upwards: points go straight on between samples.
 pub(super) fn read(path: &Path) -> Result<MovingMesh, FileError> {
     let bytes = input::read(path).map_err(|e| FileError::unreadable(path, e))?;
     let wrong = |problem: String| {

@@ -72,8 +72,8 @@ impl MovingMesh {
         Self::new(path, (clock, times), x, &corners)
     }
 
-    /// Frames at some times: the positions of all vertices in each, one frame after the other, and the corners of the
-    /// faces between them. `path` is used in errors only.
+    /// Frames at some times: the positions of all vertices in each, one frame after the other, and the
+    /// corners of the faces between them. `path` is used in errors only.
     ///
     /// # Errors
     /// [`FileError::Read`], naming the frame and the vertex.

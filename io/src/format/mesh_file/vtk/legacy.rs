@@ -6,8 +6,8 @@ use crate::format::mesh_file::error::{
     COPY, Located, Location, announced, cut_short, excerpt, unexpected,
 };
 
-/// The points and polygons of a data set `POLYDATA`, and the field `TimeValue`. Vertices, lines and data of points and
-/// cells are skipped.
+/// The points and polygons of a data set `POLYDATA`, and the field `TimeValue`. Vertices, lines and data of
+/// points and cells are skipped.
 pub(in crate::format::mesh_file) fn parse(bytes: &[u8]) -> Result<TimedPolygons, Located> {
     let mut file = Cursor { bytes, place: 0 };
     let read = polygons(&mut file);

@@ -10,8 +10,8 @@ use flate2::read::ZlibDecoder;
 use roxmltree::{Document, Node};
 use std::io::Read;
 
-/// The points and polygons of a file of the type `PolyData`, and the field `TimeValue`. Vertices, lines and data of
-/// points and cells are skipped.
+/// The points and polygons of a file of the type `PolyData`, and the field `TimeValue`. Vertices, lines and
+/// data of points and cells are skipped.
 pub(in crate::format::mesh_file) fn parse(bytes: &[u8]) -> Result<TimedPolygons, Located> {
     if bytes.is_empty() {
         return Ok(TimedPolygons::default());

@@ -54,7 +54,8 @@ impl Attribute {
         self.value(0)
     }
 
-    /// The numbers of the samples before and after a time code, and how far it is from one to the other, from 0 to 1.
+    /// The numbers of the samples before and after a time code, and how far it is from one to the other, from
+    /// 0 to 1.
     pub(super) fn about(&self, code: f64) -> (usize, usize, f64) {
         let next = self.samples.partition_point(|(c, _)| *c <= code);
         let before = next.saturating_sub(1);
@@ -197,8 +198,8 @@ fn prim(tokens: &mut Tokens<'_>, specifier: &str, depth: usize) -> Result<Prim, 
     Ok(found)
 }
 
-/// An attribute or a relation after its first word: further words, the last two of which are its type and its name, a
-/// value, metadata.
+/// An attribute or a relation after its first word: further words, the last two of which are its type and its
+/// name, a value, metadata.
 fn property(tokens: &mut Tokens<'_>, first: &str, of: &mut Prim) -> Result<(), String> {
     let (mut kind, mut name) = (String::new(), first.to_owned());
     loop {
