@@ -144,7 +144,10 @@ fn a_sheet_is_crumpled() {
         let along = || points.iter().map(|p| p[k]);
         along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
     };
-    assert!(extent(0) < 0.14 && extent(1) < 0.14 && extent(2) > 2e-3, "{said}");
+    assert!(
+        extent(0) < 0.14 && extent(1) < 0.14 && extent(2) > 2e-3,
+        "{said}"
+    );
     assert!(recording.summary.as_ref().unwrap().ending.plastic > Some(0.0));
     assert!(
         said.contains("crumpled: from 141 mm by 141 mm by 0 mm to"),

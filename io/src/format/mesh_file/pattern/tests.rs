@@ -193,7 +193,11 @@ fn lines_are_divided_where_they_cross_and_united_where_they_coincide() {
 fn what_is_no_pattern_is_refused_with_a_remedy() {
     let cp = |text: &str| refusal(MeshFormat::Cp, text);
     let open = SQUARE.lines().take(3).collect::<Vec<_>>().join("\n");
-    assert!(cp(&open).contains("the outline is not closed: 2 ends"), "{}", cp(&open));
+    assert!(
+        cp(&open).contains("the outline is not closed: 2 ends"),
+        "{}",
+        cp(&open)
+    );
     let crossing = "2 0 0 1 1\n3 0 1 1 0\n";
     assert!(cp(crossing).contains("the outline of the sheet is missing"));
     let double = format!("{SQUARE}2 0 0 1 -1\n");
