@@ -25,6 +25,7 @@ mod mesh;
 mod message;
 mod open;
 mod page;
+mod panels;
 mod pictures;
 mod printable;
 mod progress;

@@ -131,7 +131,7 @@ pub use fold_scene::{FoldScene, Panels, Touch};
 pub(crate) use folding::FollowedFolds;
 #[cfg(feature = "run")]
 pub(crate) use folding::off_target;
-pub use folding::{FoldResidual, FoldTargets, Folding};
+pub use folding::{FoldGroup, FoldResidual, FoldTargets, Folding};
 pub use follower_loads::{Gas, Moment, Pressure};
 pub use forces::{Acceleration, Forces, Frame, Load};
 pub use glue::{Glue, SeamBend, SeamSide};

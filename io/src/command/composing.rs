@@ -49,6 +49,28 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "give a length from 0.0001 to 1000 metres".to_owned())
 }
 
+/// The place of a scene for a file that is not written: its paths are relative to that, and no file has its name.
+pub(super) fn unwritten(of: &Path) -> PathBuf {
+    let name = of.file_name().unwrap_or_default().to_string_lossy();
+    of.with_file_name(format!("<scene of {name}>"))
+}
+
+/// How a scene names a file: by its name where both are in one folder, and otherwise by its whole path.
+pub(super) fn named_from(scene: &Path, file: &Path) -> Result<PathBuf, Failure> {
+    if let Some(name) = file.file_name()
+        && scene.parent() == file.parent()
+    {
+        return Ok(name.into());
+    }
+    let whole = std::path::absolute(file);
+    whole.map_err(|e| Failure::of(Code::Input, &FileError::unreadable(file, e)))
+}
+
+/// A scene by its text, as if it were in a file.
+pub(super) fn parsed(at: &Path, text: String) -> Result<SceneFile, Failure> {
+    Ok(SceneFile::parse(text, at, &[])?)
+}
+
 impl Composing {
     pub(super) fn format(&self) -> Format {
         self.how.format()
@@ -93,27 +115,14 @@ impl Composing {
         self.how.prepare()
     }
 
-    /// How the scene of a file names another file: by its name where both are in one folder, and otherwise by its whole path.
+    /// How the scene of a file names another file.
     pub(super) fn named_from_scene(&self, of: &Path, file: &Path) -> Result<PathBuf, Failure> {
-        if let Some(name) = file.file_name()
-            && self.scene_path(of).parent() == file.parent()
-        {
-            return Ok(name.into());
-        }
-        let whole = std::path::absolute(file);
-        whole.map_err(|e| Failure::of(Code::Input, &FileError::unreadable(file, e)))
+        named_from(&self.scene_path(of), file)
     }
 
-    /// The file of the scene: its paths are relative to that. One that is not written has a name that no file has.
-    fn scene_path(&self, of: &Path) -> PathBuf {
-        let name = of.file_name().unwrap_or_default().to_string_lossy();
-        let beside = || of.with_file_name(format!("<scene of {name}>"));
-        self.scene.clone().unwrap_or_else(beside)
-    }
-
-    /// A scene by its text.
-    pub(super) fn parsed(&self, of: &Path, text: String) -> Result<SceneFile, Failure> {
-        Ok(SceneFile::parse(text, &self.scene_path(of), &[])?)
+    /// The file of the scene.
+    pub(super) fn scene_path(&self, of: &Path) -> PathBuf {
+        self.scene.clone().unwrap_or_else(|| unwritten(of))
     }
 
     /// Writes the scene if that was asked for, runs it, and says what came of it in the words of `verdict`.
@@ -127,7 +136,7 @@ impl Composing {
             write_atomically(scene, |w| w.write_all(text.as_bytes()))
                 .map_err(|e| Failure::of(Code::Output, &e))?;
         }
-        let file = self.parsed(of, text)?;
+        let file = parsed(&self.scene_path(of), text)?;
         let folder = self.folder(of);
         let run = if self.force { simulate_anew } else { simulate };
         self.how

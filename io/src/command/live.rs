@@ -12,11 +12,14 @@ mod server;
 mod session;
 mod slider;
 
+use super::composing::unwritten;
 use super::failure::{Code, Done, Failure};
 use super::interrupt;
 use super::message::print_result;
 use super::open::open_address;
+use super::panels::{Pattern, text_of};
 use super::simulate::use_threads;
+use crate::MeshFormat;
 use crate::scene::SceneFile;
 use access::{Access, random_text};
 use board::Board;
@@ -33,6 +36,7 @@ use std::sync::{Arc, Mutex};
 const EXAMPLES: &str = "\
 Examples:
   isosheet live cloth.toml                     play a scene in the browser, and pull at its sheet
+  isosheet live crane.svg                      fold a crease pattern, and pull at it
   isosheet live flag.toml --set stop.time=60   play it for a minute before it pauses";
 
 const NOTES: &str = "\
@@ -49,7 +53,7 @@ written: `isosheet simulate` does that. Ctrl-C, or `End` in the page, ends the r
 #[derive(Debug, Args)]
 #[command(before_help = EXAMPLES, after_help = NOTES)]
 pub(crate) struct Live {
-    /// The scene file
+    /// The scene file, or a crease pattern (FOLD, SVG, CP, OPX), which is folded as `isosheet fold` does
     scene: PathBuf,
     /// Change a key of the scene, for example `method.step=0.005` or `obstacle[0].friction=0.3`
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -71,10 +75,29 @@ pub(crate) struct Live {
 }
 
 impl Live {
+    /// The scene of the file: the one that folds it, if it is a crease pattern.
+    fn scene(&self) -> Result<SceneFile, Failure> {
+        let is_pattern = MeshFormat::of(&self.scene)
+            .is_some_and(|format| format == MeshFormat::Fold || format.is_drawing());
+        if !is_pattern {
+            return Ok(SceneFile::read(&self.scene, &self.edits)?);
+        }
+        let pattern = Pattern {
+            file: &self.scene,
+            scene: unwritten(&self.scene),
+        };
+        let (scene, _) = pattern.chosen(pattern.rigid(None, None)?)?;
+        Ok(SceneFile::parse(
+            text_of(&scene)?,
+            &pattern.scene,
+            &self.edits,
+        )?)
+    }
+
     pub(crate) fn run(&self) -> Done {
-        let scene = SceneFile::read(&self.scene, &self.edits)?;
         interrupt::install()?;
         use_threads(self.threads)?;
+        let scene = self.scene()?;
         let session = Session::start(scene)?;
         let failed = |e: io::Error| {
             let failure = Failure::new(Code::Output, format!("cannot serve the page: {e}"));

@@ -33,12 +33,15 @@ impl Recording {
     /// The fields of the page.
     fn fields(&self) -> Vec<FrameField<'_>> {
         let has = |quantity: FrameQuantity| self.shape.has(quantity);
-        let mut fields = FrameField::all(&self.sheet, &self.origins, &self.obstacles, has);
-        fields.extend(
-            self.folding
-                .as_ref()
-                .map(|targets| FrameField::open(&self.sheet, targets)),
-        );
+        let folding = self.folding.as_ref();
+        let open = folding.map(|targets| FrameField::open(&self.sheet, targets));
+        let mut fields: Vec<_> = open.into_iter().collect();
+        fields.extend(FrameField::all(
+            &self.sheet,
+            &self.origins,
+            &self.obstacles,
+            has,
+        ));
         fields.extend(FrameField::elastic(
             &self.model,
             self.sheet.topology().face_count(),
@@ -63,6 +66,8 @@ impl Recording {
             .series
             .extend(TimeSeries::of_measures(&self.measures));
         Replay {
+            // How far creases are from their angles.
+            colour: self.folding.as_ref().map(|_| 0),
             title: self.name.clone(),
             sheets: self
                 .parts

@@ -77,6 +77,9 @@ const FLAT: f64 = 0.01;
 /// Earth's acceleration, m/s2.
 const GRAVITY: f64 = 9.81;
 
+/// A step beside the time of a fall by the size: a sixtieth of a second for half a metre.
+const STEP: f64 = 0.074;
+
 /// By how much of its longest side a sheet is above what it falls on.
 const ABOVE: f64 = 0.02;
 
@@ -152,7 +155,7 @@ impl ActionScene {
             Action::Hang(_) => 0.0,
             Action::Drape(_) | Action::Crumple => 0.3,
         };
-        let step = two_digits((0.074 * seconds).min(1.0 / 60.0));
+        let step = two_digits(STEP * seconds);
         let _ = write!(
             text,
             "\n[contact]\nself_contact = true\nfriction = {friction:?}\n\n[forces]\ngravity = [0.0, 0.0, -{GRAVITY:?}] # m/s2\n\n\

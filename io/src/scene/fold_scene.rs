@@ -1,5 +1,6 @@
 //! The scene that folds a crease pattern.
 
+use super::folding::FoldGroup;
 use crate::format::FileError;
 use isosheet_dynamics::Material;
 use std::fmt::Write;
@@ -38,6 +39,8 @@ pub struct FoldScene {
     pub part: f64,
     /// Whether panels touch each other.
     pub touch: Touch,
+    /// Groups of creases that fold one after the other; none if all fold at the same time.
+    pub order: Vec<FoldGroup>,
 }
 
 /// What panels do where they meet.
@@ -65,6 +68,10 @@ const END: f64 = 5.0;
 /// Stiffness of a metre of crease beside the bending stiffness of the material over the longest side of the sheet: creases
 /// that are stiffer bend the panels, and softer ones do not reach their angles.
 const CREASES: f64 = 20.0;
+
+/// The gap below which panels feel each other, beside the longest side of the sheet: half the thickness of office paper of
+/// 0.2 m. What is wider keeps creases of 180 degrees open, whose panels lie between others.
+const NEAR: f64 = 2.5e-4;
 
 impl FoldScene {
     /// The text of the scene.
@@ -103,18 +110,29 @@ impl FoldScene {
             }
         };
         let part = self.part;
+        // Each group has the time that all creases have together otherwise.
+        let turns = self.order.len().max(1) as f64;
         let slower = two_digits(self.slowness());
-        let [time, step, end] = [TIME, STEP, END].map(|t| slower * t);
+        let [time, step, end] = [turns * TIME, STEP, turns * TIME + END - TIME].map(|t| slower * t);
+        let groups: Vec<String> = self.order.iter().map(FoldGroup::to_string).collect();
+        let order = match groups.is_empty() {
+            true => String::new(),
+            false => format!("order = [{}] # one after the other\n", groups.join(", ")),
+        };
         let (damping, frames) = (5.0 / slower, 30.0 / slower);
         let _ = write!(
             text,
             "material = {material}\n{panels}damping = {damping:?} # 1/s\n\n[folding]\ntime = {time:?} # s\n\
              stiffness = {stiffness:?} # N: newton metres per radian and metre of crease\n\
-             part = {part:?} # of the angles of the pattern\n\n[method]\nstep = {step:?} # s\n\n[stop]\ntime = {end:?} # s\n\n\
+             part = {part:?} # of the angles of the pattern\n{order}\n[method]\nstep = {step:?} # s\n\n[stop]\ntime = {end:?} # s\n\n\
              [output]\nframes_per_second = {frames:?}\n"
         );
         if self.touch == Touch::Touches {
-            text.push_str("\n[contact]\nself_contact = true\n");
+            let near = two_digits(NEAR * self.size);
+            let _ = write!(
+                text,
+                "\n[contact]\nself_contact = true\nactivation = {near:?} # m: panels that lie on each other are so near\n"
+            );
         }
         Ok(text)
     }

@@ -14,6 +14,8 @@ use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, fold_angle};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
+use std::fmt;
+use std::str::FromStr;
 use std::sync::Arc;
 
 /// Folding to the angles of the crease pattern that is the mesh of the sheet: a FOLD, SVG, CP or OPX file, or a drawing
@@ -63,6 +65,74 @@ pub struct Folding {
     /// angles that they have there, and otherwise to its `edges_foldAngle`.
     #[serde(default)]
     pub frame: Option<FoldFrame>,
+    /// Groups of creases that fold one after the other, each in an equal part of `time`. Creases of no group fold with
+    /// the last one. If left out, all fold at the same time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub order: Vec<FoldGroup>,
+}
+
+/// Some creases of a pattern.
+///
+/// ```toml
+/// [folding]
+/// stiffness = 0.05
+/// time = 3
+/// order = ["valleys", { edges = [3, 7] }, "mountains"]
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum FoldGroup {
+    /// Creases with a negative angle.
+    Mountains,
+    /// Creases with a positive angle.
+    Valleys,
+    /// Creases by the numbers of their edges in the file, from 0. (Of a drawing they are those of the FOLD file that
+    /// `isosheet convert` makes of it.)
+    Edges(Vec<usize>),
+}
+
+impl FoldGroup {
+    /// Whether it has a crease: the number of its edge in the file, and its angle.
+    fn has(&self, edge: usize, angle: f64) -> bool {
+        match self {
+            Self::Mountains => angle < 0.0,
+            Self::Valleys => angle > 0.0,
+            Self::Edges(edges) => edges.contains(&edge),
+        }
+    }
+}
+
+/// As a command line has it: `mountains`, `valleys`, or numbers of edges.
+impl FromStr for FoldGroup {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim() {
+            "mountain" | "mountains" => Ok(Self::Mountains),
+            "valley" | "valleys" => Ok(Self::Valleys),
+            numbers => {
+                let words = numbers.split([' ', ',']).filter(|word| !word.is_empty());
+                let edges: Result<Vec<usize>, _> = words.map(str::parse).collect();
+                match edges {
+                    Ok(edges) if !edges.is_empty() => Ok(Self::Edges(edges)),
+                    _ => Err(format!(
+                        "{text:?} is no group of creases: write mountains, valleys or numbers of edges"
+                    )),
+                }
+            }
+        }
+    }
+}
+
+/// As a scene has it.
+impl fmt::Display for FoldGroup {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mountains => f.write_str("\"mountains\""),
+            Self::Valleys => f.write_str("\"valleys\""),
+            Self::Edges(edges) => write!(f, "{{ edges = {edges:?} }}"),
+        }
+    }
 }
 
 fn whole() -> f64 {
@@ -78,6 +148,8 @@ pub(super) const FLAT_STIFFNESS: f64 = 50.0;
 pub struct FoldTargets {
     /// The driven creases with their fold angles at the end, radians, positive for a valley.
     pub creases: Vec<(EdgeId, f64)>,
+    /// Of each of them the number of the group that it folds with.
+    pub groups: Vec<usize>,
     /// The edges that stay flat.
     pub flat: Vec<EdgeId>,
 }
@@ -261,7 +333,8 @@ impl Folding {
             ..FoldTargets::default()
         };
         let shape = (!is_plane(t, &frame.positions)).then_some(&frame.positions[..]);
-        for crease in &frame.creases {
+        let mut known = vec![false; self.order.len()];
+        for (number, crease) in frame.creases.iter().enumerate() {
             let [a, b] = crease.ends.map(VertexId);
             let Some(e) = t.find_edge(a, b).filter(|&e| !t.is_boundary_edge(e)) else {
                 continue;
@@ -273,6 +346,13 @@ impl Folding {
             let parts = refined.parts(e).into_iter();
             let mut drive = |angle| {
                 let driven = parts.clone().map(|e| (e, self.part * angle));
+                let group = self.order.iter().position(|group| group.has(number, angle));
+                if let Some(group) = group {
+                    known[group] = true;
+                }
+                let last = self.order.len().saturating_sub(1);
+                let groups = std::iter::repeat_n(group.unwrap_or(last), parts.len());
+                targets.groups.extend(groups);
                 targets.creases.extend(driven);
             };
             let angle = angle.or(match crease.assignment {
@@ -292,6 +372,16 @@ impl Folding {
             let remedy = "take a file with mountains and valleys, or with `edges_foldAngle`";
             return Err(Problem::new(key.clone(), message, remedy));
         }
+        if let Some(empty) = known.iter().position(|known| !known) {
+            let message =
+                format!("no crease that is driven folds with group {empty}, counted from 0");
+            let remedy = "name creases that no group before has: `isosheet convert` writes the edges with their numbers";
+            return Err(Problem::new(
+                key.name("order").entry(empty),
+                message,
+                remedy,
+            ));
+        }
         Ok(targets)
     }
 
@@ -304,21 +394,26 @@ impl Folding {
         sheet: &Sheet,
         x: &[f64],
     ) -> [Vec<CreaseSpring>; 2] {
-        let spring = |edge: EdgeId, stiffness: f64, target: f64| CreaseSpring {
-            edge,
-            stiffness: stiffness * sheet.lengths()[edge.index()],
-            rest: self.course(fold_angle(sheet.topology(), x, edge).unwrap_or(0.0), target),
-            yields: None,
+        let spring = |edge: EdgeId, stiffness: f64, target: f64, within: [f64; 2]| {
+            let start = fold_angle(sheet.topology(), x, edge).unwrap_or(0.0);
+            CreaseSpring {
+                edge,
+                stiffness: stiffness * sheet.lengths()[edge.index()],
+                rest: course(start, target, within),
+                yields: None,
+            }
         };
         let flat_stiffness = self.flat_stiffness.or(match of.isometry() {
             Isometry::Rods => Some(FLAT_STIFFNESS * self.stiffness),
             Isometry::Elastic { .. } => None,
         });
-        let driven = targets.creases.iter();
-        let driven = driven.map(|&(edge, target)| spring(edge, self.stiffness, target));
+        let driven = targets.creases.iter().zip(&targets.groups);
+        let driven = driven.map(|(&(edge, target), &group)| {
+            spring(edge, self.stiffness, target, self.turn_of(group))
+        });
         let flat = flat_stiffness.into_iter().flat_map(|stiffness| {
             let flat = targets.flat.iter();
-            flat.map(move |&edge| spring(edge, stiffness, 0.0))
+            flat.map(move |&edge| spring(edge, stiffness, 0.0, [0.0, self.time]))
         });
         [driven.collect(), flat.collect()]
     }
@@ -326,26 +421,34 @@ impl Folding {
     /// The part of the way to their angles that the springs have gone at a time (seconds), from 0 to 1.
     #[cfg(feature = "run")]
     pub(crate) fn progress(&self, t: f64) -> f64 {
-        self.course(0.0, 1.0).at(t)
+        let turns = self.order.len().max(1);
+        let parts = (0..turns).map(|group| course(0.0, 1.0, self.turn_of(group)).at(t));
+        parts.sum::<f64>() / turns as f64
     }
 
-    /// The rest angle of a spring that goes from one angle to another, radians.
-    fn course(&self, start: f64, target: f64) -> RestAngle {
-        // A target that is a last digit above pi because of rounding would be refused.
-        let target = target.clamp(-PI, PI);
-        if start == target {
-            return target.into();
-        }
-        let change = Change {
-            from: start,
-            to: target,
-            end: self.time,
-            ..Change::default()
-        };
-        Profile::Course(Course::SmoothStep(change))
-            .as_given()
-            .into()
+    /// When the creases of a group begin to fold and when they have reached their angles, seconds.
+    fn turn_of(&self, group: usize) -> [f64; 2] {
+        let turns = self.order.len().max(1) as f64;
+        [group, group + 1].map(|k| self.time * k as f64 / turns)
     }
+}
+
+/// The rest angle of a spring that goes from one angle to another, radians, between two times, seconds.
+fn course(start: f64, target: f64, [begin, end]: [f64; 2]) -> RestAngle {
+    // A target that is a last digit above pi because of rounding would be refused.
+    let target = target.clamp(-PI, PI);
+    if start == target {
+        return target.into();
+    }
+    let change = Change {
+        from: start,
+        to: target,
+        begin,
+        end,
+    };
+    Profile::Course(Course::SmoothStep(change))
+        .as_given()
+        .into()
 }
 
 /// The difference of a fold angle (degrees, not negative) from a target (radians), taken the short way round

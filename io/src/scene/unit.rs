@@ -47,7 +47,7 @@ impl UnitRange {
 }
 
 impl Unit {
-    pub(crate) const ALL: [Self; 18] = [
+    pub(crate) const ALL: [Self; 17] = [
         Self::Metre,
         Self::CubicMetre,
         Self::PerMetre,
@@ -65,7 +65,6 @@ impl Unit {
         Self::PerSecond,
         Self::Degree,
         Self::One,
-        Self::Factor,
     ];
 
     /// As it is written behind a number.

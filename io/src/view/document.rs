@@ -37,6 +37,8 @@ pub(super) struct Document<'a> {
     immobile: &'a [u32],
     bodies: Vec<BodyData<'a>>,
     fields: Vec<FieldData<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    colour: Option<usize>,
     series: Vec<SeriesData<'a>>,
     summary: &'a [(String, String)],
     scene: &'a str,
@@ -127,6 +129,7 @@ impl<'a> Document<'a> {
             immobile: &replay.immobile,
             bodies: replay.bodies.iter().map(|b| body_data(b, kept)).collect(),
             fields: fields.collect(),
+            colour: replay.colour,
             series: replay.series.iter().map(series_data).collect(),
             summary: &replay.summary,
             scene: &replay.scene,

@@ -53,6 +53,8 @@ pub struct Replay {
     pub immobile: Vec<u32>,
     /// Values at vertices, edges or faces, to colour the sheet by.
     pub fields: Vec<Field>,
+    /// The number of the field that the sheet is coloured by at first; none leaves it plain.
+    pub colour: Option<usize>,
     /// Quantities over time, to plot.
     pub series: Vec<TimeSeries>,
     /// Rows of a table: name and value.

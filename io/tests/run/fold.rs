@@ -1,6 +1,7 @@
 //! `isosheet fold`.
 
 use crate::{code, run, stderr};
+use isosheet_io::mesh::{EdgeId, fold_angle};
 use isosheet_io::read_json;
 use isosheet_io::run::{FoldVerdict, Recording, Summary};
 use std::fs;
@@ -111,6 +112,60 @@ fn creases_are_folded_to_their_own_sides() {
     assert!(said.contains("rigid panels do not close"), "{said}");
     assert_eq!(verdict.residual.wrong_side, 0);
     assert!(verdict.is_elastic);
+}
+
+/// A strip of three squares with a valley and a mountain: each has a time of its own.
+#[test]
+fn groups_of_creases_fold_one_after_the_other() {
+    let dir = tempfile::tempdir().unwrap();
+    let strip = "1 0 0 3 0\n1 3 0 3 1\n1 3 1 0 1\n1 0 1 0 0\n3 1 0 1 1\n2 2 0 2 1\n";
+    fs::write(dir.path().join("strip.cp"), strip).unwrap();
+    let words = [
+        "strip.cp",
+        "out",
+        "--part",
+        "0.5",
+        "--order",
+        "valleys; mountains",
+    ];
+    let (_, _, verdict) = folded(dir.path(), &words);
+    assert!(verdict.residual.largest < 1.0, "{:?}", verdict.residual);
+    let recording = Recording::read(&dir.path().join("out")).unwrap();
+    let scene = recording.scene.scene();
+    let half = 0.5 * scene.folding.as_ref().unwrap().time;
+    let k = recording
+        .trajectory
+        .times()
+        .iter()
+        .position(|t| *t >= half)
+        .unwrap();
+    let topology = recording.sheet.topology();
+    let targets = recording.scene.build().unwrap().targets.folding.unwrap();
+    let angles = |k: usize| {
+        let x = recording.trajectory.frame(k).unwrap();
+        let folds = targets.creases.iter();
+        let fold = |(e, target): &(EdgeId, f64)| {
+            (
+                target.signum(),
+                fold_angle(topology, x, *e).unwrap().to_degrees(),
+            )
+        };
+        folds.map(fold).collect::<Vec<_>>()
+    };
+    for (side, angle) in angles(k) {
+        let expected = if side > 0.0 { 90.0 } else { 0.0 };
+        assert!((angle - expected).abs() < 5.0, "{side} {angle}");
+    }
+    for (side, angle) in angles(recording.trajectory.len() - 1) {
+        assert!((angle - 90.0 * side).abs() < 1.0, "{side} {angle}");
+    }
+    let refused = |order: &str, exit: i32, expected: &str| {
+        let output = run(dir.path(), &["fold", "strip.cp", "no", "--order", order]);
+        assert_eq!(code(&output), Some(exit), "{}", stderr(&output));
+        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+    };
+    refused("spring", 2, "no group of creases");
+    refused("valleys; 99", 3, "group 1");
 }
 
 #[test]

@@ -28,8 +28,13 @@ pub(crate) struct Served {
 impl Served {
     /// Serves the scene in a folder.
     pub(crate) fn start(folder: &Path, arguments: &[&str]) -> Self {
+        Self::of("scene.toml", folder, arguments)
+    }
+
+    /// Serves a file in a folder.
+    pub(crate) fn of(file: &str, folder: &Path, arguments: &[&str]) -> Self {
         let mut child = isosheet(folder)
-            .args(["live", "scene.toml", "--no-open"])
+            .args(["live", file, "--no-open"])
             .args(arguments)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

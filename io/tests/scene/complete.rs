@@ -232,6 +232,7 @@ const ALL_KEYS: [&str; 15] = [
     stiffness = 0.01
     flat_stiffness = 0.5
     part = 0.75
+    order = ["mountains", { edges = [0] }]
     frame = 1"#,
     r#"version = 1
     [sheet]

@@ -142,6 +142,43 @@ fn every_body_is_drawn_and_moves() {
     assert_eq!(result["plots"].as_u64(), Some(2));
 }
 
+/// The slider of a crease pattern is the part of the folding, and creases are coloured by how open they are at first.
+#[test]
+fn the_slider_of_a_fold_is_the_part_of_the_folding() {
+    let mut replay = waving(2, 5);
+    replay.folded = vec![0.0, 0.1, 0.5, 0.9, 1.0];
+    replay.colour = Some(replay.fields.len() - 1);
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    for list in ["exceptions", "glErrors", "requests"] {
+        assert_eq!(result[list], serde_json::json!([]), "{list}");
+    }
+    let key = format!("field-{}", replay.fields.len() - 1);
+    assert_eq!(result["startColour"], key.as_str());
+    let slid = &result["slid"];
+    assert_eq!(slid["label"], "Part of the folding");
+    let said = [
+        "0 % of the fold · 1/5",
+        "50 % of the fold · 3/5",
+        "100 % of the fold · 5/5",
+    ];
+    let mut pictures = Vec::new();
+    for (k, (place, said)) in slid["places"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(said)
+        .enumerate()
+    {
+        assert_eq!(place["frame"], 2 * k);
+        assert_eq!(place["text"], said);
+        assert!(!pictures.contains(&place["picture"]));
+        pictures.push(place["picture"].clone());
+    }
+}
+
 #[test]
 fn texts_are_shown_as_they_are_and_the_pointer_finds_the_sheet() {
     let replay = waving(2, 12);

@@ -20,7 +20,7 @@ export class Address {
   read() {
     const { page } = this,
       choices = new URLSearchParams(location.hash.slice(1));
-    page.colourBy(choices.get("colour"));
+    page.colourBy(choices.get("colour") ?? page.replay.startColour);
     page.showBodies(choices.get("bodies"));
     page.stage.resetCamera();
     if (choices.has("camera")) {
@@ -45,7 +45,7 @@ export class Address {
       camera = stage.cameraText();
     const entries = [
       ["frame", replay.frame, 0],
-      ["colour", $("colour").value, $("colour").options[0].value],
+      ["colour", $("colour").value, replay.startColour],
       ["bodies", $("bodies").value, $("bodies").options[0].value],
       ["camera", camera, this.start],
       ...Object.entries(BOXES).map(([id, start]) => [id, Number($(id).checked), Number(start)]),

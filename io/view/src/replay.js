@@ -43,6 +43,12 @@ export class Replay {
     return this.data.times[this.frame];
   }
 
+  /** The quantity that the sheet is coloured by at first. */
+  get startColour() {
+    const { colour } = this.data;
+    return colour === undefined ? this.quantities[0].key : `field-${colour}`;
+  }
+
   /** What is said of the frame: of a crease pattern how far it is folded, of other runs the time. */
   get frameText() {
     const { folded } = this.data;

@@ -106,6 +106,7 @@ export async function selfTest(page, exceptions) {
   const { replay, stage, player } = page,
     last = replay.frames - 1,
     log = [];
+  const startColour = document.getElementById("colour").value;
   const seeks = [0, 0.25, 0.5, 0.75, 1].map((part) => Math.round(part * last));
   const frames = distinct(
     stage,
@@ -150,6 +151,7 @@ export async function selfTest(page, exceptions) {
   const over = document.querySelector("#plots .u-over");
   const clicked = over ? clickPlot(page, over) : null;
   const played = play(page);
+  const slid = slide(page);
   stage.applyTheme();
   page.plots.build();
   player.seek(last);
@@ -167,6 +169,8 @@ export async function selfTest(page, exceptions) {
     keys,
     clicked,
     played,
+    slid,
+    startColour,
     title: document.getElementById("title").textContent,
     scene: document.getElementById("scene").textContent,
     footer: document.getElementById("footer").textContent,
@@ -178,6 +182,18 @@ export async function selfTest(page, exceptions) {
     overflow: document.documentElement.scrollWidth - window.innerWidth,
     exceptions,
   };
+}
+
+/** Moves the slider of the frames to its ends and its middle: the frame, what is said of it, and the picture. */
+function slide(page) {
+  const scrub = document.getElementById("scrub");
+  const label = scrub.getAttribute("aria-label");
+  const places = [0, 0.5, 1].map((part) => {
+    scrub.value = Math.round(part * Number(scrub.max));
+    scrub.dispatchEvent(new Event("input", { bubbles: true }));
+    return { frame: page.replay.frame, text: document.getElementById("time").textContent, picture: picture(page.stage).hash };
+  });
+  return { label, places };
 }
 
 /** Plays to a little after the middle and beyond the end, once and in a loop, by a clock that starts at one second. */

@@ -21,7 +21,8 @@ use std::collections::HashMap;
 ///
 /// - Vertices have two or three coordinates; two mean z = 0. A `frame_unit` that is a length is converted to
 ///   metres.
-/// - Without `faces_vertices` the faces are those of the flat crease pattern.
+/// - Without `faces_vertices` the faces are those of the flat crease pattern, and so they are where those of the file leave
+///   out creases.
 /// - The faces of a flat frame that is no folded form are made counter-clockwise, as the format demands. Mountains,
 ///   valleys and fold angles are as seen from the side from which faces are counter-clockwise, so that those at
 ///   reversed faces are turned with them.
@@ -42,8 +43,23 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     let points = polyhedron.positions.as_chunks::<3>().0;
     let is_flat = points.iter().all(|p| p[2] == 0.0);
     let mut drawing = Planar::default();
-    let mut faces = match &frame.faces_vertices {
-        Some(faces) if !faces.is_empty() => faces.clone(),
+    let given = frame
+        .faces_vertices
+        .as_ref()
+        .filter(|faces| !faces.is_empty());
+    // Faces that leave out creases are not those of the pattern.
+    let is_pattern = is_flat && !is_folded && frame.groups.is_none() && !edges.is_empty();
+    // What refers to vertices that do not exist is refused below.
+    let exist = |faces: &[Vec<i64>]| {
+        faces
+            .iter()
+            .flatten()
+            .all(|v| (0..vertices as i64).contains(v))
+    };
+    let faces_fit = |faces: &[Vec<i64>]| !is_pattern || !exist(faces) || sides::fit(faces, &edges);
+    let mut replaced_faces = 0;
+    let mut faces = match given {
+        Some(faces) if faces_fit(faces) => faces.clone(),
         _ if edges.is_empty() => Vec::new(),
         _ if !is_flat => {
             let message = "the file has no `faces_vertices`, and its vertices do not lie in the plane z = 0, in which \
@@ -52,6 +68,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
             return Err(plain(error.into()));
         }
         _ => {
+            replaced_faces = given.map_or(0, Vec::len);
             drawing = of_drawing(points, &edges).map_err(|e| plain(e.into()))?;
             edges = std::mem::take(&mut drawing.edges);
             let crossings = drawing.points.iter().skip(vertices).flatten();
@@ -85,6 +102,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     drawing.edges = edges;
     mesh.take_edges(drawing);
     mesh.changes.reversed_faces = reversed_faces;
+    mesh.changes.replaced_faces = replaced_faces;
     mesh.changes.inner_boundaries = mesh.boundaries_inside().count();
     mesh.separate_cuts();
     Ok(mesh)
@@ -104,7 +122,10 @@ fn of_drawing(points: &[Point], edges: &[FileCrease]) -> Result<Planar, DataErro
     let made = planar(points.to_vec(), edges, near);
     let made = made.and_then(|planar| planar.closed(FileUnit::SAME));
     made.map_err(|e| DataError {
-        message: format!("the file has no `faces_vertices`, and {}", e.message),
+        message: format!(
+            "the file has no `faces_vertices` that fit its edges, and {}",
+            e.message
+        ),
         ..e
     })
 }

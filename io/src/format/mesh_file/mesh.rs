@@ -32,6 +32,9 @@ pub struct ReadingChanges {
     /// Faces of flat crease patterns that were clockwise and have been reversed, with the mountains, valleys
     /// and fold angles at them.
     pub reversed_faces: usize,
+    /// Faces of FOLD files that were left out because creases are sides of none of them: those that the edges enclose take
+    /// their place.
+    pub replaced_faces: usize,
     /// Vertices that were added because the sheet is cut there.
     pub vertices_at_cuts: usize,
     /// Lines of drawings that were divided where others cross them or end on them.
@@ -70,6 +73,11 @@ impl fmt::Display for ReadingChanges {
                 self.reversed_faces,
                 FACES,
                 "reversed, clockwise in the file, with the mountains and valleys at them",
+            ),
+            (
+                self.replaced_faces,
+                FACES,
+                "of the file replaced by those that its edges enclose, as they leave out creases",
             ),
             (self.vertices_at_cuts, VERTICES, "added at cuts"),
             (self.divided_lines, LINES, "divided where others meet"),

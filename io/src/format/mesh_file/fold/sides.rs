@@ -33,6 +33,20 @@ pub(super) fn sides_of<C: Copy + TryInto<u32>>(
     })
 }
 
+/// Whether faces are those of a crease pattern with these edges: every crease is a side of one, and no outline goes to and
+/// fro along an edge.
+pub(super) fn fit(faces: &[Vec<i64>], edges: &[FileCrease]) -> bool {
+    let turns_back = |face: &Vec<i64>| {
+        let n = face.len();
+        (0..n).any(|k| n > 2 && face[k] == face[(k + 2) % n])
+    };
+    let sides = faces.iter().enumerate();
+    let sides: Vec<Side> = sides
+        .flat_map(|(k, face)| sides_of(k, face, false))
+        .collect();
+    !faces.iter().any(turns_back) && check_faces(edges, &sides).is_ok()
+}
+
 /// Refuses edges that cannot do what they are meant to because they are sides of no face.
 pub(super) fn check_faces(edges: &[FileCrease], sides: &[Side]) -> Result<(), DataError> {
     let of_faces: HashSet<[u32; 2]> = sides.iter().map(|side| side.ends).collect();

@@ -186,6 +186,39 @@ fn patterns_without_faces_that_are_no_drawing_are_refused() {
     refused(square, "[0,1],[1,2],[2,3]", "enclose no face");
 }
 
+/// Faces of the file that leave out creases, or whose outlines go to and fro along an edge, are found anew.
+#[test]
+fn faces_that_do_not_fit_the_edges_are_replaced() {
+    let read = |faces: &str, edges: &str| {
+        let text = format!(
+            r#"{{"vertices_coords": [[0,0],[1,0],[1,1],[0,1],[0.5,0.5]], "faces_vertices": [{faces}],
+            "edges_vertices": [[0,1],[1,2],[2,3],[3,0],{edges}], "edges_assignment": ["B","B","B","B","M"]}}"#
+        );
+        parse(MeshFormat::Fold, text.as_bytes()).unwrap()
+    };
+    let stale = read("[0,1,2,3]", "[0,2]");
+    assert_eq!((stale.changes.replaced_faces, stale.faces.len()), (1, 4));
+    assert_eq!(
+        stale.changes.divided_lines, 1,
+        "the crease passes through vertex 4"
+    );
+    assert!((stale.into_sheet().unwrap().area() - 1.0).abs() < 1e-14);
+    // A crease that ends inside of a face.
+    let spur = read("[0,4,0,1,2,3]", "[0,4]");
+    assert_eq!(
+        (spur.changes.replaced_faces, spur.changes.loose_lines),
+        (1, 1)
+    );
+    let fitting = read("[0,1,2],[0,2,3]", "[0,2]");
+    assert_eq!(fitting.changes.replaced_faces, 0);
+    assert_eq!(fitting.faces, [[0, 1, 2], [0, 2, 3]]);
+    // Two squares with a crease between them that is no side of either.
+    let two = r#"{"vertices_coords": [[0,0],[1,0],[1,1],[0,1],[2,0],[3,0],[3,1],[2,1]],
+        "edges_vertices": [[0,1],[1,2],[2,3],[3,0],[4,5],[5,6],[6,7],[7,4],[1,4]]}"#;
+    let two = parse(MeshFormat::Fold, two.as_bytes()).unwrap();
+    assert_eq!((two.faces.len(), two.changes.loose_lines), (4, 1));
+}
+
 #[test]
 fn lines_of_patterns_without_faces_may_cross_and_lead_nowhere() {
     let read = |coords: &str, edges: &str| {

@@ -6,7 +6,7 @@ use crate::format::mesh_file::{EdgeAssignment, FileCrease};
 use crate::format::mesh_file::{Point, distance, twice_area};
 use isosheet_mesh::wording::{brief, counted};
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// A drawing whose edges meet at their ends alone, and each of which is beside a face.
 #[derive(Debug, Default)]
@@ -142,6 +142,7 @@ pub(in crate::format) fn planar(
     if !planar.edges.is_empty() {
         planar.faces = super::faces(&planar.points, &planar.edges)?;
     }
+    planar.drop_bridges();
     let (points, faces) = (&planar.points, &planar.faces);
     let is_outside = |p: &Point| !faces.iter().any(|face| is_within(p, face, points));
     planar.open.retain(is_outside);
@@ -301,6 +302,21 @@ impl Planar {
             }
         }
         Ok(())
+    }
+
+    /// Leaves out the edges that are sides of no face: those that lead from one part of the sheet to another.
+    fn drop_bridges(&mut self) {
+        let mut sides = HashSet::new();
+        for face in &self.faces {
+            let next = face.iter().cycle().skip(1);
+            sides.extend(face.iter().zip(next).map(|(a, b)| [*a.min(b), *a.max(b)]));
+        }
+        let before = self.edges.len();
+        self.edges.retain(|edge| {
+            let [a, b] = edge.ends.map(i64::from);
+            sides.contains(&[a.min(b), a.max(b)])
+        });
+        self.loose += before - self.edges.len();
     }
 
     /// Leaves out the edges that end where no other one does, again and again.

@@ -95,11 +95,11 @@ fn an_open_outline_is_told_with_its_place() {
              <path d='{path}' stroke='black' fill='none'/><path d='M0 0 L100 100' stroke='blue'/></svg>"
         )
     };
-    let said = refusal(MeshFormat::Svg, &svg("M0 0 H100 V100 H60 M40 100 H0 Z"));
+    let said = refusal(MeshFormat::Svg, &svg("M60 100 H100 V0 H0 V100 H40"));
     assert!(said.contains("20 mm from the next"), "{said}");
     // The tolerance closes it.
     let closed = parse_mesh(
-        svg("M0 0 H100 V100 H60 M40 100 H0 Z").as_bytes(),
+        svg("M60 100 H100 V0 H0 V100 H40").as_bytes(),
         MeshFormat::Svg,
         Path::new("drawing"),
         &MeshOptions {
@@ -193,9 +193,13 @@ fn lines_are_divided_where_they_cross_and_united_where_they_coincide() {
 fn what_is_no_pattern_is_refused_with_a_remedy() {
     let cp = |text: &str| refusal(MeshFormat::Cp, text);
     let open = SQUARE.lines().take(3).collect::<Vec<_>>().join("\n");
-    assert!(cp(&open).contains("enclose no face"), "{}", cp(&open));
+    assert!(
+        cp(&open).contains("the outline is not closed: 2 ends"),
+        "{}",
+        cp(&open)
+    );
     let crossing = "2 0 0 1 1\n3 0 1 1 0\n";
-    assert!(cp(crossing).contains("the outline of the sheet is missing or open"));
+    assert!(cp(crossing).contains("the outline of the sheet is missing"));
     let double = format!("{SQUARE}2 0 0 1 -1\n");
     let says = "lines 4 and 5, counted from 0, lie on each other: one is a valley, and the other one is a mountain";
     assert!(cp(&double).contains(says), "{}", cp(&double));

@@ -1,0 +1,163 @@
+//! The scene that folds a crease pattern, and which panels it has.
+
+use super::composing::{named_from, parsed};
+use super::failure::{Code, Failure};
+use super::interrupt;
+use super::message::print_progress;
+use super::progress::{LINES, go_on};
+use crate::MeshOptions;
+use crate::format::read_mesh_with;
+use crate::run::{FoldTrial, FoldVerdict};
+use crate::scene::{FoldResidual, FoldScene, Panels, SceneFile, Touch, bounds};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// A crease pattern, and the file of the scene that folds it, which need not exist.
+#[derive(Debug)]
+pub(super) struct Pattern<'a> {
+    pub(super) file: &'a Path,
+    pub(super) scene: PathBuf,
+}
+
+/// The material and the longest side (metres) of a sheet of which nothing is said.
+const MATERIAL: &str = "office paper";
+const SIZE: f64 = 0.2;
+
+/// Creases that are so far from their angles in the mean, degrees, are closed: no other panels are tried.
+const CLOSED: f64 = 1.0;
+
+/// At most so far no further panels are tried, degrees.
+const WELL: f64 = 5.0;
+
+/// Faces of an elastic sheet whose panels are divided, at most.
+const MOST_FACES: usize = 3000;
+
+impl Pattern<'_> {
+    /// The scene of rigid panels of a size (metres) if one is given.
+    pub(super) fn rigid(
+        &self,
+        frame: Option<usize>,
+        size: Option<f64>,
+    ) -> Result<FoldScene, Failure> {
+        let options = MeshOptions {
+            frame: frame.map(crate::FoldFrame::Number),
+            ..MeshOptions::default()
+        };
+        let mesh = read_mesh_with(self.file, &options);
+        let mesh = mesh.map_err(|e| Failure::of(Code::Input, &e))?;
+        if mesh.creases.is_empty() {
+            let message = format!("{} has no creases", self.file.display());
+            let remedy = "give a crease pattern: a FOLD, SVG, CP or OPX file";
+            return Err(Failure::new(Code::Input, message).remedy(remedy));
+        }
+        if !mesh.changes.is_nothing() {
+            print_progress(format_args!("note: {}", mesh.changes));
+        }
+        let [low, high] = bounds(mesh.positions.as_chunks::<3>().0);
+        let side = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        if side <= 0.0 {
+            let message = format!("{} has no extent", self.file.display());
+            return Err(Failure::new(Code::Input, message).remedy("correct its coordinates"));
+        }
+        let size = size.unwrap_or(SIZE);
+        Ok(FoldScene {
+            pattern: named_from(&self.scene, self.file)?,
+            frame,
+            scale: size / side,
+            size,
+            material: MATERIAL.to_owned(),
+            panels: Panels::Rigid,
+            part: 1.0,
+            touch: Touch::Passes,
+            order: Vec::new(),
+        })
+    }
+
+    /// The scene whose panels close best, and how far rigid ones do; `None` if these do not reach an end.
+    pub(super) fn chosen(
+        &self,
+        rigid: FoldScene,
+    ) -> Result<(FoldScene, Option<FoldResidual>), Failure> {
+        let first = self.tried(&rigid)?;
+        let residual = first.map(|trial| trial.residual);
+        let closes = |trial: &FoldTrial, rms: f64| {
+            let FoldTrial {
+                residual: r,
+                strain,
+            } = *trial;
+            let is_of_paper = 100.0 * strain <= FoldVerdict::STRETCHES;
+            is_of_paper && r.rms <= rms && r.largest <= 5.0 * rms
+        };
+        let mut best = (first, rigid.clone());
+        if first.is_some_and(|trial| closes(&trial, CLOSED)) {
+            return Ok((rigid, residual));
+        }
+        let faces = self.parsed(&rigid)?.build()?;
+        let faces = faces.model.topology().face_count();
+        let refined = (faces * 4 <= MOST_FACES).then_some(Panels::Elastic { refine: 1 });
+        let others = [
+            Some(Panels::Elastic { refine: 0 }),
+            Some(Panels::Soft),
+            refined,
+        ];
+        for panels in others.into_iter().flatten() {
+            let scene = FoldScene {
+                panels,
+                ..rigid.clone()
+            };
+            let found = self.tried(&scene)?;
+            let rank = |trial: Option<FoldTrial>| match trial {
+                Some(trial) => (!closes(&trial, WELL), trial.error()),
+                None => (true, f64::INFINITY),
+            };
+            let is_first = best.1.panels == Panels::Rigid && best.0.is_none();
+            if is_first || rank(found) < rank(best.0) {
+                best = (found, scene);
+            }
+            if best.0.is_some_and(|trial| closes(&trial, WELL)) {
+                break;
+            }
+        }
+        Ok((best.1, residual))
+    }
+
+    fn parsed(&self, scene: &FoldScene) -> Result<SceneFile, Failure> {
+        parsed(&self.scene, text_of(scene)?)
+    }
+
+    /// How far the creases of a scene are from their angles in the end.
+    fn tried(&self, scene: &FoldScene) -> Result<Option<FoldTrial>, Failure> {
+        let what = match scene.panels {
+            Panels::Rigid => "rigid panels",
+            Panels::Elastic { refine: 0 } => "elastic panels",
+            Panels::Elastic { .. } => "elastic panels with divided triangles",
+            Panels::Soft => "soft panels",
+        };
+        let mut told = Instant::now();
+        let mut watch = |done: f64| {
+            if told.elapsed() >= LINES {
+                told = Instant::now();
+                print_progress(format_args!("{what}: {:.0} % of the trial", 100.0 * done));
+            }
+            go_on()
+        };
+        let found = self.parsed(scene)?.folds_to(&mut watch)?;
+        if interrupt::requested() {
+            return Err(Failure::new(Code::Interrupted, "stopped by Ctrl-C"));
+        }
+        match found {
+            Some(FoldTrial { residual, strain }) => print_progress(format_args!(
+                "{what}: creases end {:.1} degrees rms from their angles, with strains of {:.1} % at most",
+                residual.rms,
+                100.0 * strain
+            )),
+            None => print_progress(format_args!("{what}: no end is reached")),
+        }
+        Ok(found)
+    }
+}
+
+/// The text of a scene.
+pub(super) fn text_of(scene: &FoldScene) -> Result<String, Failure> {
+    scene.text().map_err(|e| Failure::of(Code::Input, &e))
+}
