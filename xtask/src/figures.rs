@@ -21,8 +21,6 @@ mod softness;
 mod stamping;
 mod style;
 
-pub(crate) use show::shots;
-
 use crate::draw::{Anchor, Drawing, Vertical, palette};
 use crate::report::{Effort, Picture, Table, extremes};
 use crate::runs::RunSummary;

@@ -38,7 +38,7 @@ create_exception!(
     StepFailed,
     Error,
     "A step that failed; the simulation is as it was before it.\n\n\
-     A pin pulls harder than the limit of the strain allows:\n\n\
+     A pin pulls the sheet beyond the limit of its strain:\n\n\
      >>> scene = isosheet.Scene(\n\
      ...     sheet={\"mesh\": {\"square\": {\"side\": 0.1, \"level\": 1}}, \"material\": \"office paper\"},\n\
      ...     support=[\n\
@@ -50,7 +50,7 @@ create_exception!(
      ...     isosheet.Simulation(scene).run(0.1)\n\
      ... except isosheet.StepFailed as error:\n\
      ...     print(error.key)\n\
-     support[1]"
+     sheet"
 );
 create_exception!(
     isosheet,

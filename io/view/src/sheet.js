@@ -31,11 +31,11 @@ const VALUE_WIDTH = 3;
 /** Radius of the balls that mark pins, on the stage and as a share of the mean length of the edges. */
 const PIN_RADIUS = 0.014;
 const PIN_SHARE = 0.22;
-// Squares of side s with a diagonal have 3.4 s pixels of lines on s^2 pixels: 85 % for s = 4, 14 % for 24.
+// Squares of side s with a diagonal have 3.4 s pixels of lines on s^2 pixels: 34 % for s = 10, 11 % for 30.
 /** Edges that are shorter on the screen than this are invisible, in pixels. */
-const FADED_LENGTH = 6;
+const FADED_LENGTH = 10;
 /** Edges that are longer on the screen than this have their full strength, in pixels. */
-const FULL_LENGTH = 24;
+const FULL_LENGTH = 30;
 
 const everywhere = () => new Sphere(new Vector3(), Infinity);
 

@@ -37,7 +37,7 @@ fn choose(times: &[f64], wanted: &[f64]) -> Vec<usize> {
 ///
 /// # Errors
 /// As [`FigureScene::setup`](crate::runs::FigureScene::setup); a body that cannot be drawn.
-pub(crate) fn shots<'a>(run: &'a Run, frames: &[usize], bodies: &[usize]) -> Result<Vec<Shot<'a>>> {
+fn shots<'a>(run: &'a Run, frames: &[usize], bodies: &[usize]) -> Result<Vec<Shot<'a>>> {
     let all = run.scene.setup()?.obstacles;
     let shot = |&k: &usize| {
         let t = run.trajectory.times()[k];
