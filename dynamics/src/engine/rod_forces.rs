@@ -51,7 +51,7 @@ pub(crate) fn rod_forces(
     let forces: Vec<f64> = known.map(force).collect();
     // Methods that need independent rods have unique forces.
     let forces = match method.is_minimising() {
-        true => least_forces(model, x, &forces)?,
+        true => least_forces(model, x, &forces).unwrap_or(forces),
         false => forces,
     };
     for (edge, force) in model.rod_edges().iter().zip(forces) {
@@ -62,7 +62,7 @@ pub(crate) fn rod_forces(
 
 /// The forces of least squares that load the free vertices as the given ones do, without singular directions
 /// below [`FLATTEST_FOLD`]: `F = A (A^T A)^+ A^T F0` with the rigidity matrix `A` of unit rods. `None` if
-/// memory runs out.
+/// memory runs out, or if the masses of bodies differ too much for the factorisation.
 fn least_forces(model: &SheetModel, x: &[f64], given: &[f64]) -> Option<Vec<f64>> {
     let mut left = given.to_vec();
     RodLeastSquares::new(model, x, FLATTEST_FOLD)?.reduce(&mut left);

@@ -423,7 +423,8 @@ impl Simulation {
     /// Zero before the first step, after a [`Fallback`](crate::Fallback), and between vertices that cannot
     /// move. Forces of dependent rods, as in a flat sheet, are not unique: BDF2 and implicit Euler give those
     /// of least squares with the same loads on the free vertices, without loads across folds flatter than 0.3
-    /// degrees, at the cost of one factorisation.
+    /// degrees, at the cost of one factorisation. (Where that fails, as with bodies whose masses differ by more than
+    /// arithmetic can take, they give one of the sets of forces with these loads.)
     pub fn rod_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => engine.rod_forces(),
