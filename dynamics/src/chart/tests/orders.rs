@@ -299,3 +299,47 @@ fn published_equations_do_not_converge() {
         );
     }
 }
+
+/// What Eqs. 23 and 24 suppose: that along the exact motion of the equations the Hamiltonian does not change, so
+/// that its change in a step comes from the remainder, which falls with the square of the step. With the published
+/// equations it changes by `h qdot . dT/dq`, in proportion to the step.
+#[test]
+fn the_hamiltonian_changes_to_first_order_with_the_published_equations() {
+    let mut v = vec![0.0; 27];
+    // All but the pinned corner turn about it.
+    let sheet = bumped(0, 0.1);
+    let x = sheet.positions();
+    for k in 1..9 {
+        let r = [x[3 * k] - x[0], x[3 * k + 1] - x[1]];
+        v[3 * k] = -2.0 * r[1];
+        v[3 * k + 1] = 2.0 * r[0];
+        v[3 * k + 2] = r[0] - r[1];
+    }
+    let problem = |end: f64| Problem {
+        sheet: bumped(0, 0.1),
+        pins: vec![VertexId(0)],
+        model: |p| model(&p.sheet, &p.pins, MassKind::Lumped),
+        v: v.clone(),
+        end,
+    };
+    let change = |equations, h: f64| {
+        let problem = problem(h);
+        let options = ChartOptions {
+            equations,
+            method: ChartMethod::ForwardEuler,
+            position: PositionUpdate::Exact,
+            rebase: Rebase::Never,
+            ..Default::default()
+        };
+        let chart = || front(&problem.sheet, &problem.pins);
+        let x = problem.sheet.positions();
+        let model = (problem.model)(&problem);
+        let start = ChartSimulation::new(model, chart(), options, x, &problem.v).unwrap();
+        (problem.run(chart(), options, 1).hamiltonian() - start.hamiltonian()).abs()
+    };
+    for (equations, order) in [(Equations::Published, 1.0), (Equations::Full, 2.0)] {
+        let [coarse, fine] = [1e-5, 5e-6].map(|h| change(equations, h));
+        let found = (coarse / fine).log2();
+        assert!((found - order).abs() < 0.05, "{equations:?}: {found}");
+    }
+}
