@@ -11,6 +11,7 @@ use crate::scene::SceneFile;
 use crate::{Advice, write_atomically};
 use clap::Args;
 use serde_json::json;
+use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -28,7 +29,7 @@ pub(super) struct Composing {
     /// Write the scene to a file, which `isosheet simulate` runs again
     #[arg(short = 'o', long = "scene", value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// Delete the run that the folder holds before
+    /// Delete the run that the folder holds before, and replace the scene of `-o`
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -111,6 +112,12 @@ impl Composing {
                 ));
             }
         }
+        if let Some(scene) = self.scene.as_deref().filter(|scene| scene.exists()) {
+            SceneFile::read(scene, &[]).map_err(|_| {
+                let message = format!("{} is a file that is no scene", scene.display());
+                Failure::misuse(message).remedy("give the scene another name, or remove the file")
+            })?;
+        }
         check_folder(&folder)?;
         self.how.prepare()
     }
@@ -132,11 +139,16 @@ impl Composing {
         text: String,
         verdict: impl FnOnce(&Recording) -> Option<String>,
     ) -> Done {
+        let file = parsed(&self.scene_path(of), text.clone())?;
         if let Some(scene) = &self.scene {
+            if !self.force && fs::read_to_string(scene).is_ok_and(|old| old != text) {
+                let message = format!("{} is another scene", scene.display());
+                return Err(Failure::misuse(message)
+                    .remedy("give the scene another name, or replace it with --force"));
+            }
             write_atomically(scene, |w| w.write_all(text.as_bytes()))
                 .map_err(|e| Failure::of(Code::Output, &e))?;
         }
-        let file = parsed(&self.scene_path(of), text)?;
         let folder = self.folder(of);
         let run = if self.force { simulate_anew } else { simulate };
         self.how

@@ -4,8 +4,8 @@ use super::failure::{Code, Done, Failure};
 use crate::run::TraceSink;
 use isosheet_dynamics::{TraceEvent, Tuning};
 use serde_json::json;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -18,8 +18,17 @@ pub(crate) struct TraceFile {
 }
 
 impl TraceFile {
-    /// A new file, which replaces one of this name. Its first line has the constants of the solver.
+    /// A new file, which replaces a trace of this name. Its first line has the constants of the solver.
+    ///
+    /// # Errors
+    /// [`Failure`] if the file cannot be written, or if there is another file of this name, such as the scene.
     pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+        if is_another_file(path) {
+            let message = format!("{} is a file that is no trace", path.display());
+            return Err(
+                Failure::misuse(message).remedy("give the trace another name, or remove the file")
+            );
+        }
         let mut file = File::create(path).map(BufWriter::new);
         if let Ok(open) = &mut file {
             let head = json!({
@@ -63,6 +72,23 @@ impl TraceFile {
                 .remedy("give a file in a folder that can be written to")
         })
     }
+}
+
+/// Whether there is a file of this name, with contents, that no run has written as its trace.
+fn is_another_file(path: &Path) -> bool {
+    /// Longer than the first line of a trace.
+    const LONGEST: u64 = 1 << 16;
+    let is_file = fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0);
+    let first = || {
+        let mut line = String::new();
+        let file = BufReader::new(File::open(path)?.take(LONGEST)).read_line(&mut line);
+        file.map(|_| line)
+    };
+    let is_trace = |line: &String| {
+        let head: Option<serde_json::Value> = serde_json::from_str(line).ok();
+        head.is_some_and(|head| head["event"] == "tuning")
+    };
+    is_file && !first().is_ok_and(|line| is_trace(&line))
 }
 
 /// Writes an event. What was decided is on the disk at once: a run that is killed leaves its trace.

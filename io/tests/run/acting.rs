@@ -200,6 +200,18 @@ fn misuse_is_answered_before_anything_is_run() {
         "100",
     ];
     refused(&far, 2, &["as if it had another unit", "--tool-size"]);
+    fs::write(dir.path().join("own.toml"), "version = 1\n").unwrap();
+    let files = ["cloth.obj", "block.obj", "own.toml"];
+    let contents = || files.map(|name| fs::read(dir.path().join(name)).unwrap());
+    let before = contents();
+    let over = ["drape", "cloth.obj", "--on", "block.obj", "-o"];
+    for (name, what) in files.iter().zip(["no scene", "no scene", "another scene"]) {
+        let words = [&over[..], &[name]].concat();
+        refused(&words, 2, &[what, "another name"]);
+        let words = ["hang", "cloth.obj", "--trace", name];
+        refused(&words, 2, &["no trace", "another name"]);
+    }
+    assert_eq!(contents(), before, "files that were there are as they were");
     refused(
         &["drape", "cloth.obj", "full"],
         4,

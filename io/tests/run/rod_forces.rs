@@ -130,3 +130,41 @@ fn a_run_that_was_stopped_has_forces_up_to_there() {
     let weight = 0.08 * 0.06 * 9.81;
     assert!((0.3 * weight..weight).contains(&largest), "{largest} N");
 }
+
+/// Masses that differ by twelve powers of ten are too far apart for a least-squares solution: the frames have the forces
+/// of the step instead, and can be read.
+#[test]
+fn frames_have_rod_forces_whatever_the_masses_of_bodies_are() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = "version = 1
+[sheet]
+mesh = { square = { side = 0.1, level = 0 } }
+density = 0.1
+placement = { position = [5, 5, 5] }
+[[support]]
+at = \"boundary\"
+[[body]]
+shape = { box = { size = [0.1, 0.1, 0.1] } }
+mass = 1e-6
+pose = { position = [0, 0, 0.1] }
+[[body]]
+shape = { box = { size = [0.1, 0.1, 0.1] } }
+mass = 1e6
+pose = { position = [0.01, 0.01, 0.25] }
+[[obstacle]]
+shape = \"half_space\"
+[forces]
+gravity = [0, 0, -9.81]
+[stop]
+time = 0.05
+";
+    fs::write(dir.path().join("far.toml"), scene).unwrap();
+    let done = run(dir.path(), &["simulate", "far.toml", "--out", "run"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let recording = Recording::read(&dir.path().join("run")).unwrap();
+    for frame in 0..recording.trajectory.len() {
+        let forces = recording.trajectory.rod_forces(frame).unwrap();
+        assert_eq!(forces.len(), recording.trajectory.edges().len());
+        assert!(forces.iter().all(|f| f.is_finite()));
+    }
+}
