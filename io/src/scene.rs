@@ -179,6 +179,7 @@ pub(crate) use build::Kept;
 pub(crate) use bytes::bytes_in_words;
 #[cfg(feature = "run")]
 pub(crate) use mesh_file::Files;
+#[cfg(feature = "run")]
 pub(crate) use named_file::FileKind;
 use named_file::NamedFile;
 #[cfg(feature = "run")]

@@ -387,7 +387,7 @@ mod tests {
         let mut one_by_one = Dense(DMatrix::zeros(48, 48));
         for (p, q) in pairs {
             CarriedSink::hand_on(&points, &mut one_by_one, |sink| {
-                sink.add(p, q, &block(p, q))
+                sink.add(p, q, &block(p, q));
             });
         }
         assert!((whole.0 - &one_by_one.0).norm() < 1e-13 * one_by_one.0.norm());

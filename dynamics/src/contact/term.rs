@@ -304,7 +304,7 @@ impl Term for ContactTerm {
         match &step.points {
             None => step.terms().add_hessian(sink),
             Some(points) => {
-                CarriedSink::hand_on(points, sink, |sink| step.terms().add_hessian(sink))
+                CarriedSink::hand_on(points, sink, |sink| step.terms().add_hessian(sink));
             }
         }
     }

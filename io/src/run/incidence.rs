@@ -34,9 +34,16 @@ impl Incidence {
             .map(|component| component.value(state.t));
         let at = |values: &[f64], v: usize| Vector3::from_column_slice(&values[3 * v..3 * v + 3]);
         let (mut across, mut whole) = (0.0, 0.0);
+        let faces = model.topology().faces();
         let parts = under_way.facts.parts.iter().take(scene.sheet.len());
-        for (_, part) in parts.filter(|(name, _)| sheet.as_ref().is_none_or(|own| own == name)) {
-            for corners in &model.topology().faces()[part.faces.clone()] {
+        let meant = parts.filter(|(name, _)| sheet.as_ref().is_none_or(|own| own == name));
+        let mut ranges: Vec<_> = meant.map(|(_, part)| part.faces.clone()).collect();
+        // A sheet alone is no part of anything.
+        if under_way.facts.parts.is_empty() {
+            ranges.push(0..faces.len());
+        }
+        for range in ranges {
+            for corners in &faces[range] {
                 let [a, b, c] = corners.map(|v| at(&state.x, v.index()));
                 let velocity = corners
                     .map(|v| at(&state.v, v.index()))
@@ -48,8 +55,8 @@ impl Incidence {
                 whole += area.norm() * relative.norm();
             }
         }
-        let angle = (across / whole).min(1.0).asin().to_degrees();
-        angle.is_finite().then_some(Self { angle, t: state.t })
+        let angle = f64::min(across / whole, 1.0).asin().to_degrees();
+        (whole > 0.0).then_some(Self { angle, t: state.t })
     }
 
     /// The larger one of two.

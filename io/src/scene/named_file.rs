@@ -17,6 +17,10 @@ pub(crate) struct NamedFile<'a> {
     /// The place of the file in the scene.
     pub(crate) key: Key,
     /// What it is.
+    #[cfg_attr(
+        not(feature = "run"),
+        expect(dead_code, reason = "folders of runs alone keep copies")
+    )]
     pub(crate) kind: FileKind,
     /// Its path, relative to the scene.
     pub(crate) path: &'a mut PathBuf,
