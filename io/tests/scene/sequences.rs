@@ -558,8 +558,8 @@ fn meshes_in_motion_that_cannot_be_obstacles_are_refused() {
             "flat",
             vec![(0.0, below.clone()), (1.0, below.clone()), (2.0, flat)],
         ),
-        ("below", vec![(0.0, below)]),
-        ("through", vec![(0.0, through)]),
+        ("below", [0.0, 2.0].map(|t| (t, below.clone())).to_vec()),
+        ("through", [0.0, 2.0].map(|t| (t, through.clone())).to_vec()),
     ] {
         write(&dir.path().join(format!("{name}.npz")), &ball, &frames);
     }
