@@ -48,8 +48,10 @@ pub use mesh_file::{
     MeshFileProblem, MeshFormat, MeshOptions, Polygons, ReadingChanges, Repair, SeparateBuffers,
     parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
+#[cfg(feature = "run")]
+pub(crate) use motion_file::sources;
 #[cfg(feature = "scene")]
-pub(crate) use motion_file::motion_archive;
+pub(crate) use motion_file::{motion_archive, says_up};
 #[cfg(feature = "scene")]
 pub(crate) use trajectory::{Clock, MovingMesh};
 pub use trajectory::{FrameData, Trajectory};

@@ -15,9 +15,9 @@ pub(super) struct Acting {
     pub(super) mesh: PathBuf,
     #[command(flatten)]
     pub(super) composing: Composing,
-    /// The axis of the files that points upwards [default: y of glTF files, z of others]
-    #[arg(long, value_name = "AXIS", value_enum)]
-    pub(super) up: Option<UpAxis>,
+    /// The axis that points upwards in the files, other than glTF files, which say it
+    #[arg(long, value_name = "AXIS", value_enum, default_value_t)]
+    pub(super) up: UpAxis,
 }
 
 impl Acting {

@@ -113,6 +113,7 @@ impl From<RunError> for Failure {
             | RunError::Foreign { .. }
             | RunError::NotOwn { .. }
             | RunError::Taken { .. }
+            | RunError::ReadByScene { .. }
             | RunError::Controlled { .. } => Code::OtherScene,
             RunError::Busy { .. } => Code::Busy,
             RunError::NoFolder | RunError::Extension { .. } => Code::CommandLine,

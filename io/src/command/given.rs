@@ -31,9 +31,8 @@ pub(super) struct GivenSheet {
 }
 
 impl Given {
-    /// Reads a mesh file. If it is not said which axis points upwards, it is y in glTF files, as that format has it, and z
-    /// in others.
-    pub(super) fn read(file: &Path, up: Option<UpAxis>) -> Result<Self, Failure> {
+    /// Reads a mesh file, of which `up` points upwards if its format does not say it.
+    pub(super) fn read(file: &Path, up: UpAxis) -> Result<Self, Failure> {
         refuse_folder(file)?;
         let options = MeshOptions {
             polygons: Polygons::Triangulate,
@@ -43,10 +42,10 @@ impl Given {
         if !mesh.changes.is_nothing() {
             print_progress(format_args!("note: {}: {}", file.display(), mesh.changes));
         }
-        let up = up.unwrap_or(match MeshFormat::of(file) {
-            Some(MeshFormat::Gltf | MeshFormat::Glb) => UpAxis::Y,
-            _ => UpAxis::Z,
-        });
+        let up = match MeshFormat::of(file) {
+            Some(format) if format.says_up() => UpAxis::Z,
+            _ => up,
+        };
         let points = mesh.positions.as_chunks::<3>().0.iter();
         let given = Self {
             positions: points.map(|p| up.place(*p)).collect(),
@@ -79,7 +78,7 @@ impl GivenSheet {
     pub(super) fn read(
         file: &Path,
         composing: &Composing,
-        up: Option<UpAxis>,
+        up: UpAxis,
         size: f64,
     ) -> Result<Self, Failure> {
         let path = composing.named_from_scene(file, file)?;
@@ -138,4 +137,25 @@ pub(super) fn longest(points: &[[f64; 3]]) -> f64 {
 /// Points in another unit.
 pub(super) fn scaled(points: &[[f64; 3]], scale: f64) -> Vec<[f64; 3]> {
     points.iter().map(|p| p.map(|c| scale * c)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::{MeshFile, write_mesh};
+
+    /// A glTF file has z upwards once it is read, whatever points upwards in other files.
+    #[test]
+    fn gltf_is_turned_once() {
+        let dir = tempfile::tempdir().unwrap();
+        let x = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.5]];
+        let mesh = MeshFile::of_frame(x.as_flattened().to_vec(), vec![[0, 1, 2]], Vec::new());
+        let path = dir.path().join("roof.glb");
+        write_mesh(&path, &mesh).unwrap();
+        for up in [UpAxis::Z, UpAxis::Y] {
+            let given = Given::read(&path, up).unwrap();
+            assert_eq!(given.positions, x);
+            assert_eq!(given.file(&path, 1.0).up, UpAxis::Z);
+        }
+    }
 }

@@ -7,11 +7,43 @@ mod samples;
 mod tests;
 mod usda;
 
-use super::{FileError, input};
+use super::{FileError, MeshFormat, input};
 use std::path::Path;
+#[cfg(feature = "run")]
+use std::path::PathBuf;
 
 /// The name of the trajectory in the folder of a run.
 const TRAJECTORY: &str = "trajectory.npz";
+
+/// Whether files of this name say which axis points upwards, so that their meshes, in motion or not, are read
+/// with z upwards.
+pub(crate) fn says_up(path: &Path) -> bool {
+    has_extension(path, "usda") || MeshFormat::of(path).is_some_and(MeshFormat::says_up)
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}
+
+/// The files and folders that a mesh in motion, or the mesh of a file, is read from.
+#[cfg(feature = "run")]
+pub(crate) fn sources(path: &Path) -> Vec<PathBuf> {
+    if named::is_pattern(path) {
+        return path.parent().map(Path::to_owned).into_iter().collect();
+    }
+    let listed = match is_list(path) {
+        true => listed::files(path).map(|(_, files)| files),
+        false => Ok(Vec::new()),
+    };
+    let own = std::iter::once(path.to_owned());
+    own.chain(listed.unwrap_or_default()).collect()
+}
+
+/// Whether a file is a list of mesh files.
+fn is_list(path: &Path) -> bool {
+    has_extension(path, "pvd") || has_extension(path, "series")
+}
 
 /// The archive that [`MovingMesh::parse`](super::MovingMesh::parse) reads of the mesh in motion at a path:
 ///
@@ -23,10 +55,7 @@ const TRAJECTORY: &str = "trajectory.npz";
 /// # Errors
 /// [`FileError::Read`], naming the file and the sample.
 pub(crate) fn motion_archive(path: &Path) -> Result<Vec<u8>, FileError> {
-    let has = |extension: &str| {
-        path.extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case(extension))
-    };
+    let has = |extension: &str| has_extension(path, extension);
     let read = |path: &Path| input::read(path).map_err(|e| FileError::unreadable(path, e));
     let mesh = if named::is_pattern(path) {
         named::of_pattern(path)?
@@ -42,7 +71,7 @@ pub(crate) fn motion_archive(path: &Path) -> Result<Vec<u8>, FileError> {
         }
     } else if has("npz") {
         return read(path);
-    } else if has("pvd") || has("series") {
+    } else if is_list(path) {
         listed::read(path)?
     } else if has("usda") {
         usda::read(path)?

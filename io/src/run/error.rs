@@ -104,6 +104,17 @@ pub enum RunError {
         /// The folder.
         folder: PathBuf,
     },
+    /// The scene reads a file or a folder of the run that is to be deleted.
+    #[error(
+        "the scene reads {}, which is in the folder of the run that would be deleted, {}",
+        path.display(), folder.display()
+    )]
+    ReadByScene {
+        /// The folder.
+        folder: PathBuf,
+        /// What the scene reads.
+        path: PathBuf,
+    },
     /// A program interfered between the steps of the run, which its scene alone does not continue.
     #[error(
         "the run in {} was controlled by a program between its steps, and its scene alone does not continue it",
@@ -158,6 +169,7 @@ impl Advice for RunError {
             Self::Taken { .. } => {
                 Some("choose another folder, or have the run replaced: `replace=True` in Python")
             }
+            Self::ReadByScene { .. } => Some("choose another folder for the run (`--out`)"),
             Self::Controlled { .. } => Some(
                 "have that program make it again, or run the scene of the folder from its start in another folder",
             ),

@@ -3,7 +3,7 @@
 use super::error::BEGIN_ANEW;
 use super::{RunError, Summary};
 use crate::format::atomic::is_unfinished;
-use crate::format::{FileError, frame_number, input, read_json, write_atomically};
+use crate::format::{FileError, frame_number, input, read_json, sources, write_atomically};
 use crate::scene::{FileKind, Files, Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use std::ffi::OsString;
@@ -72,6 +72,25 @@ impl<'a> RunInputs<'a> {
             file,
             meshes,
         })
+    }
+
+    /// Refuses a folder with a file or a folder that the scene reads.
+    fn check_apart(&self, root: &Path) -> Result<(), RunError> {
+        let Ok(outer) = fs::canonicalize(root) else {
+            return Ok(());
+        };
+        for (_, path) in self.file.scene().files() {
+            let path = self.file.folder().join(path);
+            let inner = sources(&Path::new(".").join(&path)).into_iter();
+            let mut inner = inner.filter_map(|path| fs::canonicalize(path).ok());
+            if inner.any(|inner| inner.starts_with(&outer)) {
+                return Err(RunError::ReadByScene {
+                    folder: root.to_owned(),
+                    path,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Copies the mesh files and writes the scene that names the copies.
@@ -234,6 +253,9 @@ impl RunFolder {
             folder: root.to_owned(),
             source,
         };
+        if existing == Existing::Delete {
+            material.check_apart(root)?;
+        }
         let folder = Self::claim(root)?;
         folder.remove_parts().map_err(unwritable)?;
         if existing == Existing::Delete {

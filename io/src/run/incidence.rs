@@ -23,7 +23,7 @@ impl fmt::Display for Incidence {
 }
 
 impl Incidence {
-    /// The angle after a step of a scene with attached flow; none without wind.
+    /// The angle after a step of a scene with attached flow; none where no air comes to its sheets.
     pub(crate) fn after(scene: &Scene, under_way: &UnderWay) -> Option<Self> {
         let air = scene.air.as_ref()?;
         let AttachedFlow { sheet, .. } = air.attached.as_ref()?;
@@ -34,16 +34,8 @@ impl Incidence {
             .map(|component| component.value(state.t));
         let at = |values: &[f64], v: usize| Vector3::from_column_slice(&values[3 * v..3 * v + 3]);
         let (mut across, mut whole) = (0.0, 0.0);
-        let faces = model.topology().faces();
-        let parts = under_way.facts.parts.iter().take(scene.sheet.len());
-        let meant = parts.filter(|(name, _)| sheet.as_ref().is_none_or(|own| own == name));
-        let mut ranges: Vec<_> = meant.map(|(_, part)| part.faces.clone()).collect();
-        // A sheet alone is no part of anything.
-        if under_way.facts.parts.is_empty() {
-            ranges.push(0..faces.len());
-        }
-        for range in ranges {
-            for corners in &faces[range] {
+        for faces in under_way.facts.faces_of_sheets(sheet.as_deref()) {
+            for corners in &model.topology().faces()[faces] {
                 let [a, b, c] = corners.map(|v| at(&state.x, v.index()));
                 let velocity = corners
                     .map(|v| at(&state.v, v.index()))
@@ -55,8 +47,10 @@ impl Incidence {
                 whole += area.norm() * relative.norm();
             }
         }
-        let angle = f64::min(across / whole, 1.0).asin().to_degrees();
-        (whole > 0.0).then_some(Self { angle, t: state.t })
+        (whole > 0.0).then(|| Self {
+            angle: (across / whole).min(1.0).asin().to_degrees(),
+            t: state.t,
+        })
     }
 
     /// The larger one of two.

@@ -28,10 +28,12 @@ use std::sync::Arc;
 pub struct MeshFile {
     /// Path of the mesh file, relative to the scene file.
     pub path: PathBuf,
-    /// Length of one unit of the file, metres: 0.001 for a file in millimetres.
+    /// Length of one unit of the file, metres: 0.001 for a file in millimetres. A FOLD file with a unit of length
+    /// and a glTF file are in metres, and this is a factor besides.
     #[serde(default = "one")]
     pub scale: f64,
-    /// The axis of the file that points upwards; it becomes z.
+    /// The axis of the file that points upwards; it becomes z. To be left out for a glTF file, which has y upwards
+    /// by definition and is turned.
     #[serde(default)]
     pub up: UpAxis,
     /// What to do with faces of more than three corners.
@@ -75,6 +77,7 @@ impl MeshFile {
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("scale"), self.scale, Unit::Metre);
+        self.up.check(&self.path, key, checks);
         if self.path.as_os_str().is_empty() {
             checks.report(key.name("path"), "the path is empty", "name a mesh file");
         }

@@ -27,13 +27,16 @@ pub struct Sequence {
     /// their times in seconds (`.pvd`, `.vtk.series`); or a folder of mesh files whose names end in the numbers
     /// of frames, or a pattern with one `*` for these numbers, `walk/walk_*.obj`. VTK files may have times.
     pub path: PathBuf,
-    /// Frames a second, of files that have numbers and no times; the first one is at 0 s.
+    /// Frames a second, of files that have numbers and no times: in the order of the numbers, which are
+    /// consecutive or all at one distance, the first file is at 0 s, the next one at 1 / `rate`, and so on.
     #[serde(default)]
     pub rate: Option<f64>,
-    /// Length of one unit of the file, metres: 0.001 for a file in millimetres.
+    /// Length of one unit of the file, metres: 0.001 for a file in millimetres. A `.usda` file says its own unit
+    /// (`metersPerUnit`), and this is a factor besides.
     #[serde(default = "one")]
     pub scale: f64,
-    /// The axis of the file that points upwards; it becomes z.
+    /// The axis of the file that points upwards; it becomes z. To be left out for a `.usda` file, which says it
+    /// (`upAxis`).
     #[serde(default)]
     pub up: UpAxis,
     /// What is added to the times of the file, seconds.
@@ -48,10 +51,10 @@ pub struct Sequence {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Outside {
-    /// Nothing: a run that needs it is refused. A mesh at one time alone rests.
+    /// Nothing: a run that needs it is refused.
     #[default]
     Refuse,
-    /// It rests where it is at that time.
+    /// It rests where it is at that time: a mesh at one time alone throughout.
     Rest,
 }
 
@@ -74,6 +77,7 @@ impl Sequence {
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("scale"), self.scale, Unit::Metre);
+        self.up.check(&self.path, key, checks);
         checks.number(key.name("delay"), self.delay, Unit::Second);
         if let Some(rate) = self.rate {
             checks.positive(key.name("rate"), rate, Unit::PerSecond);
@@ -113,18 +117,19 @@ impl Sequence {
         end: f64,
         key: &Key,
     ) -> Result<(), Problem> {
-        let [first, .., last] = mesh.times() else {
-            return Ok(());
-        };
+        let times = mesh.times();
+        let [first, last] = [times.first(), times.last()].map(|t| t.copied().unwrap_or_default());
         let round_off = 4.0 * f64::EPSILON * first.abs().max(last.abs()).max(self.delay.abs());
-        let is_inside = *first <= round_off && *last >= end - round_off;
+        let is_inside = first <= round_off && last >= end - round_off;
         if is_inside || self.outside == Outside::Rest {
             return Ok(());
         }
-        let [first, last, end] = [*first, *last, end].map(brief);
-        let message = format!(
-            "the mesh in motion goes from {first} s to {last} s, and the run from 0 s to {end} s"
-        );
+        let [from, to, end] = [first, last, end].map(brief);
+        let own = match times.len() {
+            1 => format!("has one time, {from} s"),
+            _ => format!("goes from {from} s to {to} s"),
+        };
+        let message = format!("the mesh in motion {own}, and the run goes from 0 s to {end} s");
         let remedy = "shift it by `delay`, end the run earlier (`stop.time`), or write `outside = \"rest\"`, so that it \
                       rests before and after";
         Err(Problem::new(key.name("path"), message, remedy))

@@ -73,6 +73,18 @@ impl Facts {
         values
     }
 
+    /// The faces of each sheet of this name, or of each one, among those of the model.
+    #[cfg(feature = "run")]
+    pub(crate) fn faces_of_sheets(&self, name: Option<&str>) -> Vec<Range<usize>> {
+        if self.parts.is_empty() {
+            return vec![0..self.sheet.topology().face_count()];
+        }
+        let others = self.bodies.len() + self.origins.driven.len();
+        let sheets = self.parts[..self.parts.len() - others].iter();
+        let named = sheets.filter(|(own, _)| name.is_none_or(|name| name == own));
+        named.map(|(_, part)| part.faces.clone()).collect()
+    }
+
     /// Values of the edges of what is seen by those of the model.
     pub(crate) fn of_edges(&self, values: Vec<f64>) -> Vec<f64> {
         self.of_sheets(values, 1, |part| &part.edges)

@@ -335,3 +335,41 @@ fn flow_that_would_separate_is_told_with_its_angle() {
         );
     }
 }
+
+/// The angle of the flag of the page on scenes, which has one sheet and no body, is that of its wind. Where no air comes
+/// there is none.
+#[test]
+fn the_angle_of_the_air_is_that_of_the_wind() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    for (wind, expected) in [
+        ("[6, 0.2, 0]", Some(0.2_f64.atan2(6.0))),
+        ("[0, 0, 0]", None),
+    ] {
+        let scene = format!(
+            "version = 1
+            [sheet]
+            mesh = {{ rectangle = {{ width = 0.3, height = 0.1, columns = 10, rows = 2 }} }}
+            material = \"polycarbonate film\"
+            placement = {{ turn = {{ axis = [1, 0, 0], angle = 90 }} }}
+            [[support]]
+            at = \"all\"
+            [air]
+            wind = {wind}
+            [air.attached]
+            trailing = {{ half_space = {{ point = [0.3, 0, 0], normal = [1, 0, 0] }} }}
+            [method]
+            step = 0.005
+            [stop]
+            time = 0.02"
+        );
+        fs::write(dir.join("flag.toml"), scene).unwrap();
+        let done = run(dir, &["simulate", "flag.toml", "--force"]);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        assert!(!stderr(&done).contains("separates"), "{}", stderr(&done));
+        let angle = summary(&dir.join("flag-run")).incidence.map(|i| i.angle);
+        let off = angle.zip(expected).map(|(a, b)| (a - b.to_degrees()).abs());
+        assert_eq!(angle.is_some(), expected.is_some(), "{angle:?}");
+        assert!(off.is_none_or(|off| off < 1e-9), "{angle:?}");
+    }
+}

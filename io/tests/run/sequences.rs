@@ -78,3 +78,49 @@ fn the_trajectory_of_a_run_drives_another_that_continues_to_the_same_bits() {
     );
     assert_ne!(code(&done), Some(0));
 }
+
+/// `--force` does not delete what the scene reads: the run that is its body, or a file in it.
+#[test]
+fn force_keeps_what_the_scene_reads() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let sheet =
+        "version = 1\n[sheet]\nmesh = { square = { side = 0.1, level = 1 } }\n[stop]\ntime = 0.1\n";
+    fs::write(
+        dir.join("body.toml"),
+        format!("{sheet}[output]\nobj = true\n"),
+    )
+    .unwrap();
+    let done = run(dir, &["simulate", "body.toml"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let trajectory = fs::read(dir.join("body-run/trajectory.npz")).unwrap();
+    let list = "<VTKFile><Collection><DataSet timestep=\"0\" file=\"body-run/obj/frame_00000.obj\"/></Collection></VTKFile>";
+    fs::write(dir.join("list.pvd"), list).unwrap();
+    for shape in [
+        "sequence = { path = \"body-run\" }",
+        "sequence = { path = \"body-run/trajectory.npz\" }",
+        "sequence = { path = \"body-run/obj/frame_*.obj\", rate = 60, outside = \"rest\" }",
+        "sequence = { path = \"list.pvd\", outside = \"rest\" }",
+    ] {
+        let worn = format!(
+            "{sheet}[[obstacle]]\nshape = {{ {shape} }}\npose = {{ position = [0, 0, -1] }}\n"
+        );
+        fs::write(dir.join("worn.toml"), worn).unwrap();
+        let done = run(
+            dir,
+            &["simulate", "worn.toml", "--out", "./body-run/", "--force"],
+        );
+        let said = stderr(&done);
+        assert_eq!(code(&done), Some(4), "{shape}: {said}");
+        assert!(
+            said.contains("the scene reads") && said.contains("--out"),
+            "{said}"
+        );
+        assert_eq!(
+            fs::read(dir.join("body-run/trajectory.npz")).unwrap(),
+            trajectory
+        );
+    }
+    let done = run(dir, &["simulate", "worn.toml", "--force"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+}

@@ -102,7 +102,7 @@ fn what_cannot_be_followed_is_refused() {
     write(
         &dir.path().join("body.npz"),
         &body,
-        &[(0.0, body.positions().to_vec())],
+        &[0.0, 2.0].map(|t| (t, body.positions().to_vec())),
     );
     std::fs::write(dir.path().join("text.npz"), "t, x").unwrap();
     for (file, vertices, reason) in [
@@ -391,7 +391,7 @@ fn the_same_motion_in_any_file_is_the_same_run() {
         ("path = \"list\", rate = 24", "has times in seconds"),
         (
             "path = \"numbered\", rate = 48",
-            "goes from 0 s to 0.125 s, and the run from 0 s to 0.25 s",
+            "goes from 0 s to 0.125 s, and the run goes from 0 s to 0.25 s",
         ),
         ("path = \"ball.npz\", delay = 0.01", "goes from 0.01 s"),
         ("path = \".\"", "no mesh files whose names end with"),
@@ -400,6 +400,81 @@ fn the_same_motion_in_any_file_is_the_same_run() {
         assert!(message.contains(reason), "{source}: {message}");
     }
     assert!(start("path = \"numbered\", rate = 48, outside = \"rest\"").is_ok());
+}
+
+/// A mesh at one time is one that rests, which the scene has to say as of any other motion that ends early.
+#[test]
+fn one_sample_covers_no_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let ball = ball(0.05);
+    let mut trajectory = Trajectory::new(&ball);
+    trajectory.push(0.0, ball.positions()).unwrap();
+    let series = Series::new(&trajectory, &SeriesOptions::default()).unwrap();
+    for name in ["numbered.obj", "list.pvd", "still.usda"] {
+        write_series(&dir.path().join(name), &series).unwrap();
+    }
+    let start = |source: &str| {
+        let text = format!(
+            "{CLOTH}placement = {{ position = [0, 0, 1] }}\n[stop]\ntime = 1\n\
+             [[obstacle]]\nshape = {{ sequence = {{ {source} }} }}"
+        );
+        let text = text.replace("[forces]\ngravity = [0, 0, -9.81]\n", "");
+        simulation(dir.path(), &text)
+    };
+    for source in [
+        "path = \"numbered\", rate = 24",
+        "path = \"list.pvd\"",
+        "path = \"still.usda\"",
+    ] {
+        let message = start(source).err().unwrap();
+        let expected = "the mesh in motion has one time, 0 s, and the run goes from 0 s to 1 s";
+        assert!(message.contains(expected), "{source}: {message}");
+        assert!(message.contains("outside = \"rest\""), "{message}");
+        let rests = start(&format!("{source}, outside = \"rest\""));
+        assert!(rests.is_ok(), "{:?}", rests.err());
+    }
+}
+
+/// Files whose format says which axis points upwards are turned once: a scene that says it again is refused. `scale` is
+/// a factor besides their unit.
+#[test]
+fn axes_that_files_say_themselves_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let sample = |x: f64| format!("[({x}, 0, 0), ({x}, 0, 100), ({x}, 200, 0)]");
+    let text = format!(
+        "#usda 1.0\n(\n metersPerUnit = 0.01\n upAxis = \"Y\"\n timeCodesPerSecond = 1\n)\ndef Mesh \"leaf\"\n{{\n\
+         int[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]\n\
+         point3f[] points.timeSamples = {{ 0: {}, 2: {} }}\n}}\n",
+        sample(0.0),
+        sample(1.0)
+    );
+    std::fs::write(dir.path().join("leaf.usda"), text).unwrap();
+    let scene = |shape: &str| {
+        let text = format!(
+            "version = 1\n[sheet]\nmesh = {{ square = {{ side = 0.1, level = 1 }} }}\n\
+             placement = {{ position = [0, 0, -9] }}\n[[obstacle]]\nshape = {{ {shape} }}"
+        );
+        SceneFile::parse(text, &dir.path().join("scene.toml"), &[])
+    };
+    let built = scene("sequence = { path = \"leaf.usda\", scale = 0.5 }").unwrap();
+    let setup = built.build().unwrap();
+    let found = setup.sheet.positions();
+    let found = found[found.len() - 9..].as_chunks::<3>().0;
+    let expected = [[0.0, 0.0, 0.0], [0.0, -0.5, 0.0], [0.0, 0.0, 1.0]];
+    for (p, q) in found.iter().zip(expected) {
+        let off = (0..3).map(|k| (p[k] - q[k]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-12, "{found:?}");
+    }
+    for shape in [
+        "sequence = { path = \"leaf.usda\", up = \"y\" }",
+        "sequence = { path = \"walk_*.GLB\", rate = 24, up = \"y\" }",
+        "file = { path = \"table.gltf\", up = \"y\" }",
+    ] {
+        let refused = scene(shape).and_then(|scene| Ok(scene.build()?));
+        let message = refused.err().unwrap().to_string();
+        assert!(message.contains("itself says which axis"), "{message}");
+        assert!(message.contains("leave `up` out"), "{message}");
+    }
 }
 
 /// A box that hits a ball pushes it away whether it is a mesh in motion or a rigid obstacle, at speeds at
@@ -483,8 +558,8 @@ fn meshes_in_motion_that_cannot_be_obstacles_are_refused() {
             "flat",
             vec![(0.0, below.clone()), (1.0, below.clone()), (2.0, flat)],
         ),
-        ("below", vec![(0.0, below)]),
-        ("through", vec![(0.0, through)]),
+        ("below", [0.0, 2.0].map(|t| (t, below.clone())).to_vec()),
+        ("through", [0.0, 2.0].map(|t| (t, through.clone())).to_vec()),
     ] {
         write(&dir.path().join(format!("{name}.npz")), &ball, &frames);
     }

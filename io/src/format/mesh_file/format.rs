@@ -72,6 +72,12 @@ impl MeshFormat {
         matches!(self, Self::Svg | Self::Cp | Self::Opx)
     }
 
+    /// Whether the format says which axis points upwards, so that its meshes are read with z upwards.
+    #[cfg(feature = "scene")]
+    pub(crate) fn says_up(self) -> bool {
+        matches!(self, Self::Gltf | Self::Glb)
+    }
+
     /// The format of a file by its extension, in capital or small letters; `None` for all others.
     pub fn of(path: &Path) -> Option<Self> {
         let found = path.extension()?;

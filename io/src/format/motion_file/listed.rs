@@ -1,6 +1,7 @@
 //! Lists of mesh files with their times: collections (`.pvd`) and series (`.vtk.series`) of VTK.
 
-use super::samples::{self, SampleTime};
+use super::has_extension;
+use super::samples::{self, SampleTimes};
 use crate::format::{FileError, MovingMesh, input};
 use roxmltree::Document;
 use serde::Deserialize;
@@ -9,27 +10,27 @@ use std::path::{Path, PathBuf};
 const REMEDY: &str = "write the list again, with a file and a time in seconds for each sample";
 
 pub(super) fn read(path: &Path) -> Result<MovingMesh, FileError> {
+    let (times, files) = files(path)?;
+    samples::read(path, SampleTimes::Seconds(times), &files)
+}
+
+/// The times and the files of a list.
+pub(super) fn files(path: &Path) -> Result<(Vec<f64>, Vec<PathBuf>), FileError> {
     let bytes = input::read(path).map_err(|e| FileError::unreadable(path, e))?;
-    let is_series = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("series"));
-    let list = if is_series {
+    let list = if has_extension(path, "series") {
         series(&bytes)
     } else {
         collection(&String::from_utf8_lossy(&bytes))
     };
     let list = list.map_err(|problem| FileError::content(path, problem, REMEDY))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let file = |(time, name): (f64, PathBuf)| {
+    let file = |name: PathBuf| {
         let found = input::within(folder, &name);
-        let file = found.map_err(|e| FileError::unreadable(&folder.join(&name), e))?;
-        Ok((SampleTime::Seconds(time), file))
+        found.map_err(|e| FileError::unreadable(&folder.join(&name), e))
     };
-    let files: Vec<_> = list
-        .into_iter()
-        .map(file)
-        .collect::<Result<_, FileError>>()?;
-    samples::read(path, &files)
+    let (times, names): (Vec<f64>, Vec<PathBuf>) = list.into_iter().unzip();
+    let files = names.into_iter().map(file);
+    Ok((times, files.collect::<Result<_, _>>()?))
 }
 
 /// The times and files of a collection in XML.

@@ -1,6 +1,6 @@
 //! Mesh files whose names have the number of their sample.
 
-use super::samples::{self, SampleTime};
+use super::samples::{self, SampleTimes};
 use crate::format::{FileError, MeshFormat, MovingMesh};
 use std::collections::BTreeMap;
 use std::fs;
@@ -24,27 +24,32 @@ pub(super) fn of_pattern(path: &Path) -> Result<MovingMesh, FileError> {
         FileError::content(path, "the pattern has several *", remedy)
     })?;
     let mut files = Numbered::new();
-    for file in files_in(path.parent().unwrap_or(Path::new("")))? {
+    let all = files_in(path.parent().unwrap_or(Path::new("")))?;
+    for file in &all {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let digits = name.strip_prefix(begin).and_then(|n| n.strip_suffix(end));
         if let Some(number) = digits.and_then(number) {
-            add(&mut files, number, &file)?;
+            add(&mut files, number, file)?;
         }
     }
-    read(path, files)
+    match files.is_empty() {
+        true => Err(without_samples(path, &all)),
+        false => read(path, files),
+    }
 }
 
 /// The numbered mesh files of a folder, whose names differ in the number alone.
 pub(super) fn of_folder(path: &Path) -> Result<MovingMesh, FileError> {
     let mut all: BTreeMap<String, Numbered> = BTreeMap::new();
-    for file in files_in(path)? {
+    let found = files_in(path)?;
+    for file in &found {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         let extension = file.extension().unwrap_or_default().to_string_lossy();
         let begin = stem.trim_end_matches(|c: char| c.is_ascii_digit());
-        let is_mesh = MeshFormat::of(&file).is_some_and(|format| !format.is_drawing());
+        let is_mesh = MeshFormat::of(file).is_some_and(|format| !format.is_drawing());
         if let (Some(number), true) = (number(&stem[begin.len()..]), is_mesh) {
             let files = all.entry(format!("{begin}*.{extension}")).or_default();
-            add(files, number, &file)?;
+            add(files, number, file)?;
         }
     }
     if all.len() > 1 {
@@ -56,23 +61,38 @@ pub(super) fn of_folder(path: &Path) -> Result<MovingMesh, FileError> {
         let remedy = "name one of them by its pattern after the folder";
         return Err(FileError::content(path, problem, remedy));
     }
-    read(path, all.into_values().next().unwrap_or_default())
+    match all.into_values().next() {
+        None => Err(without_samples(path, &found)),
+        Some(files) => read(path, files),
+    }
 }
 
 fn read(path: &Path, files: Numbered) -> Result<MovingMesh, FileError> {
-    if files.is_empty() {
-        let problem = "there are no mesh files whose names end with the number of a sample";
-        let remedy =
-            "export one mesh file for each sample, such as walk_0001.obj, walk_0002.obj, ...";
-        return Err(FileError::content(path, problem, remedy));
-    }
-    let first = files.keys().next().copied().unwrap_or_default();
-    let sample = |(number, file): (u64, PathBuf)| {
-        let since_first = (number - first) as f64;
-        (SampleTime::Number(since_first), file)
+    let (numbers, files): (Vec<u64>, Vec<PathBuf>) = files.into_iter().unzip();
+    samples::read(path, SampleTimes::Numbers(numbers), &files)
+}
+
+/// What is said where none of the files of a folder is a sample: what their names are.
+fn without_samples(path: &Path, found: &[PathBuf]) -> FileError {
+    const SHOWN: usize = 5;
+    let mut names: Vec<_> = found.iter().filter_map(|file| file.file_name()).collect();
+    names.sort();
+    let more = names.len().saturating_sub(SHOWN);
+    let shown = names.iter().take(SHOWN).map(|name| name.to_string_lossy());
+    let shown: Vec<_> = shown.collect();
+    let there = match (shown.len(), more) {
+        (0, _) => "the folder has no files".to_owned(),
+        (_, 0) => format!("the folder has {}", shown.join(", ")),
+        _ => format!("the folder has {} and {more} more", shown.join(", ")),
     };
-    let files: Vec<_> = files.into_iter().map(sample).collect();
-    samples::read(path, &files)
+    let problem = match is_pattern(path) {
+        true => format!("no file has a name of this pattern with a number for the *: {there}"),
+        false => {
+            format!("there are no mesh files whose names end with the number of a sample: {there}")
+        }
+    };
+    let remedy = "export one mesh file for each sample, such as walk_0001.obj, walk_0002.obj, ...";
+    FileError::content(path, problem, remedy)
 }
 
 fn add(files: &mut Numbered, number: u64, file: &Path) -> Result<(), FileError> {

@@ -7,19 +7,23 @@ use isosheet_mesh::Advice;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// When a sample is.
-#[derive(Clone, Copy)]
-pub(super) enum SampleTime {
-    /// At a time in seconds.
-    Seconds(f64),
-    /// At that of its file, if all files have one, and else at a number of frames.
-    Number(f64),
+/// When the samples are.
+pub(super) enum SampleTimes {
+    /// At times in seconds.
+    Seconds(Vec<f64>),
+    /// At those of their files, if all files have one, and else at a number of frames each, in the order of the
+    /// numbers of the files.
+    Numbers(Vec<u64>),
 }
 
 /// Reads the samples of the mesh in motion at `path`. Polygons are cut into triangles as they are in the
 /// first one.
-pub(super) fn read(path: &Path, files: &[(SampleTime, PathBuf)]) -> Result<MovingMesh, FileError> {
-    let Some(((_, first_file), others)) = files.split_first() else {
+pub(super) fn read(
+    path: &Path,
+    times: SampleTimes,
+    files: &[PathBuf],
+) -> Result<MovingMesh, FileError> {
+    let Some((first_file, others)) = files.split_first() else {
         return Err(FileError::content(
             path,
             "it has no samples",
@@ -29,32 +33,49 @@ pub(super) fn read(path: &Path, files: &[(SampleTime, PathBuf)]) -> Result<Movin
     let first = read_one(first_file)?;
     let mut own_times = vec![first.time()];
     let mut x = first.positions.clone();
-    for (number, (_, file)) in (1..).zip(others) {
+    for (number, file) in (1..).zip(others) {
         let mesh = read_one(file)?;
         check(&mesh, &first, number, [file, first_file])?;
         own_times.push(mesh.time());
         x.extend_from_slice(&mesh.positions);
     }
     let own_times: Option<Vec<f64>> = own_times.into_iter().collect();
-    let mut clock = Clock::Seconds;
-    let mut times = Vec::with_capacity(files.len());
-    for (k, (time, _)) in files.iter().enumerate() {
-        times.push(match (time, &own_times) {
-            (SampleTime::Seconds(t), _) => *t,
-            (SampleTime::Number(_), Some(own)) => own[k],
-            (SampleTime::Number(number), None) => {
-                clock = Clock::Frames;
-                *number
-            }
-        });
-    }
+    let times = match (times, own_times) {
+        (SampleTimes::Seconds(times), _) | (SampleTimes::Numbers(_), Some(times)) => {
+            (Clock::Seconds, times)
+        }
+        (SampleTimes::Numbers(numbers), None) => {
+            check_distances(path, &numbers)?;
+            let frames = (0..numbers.len()).map(|k| k as f64);
+            (Clock::Frames, frames.collect())
+        }
+    };
     let corners: Vec<i64> = first
         .faces
         .as_flattened()
         .iter()
         .map(|v| i64::from(*v))
         .collect();
-    MovingMesh::new(path, (clock, times), x, &corners)
+    MovingMesh::new(path, times, x, &corners)
+}
+
+/// Refuses numbers of frames, in increasing order, of which one seems to be missing.
+fn check_distances(path: &Path, numbers: &[u64]) -> Result<(), FileError> {
+    let pairs = || numbers.windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
+    let least = pairs().map(|(_, distance)| distance).min();
+    match pairs().find(|(_, distance)| Some(*distance) != least) {
+        None => Ok(()),
+        Some((before, distance)) => Err(FileError::content(
+            path,
+            format!(
+                "number {} follows {before}, and others are {} apart",
+                before + distance,
+                least.unwrap_or_default()
+            ),
+            "export the samples that are missing: numbers are consecutive, or all at one distance (0, 10, 20, ...); a \
+             list of files with their times (.pvd) may have any times",
+        )),
+    }
 }
 
 /// Refuses another mesh than that of the first sample.

@@ -118,6 +118,45 @@ fn numbered_polygons_keep_the_triangles_of_the_first() {
     assert_eq!(alone.faces.len(), 2);
 }
 
+/// The k-th file in the order of the numbers is k frames after the first one, whatever distance the numbers have; one
+/// that is missing is told, but for files that have times.
+#[test]
+fn numbers_of_samples_have_one_distance() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |folder: &str, numbers: &[u64], extension: &str| {
+        std::fs::create_dir(dir.path().join(folder)).unwrap();
+        for number in numbers {
+            let path = format!("{folder}/walk_{number:04}.{extension}");
+            let text = match extension {
+                "obj" => format!("v 0 0 {number}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+                _ => format!(
+                    "# vtk DataFile Version 3.0\nwalk\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\n\
+                     TimeValue 1 1 double\n{number}\nPOINTS 3 double\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
+                ),
+            };
+            std::fs::write(dir.path().join(path), text).unwrap();
+        }
+        read(&dir.path().join(folder))
+    };
+    for (folder, numbers) in [("each", [8, 9, 10]), ("tenth", [10, 20, 30])] {
+        let found = write(folder, &numbers, "obj").unwrap();
+        let frames = (found.clock(), found.times());
+        assert_eq!(frames, (Clock::Frames, &[0.0, 1.0, 2.0][..]), "{folder}");
+        let heights = [0, 1, 2].map(|k| found.frame(k)[0][2]);
+        assert_eq!(heights, numbers.map(|n| n as f64));
+    }
+    let said = write("gap", &[8, 9, 11, 12], "obj").unwrap_err();
+    assert!(
+        said.contains("number 11 follows 9, and others are 1 apart"),
+        "{said}"
+    );
+    let found = write("times", &[8, 9, 11], "vtk").unwrap();
+    assert_eq!(
+        (found.clock(), found.times()),
+        (Clock::Seconds, &[8.0, 9.0, 11.0][..])
+    );
+}
+
 #[test]
 fn samples_that_do_not_fit_are_named() {
     let dir = tempfile::tempdir().unwrap();
@@ -137,7 +176,7 @@ fn samples_that_do_not_fit_are_named() {
         "{}",
         says("empty")
     );
-    assert!(says("nothing_*.obj").contains("no mesh files"));
+    assert!(says("nothing_*.obj").contains("the folder has no files"));
     assert!(says("a_*_*.obj").contains("several *"));
     assert!(says("missing.usda").contains("cannot read"));
     let four = [0.0, 1.0, 2.0, 3.0];
@@ -162,6 +201,11 @@ fn samples_that_do_not_fit_are_named() {
         says("more").contains("faces between other vertices"),
         "{}",
         says("more")
+    );
+    let said = says("more/b_*.obj");
+    assert!(
+        said.contains("no file has a name of this pattern with a number for the *: the folder has a_1.obj, a_2.obj"),
+        "{said}"
     );
     write("more/a_2.obj", "f 1 2\n");
     assert!(says("more").contains("a_2.obj: "), "{}", says("more"));

@@ -178,6 +178,56 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
         found.ok_or_else(|| wrong_array(self.path, name, "it is missing"))
     }
 
+    /// An array of so many dimensions, which need not be there, of integers or floats of any size.
+    pub(super) fn numbers_if_there(
+        &mut self,
+        name: &'static str,
+        dimensions: usize,
+    ) -> Result<Option<Shaped<f64>>, FileError> {
+        let Some(kind) = self.kind_if_there(name)? else {
+            return Ok(None);
+        };
+        let read = match kind.trim_matches(['\'', '"', '<', '>', '|']) {
+            f64::KIND => Self::as_floats::<f64>,
+            f32::KIND => Self::as_floats::<f32>,
+            i64::KIND => Self::as_floats::<i64>,
+            i32::KIND => Self::as_floats::<i32>,
+            i16::KIND => Self::as_floats::<i16>,
+            i8::KIND => Self::as_floats::<i8>,
+            u64::KIND => Self::as_floats::<u64>,
+            u32::KIND => Self::as_floats::<u32>,
+            u16::KIND => Self::as_floats::<u16>,
+            u8::KIND => Self::as_floats::<u8>,
+            _ => {
+                let problem = format!("array `{name}`: its type is {kind}");
+                let remedy =
+                    "save numbers: `t.astype(float)`, `x.astype(float)`, `faces.astype(int)`";
+                return Err(FileError::content(self.path, problem, remedy));
+            }
+        };
+        read(self, name, dimensions).map(Some)
+    }
+
+    fn as_floats<T: Number>(
+        &mut self,
+        name: &'static str,
+        dimensions: usize,
+    ) -> Result<Shaped<f64>, FileError> {
+        let (shape, values) = self.get::<T>(name, dimensions)?;
+        Ok((shape, values.into_iter().map(T::as_f64).collect()))
+    }
+
+    /// The type of the entries of an array as numpy writes it, if the array is there.
+    fn kind_if_there(&mut self, name: &'static str) -> Result<Option<String>, FileError> {
+        let error = |problem: String| wrong_array(self.path, name, &problem);
+        let mut entry = match self.zip.by_name(&file_of(name)) {
+            Err(ZipError::FileNotFound) => return Ok(None),
+            other => other.map_err(|e| error(e.to_string()))?,
+        };
+        let header = Header::read(&mut entry).map_err(|e| error(e.to_string()))?;
+        Ok(Some(header.kind))
+    }
+
     /// An array of so many dimensions, which need not be there.
     pub(super) fn get_if_there<T: Number>(
         &mut self,

@@ -1,6 +1,6 @@
 //! Meshes in motion, of archives of numpy.
 
-use super::archive::{ArchiveReader, ArchiveWriter, Shaped};
+use super::archive::{ArchiveReader, ArchiveWriter};
 use crate::format::FileError;
 use isosheet_mesh::wording::given;
 use std::io::{self, Cursor};
@@ -49,15 +49,18 @@ impl MovingMesh {
         let wrong = |problem: String| FileError::content(path, problem, ARRAYS);
         let mut npz =
             ArchiveReader::new(Cursor::new(bytes), path).map_err(|e| wrong(e.to_string()))?;
-        let (clock, (t_shape, times)) = match floats(&mut npz, Clock::Seconds.array(), 1) {
-            Ok(times) => (Clock::Seconds, times),
-            Err(missing) => match floats(&mut npz, Clock::Frames.array(), 1) {
-                Ok(numbers) => (Clock::Frames, numbers),
-                Err(_) => return Err(missing),
-            },
+        let missing = |name: &str| wrong(format!("array `{name}`: it is missing"));
+        let mut array = |name, dimensions| npz.numbers_if_there(name, dimensions);
+        let (clock, (t_shape, times)) = match array(Clock::Seconds.array(), 1)? {
+            Some(times) => (Clock::Seconds, times),
+            None => {
+                let numbers = array(Clock::Frames.array(), 1)?;
+                let numbers = numbers.ok_or_else(|| missing(Clock::Seconds.array()))?;
+                (Clock::Frames, numbers)
+            }
         };
-        let (x_shape, x) = floats(&mut npz, "x", 3)?;
-        let (faces_shape, corners) = integers(&mut npz, "faces", 2)?;
+        let (x_shape, x) = array("x", 3)?.ok_or_else(|| missing("x"))?;
+        let (faces_shape, corners) = array("faces", 2)?.ok_or_else(|| missing("faces"))?;
         let (frames, vertices) = (t_shape[0], x_shape[1]);
         for (name, shape, expected) in [
             ("x", &x_shape, vec![frames, vertices, 3]),
@@ -69,6 +72,18 @@ impl MovingMesh {
                 )));
             }
         }
+        let whole = |(k, v): (usize, &f64)| match v.fract() == 0.0 {
+            true => Ok(*v as i64),
+            false => {
+                let problem = format!("face {} refers to vertex {}", k / 3, given(*v));
+                Err(FileError::content(path, problem, "give whole numbers"))
+            }
+        };
+        let corners: Vec<i64> = corners
+            .iter()
+            .enumerate()
+            .map(whole)
+            .collect::<Result<_, _>>()?;
         Self::new(path, (clock, times), x, &corners)
     }
 
@@ -224,40 +239,12 @@ impl MovingMesh {
     }
 }
 
-/// An array of numbers of 64 or 32 bits.
-fn floats(
-    npz: &mut ArchiveReader<'_, Cursor<&[u8]>>,
-    name: &'static str,
-    dimensions: usize,
-) -> Result<Shaped<f64>, FileError> {
-    npz.get::<f64>(name, dimensions)
-        .or_else(|error| match npz.get::<f32>(name, dimensions) {
-            Ok((shape, values)) => Ok((shape, values.into_iter().map(f64::from).collect())),
-            Err(_) => Err(error),
-        })
-}
-
-/// An array of integers of 32 or 64 bits.
-fn integers(
-    npz: &mut ArchiveReader<'_, Cursor<&[u8]>>,
-    name: &'static str,
-    dimensions: usize,
-) -> Result<Shaped<i64>, FileError> {
-    npz.get::<i64>(name, dimensions)
-        .or_else(|_| npz.get::<i32>(name, dimensions).map(widened))
-        .or_else(|_| npz.get::<u32>(name, dimensions).map(widened))
-}
-
-fn widened<T: Into<i64>>((shape, values): Shaped<T>) -> Shaped<i64> {
-    (shape, values.into_iter().map(T::into).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Trajectory;
-    use crate::format::trajectory::archive::ArchiveWriter;
-    use isosheet_mesh::Sheet;
+    use crate::format::trajectory::npy::Number;
+    use isosheet_mesh::{Advice, Sheet};
 
     fn moving(times: &[f64], heights: &[f64]) -> MovingMesh {
         let x = |z: f64| [0.0, 0.0, z, 1.0, 0.0, z, 0.0, 1.0, 2.0 * z];
@@ -271,8 +258,8 @@ mod tests {
         MovingMesh::parse(&std::fs::read(&path).unwrap(), &path).unwrap()
     }
 
-    /// What is said of an archive with these arrays.
-    fn refused(t: &[f64], x: &[f64], faces: &[i64]) -> String {
+    /// An archive with these arrays.
+    fn archive<T: Number, X: Number, F: Number>(t: &[T], x: &[X], faces: &[F]) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut npz = ArchiveWriter::new(Cursor::new(&mut bytes));
         npz.put("t", &[t.len() as u64], t.iter().copied()).unwrap();
@@ -281,7 +268,12 @@ mod tests {
         npz.put("faces", &[faces.len() as u64 / 3, 3], faces.iter().copied())
             .unwrap();
         npz.finish().unwrap();
-        match MovingMesh::parse(&bytes, Path::new("body.npz")) {
+        bytes
+    }
+
+    /// What is said of an archive with these arrays.
+    fn refused<F: Number>(t: &[f64], x: &[f64], faces: &[F]) -> String {
+        match MovingMesh::parse(&archive(t, x, faces), Path::new("body.npz")) {
             Ok(mesh) => panic!("accepted: {mesh:?}"),
             Err(error) => error.to_string(),
         }
@@ -292,7 +284,7 @@ mod tests {
         let mut x = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
             .as_flattened()
             .repeat(3);
-        let faces = [0, 1, 2];
+        let faces = [0_i64, 1, 2];
         let found = refused(&[0.0, 1.0, 1.0], &x, &faces);
         assert_eq!(found, "body.npz: frame 2 has the time 1 s after 1 s");
         let found = refused(&[0.0, f64::NAN, 1.0], &x, &faces);
@@ -309,6 +301,54 @@ mod tests {
         );
         let other = MovingMesh::parse(b"no archive", Path::new("body.npz")).unwrap_err();
         assert!(other.to_string().starts_with("body.npz: "), "{other}");
+    }
+
+    /// Whole numbers and floats of the sizes that numpy has.
+    #[test]
+    fn numbers_of_any_size_are_read() {
+        let read = |bytes: Vec<u8>| MovingMesh::parse(&bytes, Path::new("body.npz")).unwrap();
+        let x = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5];
+        let expected = read(archive(&[0.0, 1.0], &x.map(f64::from), &[0_i64, 1, 2]));
+        assert_eq!(expected.frame(1)[2], [0.0, 1.0, 5.0]);
+        for bytes in [
+            archive(&[0_i64, 1], &x.map(|c| c as f32), &[0_i16, 1, 2]),
+            archive(&[0_i32, 1], &x.map(|c| c as i8), &[0_u64, 1, 2]),
+            archive(&[0_u8, 1], &x.map(|c| c as u16), &[0.0_f64, 1.0, 2.0]),
+            archive(&[0.0_f32, 1.0], &x, &[0_u32, 1, 2]),
+        ] {
+            assert_eq!(read(bytes), expected);
+        }
+        let x = x.map(f64::from);
+        let found = refused(&[0.0, 1.0], &x, &[0.0, 1.0, 1.5]);
+        assert_eq!(found, "body.npz: face 0 refers to vertex 1.5");
+        let found = refused(&[0.0, 1.0], &x, &[0, 1, -1]);
+        assert_eq!(found, "body.npz: face 0 refers to vertex -1 of 3");
+    }
+
+    /// Half precision, which is too coarse for positions, is refused with the way out.
+    #[test]
+    fn other_types_are_told() {
+        #[derive(Clone, Copy)]
+        struct Half;
+        impl Number for Half {
+            const KIND: &'static str = "f2";
+
+            fn as_f64(self) -> f64 {
+                0.0
+            }
+
+            fn put(self, bytes: &mut Vec<u8>) {
+                bytes.extend([0; 2]);
+            }
+
+            fn of(_: &[u8]) -> Self {
+                Self
+            }
+        }
+        let bytes = archive(&[0.0], &[Half; 9], &[0, 1, 2]);
+        let error = MovingMesh::parse(&bytes, Path::new("body.npz")).unwrap_err();
+        assert_eq!(error.to_string(), "body.npz: array `x`: its type is '<f2'");
+        assert!(error.advice().unwrap().contains("`x.astype(float)`"));
     }
 
     #[test]

@@ -7,6 +7,9 @@ pub(super) trait Number: Copy {
     /// Its kind and its bytes, as numpy names them.
     const KIND: &'static str;
 
+    /// The nearest 64-bit float.
+    fn as_f64(self) -> f64;
+
     /// Adds its bytes, the lowest first.
     fn put(self, bytes: &mut Vec<u8>);
 
@@ -18,6 +21,10 @@ macro_rules! numbers {
     ($($number:ty: $kind:literal),*) => {$(
         impl Number for $number {
             const KIND: &'static str = $kind;
+
+            fn as_f64(self) -> f64 {
+                self as f64
+            }
 
             fn put(self, bytes: &mut Vec<u8>) {
                 bytes.extend(self.to_le_bytes());
@@ -32,7 +39,9 @@ macro_rules! numbers {
     )*};
 }
 
-numbers!(f64: "f8", f32: "f4", i64: "i8", i32: "i4", u32: "u4");
+numbers!(
+    f64: "f8", f32: "f4", i64: "i8", i32: "i4", i16: "i2", i8: "i1", u64: "u8", u32: "u4", u16: "u2", u8: "u1"
+);
 
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 
@@ -171,7 +180,8 @@ impl Header {
     pub(super) fn order_of<T: Number>(&self) -> Option<ByteOrder> {
         let kind = self.kind.trim_matches(['\'', '"']);
         match kind.strip_suffix(T::KIND)? {
-            "<" => Some(ByteOrder::LowestFirst),
+            // A single byte has no order.
+            "<" | "|" => Some(ByteOrder::LowestFirst),
             ">" => Some(ByteOrder::HighestFirst),
             _ => None,
         }
