@@ -48,6 +48,8 @@ mod driven_surface;
 mod edit;
 mod engine_problem;
 mod error;
+#[cfg(feature = "cli")]
+mod face_moments;
 mod fold_scene;
 mod folding;
 mod follower_loads;
@@ -110,6 +112,8 @@ mod yields;
 
 #[cfg(feature = "cli")]
 pub(crate) use action_scene::{Action, ActionScene, DrapedBody, HeldCorners, SheetSource};
+#[cfg(feature = "cli")]
+pub(crate) use face_moments::FaceMoments;
 pub use air::Air;
 pub use attached_flow::AttachedFlow;
 pub use bodies::Body;

@@ -15,9 +15,9 @@ pub(super) struct Acting {
     pub(super) mesh: PathBuf,
     #[command(flatten)]
     pub(super) composing: Composing,
-    /// The axis of the files that points upwards [default: y of glTF files, z of others]
-    #[arg(long, value_name = "AXIS", value_enum)]
-    pub(super) up: Option<UpAxis>,
+    /// The axis of the files that points upwards; of glTF files it is y by definition
+    #[arg(long, value_name = "AXIS", value_enum, default_value_t)]
+    pub(super) up: UpAxis,
 }
 
 impl Acting {
@@ -47,6 +47,7 @@ impl Acting {
             source: sheet.source,
             positions: sheet.positions,
             faces: sheet.faces,
+            moments: sheet.moments,
             material: self.composing.material_or(material),
             action,
         };
