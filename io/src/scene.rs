@@ -48,6 +48,8 @@ mod driven_surface;
 mod edit;
 mod engine_problem;
 mod error;
+#[cfg(feature = "cli")]
+mod face_moments;
 mod fold_scene;
 mod folding;
 mod follower_loads;
@@ -126,6 +128,8 @@ pub use drawing::DrawingFile;
 pub use edit::{Edit, EditError};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
+#[cfg(feature = "cli")]
+pub(crate) use face_moments::FaceMoments;
 pub use fold_scene::{FoldScene, Panels, Touch};
 #[cfg(feature = "run")]
 pub(crate) use folding::FollowedFolds;

@@ -157,7 +157,7 @@ mod tests {
         assert_eq!(code(&error), 6);
         let error = Error::from(RunError::Busy { folder: "a".into() });
         assert_eq!(code(&error), 5);
-        assert!(advice(&error).is_some_and(|advice| advice.contains("--out")));
+        assert!(advice(&error).is_some_and(|advice| advice.contains("another folder")));
         let error = Error::from(StepError::StepSize { h: 0.0, t: 1.0 }).context("run");
         assert_eq!(code(&error), 1);
         assert_eq!(code(&Error::from(Interrupted)), 130);

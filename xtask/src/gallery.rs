@@ -1,6 +1,6 @@
 //! `gallery`: scenes that anybody can run, each as a labelled picture, and a film of one of them.
 //!
-//! `xtask/scenes/gallery.toml` says which, and how they are shown. It is read when the command runs, so that the runs that
+//! `xtask/gallery.toml` says which, and how they are shown. It is read when the command runs, so that the runs that
 //! are there are drawn anew without a build.
 
 use crate::progress::Progress;
@@ -22,7 +22,7 @@ pub(crate) struct GalleryArgs {
 }
 
 /// What is shown.
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/gallery.toml");
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/gallery.toml");
 
 /// The gallery.
 #[derive(Debug, Deserialize)]

@@ -233,7 +233,7 @@ fn folders_of_others_are_left_alone() {
     let (code, text) = reproduce(&out, "1", &[]);
     assert_eq!(code, Some(4), "{text}");
     assert!(
-        text.contains("= help: choose an empty or a new folder with --out"),
+        text.contains("= help: choose an empty or a new folder for the run"),
         "{text}"
     );
     assert_eq!(run(&["condition-table", "--level", "0"], &out).0, Some(4));

@@ -47,6 +47,7 @@ impl Acting {
             source: sheet.source,
             positions: sheet.positions,
             faces: sheet.faces,
+            moments: sheet.moments,
             material: self.composing.material_or(material),
             action,
         };

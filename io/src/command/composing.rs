@@ -1,6 +1,6 @@
 //! What commands share that compose their scene themselves.
 
-use super::failure::{Code, Done, Failure, Format};
+use super::failure::{Code, Done, Failure, Format, Message};
 use super::message::print_result;
 use super::progress::event;
 use super::simulate::{How, default_folder};
@@ -151,19 +151,39 @@ impl Composing {
         }
         let folder = self.folder(of);
         let run = if self.force { simulate_anew } else { simulate };
-        self.how
-            .show(&folder, |progress| run(&file, &folder, progress))?;
+        let ran = parsed(&self.scene_path(of), text).and_then(|file| {
+            self.how
+                .show(&folder, |progress| run(&file, &folder, progress))
+        });
+        ran.map_err(|failure| self.naming_scene(failure))?;
         let words = verdict(&Recording::read(&folder)?);
         if self.format() == Format::Json {
             event(&json!({ "event": "verdict", "text": words, "scene": self.scene }));
             return Ok(());
         }
-        if let Some(words) = words {
-            print_result(format_args!("{words}"))?;
-        }
-        match &self.scene {
-            Some(scene) => print_result(format_args!("scene: {}", scene.display())),
+        // Warnings name its keys.
+        let own = folder.join("scene.toml");
+        let scene = self.scene.as_ref().unwrap_or(&own);
+        print_result(format_args!("scene: {}", scene.display()))?;
+        match words {
+            Some(words) => print_result(format_args!("{words}")),
             None => Ok(()),
+        }
+    }
+
+    /// A failure that names keys of the scene, with where these keys are.
+    fn naming_scene(&self, failure: Failure) -> Failure {
+        match (&failure.message, &self.scene) {
+            (Message::Scene(_), Some(scene)) => {
+                let scene = scene.display();
+                failure.remedy(format!(
+                    "the keys are those of {scene}: edit it, and run it by `isosheet simulate {scene}`"
+                ))
+            }
+            (Message::Scene(_), None) => failure.remedy(
+                "the keys are those of the scene: write it by `-o FILE`, edit it, and run it by `isosheet simulate FILE`",
+            ),
+            _ => failure,
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::acting::Acting;
 use super::composing::length;
 use super::failure::{Done, Failure};
-use super::given::{Given, GivenSheet, longest, scaled};
+use super::given::{Given, GivenSheet, longest, moments, scaled};
 use crate::run::ActionVerdict;
 use crate::scene::{Action, DrapedBody, SheetSource, bounds};
 use clap::Args;
@@ -18,7 +18,7 @@ Examples:
 
 const NOTES: &str = "\
 The sheet is any mesh file that a scene reads (OBJ, PLY, STL, OFF, glTF, FOLD ...), or a drawing (SVG, DXF), which is
-meshed. A flat one lies on its face, above the middle of the table or of the body, and falls. It is of polycarbonate
+meshed. A flat one lies on its face, the centre of its area above that of the table or of the body, and falls. It is of polycarbonate
 film, and its longest side 0.5 m, where nothing else is said; a drawing has its own size. Faces of a coarse mesh are
 divided. The run ends when the sheet is at rest, or after a time. The last line says how deep the hem hangs.";
 
@@ -66,7 +66,11 @@ impl Drape {
                 "{} is {of_body:.3} m long beside a sheet of {of_sheet:.3} m, as if it had another unit",
                 tool.display()
             );
-            return Err(Failure::misuse(message).remedy("say how long it is by `--tool-size`"));
+            let remedy = match self.tool_size {
+                None => "say how long it is by `--tool-size`",
+                Some(_) => "give another length by `--tool-size`, or of the sheet by `--size`",
+            };
+            return Err(Failure::misuse(message).remedy(remedy));
         }
         let path = self
             .acting
@@ -74,7 +78,8 @@ impl Drape {
             .named_from_scene(&self.acting.mesh, tool)?;
         Ok(DrapedBody::Tool {
             file: given.file(&path, scale),
-            bounds: bounds(&positions),
+            centre: moments(tool, &positions, &given.faces)?.centre,
+            top: bounds(&positions)[1][2],
         })
     }
 }

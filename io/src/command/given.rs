@@ -6,7 +6,9 @@ use super::info::refuse_folder;
 use super::message::print_progress;
 use crate::format::drawing::{DrawingFormat, DrawingOptions, DrawnSheet};
 use crate::format::read_mesh_with;
-use crate::scene::{DrawingFile, MeshFile, PolygonFaces, SheetSource, UpAxis, bounds};
+use crate::mesh::Topology;
+use crate::mesh::wording::counted;
+use crate::scene::{DrawingFile, FaceMoments, MeshFile, PolygonFaces, SheetSource, UpAxis, bounds};
 use crate::{MeshFormat, MeshOptions, Polygons};
 use std::path::Path;
 
@@ -18,7 +20,7 @@ const SPACING: f64 = 0.04;
 pub(super) struct Given {
     /// The vertices with z upwards, in the unit of the file.
     pub(super) positions: Vec<[f64; 3]>,
-    pub(super) faces: usize,
+    pub(super) faces: Vec<[u32; 3]>,
     up: UpAxis,
 }
 
@@ -28,6 +30,7 @@ pub(super) struct GivenSheet {
     /// The vertices, metres.
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) faces: usize,
+    pub(super) moments: FaceMoments,
 }
 
 impl Given {
@@ -49,7 +52,7 @@ impl Given {
         let points = mesh.positions.as_chunks::<3>().0.iter();
         let given = Self {
             positions: points.map(|p| up.place(*p)).collect(),
-            faces: mesh.faces.len(),
+            faces: mesh.faces,
             up,
         };
         match longest(&given.positions) > 0.0 {
@@ -87,10 +90,36 @@ impl GivenSheet {
         }
         let given = Given::read(file, up)?;
         let scale = composing.size().unwrap_or(size) / longest(&given.positions);
+        let source = SheetSource::File(given.file(&path, scale));
+        Self::of_one_piece(file, source, scaled(&given.positions, scale), &given.faces)
+    }
+
+    /// Refuses a file with several pieces: one would be held, or above the body, and the others not.
+    fn of_one_piece(
+        file: &Path,
+        source: SheetSource,
+        positions: Vec<[f64; 3]>,
+        faces: &[[u32; 3]],
+    ) -> Result<Self, Failure> {
+        // What is no surface has one problem more, of which the scene says where it is.
+        let pieces =
+            Topology::from_faces(positions.len(), faces).map_or(1, |t| t.component_count());
+        if pieces > 1 {
+            let message = format!(
+                "{} has {}",
+                file.display(),
+                counted(pieces, "separate piece", "separate pieces")
+            );
+            return Err(Failure::new(Code::Input, message).remedy(
+                "give each command a file with one piece; pieces that meet in vertices at the same place are joined by \
+                 `isosheet convert --weld`",
+            ));
+        }
         Ok(Self {
-            source: SheetSource::File(given.file(&path, scale)),
-            positions: scaled(&given.positions, scale),
-            faces: given.faces,
+            moments: moments(file, &positions, faces)?,
+            source,
+            positions,
+            faces: faces.len(),
         })
     }
 
@@ -114,15 +143,25 @@ impl GivenSheet {
             ..DrawingOptions::with_spacing(SPACING * size)
         };
         let drawn = read(&options)?;
-        Ok(Self {
-            source: SheetSource::Drawing(DrawingFile {
-                scale: options.scale,
-                ..DrawingFile::new(path, options.spacing)
-            }),
-            positions: drawn.mesh.positions.as_chunks::<3>().0.to_vec(),
-            faces: drawn.mesh.faces.len(),
-        })
+        let source = SheetSource::Drawing(DrawingFile {
+            scale: options.scale,
+            ..DrawingFile::new(path, options.spacing)
+        });
+        let positions = drawn.mesh.positions.as_chunks::<3>().0.to_vec();
+        Self::of_one_piece(file, source, positions, &drawn.mesh.faces)
     }
+}
+
+/// What the faces of a file are like as a whole.
+pub(super) fn moments(
+    file: &Path,
+    positions: &[[f64; 3]],
+    faces: &[[u32; 3]],
+) -> Result<FaceMoments, Failure> {
+    FaceMoments::of(positions, faces).ok_or_else(|| {
+        let message = format!("the faces of {} have no area", file.display());
+        Failure::new(Code::Input, message).remedy("correct its coordinates")
+    })
 }
 
 /// A spacing that no drawing is as large as, metres.

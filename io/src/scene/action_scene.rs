@@ -1,6 +1,7 @@
 //! Scenes in which a sheet of a file does one thing: it drapes over a body, hangs, or is crumpled.
 
 use super::drawing::DrawingFile;
+use super::face_moments::FaceMoments;
 use super::fold_scene::{path_value, two_digits};
 use super::mesh_file::{MeshFile, PolygonFaces};
 use super::pose::{Pose, Turn};
@@ -8,12 +9,14 @@ use super::selection::bounds;
 use super::up_axis::UpAxis;
 use crate::format::FileError;
 use isosheet_dynamics::Material;
+use nalgebra::{Unit, UnitQuaternion, Vector3};
+use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write;
 
 /// What a sheet does.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
-    /// It falls on a body, with its middle above that of the body.
+    /// It falls on a body, with the centre of its area above that of the body.
     Drape(DrapedBody),
     /// It swings down from where it is held.
     Hang(HeldCorners),
@@ -30,8 +33,10 @@ pub(crate) enum DrapedBody {
     Tool {
         /// The file as the scene names it.
         file: MeshFile,
-        /// The bounds of the file as the scene places it, metres.
-        bounds: [[f64; 3]; 2],
+        /// The centre of the area of the file as the scene places it, metres.
+        centre: [f64; 3],
+        /// The height of its highest point, metres.
+        top: f64,
     },
 }
 
@@ -62,6 +67,8 @@ pub(crate) struct ActionScene {
     pub(crate) positions: Vec<[f64; 3]>,
     /// The number of its faces.
     pub(crate) faces: usize,
+    /// Of its faces in the frame of the mesh, metres.
+    pub(crate) moments: FaceMoments,
     /// The material by its name.
     pub(crate) material: String,
     /// What the sheet does.
@@ -71,7 +78,7 @@ pub(crate) struct ActionScene {
 /// A sheet has at least so many faces: those of a coarser mesh are divided.
 const LEAST_FACES: usize = 400;
 
-/// A sheet is flat that is thinner than this part of its longest side.
+/// A sheet is flat that is thinner along the normal of its faces than this part of its longest side.
 const FLAT: f64 = 0.01;
 
 /// Earth's acceleration, m/s2.
@@ -100,13 +107,15 @@ impl ActionScene {
         let points: Vec<[f64; 3]> = self.positions.iter().map(|p| turned.place(*p)).collect();
         let [low, high] = bounds(&points);
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
-        let middle = |k: usize| 0.5 * (low[k] + high[k]);
+        let centre = turned.place(self.moments.centre);
         let bottom = match self.action {
             Action::Drape(_) => ABOVE * size,
             Action::Hang(_) => low[2] - high[2],
             Action::Crumple => 0.0,
         };
-        let position = [-middle(0), -middle(1), bottom - low[2]].map(digits);
+        let position = [-centre[0], -centre[1], bottom - low[2]].map(digits);
+        // The sides of the box about it, beside the centre of its area.
+        let sides = [0, 1].map(|k| [low[k] - centre[k], high[k] - centre[k]]);
         let half = [0, 1].map(|k| 0.5 * (high[k] - low[k]));
         let mut text = format!(
             "# {}\n# Lengths in metres, times in seconds, angles in degrees. docs/scene.md describes all keys.\nversion = 1\n\n\
@@ -134,8 +143,8 @@ impl ActionScene {
                 15.0 * seconds
             }
             Action::Hang(held) => {
-                let x = [-half[0], half[0]].map(digits);
-                let y = digits(half[1]);
+                let x = sides[0].map(digits);
+                let y = digits(sides[1][1]);
                 let points = match held {
                     HeldCorners::Corner => format!("[{:?}, {y:?}, 0.0]", x[0]),
                     HeldCorners::TwoCorners => {
@@ -147,7 +156,7 @@ impl ActionScene {
             }
             Action::Crumple => {
                 let push = two_digits(10.0 * size);
-                text.push_str(&self.crumpled(half, high[2] - low[2], size, push));
+                text.push_str(&self.crumpled(sides, high[2] - low[2], size, push));
                 push + 10.0 * seconds
             }
         };
@@ -186,17 +195,37 @@ impl ActionScene {
     /// The turn that lays a flat sheet on its face. One that is crumpled is turned about z besides, so that the plates come
     /// from the corners of a rectangle.
     fn turn(&self) -> Option<Turn> {
-        let [low, high] = bounds(&self.positions);
-        let extent = [0, 1, 2].map(|k| high[k] - low[k]);
-        let longest = extent.into_iter().fold(0.0, f64::max);
-        let thin = (0..3).find(|&k| extent[k] < FLAT * longest);
-        let (axis, angle) = match (thin, &self.action) {
-            (Some(0), _) => ([0.0, 1.0, 0.0], -90.0),
-            (Some(1), _) => ([1.0, 0.0, 0.0], 90.0),
-            (_, Action::Crumple) => ([0.0, 0.0, 1.0], 45.0),
-            _ => return None,
+        let about = match self.action {
+            Action::Crumple => UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_4),
+            Action::Drape(_) | Action::Hang(_) => UnitQuaternion::identity(),
         };
-        Some(Turn { axis, angle })
+        let (axis, angle) = (about * self.laid()).axis_angle()?;
+        // Far below what can be seen, and above the round-off of quarter turns.
+        let rounded = |number: f64| (1e9 * number).round() / 1e9 + 0.0;
+        let angle = rounded(angle.to_degrees());
+        let axis = axis.into_inner().map(rounded).into();
+        (angle != 0.0).then_some(Turn { axis, angle })
+    }
+
+    /// The rotation that turns the normal of a flat sheet upwards.
+    fn laid(&self) -> UnitQuaternion<f64> {
+        let normal = self.moments.normal;
+        let heights = self
+            .positions
+            .iter()
+            .map(|p| normal.dot(&Vector3::from(*p)));
+        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| {
+            (h.min(low), h.max(high))
+        });
+        let [least, largest] = bounds(&self.positions);
+        let longest = (0..3).map(|k| largest[k] - least[k]).fold(0.0, f64::max);
+        let across = normal.cross(&Vector3::z());
+        match Unit::try_new(across, 0.0) {
+            Some(axis) if high - low < FLAT * longest => {
+                UnitQuaternion::from_axis_angle(&axis, across.norm().atan2(normal.z))
+            }
+            _ => UnitQuaternion::identity(),
+        }
     }
 
     fn title(&self) -> String {
@@ -229,7 +258,7 @@ impl ActionScene {
     }
 
     /// The plates that push a sheet together within a time (seconds), and the table that it lies on.
-    fn crumpled(&self, half: [f64; 2], height: f64, size: f64, push: f64) -> String {
+    fn crumpled(&self, sides: [[f64; 2]; 2], height: f64, size: f64, push: f64) -> String {
         let mut text = String::new();
         if let Ok(material) = Material::named(&self.material)
             && material.yields.is_some()
@@ -240,7 +269,7 @@ impl ActionScene {
         text.push_str("start = { perturbation = 0.001, seed = 1 }\n");
         let [hold, free] = [1.2, 1.5].map(|part| two_digits(part * push));
         let mut plate = |from: f64, to: f64, axis: &str, turn: Option<([f64; 3], f64)>| {
-            let [out, inward] = [from, to].map(two_digits);
+            let [out, inward] = [from, to].map(digits);
             let turn = turn.map_or(String::new(), |(axis, angle)| {
                 format!("pose = {{ turn = {{ axis = {axis:?}, angle = {angle:?} }} }}\n")
             });
@@ -253,13 +282,14 @@ impl ActionScene {
             );
         };
         for (k, axis) in ["x", "y"].into_iter().enumerate() {
-            for sign in [-1.0, 1.0] {
+            for side in sides[k] {
                 // The half space is on the outer side.
+                let sign = side.signum();
                 let turn = match k {
                     0 => ([0.0, 1.0, 0.0], -90.0 * sign),
                     _ => ([1.0, 0.0, 0.0], 90.0 * sign),
                 };
-                let from = sign * 1.02 * half[k];
+                let from = 1.02 * side;
                 plate(from, CRUMPLED * from, axis, Some(turn));
             }
         }
@@ -292,13 +322,11 @@ fn draped(body: &DrapedBody, half: [f64; 2]) -> Result<String, FileError> {
             let shape = format!("{{ cylinder = {{ radius = {radius:?}, height = {height:?} }} }}");
             (shape, [0.0, 0.0, digits(-0.5 * height)], "a round table")
         }
-        DrapedBody::Tool { file, bounds } => {
-            let [low, high] = *bounds;
-            let middle = |k: usize| digits(-0.5 * (low[k] + high[k]));
+        DrapedBody::Tool { file, centre, top } => {
             let shape = format!("{{ file = {} }}", file_value(file)?);
             (
                 shape,
-                [middle(0), middle(1), digits(-high[2])],
+                [-centre[0], -centre[1], -top].map(digits),
                 "its top is at z = 0",
             )
         }
@@ -325,10 +353,74 @@ fn file_value(file: &MeshFile) -> Result<String, FileError> {
     Ok(text)
 }
 
-/// A coordinate as a scene shows it: to a part in a million, and without the round-off of one that is 0.
+/// A coordinate as a scene shows it: with all digits to a picometre, without the round-off of one that is 0.
 fn digits(length: f64) -> f64 {
-    match length.abs() < 1e-12 {
-        true => 0.0,
-        false => format!("{length:.5e}").parse().unwrap_or(length),
+    format!("{length:.12}").parse().unwrap_or(length) + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strip narrower than a hundredth of its length, far from the origin.
+    fn strip(action: Action) -> ActionScene {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.005], [0.0, 0.005]];
+        let positions = corners.map(|[x, y]| [2_600_000.25 + x, y, 3.0]).to_vec();
+        let moments = FaceMoments::of(&positions, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+        ActionScene {
+            source: SheetSource::File(MeshFile::new("strip.obj")),
+            positions,
+            faces: 2,
+            moments,
+            material: "office paper".to_owned(),
+            action,
+        }
+    }
+
+    #[test]
+    fn a_narrow_strip_far_away_lies_on_its_face_above_the_table() {
+        let scene = strip(Action::Drape(DrapedBody::Table));
+        assert_eq!(scene.turn(), None);
+        let text: toml::Table = scene.text().unwrap().parse().unwrap();
+        let position = text["sheet"]["placement"]["position"].as_array().unwrap();
+        let position: Vec<f64> = position.iter().map(|c| c.as_float().unwrap()).collect();
+        for (found, expected) in position.iter().zip([-2_600_000.75, -0.0025, ABOVE - 3.0]) {
+            assert!((found - expected).abs() < 1e-8, "{position:?}");
+        }
+        let radius = text["obstacle"][0]["shape"]["cylinder"]["radius"].as_float();
+        assert!(radius > Some(0.0));
+    }
+
+    /// Quarter turns are exact, and the plates begin outside of the sheet whatever its size is.
+    #[test]
+    fn an_upright_sheet_is_laid_and_plates_begin_outside() {
+        let upright = |action, size: f64| {
+            let mut scene = strip(action);
+            scene.positions = vec![
+                [0.0; 3],
+                [size, 0.0, 0.0],
+                [size, 0.0, size],
+                [0.0, 0.0, size],
+            ];
+            scene.moments = FaceMoments::of(&scene.positions, &[[0, 1, 2], [0, 2, 3]]).unwrap();
+            scene
+        };
+        let turn = upright(Action::Hang(HeldCorners::Corner), 1.0).turn();
+        let axis = [1.0, 0.0, 0.0];
+        assert_eq!(turn, Some(Turn { axis, angle: 90.0 }));
+        for size in [0.1, 0.145, 0.149] {
+            let text: toml::Table = upright(Action::Crumple, size)
+                .text()
+                .unwrap()
+                .parse()
+                .unwrap();
+            let keys = &text["obstacle"][1]["motion"]["x"]["keyframes"]["keys"];
+            let out = keys[0][1].as_float().unwrap();
+            // The sheet stands on its corner.
+            assert!(
+                (out / (0.5 * 2.0_f64.sqrt() * size) - 1.02).abs() < 1e-6,
+                "{out}"
+            );
+        }
     }
 }

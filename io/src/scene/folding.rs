@@ -74,6 +74,12 @@ pub struct Folding {
 /// Some creases of a pattern.
 ///
 /// ```toml
+/// version = 1
+///
+/// [sheet]
+/// mesh = { file = { path = "crane.fold" } }
+/// material = "office paper"
+///
 /// [folding]
 /// stiffness = 0.05
 /// time = 3

@@ -7,11 +7,12 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// A square of 6 by 6 quads of side 1 in the plane y = 0, as programs write it whose y axis points upwards.
-fn cloth() -> String {
+/// A square of 6 by 6 quads of side 1 in the plane y = 0, as programs write it whose y axis points upwards,
+/// beginning at x.
+fn cloth(x: f64) -> String {
     let mut text = String::new();
     for (i, j) in (0..7).flat_map(|j| (0..7).map(move |i| (i, j))) {
-        let _ = writeln!(text, "v {i} 0 {j}");
+        let _ = writeln!(text, "v {} 0 {j}", x + f64::from(i));
     }
     for a in (0..6).flat_map(|j| (0..6).map(move |i| 7 * j + i + 1)) {
         let _ = writeln!(text, "f {a} {} {} {}", a + 1, a + 8, a + 7);
@@ -47,7 +48,7 @@ fn lowest(points: &[[f64; 3]]) -> f64 {
 #[test]
 fn a_cloth_drapes_over_a_table_and_over_a_body() {
     let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("cloth.obj"), cloth()).unwrap();
+    fs::write(dir.path().join("cloth.obj"), cloth(0.0)).unwrap();
     fs::write(dir.path().join("block.obj"), BLOCK).unwrap();
     let (said, recording) = done(dir.path(), &["drape", "cloth.obj", "out", "--table"]);
     // The cloth is 0.5 m wide, and the table 0.3 m.
@@ -105,7 +106,7 @@ fn the_sheet_of_a_drawing_has_its_own_size() {
 #[test]
 fn a_towel_hangs_by_its_corners() {
     let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("towel.obj"), cloth()).unwrap();
+    fs::write(dir.path().join("towel.obj"), cloth(2_600_000.25)).unwrap();
     let words = [
         "hang",
         "towel.obj",
@@ -116,7 +117,7 @@ fn a_towel_hangs_by_its_corners() {
         "0.3",
     ];
     let (said, recording) = done(dir.path(), &words);
-    // The opposite corner is as far down as the diagonal is long, which stretches by a percent at most.
+    // It is held by a corner wherever its coordinates are, and the opposite corner is as far down as the diagonal is long, which stretches by a percent at most.
     let diagonal = 0.3 * 2.0_f64.sqrt();
     let depth = -lowest(last(&recording));
     assert!(
@@ -149,16 +150,78 @@ fn a_sheet_is_crumpled() {
         "{said}"
     );
     assert!(recording.summary.as_ref().unwrap().ending.plastic > Some(0.0));
-    assert!(
-        said.contains("crumpled: from 141 mm by 141 mm by 0 mm to"),
-        "{said}"
+    assert!(said.contains("from 100 mm by 100 mm by 0 mm to"), "{said}");
+}
+
+/// A sheet that does not yield is flat again, and the words say so.
+#[test]
+fn a_film_springs_back() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("film.obj"), cloth(0.0)).unwrap();
+    let (said, _) = done(
+        dir.path(),
+        &["crumple", "film.obj", "out", "--material", "PET film"],
     );
+    let words = "it sprang back, as its material does not yield: from 100 mm by 0 mm by 100 mm to";
+    assert!(said.contains(words), "{said}");
+}
+
+/// The reader of glTF files has turned a body already: a block of 2 by 2 by 1 stays on its largest side.
+#[test]
+fn a_body_of_a_gltf_file_stands_upright() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("cloth.obj"), cloth(0.0)).unwrap();
+    fs::write(dir.path().join("block.obj"), BLOCK).unwrap();
+    let convert = run(dir.path(), &["convert", "block.obj", "block.glb"]);
+    assert_eq!(code(&convert), Some(0), "{}", stderr(&convert));
+    let words = ["drape", "cloth.obj", "out", "--on", "block.glb"];
+    let (said, recording) = done(dir.path(), &words);
+    // In the unit of the cloth, a twelfth of a metre.
+    let distance = |x: f64, z: f64| {
+        let point = nalgebra::Vector3::new(x / 12.0, 0.0, z / 12.0);
+        recording.obstacles[0].signed_distance(0.0, &point).value
+    };
+    assert!(distance(0.9, -0.9) < 0.0 && distance(0.0, -1.1) > 0.0);
+    assert!(said.contains("draped: the hem hangs"), "{said}");
+}
+
+/// The middle of the box about a right-angled triangle is on its longest side: it would fall off.
+#[test]
+fn a_triangle_drapes_about_the_centre_of_its_area() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(
+        dir.path().join("triangle.off"),
+        "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+    )
+    .unwrap();
+    let (said, _) = done(dir.path(), &["drape", "triangle.off", "out"]);
+    assert!(said.contains("draped: the hem hangs"), "{said}");
+}
+
+#[test]
+fn a_cloth_that_falls_between_two_blocks_is_not_draped() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("cloth.obj"), cloth(0.0)).unwrap();
+    let second = BLOCK
+        .replace("v 0", "v 20")
+        .replace("v 2 ", "v 22 ")
+        .replace(
+            "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8",
+            "",
+        )
+        + "f -8 -5 -6 -7\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -7 -6 -2 -3\nf -6 -5 -1 -2\nf -5 -8 -4 -1\n";
+    fs::write(dir.path().join("blocks.obj"), BLOCK.to_owned() + &second).unwrap();
+    let words = ["drape", "cloth.obj", "out", "--on", "blocks.obj"];
+    let (said, _) = done(dir.path(), &words);
+    let last = said.lines().last().unwrap();
+    assert!(last.starts_with("warning: the sheet fell past"), "{said}");
+    assert!(!said.contains("draped"), "{said}");
 }
 
 #[test]
 fn misuse_is_answered_before_anything_is_run() {
     let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("cloth.obj"), cloth()).unwrap();
+    fs::write(dir.path().join("cloth.obj"), cloth(0.0)).unwrap();
     fs::write(dir.path().join("block.obj"), BLOCK).unwrap();
     fs::write(
         dir.path().join("open.svg"),
@@ -166,6 +229,16 @@ fn misuse_is_answered_before_anything_is_run() {
             .replace("/></svg>", "/>")
             .replace("<rect", "<path d='M0 0 H9'")
             + "</svg>",
+    )
+    .unwrap();
+    let vast = BLOCK.replace("v 2", "v 2000");
+    fs::write(dir.path().join("vast.obj"), vast).unwrap();
+    let square = |x: u32| format!("v {x} 0 0\nv {} 0 0\nv {x} 1 0\nf -3 -2 -1\n", x + 1);
+    fs::write(dir.path().join("pieces.obj"), square(0) + &square(3)).unwrap();
+    let second = "<rect stroke='black' x='200' y='10' width='20' height='80'/></svg>";
+    fs::write(
+        dir.path().join("pieces.svg"),
+        NAPKIN.replace("</svg>", second),
     )
     .unwrap();
     fs::create_dir(dir.path().join("full")).unwrap();
@@ -199,8 +272,27 @@ fn misuse_is_answered_before_anything_is_run() {
         "--tool-size",
         "100",
     ];
-    refused(&far, 2, &["as if it had another unit", "--tool-size"]);
-    fs::write(dir.path().join("own.toml"), "version = 1\n").unwrap();
+    refused(
+        &far,
+        2,
+        &["as if it had another unit", "give another length"],
+    );
+    let unsaid = ["drape", "cloth.obj", "--on", "vast.obj"];
+    refused(&unsaid, 2, &["say how long it is by `--tool-size`"]);
+    for command in ["drape", "hang", "crumple"] {
+        refused(
+            &[command, "pieces.obj"],
+            3,
+            &["2 separate pieces", "one piece"],
+        );
+        refused(
+            &[command, "pieces.svg"],
+            3,
+            &["2 separate pieces", "one piece"],
+        );
+    }
+    let own = "version = 1\n[sheet]\nmesh = { square = { side = 1, level = 1 } }\n";
+    fs::write(dir.path().join("own.toml"), own).unwrap();
     let files = ["cloth.obj", "block.obj", "own.toml"];
     let contents = || files.map(|name| fs::read(dir.path().join(name)).unwrap());
     let before = contents();

@@ -256,11 +256,15 @@ fn runs_warn_of_wrong_units() {
 #[test]
 fn scenes_of_the_figures_are_checked_and_run() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../xtask/scenes");
-    let files: Vec<_> = fs::read_dir(&scenes)
-        .unwrap()
+    let folders = [scenes.clone(), scenes.join("gallery")];
+    let entries = folders
+        .iter()
+        .flat_map(|folder| fs::read_dir(folder).unwrap());
+    let files: Vec<_> = entries
         .map(|e| e.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
         .collect();
-    assert!(files.len() >= 16, "{files:?}");
+    assert!(files.len() >= 20, "{files:?}");
     let folder = tempfile::tempdir().unwrap();
     for file in files {
         let output = run(folder.path(), &["check", file.to_str().unwrap()]);

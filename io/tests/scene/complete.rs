@@ -232,7 +232,7 @@ const ALL_KEYS: [&str; 15] = [
     stiffness = 0.01
     flat_stiffness = 0.5
     part = 0.75
-    order = ["mountains", { edges = [0] }]
+    order = ["mountains", { edges = [0] }, "valleys"]
     frame = 1"#,
     r#"version = 1
     [sheet]

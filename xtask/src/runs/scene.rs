@@ -231,8 +231,8 @@ mod tests {
 
     #[test]
     fn every_file_of_the_folder_makes_a_simulation() {
-        for file in fs::read_dir(FOLDER).unwrap() {
-            let path = file.unwrap().path();
+        let entries = fs::read_dir(FOLDER).unwrap().map(|e| e.unwrap().path());
+        for path in entries.filter(|path| path.is_file()) {
             let name = path.file_stem().unwrap().to_str().unwrap();
             let scene = FigureScene::of(name, name, &[]).unwrap();
             assert!(scene.setup().unwrap().start().is_ok(), "{name}");
