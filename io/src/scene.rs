@@ -448,10 +448,10 @@ impl Scene {
             let key = sheets::sheet_key(count, k);
             match &mut sheet.mesh {
                 Mesh::File(file) => {
-                    files.push(NamedFile::mesh(key.name("mesh.file"), &mut file.path))
+                    files.push(NamedFile::mesh(key.name("mesh.file"), &mut file.path));
                 }
                 Mesh::Drawing(file) => {
-                    files.push(NamedFile::mesh(key.name("mesh.drawing"), &mut file.path))
+                    files.push(NamedFile::mesh(key.name("mesh.drawing"), &mut file.path));
                 }
                 _ => {}
             }

@@ -139,7 +139,8 @@ impl Composing {
         text: String,
         verdict: impl FnOnce(&Recording) -> Option<String>,
     ) -> Done {
-        let file = parsed(&self.scene_path(of), text.clone())?;
+        let file = parsed(&self.scene_path(of), text.clone());
+        let file = file.map_err(|failure| self.naming_scene(failure))?;
         if let Some(scene) = &self.scene {
             if !self.force && fs::read_to_string(scene).is_ok_and(|old| old != text) {
                 let message = format!("{} is another scene", scene.display());
@@ -151,10 +152,9 @@ impl Composing {
         }
         let folder = self.folder(of);
         let run = if self.force { simulate_anew } else { simulate };
-        let ran = parsed(&self.scene_path(of), text).and_then(|file| {
-            self.how
-                .show(&folder, |progress| run(&file, &folder, progress))
-        });
+        let ran = self
+            .how
+            .show(&folder, |progress| run(&file, &folder, progress));
         ran.map_err(|failure| self.naming_scene(failure))?;
         let words = verdict(&Recording::read(&folder)?);
         if self.format() == Format::Json {

@@ -34,7 +34,7 @@ impl DrivenObstacles {
         obstacles: &[Obstacle],
         mut end: [usize; 3],
         model_vertices: usize,
-        motion: &mut dyn FnMut(&Sequence, &Key) -> Result<Arc<MovingMesh>, Problem>,
+        mut motion: impl FnMut(&Sequence, &Key) -> Result<Arc<MovingMesh>, Problem>,
     ) -> Result<Self, Problem> {
         let mut list = Vec::new();
         let mut first = model_vertices;

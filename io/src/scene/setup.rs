@@ -77,7 +77,8 @@ impl Facts {
     #[cfg(feature = "run")]
     pub(crate) fn faces_of_sheets(&self, name: Option<&str>) -> Vec<Range<usize>> {
         if self.parts.is_empty() {
-            return vec![0..self.sheet.topology().face_count()];
+            let whole = 0..self.sheet.topology().face_count();
+            return [whole].into();
         }
         let others = self.bodies.len() + self.origins.driven.len();
         let sheets = self.parts[..self.parts.len() - others].iter();

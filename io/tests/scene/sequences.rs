@@ -507,9 +507,8 @@ fn a_mesh_in_motion_hits_a_body_as_a_rigid_obstacle_does() {
     let mesh = Sheet::new(x, &faces).unwrap();
     let start = |obstacle: &str| {
         let text = format!(
-            "{}[[body]]\nname = \"ball\"\nshape = {{ sphere = {{ radius = 0.02 }} }}\nsides = 24\nmass = 0.02\n\
-             [[obstacle]]\n{obstacle}\n[stop]\ntime = 0.5\n",
-            ASIDE
+            "{ASIDE}[[body]]\nname = \"ball\"\nshape = {{ sphere = {{ radius = 0.02 }} }}\nsides = 24\nmass = 0.02\n\
+             [[obstacle]]\n{obstacle}\n[stop]\ntime = 0.5\n"
         );
         let scene = SceneFile::parse(text, &dir.path().join("scene.toml"), &[]).unwrap();
         LiveScene::start(scene).unwrap()

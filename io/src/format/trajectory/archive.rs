@@ -179,6 +179,7 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
     }
 
     /// An array of so many dimensions, which need not be there, of integers or floats of any size.
+    #[cfg(feature = "scene")]
     pub(super) fn numbers_if_there(
         &mut self,
         name: &'static str,
@@ -208,6 +209,7 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
         read(self, name, dimensions).map(Some)
     }
 
+    #[cfg(feature = "scene")]
     fn as_floats<T: Number>(
         &mut self,
         name: &'static str,
@@ -218,6 +220,7 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
     }
 
     /// The type of the entries of an array as numpy writes it, if the array is there.
+    #[cfg(feature = "scene")]
     fn kind_if_there(&mut self, name: &'static str) -> Result<Option<String>, FileError> {
         let error = |problem: String| wrong_array(self.path, name, &problem);
         let mut entry = match self.zip.by_name(&file_of(name)) {

@@ -8,6 +8,7 @@ pub(super) trait Number: Copy {
     const KIND: &'static str;
 
     /// The nearest 64-bit float.
+    #[cfg(feature = "scene")]
     fn as_f64(self) -> f64;
 
     /// Adds its bytes, the lowest first.
@@ -22,6 +23,7 @@ macro_rules! numbers {
         impl Number for $number {
             const KIND: &'static str = $kind;
 
+            #[cfg(feature = "scene")]
             fn as_f64(self) -> f64 {
                 self as f64
             }
