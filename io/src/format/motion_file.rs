@@ -1,5 +1,6 @@
 //! Meshes in motion from files of other programs and from runs, each made one archive of numpy.
 
+mod extension;
 mod listed;
 mod named;
 mod samples;
@@ -8,6 +9,7 @@ mod tests;
 mod usda;
 
 use super::{FileError, MeshFormat, input};
+use extension::has_extension;
 use std::path::Path;
 #[cfg(feature = "run")]
 use std::path::PathBuf;
@@ -19,11 +21,6 @@ const TRAJECTORY: &str = "trajectory.npz";
 /// with z upwards.
 pub(crate) fn says_up(path: &Path) -> bool {
     has_extension(path, "usda") || MeshFormat::of(path).is_some_and(MeshFormat::says_up)
-}
-
-fn has_extension(path: &Path, extension: &str) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
 /// The files and folders that a mesh in motion, or the mesh of a file, is read from.

@@ -1,6 +1,6 @@
 //! Lists of mesh files with their times: collections (`.pvd`) and series (`.vtk.series`) of VTK.
 
-use super::has_extension;
+use super::extension::has_extension;
 use super::samples::{self, SampleTimes};
 use crate::format::{FileError, MovingMesh, input};
 use roxmltree::Document;
