@@ -14,7 +14,7 @@ const G: f64 = 9.8;
 
 fn tight() -> ImplicitOptions {
     ImplicitOptions {
-        tolerance: 1e-12,
+        tolerance: Some(1e-12),
         ..Default::default()
     }
 }

@@ -36,7 +36,7 @@ fn moment(x: &[f64], forces: &[f64]) -> Vector3<f64> {
 
 fn tight() -> ImplicitOptions {
     ImplicitOptions {
-        tolerance: 1e-12,
+        tolerance: Some(1e-12),
         ..Default::default()
     }
 }

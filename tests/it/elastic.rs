@@ -57,7 +57,7 @@ fn rigid_rods_are_the_limit_to_first_order_in_the_compliance() {
             model = model.with_elastic_sheet(elasticity).expect("its own sheet");
         }
         let options = ImplicitOptions {
-            tolerance: 1e-12,
+            tolerance: Some(1e-12),
             ..ImplicitOptions::default()
         };
         let method = Method::ImplicitEuler(options);

@@ -6,7 +6,7 @@ use isosheet_tests::{Flap, FreeTriangle, HangingStrip, Pendulum, max_difference,
 /// The integrators, their orders, and the coarsest number of steps that shows the order.
 fn methods() -> Vec<(&'static str, Method, f64)> {
     let tight = || ImplicitOptions {
-        tolerance: 1e-12,
+        tolerance: Some(1e-12),
         ..Default::default()
     };
     vec![

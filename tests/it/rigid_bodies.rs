@@ -125,7 +125,7 @@ impl Scene {
 
 fn tight() -> Method {
     Method::Bdf2(ImplicitOptions {
-        tolerance: 1e-10,
+        tolerance: Some(1e-10),
         ..ImplicitOptions::default()
     })
 }

@@ -128,7 +128,7 @@ fn a_spring_moves_a_sheet_alike_as_a_term_and_as_a_potential() {
     let mut x = sheet.positions().to_vec();
     leave_flat(&base(), &mut x, 0.1, 3).unwrap();
     let options = ImplicitOptions {
-        tolerance: 1e-12,
+        tolerance: Some(1e-12),
         ..ImplicitOptions::default()
     };
     for method in [

@@ -85,13 +85,16 @@ fn pins_follow_a_mesh_in_motion() {
             expected.step(1.0 / 60.0).unwrap();
             found.step(1.0 / 60.0).unwrap();
         }
-        assert!(
-            off(&expected, &found) < 1e-9,
-            "{hold}: {}",
-            off(&expected, &found)
-        );
         let t = found.state().t;
-        assert!((found.state().x[2] - 0.04 * t).abs() < 1e-12);
+        for x in [&expected.state().x, &found.state().x] {
+            for v in [0, 8] {
+                assert!((x[3 * v + 2] - 0.04 * t).abs() < 1e-12, "{hold}");
+            }
+        }
+        // A step of an elastic sheet leaves up to a tenth of the displacement by acceleration.
+        let left = 0.1 * 9.81 / 3600.0;
+        let off = off(&expected, &found);
+        assert!(off < left, "{hold}: {off}");
     }
 }
 

@@ -45,7 +45,7 @@ fn sheets_that_do_not_meet_move_as_each_does_alone() {
             panic!("without a chart");
         };
         *method = Method::Bdf2(ImplicitOptions {
-            tolerance: 1e-9,
+            tolerance: Some(1e-9),
             ..ImplicitOptions::default()
         });
         setup.start().unwrap()

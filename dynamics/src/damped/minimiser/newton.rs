@@ -238,7 +238,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// Sets the residual of a search direction; what the direction promises.
     fn judge(&mut self, direction: &Direction) -> Quality {
         let Direction { before, slope, .. } = direction;
-        let tolerance = self.work.options.tolerance;
+        let tolerance = self.work.tolerance;
         if slope.abs() <= before.round_off + self.noise(before) {
             self.residual = 0.0;
             return Quality::RoundOff;
@@ -284,6 +284,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             lagrangian,
             rod_stiffness,
             options,
+            tolerance,
             tuning,
             ..
         } = &mut *self.work;
@@ -312,7 +313,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 }
                 violation = Some(lagrangian.improve_multipliers(model, goal));
                 let [change, largest] = lagrangian.vertex_rows.update_one_sided(&lagrangian.dx);
-                if change <= options.tolerance * largest {
+                if change <= *tolerance * largest {
                     break;
                 }
             }
@@ -341,7 +342,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         MultiplierGoal {
             max_iterations: self.work.tuning.repetitions as usize,
             violation: self.work.strain_tolerance(self.problem),
-            change: self.work.options.tolerance,
+            change: self.work.tolerance,
             longest: self.work.tuning.longest_iteration,
         }
     }
@@ -531,12 +532,13 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         let Workspace {
             lagrangian,
             options,
+            tolerance,
             ..
         } = &mut *self.work;
         match self.phase.saddle {
             Saddle::Ignored => false,
             Saddle::Curvature => {
-                let least = options.tolerance * direction.before.inertia;
+                let least = *tolerance * direction.before.inertia;
                 lagrangian.leave_saddle(self.problem, options.seed, least, self.effort)
             }
             Saddle::Perturbation => {

@@ -296,7 +296,7 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
     for model in &models.map(Arc::new) {
         let state = State::at_rest(sheet.positions().to_vec());
         let options = ImplicitOptions {
-            tolerance: 1e-12,
+            tolerance: Some(1e-12),
             ..ImplicitOptions::default()
         };
         let minimise = |is_iterative: bool| {

@@ -13,6 +13,8 @@ use isosheet_coords::linalg::LinalgError;
 /// The Lagrangian at the iterate, the restoration of the lengths, and what one step leaves to the next.
 pub(crate) struct Workspace {
     pub(super) options: ImplicitOptions,
+    /// Relative to the inertia term, the decrease below which a search has converged.
+    pub(super) tolerance: f64,
     pub(super) tuning: Tuning,
     pub(super) lagrangian: Lagrangian,
     pub(super) restoration: Restoration,
@@ -46,6 +48,7 @@ impl Workspace {
             balance: Balance::with_residual(model, ForceTime::End),
             remembered: vec![0.0; model.rods().len()],
             rod_stiffness: 0.0,
+            tolerance: options.tolerance_of(model),
             options,
             tuning,
         })

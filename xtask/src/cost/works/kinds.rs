@@ -103,7 +103,7 @@ impl Work {
         }
         // For those who look at the sheet and do not compute with it.
         let quick = Method::Bdf2(ImplicitOptions {
-            tolerance: 1e-3,
+            tolerance: Some(1e-3),
             strain_tolerance: 1e-9,
             ..Default::default()
         });
