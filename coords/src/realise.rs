@@ -5,6 +5,7 @@
 //! to rounding, however large the coordinates' change.
 
 mod error;
+mod intersections;
 
 pub use error::RealiseError;
 
