@@ -3,7 +3,10 @@
 
 use super::show::View;
 use super::{Effort, FigureRow, Picture, Play, Table, caption, compared, course, height, rows};
-use crate::draw::{Drawing, Stroke, TEXT, Viewpoint, flat_edges, flat_faces, palette, row};
+use crate::draw::{
+    Anchor, Colour, Drawing, Stroke, TEXT, Vertical, Viewpoint, flat_edges, flat_faces, palette,
+    row,
+};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
@@ -138,7 +141,7 @@ impl Crumpled {
         let scale = 200.0 / sheet.area().sqrt();
         flat_faces(&mut drawing, sheet, scale, |f| {
             let size = sizes.get(f.index()).copied().unwrap_or_default();
-            palette::WHITE.mix(palette::VERMILION, (size / full).min(1.0))
+            shade(size / full)
         });
         flat_edges(&mut drawing, sheet, scale, |e| {
             let is_rim = sheet.topology().is_boundary_edge(e);
@@ -149,6 +152,38 @@ impl Crumpled {
         caption(&mut drawing, at, TEXT, slice::from_ref(&self.facts.label));
         drawing
     }
+}
+
+/// The colour of a part of the largest plastic curvature.
+fn shade(part: f64) -> Colour {
+    palette::WHITE.mix(palette::VERMILION, part.min(1.0))
+}
+
+/// The bar that says which colour is which plastic curvature, up to `full` (1/m), as high as the maps.
+fn colour_bar(full: f64) -> Drawing {
+    const STRIPS: u32 = 64;
+    let (width, height) = (10.0, 200.0);
+    let mut drawing = Drawing::new();
+    let rectangle = |low: f64, high: f64| [[0.0, low], [width, low], [width, high], [0.0, high]];
+    for k in 0..STRIPS {
+        let [low, high] = [k, k + 1].map(|k| height * f64::from(k) / f64::from(STRIPS));
+        drawing.polygon(&rectangle(low, high), shade(low / height));
+    }
+    drawing.outline(&rectangle(0.0, height), Stroke::new(palette::GREY, 0.6));
+    for part in [0.0, 0.5, 1.0] {
+        let at = [width + 4.0, part * height];
+        let unit = if part == 1.0 { " per m" } else { "" };
+        let text = format!("{:.0}{unit}", part * full);
+        drawing.text(
+            at,
+            &text,
+            TEXT,
+            Anchor::Start,
+            Vertical::Centre,
+            palette::INK,
+        );
+    }
+    drawing
 }
 
 /// Cells along a side of the coarser and of the finer sheet; the elastic one is as fine as the finer.
@@ -197,7 +232,7 @@ pub(super) fn make(store: &Store) -> Result<Lasting> {
     let ends = all.map(|c| (c.facts.label.clone(), &c.run));
     let full = [&coarse, &stays].map(|c| c.facts.marks.map_or(0.0, |m| m.largest));
     let full = full.into_iter().fold(f64::MIN_POSITIVE, f64::max);
-    let maps = row(&[coarse.map(full), stays.map(full)], 14.0);
+    let maps = row(&[coarse.map(full), stays.map(full), colour_bar(full)], 14.0);
     let sequence = "Paper that yields is crumpled between six plates, which are not drawn, freed, pressed flat and let go";
     let left =
         "The sheets at the end: elastic paper lies flat, paper that yields stands on its marks";

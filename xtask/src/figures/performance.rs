@@ -21,6 +21,17 @@ const PUBLISHED: [Published; 5] = [
     (15, None, ["244/440", "0.435", "1.5/30"]),
 ];
 
+/// Parts of a mean edge length by which vertices are displaced in the plane of the sheet: the paper's remedy for straight
+/// creases (its Fig. 7).
+const JITTERS: [(f64, &str); 3] = [
+    (
+        0.01,
+        "the same, vertices moved in the plane by up to 1 % of an edge",
+    ),
+    (0.05, "the same, by up to 5 %"),
+    (0.2, "the same, by up to 20 %"),
+];
+
 /// The scene of a figure, with everything that the sheet meets.
 fn ours(figure: u8, effort: Effort) -> Result<FigureScene> {
     match figure {
@@ -32,7 +43,7 @@ fn ours(figure: u8, effort: Effort) -> Result<FigureScene> {
 }
 
 /// The paper's scheme on a mesh, with ever more help: the last one is the scene file.
-fn variants(level: u32, effort: Effort) -> Result<[(&'static str, FigureScene); 6]> {
+fn variants(level: u32, effort: Effort) -> Result<Vec<(&'static str, FigureScene)>> {
     let published = [
         "method.chart.coordinates=front",
         "method.chart.equations=published",
@@ -63,12 +74,18 @@ fn variants(level: u32, effort: Effort) -> Result<[(&'static str, FigureScene); 
     let straight: [&[&str]; 2] = [&published, &free_creases];
     let [with_coarse, with_reformed] =
         [&coarse, &reformed].map(|last| [straight[0], straight[1], last]);
-    Ok([
+    let crumpled = scene(&[&published])?;
+    let mut all = vec![
         (
             "published scheme, from exactly flat",
             scene(&[&published, &flat])?,
         ),
-        ("the same, from slightly crumpled", scene(&[&published])?),
+        ("the same, from slightly crumpled", crumpled.clone()),
+    ];
+    for (part, name) in JITTERS {
+        all.push((name, crumpled.jittered("chart", part, 1)?));
+    }
+    all.extend([
         (creases, scene(&straight)?),
         (coarser, scene(&with_coarse)?),
         (formed_anew, scene(&with_reformed)?),
@@ -76,7 +93,8 @@ fn variants(level: u32, effort: Effort) -> Result<[(&'static str, FigureScene); 
             "and positions projected, in a well-conditioned chart",
             scene(&[])?,
         ),
-    ])
+    ]);
+    Ok(all)
 }
 
 /// The runs of a row of the paper's table.
@@ -108,12 +126,18 @@ impl Tried {
         })
     }
 
-    /// Whether the scheme as published was refused at the start, if it was tried.
-    fn is_refused(&self) -> bool {
-        self.charts.iter().all(|(_, s)| {
+    /// Whether the scheme as published was refused at the start on the meshes as they are, and did not reach the end
+    /// on those with the paper's remedy, if it was tried.
+    fn is_published_stuck(&self) -> bool {
+        self.charts.iter().all(|(name, s)| {
             let chart = s.run.scene().method.chart.as_ref();
             let is_published = chart.is_some_and(|c| c.coordinates == Coordinates::Front);
-            !is_published || is_refused(&s.course)
+            let is_jittered = JITTERS.iter().any(|(_, jittered)| jittered == name);
+            match (is_published, is_jittered) {
+                (true, false) => is_refused(&s.course),
+                (true, true) => !s.course.is_good(),
+                (false, _) => true,
+            }
         })
     }
 
@@ -152,8 +176,8 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         .map(|published| Tried::of(published, store));
     let all: Vec<Tried> = all.collect::<Result<_>>()?;
     ensure!(
-        all.iter().all(Tried::is_refused),
-        "the scheme as published was not refused at the start"
+        all.iter().all(Tried::is_published_stuck),
+        "the scheme as published was not refused at the start, or ran to the end on a mesh without straight creases"
     );
     let head = [
         "Fig.",
@@ -173,8 +197,9 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         title: "Performance",
         paper: "Frames per second and step sizes of the examples, on a Pentium III at 937 MHz.",
         here: "The chart has the condition number of the mass matrix of bent sheets: beyond 1/ε nothing is left of a dense solve. As \
-               published, the scheme cannot start on either mesh: in the union jack every inner vertex of degree 4 keeps one of its creases \
-               straight, which is the degenerate case of Fig. 7.",
+               published, the scheme cannot start on either mesh as it is: in the union jack every inner vertex of degree 4 keeps one of its \
+               creases straight, which is the degenerate case of Fig. 7. With the paper's remedy, vertices moved in the plane of the sheet, it \
+               starts on M¹ and does not reach the end; M² is refused where the condition number is above 1e12, a limit of ours.",
         pictures: vec![Picture::svg("fig10-condition", &condition, alt)],
         tables: vec![table.with_texts(all.iter().flat_map(Tried::rows))],
         ..Made::default()

@@ -5,6 +5,8 @@ use anyhow::{Context, Result};
 use isosheet_dynamics::{Frames, Observer, Simulation};
 use isosheet_io::scene::{Material, Scene, SceneFile, Setup, StartingPoint};
 use isosheet_mesh::Sheet;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use std::fs;
@@ -100,6 +102,26 @@ impl FigureScene {
             let yields = sheet.remove("yield");
             yields.context("the sheet does not yield").map(drop)
         })
+    }
+
+    /// The same scene with a sheet at rest whose vertices are displaced in its plane by random vectors of up to
+    /// `part` mean edge lengths in each direction, under another name: a mesh without straight lines of edges.
+    ///
+    /// # Errors
+    /// A displacement that turns a triangle over.
+    pub(crate) fn jittered(&self, name: &str, part: f64, seed: u64) -> Result<Self> {
+        let sheet = self.sheet()?;
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let reach = part * sheet.mean_length();
+        let mut positions = sheet.positions().as_chunks::<3>().0.to_vec();
+        for [x, y, _] in &mut positions {
+            for coordinate in [x, y] {
+                *coordinate += reach * random.random_range(-1.0..=1.0);
+            }
+        }
+        let triangles = json!({ "vertices": positions, "faces": sheet.face_indices() });
+        let mesh = toml::Value::try_from(json!({ "triangles": triangles }))?;
+        self.edited(name, &[format!("sheet.mesh={mesh}")])
     }
 
     /// The same scene with a change of its one table `[sheet]`, under another name.
