@@ -111,7 +111,7 @@ mod weight;
 mod yields;
 
 #[cfg(feature = "cli")]
-pub(crate) use action_scene::{Action, ActionScene, DrapedBody, HeldCorners, SheetSource};
+pub(crate) use action_scene::{Action, ActionScene, Below, DrapedBody, HeldCorners, SheetSource};
 pub use air::Air;
 pub use attached_flow::AttachedFlow;
 pub use bodies::Body;

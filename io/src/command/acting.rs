@@ -15,9 +15,22 @@ pub(super) struct Acting {
     pub(super) mesh: PathBuf,
     #[command(flatten)]
     pub(super) composing: Composing,
+    /// How often each triangle of the sheet is divided into four [default: until there are 400]
+    #[arg(long, value_name = "TIMES", value_parser = clap::value_parser!(u8).range(0..=6))]
+    refine: Option<u8>,
+    /// The time at which the run ends at the latest, seconds [default: by the size of the sheet]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    time: Option<f64>,
     /// The axis that points upwards in the files, other than glTF files, which say it
     #[arg(long, value_name = "AXIS", value_enum, default_value_t)]
     pub(super) up: UpAxis,
+}
+
+/// A time in seconds.
+fn seconds(text: &str) -> Result<f64, String> {
+    let time: Option<f64> = text.parse().ok();
+    time.filter(|t| (1e-3..=1e4).contains(t))
+        .ok_or_else(|| "give a time from 0.001 to 10000 seconds".to_owned())
 }
 
 impl Acting {
@@ -50,6 +63,8 @@ impl Acting {
             moments: sheet.moments,
             material: self.composing.material_or(material),
             action,
+            refine: self.refine.map(usize::from),
+            time: self.time,
         };
         let text = scene.text().map_err(|e| Failure::of(Code::Input, &e))?;
         self.composing.run(&self.mesh, text, |recording| {

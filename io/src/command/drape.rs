@@ -5,7 +5,7 @@ use super::composing::length;
 use super::failure::{Done, Failure};
 use super::given::{Given, GivenSheet, longest, moments, scaled};
 use crate::run::ActionVerdict;
-use crate::scene::{Action, DrapedBody, SheetSource, bounds};
+use crate::scene::{Action, Below, DrapedBody, SheetSource, bounds};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -34,6 +34,9 @@ pub(crate) struct Drape {
     /// It falls on a round table, six tenths as wide as the sheet, as it does without `--on`
     #[arg(long, conflicts_with = "on")]
     table: bool,
+    /// A floor below the body, on which the hem may lie
+    #[arg(long)]
+    floor: bool,
     /// The longest side of the body, metres [default: it has the unit of the sheet, and metres where that is a drawing]
     #[arg(long, value_name = "METRES", value_parser = length, requires = "on")]
     tool_size: Option<f64>,
@@ -44,7 +47,11 @@ const LARGEST: f64 = 50.0;
 
 impl Drape {
     pub(crate) fn run(&self) -> Done {
-        let action = |sheet: &GivenSheet| self.body(sheet).map(Action::Drape);
+        let below = match self.floor {
+            true => Below::Floor,
+            false => Below::Nothing,
+        };
+        let action = |sheet: &GivenSheet| Ok(Action::Drape(self.body(sheet)?, below));
         self.acting
             .run("polycarbonate film", 0.5, action, ActionVerdict::draped)
     }
@@ -79,7 +86,7 @@ impl Drape {
         Ok(DrapedBody::Tool {
             file: given.file(&path, scale),
             centre: moments(tool, &positions, &given.faces)?.centre,
-            top: bounds(&positions)[1][2],
+            heights: bounds(&positions).map(|corner| corner[2]),
         })
     }
 }

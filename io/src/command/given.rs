@@ -7,7 +7,7 @@ use super::message::print_progress;
 use crate::format::drawing::{DrawingFormat, DrawingOptions, DrawnSheet};
 use crate::format::read_mesh_with;
 use crate::mesh::Topology;
-use crate::mesh::wording::counted;
+use crate::mesh::wording::{brief, counted};
 use crate::scene::{DrawingFile, FaceMoments, MeshFile, PolygonFaces, SheetSource, UpAxis, bounds};
 use crate::{MeshFormat, MeshOptions, Polygons};
 use std::path::Path;
@@ -89,7 +89,16 @@ impl GivenSheet {
             return Self::drawn(file, &path, composing.size());
         }
         let given = Given::read(file, up)?;
-        let scale = composing.size().unwrap_or(size) / longest(&given.positions);
+        let own = longest(&given.positions);
+        let scale = composing.size().unwrap_or(size) / own;
+        if composing.size().is_none() && scale != 1.0 {
+            print_progress(format_args!(
+                "note: {} is {} m long, and is scaled by {} to {size} m: `--size` gives its longest side in metres",
+                file.display(),
+                brief(own),
+                brief(scale)
+            ));
+        }
         let source = SheetSource::File(given.file(&path, scale));
         Self::of_one_piece(file, source, scaled(&given.positions, scale), &given.faces)
     }

@@ -17,7 +17,7 @@ use std::fmt::Write;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
     /// It falls on a body, with the centre of its area above that of the body.
-    Drape(DrapedBody),
+    Drape(DrapedBody, Below),
     /// It swings down from where it is held.
     Hang(HeldCorners),
     /// Plates push it together from all sides and withdraw.
@@ -35,9 +35,18 @@ pub(crate) enum DrapedBody {
         file: MeshFile,
         /// The centre of the area of the file as the scene places it, metres.
         centre: [f64; 3],
-        /// The height of its highest point, metres.
-        top: f64,
+        /// The heights of its lowest and its highest point, metres.
+        heights: [f64; 2],
     },
+}
+
+/// What is below a body that a sheet drapes over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Below {
+    /// Nothing: the hem hangs free.
+    Nothing,
+    /// A floor at its lowest point.
+    Floor,
 }
 
 /// Which corners of the box about a sheet are held: of each the vertex that is nearest.
@@ -73,6 +82,10 @@ pub(crate) struct ActionScene {
     pub(crate) material: String,
     /// What the sheet does.
     pub(crate) action: Action,
+    /// How often its faces are divided, where that is not left to the scene.
+    pub(crate) refine: Option<usize>,
+    /// The time at which the run ends at the latest, seconds, where that is not left to the scene.
+    pub(crate) time: Option<f64>,
 }
 
 /// A sheet has at least so many faces: those of a coarser mesh are divided.
@@ -109,7 +122,7 @@ impl ActionScene {
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         let centre = turned.place(self.moments.centre);
         let bottom = match self.action {
-            Action::Drape(_) => ABOVE * size,
+            Action::Drape(..) => ABOVE * size,
             Action::Hang(_) => low[2] - high[2],
             Action::Crumple => 0.0,
         };
@@ -138,8 +151,8 @@ impl ActionScene {
         });
         let _ = writeln!(text, "placement = {{ position = {position:?}{turn} }}");
         let stop = match &self.action {
-            Action::Drape(body) => {
-                text.push_str(&draped(body, half)?);
+            Action::Drape(body, below) => {
+                text.push_str(&draped(body, *below, half)?);
                 15.0 * seconds
             }
             Action::Hang(held) => {
@@ -162,14 +175,14 @@ impl ActionScene {
         };
         let friction = match self.action {
             Action::Hang(_) => 0.0,
-            Action::Drape(_) | Action::Crumple => 0.3,
+            Action::Drape(..) | Action::Crumple => 0.3,
         };
         let step = two_digits(STEP * seconds);
         let _ = write!(
             text,
             "\n[contact]\nself_contact = true\nfriction = {friction:?}\n\n[forces]\ngravity = [0.0, 0.0, -{GRAVITY:?}] # m/s2\n\n\
              [method]\nstep = {step:?} # s\n\n[stop]\ntime = {:?} # s\n",
-            two_digits(stop),
+            self.time.unwrap_or(two_digits(stop)),
         );
         // A sheet may be at rest between the plates.
         if self.action != Action::Crumple {
@@ -185,11 +198,11 @@ impl ActionScene {
 
     /// How often the faces are divided.
     fn refine(&self) -> usize {
-        let mut refine = 0;
-        while self.faces << (2 * refine) < LEAST_FACES {
-            refine += 1;
+        let mut least = 0;
+        while self.faces << (2 * least) < LEAST_FACES {
+            least += 1;
         }
-        refine
+        self.refine.unwrap_or(least)
     }
 
     /// The turn that lays a flat sheet on its face. One that is crumpled is turned about z besides, so that the plates come
@@ -197,7 +210,7 @@ impl ActionScene {
     fn turn(&self) -> Option<Turn> {
         let about = match self.action {
             Action::Crumple => UnitQuaternion::from_axis_angle(&Vector3::z_axis(), FRAC_PI_4),
-            Action::Drape(_) | Action::Hang(_) => UnitQuaternion::identity(),
+            Action::Drape(..) | Action::Hang(_) => UnitQuaternion::identity(),
         };
         let (axis, angle) = (about * self.laid()).axis_angle()?;
         // Far below what can be seen, and above the round-off of quarter turns.
@@ -230,8 +243,8 @@ impl ActionScene {
 
     fn title(&self) -> String {
         let what = match &self.action {
-            Action::Drape(DrapedBody::Table) => "falls on a round table and drapes over its rim",
-            Action::Drape(DrapedBody::Tool { .. }) => "falls on a body and drapes over it",
+            Action::Drape(DrapedBody::Table, _) => "falls on a round table and drapes over its rim",
+            Action::Drape(DrapedBody::Tool { .. }, _) => "falls on a body and drapes over it",
             Action::Hang(HeldCorners::Corner) => "swings down from a corner that is held",
             Action::Hang(HeldCorners::TwoCorners) => "swings down from two corners that are held",
             Action::Crumple => "is pushed together from all sides and let go",
@@ -313,27 +326,37 @@ impl ActionScene {
 /// The speed at which a sheet is at rest, beside that of a fall by its size.
 const REST: f64 = 1e-3;
 
-/// The body that a sheet of such half sides falls on, with its top at z = 0.
-fn draped(body: &DrapedBody, half: [f64; 2]) -> Result<String, FileError> {
-    let (shape, position, note) = match body {
+/// The body that a sheet of such half sides falls on, with its top at z = 0, and what is below it.
+fn draped(body: &DrapedBody, below: Below, half: [f64; 2]) -> Result<String, FileError> {
+    let (shape, position, height, note) = match body {
         DrapedBody::Table => {
             let radius = two_digits(0.6 * half[0].min(half[1]));
             let height = two_digits(0.8 * half[0].max(half[1]));
             let shape = format!("{{ cylinder = {{ radius = {radius:?}, height = {height:?} }} }}");
-            (shape, [0.0, 0.0, digits(-0.5 * height)], "a round table")
+            let middle = [0.0, 0.0, digits(-0.5 * height)];
+            (shape, middle, height, "a round table")
         }
-        DrapedBody::Tool { file, centre, top } => {
+        DrapedBody::Tool {
+            file,
+            centre,
+            heights: [bottom, top],
+        } => {
             let shape = format!("{{ file = {} }}", file_value(file)?);
-            (
-                shape,
-                [-centre[0], -centre[1], -top].map(digits),
-                "its top is at z = 0",
-            )
+            let position = [-centre[0], -centre[1], -top].map(digits);
+            (shape, position, top - bottom, "its top is at z = 0")
         }
     };
-    Ok(format!(
+    let mut text = format!(
         "\n[[obstacle]] # {note}\nshape = {shape}\npose = {{ position = {position:?} }}\nfriction = 0.3\n"
-    ))
+    );
+    if below == Below::Floor {
+        let floor = [0.0, 0.0, digits(-height)];
+        let _ = write!(
+            text,
+            "\n[[obstacle]] # the floor\nshape = \"half_space\"\npose = {{ position = {floor:?} }}\nfriction = 0.3\n"
+        );
+    }
+    Ok(text)
 }
 
 /// A mesh file as the text of a scene has it.
@@ -374,12 +397,14 @@ mod tests {
             moments,
             material: "office paper".to_owned(),
             action,
+            refine: None,
+            time: None,
         }
     }
 
     #[test]
     fn a_narrow_strip_far_away_lies_on_its_face_above_the_table() {
-        let scene = strip(Action::Drape(DrapedBody::Table));
+        let scene = strip(Action::Drape(DrapedBody::Table, Below::Nothing));
         assert_eq!(scene.turn(), None);
         let text: toml::Table = scene.text().unwrap().parse().unwrap();
         let position = text["sheet"]["placement"]["position"].as_array().unwrap();

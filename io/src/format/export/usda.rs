@@ -30,7 +30,11 @@ pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError>
         }
         bodies.push((body, single(&body.positions)?, poses));
     }
-    let codes: Vec<f64> = samples.iter().map(|(code, _)| *code).collect();
+    // Whole numbers are not to be missed by round-off.
+    let codes: Vec<f64> = samples
+        .iter()
+        .map(|(code, _)| (1e6 * code).round() / 1e6)
+        .collect();
     Ok(write_atomically(path, |w| {
         head(w, &codes, rate)?;
         for sheet in &moving.sheets {
@@ -80,6 +84,8 @@ fn head(w: &mut FileWriter<'_>, codes: &[f64], rate: f64) -> io::Result<()> {
     )?;
     writeln!(w, "    upAxis = \"Z\"\n    metersPerUnit = 1")?;
     if let [first, .., last] = codes {
+        // Blender plays whole frames: the last one too.
+        let last = last.ceil();
         writeln!(w, "    startTimeCode = {first}\n    endTimeCode = {last}")?;
         writeln!(
             w,
