@@ -64,4 +64,7 @@ mod book {
 
     #[doc = include_str!("../../docs/rust.md")]
     pub struct InRust;
+
+    #[doc = include_str!("../../docs/contribute.md")]
+    pub struct Contribute;
 }
