@@ -5,6 +5,7 @@
 
 pub(super) mod cp;
 mod faces;
+mod gaps;
 pub(super) mod opx;
 mod planar;
 pub(super) mod svg;
