@@ -38,8 +38,9 @@ pub(super) struct PatternLines {
 }
 
 /// Ends of lines that are so near each other become one point, as a part of the longer side of the drawing, unless
-/// the reader is told otherwise: the first of these distances with which every line leads somewhere. They are above the
-/// digits that drawing programs write, and at most a millimetre of a sheet of twenty centimetres.
+/// the reader is told otherwise: the first of these distances with which every line leads somewhere and no two contradict
+/// each other, or else fewest do so. They are above the digits that drawing programs write, and at most a millimetre of a
+/// sheet of twenty centimetres.
 const SNAP: [f64; 4] = [5e-4, 1e-3, 2e-3, 5e-3];
 
 /// The planar graph of a drawing. `snap` is the distance within which points become one, in the unit of the drawing.
@@ -69,14 +70,15 @@ pub(super) fn of_segments(segments: &[Segment], snap: Option<f64>) -> Result<Pla
         return Err(DataError::new(message, remedy));
     }
     let Some(snap) = snap else {
+        let faults = |planar: &Planar| planar.loose + planar.contradicting;
         let mut best = within(segments, SNAP[0] * size);
         for snap in &SNAP[1..] {
-            let loose = best.as_ref().map_or(usize::MAX, |planar| planar.loose);
-            if loose == 0 {
+            let least = best.as_ref().map_or(usize::MAX, faults);
+            if least == 0 {
                 break;
             }
             if let Ok(planar) = within(segments, snap * size)
-                && planar.loose < loose
+                && faults(&planar) < least
             {
                 best = Ok(planar);
             }

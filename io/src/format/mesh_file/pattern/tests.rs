@@ -158,6 +158,21 @@ fn creases_that_contradict_each_other_fold_freely() {
     );
 }
 
+/// A valley leaves a mountain a thousandth of the drawing from where both begin: their ends meet, as nothing contradicts
+/// itself then.
+#[test]
+fn ends_meet_where_creases_would_contradict_each_other_otherwise() {
+    let square = SQUARE.lines().take(4).collect::<Vec<_>>().join("\n");
+    let hook = "3 0 0 0.0006 -0.0006\n3 0.0006 -0.0006 0.5 -1\n";
+    let mesh = read(MeshFormat::Cp, &format!("{square}\n2 0 0 1 -1\n{hook}")).unwrap();
+    assert_eq!(
+        (mesh.changes.contradicting_lines, mesh.vertex_count()),
+        (0, 5)
+    );
+    assert_eq!(creases(&mesh, EdgeAssignment::Mountain).len(), 1);
+    assert_eq!(creases(&mesh, EdgeAssignment::Valley).len(), 1);
+}
+
 #[test]
 fn lines_of_other_colours_are_counted() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 1 1' fill='none'><rect width='1' height='1' stroke='black'/>\
