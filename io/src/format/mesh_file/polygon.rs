@@ -28,11 +28,7 @@ pub(super) struct Pieces {
 /// diagonal if both will do. Of equal cuts that with the smallest vertex number is made. A Delaunay
 /// triangulation would leave it to round-off how the corners of a rectangle are joined.
 pub(super) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<Pieces> {
-    let places = in_plane(&corners.iter().map(|&c| at(c)).collect::<Vec<_>>());
-    let near = NEAR * extent(&places);
-    if !is_simple(corners, &places, near) {
-        return None;
-    }
+    let (places, near) = outline(corners, at)?;
     let mut pieces = Pieces {
         triangles: Vec::with_capacity(corners.len() - 2),
         cuts: Vec::with_capacity(corners.len() - 3),
@@ -52,6 +48,14 @@ pub(super) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<
     let is_left = height(last, &places) > 0.0;
     pieces.triangles.push(last.map(|k| corners[k]));
     is_left.then_some(pieces)
+}
+
+/// The places of the corners of a polygon in its plane, and the distance within which they are the same; `None` if its
+/// outline crosses or touches itself, or has no extent.
+pub(super) fn outline(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<(Vec<Point>, f64)> {
+    let places = in_plane(&corners.iter().map(|&c| at(c)).collect::<Vec<_>>());
+    let near = NEAR * extent(&places);
+    is_simple(corners, &places, near).then_some((places, near))
 }
 
 /// The place in `left` of the corner that is cut off next.
