@@ -47,17 +47,17 @@ pub(super) struct Chosen {
 }
 
 impl Chosen {
-    /// Why panels with contact do not close, as the end of a sentence, if that is found.
+    /// Why panels with contact do not close that do without, as the end of a sentence.
     pub(super) fn obstruction(&self) -> Option<String> {
         let FoldTrial {
             residual, passing, ..
-        } = self.untouched?;
+        } = self.untouched.filter(|trial| closes(trial, WELL))?;
         let order = match self.scene.order.is_empty() {
-            true => "all creases at once",
-            false => "its creases in this order",
+            true => "all creases fold at once",
+            false => "creases fold in this order",
         };
         Some(format!(
-            "; panels are in each other's way, as the pattern folds by {order}: without contact they pass through each other \
+            "; panels are in each other's way as {order}: without contact they pass through each other \
              from {:.0} % of the folding on, and creases end {:.1} degrees rms from their angles",
             100.0 * passing?,
             residual.rms

@@ -22,7 +22,7 @@ pub(super) struct Pieces {
 
 /// Cuts a polygon into triangles that are turned like the polygon as a whole; `None` if its outline crosses
 /// or touches itself, seen along its normal, or has no area. It may come to a corner more than once, as that of a face does
-/// into which another one reaches from a corner.
+/// into which another one reaches from a corner, and run along a line to a hole in both directions.
 ///
 /// Corner after corner is cut off, always by the shortest cut that is inside: a quad is cut along its shorter
 /// diagonal if both will do. Of equal cuts that with the smallest vertex number is made. A Delaunay
@@ -119,11 +119,12 @@ fn is_simple(corners: &[u32], places: &[Point], near: f64) -> bool {
         numbers.push(*first.entry(corner).or_insert(k));
     }
     let side = |k: usize| [numbers[k], numbers[(k + 1) % n]];
-    let sides = (0..n).map(|k| [side(k)[0].min(side(k)[1]), side(k)[0].max(side(k)[1])]);
-    let is_proper = |[a, b]: &[u32; 2]| a != b;
-    let distinct: BTreeSet<[u32; 2]> = sides.filter(is_proper).collect();
+    let sides: BTreeSet<[u32; 2]> = (0..n).map(side).collect();
+    // A line to a hole is run along in both directions; one that leads nowhere is followed by itself.
+    let turns_back = |k: usize| numbers[k] == numbers[(k + 2) % n];
     let meets = |i: usize| (i + 1..n).any(|j| meet(side(i), side(j), places, near));
-    near > 0.0 && distinct.len() == n && !(0..n).any(meets)
+    let goes_on = |k: usize| side(k)[0] != side(k)[1] && !turns_back(k);
+    near > 0.0 && sides.len() == n && (0..n).all(goes_on) && !(0..n).any(meets)
 }
 
 /// The places of corners in the plane of a polygon, counter-clockwise.
@@ -224,6 +225,7 @@ mod tests {
             [1.0, 2.0, 0.0],
             [2.0, 2.0, 0.0],
             [2.0, 1.0, 0.0],
+            [1.0, 1.0, 0.0],
         ];
         let cut = |corners: &[u32]| triangulate(corners, |c| points[c as usize]);
         let found = cut(&[0, 1, 2, 3, 0, 4, 5, 6]).unwrap().triangles;
@@ -233,7 +235,11 @@ mod tests {
         // The hole is a kite with the diagonals 2^1/2 and 2 2^1/2.
         assert!((sum - 7.0).abs() < 1e-12, "{sum}");
         assert_eq!(found.len(), 6);
-        // A side that is run along in both directions is that of a slit.
+        // A line to a square hole is run along in both directions, and a slit is no hole.
+        let found = cut(&[0, 1, 2, 3, 0, 7, 4, 5, 6, 7]).unwrap().triangles;
+        let sum: f64 = found.iter().map(area).sum();
+        assert!(found.iter().all(|t| area(t) > 0.0), "{found:?}");
+        assert!((sum - 8.0).abs() < 1e-12, "{sum}");
         assert!(cut(&[0, 1, 2, 3, 0, 5]).is_none());
     }
 
