@@ -1,7 +1,6 @@
 //! Whether a line of the outline that leads nowhere leaves a gap in it, or is only drawn too far.
 
 use super::faces::root;
-use super::planar::Planar;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, Point, distance};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -11,12 +10,15 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 /// A crease has the sheet on both of its sides. Where a crease is at the border of what the lines enclose, a face is
 /// missing beside it, and the ends of lines outside are those of a gap; elsewhere they are drawn too far, and enclose
 /// nothing. Lines that are connected to no face at all are an outline with a gap, if they are not straight.
-pub(super) fn of(planar: &Planar, loose: &[FileCrease], near: f64) -> (usize, Vec<Point>) {
-    let point = |v: u32| planar.points[v as usize];
-    let is_inside = |p: Point| {
-        let mut faces = planar.faces.iter();
-        faces.any(|face| is_within(p, face, &planar.points))
-    };
+pub(super) fn of(
+    points: &[Point],
+    edges: &[FileCrease],
+    faces: &[Vec<i64>],
+    loose: &[FileCrease],
+    near: f64,
+) -> (usize, Vec<Point>) {
+    let point = |v: u32| points[v as usize];
+    let is_inside = |p: Point| faces.iter().any(|face| is_within(p, face, points));
     let outline = loose.iter().filter(|e| is_outline(e));
     let is_in_face = |e: &&FileCrease| {
         let [a, b] = e.ends.map(point);
@@ -27,11 +29,11 @@ pub(super) fn of(planar: &Planar, loose: &[FileCrease], near: f64) -> (usize, Ve
     for v in outline.flat_map(|e| e.ends) {
         *lines_at.entry(v).or_default() += 1;
     }
-    let kept = planar.edges.iter().filter(|e| is_outline(e));
+    let kept = edges.iter().filter(|e| is_outline(e));
     for v in kept.flat_map(|e| e.ends) {
         lines_at.entry(v).and_modify(|count| *count += 1);
     }
-    let mut tree: Vec<usize> = (0..planar.points.len()).collect();
+    let mut tree: Vec<usize> = (0..points.len()).collect();
     for edge in loose {
         let [a, b] = edge.ends.map(|v| root(&mut tree, v as usize));
         tree[a] = b;
@@ -41,9 +43,9 @@ pub(super) fn of(planar: &Planar, loose: &[FileCrease], near: f64) -> (usize, Ve
         let of = root(&mut tree, v as usize);
         trees.entry(of).or_default().push(point(v));
     }
-    let ends = planar.edges.iter().flat_map(|e| e.ends);
+    let ends = edges.iter().flat_map(|e| e.ends);
     let connected: HashSet<usize> = ends.map(|v| root(&mut tree, v as usize)).collect();
-    let misses_faces = has_crease_at_border(planar);
+    let misses_faces = has_crease_at_border(edges, faces);
     let mut is_gap = |v: u32| {
         let of = root(&mut tree, v as usize);
         match connected.contains(&of) {
@@ -65,15 +67,15 @@ fn is_outline(edge: &FileCrease) -> bool {
 }
 
 /// Whether a crease has a face on one of its sides alone.
-fn has_crease_at_border(planar: &Planar) -> bool {
+fn has_crease_at_border(edges: &[FileCrease], faces: &[Vec<i64>]) -> bool {
     let mut sides: HashMap<[i64; 2], usize> = HashMap::new();
-    for face in &planar.faces {
+    for face in faces {
         let next = face.iter().cycle().skip(1);
         for (a, b) in face.iter().zip(next) {
             *sides.entry([*a.min(b), *a.max(b)]).or_default() += 1;
         }
     }
-    let mut creases = planar.edges.iter().filter(|e| !is_outline(e));
+    let mut creases = edges.iter().filter(|e| !is_outline(e));
     creases.any(|e| {
         let [a, b] = e.ends.map(i64::from);
         sides.get(&[a.min(b), a.max(b)]) == Some(&1)

@@ -144,9 +144,13 @@ pub(in crate::format) fn planar(
         planar.faces = super::faces(&planar.points, &planar.edges)?;
     }
     planar.drop_bridges();
-    let (loose_cuts, open) = super::gaps::of(&planar, &loose, near);
-    planar.loose_cuts = loose_cuts;
-    planar.open = open;
+    let Planar {
+        points,
+        edges,
+        faces,
+        ..
+    } = &planar;
+    (planar.loose_cuts, planar.open) = super::gaps::of(points, edges, faces, &loose, near);
     Ok(planar)
 }
 
