@@ -3,6 +3,7 @@
 use crate::contact_mesh::{ContactMesh, Element};
 use crate::crossings::pierces;
 use crate::vectors::gather;
+use nalgebra::Vector3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
@@ -248,14 +249,18 @@ impl BroadPhase {
     }
 
     /// An edge that passes through a face of the mesh at positions `x` (`3V`) of the last update, and the face, of
-    /// those that are not joined.
-    pub fn self_crossing(&mut self, x: &[f64]) -> Option<[u32; 2]> {
+    /// those that are not joined. Both ends of the edge are further than `depth` (metres) from the plane of the face: with 0
+    /// every crossing counts, and with more not those of faces that lie on each other up to round-off.
+    pub fn self_crossing(&mut self, x: &[f64], depth: f64) -> Option<[u32; 2]> {
         let mut pairs = Vec::new();
         self.self_edge_faces(&mut pairs);
         let mesh = self.mesh();
         pairs.into_iter().find(|&[e, f]| {
             let (edge, face) = (mesh.edges()[e as usize], mesh.faces()[f as usize]);
-            pierces(gather(x, edge), gather(x, face))
+            let ([p, q], [a, b, c]) = (gather(x, edge), gather(x, face));
+            let normal = (b - a).cross(&(c - a)).normalize();
+            let is_deep = |p: &Vector3<f64>| normal.dot(&(p - a)).abs() > depth;
+            pierces([p, q], [a, b, c]) && (depth == 0.0 || [p, q].iter().all(is_deep))
         })
     }
 

@@ -54,6 +54,7 @@ mod gallery;
 mod incidence;
 mod intervention;
 mod page;
+mod passing;
 mod recorder;
 mod recording;
 mod replay;

@@ -51,7 +51,7 @@ fn name(contact: &ActiveContact) -> ContactPair {
 
 /// Refuses edges of the sheet that pass through its faces, with the pair.
 pub(super) fn check_itself(boxes: &mut BroadPhase, x: &[f64]) -> Result<(), ContactPair> {
-    let Some([edge, face]) = boxes.self_crossing(x) else {
+    let Some([edge, face]) = boxes.self_crossing(x, 0.0) else {
         return Ok(());
     };
     let mesh = boxes.mesh();

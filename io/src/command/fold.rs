@@ -79,11 +79,13 @@ impl Fold {
             ..scene
         };
         self.composing.begin(&self.pattern)?;
-        let (scene, rigid) = pattern.chosen(scene)?;
+        let chosen = pattern.chosen(scene)?;
         let verdict = |recording: &Recording| {
             let verdict = FoldVerdict::of(recording)?;
-            Some(verdict.in_words(rigid.as_ref()))
+            let words = verdict.in_words(chosen.rigid.as_ref());
+            Some(words + &chosen.obstruction().unwrap_or_default())
         };
-        self.composing.run(&self.pattern, text_of(&scene)?, verdict)
+        let text = text_of(&chosen.scene)?;
+        self.composing.run(&self.pattern, text, verdict)
     }
 }

@@ -86,7 +86,7 @@ impl Live {
             file: &self.scene,
             scene: unwritten(&self.scene),
         };
-        let (scene, _) = pattern.chosen(pattern.rigid(None, None)?)?;
+        let scene = pattern.chosen(pattern.rigid(None, None)?)?.scene;
         Ok(SceneFile::parse(
             text_of(&scene)?,
             &pattern.scene,

@@ -26,11 +26,44 @@ const SIZE: f64 = 0.2;
 /// Creases that are so far from their angles in the mean, degrees, are closed: no other panels are tried.
 const CLOSED: f64 = 1.0;
 
-/// At most so far no further panels are tried, degrees.
+/// At most so far no panels with divided triangles are tried, degrees.
 const WELL: f64 = 5.0;
+
+/// How stiff soft panels are in their plane ([`Panels::Soft`]): for office paper of 0.2 m a hundred newton a metre, of which
+/// paper itself has 3000 times as much, and thirty.
+const SOFT: [u32; 2] = [8000, 2400];
 
 /// Faces of an elastic sheet whose panels are divided, at most.
 const MOST_FACES: usize = 3000;
+
+/// The scene whose panels close best, and what was found before it was chosen.
+#[derive(Clone, Debug)]
+pub(super) struct Chosen {
+    pub(super) scene: FoldScene,
+    /// How far rigid panels close; `None` if they do not reach an end.
+    pub(super) rigid: Option<FoldResidual>,
+    /// Where the same pattern ends without contact, if panels with contact do not close.
+    pub(super) untouched: Option<FoldTrial>,
+}
+
+impl Chosen {
+    /// Why panels with contact do not close that do without, as the end of a sentence.
+    pub(super) fn obstruction(&self) -> Option<String> {
+        let FoldTrial {
+            residual, passing, ..
+        } = self.untouched.filter(|trial| closes(trial, WELL))?;
+        let order = match self.scene.order.is_empty() {
+            true => "all creases fold at once",
+            false => "creases fold in this order",
+        };
+        Some(format!(
+            "; panels are in each other's way as {order}: without contact they pass through each other \
+             from {:.0} % of the folding on, and creases end {:.1} degrees rms from their angles",
+            100.0 * passing?,
+            residual.rms
+        ))
+    }
+}
 
 impl Pattern<'_> {
     /// The scene of rigid panels of a size (metres) if one is given.
@@ -73,34 +106,52 @@ impl Pattern<'_> {
         })
     }
 
-    /// The scene whose panels close best, and how far rigid ones do; `None` if these do not reach an end.
-    pub(super) fn chosen(
-        &self,
-        rigid: FoldScene,
-    ) -> Result<(FoldScene, Option<FoldResidual>), Failure> {
+    /// The scene whose panels close best.
+    pub(super) fn chosen(&self, rigid: FoldScene) -> Result<Chosen, Failure> {
+        let (chosen, trial) = self.best(rigid)?;
+        let closes = trial.is_some_and(|trial| closes(&trial, WELL));
+        let untouched = match chosen.scene.touch {
+            Touch::Touches if !closes => {
+                print_progress(format_args!("without contact:"));
+                let free = FoldScene {
+                    touch: Touch::Passes,
+                    panels: Panels::Rigid,
+                    ..chosen.scene.clone()
+                };
+                self.best(free)?.1
+            }
+            Touch::Touches | Touch::Passes => None,
+        };
+        Ok(Chosen {
+            untouched,
+            ..chosen
+        })
+    }
+
+    /// The scene whose panels close best, with its trial.
+    fn best(&self, rigid: FoldScene) -> Result<(Chosen, Option<FoldTrial>), Failure> {
         let first = self.tried(&rigid)?;
         let residual = first.map(|trial| trial.residual);
-        let closes = |trial: &FoldTrial, rms: f64| {
-            let FoldTrial {
-                residual: r,
-                strain,
-            } = *trial;
-            let is_of_paper = 100.0 * strain <= FoldVerdict::STRETCHES;
-            is_of_paper && r.rms <= rms && r.largest <= 5.0 * rms
-        };
         let mut best = (first, rigid.clone());
+        let chosen = |scene| Chosen {
+            scene,
+            rigid: residual,
+            untouched: None,
+        };
         if first.is_some_and(|trial| closes(&trial, CLOSED)) {
-            return Ok((rigid, residual));
+            return Ok((chosen(rigid), first));
         }
         let faces = self.parsed(&rigid)?.build()?;
         let faces = faces.model.topology().face_count();
-        let refined = (faces * 4 <= MOST_FACES).then_some(Panels::Elastic { refine: 1 });
-        let others = [
-            Some(Panels::Elastic { refine: 0 }),
-            Some(Panels::Soft),
-            refined,
-        ];
-        for panels in others.into_iter().flatten() {
+        let mut others = vec![(Panels::Elastic { refine: 0 }, CLOSED)];
+        others.extend(SOFT.map(|stiffness| (Panels::Soft { stiffness }, CLOSED)));
+        if faces * 4 <= MOST_FACES {
+            others.push((Panels::Elastic { refine: 1 }, WELL));
+        }
+        for (panels, enough) in others {
+            if best.0.is_some_and(|trial| closes(&trial, enough)) {
+                break;
+            }
             let scene = FoldScene {
                 panels,
                 ..rigid.clone()
@@ -114,11 +165,8 @@ impl Pattern<'_> {
             if is_first || rank(found) < rank(best.0) {
                 best = (found, scene);
             }
-            if best.0.is_some_and(|trial| closes(&trial, WELL)) {
-                break;
-            }
         }
-        Ok((best.1, residual))
+        Ok((chosen(best.1), best.0))
     }
 
     fn parsed(&self, scene: &FoldScene) -> Result<SceneFile, Failure> {
@@ -131,7 +179,8 @@ impl Pattern<'_> {
             Panels::Rigid => "rigid panels",
             Panels::Elastic { refine: 0 } => "elastic panels",
             Panels::Elastic { .. } => "elastic panels with divided triangles",
-            Panels::Soft => "soft panels",
+            Panels::Soft { stiffness } if stiffness == SOFT[0] => "soft panels",
+            Panels::Soft { .. } => "softer panels",
         };
         let mut told = Instant::now();
         let mut watch = |done: f64| {
@@ -146,7 +195,9 @@ impl Pattern<'_> {
             return Err(Failure::new(Code::Interrupted, "stopped by Ctrl-C"));
         }
         match found {
-            Some(FoldTrial { residual, strain }) => print_progress(format_args!(
+            Some(FoldTrial {
+                residual, strain, ..
+            }) => print_progress(format_args!(
                 "{what}: creases end {:.1} degrees rms from their angles, with strains of {:.1} % at most",
                 residual.rms,
                 100.0 * strain
@@ -155,6 +206,17 @@ impl Pattern<'_> {
         }
         Ok(found)
     }
+}
+
+/// Whether creases end so near their angles (degrees in the mean) without stretched panels.
+fn closes(trial: &FoldTrial, rms: f64) -> bool {
+    let FoldTrial {
+        residual: r,
+        strain,
+        ..
+    } = *trial;
+    let is_of_paper = 100.0 * strain <= FoldVerdict::STRETCHES;
+    is_of_paper && r.rms <= rms && r.largest <= 5.0 * rms
 }
 
 /// The text of a scene.

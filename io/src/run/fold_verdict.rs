@@ -1,6 +1,7 @@
 //! What came of the folding of a crease pattern, in words.
 
 use super::Recording;
+use super::passing::Passing;
 use crate::scene::{FoldResidual, FollowedFolds, Isometry};
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{EdgeId, fold_angle};
@@ -20,6 +21,8 @@ pub struct FoldVerdict {
     pub is_elastic: bool,
     /// The largest strain of an edge at the end, and of all frames.
     pub strain: [f64; 2],
+    /// The part of the folding that is done when panels first pass through each other, if they do.
+    pub passing: Option<f64>,
 }
 
 impl FoldVerdict {
@@ -44,14 +47,18 @@ impl FoldVerdict {
         let strain = [recording.model.max_strain(x), strains.fold(0.0, f64::max)];
         let frame = |k: usize| recording.trajectory.frame(k).unwrap_or_default();
         let mut folds = FollowedFolds::begin(targets, topology, frame(0));
-        for k in 1..recording.trajectory.len() {
+        let mut passing = Passing::begin(topology, frame(0));
+        let times = recording.trajectory.times();
+        for (k, t) in times.iter().enumerate().skip(1) {
             folds.follow(targets, topology, frame(k));
+            passing.follow(*t, frame(k));
         }
+        let scene = recording.scene.scene();
         let off: Vec<(f64, EdgeId)> = {
             let edges = targets.creases.iter().map(|(e, _)| *e);
             folds.off(targets).into_iter().zip(edges).collect()
         };
-        let refine = recording.scene.scene().sheet[0].refine;
+        let refine = scene.sheet[0].refine;
         // The parts of a crease follow one another.
         let creases = off.chunks(1 << refine);
         let creases = creases.filter_map(|parts| {
@@ -98,7 +105,11 @@ impl FoldVerdict {
             furthest,
             panels: [count, bends.iter().filter(|b| **b).count()],
             strain,
-            is_elastic: recording.scene.scene().sheet[0].isometry() != Isometry::Rods,
+            is_elastic: scene.sheet[0].isometry() != Isometry::Rods,
+            passing: passing
+                .first()
+                .zip(scene.folding.as_ref())
+                .map(|(t, folding)| folding.progress(t)),
         })
     }
 
@@ -140,7 +151,14 @@ impl FoldVerdict {
                 Self::OPEN
             ),
         };
-        format!("folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}{stretch}")
+        let passing = match self.passing {
+            Some(part) => format!(
+                "; panels pass through each other from {:.0} % of the folding on",
+                100.0 * part
+            ),
+            None => String::new(),
+        };
+        format!("folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}{stretch}{passing}")
     }
 }
 

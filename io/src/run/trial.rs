@@ -1,5 +1,6 @@
 //! How far a scene folds, found without a folder.
 
+use super::passing::Passing;
 use crate::scene::{FoldResidual, FollowedFolds, SceneError, SceneFile};
 use isosheet_dynamics::StepProgress;
 use std::ops::ControlFlow;
@@ -14,6 +15,8 @@ pub(crate) struct FoldTrial {
     pub(crate) residual: FoldResidual,
     /// The largest strain of an edge.
     pub(crate) strain: f64,
+    /// The part of the folding that is done when panels first pass through each other.
+    pub(crate) passing: Option<f64>,
 }
 
 impl FoldTrial {
@@ -45,6 +48,7 @@ impl SceneFile {
         };
         let topology = simulation.model().topology();
         let mut folds = FollowedFolds::begin(&targets, topology, &simulation.state().x);
+        let mut passing = Passing::begin(topology, &simulation.state().x);
         let scene = self.scene();
         let vertices = simulation.model().topology().vertex_count();
         let mut left = MOST_WORK / vertices.max(1);
@@ -59,7 +63,9 @@ impl SceneFile {
                 Err(_) => return Ok(None),
             }
             let topology = simulation.model().topology();
-            folds.follow(&targets, topology, &simulation.state().x);
+            let state = simulation.state();
+            folds.follow(&targets, topology, &state.x);
+            passing.follow(state.t, &state.x);
         }
         let topology = simulation.model().topology();
         let x = &simulation.state().x;
@@ -67,6 +73,10 @@ impl SceneFile {
         Ok(Some(FoldTrial {
             residual: folds.residual(&targets, topology, x),
             strain,
+            passing: passing
+                .first()
+                .zip(scene.folding.as_ref())
+                .map(|(t, folding)| folding.progress(t)),
         }))
     }
 }

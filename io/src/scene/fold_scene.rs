@@ -16,8 +16,13 @@ pub enum Panels {
         /// `sheet.refine`.
         refine: usize,
     },
-    /// Soft in their plane, so that they stretch on the way to a shape that no isometric motion leads to.
-    Soft,
+    /// Soft in their plane, so that they stretch on the way to a shape that no isometric motion leads to, with springs at the
+    /// edges of their triangles: where these are slender, the bending stiffness of the material would keep creases open.
+    Soft {
+        /// Stiffness in the plane beside the bending stiffness of the material over the square of the longest side of the
+        /// sheet.
+        stiffness: u32,
+    },
 }
 
 /// A scene that folds a crease pattern to its angles.
@@ -52,12 +57,11 @@ pub enum Touch {
     Touches,
 }
 
-/// Stiffness of soft panels in their plane beside the bending stiffness of the material over the square of the longest
-/// side of the sheet: a hundred newton a metre for office paper of 0.2 m, of which paper itself has 3000 times as much.
-const SOFT: f64 = 8000.0;
-
 /// The strain that soft panels do not exceed.
 const SOFT_LIMIT: f64 = 0.4;
+
+/// Stiffness of a metre of the edges inside of soft panels beside that of creases.
+const SOFT_EDGES: f64 = 0.4;
 
 /// In how much time the springs reach their angles, in which steps, and when the run ends, seconds. Inertia of the panels
 /// is small then beside the springs, and each step turns a crease by a few degrees.
@@ -95,13 +99,22 @@ impl FoldScene {
                 .escape_debug(),
         );
         let material = toml::Value::from(self.material.as_str());
-        let stiffness = two_digits(CREASES * self.rigidity() / self.size);
+        let creases = CREASES * self.rigidity() / self.size;
+        let stiffness = two_digits(creases);
+        let flat = match self.panels {
+            Panels::Soft { .. } => format!(
+                "flat_stiffness = {:?} # N: of the edges inside of panels\n",
+                two_digits(SOFT_EDGES * creases)
+            ),
+            Panels::Rigid | Panels::Elastic { .. } => String::new(),
+        };
         let panels = match self.panels {
             Panels::Rigid => "isometry = \"rods\" # rigid panels\nbending = \"none\"\n".to_owned(),
             Panels::Elastic { refine: 0 } => String::new(),
-            Panels::Soft => format!(
-                "isometry = {{ elastic = {{ stiffness = {:?}, limit = {SOFT_LIMIT:?} }} }} # panels stretch on the way\n",
-                two_digits(SOFT * self.rigidity() / (self.size * self.size))
+            Panels::Soft { stiffness } => format!(
+                "isometry = {{ elastic = {{ stiffness = {:?}, limit = {SOFT_LIMIT:?} }} }} # panels stretch on the way\n\
+                 bending = \"none\"\n",
+                two_digits(f64::from(stiffness) * self.rigidity() / (self.size * self.size))
             ),
             Panels::Elastic { refine } => {
                 format!(
@@ -124,7 +137,7 @@ impl FoldScene {
             text,
             "material = {material}\n{panels}damping = {damping:?} # 1/s\n\n[folding]\ntime = {time:?} # s\n\
              stiffness = {stiffness:?} # N: newton metres per radian and metre of crease\n\
-             part = {part:?} # of the angles of the pattern\n{order}\n[method]\nstep = {step:?} # s\n\n[stop]\ntime = {end:?} # s\n\n\
+             {flat}part = {part:?} # of the angles of the pattern\n{order}\n[method]\nstep = {step:?} # s\n\n[stop]\ntime = {end:?} # s\n\n\
              [output]\nframes_per_second = {frames:?}\n"
         );
         if self.touch == Touch::Touches {

@@ -419,7 +419,7 @@ impl Body {
         check_shape(&surface, &at)?;
         let touching = ContactMesh::from_topology(surface.topology());
         let x = surface.positions();
-        if let Some([edge, face]) = BroadPhase::new(touching, x).self_crossing(x) {
+        if let Some([edge, face]) = BroadPhase::new(touching, x).self_crossing(x, 0.0) {
             let message = format!("edge {edge} of the surface passes through its face {face}");
             let remedy = "make a surface that does not cut itself, or several bodies";
             return Err(Problem::new(at, message, remedy));

@@ -72,6 +72,7 @@ impl MeshFile {
         self.changes.loose_lines = planar.loose;
         self.changes.loose_cuts = planar.loose_cuts;
         self.changes.double_lines = planar.double;
+        self.changes.contradicting_lines = planar.contradicting;
         self.creases = planar.edges;
         self.add_diagonals();
     }

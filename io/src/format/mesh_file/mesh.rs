@@ -45,6 +45,8 @@ pub struct ReadingChanges {
     pub loose_cuts: usize,
     /// Lines of drawings that were left out because they lie on others.
     pub double_lines: usize,
+    /// Edges of drawings where creases that are meant to do different things lie on each other, which fold freely.
+    pub contradicting_lines: usize,
     /// Lines of drawings that were left out because their colours mean nothing in a crease pattern.
     pub other_lines: usize,
     /// Elements of drawings that were left out because they are no lines: texts, images, what is hidden.
@@ -84,10 +86,18 @@ impl fmt::Display for ReadingChanges {
             (self.loose_lines, LINES, "that lead nowhere left out"),
             (
                 self.loose_cuts,
-                ["of them is a cut", "of them are cuts"],
+                [
+                    "of them is a cut inside the sheet",
+                    "of them are cuts inside the sheet",
+                ],
                 "(`isosheet mesh` cuts slits)",
             ),
             (self.double_lines, LINES, "that lie on others left out"),
+            (
+                self.contradicting_lines,
+                ["edge", "edges"],
+                "with a mountain on a valley or with two angles, which fold freely",
+            ),
             (
                 self.other_lines,
                 LINES,

@@ -5,13 +5,14 @@
 
 pub(super) mod cp;
 mod faces;
+mod gaps;
 pub(super) mod opx;
 mod planar;
 pub(super) mod svg;
 #[cfg(test)]
 mod tests;
 
-use super::{EdgeAssignment, FileCrease};
+use super::{EdgeAssignment, FileCrease, polygon};
 use crate::format::DataError;
 pub(super) use faces::faces;
 pub(super) use planar::{FileUnit, Planar, planar};
@@ -37,8 +38,9 @@ pub(super) struct PatternLines {
 }
 
 /// Ends of lines that are so near each other become one point, as a part of the longer side of the drawing, unless
-/// the reader is told otherwise: the first of these distances with which every line leads somewhere. They are above the
-/// digits that drawing programs write, and at most a millimetre of a sheet of twenty centimetres.
+/// the reader is told otherwise: the first of these distances with which no face crosses itself, every line leads somewhere and
+/// no two contradict each other, or else fewest do so. They are above the digits that drawing programs write, and at most a millimetre of a
+/// sheet of twenty centimetres.
 const SNAP: [f64; 4] = [5e-4, 1e-3, 2e-3, 5e-3];
 
 /// The planar graph of a drawing. `snap` is the distance within which points become one, in the unit of the drawing.
@@ -70,12 +72,12 @@ pub(super) fn of_segments(segments: &[Segment], snap: Option<f64>) -> Result<Pla
     let Some(snap) = snap else {
         let mut best = within(segments, SNAP[0] * size);
         for snap in &SNAP[1..] {
-            let loose = best.as_ref().map_or(usize::MAX, |planar| planar.loose);
-            if loose == 0 {
+            let least = best.as_ref().map_or((usize::MAX, 0), faults);
+            if least == (0, 0) {
                 break;
             }
             if let Ok(planar) = within(segments, snap * size)
-                && planar.loose < loose
+                && faults(&planar) < least
             {
                 best = Ok(planar);
             }
@@ -83,6 +85,17 @@ pub(super) fn of_segments(segments: &[Segment], snap: Option<f64>) -> Result<Pla
         return best;
     };
     within(segments, snap)
+}
+
+/// The number of faces that cross or touch themselves, as lines bend where their ends are moved, and of lines that lead nowhere
+/// or contradict each other.
+fn faults(planar: &Planar) -> (usize, usize) {
+    let crosses = |face: &&Vec<i64>| {
+        let corners: Vec<u32> = face.iter().map(|&v| v as u32).collect();
+        polygon::outline(&corners, |v| planar.points[v as usize]).is_none()
+    };
+    let crossed = planar.faces.iter().filter(crosses).count();
+    (crossed, planar.loose + planar.contradicting)
 }
 
 /// The planar graph of a drawing whose points are one within a distance.

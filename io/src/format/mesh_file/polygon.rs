@@ -1,6 +1,7 @@
 //! Cutting polygons into triangles.
 
 use super::plane::{NEAR, meet, twice_area};
+use std::collections::{BTreeMap, BTreeSet};
 
 type Point = [f64; 3];
 
@@ -20,17 +21,14 @@ pub(super) struct Pieces {
 }
 
 /// Cuts a polygon into triangles that are turned like the polygon as a whole; `None` if its outline crosses
-/// or touches itself, seen along its normal, or has no area.
+/// or touches itself, seen along its normal, or has no area. It may come to a corner more than once, as that of a face does
+/// into which another one reaches from a corner, and run along a line to a hole in both directions.
 ///
 /// Corner after corner is cut off, always by the shortest cut that is inside: a quad is cut along its shorter
 /// diagonal if both will do. Of equal cuts that with the smallest vertex number is made. A Delaunay
 /// triangulation would leave it to round-off how the corners of a rectangle are joined.
 pub(super) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<Pieces> {
-    let places = in_plane(&corners.iter().map(|&c| at(c)).collect::<Vec<_>>());
-    let near = NEAR * extent(&places);
-    if !is_simple(corners, &places, near) {
-        return None;
-    }
+    let (places, near) = outline(corners, at)?;
     let mut pieces = Pieces {
         triangles: Vec::with_capacity(corners.len() - 2),
         cuts: Vec::with_capacity(corners.len() - 3),
@@ -52,6 +50,14 @@ pub(super) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<
     is_left.then_some(pieces)
 }
 
+/// The places of the corners of a polygon in its plane, and the distance within which they are the same; `None` if its
+/// outline crosses or touches itself, or has no extent.
+pub(super) fn outline(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<(Vec<Point>, f64)> {
+    let places = in_plane(&corners.iter().map(|&c| at(c)).collect::<Vec<_>>());
+    let near = NEAR * extent(&places);
+    is_simple(corners, &places, near).then_some((places, near))
+}
+
 /// The place in `left` of the corner that is cut off next.
 fn next_ear(left: &[usize], corners: &[u32], places: &[Point], near: f64) -> Option<usize> {
     // No corner that bulges outwards is in the way of another one without one that does not.
@@ -59,8 +65,10 @@ fn next_ear(left: &[usize], corners: &[u32], places: &[Point], near: f64) -> Opt
     let inward: Vec<usize> = inward.map(|k| left[k]).collect();
     let is_ear = |&k: &usize| {
         let ear = around(left, k);
+        // Where the outline comes to a corner again it is beside the ear.
+        let is_corner = |p: usize| ear.iter().any(|&k| corners[k] == corners[p]);
         let is_free =
-            |p: &usize| ear.contains(p) || is_outside(places[*p], ear.map(|k| places[k]), near);
+            |p: &usize| is_corner(*p) || is_outside(places[*p], ear.map(|k| places[k]), near);
         height(ear, places) > near && inward.iter().all(is_free)
     };
     let length = |k: usize| {
@@ -102,15 +110,21 @@ fn is_outside(p: Point, [a, b, c]: [Point; 3], near: f64) -> bool {
         .any(|&[a, b]| twice_area([a, b, p].iter()) < -near * (a[0] - b[0]).hypot(a[1] - b[1]))
 }
 
-/// Whether an outline neither crosses nor touches itself.
+/// Whether an outline neither crosses itself nor touches itself elsewhere than at corners.
 fn is_simple(corners: &[u32], places: &[Point], near: f64) -> bool {
-    let n = corners.len() as u32;
-    let side = |k: u32| [k, (k + 1) % n];
-    let mut numbers = corners.to_vec();
-    numbers.sort_unstable();
-    numbers.dedup();
-    let meets = |i: u32| (i + 1..n).any(|j| meet(side(i), side(j), places, near));
-    numbers.len() == corners.len() && near > 0.0 && !(0..n).any(meets)
+    let n = corners.len();
+    let mut first = BTreeMap::new();
+    let mut numbers = Vec::with_capacity(n);
+    for (k, corner) in (0..).zip(corners) {
+        numbers.push(*first.entry(corner).or_insert(k));
+    }
+    let side = |k: usize| [numbers[k], numbers[(k + 1) % n]];
+    let sides: BTreeSet<[u32; 2]> = (0..n).map(side).collect();
+    // A line to a hole is run along in both directions; one that leads nowhere is followed by itself.
+    let turns_back = |k: usize| numbers[k] == numbers[(k + 2) % n];
+    let meets = |i: usize| (i + 1..n).any(|j| meet(side(i), side(j), places, near));
+    let goes_on = |k: usize| side(k)[0] != side(k)[1] && !turns_back(k);
+    near > 0.0 && sides.len() == n && (0..n).all(goes_on) && !(0..n).any(meets)
 }
 
 /// The places of corners in the plane of a polygon, counter-clockwise.
@@ -198,6 +212,35 @@ mod tests {
         ];
         let triangles = cut(&arrow).unwrap();
         assert!(triangles.iter().all(|t| t.contains(&1) && t.contains(&3)));
+    }
+
+    /// A square from whose corner 0 a square hole reaches inwards: the outline comes to the corner twice.
+    #[test]
+    fn an_outline_may_come_to_a_corner_again() {
+        let points = [
+            [0.0, 0.0, 0.0],
+            [3.0, 0.0, 0.0],
+            [3.0, 3.0, 0.0],
+            [0.0, 3.0, 0.0],
+            [1.0, 2.0, 0.0],
+            [2.0, 2.0, 0.0],
+            [2.0, 1.0, 0.0],
+            [1.0, 1.0, 0.0],
+        ];
+        let cut = |corners: &[u32]| triangulate(corners, |c| points[c as usize]);
+        let found = cut(&[0, 1, 2, 3, 0, 4, 5, 6]).unwrap().triangles;
+        let area = |t: &[u32; 3]| 0.5 * twice_area(t.map(|c| points[c as usize]).iter());
+        assert!(found.iter().all(|t| area(t) > 0.0), "{found:?}");
+        let sum: f64 = found.iter().map(area).sum();
+        // The hole is a kite with the diagonals 2^1/2 and 2 2^1/2.
+        assert!((sum - 7.0).abs() < 1e-12, "{sum}");
+        assert_eq!(found.len(), 6);
+        // A line to a square hole is run along in both directions, and a slit is no hole.
+        let found = cut(&[0, 1, 2, 3, 0, 7, 4, 5, 6, 7]).unwrap().triangles;
+        let sum: f64 = found.iter().map(area).sum();
+        assert!(found.iter().all(|t| area(t) > 0.0), "{found:?}");
+        assert!((sum - 8.0).abs() < 1e-12, "{sum}");
+        assert!(cut(&[0, 1, 2, 3, 0, 5]).is_none());
     }
 
     /// Both diagonals of a rectangle have the same length up to round-off, which depends on its position.

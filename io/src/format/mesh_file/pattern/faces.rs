@@ -111,7 +111,7 @@ fn check_pieces(points: &[Point], edges: &[FileCrease]) -> Result<(), DataError>
 }
 
 /// The representative of a set, with the path to it halved.
-fn root(parent: &mut [usize], mut v: usize) -> usize {
+pub(super) fn root(parent: &mut [usize], mut v: usize) -> usize {
     while parent[v] != v {
         parent[v] = parent[parent[v]];
         v = parent[v];

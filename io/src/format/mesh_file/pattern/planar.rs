@@ -6,7 +6,7 @@ use crate::format::mesh_file::{EdgeAssignment, FileCrease};
 use crate::format::mesh_file::{Point, distance, twice_area};
 use isosheet_mesh::wording::{brief, counted};
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 
 /// A drawing whose edges meet at their ends alone, and each of which is beside a face.
 #[derive(Debug, Default)]
@@ -21,9 +21,11 @@ pub(in crate::format) struct Planar {
     /// Edges that were left out because they lead nowhere, and those that lie on another one.
     pub(in crate::format) loose: usize,
     pub(in crate::format) double: usize,
-    /// Lines of the outline or of cuts among those that lead nowhere.
+    /// Lines of the outline or of cuts inside of faces among those that lead nowhere.
     pub(in crate::format) loose_cuts: usize,
-    /// Their ends outside of the faces where no other such line goes on.
+    /// Edges where lines that are meant to do different things lie on each other.
+    pub(in crate::format) contradicting: usize,
+    /// Ends of the outline at gaps, see [`super::gaps`].
     open: Vec<Point>,
 }
 
@@ -100,8 +102,7 @@ impl Points {
 /// leaves out those that lead nowhere, and finds the faces.
 ///
 /// # Errors
-/// [`DataError`] for edges without length, for creases on each other that are meant to do different things, and for a
-/// drawing with a part inside of a face of another part.
+/// [`DataError`] for edges without length, and for a drawing with a part inside of a face of another part.
 pub(in crate::format) fn planar(
     given: Vec<Point>,
     edges: &[FileCrease],
@@ -137,27 +138,20 @@ pub(in crate::format) fn planar(
         points: points.into_points(),
         ..Planar::default()
     };
-    planar.divide(edges, on)?;
-    planar.drop_loose();
+    planar.divide(edges, on);
+    let loose = planar.drop_loose();
     if !planar.edges.is_empty() {
         planar.faces = super::faces(&planar.points, &planar.edges)?;
     }
     planar.drop_bridges();
-    let (points, faces) = (&planar.points, &planar.faces);
-    let is_outside = |p: &Point| !faces.iter().any(|face| is_within(p, face, points));
-    planar.open.retain(is_outside);
+    let Planar {
+        points,
+        edges,
+        faces,
+        ..
+    } = &planar;
+    (planar.loose_cuts, planar.open) = super::gaps::of(points, edges, faces, &loose, near);
     Ok(planar)
-}
-
-/// Whether a point is in a polygon: whether a ray from it to the right crosses an odd number of sides.
-fn is_within(p: &Point, polygon: &[i64], points: &[Point]) -> bool {
-    let corner = |k: usize| points[polygon[k % polygon.len()] as usize];
-    let sides = (0..polygon.len()).map(|k| [corner(k), corner(k + 1)]);
-    let crossed = sides.filter(|[a, b]| {
-        let at = (p[1] - a[1]) / (b[1] - a[1]);
-        (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + at * (b[0] - a[0])
-    });
-    crossed.count() % 2 == 1
 }
 
 /// Of each edge the points between its ends that are on it: ends of other edges, and where others cross it.
@@ -262,10 +256,17 @@ impl Planar {
         }
     }
 
-    /// Makes the parts of the edges between the points on them.
-    fn divide(&mut self, edges: &[FileCrease], on: Vec<Vec<u32>>) -> Result<(), DataError> {
-        let mut known: HashMap<[u32; 2], (usize, usize)> = HashMap::new();
-        for (number, (edge, mut inner)) in edges.iter().zip(on).enumerate() {
+    /// Makes the parts of the edges between the points on them. Where those that are meant to do different things lie on
+    /// each other, the sheet folds freely.
+    fn divide(&mut self, edges: &[FileCrease], on: Vec<Vec<u32>>) {
+        struct Known {
+            at: usize,
+            line: usize,
+            rank: u8,
+            contradicts: bool,
+        }
+        let mut known: HashMap<[u32; 2], Known> = HashMap::new();
+        for (line, (edge, mut inner)) in edges.iter().zip(on).enumerate() {
             let [a, b] = edge.ends.map(|v| self.points[v as usize]);
             let along = |v: u32| {
                 let p = self.points[v as usize];
@@ -273,35 +274,46 @@ impl Planar {
             };
             inner.sort_by(|&v, &w| along(v).total_cmp(&along(w)));
             let chain = [vec![edge.ends[0]], inner, vec![edge.ends[1]]].concat();
+            let rank = rank(edge.assignment);
             for ends in chain
                 .windows(2)
                 .map(|w| [w[0], w[1]])
                 .filter(|[a, b]| a != b)
             {
                 let part = FileCrease { ends, ..*edge };
+                let new = |at| Known {
+                    at,
+                    line,
+                    rank,
+                    contradicts: false,
+                };
                 let [a, b] = ends;
-                match known.entry([a.min(b), a.max(b)]) {
+                let known = match known.entry([a.min(b), a.max(b)]) {
                     Entry::Vacant(place) => {
-                        place.insert((self.edges.len(), number));
+                        place.insert(new(self.edges.len()));
                         self.edges.push(part);
+                        continue;
                     }
-                    Entry::Occupied(place) => {
-                        let (at, other) = *place.get();
-                        if other == number {
-                            continue;
-                        }
-                        self.double += 1;
-                        let first = &mut self.edges[at];
-                        match rank(part.assignment).cmp(&rank(first.assignment)) {
-                            std::cmp::Ordering::Greater => *first = part,
-                            std::cmp::Ordering::Less => {}
-                            std::cmp::Ordering::Equal => check_same(first, &part, [other, number])?,
-                        }
-                    }
+                    Entry::Occupied(place) => place.into_mut(),
+                };
+                if known.line == line {
+                    continue;
+                }
+                self.double += 1;
+                let first = &mut self.edges[known.at];
+                let is_same =
+                    |c: &FileCrease| (c.assignment, c.angle) == (part.assignment, part.angle);
+                if rank > known.rank {
+                    *first = part;
+                    *known = new(known.at);
+                } else if rank == known.rank && !is_same(first) {
+                    first.assignment = EdgeAssignment::Unassigned;
+                    first.angle = None;
+                    known.contradicts = true;
                 }
             }
         }
-        Ok(())
+        self.contradicting = known.values().filter(|known| known.contradicts).count();
     }
 
     /// Leaves out the edges that are sides of no face: those that lead from one part of the sheet to another.
@@ -319,8 +331,8 @@ impl Planar {
         self.loose += before - self.edges.len();
     }
 
-    /// Leaves out the edges that end where no other one does, again and again.
-    fn drop_loose(&mut self) {
+    /// Leaves out the edges that end where no other one does, again and again, and returns them.
+    fn drop_loose(&mut self) -> Vec<FileCrease> {
         let mut at: Vec<Vec<usize>> = vec![Vec::new(); self.points.len()];
         for (e, edge) in self.edges.iter().enumerate() {
             edge.ends.iter().for_each(|&v| at[v as usize].push(e));
@@ -333,7 +345,6 @@ impl Planar {
                 continue;
             };
             is_loose[e] = true;
-            self.loose += 1;
             for w in self.edges[e].ends.map(|w| w as usize) {
                 degree[w] -= 1;
                 if degree[w] == 1 {
@@ -341,38 +352,10 @@ impl Planar {
                 }
             }
         }
-        let is_outline = |e: &usize| {
-            let assignment = self.edges[*e].assignment;
-            matches!(assignment, EdgeAssignment::Boundary | EdgeAssignment::Cut)
-        };
-        let goes_on = |v: usize| at[v].iter().filter(|e| is_outline(e)).count() > 1;
-        let dropped = (0..self.edges.len()).filter(|e| is_loose[*e] && is_outline(e));
-        self.loose_cuts = dropped.clone().count();
-        let ends = dropped.flat_map(|e| self.edges[e].ends.map(|v| v as usize));
-        let open: BTreeSet<usize> = ends.filter(|v| !goes_on(*v)).collect();
-        self.open = open.into_iter().map(|v| self.points[v]).collect();
-        let mut of_edges = is_loose.iter();
-        self.edges.retain(|_| of_edges.next() == Some(&false));
+        let edges = std::mem::take(&mut self.edges).into_iter().zip(is_loose);
+        let (loose, kept): (Vec<_>, Vec<_>) = edges.partition(|(_, is_loose)| *is_loose);
+        self.edges = kept.into_iter().map(|(edge, _)| edge).collect();
+        self.loose = loose.len();
+        loose.into_iter().map(|(edge, _)| edge).collect()
     }
-}
-
-/// Refuses lines on each other that contradict each other.
-fn check_same(
-    first: &FileCrease,
-    second: &FileCrease,
-    [a, b]: [usize; 2],
-) -> Result<(), DataError> {
-    if first.assignment == second.assignment && first.angle == second.angle {
-        return Ok(());
-    }
-    let told = |c: &FileCrease| match c.angle {
-        Some(angle) => format!("{} by {} degrees", c.assignment, angle.to_degrees().round()),
-        None => c.assignment.to_string(),
-    };
-    let message = format!(
-        "lines {a} and {b}, counted from 0, lie on each other: one {}, and the other one {}",
-        told(first),
-        told(second)
-    );
-    Err(DataError::new(message, "remove one of them").at(b))
 }
