@@ -61,6 +61,16 @@ pub struct DrawingFile {
     pub seed: u64,
 }
 
+/// Refuses words that select no lines of any drawing.
+pub(super) fn check_lines(list: &[String], key: &Key, checks: &mut Checks) {
+    for (k, text) in list.iter().enumerate() {
+        if let Err(problem) = text.parse::<Selector>() {
+            let remedy = "name a layer, a colour or dashes";
+            checks.report(key.entry(k), problem, remedy);
+        }
+    }
+}
+
 fn one() -> f64 {
     1.0
 }
@@ -104,12 +114,7 @@ impl DrawingFile {
             checks.report(key.name("path"), "the path is empty", "name a drawing");
         }
         for (name, list, _) in self.lists() {
-            for (k, text) in list.iter().enumerate() {
-                if let Err(problem) = text.parse::<Selector>() {
-                    let remedy = "name a layer, a colour or dashes";
-                    checks.report(key.name(name).entry(k), problem, remedy);
-                }
-            }
+            check_lines(list, &key.name(name), checks);
         }
     }
 
