@@ -62,9 +62,10 @@ impl Recording {
         }
         let held = constraints::bodies(self.scene.scene(), &replay.times, corners);
         replay.bodies.extend(held);
-        replay
-            .series
-            .extend(TimeSeries::of_measures(&self.measures));
+        replay.series.extend(TimeSeries::of_measures(
+            &self.measures,
+            &self.scene.scene().measure,
+        ));
         Replay {
             // How far creases are from their angles.
             colour: self.folding.as_ref().map(|_| 0),

@@ -29,6 +29,9 @@ use std::collections::BTreeSet;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Crease {
+    /// A name, by which measures find it.
+    #[serde(default)]
+    pub name: Option<String>,
     /// The name of the sheet, if there are several.
     #[serde(default)]
     pub sheet: Option<String>,
@@ -158,6 +161,23 @@ impl Crease {
         match self.at {
             CreaseEdges::Pattern(PatternEdges::Flat) => EdgeFolds::No,
             _ => EdgeFolds::Yes,
+        }
+    }
+
+    /// Refuses names that stand twice.
+    pub(super) fn check_names(creases: &[Self], checks: &mut Checks) {
+        for (k, crease) in creases.iter().enumerate() {
+            let others = &creases[..k];
+            if crease.name.is_some() && others.iter().any(|other| other.name == crease.name) {
+                checks.report(
+                    Key::root().name("crease").entry(k).name("name"),
+                    format!(
+                        "another crease has the name `{}`",
+                        crease.name.as_deref().unwrap_or_default()
+                    ),
+                    "give each crease a name of its own, or write both as one",
+                );
+            }
         }
     }
 

@@ -119,7 +119,7 @@ impl PlacedSheets<'_> {
             if sheet.is_some_and(|name| bodies::number_of(&scene.body, name).is_some()) {
                 continue;
             }
-            selections.push((key.name("at"), sheet, &measure.at));
+            selections.extend(measure.at.iter().map(|at| (key.name("at"), sheet, at)));
             if let Quantity::DistanceTo(others) = &measure.quantity {
                 selections.push((key.name("quantity.distance_to"), sheet, others));
             }
