@@ -218,7 +218,7 @@ impl Rows {
             self.add("targets at the end", words);
         }
         self.add(
-            "error of the energy balance",
+            "energy that the method took out of the motion (-) or added (+)",
             format!("{:.2e} J", ending.energy_drift),
         );
         self.add(

@@ -6,9 +6,10 @@ use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use crate::format::FileError;
 use crate::format::drawing::{
-    DrawingOptions, DrawingUnit, DrawnSheet, LineClass, LineRules, Selector, mesh_drawing,
-    parse_drawing,
+    DrawingError, DrawingOptions, DrawingUnit, DrawnSheet, LineClass, LineRules, Selector,
+    mesh_drawing, parse_drawing,
 };
+use isosheet_mesh::plane::PlaneError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -143,6 +144,14 @@ impl DrawingFile {
         let bytes = bytes.map_err(|e| of_path(FileError::unreadable(&self.path, e)))?;
         let options = self.options();
         let drawing = parse_drawing(&bytes, &self.path, &options).map_err(of_path)?;
-        mesh_drawing(&drawing, &options).map_err(|e| Problem::from_error(key.clone(), &e))
+        mesh_drawing(&drawing, &options).map_err(|e| match e {
+            DrawingError::Plane(PlaneError::Open { .. }) => Problem::new(
+                key.clone(),
+                e.to_string(),
+                "close the outline there, give a `snap` of at least the gap, or leave out lines that are no outline \
+                 by `ignore`",
+            ),
+            _ => Problem::from_error(key.clone(), &e),
+        })
     }
 }

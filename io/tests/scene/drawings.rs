@@ -214,13 +214,13 @@ fn a_line_of_coordinates_finds_what_a_drawing_program_rounded() {
     let told = wrong(&crease_at("{ drawn = [\"scores\"] }"));
     assert!(told.contains("\"scores\" selects no lines"), "{told}");
     let support =
-        "[[support]]\nat = { box = { min = [0.2, 0, 0], max = [0.3, 0.1, 0] } }\nhold = \"place\"";
+        "[[support]]\nat = { box = { min = [0.2, 0, 0], max = [0.3, 0.1, 0] } }\nhold = \"pin\"";
     let told = wrong(support);
     assert!(
         told.contains("the nearest one, at (0.14, ") && told.contains("is 0.06 m away"),
         "{told}"
     );
-    let support = "[[support]]\nat = { half_space = { point = [0, 0.25, 0], normal = [0, 3, 0] } }\nhold = \"place\"";
+    let support = "[[support]]\nat = { half_space = { point = [0, 0.25, 0], normal = [0, 3, 0] } }\nhold = \"pin\"";
     let told = wrong(support);
     assert!(told.contains("is 0.15 m away"), "{told}");
 }

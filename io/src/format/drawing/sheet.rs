@@ -10,6 +10,7 @@ use crate::format::{DataError, EdgeAssignment, FileCrease, FileError, MeshFile};
 use isosheet_mesh::plane::{
     Piece, PlaneCurve, PlaneError, PlaneGraph, PlaneMesh, PlaneOptions, Role,
 };
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, MeshError, Sheet};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::f64::consts::PI;
@@ -79,7 +80,20 @@ pub fn mesh_drawing(
         };
         return Err(DataError::new(message, "draw the outline of the sheet as lines").into());
     }
-    let snap = options.snap.unwrap_or_else(|| SNAP * diagonal(&lines));
+    let diagonal = diagonal(&lines);
+    if options.spacing > diagonal {
+        let message = format!(
+            "the spacing is {} m, and the drawing only {} m from corner to corner",
+            given(options.spacing),
+            brief(diagonal)
+        );
+        let error = DataError::new(
+            message,
+            "give the length of an edge of the mesh, with its unit",
+        );
+        return Err(error.value(options.spacing).into());
+    }
+    let snap = options.snap.unwrap_or(SNAP * diagonal);
     let snap = snap.max(f64::MIN_POSITIVE);
     let lines = without_short_ones(&lines, snap);
     let lines: Vec<&DrawnLine> = lines.iter().collect();
@@ -96,7 +110,10 @@ pub fn mesh_drawing(
         spacing: options.spacing,
         seed: options.seed,
     };
-    let plane = PlaneMesh::new(&graph, &roles, &plane)?;
+    let plane = PlaneMesh::new(&graph, &roles, &plane).map_err(|error| match error {
+        PlaneError::NoOutline => no_outline(options, diagonal),
+        error => error.into(),
+    })?;
     let angle = |piece: usize| {
         let opacity = drawing.pens[lines[graph.pieces[piece].sources[0]].pen].opacity;
         let sign = match classes[piece] {
@@ -149,12 +166,33 @@ pub fn mesh_drawing(
         too_short: graph.dropped.len(),
         left_out: drawing.left_out.clone(),
         assumed_unit: drawing.assumed_unit,
+        by_own_unit: drawing.by_own_unit,
     };
     Ok(DrawnSheet {
         mesh,
         edges,
         report,
     })
+}
+
+/// No line bounds an area, perhaps because a tolerance that was given has joined all of them.
+fn no_outline(options: &DrawingOptions, diagonal: f64) -> DrawingError {
+    match options.snap {
+        Some(snap) if snap > SNAP * diagonal => {
+            let message = format!(
+                "no line bounds an area once ends that are {} m apart are joined, in a drawing of {} m from corner to \
+                 corner",
+                given(snap),
+                brief(diagonal)
+            );
+            let error = DataError::new(
+                message,
+                "give a smaller tolerance for snapping, with its unit",
+            );
+            error.value(snap).into()
+        }
+        _ => PlaneError::NoOutline.into(),
+    }
 }
 
 impl DrawnSheet {
