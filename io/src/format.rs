@@ -35,8 +35,8 @@ pub use events::{EventChange, EventKind, EventRow, EventWriter, read_events};
 pub(crate) use export::frame_number;
 pub use export::{
     BodyPose, ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series,
-    SeriesBody, SeriesField, SeriesFormat, SeriesOptions, frame_path, write_frame, write_mesh,
-    write_obj, write_series,
+    SeriesBody, SeriesField, SeriesFormat, SeriesOptions, frame_path, thickened, write_frame,
+    write_mesh, write_obj, write_series,
 };
 pub use file_error::{FileError, ReadError, WriteError};
 pub use history::{HistoryRow, HistoryWriter, Row, RowWriter, Written, read_history};

@@ -86,7 +86,7 @@ pub use estimate::Estimate;
 pub use extend::extend_folder;
 pub use extension_error::ExtensionError;
 #[cfg(feature = "picture")]
-pub use film::{Film, FilmOptions};
+pub use film::{Film, FilmOptions, Marks};
 #[cfg(feature = "picture")]
 pub use film_encoder::FilmError;
 pub use fold_verdict::FoldVerdict;

@@ -368,11 +368,12 @@ impl Scene {
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
-            measure.check(&key, &mut checks);
+            measure.check(&key, &self.crease, &mut checks);
             let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
             bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }
         measure::check_names(&self.measure, &root, &mut checks);
+        Crease::check_names(&self.crease, &mut checks);
         self.check_periods(&mut checks);
         self.method.check(&root.name("method"), &mut checks);
         self.check_method_fits(&mut checks);

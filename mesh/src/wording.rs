@@ -32,6 +32,12 @@ impl fmt::Display for Given {
     }
 }
 
+/// Shows a place, metres: `(0.1, 0.0167, -1.02e-6) m`.
+pub fn place(point: &[f64; 3]) -> impl fmt::Display {
+    let [x, y, z] = point.map(brief);
+    format!("({x}, {y}, {z}) m")
+}
+
 /// A number of things: `1 step`, `2 steps`.
 pub fn counted(count: usize, one: &str, more: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { more })

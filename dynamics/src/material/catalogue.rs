@@ -34,9 +34,7 @@ pub struct UnknownMaterial {
 
 impl Advice for UnknownMaterial {
     fn advice(&self) -> Option<&'static str> {
-        Some(
-            "choose one of them, or give the numbers of your own material with `Material::isotropic`",
-        )
+        Some("choose one of them, or give the numbers of your own material")
     }
 }
 

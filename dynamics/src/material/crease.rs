@@ -357,6 +357,17 @@ impl CreaseSprings {
         self.with_plastic(at.memory).map(moment).collect()
     }
 
+    /// Fold angles `theta` of the springs, radians, in the order given. Beyond a fold that is shut they go on as the
+    /// springs do: they are at most half a turn from where the spring rests.
+    pub fn angles(&self, at: At<'_>) -> Vec<f64> {
+        let angle = |(h, p): (&Hinge, &[f64])| {
+            let plastic = h.plastic(p);
+            let excess = h.excess(at.t, Fold::at(at.x, &h.vertices).angle(), plastic);
+            h.rest.at(at.t) + plastic + excess
+        };
+        self.with_plastic(at.memory).map(angle).collect()
+    }
+
     /// The hinges with the plastic angles of their layers, radians, of a memory.
     fn with_plastic<'a>(
         &'a self,

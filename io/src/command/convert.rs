@@ -6,11 +6,13 @@ use super::info::is_scene;
 use super::message::counted;
 use super::pictures::{self, FrameChoice, PictureFormat};
 use super::write::{is_same_file, to_stdout};
-use crate::run::{FilmOptions, Recording};
+use crate::format::drawing::Length;
+use crate::mesh::wording::given;
+use crate::run::{FilmOptions, Marks, Recording};
 use crate::{
     Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem,
-    MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, read_mesh_with, write_frame,
-    write_mesh, write_series,
+    MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, read_mesh_with, thickened,
+    write_frame, write_mesh, write_series,
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -23,6 +25,7 @@ Mesh files that are read:
 Mesh files that are written, also of one frame of a run (--frame K):
   .obj .off .ply .fold    all digits; .fold with edges, assignments and fold angles
   .stl .glb .usda         32-bit floats
+                          .stl for printers: --thickness 0.8mm --scale 1000
 Runs that are read: the folder of a run, or a trajectory (.npz)
 Files that are written of a run:
   .fold   one frame for each frame, with times and fold angles
@@ -45,6 +48,7 @@ Examples:
   isosheet convert cloth-run cloth.usda        a run for Blender, with its bodies
   isosheet convert cloth-run cloth.apng        a run as a film
   isosheet convert cloth-run end.png           a picture of its last frame
+  isosheet convert cloth-run half.png --time 0.5 --plain
   isosheet convert sheet.obj sheet.fold        a mesh in another format";
 
 /// Convert a mesh file to another format, or a run to files of other programs
@@ -62,6 +66,9 @@ pub(crate) struct Convert {
     /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0)
     #[arg(long, value_name = "K", conflicts_with_all = ["frames", "every", "fps"])]
     frame: Option<usize>,
+    /// Of a run, write the frame that is nearest to time T alone, seconds
+    #[arg(long, value_name = "T", conflicts_with_all = ["frame", "frames", "every", "fps"])]
+    time: Option<f64>,
     /// Of a run, write the frames from A to B, both included; A.. and ..B go to an end
     #[arg(long, value_name = "A..B")]
     frames: Option<FrameRange>,
@@ -80,6 +87,16 @@ pub(crate) struct Convert {
     /// there]
     #[arg(long, value_name = "VIEW", allow_hyphen_values = true)]
     view: Option<View>,
+    /// Of pictures, leave out the edges of the mesh and the marks of pins
+    #[arg(long)]
+    plain: bool,
+    /// Of one mesh as .stl, .obj, .off or .ply, make it larger by this factor: 1000 for the millimetres of printers
+    #[arg(long, value_name = "FACTOR")]
+    scale: Option<f64>,
+    /// Of the same, make a closed body of the sheet, of this thickness (such as 0.8mm; metres without a unit) before it
+    /// is made larger
+    #[arg(long, value_name = "LENGTH")]
+    thickness: Option<Length>,
     /// Of a run, leave its bodies out
     #[arg(long)]
     no_bodies: bool,
@@ -113,7 +130,8 @@ impl Convert {
             let trajectory = Trajectory::read(&self.input).map_err(|e| input(&e))?;
             let trajectory = self.at_rate(trajectory)?;
             let series = Series::new(&trajectory, &self.series_options()?);
-            return self.write_run(&series.map_err(|e| failed(&e, Code::Input))?);
+            let series = series.map_err(|e| failed(&e, Code::Input))?;
+            return self.write_run(&series, &trajectory);
         }
         self.check_input()?;
         let of_runs = [
@@ -121,6 +139,7 @@ impl Convert {
             ("--every", self.every.is_some(), "chooses frames"),
             ("--fps", self.fps.is_some(), "chooses frames"),
             ("--no-bodies", self.no_bodies, "leaves out bodies"),
+            ("--time", self.time.is_some(), "chooses a frame"),
         ];
         if let Some((option, _, what)) = of_runs.iter().find(|(_, given, _)| *given) {
             let message = format!("{option} {what} of a run, and a mesh file has none");
@@ -136,7 +155,7 @@ impl Convert {
             MeshFileProblem::Options(_) => Failure::of(Code::CommandLine, &e),
             _ => input(&e),
         })?;
-        self.write_mesh(&mesh)
+        self.write_mesh(mesh)
     }
 
     /// Converts the folder of a run.
@@ -150,7 +169,8 @@ impl Convert {
             return self.write_pictures(&recording, format);
         }
         let series = recording.series(&self.series_options()?);
-        self.write_run(&series.map_err(|e| failed(&e, Code::Input))?)
+        let series = series.map_err(|e| failed(&e, Code::Input))?;
+        self.write_run(&series, &recording.trajectory)
     }
 
     /// The chosen part of a motion at the rate that was asked for.
@@ -183,6 +203,7 @@ impl Convert {
         let options = [
             ("--size", self.size.is_some()),
             ("--view", self.view.is_some()),
+            ("--plain", self.plain),
         ];
         match options.iter().find(|(_, given)| *given) {
             Some((option, _)) => Err(wrong(
@@ -225,7 +246,7 @@ impl Convert {
             .any(|e| extension.eq_ignore_ascii_case(e));
         let is_many = self.frames.is_some() || self.every.is_some() || self.fps.is_some();
         let is_picture = extension.eq_ignore_ascii_case("png");
-        has_folder && self.frame.is_none() || is_picture && is_many
+        has_folder && self.frame.is_none() && self.time.is_none() || is_picture && is_many
     }
 
     /// Refuses files of a run and scenes, of which a user means the run.
@@ -267,7 +288,7 @@ impl Convert {
         }
         let is_many = self.frames.is_some() || self.every.is_some() || self.fps.is_some();
         let count = recording.trajectory.len();
-        let choice = match self.frame {
+        let choice = match self.frame_of(&recording.trajectory)? {
             Some(frame) => FrameChoice::One(frame),
             None if is_many || format != PictureFormat::Png => {
                 let [first, last] = self.range().of(count);
@@ -284,21 +305,60 @@ impl Convert {
             (options.width, options.height) = (size.width, size.height);
         }
         options.view = self.view.map(|View(view)| view);
+        if self.plain {
+            options.marks = Marks::Nothing;
+        }
         pictures::write(recording, choice, format, &options, self.output())
     }
 
-    fn write_run(&self, series: &Series<'_>) -> Done {
-        if let Some(frame) = self.frame {
+    /// The one frame of a motion that is asked for, if one is.
+    fn frame_of(&self, trajectory: &Trajectory) -> Result<Option<usize>, Failure> {
+        let Some(time) = self.time else {
+            return Ok(self.frame);
+        };
+        let times = trajectory.times().iter();
+        let away = times.map(|t| (t - time).abs()).enumerate();
+        let nearest = away.min_by(|a, b| a.1.total_cmp(&b.1));
+        match nearest.filter(|_| time.is_finite()) {
+            Some((frame, _)) => Ok(Some(frame)),
+            None => Err(wrong(
+                &format!("there is no frame near {} s", given(time)),
+                "give a time of the run, seconds",
+            )),
+        }
+    }
+
+    fn write_run(&self, series: &Series<'_>, trajectory: &Trajectory) -> Done {
+        if let Some(frame) = self.frame_of(trajectory)? {
             let mesh = series.mesh(frame).map_err(|e| failed(&e, Code::Input))?;
+            if self.is_changed() {
+                return self.write_mesh(mesh);
+            }
             write_frame(self.output(), series, frame).map_err(|e| no_mesh(&e))?;
             return self.say_mesh(&mesh);
+        }
+        if self.is_changed() {
+            let message = "--scale and --thickness are for one mesh, and a run has many frames";
+            return Err(wrong(message, ONE_FRAME));
+        }
+        let has_one_mesh = ["stl", "off", "ply"];
+        let extension = self.output().extension().unwrap_or_default();
+        if has_one_mesh
+            .iter()
+            .any(|e| extension.eq_ignore_ascii_case(e))
+        {
+            let message = format!(
+                "a .{} file has one mesh, and the run has {}",
+                extension.display(),
+                counted(trajectory.len(), "frame", "frames")
+            );
+            return Err(wrong(&message, ONE_FRAME));
         }
         let Exported { files, frames } = write_series(self.output(), series).map_err(|error| {
             let failure = failed(&error, Code::Output);
             match error {
                 ExportError::Extension { .. } => failure.remedy(
-                    "choose a known format, or .png or .apng for pictures of the folder of a run; formats \
-                     of meshes take one frame, with `--frame K`",
+                    "choose a known format, or .png or .apng for pictures of the folder of a run",
                 ),
                 _ => failure,
             }
@@ -318,9 +378,40 @@ impl Convert {
         to_stdout(&format!("{name}{more}: {count}{chosen}\n"))
     }
 
-    fn write_mesh(&self, mesh: &MeshFile) -> Done {
-        write_mesh(self.output(), mesh).map_err(|e| no_mesh(&e))?;
-        self.say_mesh(mesh)
+    /// Whether a mesh is to be made larger or thicker.
+    fn is_changed(&self) -> bool {
+        self.scale.is_some() || self.thickness.is_some()
+    }
+
+    /// Writes a mesh, larger and thicker as it is asked for.
+    fn write_mesh(&self, mut mesh: MeshFile) -> Done {
+        let has_no_unit = [
+            MeshFormat::Stl,
+            MeshFormat::Obj,
+            MeshFormat::Off,
+            MeshFormat::Ply,
+        ];
+        let format = MeshFormat::of(self.output());
+        if self.is_changed() && !format.is_some_and(|format| has_no_unit.contains(&format)) {
+            let message = "--scale and --thickness are for meshes as .stl, .obj, .off and .ply";
+            return Err(wrong(
+                message,
+                "choose one of these formats, or leave them out",
+            ));
+        }
+        if let Some(thickness) = self.thickness {
+            let solid = thickened(&mesh, thickness.metres);
+            mesh = solid.map_err(|e| failed(&e, Code::CommandLine))?;
+        }
+        if let Some(scale) = self.scale {
+            if !(scale > 0.0 && scale.is_finite()) {
+                let message = format!("the scale is {}", given(scale));
+                return Err(wrong(&message, "give a positive, finite factor"));
+            }
+            mesh.positions.iter_mut().for_each(|c| *c *= scale);
+        }
+        write_mesh(self.output(), &mesh).map_err(|e| no_mesh(&e))?;
+        self.say_mesh(&mesh)
     }
 
     fn say_mesh(&self, mesh: &MeshFile) -> Done {
@@ -340,6 +431,9 @@ impl Convert {
         ))
     }
 }
+
+/// What to do where one frame is needed.
+const ONE_FRAME: &str = "choose one, with `--frame K` or `--time T`";
 
 /// The file that was asked for.
 fn last(files: &[PathBuf]) -> &Path {

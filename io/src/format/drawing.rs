@@ -1,6 +1,7 @@
 //! Drawings of sheets: lines with colours, dashes and layers, from files of drawing programs.
 
 mod class;
+mod edges;
 mod file;
 mod options;
 mod report;
@@ -10,6 +11,7 @@ mod sheet;
 
 pub use super::vector::{Colour, Drawing, DrawingUnit, DrawnLine, Length, Pen};
 pub use class::LineClass;
+pub use edges::DrawnEdges;
 pub use file::{DrawingFormat, parse_drawing, read_drawing};
 pub use options::DrawingOptions;
 pub use report::{ClassCount, DrawingReport, Places};

@@ -13,6 +13,7 @@ mod pc2;
 mod ply;
 mod series;
 mod sheets;
+mod solid;
 mod stl;
 #[cfg(test)]
 mod tests;
@@ -26,6 +27,7 @@ pub use gltf::MOST_KEY_FRAMES;
 pub(crate) use obj::frame_number;
 pub use obj::{frame_path, write_obj};
 pub use series::{FieldSupport, Series, SeriesField, SeriesOptions};
+pub use solid::thickened;
 
 use super::mesh_file::MeshFile;
 use moving::Moving;

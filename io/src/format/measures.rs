@@ -24,7 +24,7 @@ pub struct MeasureRow {
     pub t: f64,
     /// The name of the measure.
     pub name: String,
-    /// What it shows, metres.
+    /// What it shows, in the unit of its quantity: metres, degrees, newton metres or newtons.
     pub value: f64,
 }
 

@@ -79,10 +79,23 @@ pub fn read_mesh_with(path: &Path, options: &MeshOptions) -> Result<MeshFile, Me
         let known = MeshFormat::ALL.map(|f| format!(".{}", f.extension()));
         let known = known.join(", ");
         let message = format!("{found} is no known format of meshes (known are {known})");
-        error(DataError::new(message, "convert the file to a known format").into())
+        let remedy = match is_picture(path) {
+            true => "trace the picture in a drawing program, and save its lines as .svg",
+            false => "convert the file to a known format",
+        };
+        error(DataError::new(message, remedy).into())
     })?;
     let bytes = input::read(path).map_err(|e| error(MeshFileProblem::Read(e)))?;
     parse_mesh(&bytes, format, path, options)
+}
+
+/// Whether a file is a picture by its name.
+fn is_picture(path: &Path) -> bool {
+    const PICTURES: [&str; 9] = [
+        "png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf",
+    ];
+    let extension = path.extension().unwrap_or_default();
+    PICTURES.iter().any(|e| extension.eq_ignore_ascii_case(e))
 }
 
 /// Reads a sheet from a mesh file: triangles only, an oriented surface that uses every vertex.

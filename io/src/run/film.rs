@@ -6,8 +6,8 @@ use crate::picture::{
     Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render,
 };
 use crate::scene::bounds;
-use isosheet_mesh::Part;
 use isosheet_mesh::wording::given;
+use isosheet_mesh::{Part, VertexId};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How a run is shown.
@@ -20,6 +20,18 @@ pub struct FilmOptions {
     /// Where the viewer is; by default -60 degrees from the x axis and 25 degrees above the horizon, or
     /// elsewhere if bodies hide the sheet from there.
     pub view: Option<Viewpoint>,
+    /// What is drawn on the sheet; the edges of the mesh and the pins by default.
+    pub marks: Marks,
+}
+
+/// What pictures have on the sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Marks {
+    /// The edges of the mesh, and the vertices that are held.
+    #[default]
+    MeshAndPins,
+    /// Nothing.
+    Nothing,
 }
 
 impl Default for FilmOptions {
@@ -28,6 +40,7 @@ impl Default for FilmOptions {
             height: 480,
             width: None,
             view: None,
+            marks: Marks::default(),
         }
     }
 }
@@ -70,6 +83,7 @@ pub struct Film<'a> {
     parts: Vec<Part>,
     camera: Camera,
     look: Look,
+    marks: Marks,
 }
 
 /// The viewer is so many times as far away as the sheet is large: little perspective.
@@ -124,7 +138,13 @@ impl<'a> Film<'a> {
             height,
             width,
             view,
+            marks,
         } = *options;
+        let look = Look::default();
+        let wire = match marks {
+            Marks::MeshAndPins => look.wire,
+            Marks::Nothing => 0.0,
+        };
         let sight = || Viewpoint::of_sight(recording, &frames, size, DISTANCE * size);
         let Viewpoint { azimuth, elevation } = view.unwrap_or_else(sight);
         let camera = Camera::new(middle, azimuth, elevation, size, DISTANCE * size);
@@ -148,8 +168,10 @@ impl<'a> Film<'a> {
             camera: camera.framing(seen(), width as f64 / height as f64, MARGIN),
             look: Look {
                 size: [width, height],
-                ..Look::default()
+                wire,
+                ..look
             },
+            marks,
         })
     }
 
@@ -191,11 +213,15 @@ impl<'a> Film<'a> {
             .frame(frame)
             .ok_or_else(PictureError::no_frames)?;
         let solids = placed(&self.solids, self.recording, trajectory.times()[frame]);
+        let (pins, immobile): (&[VertexId], &[VertexId]) = match self.marks {
+            Marks::MeshAndPins => (&self.recording.pins, &self.recording.immobile),
+            Marks::Nothing => (&[], &[]),
+        };
         let picture = SheetPicture {
             topology: self.recording.sheet.topology(),
             positions,
-            pins: &self.recording.pins,
-            immobile: &self.recording.immobile,
+            pins,
+            immobile,
             solids: &solids.collect::<Vec<_>>(),
             parts: &self.parts,
         };

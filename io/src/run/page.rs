@@ -62,9 +62,10 @@ impl Recording {
         }
         let held = constraints::bodies(self.scene.scene(), &replay.times, corners);
         replay.bodies.extend(held);
-        replay
-            .series
-            .extend(TimeSeries::of_measures(&self.measures));
+        replay.series.extend(TimeSeries::of_measures(
+            &self.measures,
+            &self.scene.scene().measure,
+        ));
         Replay {
             // How far creases are from their angles.
             colour: self.folding.as_ref().map(|_| 0),
@@ -217,7 +218,7 @@ impl Rows {
             self.add("targets at the end", words);
         }
         self.add(
-            "error of the energy balance",
+            "energy that the method took out of the motion (-) or added (+)",
             format!("{:.2e} J", ending.energy_drift),
         );
         self.add(

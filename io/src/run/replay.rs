@@ -4,7 +4,7 @@ use super::frame_field::{FrameField, check_frame};
 use crate::format::{
     BodyPose, DataError, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory,
 };
-use crate::scene::Origins;
+use crate::scene::{Measure, Origins};
 use crate::view::{Body, BodyShape, Replay, Scale, TimeSeries};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_mesh::Sheet;
@@ -202,15 +202,19 @@ impl TimeSeries {
         series
     }
 
-    /// What each measure shows over time, metres, in the order of the scene.
-    pub fn of_measures(rows: &[MeasureRow]) -> Vec<Self> {
+    /// What each of the measures of a scene shows over time.
+    pub fn of_measures(rows: &[MeasureRow], measures: &[Measure]) -> Vec<Self> {
+        let unit = |name: &str| {
+            let measure = measures.iter().find(|measure| measure.name == name);
+            measure.map_or("m", |measure| measure.quantity.unit())
+        };
         let mut series: Vec<Self> = Vec::new();
         for row in rows {
             let place = series.iter().position(|s| s.name == row.name);
             let place = place.unwrap_or_else(|| {
                 series.push(Self {
                     name: row.name.clone(),
-                    unit: "m".into(),
+                    unit: unit(&row.name).into(),
                     scale: Scale::Linear,
                     times: Vec::new(),
                     values: Vec::new(),

@@ -71,7 +71,7 @@ pub struct Summary {
     pub ending: Ending,
 }
 
-/// What a measure showed in a run, the start included, metres.
+/// What a measure showed in a run, the start included, in the unit of its quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// At the end.

@@ -75,13 +75,14 @@ impl Summary {
         let vibration = self.vibration.filter(|v| v.slowing() > Self::SLOWING);
         if let Some(vibration) = vibration {
             let message = format!(
-                "steps of {} s are long for a vibration of {vibration}: they make it about {} % slower and damp it; with \
-                 `method.step = {}` it is right to 1 %",
+                "the sheet swings faster than steps of {} s follow, {vibration}: they make that about {} % slower and damp \
+                 it; with `method.step = {}` it is right to 1 %",
                 brief(vibration.step),
                 brief(100.0 * vibration.slowing()),
                 brief(vibration.step_for(0.01)),
             );
-            let remedy = "take a smaller `method.step` if vibrations matter; states of rest do not depend on it";
+            let remedy = "take a smaller `method.step` if it matters how the sheet swings; where it comes to rest does not \
+                          depend on that";
             warnings.push(Warning::new(message, remedy));
         }
         if let Some(incidence) = self.incidence.filter(|i| i.angle > Self::SEPARATION) {

@@ -301,7 +301,7 @@ impl RunWriter {
             let row = MeasureRow {
                 t: state.t,
                 name: gauge.name.clone(),
-                value: gauge.value(&x),
+                value: gauge.value(state.t, &x, under_way.simulation.memories()),
             };
             measures.append(&row)?;
             if let Some(tables) = &mut self.tables {

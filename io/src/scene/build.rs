@@ -68,7 +68,7 @@ impl Scene {
         let (contacts, obstacles) = builder.contacts()?;
         let gauge = |(k, measure): (usize, &Measure)| {
             let key = Key::root().name("measure").entry(k);
-            measure.gauge(&key, &builder.sheets, &builder.bodies)
+            measure.gauge(&key, &builder.sheets, &builder.bodies, &builder.creases)
         };
         let measures = self.measure.iter().enumerate().map(gauge);
         let measures = measures.collect::<Result<_, _>>()?;

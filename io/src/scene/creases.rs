@@ -1,15 +1,18 @@
 //! Creases with rest angles.
 
+use super::drawing;
 use super::key::Key;
 use super::pattern::EdgeRoles;
 use super::problem::{Checks, Problem};
 use super::profile::Profile;
 use super::refined::Refined;
-use super::selection::{ON_LINE, place_on_line, size};
+use super::selection::{ON_LINE, beside_line, size};
 use super::unit::Unit;
 use super::yields::CreaseYield;
+use crate::format::drawing::Selector;
 use isosheet_dynamics::CreaseSpring;
 use isosheet_mesh::generate::FoldAssignment;
+use isosheet_mesh::wording::{brief, place};
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -26,6 +29,9 @@ use std::collections::BTreeSet;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Crease {
+    /// A name, by which measures find it.
+    #[serde(default)]
+    pub name: Option<String>,
     /// The name of the sheet, if there are several.
     #[serde(default)]
     pub sheet: Option<String>,
@@ -65,6 +71,9 @@ pub enum CreaseEdges {
     },
     /// Edges of a crease pattern by what they are meant to do.
     Pattern(PatternEdges),
+    /// The edges along lines of `sheet.mesh.drawing`, in the words that select lines there:
+    /// `["layer:Crease", "#e6007e"]`. A positive angle makes valleys of all of them.
+    Drawn(Vec<String>),
 }
 
 /// Whether the sheet folds at an edge that has a spring.
@@ -140,8 +149,10 @@ impl Crease {
         if let Some(yields) = &self.yields {
             yields.check(&key.name("yield"), checks);
         }
-        if let CreaseEdges::Line { from, to } = &self.at {
-            checks.line(&key.name("at.line"), from, to);
+        match &self.at {
+            CreaseEdges::Line { from, to } => checks.line(&key.name("at.line"), from, to),
+            CreaseEdges::Drawn(lines) => drawing::check_lines(lines, &key.name("at.drawn"), checks),
+            CreaseEdges::Ends(_) | CreaseEdges::Pattern(_) => {}
         }
     }
 
@@ -150,6 +161,23 @@ impl Crease {
         match self.at {
             CreaseEdges::Pattern(PatternEdges::Flat) => EdgeFolds::No,
             _ => EdgeFolds::Yes,
+        }
+    }
+
+    /// Refuses names that stand twice.
+    pub(super) fn check_names(creases: &[Self], checks: &mut Checks) {
+        for (k, crease) in creases.iter().enumerate() {
+            let others = &creases[..k];
+            if crease.name.is_some() && others.iter().any(|other| other.name == crease.name) {
+                checks.report(
+                    Key::root().name("crease").entry(k).name("name"),
+                    format!(
+                        "another crease has the name `{}`",
+                        crease.name.as_deref().unwrap_or_default()
+                    ),
+                    "give each crease a name of its own, or write both as one",
+                );
+            }
         }
     }
 
@@ -164,7 +192,8 @@ impl Crease {
         let sheet = refined.sheet();
         let edges = match &self.at {
             CreaseEdges::Ends(ends) => by_ends(ends, &at.name("ends"), refined)?,
-            CreaseEdges::Line { from, to } => on_line(sheet, from, to),
+            CreaseEdges::Line { from, to } => on_line(sheet, from, to, &at)?,
+            CreaseEdges::Drawn(lines) => drawn(lines, &at.name("drawn"), refined, roles)?,
             CreaseEdges::Pattern(wanted) => {
                 let Some(roles) = roles else {
                     return Err(Problem::new(
@@ -180,7 +209,7 @@ impl Crease {
             return Err(Problem::new(
                 at,
                 "no interior edge of the mesh is selected here",
-                "a crease follows edges of the mesh: compare the line with the mesh before it is placed",
+                "choose edges between two faces",
             ));
         }
         let spring = |(edge, sign): (EdgeId, f64)| CreaseSpring {
@@ -227,13 +256,71 @@ fn by_ends(
     Ok(parts.map(|e| (e, 1.0)).collect())
 }
 
-fn on_line(sheet: &Sheet, from: &[f64; 3], to: &[f64; 3]) -> Vec<(EdgeId, f64)> {
+fn on_line(
+    sheet: &Sheet,
+    from: &[f64; 3],
+    to: &[f64; 3],
+    key: &Key,
+) -> Result<Vec<(EdgeId, f64)>, Problem> {
     let t = sheet.topology();
     let tolerance = ON_LINE * size(sheet.positions().as_chunks::<3>().0);
-    let near = |v: VertexId| place_on_line(&sheet.position(v), [from, to], tolerance).is_some();
-    let edges = t.edge_ids().filter(|&e| !t.is_boundary_edge(e));
-    let edges = edges.filter(|e| t.edges()[e.index()].iter().all(|&v| near(v)));
-    edges.map(|e| (e, 1.0)).collect()
+    let distance = |e: EdgeId| {
+        let ends = t.edges()[e.index()].map(|v| beside_line(&sheet.position(v), [from, to]).1);
+        ends[0].max(ends[1])
+    };
+    let interior = || t.edge_ids().filter(|&e| !t.is_boundary_edge(e));
+    let found: Vec<EdgeId> = interior().filter(|e| distance(*e) <= tolerance).collect();
+    let nearest = interior().min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+    match nearest {
+        Some(e) if found.is_empty() => {
+            let ends = t.edges()[e.index()].map(|v| sheet.position(v));
+            Err(Problem::new(
+                key.name("line"),
+                format!(
+                    "no interior edge of the mesh is on this line: the nearest one, from {} to {}, has an end {} m \
+                     away from it, of at most {} m",
+                    place(&ends[0]),
+                    place(&ends[1]),
+                    brief(distance(e)),
+                    brief(tolerance)
+                ),
+                "a crease follows edges of the mesh: compare the line with the mesh before it is placed, or select \
+                 lines of a drawing by `at = { drawn = [...] }`",
+            ))
+        }
+        _ => Ok(found.into_iter().map(|e| (e, 1.0)).collect()),
+    }
+}
+
+/// The edges inside the sheet along lines of its drawing.
+fn drawn(
+    lines: &[String],
+    key: &Key,
+    refined: &Refined,
+    roles: Option<&EdgeRoles>,
+) -> Result<Vec<(EdgeId, f64)>, Problem> {
+    let Some(drawn) = roles.and_then(|roles| roles.drawn.as_ref()) else {
+        return Err(Problem::new(
+            key.clone(),
+            "the mesh of the sheet is no drawing",
+            "use `sheet.mesh.drawing`, or name the edges by `pattern`, `ends` or `line`",
+        ));
+    };
+    let t = refined.mesh().topology();
+    let mut found = BTreeSet::new();
+    for (k, text) in lines.iter().enumerate() {
+        // Those that cannot be read were refused.
+        let Ok(selector) = text.parse::<Selector>() else {
+            continue;
+        };
+        let edges = drawn.along(&selector);
+        let edges = edges.map_err(|e| Problem::from_error(key.entry(k), &e))?;
+        let edges = edges.into_iter().map(|ends| ends.map(VertexId));
+        found.extend(edges.filter_map(|[a, b]| t.find_edge(a, b)));
+    }
+    let inside = found.into_iter().filter(|&e| !t.is_boundary_edge(e));
+    let parts = inside.flat_map(|e| refined.parts(e));
+    Ok(parts.map(|e| (e, 1.0)).collect())
 }
 
 fn of_pattern(wanted: PatternEdges, roles: &EdgeRoles) -> Vec<(EdgeId, f64)> {

@@ -6,9 +6,10 @@ use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use crate::format::FileError;
 use crate::format::drawing::{
-    DrawingOptions, DrawingUnit, DrawnSheet, LineClass, LineRules, Selector, mesh_drawing,
-    parse_drawing,
+    DrawingError, DrawingOptions, DrawingUnit, DrawnSheet, LineClass, LineRules, Selector,
+    mesh_drawing, parse_drawing,
 };
+use isosheet_mesh::plane::PlaneError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -61,6 +62,16 @@ pub struct DrawingFile {
     pub seed: u64,
 }
 
+/// Refuses words that select no lines of any drawing.
+pub(super) fn check_lines(list: &[String], key: &Key, checks: &mut Checks) {
+    for (k, text) in list.iter().enumerate() {
+        if let Err(problem) = text.parse::<Selector>() {
+            let remedy = "name a layer, a colour or dashes";
+            checks.report(key.entry(k), problem, remedy);
+        }
+    }
+}
+
 fn one() -> f64 {
     1.0
 }
@@ -104,12 +115,7 @@ impl DrawingFile {
             checks.report(key.name("path"), "the path is empty", "name a drawing");
         }
         for (name, list, _) in self.lists() {
-            for (k, text) in list.iter().enumerate() {
-                if let Err(problem) = text.parse::<Selector>() {
-                    let remedy = "name a layer, a colour or dashes";
-                    checks.report(key.name(name).entry(k), problem, remedy);
-                }
-            }
+            check_lines(list, &key.name(name), checks);
         }
     }
 
@@ -138,6 +144,14 @@ impl DrawingFile {
         let bytes = bytes.map_err(|e| of_path(FileError::unreadable(&self.path, e)))?;
         let options = self.options();
         let drawing = parse_drawing(&bytes, &self.path, &options).map_err(of_path)?;
-        mesh_drawing(&drawing, &options).map_err(|e| Problem::from_error(key.clone(), &e))
+        mesh_drawing(&drawing, &options).map_err(|e| match e {
+            DrawingError::Plane(PlaneError::Open { .. }) => Problem::new(
+                key.clone(),
+                e.to_string(),
+                "close the outline there, give a `snap` of at least the gap, or leave out lines that are no outline \
+                 by `ignore`",
+            ),
+            _ => Problem::from_error(key.clone(), &e),
+        })
     }
 }

@@ -4,7 +4,7 @@ use super::key::Key;
 use super::placed::PlacedSheets;
 use super::problem::{Checks, Problem};
 use super::profile::Profile;
-use super::selection::{ON_LINE, by_number, place_on_line, size};
+use super::selection::{ON_LINE, beside_line, by_number, nearest_in_words, size};
 use super::switch::When;
 use super::unit::Unit;
 use super::{Body, Sheet, bodies, sheets};
@@ -110,6 +110,10 @@ pub enum SeamSide {
 
 /// Stiffness of glue in units of `(m g + D / L) / L`, see [`Glue::stiffness`].
 const STIFFNESS: f64 = 1e4;
+
+/// Largest distance of the sides of a seam that coincide, as a part of the size of the sheets: above the round-off of
+/// coordinates that went through a text file with seven digits.
+const COINCIDE: f64 = 1e-6;
 
 impl Glue {
     pub(crate) fn check(&self, all: &[Sheet], bodies: &[Body], key: &Key, checks: &mut Checks) {
@@ -270,7 +274,7 @@ impl Glue {
         };
         let farthest = pairs.iter().map(apart).fold(0.0, f64::max);
         let drawn = farthest * self.closing.as_given().value(0.0).abs();
-        if drawn > ON_LINE * size(points) {
+        if drawn > COINCIDE * size(points) {
             return Err(Problem::new(
                 key.name("closing"),
                 format!(
@@ -299,9 +303,15 @@ impl SeamSide {
             Self::Line { from, to } => on_line(points, from, to),
         };
         if found.is_empty() {
+            let nearest = match self {
+                Self::Vertices(_) => String::new(),
+                Self::Line { from, to } => {
+                    nearest_in_words(points, |p| beside_line(p, [from, to]).1)
+                }
+            };
             return Err(Problem::new(
                 key.clone(),
-                "no vertex of the mesh is selected here",
+                format!("no vertex of the mesh is selected here{nearest}"),
                 "compare the line with the mesh before it is placed",
             ));
         }
@@ -313,8 +323,8 @@ impl SeamSide {
 fn on_line(points: &[[f64; 3]], from: &[f64; 3], to: &[f64; 3]) -> Vec<VertexId> {
     let tolerance = ON_LINE * size(points);
     let place = |(v, p): (usize, &[f64; 3])| {
-        let part = place_on_line(p, [from, to], tolerance)?;
-        Some((part, VertexId::from_index(v)))
+        let (part, distance) = beside_line(p, [from, to]);
+        (distance <= tolerance).then_some((part, VertexId::from_index(v)))
     };
     let mut found: Vec<(f64, VertexId)> = points.iter().enumerate().filter_map(place).collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));

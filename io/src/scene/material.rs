@@ -4,6 +4,7 @@ use super::key::Key;
 use super::problem::Checks;
 use super::toml_problem::suggestion;
 use super::unit::Unit;
+use super::warning::Warning;
 use isosheet_dynamics as engine;
 use isosheet_dynamics::OptionsError;
 use isosheet_mesh::wording::{brief, given};
@@ -79,7 +80,23 @@ pub(super) fn ratios(along: Option<f64>, across: Option<f64>) -> [f64; 2] {
     most.map_or([0.0, 0.5], |most| [-most, most])
 }
 
+/// Young's modulus by density below which the unit of the modulus is questioned, m2/s2. Gels have 5 to 100, foams and
+/// rubbers from 500; metals, papers and films have from 1e6, and with a modulus in megapascals 1 to 30.
+const SOFTEST: f64 = 50.0;
+
 impl Plate {
+    /// Numbers that are right in another unit, as it seems.
+    pub(super) fn warning(&self, key: &Key) -> Option<Warning> {
+        (self.youngs / self.density < SOFTEST).then(|| {
+            let message = format!(
+                "`{}` is {} Pa, softer than jelly",
+                key.name("youngs"),
+                given(self.youngs)
+            );
+            Warning::new(message, "give it in pascals: 3500 MPa are 3.5e9 Pa")
+        })
+    }
+
     /// Whether it is stiffer along a direction.
     fn has_directions(&self) -> bool {
         self.youngs_across.is_some() || self.shear.is_some()

@@ -1,20 +1,23 @@
 //! Numbers that are read off the sheet at each step.
 
+use super::creases::Crease;
 use super::key::Key;
 use super::placed::PlacedSheets;
 use super::placed_bodies::PlacedBodies;
 use super::problem::{Checks, Problem};
 use super::selection::Selection;
 use super::unit::Unit;
-use isosheet_mesh::VertexId;
+use isosheet_dynamics::{At, CreaseSprings, Memories};
+use isosheet_mesh::{Part, VertexId};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
 
-/// A length that is read off the sheet at the start and after each step: how deep a tip hangs, how far a
-/// corner is from its place, how wide a fold is. A run writes it to `measures.csv`, and its last, least and
-/// largest value to `summary.json` as `measures.NAME`.
+/// A number that is read off the sheet at the start and after each step: how deep a tip hangs, how far a
+/// corner is from its place, how wide a fold is, how far a crease is folded and what moment that takes. A run writes it
+/// to `measures.csv`, and its last, least and largest value to `summary.json` as `measures.NAME`.
 ///
 /// ```toml
 /// [[measure]]
@@ -26,6 +29,16 @@ use std::collections::HashSet;
 /// name = "width"
 /// at = { vertices = [0] }
 /// quantity = { distance_to = { vertices = [8] } }
+///
+/// [[crease]]
+/// name = "lid"
+/// at = { line = { from = [0, 0.1, 0], to = [0.2, 0.1, 0] } }
+/// stiffness = 0.01
+///
+/// [[measure]]
+/// name = "lid-moment"
+/// crease = "lid"
+/// quantity = "moment"
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -36,13 +49,17 @@ pub struct Measure {
     /// vertices are those of its surface.
     #[serde(default)]
     pub sheet: Option<String>,
-    /// Which vertices. What is measured is their mean place.
-    pub at: Selection,
+    /// Which vertices. What is measured is their mean place. To be left out for a crease.
+    #[serde(default)]
+    pub at: Option<Selection>,
+    /// The name of a `[[crease]]`, of which an angle or a moment is measured.
+    #[serde(default)]
+    pub crease: Option<String>,
     /// What is measured of it.
     pub quantity: Quantity,
 }
 
-/// What is measured of the mean place of some vertices, metres.
+/// What is measured: of the mean place of some vertices, metres, or of a crease.
 ///
 /// ```toml
 /// [[measure]]
@@ -65,10 +82,19 @@ pub enum Quantity {
     DistanceToPoint([f64; 3]),
     /// Its distance from the mean place of other vertices.
     DistanceTo(Selection),
+    /// The fold angle of a crease, degrees: the mean over its length. It is 0 for flat, positive for a valley and
+    /// negative for a mountain, and goes on beyond 180 degrees where a crease is pressed through itself.
+    FoldAngle,
+    /// The moment that it takes to hold a crease at its angle, newton metres: its stiffness times its length times the
+    /// angle from where it rests, in radians. It is positive where the crease is folded further to a valley than it
+    /// would be by itself.
+    Moment,
+    /// The same divided by the length of the crease, N.
+    MomentPerLength,
 }
 
 impl Measure {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+    pub(crate) fn check(&self, key: &Key, creases: &[Crease], checks: &mut Checks) {
         let is_usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         // Spreadsheets take a name that begins with a minus for a formula.
         let is_text = self.name.starts_with(|c| is_usual(c) && c != '-');
@@ -79,24 +105,68 @@ impl Measure {
                 "use letters, digits, `_` and `-`, which is not the first",
             );
         }
-        self.at.check(&key.name("at"), checks);
+        self.check_of(key, creases, checks);
         let key = key.name("quantity");
         match &self.quantity {
-            Quantity::X | Quantity::Y | Quantity::Z | Quantity::Displacement => {}
             Quantity::DistanceToPoint(point) => {
                 checks.finite(key.name("distance_to_point"), point, Unit::Metre);
             }
             Quantity::DistanceTo(others) => others.check(&key.name("distance_to"), checks),
+            _ => {}
         }
     }
 
-    /// With the vertices that it is of.
+    /// Checks that it is of vertices or of a crease, as its quantity wants it.
+    fn check_of(&self, key: &Key, creases: &[Crease], checks: &mut Checks) {
+        let of_crease = self.quantity.of_crease().is_some();
+        match (&self.at, &self.crease) {
+            (Some(at), None) if !of_crease => at.check(&key.name("at"), checks),
+            (None, Some(name)) if of_crease => {
+                if self.sheet.is_some() {
+                    let message = "a crease is of one sheet";
+                    checks.report(key.name("sheet"), message, "leave it out");
+                }
+                let names = || creases.iter().filter_map(|crease| crease.name.as_ref());
+                if !names().any(|known| known == name) {
+                    let known: Vec<String> = names().map(|name| format!("`{name}`")).collect();
+                    let remedy = match known.is_empty() {
+                        true => {
+                            format!("give the crease that is meant this name, `name = \"{name}\"`")
+                        }
+                        false => format!("give one of these: {}", known.join(", ")),
+                    };
+                    let message = format!("no crease has the name `{name}`");
+                    checks.report(key.name("crease"), message, remedy);
+                }
+            }
+            _ => {
+                let (quantity, wanted) = match of_crease {
+                    true => ("of a crease", "`crease` with its name, and leave out `at`"),
+                    false => (
+                        "of vertices",
+                        "`at` with the vertices, and leave out `crease`",
+                    ),
+                };
+                let message = format!("this quantity is one {quantity}");
+                checks.report(key.name("quantity"), message, format!("write {wanted}"));
+            }
+        }
+    }
+
+    /// With the vertices or the crease that it is of; `creases` are those of the scene by their names.
     pub(super) fn gauge(
         &self,
         key: &Key,
         sheets: &PlacedSheets<'_>,
         bodies: &PlacedBodies<'_>,
+        creases: &BTreeMap<String, CreaseGauge>,
     ) -> Result<Gauge, Problem> {
+        let name = self.name.clone();
+        if let Some((crease, of)) = self.crease.as_ref().zip(self.quantity.of_crease()) {
+            let crease = creases[crease].clone();
+            let of = Reading::Crease(crease, of);
+            return Ok(Gauge { name, of });
+        }
         let sheet = self.sheet.as_deref();
         let start = [&sheets.start[..], &bodies.surface_positions()].concat();
         let find =
@@ -104,20 +174,43 @@ impl Measure {
                 Some(body) => body.vertices_at(selection, &key.name("at")),
                 None => sheets.vertices(sheet, selection, key),
             };
-        let vertices = find(&self.at, key)?;
+        let at = self.at.as_ref().unwrap_or(&Selection::All);
+        let vertices = find(at, key)?;
         let of = match &self.quantity {
-            Quantity::X => Reading::Coordinate(0),
-            Quantity::Y => Reading::Coordinate(1),
-            Quantity::Z => Reading::Coordinate(2),
-            Quantity::Displacement => Reading::Point(mean(&vertices, &start)),
-            Quantity::DistanceToPoint(point) => Reading::Point((*point).into()),
+            Quantity::Y => Place::Coordinate(1),
+            Quantity::Z => Place::Coordinate(2),
+            Quantity::Displacement => Place::From(mean(&vertices, &start)),
+            Quantity::DistanceToPoint(point) => Place::From((*point).into()),
             Quantity::DistanceTo(others) => {
                 let key = key.name("quantity.distance_to");
-                Reading::Vertices(find(others, &key)?)
+                Place::FromVertices(find(others, &key)?)
             }
+            _ => Place::Coordinate(0),
         };
-        let name = self.name.clone();
-        Ok(Gauge { name, vertices, of })
+        let of = Reading::Place(vertices, of);
+        Ok(Gauge { name, of })
+    }
+}
+
+impl Quantity {
+    /// What it is of a crease, if it is of one.
+    fn of_crease(&self) -> Option<OfCrease> {
+        match self {
+            Self::FoldAngle => Some(OfCrease::Angle),
+            Self::Moment => Some(OfCrease::Moment),
+            Self::MomentPerLength => Some(OfCrease::MomentPerLength),
+            _ => None,
+        }
+    }
+
+    /// The unit of its values.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::FoldAngle => "degrees",
+            Self::Moment => "N m",
+            Self::MomentPerLength => "N",
+            _ => "m",
+        }
     }
 }
 
@@ -135,31 +228,82 @@ pub(super) fn check_names(measures: &[Measure], root: &Key, checks: &mut Checks)
     }
 }
 
-/// A [`Measure`] with the vertices that it is of.
-#[derive(Clone, Debug, PartialEq)]
+/// A [`Measure`] with what it is of.
+#[derive(Clone, Debug)]
 pub struct Gauge {
     /// Its name.
     pub name: String,
-    vertices: Vec<VertexId>,
     of: Reading,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 enum Reading {
+    /// Of the mean place of these vertices.
+    Place(Vec<VertexId>, Place),
+    Crease(CreaseGauge, OfCrease),
+}
+
+#[derive(Clone, Debug)]
+enum Place {
     /// By its number.
     Coordinate(usize),
-    Point(Vector3<f64>),
-    Vertices(Vec<VertexId>),
+    /// The distance from a point.
+    From(Vector3<f64>),
+    /// The distance from the mean place of these vertices.
+    FromVertices(Vec<VertexId>),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum OfCrease {
+    Angle,
+    Moment,
+    MomentPerLength,
+}
+
+/// The springs of a crease, and where they are.
+#[derive(Clone, Debug)]
+pub(super) struct CreaseGauge {
+    pub(super) springs: Arc<CreaseSprings>,
+    /// The rest length of the edge of each spring, metres.
+    pub(super) lengths: Vec<f64>,
+    /// Its sheet.
+    pub(super) part: Part,
+    /// The number of the springs among the potentials of the model.
+    pub(super) potential: usize,
+}
+
+impl CreaseGauge {
+    fn value(&self, of: OfCrease, t: f64, x: &[f64], memories: &Memories) -> f64 {
+        let own = At::new(t, &x[self.part.coordinates()]);
+        let at = own.with_memory(&memories.lists()[self.potential]);
+        let length: f64 = self.lengths.iter().sum();
+        let moment = || -self.springs.moments(at).iter().sum::<f64>();
+        match of {
+            OfCrease::Angle => {
+                let angles = self.springs.angles(at);
+                let weighted = angles.iter().zip(&self.lengths).map(|(a, l)| a * l);
+                (weighted.sum::<f64>() / length).to_degrees()
+            }
+            OfCrease::Moment => moment(),
+            OfCrease::MomentPerLength => moment() / length,
+        }
+    }
 }
 
 impl Gauge {
-    /// What it shows of positions `x` (`3V`, metres) of the sheets and of the surfaces of bodies, metres.
-    pub fn value(&self, x: &[f64]) -> f64 {
-        let place = mean(&self.vertices, x);
+    /// What it shows at time `t` (seconds), at positions `x` (`3V`, metres) of the sheets and of the surfaces of bodies,
+    /// where the potentials of the model remember this.
+    pub fn value(&self, t: f64, x: &[f64], memories: &Memories) -> f64 {
         match &self.of {
-            Reading::Coordinate(k) => place[*k],
-            Reading::Point(point) => (place - point).norm(),
-            Reading::Vertices(others) => (place - mean(others, x)).norm(),
+            Reading::Crease(crease, of) => crease.value(*of, t, x, memories),
+            Reading::Place(vertices, of) => {
+                let place = mean(vertices, x);
+                match of {
+                    Place::Coordinate(k) => place[*k],
+                    Place::From(point) => (place - point).norm(),
+                    Place::FromVertices(others) => (place - mean(others, x)).norm(),
+                }
+            }
         }
     }
 }

@@ -420,7 +420,12 @@ impl Mesh {
             Self::File(file) => return read_sheet(file, &key, files),
             Self::Drawing(drawing) => {
                 let drawn = drawing.sheet(&key, files)?;
-                return rest_mesh(&drawn.mesh).map_err(|e| Problem::from_error(key, &e));
+                let made = rest_mesh(&drawn.mesh).map_err(|e| Problem::from_error(key, &e))?;
+                let roles = made.roles.map(|roles| EdgeRoles {
+                    drawn: Some(drawn.edges),
+                    ..roles
+                });
+                return Ok(RestMesh { roles, ..made });
             }
         };
         let sheet = made.map_err(|e| generator_problem(&key, &e))?;

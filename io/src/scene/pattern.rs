@@ -1,5 +1,6 @@
 //! Crease patterns by formula.
 
+use crate::format::drawing::DrawnEdges;
 use isosheet_mesh::EdgeId;
 use isosheet_mesh::generate::{
     FoldAssignment, FoldPattern, GenerateError, degree_four, miura, miura_zigzags,
@@ -180,13 +181,15 @@ pub(crate) struct EdgeRoles {
     pub(crate) assignments: Vec<Option<FoldAssignment>>,
     /// The zigzag creases of Miura's pattern.
     pub(crate) zigzags: Vec<EdgeId>,
+    /// Which edges of the mesh, before it is refined, follow which lines of its drawing.
+    pub(crate) drawn: Option<DrawnEdges>,
 }
 
 impl From<&FoldPattern> for EdgeRoles {
     fn from(pattern: &FoldPattern) -> Self {
         Self {
             assignments: pattern.assignments.iter().copied().map(Some).collect(),
-            zigzags: Vec::new(),
+            ..Self::default()
         }
     }
 }

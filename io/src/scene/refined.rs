@@ -101,6 +101,7 @@ impl Refined {
         EdgeRoles {
             assignments,
             zigzags: zigzags.collect(),
+            drawn: roles.drawn,
         }
     }
 }
@@ -175,6 +176,7 @@ mod tests {
         let roles = refined.roles(EdgeRoles {
             assignments,
             zigzags: vec![EdgeId::from_index(3)],
+            drawn: None,
         });
         assert_eq!(roles.zigzags, refined.parts(EdgeId::from_index(3)));
         let count = |wanted: Option<FoldAssignment>| {

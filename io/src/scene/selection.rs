@@ -4,6 +4,7 @@ use super::key::Key;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use crate::format::FaceGroups;
+use isosheet_mesh::wording::{brief, place};
 use isosheet_mesh::{FaceId, Topology, VertexId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -145,24 +146,33 @@ impl Selection {
             Self::Box { min, max } => {
                 in_region(&|p| (0..3).all(|k| (min[k] - slack..=max[k] + slack).contains(&p[k])))
             }
-            Self::HalfSpace { point, normal } => {
-                let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-                let height = |p: &[f64; 3]| -> f64 {
-                    (0..3).map(|k| normal[k] * (p[k] - point[k])).sum::<f64>() / length
-                };
-                in_region(&|p| height(p) >= -slack)
-            }
+            Self::HalfSpace { point, normal } => in_region(&|p| height(p, point, normal) >= -slack),
         };
         found.sort_unstable();
         found.dedup();
         if found.is_empty() {
             return Err(Problem::new(
                 key.clone(),
-                "no vertex of the sheet is selected here",
+                format!(
+                    "no vertex of the sheet is selected here{}",
+                    nearest_in_words(points, |p| self.distance(p))
+                ),
                 "compare the region with where the sheet is (`isosheet info` gives its bounds)",
             ));
         }
         Ok(found)
+    }
+
+    /// How far a point is from a region, metres.
+    fn distance(&self, p: &[f64; 3]) -> f64 {
+        match self {
+            Self::Box { min, max } => {
+                let beyond = |k: usize| (min[k] - p[k]).max(p[k] - max[k]).max(0.0);
+                (0..3).map(|k| beyond(k).powi(2)).sum::<f64>().sqrt()
+            }
+            Self::HalfSpace { point, normal } => (-height(p, point, normal)).max(0.0),
+            _ => 0.0,
+        }
     }
 
     /// The faces that are meant of a sheet, ascending: those of the group, or those all corners of which are
@@ -223,18 +233,32 @@ pub(super) fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> (VertexId, f64)
     (VertexId::from_index(best), least.sqrt())
 }
 
-/// Largest distance of a vertex from a line that it is on, and of two that coincide, as a part of the size of
-/// the sheet: above the round-off of coordinates that went through a text file with seven digits, below any
-/// mesh.
-pub(super) const ON_LINE: f64 = 1e-6;
+/// How far a point is from a plane on the side that its normal points to, metres.
+fn height(p: &[f64; 3], point: &[f64; 3], normal: &[f64; 3]) -> f64 {
+    let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+    (0..3).map(|k| normal[k] * (p[k] - point[k])).sum::<f64>() / length
+}
 
-/// The place of a point beside the line between two points, 0 where that begins and 1 where it ends; nothing
-/// if the point is farther from the line than `tolerance`, metres.
-pub(super) fn place_on_line(
-    p: &[f64; 3],
-    [from, to]: [&[f64; 3]; 2],
-    tolerance: f64,
-) -> Option<f64> {
+/// The point that is nearest to what selects none, and by how much it misses, as the end of a message.
+pub(super) fn nearest_in_words(points: &[[f64; 3]], distance: impl Fn(&[f64; 3]) -> f64) -> String {
+    let distances = points.iter().map(|p| (distance(p), p));
+    match distances.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((distance, p)) => format!(
+            ": the nearest one, at {}, is {} m away",
+            place(p),
+            brief(distance)
+        ),
+        None => String::new(),
+    }
+}
+
+/// Largest distance of a vertex from a line that it is on, as a part of the size of the sheet: that within which lines
+/// of a drawing are one. Programs that draw write hundredths of a point, which are 3.5 micrometres.
+pub(super) const ON_LINE: f64 = 1e-4;
+
+/// The place of a point beside the line between two points, 0 where that begins and 1 where it ends, and its
+/// distance from the line, metres.
+pub(super) fn beside_line(p: &[f64; 3], [from, to]: [&[f64; 3]; 2]) -> (f64, f64) {
     let along: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
     let length2: f64 = along.iter().map(|c| c * c).sum();
     let part: f64 = (0..3).map(|k| along[k] * (p[k] - from[k])).sum::<f64>() / length2;
@@ -242,7 +266,7 @@ pub(super) fn place_on_line(
     let distance2: f64 = (0..3)
         .map(|k| (from[k] + nearest * along[k] - p[k]).powi(2))
         .sum();
-    (distance2 <= tolerance * tolerance).then_some(part)
+    (part, distance2.sqrt())
 }
 
 /// Largest extent of some points along an axis, metres.

@@ -10,6 +10,7 @@ use super::problem::Problem;
 use super::switches::Switches;
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
+use crate::format::drawing::DrawingFormat;
 use crate::format::{FileError, MeshFormat, input};
 use isosheet_dynamics::Checkpoint;
 use isosheet_mesh::Advice;
@@ -67,6 +68,12 @@ impl Advice for SceneFileError {
 /// Refuses what is a mesh file by its name: as TOML it is wrong in a way that helps nobody.
 fn refuse_mesh(path: &Path) -> Result<(), FileError> {
     match MeshFormat::of(path) {
+        _ if DrawingFormat::of(path).is_some() => {
+            let remedy = "name it in a scene, `mesh = { drawing = { path = ..., spacing = ... } }`: `isosheet new` writes a \
+                          scene to start from; `isosheet fold` folds crease patterns without one";
+            let problem = "it is a drawing and no scene";
+            Err(FileError::content(path, problem, remedy))
+        }
         None => Ok(()),
         Some(_) => {
             let remedy = "name it in a scene, `mesh = { file = { path = ... } }`: `isosheet new` writes a scene to start \

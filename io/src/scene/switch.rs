@@ -71,16 +71,16 @@ pub enum Condition {
 pub struct Threshold {
     /// The name of the measure.
     pub name: String,
-    /// What it has to be above, metres.
+    /// What it has to be above, in the unit of the measure.
     #[serde(default)]
     pub above: Option<f64>,
-    /// What it has to be below, metres.
+    /// What it has to be below, in the unit of the measure.
     #[serde(default)]
     pub below: Option<f64>,
 }
 
 impl Threshold {
-    /// Whether a value (metres) has passed it.
+    /// Whether a value of the measure has passed it.
     pub fn is_passed(&self, value: f64) -> bool {
         self.above.is_some_and(|least| value > least) || self.below.is_some_and(|most| value < most)
     }

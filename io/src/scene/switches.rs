@@ -40,7 +40,7 @@ pub(crate) struct Reached<'a> {
     pub(crate) t: f64,
     /// Positions of the vertices of the model, `3V`, metres.
     pub(crate) x: &'a [f64],
-    /// What a measure shows, metres.
+    /// What a measure shows.
     pub(crate) measure: &'a dyn Fn(&str) -> Option<f64>,
     /// Size of the force of a support, newtons.
     pub(crate) support: &'a dyn Fn(usize) -> f64,

@@ -116,7 +116,7 @@ impl UnderWay {
         let measure = |name: &str| {
             let mut gauges = self.facts.measures.iter();
             let gauge = gauges.find(|gauge| gauge.name == name)?;
-            Some(gauge.value(&seen))
+            Some(gauge.value(state.t, &seen, self.simulation.memories()))
         };
         // They cost a factorisation, and are asked for where something depends on them.
         let forces = OnceCell::new();

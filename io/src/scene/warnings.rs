@@ -1,11 +1,11 @@
 //! What of a scene may not do what was meant.
 
-use super::placed::PlacedSheets;
+use super::placed::{PlacedSheet, PlacedSheets};
 use super::selection::{self, Selection};
 use super::setup::Setup;
 use super::warning::Warning;
-use super::{Isometry, Key, Mesh, Quantity, Scene, bodies};
-use isosheet_mesh::wording::{brief, counted};
+use super::{Isometry, Key, Material, Mesh, Quantity, Scene, bodies};
+use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{Sheet, VertexId};
 
 /// Width from which the unit of lengths is questioned, metres: hardly a sheet is larger than a big tent, and
@@ -50,6 +50,29 @@ impl Warning {
     }
 }
 
+/// Part of the width of a sheet from which its thickness is questioned.
+const THICK: f64 = 0.1;
+
+/// A thickness whose unit is not the metre, as it seems.
+fn thick(sheet: &PlacedSheet<'_>) -> Option<Warning> {
+    let of_material = match &sheet.of.material {
+        Some(Material::Plate(plate)) => {
+            Some((sheet.key.name("material.thickness"), plate.thickness))
+        }
+        _ => None,
+    };
+    let own = (sheet.key.name("thickness"), sheet.of.thickness);
+    let width = selection::size(sheet.form.placed.positions().as_chunks::<3>().0);
+    let mut all = of_material.into_iter().chain([own]);
+    let (key, thickness) = all.find(|(_, thickness)| *thickness > THICK * width)?;
+    let message = format!(
+        "`{key}` is {} m, and the sheet is {} m wide",
+        given(thickness),
+        brief(width)
+    );
+    Some(Warning::new(message, "give it in metres: 0.5 mm are 5e-4"))
+}
+
 impl PlacedSheets<'_> {
     /// What to know of the sheets, and of how a scene names their vertices.
     pub(super) fn warnings(&self, scene: &Scene) -> Vec<Warning> {
@@ -77,7 +100,12 @@ impl PlacedSheets<'_> {
                 }
                 _ => None,
             };
-            wide.into_iter().chain(reversed)
+            let soft = match &sheet.of.material {
+                Some(Material::Plate(plate)) => plate.warning(&sheet.key.name("material")),
+                _ => None,
+            };
+            let changed = wide.into_iter().chain(reversed);
+            changed.chain(soft).chain(thick(sheet))
         });
         let rods = self.list.iter();
         let rods = rods.filter(|sheet| sheet.of.isometry() == Isometry::Rods);
@@ -119,7 +147,7 @@ impl PlacedSheets<'_> {
             if sheet.is_some_and(|name| bodies::number_of(&scene.body, name).is_some()) {
                 continue;
             }
-            selections.push((key.name("at"), sheet, &measure.at));
+            selections.extend(measure.at.iter().map(|at| (key.name("at"), sheet, at)));
             if let Quantity::DistanceTo(others) = &measure.quantity {
                 selections.push((key.name("quantity.distance_to"), sheet, others));
             }

@@ -4,8 +4,8 @@ use crate::{code, isosheet, run, stderr, with_scene};
 use isosheet_io::run::Recording;
 use isosheet_io::scene::{SceneFile, StartingPoint};
 use isosheet_io::{
-    EdgeAssignment, ExportMeshFormat, FoldFrame, MeshFormat, MeshOptions, SeriesFormat, Trajectory,
-    read_mesh, read_mesh_with,
+    EdgeAssignment, ExportMeshFormat, FoldFrame, MeshFile, MeshFormat, MeshOptions, SeriesFormat,
+    Trajectory, read_mesh, read_mesh_with,
 };
 use std::fs;
 use std::path::Path;
@@ -491,6 +491,107 @@ fn frames_of_runs_become_pictures() {
     refused(dir, &["convert", "run/trajectory.npz", "x.png"], 2);
     refused(dir, &["convert", "run", "x.png", "--weld", "0.1"], 2);
     assert!(!dir.join("x.png").exists() && !dir.join("x.apng").exists());
+}
+
+/// One frame by its time, pictures without marks, and meshes for printers.
+#[test]
+fn a_frame_is_found_by_its_time_and_a_mesh_is_made_thicker_and_larger() {
+    let dir = with_scene(StartingPoint::Drape);
+    let dir = dir.path();
+    let short = [
+        "simulate",
+        "scene.toml",
+        "--out",
+        "run",
+        "--set",
+        "stop.time=0.2",
+    ];
+    done(dir, &short);
+    let recording = Recording::read(&dir.join("run")).unwrap();
+    let times = recording.trajectory.times();
+    let between = (0.4 * times[1] + 0.6 * times[2]).to_string();
+    for format in ["png", "obj"] {
+        let [by_time, by_number] = ["time", "frame"].map(|name| format!("{name}.{format}"));
+        done(
+            dir,
+            &[
+                "convert",
+                "run",
+                &by_time,
+                "--time",
+                &between,
+                "--no-bodies",
+            ],
+        );
+        done(
+            dir,
+            &["convert", "run", &by_number, "--frame", "2", "--no-bodies"],
+        );
+        let [by_time, by_number] = [by_time, by_number].map(|f| fs::read(dir.join(f)).unwrap());
+        assert!(by_time == by_number, "{format}");
+    }
+    done(
+        dir,
+        &[
+            "convert",
+            "run",
+            "plain.png",
+            "--frame",
+            "2",
+            "--no-bodies",
+            "--plain",
+        ],
+    );
+    let [plain, marked] = ["plain.png", "frame.png"].map(|f| fs::read(dir.join(f)).unwrap());
+    assert!(plain != marked && size(&plain) == size(&marked));
+
+    let said = refused(dir, &["convert", "run", "x.stl"], 2);
+    assert!(
+        said.contains("a .stl file has one mesh") && said.contains("`--frame K` or `--time T`"),
+        "{said}"
+    );
+    let thick = ["--thickness", "2mm", "--scale", "1000"];
+    done(
+        dir,
+        &[&["convert", "run", "body.ply", "--frame", "0"][..], &thick].concat(),
+    );
+    let [flat, body] = ["flat.ply", "body.ply"].map(|name| {
+        done(dir, &["convert", "run", "flat.ply", "--frame", "0"]);
+        read_mesh(&dir.join(name)).unwrap()
+    });
+    assert_eq!(body.vertex_count(), 2 * flat.vertex_count());
+    let place = |mesh: &MeshFile, v: usize| [0, 1, 2].map(|k| mesh.positions[3 * v + k]);
+    for v in 0..flat.vertex_count() {
+        // The sheet begins flat.
+        let [x, y, z] = place(&flat, v).map(|c| 1e3 * c);
+        for (v, by) in [(v, 1.0), (v + flat.vertex_count(), -1.0)] {
+            let found = place(&body, v);
+            let away = [x - found[0], y - found[1], z + by - found[2]];
+            assert!(away.iter().all(|d| d.abs() < 1e-9), "{found:?}");
+        }
+    }
+    let sheet = body.into_sheet().unwrap();
+    assert_eq!(sheet.topology().boundary_edge_count(), 0);
+    for wrong in [
+        &["convert", "run", "x.usda", "--scale", "2", "--frame", "0"][..],
+        &["convert", "run", "x.obj", "--scale", "2"],
+        &["convert", "run", "x.stl", "--scale", "-2", "--frame", "0"],
+        &[
+            "convert",
+            "run",
+            "x.stl",
+            "--thickness",
+            "0",
+            "--frame",
+            "0",
+        ],
+        &["convert", "run", "x.stl", "--time", "nan"],
+        &["convert", "flat.ply", "x.stl", "--time", "1"],
+        &["convert", "flat.ply", "x.stl", "--plain"],
+    ] {
+        refused(dir, wrong, 2);
+    }
+    assert!(!dir.join("x.stl").exists() && !dir.join("x.obj").exists());
 }
 
 /// Every kind of scene to start from, after a few steps, in every format: with refined meshes and crease

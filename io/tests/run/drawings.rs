@@ -661,3 +661,65 @@ fn selectors_that_select_nothing_are_refused() {
     }
     meshed(dir, "a.svg", &["--spacing", "5mm", "--cut", "layer:FRAME"]);
 }
+
+/// A unit that makes another size than the page says is told with both; one that is that of the page is not.
+#[test]
+fn a_unit_that_is_not_that_of_the_file_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    // As drawing programs write it: points in the drawing, millimetres on the page.
+    let points = "<svg xmlns='http://www.w3.org/2000/svg' width='211.5mm' height='100mm' \
+                  viewBox='0 0 599.53 283.46' fill='none' stroke='black'><rect width='599.53' height='141.73'/></svg>";
+    fs::write(dir.join("a.svg"), points).unwrap();
+    let spacing = ["--spacing", "20mm"];
+    let (_, said) = meshed(dir, "a.svg", &spacing);
+    assert!(said.contains(", 211.5 mm by 50 mm\n"), "{said}");
+    assert!(!said.contains("by that of the file"), "{said}");
+    let (_, said) = meshed(dir, "a.svg", &["--spacing", "50mm", "--unit", "mm"]);
+    let told = "the sheet is 599.53 mm by 141.73 mm, and by that of the file 211.5 mm by 50 mm";
+    assert!(said.contains(told), "{said}");
+    let (_, said) = meshed(dir, "a.svg", &["--spacing", "20mm", "--unit", "pt"]);
+    assert!(!said.contains("by that of the file"), "{said}");
+    // A page of pixels has no unit that could be another one.
+    let pixels = "<svg xmlns='http://www.w3.org/2000/svg' width='200' height='100' fill='none' stroke='black'>\
+                  <rect width='100' height='50'/></svg>";
+    fs::write(dir.join("a.svg"), pixels).unwrap();
+    let (_, said) = meshed(dir, "a.svg", &["--spacing", "20mm", "--unit", "mm"]);
+    assert!(!said.contains("by that of the file"), "{said}");
+    let dxf = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n1\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\n0\n10\n0\n20\n0\n40\n\
+               50\n0\nENDSEC\n0\nEOF\n";
+    fs::write(dir.join("a.dxf"), dxf).unwrap();
+    let (_, said) = meshed(dir, "a.dxf", &["--spacing", "20mm", "--unit", "mm"]);
+    let told = "the sheet is 100 mm by 100 mm, and by that of the file 2540 mm by 2540 mm";
+    assert!(said.contains(told), "{said}");
+}
+
+/// Lengths in another unit than was meant are refused with what they are compared with.
+#[test]
+fn lengths_that_are_larger_than_the_drawing_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("a.svg"), svg(FRAME)).unwrap();
+    let said = refused(dir, "a.svg", &["--spacing", "5"], 2);
+    assert!(
+        said.contains("the spacing is 5 m, and the drawing only 0.117 m from corner to corner"),
+        "{said}"
+    );
+    let said = refused(dir, "a.svg", &["--spacing", "5mm", "--snap", "0.35"], 2);
+    assert!(
+        said.contains("once ends that are 0.35 m apart are joined")
+            && said.contains("give a smaller tolerance"),
+        "{said}"
+    );
+}
+
+#[test]
+fn all_colours_of_unknown_lines_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let lines = "<path stroke='#ff8000' d='M20 10 V70'/><path stroke='#cfff00' stroke-dasharray='2 1' d='M40 10 V70'/>";
+    fs::write(dir.join("a.svg"), svg(&format!("{FRAME}{lines}"))).unwrap();
+    let said = refused(dir, "a.svg", &["--spacing", "5mm"], 3);
+    let told = "what the lines of the colours #ff8000, dashed #cfff00 are";
+    assert!(said.contains(told), "{said}");
+}

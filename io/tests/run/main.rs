@@ -7,6 +7,7 @@ mod command_line;
 mod contact_data;
 mod continuing;
 mod convert;
+mod crease_measures;
 #[path = "../shared/devtools.rs"]
 mod devtools;
 mod drawings;

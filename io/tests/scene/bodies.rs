@@ -1,6 +1,7 @@
 //! Rigid bodies of scenes: their motion, what touches them, and what is refused.
 
 use crate::parse;
+use isosheet_io::dynamics::Memories;
 use isosheet_io::scene::{LiveScene, SceneError, SceneFile, SceneFileError};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::fmt::Write;
@@ -507,13 +508,14 @@ fn bodies_have_measures_and_friction_by_their_names() {
     let mut live = live(&text);
     let setup = parse(&text).unwrap().build().unwrap();
     let gauge = &setup.measures[0];
-    assert!((gauge.value(&live.positions()) + 0.1).abs() < 1e-12);
+    let show = |x: &[f64]| gauge.value(0.0, x, &Memories::default());
+    assert!((show(&live.positions()) + 0.1).abs() < 1e-12);
     play(&mut live, 0.06);
     let before = velocity(&live, 1).x;
     play(&mut live, 0.2);
     let slowed = (before - velocity(&live, 1).x) / 0.2;
     assert!((slowed / (0.1 * G) - 1.0).abs() < 0.02, "{slowed}");
-    let place = gauge.value(&live.positions());
+    let place = show(&live.positions());
     assert!(
         (place - centre(&live, 1).x).abs() < 1e-12 && place > -0.05,
         "{place}"

@@ -29,6 +29,7 @@ const ALL_KEYS: [&str; 15] = [
     angle = { sine = { mean = 1, amplitude = 2, frequency = 3, phase = 4 } }
     yield = { moment = 0.01, hardening = 0.001, layers = 2 }
     [[crease]]
+    name = "lid"
     at = { line = { from = [0, 0, 0], to = [1, 1, 0] } }
     stiffness = 0.1
     angle = { keyframes = { interpolation = "monotone_cubic", keys = [[0, 0], [1, 90]] } }
@@ -143,6 +144,18 @@ const ALL_KEYS: [&str; 15] = [
     name = "width"
     at = { vertices = [0] }
     quantity = { distance_to = { vertices = [1] } }
+    [[measure]]
+    name = "fold"
+    crease = "lid"
+    quantity = "fold_angle"
+    [[measure]]
+    name = "moment"
+    crease = "lid"
+    quantity = "moment"
+    [[measure]]
+    name = "moment-per-length"
+    crease = "lid"
+    quantity = "moment_per_length"
     [method]
     integrator = "implicit_euler"
     step = 0.01

@@ -131,3 +131,110 @@ fn a_slit_opens() {
     assert_eq!(at_corner.len(), 2);
     assert!(distance(at_corner[0], at_corner[1]) > 1.0);
 }
+
+/// A card with lines of three kinds; the red one is crossed by a slit, where the mesh has vertices twice.
+const CARD: &str = "<path d='M0 0 H140 V100 H0 Z'/><g id='Score'><path stroke='blue' d='M40 0 V100'/></g>\
+                    <path stroke='#cc0011' d='M90 0 V100'/><path d='M60 50 H120'/>\
+                    <path stroke='magenta' stroke-dasharray='2 1' d='M20 0 V100'/>";
+
+/// The length of the driven creases of a scene, millimetres, and the places of their ends along x.
+fn driven(setup: &Setup) -> (f64, Vec<f64>) {
+    let sheet = &setup.sheet;
+    let creases = setup.targets.creases.iter().flat_map(|c| &c.edges);
+    let edges: Vec<_> = creases.map(|(edge, _)| *edge).collect();
+    let length = edges.iter().map(|e| 1e3 * sheet.lengths()[e.index()]);
+    let ends = edges
+        .iter()
+        .flat_map(|e| sheet.topology().edges()[e.index()]);
+    let mut places: Vec<f64> = ends
+        .map(|v| (1e6 * sheet.position(v)[0]).round() / 1e3)
+        .collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    (length.sum(), places)
+}
+
+/// A crease of a scene with its edges as given.
+fn crease_at(at: &str) -> String {
+    format!("[[crease]]\nat = {at}\nstiffness = 0.01\nangle = {{ ramp = {{ to = 90, end = 1 }} }}")
+}
+
+#[test]
+fn creases_follow_lines_by_layer_colour_and_dashes() {
+    let dir = tempfile::tempdir().unwrap();
+    for (lines, length, places) in [
+        ("\"layer:score\"", 100.0, vec![40.0]),
+        ("\"red\"", 100.0, vec![90.0]),
+        ("\"#cc0011\", \"blue\"", 200.0, vec![40.0, 90.0]),
+        ("\"dashed\"", 100.0, vec![20.0]),
+        // The outline and the slit are no creases.
+        ("\"solid\"", 200.0, vec![40.0, 90.0]),
+    ] {
+        let at = crease_at(&format!("{{ drawn = [{lines}] }}"));
+        let found = driven(&setup(dir.path(), CARD, 0.01, &at));
+        assert!((found.0 - length).abs() < 1e-9, "{lines}: {found:?}");
+        assert_eq!(found.1, places, "{lines}");
+    }
+    // The mesh may be divided further.
+    let refined = format!("refine = 1\n{}", crease_at("{ drawn = [\"red\"] }"));
+    let found = driven(&setup(dir.path(), CARD, 0.02, &refined));
+    assert!(
+        (found.0 - 100.0).abs() < 1e-9 && found.1 == [90.0],
+        "{found:?}"
+    );
+}
+
+/// Drawing programs write hundredths of a point: a line that was meant at 12 mm is at 34.02 points.
+#[test]
+fn a_line_of_coordinates_finds_what_a_drawing_program_rounded() {
+    let dir = tempfile::tempdir().unwrap();
+    let drawn = "<path d='M0 0 H140 V100 H0 Z'/><path stroke='blue' d='M12.00166 0 V100'/>";
+    let line = |x: f64| {
+        let line = format!("{{ line = {{ from = [{x}, 0, 0], to = [{x}, 0.1, 0] }} }}");
+        crease_at(&line)
+    };
+    let found = driven(&setup(dir.path(), drawn, 0.01, &line(0.012)));
+    assert!((found.0 - 100.0).abs() < 1e-9, "{found:?}");
+    let wrong = |rest: &str| {
+        fs::write(dir.path().join("sheet.svg"), svg(drawn)).unwrap();
+        let text = format!(
+            "version = 1\n[sheet]\nmesh = {{ drawing = {{ path = \"sheet.svg\", spacing = 0.01 }} }}\n{rest}"
+        );
+        let scene = SceneFile::parse(text, &dir.path().join("scene.toml"), &[]);
+        let problem = scene.and_then(|scene| scene.build().map_err(Into::into));
+        problem.err().expect("it is refused").to_string()
+    };
+    let told = wrong(&line(-0.5));
+    assert!(told.contains("the nearest one, from (0.0"), "{told}");
+    let told = wrong(&crease_at("{ drawn = [\"layer:Score\"] }"));
+    assert!(
+        told.contains("layer:Score selects no line: the colours are black, blue"),
+        "{told}"
+    );
+    let told = wrong(&crease_at("{ drawn = [\"scores\"] }"));
+    assert!(told.contains("\"scores\" selects no lines"), "{told}");
+    let support =
+        "[[support]]\nat = { box = { min = [0.2, 0, 0], max = [0.3, 0.1, 0] } }\nhold = \"pin\"";
+    let told = wrong(support);
+    assert!(
+        told.contains("the nearest one, at (0.14, ") && told.contains("is 0.06 m away"),
+        "{told}"
+    );
+    let support = "[[support]]\nat = { half_space = { point = [0, 0.25, 0], normal = [0, 3, 0] } }\nhold = \"pin\"";
+    let told = wrong(support);
+    assert!(told.contains("is 0.15 m away"), "{told}");
+}
+
+#[test]
+fn only_a_drawing_has_lines_to_select() {
+    let text = format!(
+        "version = 1\n[sheet]\nmesh = {{ square = {{ side = 1, level = 1 }} }}\n{}",
+        crease_at("{ drawn = [\"red\"] }")
+    );
+    let scene = SceneFile::parse(text, Path::new("scene.toml"), &[]).unwrap();
+    let told = scene.build().unwrap_err().to_string();
+    assert!(
+        told.contains("the mesh of the sheet is no drawing"),
+        "{told}"
+    );
+}

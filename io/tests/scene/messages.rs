@@ -1,7 +1,9 @@
 //! What is said of wrong scenes, and edits.
 
 use crate::parse;
+use isosheet_io::Advice;
 use isosheet_io::scene::{Key, PlacedProblem, SceneFile, SceneFileError};
+use std::fs;
 use std::path::Path;
 
 /// A scene of twelve lines that is right but for what an edit does to it.
@@ -500,4 +502,82 @@ fn names_of_bodies_and_choices_are_told() {
         });
         assert!(is_told, "{message}: {found:?}");
     }
+}
+
+/// Moduli in megapascals and thicknesses in millimetres make sheets that nobody means.
+#[test]
+fn slips_of_units_of_a_material_are_told() {
+    let warnings = |material: &str| -> Vec<String> {
+        let text = format!(
+            "version = 1\n[sheet]\nmesh = {{ rectangle = {{ width = 0.2, height = 0.1, columns = 2, rows = 1 }} }}\n\
+             {material}\n[stop]\ntime = 1"
+        );
+        let scene = SceneFile::parse(text, Path::new("scene.toml"), &[]).unwrap();
+        let warnings = scene.build().unwrap().warnings();
+        warnings.iter().map(ToString::to_string).collect()
+    };
+    for (material, told) in [
+        (
+            "material = { youngs = 3500, thickness = 5e-4, density = 800 }",
+            "`sheet.material.youngs` is 3500 Pa",
+        ),
+        (
+            "material = { youngs = 210000, thickness = 5e-4, density = 7850 }",
+            "softer than jelly",
+        ),
+        (
+            "material = { youngs = 3.5e9, thickness = 0.5, density = 800 }",
+            "`sheet.material.thickness` is 0.5 m, and the sheet is 0.2 m wide",
+        ),
+        (
+            "material = \"cardboard 300\"\nthickness = 0.3",
+            "`sheet.thickness` is 0.3 m",
+        ),
+    ] {
+        let found = warnings(material);
+        assert!(
+            found.len() == 1 && found[0].contains(told),
+            "{material}: {found:?}"
+        );
+    }
+    for material in [
+        "material = { youngs = 3.5e9, thickness = 5e-4, density = 800 }",
+        // Soft silicone, and foam.
+        "material = { youngs = 7e4, thickness = 2e-3, density = 1070 }",
+        "material = { youngs = 1e5, thickness = 5e-3, density = 30 }",
+    ] {
+        assert_eq!(warnings(material), Vec::<String>::new(), "{material}");
+    }
+}
+
+/// A mesh or a drawing in the place of a scene is told the key that takes it; an open outline the key that closes it; a
+/// face that is too narrow for contact where it is.
+#[test]
+fn remedies_are_those_of_scenes() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a.svg");
+    let open = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100' fill='none' \
+                stroke='black'><path d='M10 10 H90 V90 H10 V12'/></svg>";
+    fs::write(&path, open).unwrap();
+    let error = SceneFile::read(&path, &[]).unwrap_err();
+    assert!(
+        error.to_string().contains("it is a drawing and no scene"),
+        "{error}"
+    );
+    assert!(
+        error
+            .advice()
+            .unwrap_or_default()
+            .contains("mesh = { drawing ="),
+        "{error}"
+    );
+    let scene = "version = 1\n[sheet]\nmesh = { drawing = { path = \"a.svg\", spacing = 0.02 } }";
+    let scene = SceneFile::parse(scene.into(), &dir.path().join("scene.toml"), &[]).unwrap();
+    let told = scene.build().unwrap_err().to_string();
+    assert!(told.contains("give a `snap` of at least the gap"), "{told}");
+    let scene = "version = 1\n[sheet]\nmesh = { rectangle = { width = 0.2, height = 0.1, columns = 2, rows = 100 } }\n\
+                 material = \"office paper\"\nthickness = 0.01\n[contact]\nself_contact = true";
+    let scene = SceneFile::parse(scene.into(), Path::new("scene.toml"), &[]).unwrap();
+    let told = scene.build().unwrap_err().to_string();
+    assert!(told.contains("the face is at (0."), "{told}");
 }

@@ -375,3 +375,29 @@ fn a_fine_mesh_with_frames_left_out_is_shown() {
     let footer = result["footer"].as_str().unwrap();
     assert!(footer.contains("one in 2 of the 40 frames"), "{footer}");
 }
+
+/// A mountain that is pressed through itself by some degrees keeps the colour of mountains.
+#[test]
+fn a_fold_that_is_shut_keeps_its_side() {
+    let positions = |degrees: f64| {
+        let (s, c) = degrees.to_radians().sin_cos();
+        vec![0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.5, 0.0, -c, 0.5, s]
+    };
+    for (last, expected) in [(-185.0, -180.0), (-170.0, -170.0), (-300.0, -180.0)] {
+        let angles = [0.0, -90.0, -170.0, last];
+        let replay = Replay {
+            rest: positions(0.0),
+            faces: vec![[0, 2, 1], [0, 1, 3]],
+            positions: angles.map(positions).to_vec(),
+            fields: Vec::new(),
+            pins: Vec::new(),
+            ..waving(0, angles.len())
+        };
+        let Some(result) = self_test(&replay.to_html().unwrap(), "800,600") else {
+            return;
+        };
+        let folds = result["folds"].as_array().unwrap();
+        let fold = folds.iter().find(|fold| !fold.is_null()).unwrap();
+        assert!((number(fold).to_degrees() - expected).abs() < 0.1, "{fold}");
+    }
+}

@@ -14,7 +14,7 @@ export function describe(replay, found) {
   const { edges } = replay.mesh,
     x = replay.x;
   const position = [0, 1, 2].map((k) => number(x[3 * vertex + k])).join(", ");
-  const fold = replay.folds[edge] * (180 / Math.PI);
+  const fold = replay.fold(edge) * (180 / Math.PI);
   const lines = [
     `Vertex ${vertex} at (${position}) m${held(replay.data, vertex)}`,
     `Edge ${edge}, vertices ${edges[2 * edge]} and ${edges[2 * edge + 1]}`,

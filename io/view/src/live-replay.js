@@ -30,12 +30,16 @@ export class LiveReplay extends Replay {
     return [Math.floor(low / this.part) * this.part, Math.ceil(high / this.part) * this.part];
   }
 
+  fold(edge) {
+    return Math.max(-Math.PI, Math.min(Math.PI, this.folds[edge]));
+  }
+
   /** Takes over a state. Says whether a range of colours has changed. */
   take({ t, x, poses }) {
     this.now = t;
     const bytes = Uint8Array.from(atob(x), (c) => c.charCodeAt(0));
     this.x.set(new Float64Array(bytes.buffer));
-    this.mesh.foldAngles(this.x, this.folds);
+    this.mesh.followFolds(this.x, this.folds);
     this.data.bodies.forEach((body, k) => body.poses.set(poses[k]));
     return this.look();
   }

@@ -1,5 +1,8 @@
 // Edges of the triangles, and what the positions say about them.
 
+/** A whole turn, radians. */
+const TURN = 2 * Math.PI;
+
 /** Edges in the order of isosheet_mesh::Topology: by smaller, then by larger vertex. */
 export class Mesh {
   /**
@@ -53,6 +56,17 @@ export class Mesh {
     /** A face of each edge. */
     this.edgeFaces = Uint32Array.from(edgeFaces);
     this.edgeCount = edges.length / 2;
+  }
+
+  /**
+   * The fold angle of each edge as in `foldAngles`, but for whole turns: at most half a turn from the one before, which
+   * `out` has. A fold that is pressed through itself keeps its side.
+   */
+  followFolds(x, out) {
+    const before = Float64Array.from(out);
+    this.foldAngles(x, out);
+    for (let e = 0; e < this.edgeCount; e++) out[e] += TURN * Math.round(((before[e] || 0) - out[e]) / TURN);
+    return out;
   }
 
   /**

@@ -39,6 +39,20 @@ export class Replay {
     this.mesh.foldAngles(this.x, this.folds);
   }
 
+  /**
+   * The fold angle of an edge, in radians within [-pi, pi], to the side from which it came: a mountain that is shut and
+   * pressed through itself is one of half a turn.
+   */
+  fold(edge) {
+    const turns = this.turns[this.frame * this.mesh.edgeCount + edge];
+    return Math.max(-Math.PI, Math.min(Math.PI, this.folds[edge] + 2 * Math.PI * turns));
+  }
+
+  /** The whole turns of each edge in each frame, of folds that are followed from the first frame on. */
+  get turns() {
+    return (this.foundTurns ??= foldTurns(this));
+  }
+
   get time() {
     return this.data.times[this.frame];
   }
@@ -132,8 +146,22 @@ function foldQuantity(replay) {
     open: () => ({ below: replay.foldRange.open, above: replay.foldRange.open }),
     leavesOut: (place) => !(Math.abs(place - 0.5) > FLAT),
     range: () => replay.foldRange.range,
-    value: (edge) => replay.folds[edge] * DEGREES,
+    value: (edge) => replay.fold(edge) * DEGREES,
   };
+}
+
+function foldTurns(replay) {
+  const x = new Float64Array(replay.x.length),
+    folds = new Float64Array(replay.folds.length),
+    followed = new Float64Array(replay.folds.length);
+  const turns = new Int8Array(replay.frames * folds.length);
+  for (let frame = 0; frame < replay.frames; frame++) {
+    replay.mesh.foldAngles(replay.positionsOf(frame, x), folds);
+    replay.mesh.followFolds(x, followed);
+    for (let e = 0; e < folds.length; e++)
+      turns[frame * folds.length + e] = Math.round((followed[e] - folds[e]) / (2 * Math.PI));
+  }
+  return turns;
 }
 
 /** Of the fold angles above a degree in all frames, the share that is inside the range of colours. */

@@ -92,7 +92,7 @@ function numbers(replay) {
     checksum: checksum(data.positions),
     fieldChecksums: data.fields.map((f) => checksum(f.values)),
     positions: Array.from(replay.x),
-    folds: Array.from(replay.folds, (a) => (Number.isNaN(a) ? null : a)),
+    folds: Array.from(replay.folds, (_, e) => replay.fold(e)).map((a) => (Number.isNaN(a) ? null : a)),
     edgeEnds: Array.from(mesh.edges),
     values: quantities.filter((q) => q.key.startsWith("field-")).map((q) => q.value(0)),
     foldRange: quantities.find((q) => q.key === "fold").range(),

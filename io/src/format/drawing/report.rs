@@ -1,7 +1,8 @@
 //! What was taken for what in a drawing, and what was changed.
 
 use super::class::LineClass;
-use isosheet_mesh::wording::{brief, counted};
+use crate::format::vector::Length;
+use isosheet_mesh::wording::counted;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -50,12 +51,18 @@ pub struct DrawingReport {
     pub left_out: BTreeMap<&'static str, usize>,
     /// What a unit was taken for, where the file does not say it.
     pub assumed_unit: Option<&'static str>,
+    /// How many times as large the sheet is by the unit of the file, where another one was given.
+    pub by_own_unit: Option<f64>,
 }
 
 /// A length in millimetres.
 fn mm(metres: f64) -> String {
-    format!("{} mm", brief(1e3 * metres))
+    Length { metres }.to_string()
 }
+
+/// Part by which a unit that was given may differ from that of the file without a word: pages are rounded to tenths of
+/// a millimetre, or to whole pixels.
+const SAME_UNIT: f64 = 0.01;
 
 impl Places {
     /// Those of a list of places.
@@ -134,6 +141,15 @@ impl fmt::Display for DrawingReport {
             writeln!(
                 f,
                 "note: the file has no unit of length, {unit} is taken, and so the sheet is {w} by {h}"
+            )?;
+        }
+        let is_other = |factor: &f64| (factor - 1.0).abs() > SAME_UNIT;
+        if let Some(factor) = self.by_own_unit.filter(is_other) {
+            let [w, h] = self.size.map(mm);
+            let [x, y] = self.size.map(|length| mm(factor * length));
+            writeln!(
+                f,
+                "note: by the unit that was given the sheet is {w} by {h}, and by that of the file {x} by {y}"
             )?;
         }
         Ok(())

@@ -1,16 +1,16 @@
 //! The mesh of a drawing.
 
 use super::class::LineClass;
+use super::edges::{DrawnEdges, listed, refuse_idle};
 use super::file::read_drawing;
 use super::options::DrawingOptions;
 use super::report::{ClassCount, DrawingReport, Places};
-use super::selector::Selector;
 use crate::format::vector::{Drawing, DrawnLine};
 use crate::format::{DataError, EdgeAssignment, FileCrease, FileError, MeshFile};
 use isosheet_mesh::plane::{
     Piece, PlaneCurve, PlaneError, PlaneGraph, PlaneMesh, PlaneOptions, Role,
 };
-use isosheet_mesh::wording::counted;
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, MeshError, Sheet};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::f64::consts::PI;
@@ -51,6 +51,8 @@ impl Advice for DrawingError {
 pub struct DrawnSheet {
     /// The mesh, metres, in the plane z = 0, with its creases. Cuts have vertices of their own on both sides.
     pub mesh: MeshFile,
+    /// Which of its edges follow which lines.
+    pub edges: DrawnEdges,
     /// What was taken for what, and what was changed.
     pub report: DrawingReport,
 }
@@ -78,7 +80,20 @@ pub fn mesh_drawing(
         };
         return Err(DataError::new(message, "draw the outline of the sheet as lines").into());
     }
-    let snap = options.snap.unwrap_or_else(|| SNAP * diagonal(&lines));
+    let diagonal = diagonal(&lines);
+    if options.spacing > diagonal {
+        let message = format!(
+            "the spacing is {} m, and the drawing only {} m from corner to corner",
+            given(options.spacing),
+            brief(diagonal)
+        );
+        let error = DataError::new(
+            message,
+            "give the length of an edge of the mesh, with its unit",
+        );
+        return Err(error.value(options.spacing).into());
+    }
+    let snap = options.snap.unwrap_or(SNAP * diagonal);
     let snap = snap.max(f64::MIN_POSITIVE);
     let lines = without_short_ones(&lines, snap);
     let lines: Vec<&DrawnLine> = lines.iter().collect();
@@ -95,7 +110,10 @@ pub fn mesh_drawing(
         spacing: options.spacing,
         seed: options.seed,
     };
-    let plane = PlaneMesh::new(&graph, &roles, &plane)?;
+    let plane = PlaneMesh::new(&graph, &roles, &plane).map_err(|error| match error {
+        PlaneError::NoOutline => no_outline(options, diagonal),
+        error => error.into(),
+    })?;
     let angle = |piece: usize| {
         let opacity = drawing.pens[lines[graph.pieces[piece].sources[0]].pen].opacity;
         let sign = match classes[piece] {
@@ -114,7 +132,19 @@ pub fn mesh_drawing(
             angle: angle(*piece),
         })
         .collect();
-    let mesh = assemble(&plane, creases);
+    let (mesh, originals) = assemble(&plane, creases);
+    let pens = |piece: usize| graph.pieces[piece].sources.iter().map(|s| lines[*s].pen);
+    let of_edge = plane.edges.iter();
+    let of_edge = of_edge.map(|&([a, b], piece)| ([a.min(b), a.max(b)], pens(piece).collect()));
+    let edges = DrawnEdges::new(
+        &drawing.pens,
+        &of_edge.collect(),
+        mesh.creases.iter().map(|crease| crease.ends),
+        |v| match (v as usize).checked_sub(plane.points.len()) {
+            Some(copy) => originals[copy],
+            None => v,
+        },
+    );
     Sheet::new(mesh.positions.clone(), &mesh.faces)?;
     let report = DrawingReport {
         size: extent(&plane.points),
@@ -136,8 +166,33 @@ pub fn mesh_drawing(
         too_short: graph.dropped.len(),
         left_out: drawing.left_out.clone(),
         assumed_unit: drawing.assumed_unit,
+        by_own_unit: drawing.by_own_unit,
     };
-    Ok(DrawnSheet { mesh, report })
+    Ok(DrawnSheet {
+        mesh,
+        edges,
+        report,
+    })
+}
+
+/// No line bounds an area, perhaps because a tolerance that was given has joined all of them.
+fn no_outline(options: &DrawingOptions, diagonal: f64) -> DrawingError {
+    match options.snap {
+        Some(snap) if snap > SNAP * diagonal => {
+            let message = format!(
+                "no line bounds an area once ends that are {} m apart are joined, in a drawing of {} m from corner to \
+                 corner",
+                given(snap),
+                brief(diagonal)
+            );
+            let error = DataError::new(
+                message,
+                "give a smaller tolerance for snapping, with its unit",
+            );
+            error.value(snap).into()
+        }
+        _ => PlaneError::NoOutline.into(),
+    }
 }
 
 impl DrawnSheet {
@@ -205,18 +260,14 @@ fn classify(
         .map(|p| options.rules.class(p))
         .collect();
     let open = drawing.pens.iter().zip(&known).filter(|(_, k)| k.is_none());
-    let open: BTreeSet<(String, bool)> = open
-        .map(|(p, _)| (p.colour.to_string(), p.dashed))
+    let open: BTreeSet<String> = open
+        .map(|(p, _)| format!("{}{}", if p.dashed { "dashed " } else { "" }, p.colour))
         .collect();
     let is_outline = open.len() == 1 && known.iter().all(Option::is_none);
-    if !is_outline && let Some((colour, dashed)) = open.first() {
-        let dashes = if *dashed { "dashed " } else { "" };
-        let more = match open.len() {
-            1 => String::new(),
-            n => format!(" (and {})", counted(n - 1, "other kind", "other kinds")),
-        };
-        let message =
-            format!("it is not known what the {dashes}lines of the colour {colour} are{more}");
+    if !is_outline && !open.is_empty() {
+        let colours = if open.len() == 1 { "colour" } else { "colours" };
+        let open = listed(open.into_iter().collect());
+        let message = format!("it is not known what the lines of the {colours} {open} are");
         let remedy =
             "say it by their colour or layer: cut, crease, mountain, valley, flat or ignore";
         return Err(DataError::new(message, remedy));
@@ -228,38 +279,13 @@ fn classify(
         .collect())
 }
 
-/// Refuses selectors that select nothing: what they were meant for would be taken for something else.
+/// Refuses selectors that select nothing.
 fn refuse_idle_selectors(drawing: &Drawing, options: &DrawingOptions) -> Result<(), DataError> {
-    let is_idle = |selector: &Selector| !drawing.pens.iter().any(|pen| selector.selects(pen));
-    let mut selectors = options.rules.selectors.iter().map(|(s, _)| s);
-    let Some(index) = selectors.clone().position(is_idle) else {
-        return Ok(());
-    };
-    let selector = selectors
-        .nth(index)
-        .map_or(String::new(), Selector::to_string);
-    let pens = || drawing.pens.iter();
-    let colours: BTreeSet<String> = pens().map(|p| p.colour.to_string()).collect();
-    let layers: BTreeSet<&str> = pens().flat_map(|p| &p.layers).map(String::as_str).collect();
-    let listed = |names: Vec<String>| match names.len() {
-        0 => "none".to_owned(),
-        n if n > MOST_LISTED => format!(
-            "{} and {} more",
-            names[..MOST_LISTED].join(", "),
-            n - MOST_LISTED
-        ),
-        _ => names.join(", "),
-    };
-    let message = format!(
-        "{selector} selects no line: the colours are {}, and the layers and names {}",
-        listed(colours.into_iter().collect()),
-        listed(layers.iter().map(|name| format!("{name:?}")).collect())
-    );
-    Err(DataError::new(message, "name lines that the drawing has, or leave it out").at(index))
+    for (index, (selector, _)) in options.rules.selectors.iter().enumerate() {
+        refuse_idle(selector, &drawing.pens).map_err(|e| e.at(index))?;
+    }
+    Ok(())
 }
-
-/// Most names that an error lists.
-const MOST_LISTED: usize = 12;
 
 /// The class of lines that lie on each other: a mountain on a valley is a crease.
 fn class_of(classes: impl Iterator<Item = LineClass>) -> LineClass {
@@ -315,8 +341,9 @@ fn diagonal(lines: &[&DrawnLine]) -> f64 {
     w.hypot(h)
 }
 
-/// The mesh with vertices of their own on both sides of cuts; edges within panels stay flat.
-fn assemble(plane: &PlaneMesh, mut creases: Vec<FileCrease>) -> MeshFile {
+/// The mesh with vertices of their own on both sides of cuts, and which vertices these are copies of; edges within
+/// panels stay flat.
+fn assemble(plane: &PlaneMesh, mut creases: Vec<FileCrease>) -> (MeshFile, Vec<u32>) {
     let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
     let mut known: HashSet<[u32; 2]> = creases.iter().map(|c| sorted(c.ends)).collect();
     for &[a, b, c] in &plane.faces {
@@ -332,13 +359,13 @@ fn assemble(plane: &PlaneMesh, mut creases: Vec<FileCrease>) -> MeshFile {
     }
     let positions = plane.points.iter().flat_map(|p| [p[0], p[1], 0.0]);
     let mut mesh = MeshFile::of_frame(positions.collect(), plane.faces.clone(), creases);
-    mesh.separate_cuts();
+    let originals = mesh.separate_cuts();
     for crease in &mut mesh.creases {
         if crease.assignment == EdgeAssignment::Cut {
             crease.assignment = EdgeAssignment::Boundary;
         }
     }
-    mesh
+    (mesh, originals)
 }
 
 fn count(drawing: &Drawing, kinds: &[(LineClass, String)]) -> Vec<ClassCount> {

@@ -11,6 +11,8 @@ use crate::format::{DataError, Trajectory};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{EdgeId, Part, Topology, VertexId, fold_angle};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::OnceLock;
 
 /// Which frames of a trajectory are written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,6 +109,8 @@ pub struct Series<'a> {
     rest_lengths: Vec<f64>,
     frames: Vec<usize>,
     assignments: Option<Vec<Option<FoldAssignment>>>,
+    /// The fold angles of each frame, radians, once they are asked for.
+    followed: OnceLock<Vec<Vec<f64>>>,
     fields: Vec<SeriesField>,
     rate: f64,
     /// Places of the vertices in a picture printed on the flat sheet, if it can be flat.
@@ -165,6 +169,7 @@ impl<'a> Series<'a> {
             rest_lengths,
             frames,
             assignments: None,
+            followed: OnceLock::new(),
             fields,
             rate: options.rate,
             bodies: Vec::new(),
@@ -253,6 +258,7 @@ impl<'a> Series<'a> {
         check_count("assignments of edges", assignments.len(), expected)?;
         Ok(Self {
             assignments: Some(assignments),
+            followed: OnceLock::new(),
             ..self
         })
     }
@@ -322,16 +328,44 @@ impl<'a> Series<'a> {
             .collect()
     }
 
-    /// The fold angle of each edge in a frame of the trajectory, in radians ([`fold_angle`]); 0 on the
+    /// The fold angle of each edge in a frame of the trajectory, in radians within [-pi, pi] ([`fold_angle`]); 0 on the
     /// boundary and where an edge has no length.
+    ///
+    /// A fold is followed from frame to frame, where it turns by less than half a turn: one that is pressed through itself
+    /// stays a mountain or a valley of half a turn. A mountain that is shut in the first frame is one by its assignment.
     ///
     /// # Panics
     /// If there is no such frame.
     pub fn fold_angles(&self, frame: usize) -> Vec<f64> {
-        let (_, x) = self.state(frame);
+        let followed = self.followed.get_or_init(|| self.follow_folds());
+        let angles = followed[frame].iter();
+        angles.map(|angle| angle.clamp(-PI, PI)).collect()
+    }
+
+    /// The fold angles in all frames, followed beyond half a turn.
+    fn follow_folds(&self) -> Vec<Vec<f64>> {
         let t = &self.topology;
-        let angle = |e| fold_angle(t, x, e).filter(|a| a.is_finite()).unwrap_or(0.0);
-        t.edge_ids().map(angle).collect()
+        let mut before: Vec<f64> = t.edge_ids().map(|e| self.side(e) * FRAC_PI_2).collect();
+        let mut all = Vec::with_capacity(self.trajectory.len());
+        for frame in 0..self.trajectory.len() {
+            let (_, x) = self.state(frame);
+            for (e, angle) in t.edge_ids().zip(&mut before) {
+                let now = fold_angle(t, x, e).filter(|a| a.is_finite()).unwrap_or(0.0);
+                *angle = now + TAU * ((*angle - now) / TAU).round();
+            }
+            all.push(before.clone());
+        }
+        all
+    }
+
+    /// 1 for a valley, -1 for a mountain, and 0 for an edge of which nothing is known.
+    fn side(&self, edge: EdgeId) -> f64 {
+        let known = self.assignments.as_ref().and_then(|a| a[edge.index()]);
+        match known {
+            Some(FoldAssignment::Mountain) => -1.0,
+            Some(FoldAssignment::Valley) => 1.0,
+            _ => 0.0,
+        }
     }
 
     /// One frame of the trajectory as a mesh, with its fold angles and what its edges are meant to do.

@@ -210,6 +210,53 @@ fn fold_series_have_the_fold_angles_of_the_mesh() {
     assert_eq!(json["file_frames"][2]["isosheet:time"], 0.6);
 }
 
+/// Folds that close and pass through themselves by some degrees keep their sides in the file; an unassigned one keeps
+/// that from which it came, and what begins shut has that of its assignment.
+#[test]
+fn shut_folds_keep_their_sides_in_a_file() {
+    let positions = |degrees: f64| {
+        let (s, c) = degrees.to_radians().sin_cos();
+        vec![0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.5, 0.0, -c, 0.5, s]
+    };
+    let sheet = Sheet::new(positions(0.0), &[[0, 2, 1], [0, 1, 3]]).unwrap();
+    let t = sheet.topology();
+    let crease = t.edge_ids().find(|&e| !t.is_boundary_edge(e)).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.fold");
+    let (mountain, valley) = (FoldAssignment::Mountain, FoldAssignment::Valley);
+    for (degrees, assignment, expected) in [
+        (&[0.0, -90.0, -170.0, -185.0][..], Some(mountain), -180.0),
+        (&[0.0, 90.0, 170.0, 185.0], Some(valley), 180.0),
+        (&[0.0, -90.0, -170.0, -179.0], None, -179.0),
+        (&[0.0, -90.0, -170.0, -185.0], None, -180.0),
+        // Pressed through itself by as much as it can be, and back.
+        (
+            &[0.0, -90.0, -200.0, -300.0, -200.0, -100.0],
+            Some(mountain),
+            -100.0,
+        ),
+        // A mountain that has popped through to a valley.
+        (&[0.0, 60.0, 120.0], Some(mountain), 120.0),
+        (&[-185.0], Some(mountain), -180.0),
+        (&[185.0], Some(valley), 180.0),
+    ] {
+        let mut trajectory = Trajectory::new(&sheet);
+        for (k, angle) in degrees.iter().enumerate() {
+            trajectory.push(k as f64, &positions(*angle)).unwrap();
+        }
+        let mut assignments = vec![None; t.edge_count()];
+        assignments[crease.index()] = assignment;
+        let series = series(&trajectory).with_assignments(assignments).unwrap();
+        let last = trajectory.len() - 1;
+        write_frame(&path, &series, last).unwrap();
+        let mesh = read_mesh(&path).unwrap();
+        let ends = t.edges()[crease.index()].map(|v| v.0);
+        let found = mesh.creases.iter().find(|c| c.ends == ends).unwrap();
+        let angle = found.angle.unwrap().to_degrees();
+        assert!((angle - expected).abs() < 1e-12, "{degrees:?}: {angle}");
+    }
+}
+
 /// The format's own reader finds the frames as base plus displacement, and the weights that choose them.
 #[test]
 fn gltf_has_a_morph_target_for_each_frame() {

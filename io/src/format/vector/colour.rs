@@ -6,14 +6,17 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Colour(pub [u8; 3]);
 
-/// Hues in degrees around those of the colours that have a name. Drawing programs write many reds.
-const HUES: [(&str, f64); 6] = [
+/// Hues in degrees around those of the colours that have a name. Drawing programs write many reds; cyan and magenta
+/// are colours of screens and, besides, those of inks.
+const HUES: [(&str, f64); 8] = [
     ("red", 0.0),
     ("yellow", 60.0),
     ("green", 120.0),
     ("cyan", 180.0),
     ("blue", 240.0),
     ("magenta", 300.0),
+    ("cyan", 197.0),
+    ("magenta", 325.0),
 ];
 
 impl Colour {
@@ -79,7 +82,10 @@ mod tests {
             ([0, 0, 255], Some("blue")),
             ([46, 49, 146], Some("blue")),
             ([255, 255, 0], Some("yellow")),
-            ([236, 0, 140], None),
+            ([236, 0, 140], Some("magenta")),
+            ([230, 0, 126], Some("magenta")),
+            ([0, 159, 227], Some("cyan")),
+            ([0, 174, 239], Some("cyan")),
             ([255, 0, 255], Some("magenta")),
             ([255, 128, 0], None),
         ] {

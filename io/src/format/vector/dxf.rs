@@ -25,7 +25,11 @@ pub(in crate::format) fn parse(
     let records = groups::records(&text)?;
     let mut drawing = Drawing::default();
     let unit = match unit {
-        Some(unit) => unit.metres(1.0),
+        Some(unit) => {
+            let own = metres(&records).ok().flatten();
+            drawing.by_own_unit = own.map(|own| own / unit.metres(1.0));
+            unit.metres(1.0)
+        }
         None => match metres(&records)? {
             Some(metres) => metres,
             None => {

@@ -39,6 +39,8 @@ pub struct Drawing {
     pub left_out: BTreeMap<&'static str, usize>,
     /// What a unit of the file was taken for, where the file does not say it.
     pub assumed_unit: Option<&'static str>,
+    /// How many times as large the drawing is by the unit of the file as by another one that was given.
+    pub by_own_unit: Option<f64>,
     paths: usize,
 }
 

@@ -61,7 +61,12 @@ pub(in crate::format) fn parse(
     let of_page = |size| content(root, size).map_err(|e| wrong(root, &e));
     let (length, size) = match unit {
         // A unit of the drawing is known, whatever the page says.
-        Some(unit) => (unit, of_page(size)?.1.size),
+        Some(unit) => {
+            let ([[own, _], ..], viewport) = of_page(size)?;
+            let own = own * DrawingUnit::Pixel.metres(1.0) / unit.metres(1.0);
+            drawing.by_own_unit = is_absolute.then_some(own);
+            (unit, viewport.size)
+        }
         None => (DrawingUnit::Pixel, size),
     };
     let (place, viewport) = of_page(size)?;

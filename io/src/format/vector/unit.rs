@@ -102,6 +102,11 @@ impl FromStr for Length {
 
 impl fmt::Display for Length {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} mm", isosheet_mesh::wording::brief(1e3 * self.metres))
+        let mm = 1e3 * self.metres;
+        // Drawings are exact to hundredths of a millimetre.
+        match (1.0..1e5).contains(&mm.abs()) {
+            true => write!(f, "{} mm", (100.0 * mm).round() / 100.0),
+            false => write!(f, "{} mm", isosheet_mesh::wording::brief(mm)),
+        }
     }
 }

@@ -6,6 +6,7 @@ use crate::scene::error::SceneError;
 use crate::scene::folding::{FLAT_STIFFNESS, FoldTargets};
 use crate::scene::in_words::elastic_in_words;
 use crate::scene::key::Key;
+use crate::scene::measure::CreaseGauge;
 use crate::scene::placed::PlacedSheet;
 use crate::scene::sheet::{Bending, Elasticity, Isometry, RestShape};
 use crate::scene::targets::DrivenCrease;
@@ -262,10 +263,29 @@ impl Builder<'_> {
         number: usize,
         springs: FoldSprings,
     ) -> Result<(), SceneError> {
+        let named = self.scene.crease.iter().enumerate();
+        let named = named.filter_map(|(k, crease)| {
+            Some((Key::root().name("crease").entry(k), crease.name.clone()?))
+        });
+        let named: Vec<(Key, String)> = named.collect();
         for (key, springs) in springs.into_groups() {
-            let topology = self.sheets.list[number].form.placed.topology();
-            let springs = CreaseSprings::new(topology, springs);
-            self.add_potential_of(number, springs.map_err(at(&key))?);
+            let PlacedSheet { form, part, .. } = &self.sheets.list[number];
+            let lengths = springs
+                .iter()
+                .map(|s| form.placed.lengths()[s.edge.index()]);
+            let lengths = lengths.collect();
+            let springs = CreaseSprings::new(form.placed.topology(), springs);
+            let springs = Arc::new(springs.map_err(at(&key))?);
+            if let Some((_, name)) = named.iter().find(|(known, _)| *known == key) {
+                let gauge = CreaseGauge {
+                    springs: Arc::clone(&springs),
+                    lengths,
+                    part: part.clone(),
+                    potential: self.model().potentials().count(),
+                };
+                self.creases.insert(name.clone(), gauge);
+            }
+            self.add_potential_of(number, springs);
         }
         Ok(())
     }

@@ -11,7 +11,8 @@ use crate::scene::placed_bodies::Surface;
 use crate::scene::problem::Problem;
 use crate::scene::switch::Holder;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, ContactsError, Obstacle};
-use isosheet_mesh::VertexId;
+use isosheet_mesh::wording::place;
+use isosheet_mesh::{Sheet, VertexId};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -105,9 +106,11 @@ impl Builder<'_> {
         self.bodies.check_empty(&self.sheets, &obstacles)?;
         if scene.contact.self_contact || self.surface.is_some() {
             let coefficients = Coefficients::equal(scene.contact.friction);
+            let surface = self.surface.as_ref();
+            let surface = surface.map_or(&self.sheets.union, |surface| &surface.sheet);
             contacts = contacts
                 .with_self_contact(coefficients)
-                .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
+                .map_err(|e| SceneError::from(self_contact_problem(&e, surface)))?;
             for DrivenSurface { number, part, .. } in &self.origins.driven {
                 let coefficients = Coefficients::equal(scene.obstacle[*number].friction);
                 let others = 0..self.driven.first_point().unwrap_or_default();
@@ -171,8 +174,17 @@ impl Builder<'_> {
     }
 }
 
-fn self_contact_problem(error: &ContactsError) -> Problem {
+/// Why the sheets cannot touch themselves, of the surface of all that touches.
+fn self_contact_problem(error: &ContactsError, sheet: &Sheet) -> Problem {
     let key = Key::root().name("contact.self_contact");
+    let where_is = match error {
+        ContactsError::Reach { face, .. } => {
+            let corners = sheet.topology().faces()[*face as usize].map(|v| sheet.position(v));
+            let middle = [0, 1, 2].map(|k| corners.iter().map(|p| p[k]).sum::<f64>() / 3.0);
+            format!("; the face is at {}", place(&middle))
+        }
+        _ => String::new(),
+    };
     let remedy = "choose a smaller `sheet.thickness` or `contact.activation`, or a mesh without narrow faces";
-    Problem::new(key, error.to_string(), remedy)
+    Problem::new(key, format!("{error}{where_is}"), remedy)
 }

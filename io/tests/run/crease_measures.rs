@@ -1,0 +1,176 @@
+//! Angles and moments of creases as measures.
+
+use crate::{code, run, stderr, summary};
+use isosheet_io::run::Recording;
+use isosheet_io::{MeasureRow, read_measures};
+use std::fs;
+
+/// Stiffness of the crease, N, and its length, m.
+const STIFFNESS: f64 = 0.04;
+const LENGTH: f64 = 0.5;
+
+/// Two triangles that meet along y in a valley of some degrees and are held there, while the crease between them is driven
+/// to a mountain; a second sheet, which has no crease, is the first one.
+fn scene(degrees: f64, of_crease: &str) -> String {
+    let (s, c) = degrees.to_radians().sin_cos();
+    format!(
+        "version = 1
+[[sheet]]
+name = \"flat\"
+mesh = {{ square = {{ side = 0.1, level = 0 }} }}
+mass = 0.01
+placement = {{ position = [2, 0, 0] }}
+[[sheet]]
+name = \"folded\"
+mesh = {{ triangles = {{ vertices = [[0, 0, 0], [0, {LENGTH}, 0], [0.3, 0.2, 0], [{x}, 0.2, {z}]], \
+         faces = [[0, 2, 1], [0, 1, 3]] }} }}
+mass = 0.01
+[[crease]]
+name = \"lid\"
+sheet = \"folded\"
+at = {{ ends = [[0, 1]] }}
+stiffness = {STIFFNESS}
+angle = {{ ramp = {{ to = -90, end = 1 }} }}
+{of_crease}
+[[support]]
+sheet = \"folded\"
+at = \"all\"
+hold = \"pin\"
+[[support]]
+sheet = \"flat\"
+at = {{ vertices = [0] }}
+hold = \"pin\"
+[[measure]]
+name = \"angle\"
+crease = \"lid\"
+quantity = \"fold_angle\"
+[[measure]]
+name = \"moment\"
+crease = \"lid\"
+quantity = \"moment\"
+[[measure]]
+name = \"per-metre\"
+crease = \"lid\"
+quantity = \"moment_per_length\"
+[method]
+step = 0.05
+[stop]
+time = 1
+",
+        x = -0.3 * c,
+        z = 0.3 * s
+    )
+}
+
+/// The measures of a run.
+fn rows(text: &str) -> Vec<MeasureRow> {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("lid.toml"), text).unwrap();
+    let done = run(dir, &["simulate", "lid.toml", "--out", "run"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    read_measures(&dir.join("run/measures.csv")).unwrap()
+}
+
+/// The moment at a difference of the angles, degrees, up to the one at which the crease yields.
+fn check(of_crease: &str, moment: impl Fn(f64) -> f64) {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("lid.toml"), scene(30.0, of_crease)).unwrap();
+    let done = run(dir, &["simulate", "lid.toml", "--out", "run"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let rows = read_measures(&dir.join("run/measures.csv")).unwrap();
+    assert_eq!(rows.len(), 21 * 3);
+    for row in &rows {
+        let exact = match row.name.as_str() {
+            "angle" => 30.0,
+            "moment" => LENGTH * moment(30.0 + 90.0 * row.t),
+            _ => moment(30.0 + 90.0 * row.t),
+        };
+        assert!((row.value - exact).abs() < 1e-12, "{row:?}: {exact}");
+    }
+    let recording = Recording::read(&dir.join("run")).unwrap();
+    let series = recording.replay().unwrap().series;
+    for (name, unit) in [("angle", "degrees"), ("moment", "N m"), ("per-metre", "N")] {
+        let shown = series.iter().find(|s| s.name == name).unwrap();
+        assert_eq!(shown.unit, unit);
+    }
+    let last = summary(&dir.join("run")).measures["moment"].last;
+    assert!((last - LENGTH * moment(120.0)).abs() < 1e-12);
+}
+
+#[test]
+fn the_moment_of_a_crease_is_its_stiffness_by_its_length_and_its_angle_from_rest() {
+    check("", |degrees| STIFFNESS * degrees.to_radians());
+}
+
+/// What a crease carries at most is what it yields at.
+#[test]
+fn the_moment_of_a_crease_that_yields_is_bounded() {
+    let most = 0.05;
+    check(&format!("yield = {{ moment = {most} }}"), |degrees| {
+        (STIFFNESS * degrees.to_radians()).min(most)
+    });
+}
+
+/// A fold that is held at a valley of 170 degrees is, for a crease that is driven to a mountain beyond -10 degrees, one
+/// of -190.
+#[test]
+fn the_angle_of_a_crease_goes_on_beyond_half_a_turn() {
+    let text = scene(170.0, "").replace("to = -90, end = 1", "to = -340, end = 1");
+    for row in rows(&text) {
+        let (angle, rest) = (
+            if 340.0 * row.t > 10.0 { -190.0 } else { 170.0 },
+            -340.0 * row.t,
+        );
+        let exact = match row.name.as_str() {
+            "angle" => angle,
+            "moment" => LENGTH * STIFFNESS * f64::to_radians(angle - rest),
+            _ => STIFFNESS * f64::to_radians(angle - rest),
+        };
+        assert!((row.value - exact).abs() < 1e-9, "{row:?}: {exact}");
+    }
+}
+
+#[test]
+fn a_measure_is_of_vertices_or_of_a_crease() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    for (from, to, told) in [
+        (
+            "crease = \"lid\"\nquantity = \"moment\"",
+            "crease = \"lit\"\nquantity = \"moment\"",
+            "no crease has the name `lit`",
+        ),
+        (
+            "quantity = \"moment\"",
+            "quantity = \"x\"",
+            "this quantity is one of vertices",
+        ),
+        (
+            "crease = \"lid\"\nquantity = \"moment\"",
+            "at = \"all\"\nquantity = \"moment\"",
+            "this quantity is one of a crease",
+        ),
+        (
+            "quantity = \"moment\"",
+            "sheet = \"flat\"\nquantity = \"moment\"",
+            "a crease is of one sheet",
+        ),
+        (
+            "[[support]]\nsheet = \"flat\"",
+            "[[crease]]\nname = \"lid\"\nsheet = \"flat\"\nat = { ends = [[0, 4]] }\nstiffness = 1\n[[support]]\nsheet = \"flat\"",
+            "another crease has the name `lid`",
+        ),
+    ] {
+        let text = scene(30.0, "");
+        assert!(text.contains(from), "{from}");
+        fs::write(dir.join("lid.toml"), text.replacen(from, to, 1)).unwrap();
+        let done = run(dir, &["check", "lid.toml"]);
+        let said = stderr(&done);
+        assert!(
+            code(&done) != Some(0) && said.contains(told),
+            "{told}: {said}"
+        );
+    }
+}
