@@ -118,7 +118,8 @@ impl FoldVerdict {
         let [panels, bent] = self.panels;
         let all = counted(panels, "panel", "panels");
         let panels = match (self.is_elastic, bent) {
-            (false, _) => format!("{all} stay rigid"),
+            (false, 0) => format!("{all} stay rigid"),
+            (false, bent) => format!("{bent} of {all} bend at edges of the pattern that fold freely"),
             (true, 0) => format!(
                 "none of {all} bends by more than {} degrees at an edge",
                 Self::BENDS
@@ -145,10 +146,12 @@ impl FoldVerdict {
             }
             (0, _) | (_, None) => "every crease closes".to_owned(),
             (open, Some(([a, b], [x, y]))) => format!(
-                "{} open by more than {} degrees, most by {largest:.0} between the vertices {a} and {b} at ({x:.3}, \
+                "{} open by more than {} degrees, most by {largest:.0}{} between the vertices {a} and {b} at ({x:.3}, \
                  {y:.3}) m",
                 counted(open, "crease stays", "creases stay"),
-                Self::OPEN
+                Self::OPEN,
+                // Angles are followed from the flat sheet on.
+                if largest > 180.0 { " (its panels have turned through each other)" } else { "" }
             ),
         };
         let passing = match self.passing {
