@@ -562,8 +562,8 @@ fn slips_of_units_of_a_material_are_told() {
     }
 }
 
-/// A mesh or a drawing in the place of a scene is told the key that takes it; an open outline the key that closes it; a
-/// face that is too narrow for contact where it is.
+/// A mesh or a drawing in the place of a scene is told the key that takes it; an open outline the key that
+/// closes it; a face that is too narrow for contact where it is.
 #[test]
 fn remedies_are_those_of_scenes() {
     let dir = tempfile::tempdir().unwrap();

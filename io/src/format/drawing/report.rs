@@ -62,8 +62,8 @@ fn mm(metres: f64) -> String {
     Length { metres }.to_string()
 }
 
-/// Part by which a unit that was given may differ from that of the file without a word: pages are rounded to tenths of
-/// a millimetre, or to whole pixels.
+/// Part by which a unit that was given may differ from that of the file without a word: pages are rounded to
+/// tenths of a millimetre, or to whole pixels.
 const SAME_UNIT: f64 = 0.01;
 
 impl Places {

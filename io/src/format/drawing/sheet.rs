@@ -330,8 +330,8 @@ fn diagonal(lines: &[&DrawnLine]) -> f64 {
     w.hypot(h)
 }
 
-/// The mesh with vertices of their own on both sides of cuts, and which vertices these are copies of; edges within
-/// panels stay flat.
+/// The mesh with vertices of their own on both sides of cuts, and which vertices these are copies of; edges
+/// within panels stay flat.
 fn assemble(plane: &PlaneMesh, mut creases: Vec<FileCrease>) -> (MeshFile, Vec<u32>) {
     let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
     let mut known: HashSet<[u32; 2]> = creases.iter().map(|c| sorted(c.ends)).collect();
