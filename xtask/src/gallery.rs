@@ -153,6 +153,7 @@ impl Shown {
             width: Some(size[0]),
             height: size[1],
             view: Some(Viewpoint { azimuth, elevation }),
+            ..FilmOptions::default()
         };
         Ok(Film::new(run, frames, &options)?)
     }

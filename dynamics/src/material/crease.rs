@@ -357,8 +357,8 @@ impl CreaseSprings {
         self.with_plastic(at.memory).map(moment).collect()
     }
 
-    /// Fold angles `theta` of the springs, radians, in the order given. Beyond a fold that is shut they go on as the
-    /// springs do: they are at most half a turn from where the spring rests.
+    /// Fold angles `theta` of the springs, radians, in the order given. Beyond a fold that is shut they go on
+    /// as the springs do: they are at most half a turn from where the spring rests.
     pub fn angles(&self, at: At<'_>) -> Vec<f64> {
         let angle = |(h, p): (&Hinge, &[f64])| {
             let plastic = h.plastic(p);

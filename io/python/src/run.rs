@@ -239,8 +239,9 @@ impl Run {
         Ok(columns)
     }
 
-    /// What each `[[measure]]` of the scene shows by its name, in the unit of its quantity, at the start and at the end of every
-    /// step: at the times of `history["time"]`. Of a run that is not complete the last one may be missing.
+    /// What each `[[measure]]` of the scene shows by its name, in the unit of its quantity, at the start and
+    /// at the end of every step: at the times of `history["time"]`. Of a run that is not complete the last
+    /// one may be missing.
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);

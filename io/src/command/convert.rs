@@ -90,11 +90,12 @@ pub(crate) struct Convert {
     /// Of pictures, leave out the edges of the mesh and the marks of pins
     #[arg(long)]
     plain: bool,
-    /// Of one mesh as .stl, .obj, .off or .ply, make it larger by this factor: 1000 for the millimetres of printers
+    /// Of one mesh as .stl, .obj, .off or .ply, make it larger by this factor: 1000 for the millimetres of
+    /// printers
     #[arg(long, value_name = "FACTOR")]
     scale: Option<f64>,
-    /// Of the same, make a closed body of the sheet, of this thickness (such as 0.8mm; metres without a unit) before it
-    /// is made larger
+    /// Of the same, make a closed body of the sheet, of this thickness (such as 0.8mm; metres without a unit)
+    /// before it is made larger
     #[arg(long, value_name = "LENGTH")]
     thickness: Option<Length>,
     /// Of a run, leave its bodies out

@@ -34,6 +34,7 @@ pub use options::{MeshOptions, Polygons, SeparateBuffers};
 pub use repair::Repair;
 
 pub(super) use plane::{Point, distance, twice_area};
+pub(super) use polygon::{cross, sub};
 
 use crate::format::{DataError, input};
 use error::Located;

@@ -111,8 +111,8 @@ pub enum SeamSide {
 /// Stiffness of glue in units of `(m g + D / L) / L`, see [`Glue::stiffness`].
 const STIFFNESS: f64 = 1e4;
 
-/// Largest distance of the sides of a seam that coincide, as a part of the size of the sheets: above the round-off of
-/// coordinates that went through a text file with seven digits.
+/// Largest distance of the sides of a seam that coincide, as a part of the size of the sheets: above the
+/// round-off of coordinates that went through a text file with seven digits.
 const COINCIDE: f64 = 1e-6;
 
 impl Glue {

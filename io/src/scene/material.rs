@@ -80,8 +80,9 @@ pub(super) fn ratios(along: Option<f64>, across: Option<f64>) -> [f64; 2] {
     most.map_or([0.0, 0.5], |most| [-most, most])
 }
 
-/// Young's modulus by density below which the unit of the modulus is questioned, m2/s2. Gels have 5 to 100, foams and
-/// rubbers from 500; metals, papers and films have from 1e6, and with a modulus in megapascals 1 to 30.
+/// Young's modulus by density below which the unit of the modulus is questioned, m2/s2. Gels have 5 to 100,
+/// foams and rubbers from 500; metals, papers and films have from 1e6, and with a modulus in megapascals 1 to
+/// 30.
 const SOFTEST: f64 = 50.0;
 
 impl Plate {

@@ -16,8 +16,8 @@ use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 /// A number that is read off the sheet at the start and after each step: how deep a tip hangs, how far a
-/// corner is from its place, how wide a fold is, how far a crease is folded and what moment that takes. A run writes it
-/// to `measures.csv`, and its last, least and largest value to `summary.json` as `measures.NAME`.
+/// corner is from its place, how wide a fold is, how far a crease is folded and what moment that takes. A run
+/// writes it to `measures.csv`, and its last, least and largest value to `summary.json` as `measures.NAME`.
 ///
 /// ```toml
 /// [[measure]]
@@ -82,12 +82,12 @@ pub enum Quantity {
     DistanceToPoint([f64; 3]),
     /// Its distance from the mean place of other vertices.
     DistanceTo(Selection),
-    /// The fold angle of a crease, degrees: the mean over its length. It is 0 for flat, positive for a valley and
-    /// negative for a mountain, and goes on beyond 180 degrees where a crease is pressed through itself.
+    /// The fold angle of a crease, degrees: the mean over its length. It is 0 for flat, positive for a valley
+    /// and negative for a mountain, and goes on beyond 180 degrees where a crease is pressed through itself.
     FoldAngle,
-    /// The moment that it takes to hold a crease at its angle, newton metres: its stiffness times its length times the
-    /// angle from where it rests, in radians. It is positive where the crease is folded further to a valley than it
-    /// would be by itself.
+    /// The moment that it takes to hold a crease at its angle, newton metres: its stiffness times its length
+    /// times the angle from where it rests, in radians. It is positive where the crease is folded further to
+    /// a valley than it would be by itself.
     Moment,
     /// The same divided by the length of the crease, N.
     MomentPerLength,
@@ -291,8 +291,8 @@ impl CreaseGauge {
 }
 
 impl Gauge {
-    /// What it shows at time `t` (seconds), at positions `x` (`3V`, metres) of the sheets and of the surfaces of bodies,
-    /// where the potentials of the model remember this.
+    /// What it shows at time `t` (seconds), at positions `x` (`3V`, metres) of the sheets and of the surfaces
+    /// of bodies, where the potentials of the model remember this.
     pub fn value(&self, t: f64, x: &[f64], memories: &Memories) -> f64 {
         match &self.of {
             Reading::Crease(crease, of) => crease.value(*of, t, x, memories),

@@ -252,8 +252,9 @@ pub(super) fn nearest_in_words(points: &[[f64; 3]], distance: impl Fn(&[f64; 3])
     }
 }
 
-/// Largest distance of a vertex from a line that it is on, as a part of the size of the sheet: that within which lines
-/// of a drawing are one. Programs that draw write hundredths of a point, which are 3.5 micrometres.
+/// Largest distance of a vertex from a line that it is on, as a part of the size of the sheet: that within
+/// which lines of a drawing are one. Programs that draw write hundredths of a point, which are 3.5
+/// micrometres.
 pub(super) const ON_LINE: f64 = 1e-4;
 
 /// The place of a point beside the line between two points, 0 where that begins and 1 where it ends, and its

@@ -53,6 +53,23 @@ impl Warning {
 /// Part of the width of a sheet from which its thickness is questioned.
 const THICK: f64 = 0.1;
 
+/// A drawing whose mesh has edges that are longer than the sheet.
+fn coarse(sheet: &PlacedSheet<'_>) -> Option<Warning> {
+    let Mesh::Drawing(drawing) = &sheet.of.mesh else {
+        return None;
+    };
+    let width = selection::size(sheet.form.placed.positions().as_chunks::<3>().0);
+    (drawing.spacing > 2.0 * width).then(|| {
+        let message = format!(
+            "`{}` is {} m, and the sheet is {} m wide",
+            sheet.key.name("mesh.drawing.spacing"),
+            given(drawing.spacing),
+            brief(width)
+        );
+        Warning::new(message, "give it in metres: 5 mm are 0.005")
+    })
+}
+
 /// A thickness whose unit is not the metre, as it seems.
 fn thick(sheet: &PlacedSheet<'_>) -> Option<Warning> {
     let of_material = match &sheet.of.material {
@@ -105,7 +122,8 @@ impl PlacedSheets<'_> {
                 _ => None,
             };
             let changed = wide.into_iter().chain(reversed);
-            changed.chain(soft).chain(thick(sheet))
+            let slips = soft.into_iter().chain(coarse(sheet)).chain(thick(sheet));
+            changed.chain(slips)
         });
         let rods = self.list.iter();
         let rods = rods.filter(|sheet| sheet.of.isometry() == Isometry::Rods);

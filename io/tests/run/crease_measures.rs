@@ -9,8 +9,8 @@ use std::fs;
 const STIFFNESS: f64 = 0.04;
 const LENGTH: f64 = 0.5;
 
-/// Two triangles that meet along y in a valley of some degrees and are held there, while the crease between them is driven
-/// to a mountain; a second sheet, which has no crease, is the first one.
+/// Two triangles that meet along y in a valley of some degrees and are held there, while the crease between
+/// them is driven to a mountain; a second sheet, which has no crease, is the first one.
 fn scene(degrees: f64, of_crease: &str) -> String {
     let (s, c) = degrees.to_radians().sin_cos();
     format!(
@@ -113,8 +113,8 @@ fn the_moment_of_a_crease_that_yields_is_bounded() {
     });
 }
 
-/// A fold that is held at a valley of 170 degrees is, for a crease that is driven to a mountain beyond -10 degrees, one
-/// of -190.
+/// A fold that is held at a valley of 170 degrees is, for a crease that is driven to a mountain beyond -10
+/// degrees, one of -190.
 #[test]
 fn the_angle_of_a_crease_goes_on_beyond_half_a_turn() {
     let text = scene(170.0, "").replace("to = -90, end = 1", "to = -340, end = 1");

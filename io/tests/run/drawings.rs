@@ -207,7 +207,7 @@ fn lines_are_what_colours_layers_and_options_say() {
         "valley    1 line, 60 mm: blue (1)",
         "crease    2 lines, 120 mm: dashed (1), layer \"Score lines\" (1)",
         "flat      1 line, 20 mm: yellow (1)",
-        "left out  1 line, 64 mm: white (1)",
+        "left out  1 line, 64.03 mm: white (1)",
         "left out: text (1)",
         "left out: image (1)",
         "left out: hidden element (1)",
@@ -250,7 +250,7 @@ fn lines_are_what_colours_layers_and_options_say() {
     for line in [
         "mountain  1 line, 60 mm: #2e3192 (1)",
         "valley    1 line, 60 mm: red (1)",
-        "left out  2 lines, 124 mm: dashed (1), white (1)",
+        "left out  2 lines, 124.03 mm: dashed (1), white (1)",
         "flat      2 lines, 80 mm: layer:score lines (1), yellow (1)",
     ] {
         assert!(said.contains(line), "{line}: {said}");
@@ -694,15 +694,15 @@ fn a_unit_that_is_not_that_of_the_file_is_told() {
     assert!(said.contains(told), "{said}");
 }
 
-/// Lengths in another unit than was meant are refused with what they are compared with.
+/// Lengths in another unit than was meant are told with what they are compared with.
 #[test]
-fn lengths_that_are_larger_than_the_drawing_are_refused() {
+fn lengths_that_are_larger_than_the_drawing_are_told() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     fs::write(dir.join("a.svg"), svg(FRAME)).unwrap();
-    let said = refused(dir, "a.svg", &["--spacing", "5"], 2);
+    let (_, said) = meshed(dir, "a.svg", &["--spacing", "5"]);
     assert!(
-        said.contains("the spacing is 5 m, and the drawing only 0.117 m from corner to corner"),
+        said.contains("note: the spacing is 5000 mm, longer than the sheet"),
         "{said}"
     );
     let said = refused(dir, "a.svg", &["--spacing", "5mm", "--snap", "0.35"], 2);
@@ -717,9 +717,9 @@ fn lengths_that_are_larger_than_the_drawing_are_refused() {
 fn all_colours_of_unknown_lines_are_named() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
-    let lines = "<path stroke='#ff8000' d='M20 10 V70'/><path stroke='#cfff00' stroke-dasharray='2 1' d='M40 10 V70'/>";
+    let lines = "<path stroke='#ff8000' d='M20 10 V70'/><path stroke='#009fe3' stroke-dasharray='2 1' d='M40 10 V70'/>";
     fs::write(dir.join("a.svg"), svg(&format!("{FRAME}{lines}"))).unwrap();
     let said = refused(dir, "a.svg", &["--spacing", "5mm"], 3);
-    let told = "what the lines of the colours #ff8000, dashed #cfff00 are";
+    let told = "what the lines of the colours #ff8000, dashed cyan are";
     assert!(said.contains(told), "{said}");
 }

@@ -468,6 +468,10 @@ const ALL_KEYS: [&str; 15] = [
     start = { positions = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], velocities = [[0, 0, 0], [0, 0, 0], [0, 0, 1]] }
     [[crease]]
     sheet = "drawn"
+    at = { drawn = ["layer:fold", "red"] }
+    stiffness = 0.1
+    [[crease]]
+    sheet = "drawn"
     at = { pattern = "unassigned" }
     stiffness = 0.1
     angle = 10

@@ -530,7 +530,7 @@ fn slips_of_units_of_a_material_are_told() {
             "`sheet.material.thickness` is 0.5 m, and the sheet is 0.2 m wide",
         ),
         (
-            "material = \"cardboard 300\"\nthickness = 0.3",
+            "material = \"card\"\nthickness = 0.3",
             "`sheet.thickness` is 0.3 m",
         ),
     ] {
@@ -540,6 +540,18 @@ fn slips_of_units_of_a_material_are_told() {
             "{material}: {found:?}"
         );
     }
+    let dir = tempfile::tempdir().unwrap();
+    let drawing = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100' fill='none' \
+                   stroke='black'><path d='M10 10 H90 V90 H10 Z'/></svg>";
+    fs::write(dir.path().join("a.svg"), drawing).unwrap();
+    let text = "version = 1\n[sheet]\nmesh = { drawing = { path = \"a.svg\", spacing = 5 } }\n[stop]\ntime = 1";
+    let scene = SceneFile::parse(text.into(), &dir.path().join("scene.toml"), &[]).unwrap();
+    let found = scene.build().unwrap().warnings();
+    let told = "`sheet.mesh.drawing.spacing` is 5 m, and the sheet is 0.08 m wide";
+    assert!(
+        found.iter().any(|w| w.to_string().contains(told)),
+        "{found:?}"
+    );
     for material in [
         "material = { youngs = 3.5e9, thickness = 5e-4, density = 800 }",
         // Soft silicone, and foam.
@@ -550,8 +562,8 @@ fn slips_of_units_of_a_material_are_told() {
     }
 }
 
-/// A mesh or a drawing in the place of a scene is told the key that takes it; an open outline the key that closes it; a
-/// face that is too narrow for contact where it is.
+/// A mesh or a drawing in the place of a scene is told the key that takes it; an open outline the key that
+/// closes it; a face that is too narrow for contact where it is.
 #[test]
 fn remedies_are_those_of_scenes() {
     let dir = tempfile::tempdir().unwrap();

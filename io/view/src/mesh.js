@@ -59,8 +59,8 @@ export class Mesh {
   }
 
   /**
-   * The fold angle of each edge as in `foldAngles`, but for whole turns: at most half a turn from the one before, which
-   * `out` has. A fold that is pressed through itself keeps its side.
+   * The fold angle of each edge as in `foldAngles`, but for whole turns: at most half a turn from the one
+   * before, which `out` has. A fold that is pressed through itself keeps its side.
    */
   followFolds(x, out) {
     const before = Float64Array.from(out);

@@ -40,8 +40,8 @@ export class Replay {
   }
 
   /**
-   * The fold angle of an edge, in radians within [-pi, pi], to the side from which it came: a mountain that is shut and
-   * pressed through itself is one of half a turn.
+   * The fold angle of an edge, in radians within [-pi, pi], to the side from which it came: a mountain that
+   * is shut and pressed through itself is one of half a turn.
    */
   fold(edge) {
     const turns = this.turns[this.frame * this.mesh.edgeCount + edge];

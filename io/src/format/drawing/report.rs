@@ -35,6 +35,8 @@ pub struct Places {
 pub struct DrawingReport {
     /// Width and height of the sheet, metres.
     pub size: [f64; 2],
+    /// Length of the edges of the mesh, about, as it was asked for, metres.
+    pub spacing: f64,
     /// The classes that the drawing has.
     pub classes: Vec<ClassCount>,
     /// Ends that were moved to others or onto lines, and by how much.
@@ -60,8 +62,8 @@ fn mm(metres: f64) -> String {
     Length { metres }.to_string()
 }
 
-/// Part by which a unit that was given may differ from that of the file without a word: pages are rounded to tenths of
-/// a millimetre, or to whole pixels.
+/// Part by which a unit that was given may differ from that of the file without a word: pages are rounded to
+/// tenths of a millimetre, or to whole pixels.
 const SAME_UNIT: f64 = 0.01;
 
 impl Places {
@@ -141,6 +143,14 @@ impl fmt::Display for DrawingReport {
             writeln!(
                 f,
                 "note: the file has no unit of length, {unit} is taken, and so the sheet is {w} by {h}"
+            )?;
+        }
+        let [w, h] = self.size;
+        if self.spacing > w.hypot(h) {
+            writeln!(
+                f,
+                "note: the spacing is {}, longer than the sheet: the mesh has only the edges that its lines need",
+                mm(self.spacing)
             )?;
         }
         let is_other = |factor: &f64| (factor - 1.0).abs() > SAME_UNIT;

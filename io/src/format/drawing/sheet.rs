@@ -81,18 +81,6 @@ pub fn mesh_drawing(
         return Err(DataError::new(message, "draw the outline of the sheet as lines").into());
     }
     let diagonal = diagonal(&lines);
-    if options.spacing > diagonal {
-        let message = format!(
-            "the spacing is {} m, and the drawing only {} m from corner to corner",
-            given(options.spacing),
-            brief(diagonal)
-        );
-        let error = DataError::new(
-            message,
-            "give the length of an edge of the mesh, with its unit",
-        );
-        return Err(error.value(options.spacing).into());
-    }
     let snap = options.snap.unwrap_or(SNAP * diagonal);
     let snap = snap.max(f64::MIN_POSITIVE);
     let lines = without_short_ones(&lines, snap);
@@ -148,6 +136,7 @@ pub fn mesh_drawing(
     Sheet::new(mesh.positions.clone(), &mesh.faces)?;
     let report = DrawingReport {
         size: extent(&plane.points),
+        spacing: options.spacing,
         classes: count(drawing, &kinds),
         joined: Places::of(graph.joins.iter().map(|j| (j.gap, j.at))),
         doubled: Places::of(doubled(&graph).map(|p| (p.length(), p.middle()))),
@@ -341,8 +330,8 @@ fn diagonal(lines: &[&DrawnLine]) -> f64 {
     w.hypot(h)
 }
 
-/// The mesh with vertices of their own on both sides of cuts, and which vertices these are copies of; edges within
-/// panels stay flat.
+/// The mesh with vertices of their own on both sides of cuts, and which vertices these are copies of; edges
+/// within panels stay flat.
 fn assemble(plane: &PlaneMesh, mut creases: Vec<FileCrease>) -> (MeshFile, Vec<u32>) {
     let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
     let mut known: HashSet<[u32; 2]> = creases.iter().map(|c| sorted(c.ends)).collect();

@@ -328,11 +328,12 @@ impl<'a> Series<'a> {
             .collect()
     }
 
-    /// The fold angle of each edge in a frame of the trajectory, in radians within [-pi, pi] ([`fold_angle`]); 0 on the
-    /// boundary and where an edge has no length.
+    /// The fold angle of each edge in a frame of the trajectory, in radians within [-pi, pi]
+    /// ([`fold_angle`]); 0 on the boundary and where an edge has no length.
     ///
-    /// A fold is followed from frame to frame, where it turns by less than half a turn: one that is pressed through itself
-    /// stays a mountain or a valley of half a turn. A mountain that is shut in the first frame is one by its assignment.
+    /// A fold is followed from frame to frame, where it turns by less than half a turn: one that is pressed
+    /// through itself stays a mountain or a valley of half a turn. A mountain that is shut in the first frame
+    /// is one by its assignment.
     ///
     /// # Panics
     /// If there is no such frame.

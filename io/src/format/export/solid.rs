@@ -2,14 +2,13 @@
 
 use super::ExportError;
 use crate::format::DataError;
-use crate::format::mesh_file::MeshFile;
+use crate::format::mesh_file::{MeshFile, cross, sub};
 use isosheet_mesh::wording::given;
-use nalgebra::Vector3;
 use std::collections::HashSet;
 
-/// The body between the two sides of a sheet of a thickness, in the unit of the mesh: its vertices are moved by half of it
-/// to both sides, along the mean normal of the faces at them, and a rim joins the sides. Where the sheet is bent more
-/// sharply than it is thick, or touches itself, the body passes through itself.
+/// The body between the two sides of a sheet of a thickness, in the unit of the mesh: its vertices are moved
+/// by half of it to both sides, along the mean normal of the faces at them, and a rim joins the sides. Where
+/// the sheet is bent more sharply than it is thick, or touches itself, the body passes through itself.
 ///
 /// # Errors
 /// [`ExportError::Data`] for a thickness that is not positive and finite.
@@ -20,18 +19,23 @@ pub fn thickened(mesh: &MeshFile, thickness: f64) -> Result<MeshFile, ExportErro
         return Err(error.value(thickness).into());
     }
     let points = mesh.positions.as_chunks::<3>().0;
-    let place = |v: u32| Vector3::from(points[v as usize]);
-    let mut normals = vec![Vector3::zeros(); points.len()];
-    for &[a, b, c] in &mesh.faces {
-        let area = (place(b) - place(a)).cross(&(place(c) - place(a)));
-        for v in [a, b, c] {
-            normals[v as usize] += area;
+    let mut normals = vec![[0.0; 3]; points.len()];
+    for face in &mesh.faces {
+        let [a, b, c] = face.map(|v| points[v as usize]);
+        let area = cross(sub(b, a), sub(c, a));
+        for v in face {
+            for (sum, part) in normals[*v as usize].iter_mut().zip(area) {
+                *sum += part;
+            }
         }
     }
     let side = |towards: f64| {
         let moved = normals.iter().zip(points).flat_map(move |(normal, p)| {
-            let by = normal.try_normalize(0.0).unwrap_or_default() * towards;
-            [p[0] + by.x, p[1] + by.y, p[2] + by.z]
+            let [x, y, z] = *normal;
+            let length = x.hypot(y).hypot(z);
+            // A vertex without a normal stays where it is.
+            let by = if length > 0.0 { towards / length } else { 0.0 };
+            [0, 1, 2].map(|k| p[k] + by * normal[k])
         });
         moved.collect::<Vec<f64>>()
     };
@@ -69,8 +73,9 @@ mod tests {
             .faces
             .iter()
             .map(|face| {
-                let [a, b, c] = face.map(|v| Vector3::from(points[v as usize]));
-                a.dot(&b.cross(&c)) / 6.0
+                let [a, b, c] = face.map(|v| points[v as usize]);
+                let area = cross(b, c);
+                (0..3).map(|k| a[k] * area[k]).sum::<f64>() / 6.0
             })
             .sum();
         assert!((volume - 0.3 * 0.2 * 0.01).abs() < 1e-15, "{volume}");

@@ -210,8 +210,8 @@ fn fold_series_have_the_fold_angles_of_the_mesh() {
     assert_eq!(json["file_frames"][2]["isosheet:time"], 0.6);
 }
 
-/// Folds that close and pass through themselves by some degrees keep their sides in the file; an unassigned one keeps
-/// that from which it came, and what begins shut has that of its assignment.
+/// Folds that close and pass through themselves by some degrees keep their sides in the file; an unassigned
+/// one keeps that from which it came, and what begins shut has that of its assignment.
 #[test]
 fn shut_folds_keep_their_sides_in_a_file() {
     let positions = |degrees: f64| {

@@ -160,7 +160,7 @@ fn extent(places: &[Point]) -> f64 {
     along(0).max(along(1))
 }
 
-fn sub(a: Point, b: Point) -> Point {
+pub(in crate::format) fn sub(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
@@ -172,7 +172,7 @@ fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn cross(u: Point, v: Point) -> Point {
+pub(in crate::format) fn cross(u: Point, v: Point) -> Point {
     [
         u[1] * v[2] - u[2] * v[1],
         u[2] * v[0] - u[0] * v[2],
