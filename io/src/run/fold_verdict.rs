@@ -119,7 +119,9 @@ impl FoldVerdict {
         let all = counted(panels, "panel", "panels");
         let panels = match (self.is_elastic, bent) {
             (false, 0) => format!("{all} stay rigid"),
-            (false, bent) => format!("{bent} of {all} bend at edges of the pattern that fold freely"),
+            (false, bent) => {
+                format!("{bent} of {all} bend at edges of the pattern that fold freely")
+            }
             (true, 0) => format!(
                 "none of {all} bends by more than {} degrees at an edge",
                 Self::BENDS
@@ -151,7 +153,11 @@ impl FoldVerdict {
                 counted(open, "crease stays", "creases stay"),
                 Self::OPEN,
                 // Angles are followed from the flat sheet on.
-                if largest > 180.0 { " (its panels have turned through each other)" } else { "" }
+                if largest > 180.0 {
+                    " (its panels have turned through each other)"
+                } else {
+                    ""
+                }
             ),
         };
         let passing = match self.passing {
