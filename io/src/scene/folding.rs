@@ -375,13 +375,15 @@ impl Folding {
         }
         if targets.creases.is_empty() {
             let message = format!("{name} gives no crease inside the sheet a fold angle");
-            let remedy = "take a file with mountains and valleys, or with `edges_foldAngle`";
+            let remedy = "take a file with mountains and valleys, or with `edges_foldAngle`; of a drawing `isosheet mesh DRAWING \
+                          -o FILE.fold --spacing 5mm --valley layer:NAME` (or a colour) makes one";
             return Err(Problem::new(key.clone(), message, remedy));
         }
         if let Some(empty) = known.iter().position(|known| !known) {
             let message =
                 format!("no crease that is driven folds with group {empty}, counted from 0");
-            let remedy = "name creases that no group before has: `isosheet convert` writes the edges with their numbers";
+            let remedy = "name creases that no group before has, by the numbers of the edges in a FOLD file, which \
+                          `isosheet convert PATTERN FILE.fold` writes; edges of the outline do not fold";
             return Err(Problem::new(
                 key.name("order").entry(empty),
                 message,

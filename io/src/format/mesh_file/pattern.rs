@@ -65,8 +65,9 @@ pub(super) fn of_segments(segments: &[Segment], snap: Option<f64>) -> Result<Pla
         .fold(0.0, f64::max);
     if size <= 0.0 {
         let message = "the drawing has no lines of the colours or kinds of a crease pattern";
-        let remedy = "draw the outline of the sheet and its creases; the page \"Folding a crease pattern\" of the \
-                      book has the colours and kinds";
+        let remedy = "draw the outline of the sheet and its creases in the colours of the page \"Folding a crease pattern\" of \
+                      the book, or say which lines fold, `isosheet mesh DRAWING -o FILE.fold --spacing 5mm --valley \
+                      layer:NAME` (or a colour), and fold FILE.fold";
         return Err(DataError::new(message, remedy));
     }
     let Some(snap) = snap else {
