@@ -200,9 +200,9 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
         title: "Rectangular cloth on a rectangular table",
         paper: "A rectangular plastic tablecloth is draped over a rectangular table with M², and with a second resolution: the principal folds run from \
                 the table corners to the cloth corners.",
-        here: "The paper's own model, rods that do not resist bending, does not fold like this on finer meshes: it has such folds at some of the \
-               corners alone. The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown; the irregular \
-               triangulation has no such lines. On the finest regular mesh of acetate film, an elastic sheet that resists bending (the second \
+        here: "The paper's own model, rods that do not resist bending, has such folds at some of the corners alone on finer meshes, of which the \
+               regular ones have diagonals through the corners of the table that could favour what is to be shown, and the irregular \
+               triangulation has none. On the finest regular mesh of acetate film, an elastic sheet that resists bending (the second \
                sequence), a fold runs from every table corner to its cloth corner; the table counts these folds on the other meshes and of rods.",
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
@@ -326,7 +326,7 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
         title: "Octagonal cloth on an octagonal table",
         paper: "An octagonal plastic tablecloth (244/440) is draped over an octagonal table: principal folds run from table corners to cloth corners, and for \
                 more and more corners the paper infers that uniform folding patterns will occur.",
-        here: "The paper's own model, rods that do not resist bending, has such folds at some of the corners alone. In the irregular \
+        here: "The paper's own model, rods that do not resist bending, has such folds at some of the corners alone; in the irregular \
                meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
                the meshes of concentric rings some do. On the finer meshes of acetate film (the second sequence) a fold runs from every table \
                corner to its cloth corner, on round cloths its folds are more evenly spaced and more alike than those of rods, and the \

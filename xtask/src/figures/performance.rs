@@ -196,10 +196,9 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     Ok(Made {
         title: "Performance",
         paper: "Frames per second and step sizes of the examples, on a Pentium III at 937 MHz.",
-        here: "The chart has the condition number of the mass matrix of bent sheets: beyond 1/ε nothing is left of a dense solve. As \
-               published, the scheme cannot start on either mesh as it is: in the union jack every inner vertex of degree 4 keeps one of its \
-               creases straight, which is the degenerate case of Fig. 7. With the paper's remedy, vertices moved in the plane of the sheet, it \
-               starts on M¹ and does not reach the end; M² is refused where the condition number is above 1e12, a limit of ours.",
+        here: "As published, the scheme cannot start on either mesh as it is, as inner vertices of degree 4 keep one crease straight \
+               (Fig. 7); with vertices moved in the plane of the sheet, the paper's remedy, it starts on M¹ and does not reach the end, \
+               and M² is refused. Condition numbers are of the mass matrix of bent sheets: beyond 1/ε nothing is left of a dense solve.",
         pictures: vec![Picture::svg("fig10-condition", &condition, alt)],
         tables: vec![table.with_texts(all.iter().flat_map(Tried::rows))],
         ..Made::default()
