@@ -7,11 +7,12 @@ use crate::vec3::axpy;
 use isosheet_mesh::{EdgeId, VertexId};
 
 impl FrontMap {
-    /// As [`FrontMap::realise`], and checks the two conditions that the paper's definition of a realisation has besides: two
-    /// edges meet, if at all, in a common end, and no vertex lies on an edge of which it is no end. (Edges of a sheet in space
-    /// rarely meet, even where its faces pass through each other, which `isosheet_collide::crossings` finds.) Edges meet where
-    /// they come closer than the [closure tolerance](super::RealiseOptions::closure_tolerance) times the longer one of
-    /// them. Every pair is looked at: the time grows as the square of the number of edges.
+    /// As [`FrontMap::realise`], and checks the two conditions that the paper's definition of a realisation has
+    /// besides: two edges meet, if at all, in a common end, and no vertex lies on an edge of which it is no end.
+    /// (Edges of a sheet in space rarely meet, even where its faces pass through each other, which
+    /// `isosheet_collide::crossings` finds.) Edges meet where they come closer than the [closure
+    /// tolerance](super::RealiseOptions::closure_tolerance) times the longer one of them. Every pair is looked
+    /// at: the time grows as the square of the number of edges.
     ///
     /// # Errors
     /// Those of [`FrontMap::realise`], and [`RealiseError::EdgesMeet`] naming the first pair that meets.
@@ -29,8 +30,8 @@ impl FrontMap {
     }
 }
 
-/// The first two edges that come closer than `tolerance` times the longer of them, elsewhere than in a common end, and
-/// how close they come, metres.
+/// The first two edges that come closer than `tolerance` times the longer of them, elsewhere than in a common
+/// end, and how close they come, metres.
 fn edges_that_meet(
     edges: &[[VertexId; 2]],
     x: &[f64],
@@ -65,8 +66,8 @@ fn edges_that_meet(
 
 type Segment = [Vec3<f64>; 2];
 
-/// The distance of two segments: that of their lines if both of its feet are inside, else that of an end from the other
-/// segment.
+/// The distance of two segments: that of their lines if both of its feet are inside, else that of an end from
+/// the other segment.
 fn distance(s: &Segment, t: &Segment) -> f64 {
     let (u, v, w) = (sub(&s[1], &s[0]), sub(&t[1], &t[0]), sub(&s[0], &t[0]));
     let (uu, uv, vv, uw, vw) = (
