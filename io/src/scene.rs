@@ -189,7 +189,7 @@ use named_file::NamedFile;
 #[cfg(feature = "run")]
 pub(crate) use resolution::check_positions;
 #[cfg(feature = "run")]
-pub(crate) use selection::bounds;
+pub(crate) use selection::{bounds, size};
 #[cfg(feature = "run")]
 pub(crate) use setup::Facts;
 #[cfg(feature = "run")]

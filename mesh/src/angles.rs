@@ -19,6 +19,12 @@ pub fn angle_from_lengths(a: f64, b: f64, c: f64) -> f64 {
     2.0 * short.max(0.0).sqrt().atan2(long.max(0.0).sqrt())
 }
 
+/// The angle that differs from `angle` by whole turns and is nearest to `near`, radians: an angle that is followed
+/// beyond half a turn, where it changes by less than that from one state to the next.
+pub fn angle_near(angle: f64, near: f64) -> f64 {
+    angle + TAU * ((near - angle) / TAU).round()
+}
+
 /// The fold angle of an edge at positions `x` (length 3V), in radians within [-pi, pi]; `None` on the
 /// boundary.
 ///

@@ -45,7 +45,7 @@ pub mod wording;
 
 pub use advice::Advice;
 pub use angles::{
-    AngleError, AngleTriple, COMPATIBILITY_TOLERANCE, EdgeAngles, angle_from_lengths,
+    AngleError, AngleTriple, COMPATIBILITY_TOLERANCE, EdgeAngles, angle_from_lengths, angle_near,
     check_compatibility, fold_angle,
 };
 pub use area::area_from_lengths;

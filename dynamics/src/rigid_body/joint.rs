@@ -8,9 +8,8 @@ use crate::potential::{At, Force, Potential, Reached, Settled};
 use crate::term::{Exchange, Formula, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
 use crate::vectors::{add, point};
 use isosheet_mesh::wording::given;
-use isosheet_mesh::{Advice, VertexId};
+use isosheet_mesh::{Advice, VertexId, angle_near};
 use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Why there can be no spring or damper at a joint.
@@ -89,10 +88,7 @@ impl JointCoordinate {
     fn value(&self, x: &[f64], near: f64) -> f64 {
         let arm = self.arm(x);
         match &self.kind {
-            Kind::Angle([ahead, aside]) => {
-                let angle = aside.dot(&arm).atan2(ahead.dot(&arm));
-                angle + TAU * ((near - angle) / TAU).round()
-            }
+            Kind::Angle([ahead, aside]) => angle_near(aside.dot(&arm).atan2(ahead.dot(&arm)), near),
             Kind::Distance(start, direction) => direction.dot(&(arm - start)),
         }
     }

@@ -3,9 +3,9 @@
 use super::acting::Acting;
 use super::composing::length;
 use super::failure::{Done, Failure};
-use super::given::{Given, GivenSheet, longest, moments, scaled};
+use super::given::{Given, GivenSheet, moments, scaled};
 use crate::run::ActionVerdict;
-use crate::scene::{Action, Below, DrapedBody, SheetSource, bounds};
+use crate::scene::{Action, Below, DrapedBody, SheetSource, bounds, size as extent};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -62,12 +62,12 @@ impl Drape {
         };
         let given = Given::read(tool, self.acting.up)?;
         let scale = match (self.tool_size, &sheet.source) {
-            (Some(size), _) => size / longest(&given.positions),
+            (Some(size), _) => size / extent(&given.positions),
             (None, SheetSource::File(file)) => file.scale,
             (None, SheetSource::Drawing(_)) => 1.0,
         };
         let positions = scaled(&given.positions, scale);
-        let [of_body, of_sheet] = [&positions, &sheet.positions].map(|p| longest(p));
+        let [of_body, of_sheet] = [&positions, &sheet.positions].map(|p| extent(p));
         if of_body > LARGEST * of_sheet || of_sheet > LARGEST * of_body {
             let message = format!(
                 "{} is {of_body:.3} m long beside a sheet of {of_sheet:.3} m, as if it had another unit",

@@ -8,7 +8,9 @@ use crate::format::drawing::{DrawingFormat, DrawingOptions, DrawnSheet};
 use crate::format::read_mesh_with;
 use crate::mesh::Topology;
 use crate::mesh::wording::{brief, counted};
-use crate::scene::{DrawingFile, FaceMoments, MeshFile, PolygonFaces, SheetSource, UpAxis, bounds};
+use crate::scene::{
+    DrawingFile, FaceMoments, MeshFile, PolygonFaces, SheetSource, UpAxis, size as extent,
+};
 use crate::{MeshFormat, MeshOptions, Polygons};
 use std::path::Path;
 
@@ -55,7 +57,7 @@ impl Given {
             faces: mesh.faces,
             up,
         };
-        match longest(&given.positions) > 0.0 {
+        match extent(&given.positions) > 0.0 {
             true => Ok(given),
             false => {
                 let message = format!("{} has no extent", file.display());
@@ -89,7 +91,7 @@ impl GivenSheet {
             return Self::drawn(file, &path, composing.size());
         }
         let given = Given::read(file, up)?;
-        let own = longest(&given.positions);
+        let own = extent(&given.positions);
         let scale = composing.size().unwrap_or(size) / own;
         if composing.size().is_none() && scale != 1.0 {
             print_progress(format_args!(
@@ -175,12 +177,6 @@ pub(super) fn moments(
 
 /// A spacing that no drawing is as large as, metres.
 const COARSE: f64 = 1e6;
-
-/// The longest side of a box about points.
-pub(super) fn longest(points: &[[f64; 3]]) -> f64 {
-    let [low, high] = bounds(points);
-    (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max)
-}
 
 /// Points in another unit.
 pub(super) fn scaled(points: &[[f64; 3]], scale: f64) -> Vec<[f64; 3]> {

@@ -8,7 +8,7 @@ use super::progress::{LINES, go_on};
 use crate::MeshOptions;
 use crate::format::read_mesh_with;
 use crate::run::{FoldTrial, FoldVerdict};
-use crate::scene::{FoldResidual, FoldScene, Panels, SceneFile, Touch, bounds};
+use crate::scene::{FoldResidual, FoldScene, Panels, SceneFile, Touch, size as extent};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -86,8 +86,7 @@ impl Pattern<'_> {
         if !mesh.changes.is_nothing() {
             print_progress(format_args!("note: {}", mesh.changes));
         }
-        let [low, high] = bounds(mesh.positions.as_chunks::<3>().0);
-        let side = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        let side = extent(mesh.positions.as_chunks::<3>().0);
         if side <= 0.0 {
             let message = format!("{} has no extent", self.file.display());
             return Err(Failure::new(Code::Input, message).remedy("correct its coordinates"));

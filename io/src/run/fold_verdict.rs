@@ -106,10 +106,7 @@ impl FoldVerdict {
             panels: [count, bends.iter().filter(|b| **b).count()],
             strain,
             is_elastic: scene.sheet[0].isometry() != Isometry::Rods,
-            passing: passing
-                .first()
-                .zip(scene.folding.as_ref())
-                .map(|(t, folding)| folding.progress(t)),
+            passing: passing.part_of(scene.folding.as_ref()),
         })
     }
 

@@ -1,5 +1,6 @@
 //! Whether panels of a sheet that does not touch itself pass through each other.
 
+use crate::scene::{Folding, size};
 use isosheet_collide::{BroadPhase, ContactMesh};
 use isosheet_mesh::Topology;
 
@@ -19,11 +20,9 @@ pub(super) struct Passing {
 impl Passing {
     /// Where the motion begins, at positions `x` (`3V`, metres).
     pub(super) fn begin(topology: &Topology, x: &[f64]) -> Self {
-        let [low, high] = crate::scene::bounds(x.as_chunks::<3>().0);
-        let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         Self {
             boxes: BroadPhase::new(ContactMesh::from_topology(topology), x),
-            depth: DEEP * size,
+            depth: DEEP * size(x.as_chunks::<3>().0),
             first: None,
         }
     }
@@ -39,8 +38,8 @@ impl Passing {
         }
     }
 
-    /// The first time at which panels passed through each other, seconds.
-    pub(super) fn first(&self) -> Option<f64> {
-        self.first
+    /// The part of a folding that is done when panels first pass through each other.
+    pub(super) fn part_of(&self, folding: Option<&Folding>) -> Option<f64> {
+        Some(folding?.progress(self.first?))
     }
 }

@@ -73,10 +73,7 @@ impl SceneFile {
         Ok(Some(FoldTrial {
             residual: folds.residual(&targets, topology, x),
             strain,
-            passing: passing
-                .first()
-                .zip(scene.folding.as_ref())
-                .map(|(t, folding)| folding.progress(t)),
+            passing: passing.part_of(scene.folding.as_ref()),
         }))
     }
 }

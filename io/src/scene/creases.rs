@@ -270,9 +270,9 @@ fn on_line(
     };
     let interior = || t.edge_ids().filter(|&e| !t.is_boundary_edge(e));
     let found: Vec<EdgeId> = interior().filter(|e| distance(*e) <= tolerance).collect();
-    let nearest = interior().min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-    match nearest {
-        Some(e) if found.is_empty() => {
+    let nearest = || interior().min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+    match found.is_empty().then(nearest).flatten() {
+        Some(e) => {
             let ends = t.edges()[e.index()].map(|v| sheet.position(v));
             Err(Problem::new(
                 key.name("line"),
@@ -288,7 +288,7 @@ fn on_line(
                  lines of a drawing by `at = { drawn = [...] }`",
             ))
         }
-        _ => Ok(found.into_iter().map(|e| (e, 1.0)).collect()),
+        None => Ok(found.into_iter().map(|e| (e, 1.0)).collect()),
     }
 }
 

@@ -10,10 +10,10 @@ use super::sheet::{Isometry, Sheet as SheetOfScene};
 use super::unit::Unit;
 use crate::format::{EdgeAssignment, FoldFrame};
 use isosheet_dynamics::{CreaseSpring, FLAT, RestAngle};
-use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, fold_angle};
+use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, angle_near, fold_angle};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -233,8 +233,7 @@ impl FollowedFolds {
     /// At the next positions, where no angle has changed by more than 180 degrees.
     pub(crate) fn follow(&mut self, targets: &FoldTargets, t: &Topology, x: &[f64]) {
         for (angle, &(e, _)) in self.angles.iter_mut().zip(&targets.creases) {
-            let turned = fold_angle(t, x, e).unwrap_or(0.0) - *angle;
-            *angle += turned - TAU * (turned / TAU).round();
+            *angle = angle_near(fold_angle(t, x, e).unwrap_or(0.0), *angle);
         }
     }
 
@@ -463,7 +462,7 @@ fn course(start: f64, target: f64, [begin, end]: [f64; 2]) -> RestAngle {
 /// as the springs do.
 pub(crate) fn off_target(topology: &Topology, x: &[f64], edge: EdgeId, target: f64) -> f64 {
     let angle = fold_angle(topology, x, edge).unwrap_or(0.0) - target;
-    (angle - TAU * (angle / TAU).round()).abs().to_degrees()
+    angle_near(angle, 0.0).abs().to_degrees()
 }
 
 /// Whether the sheet is in a plane at positions `x`: every edge is flat or folded shut.

@@ -1,6 +1,6 @@
 //! `isosheet convert`.
 
-use crate::{code, isosheet, run, stderr, with_scene};
+use crate::{code, isosheet, run, stderr, with_scene, with_short_run};
 use isosheet_io::run::Recording;
 use isosheet_io::scene::{SceneFile, StartingPoint};
 use isosheet_io::{
@@ -303,17 +303,8 @@ fn size(png: &[u8]) -> [u32; 2] {
 /// film.
 #[test]
 fn films_are_numbered_pictures() {
-    let dir = with_scene(StartingPoint::Drape);
+    let dir = with_short_run(StartingPoint::Drape);
     let dir = dir.path();
-    let arguments = [
-        "simulate",
-        "scene.toml",
-        "--out",
-        "run",
-        "--set",
-        "stop.time=0.2",
-    ];
-    done(dir, &arguments);
     let recording = Recording::read(&dir.join("run")).unwrap();
     let times = recording.trajectory.times();
     let folder = |name: &str| {
@@ -496,17 +487,8 @@ fn frames_of_runs_become_pictures() {
 /// One frame by its time, pictures without marks, and meshes for printers.
 #[test]
 fn a_frame_is_found_by_its_time_and_a_mesh_is_made_thicker_and_larger() {
-    let dir = with_scene(StartingPoint::Drape);
+    let dir = with_short_run(StartingPoint::Drape);
     let dir = dir.path();
-    let short = [
-        "simulate",
-        "scene.toml",
-        "--out",
-        "run",
-        "--set",
-        "stop.time=0.2",
-    ];
-    done(dir, &short);
     let recording = Recording::read(&dir.join("run")).unwrap();
     let times = recording.trajectory.times();
     let between = (0.4 * times[1] + 0.6 * times[2]).to_string();

@@ -77,6 +77,15 @@ fn with_scene(kind: StartingPoint) -> tempfile::TempDir {
     folder
 }
 
+/// The same with the run of its first fifth of a second, `run`.
+fn with_short_run(kind: StartingPoint) -> tempfile::TempDir {
+    let folder = with_scene(kind);
+    let arguments = ["scene.toml", "--out", "run", "--set", "stop.time=0.2"];
+    let done = run(folder.path(), &[&["simulate"][..], &arguments].concat());
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    folder
+}
+
 /// Starts a run and waits until its history has so many rows.
 fn started(folder: &Path, arguments: &[&str], out: &str, rows: usize) -> Child {
     let mut child = isosheet(folder)

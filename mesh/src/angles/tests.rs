@@ -205,3 +205,15 @@ proptest! {
         prop_assert!((c[0] - left[0].atan2(left[1])).abs() < 1e-12);
     }
 }
+
+#[test]
+fn angles_are_followed_beyond_half_a_turn() {
+    for (angle, near, expected) in [
+        (3.0, 3.1, 3.0),
+        (-3.0, 3.1, TAU - 3.0),
+        (3.0, -3.1, 3.0 - TAU),
+        (0.5, 9.0 * TAU, 9.0 * TAU + 0.5),
+    ] {
+        assert!((angle_near(angle, near) - expected).abs() < 1e-14 * 9.0 * TAU);
+    }
+}

@@ -10,8 +10,8 @@ use crate::format::trajectory::FrameQuantity;
 use crate::format::{DataError, Trajectory};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::wording::{brief, counted, given};
-use isosheet_mesh::{EdgeId, Part, Topology, VertexId, fold_angle};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use isosheet_mesh::{EdgeId, Part, Topology, VertexId, angle_near, fold_angle};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
 /// Which frames of a trajectory are written.
@@ -352,7 +352,7 @@ impl<'a> Series<'a> {
             let (_, x) = self.state(frame);
             for (e, angle) in t.edge_ids().zip(&mut before) {
                 let now = fold_angle(t, x, e).filter(|a| a.is_finite()).unwrap_or(0.0);
-                *angle = now + TAU * ((*angle - now) / TAU).round();
+                *angle = angle_near(now, *angle);
             }
             all.push(before.clone());
         }
