@@ -25,7 +25,6 @@ mod separator;
 mod symbolic;
 #[cfg(test)]
 mod testing;
-mod triangular;
 
 pub use dense_lu::DenseLu;
 pub use error::LinalgError;

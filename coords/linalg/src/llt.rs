@@ -6,7 +6,6 @@ use super::multifrontal::Multifrontal;
 use super::ordering::{Ordering, elimination_order, postordered};
 use super::pattern::Pattern;
 use super::symbolic::{analyse, view};
-use super::triangular::{self, Factor};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::SparseColMatRef;
@@ -22,13 +21,8 @@ pub struct SparseLlt {
     /// The plan of the factorisation; nothing for matrices that faer factorises column by column.
     fronts: Option<Multifrontal>,
     factor: Vec<f64>,
-    /// Inverses of the diagonal entries of the factor, in elimination order.
-    inverses: Vec<f64>,
     factor_scratch: MemBuffer,
     solve_scratch: MemBuffer,
-    /// A right-hand side in elimination order, and room for the rows below a supernode.
-    permuted_rhs: Vec<f64>,
-    rows: Vec<f64>,
 }
 
 impl SparseLlt {
@@ -70,16 +64,10 @@ impl SparseLlt {
         };
         Ok(Self {
             values: vec![0.0; pattern.len()],
-            inverses: vec![0.0; pattern.cols()],
             factor: vec![0.0; symbolic.len_val()],
             factor_scratch: MemBuffer::new(scratch),
             solve_scratch: MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, par)),
             fronts,
-            permuted_rhs: vec![0.0; pattern.cols()],
-            rows: match symbolic.raw() {
-                ch::SymbolicCholeskyRaw::Supernodal(s) => vec![0.0; triangular::scratch_len(s)],
-                ch::SymbolicCholeskyRaw::Simplicial(_) => Vec::new(),
-            },
             symbolic,
             pattern,
         })
@@ -145,11 +133,7 @@ impl SparseLlt {
         result.map_err(|index| LinalgError::NotPositiveDefinite {
             order: self.pattern.cols(),
             index,
-        })?;
-        if let ch::SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() {
-            triangular::invert_diagonal(symbolic, &self.factor, &mut self.inverses);
-        }
-        Ok(())
+        })
     }
 
     /// Entries of the factor in the order in which they are stored, by supernodes. Entries above the diagonal
@@ -158,24 +142,10 @@ impl SparseLlt {
         &self.factor
     }
 
-    /// Solves `A x = b` in place with the current factor.
+    /// Solves `A x = b` in place with the current factor, shared among threads as [factorisations](Self::factorize).
     pub fn solve(&mut self, rhs: &mut [f64]) {
-        match (self.symbolic.raw(), self.symbolic.perm()) {
-            (ch::SymbolicCholeskyRaw::Supernodal(symbolic), Some(perm)) => {
-                let (order, _) = perm.arrays();
-                for (p, i) in self.permuted_rhs.iter_mut().zip(order) {
-                    *p = rhs[*i];
-                }
-                let factor = Factor {
-                    symbolic,
-                    values: &self.factor,
-                    inverses: &self.inverses,
-                };
-                triangular::solve(factor, &mut self.permuted_rhs, &mut self.rows);
-                for (p, i) in self.permuted_rhs.iter().zip(order) {
-                    rhs[*i] = *p;
-                }
-            }
+        match (&mut self.fronts, self.symbolic.perm()) {
+            (Some(fronts), Some(perm)) => fronts.solve(perm.arrays().0, &self.factor, rhs),
             // Matrices without couplings.
             _ => {
                 let n = self.order();

@@ -7,6 +7,8 @@
 //! matrices of 75 to 12 675 unknowns of sheets.
 
 mod plan;
+mod shared;
+mod triangular;
 
 use super::dense;
 use super::pattern::Pattern;
@@ -14,17 +16,19 @@ use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use plan::{Front, Plan, Subtree};
 use pulp::{Arch, Simd, WithSimd};
-
-/// Multiplications from which subtrees are shared among the threads of rayon's current pool. To wake a thread
-/// takes 0.1 ms, so that two threads need 1.05 times the time of one for steps of sheets of 688 and 876
-/// vertices (7 to 10 million multiplications), 0.97 times for 1089 vertices (10 million) and 0.82 times for
-/// 4225 vertices (84 million).
-const WORTH_SHARING: f64 = 2e7;
+use shared::{Job, Part};
+use triangular::Factor;
 
 /// The plan of a factorisation, with working memory.
 pub(super) struct Multifrontal {
     plan: Plan,
     updates: Vec<f64>,
+    /// Inverses of the diagonal entries of the factor, in elimination order.
+    inverses: Vec<f64>,
+    /// A right-hand side in elimination order.
+    rhs: Vec<f64>,
+    /// Room for triangular solves.
+    locals: Vec<f64>,
 }
 
 impl Multifrontal {
@@ -37,6 +41,9 @@ impl Multifrontal {
         let plan = Plan::new(pattern, perm, symbolic)?;
         Some(Self {
             updates: vec![0.0; plan.room],
+            inverses: vec![0.0; pattern.cols()],
+            rhs: vec![0.0; pattern.cols()],
+            locals: vec![0.0; plan.locals],
             plan,
         })
     }
@@ -47,7 +54,7 @@ impl Multifrontal {
     }
 
     /// Sets `factor` to the Cholesky factor of the matrix with the given values. The result does not depend
-    /// on the number of threads. (A thread that waits for another one may take up other work of the pool.)
+    /// on the number of threads.
     ///
     /// # Errors
     /// The place in the order of elimination of an unknown whose pivot is not positive, the same for any
@@ -55,23 +62,31 @@ impl Multifrontal {
     pub(super) fn factorise(&mut self, values: &[f64], factor: &mut [f64]) -> Result<(), usize> {
         let plan = &self.plan;
         let numbers = Numbers { plan, values };
-        let subtrees = plan.subtrees.as_slice();
-        if plan.operations >= WORTH_SHARING && rayon::current_num_threads() > 1 {
-            numbers.share(subtrees, (0, factor), (0, &mut self.updates))?;
-        } else {
-            for subtree in subtrees {
-                numbers.share(
-                    std::slice::from_ref(subtree),
-                    (0, factor),
-                    (0, &mut self.updates),
-                )?;
-            }
-        }
+        Branches(numbers).run_all(plan, [factor, &mut self.updates])?;
         Arch::new().dispatch(Trunk {
             numbers,
             factor,
             updates: &mut self.updates,
-        })
+        })?;
+        triangular::invert_diagonal(plan, factor, &mut self.inverses);
+        Ok(())
+    }
+
+    /// Solves `A x = b` in place with the factor of the last factorisation; `order[k]` is the unknown that is
+    /// eliminated k-th. The result does not depend on the number of threads.
+    pub(super) fn solve(&mut self, order: &[usize], factor: &[f64], b: &mut [f64]) {
+        for (x, &i) in self.rhs.iter_mut().zip(order) {
+            *x = b[i];
+        }
+        let factor = Factor {
+            plan: &self.plan,
+            values: factor,
+            inverses: &self.inverses,
+        };
+        triangular::solve(factor, &mut self.rhs, &mut self.locals);
+        for (x, &i) in self.rhs.iter().zip(order) {
+            b[i] = *x;
+        }
     }
 }
 
@@ -82,39 +97,27 @@ struct Numbers<'a> {
     values: &'a [f64],
 }
 
-/// A part of an array, with the place in the array where the part begins.
-type Part<'a> = (usize, &'a mut [f64]);
+/// Elimination of the subtrees, each with its columns of the factor and with its updates.
+struct Branches<'a>(Numbers<'a>);
 
-/// Cuts a part of an array in two at a place in the array.
-fn cut((start, part): Part<'_>, place: usize) -> (Part<'_>, Part<'_>) {
-    let (left, right) = part.split_at_mut(place - start);
-    ((start, left), (place, right))
+impl Job<2> for Branches<'_> {
+    type Error = usize;
+
+    fn begins(&self, subtree: &Subtree) -> [usize; 2] {
+        [subtree.values.start, subtree.updates.start]
+    }
+
+    fn run(&self, subtree: &Subtree, [factor, updates]: [Part<'_>; 2]) -> Result<(), usize> {
+        Arch::new().dispatch(Branch {
+            numbers: self.0,
+            subtree,
+            factor,
+            updates,
+        })
+    }
 }
 
 impl Numbers<'_> {
-    /// Eliminates subtrees, whose columns and updates are in the given parts, in as many jobs.
-    fn share(self, subtrees: &[Subtree], factor: Part<'_>, updates: Part<'_>) -> Result<(), usize> {
-        match subtrees {
-            [] => Ok(()),
-            [subtree] => Arch::new().dispatch(Branch {
-                numbers: self,
-                subtree,
-                factor,
-                updates,
-            }),
-            _ => {
-                let (left, right) = Subtree::halves(subtrees);
-                let (left_factor, right_factor) = cut(factor, right[0].values.start);
-                let (left_updates, right_updates) = cut(updates, right[0].updates.start);
-                let (left, right) = rayon::join(
-                    || self.share(left, left_factor, left_updates),
-                    || self.share(right, right_factor, right_updates),
-                );
-                left.and(right)
-            }
-        }
-    }
-
     /// Sets the columns of a front and its update. `others` are the updates before and after its own.
     #[inline(always)]
     fn eliminate<S: Simd>(

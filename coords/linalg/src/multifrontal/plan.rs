@@ -17,7 +17,7 @@ pub(super) struct Front {
     pub(super) values: Range<usize>,
     /// Values of the matrix, in [`Plan::entries`].
     pub(super) entries: Range<usize>,
-    /// Rows, in [`Plan::places`].
+    /// Rows, in [`Plan::places`] and [`Plan::rows`].
     pub(super) places: Range<usize>,
     /// Children, in [`Plan::children`].
     pub(super) children: Range<usize>,
@@ -43,6 +43,12 @@ pub(super) struct Subtree {
     pub(super) values: Range<usize>,
     /// Room for their updates.
     pub(super) updates: Range<usize>,
+    /// The unknowns that they eliminate.
+    pub(super) columns: Range<usize>,
+    /// The unknowns above that they depend on, in [`Plan::above`].
+    pub(super) above: Range<usize>,
+    /// Their room for triangular solves: for values of both kinds of unknowns, and of the rows of a front.
+    pub(super) local: Range<usize>,
     /// Multiplications of the subtrees before it, and with its own.
     operations: [f64; 2],
 }
@@ -67,6 +73,11 @@ pub(super) struct Plan {
     pub(super) entries: Vec<[u32; 2]>,
     /// Of each row of a front its place in the parent, among columns and rows.
     pub(super) places: Vec<u32>,
+    /// Each row of a front as a number of an unknown: in subtrees counted from the first unknown of the subtree, and
+    /// those [above](Subtree::above) after its own.
+    pub(super) rows: Vec<u32>,
+    /// The unknowns above each subtree on which it depends.
+    pub(super) above: Vec<u32>,
     pub(super) children: Vec<u32>,
     /// The largest subtrees with no more than half of the operations each.
     pub(super) subtrees: Vec<Subtree>,
@@ -76,6 +87,9 @@ pub(super) struct Plan {
     pub(super) operations: f64,
     /// Number of values that updates take.
     pub(super) room: usize,
+    /// Number of values that triangular solves take, and the part of them for rows of the trunk.
+    pub(super) locals: usize,
+    pub(super) trunk_scratch: Range<usize>,
 }
 
 impl Plan {
@@ -89,14 +103,19 @@ impl Plan {
             fronts: Vec::new(),
             entries: vec![[0; 2]; pattern.len()],
             places: Vec::new(),
+            rows: Vec::new(),
+            above: Vec::new(),
             children: Vec::new(),
             subtrees: Vec::new(),
             trunk: Vec::new(),
             operations: 0.0,
             room: 0,
+            locals: 0,
+            trunk_scratch: 0..0,
         };
         let front_of = plan.add_fronts(symbolic, pattern);
         plan.divide()?;
+        plan.number_rows(symbolic);
         plan.place_entries(pattern, perm, symbolic, &front_of);
         Some(plan)
     }
@@ -230,8 +249,12 @@ impl Plan {
             self.room = updates.end;
             self.subtrees.push(Subtree {
                 values: self.fronts[fronts.start].values.start..self.fronts[s].values.end,
+                columns: self.fronts[fronts.start].start
+                    ..self.fronts[s].start + self.fronts[s].columns,
                 fronts,
                 updates,
+                above: 0..0,
+                local: 0..0,
                 operations: [before, before + operations[s]],
             });
             before += operations[s];
@@ -249,6 +272,33 @@ impl Plan {
         Some(())
     }
 
+    /// Numbers the rows of the fronts. A subtree depends on the rows of its last front.
+    fn number_rows(&mut self, symbolic: &SymbolicSupernodalCholesky<usize>) {
+        let rows_of = |s: usize| symbolic.supernode(s).pattern().iter().map(|&row| number(row));
+        self.rows = (0..self.fronts.len()).flat_map(rows_of).collect();
+        for tree in &mut self.subtrees {
+            let fronts = &self.fronts[tree.fronts.clone()];
+            let (first, last) = (&fronts[0], &fronts[fronts.len() - 1]);
+            let above = &self.rows[last.places.clone()];
+            tree.above = self.above.len()..self.above.len() + above.len();
+            self.above.extend_from_slice(above);
+            let above = &self.above[tree.above.clone()];
+            let (start, own) = (number(tree.columns.start), number(tree.columns.len()));
+            for row in &mut self.rows[first.places.start..last.places.end] {
+                *row = match above.binary_search(row) {
+                    Ok(place) => own + number(place),
+                    Err(_) => *row - start,
+                };
+            }
+            let room = tree.columns.len() + above.len() + most_rows(fronts.iter());
+            tree.local = self.locals..self.locals + room;
+            self.locals = tree.local.end;
+        }
+        let room = most_rows(self.trunk.iter().map(|&s| &self.fronts[s as usize]));
+        self.trunk_scratch = self.locals..self.locals + room;
+        self.locals = self.trunk_scratch.end;
+    }
+
     /// Places the updates of a subtree, from the end of the room on, as on a stack: each is computed above
     /// those of its children, and then takes their place. Returns the height of the stack.
     fn stack(&mut self, fronts: Range<usize>) -> usize {
@@ -264,6 +314,11 @@ impl Plan {
         }
         most - self.room
     }
+}
+
+/// The most rows of some fronts.
+fn most_rows<'a>(fronts: impl Iterator<Item = &'a Front>) -> usize {
+    fronts.map(|front| front.rows).max().unwrap_or(0)
 }
 
 /// Where the members of each of `count` groups begin, and where the last ends, if they are sorted by group.
