@@ -60,6 +60,7 @@ mod glue;
 mod guides;
 mod in_words;
 mod integration;
+mod jump;
 mod key;
 mod live;
 mod material;

@@ -9,6 +9,7 @@ use super::Files;
 use super::build::Kept;
 use super::changed::edited;
 use super::edit::{Edit, EditError, no_function};
+use super::jump::jumps;
 use super::key::Key;
 use super::profile::{Change, Course};
 use super::sheets::sheet_key;
@@ -316,7 +317,8 @@ impl LiveScene {
 
     /// Changes the scene between two steps by edits, in force from now on. What acts on the sheet may change:
     /// forces, stiffnesses and angles of creases, damping, air, bodies, friction, the motions of supports; what
-    /// it is may not. Where supports are is no matter of a change, they do not jump: see [`LiveScene::drive`].
+    /// it is may not. Where supports and obstacles are is no matter of a change, they do not jump: see
+    /// [`LiveScene::drive`]; obstacles that are added have to be clear of the sheet.
     /// What a change does at once counts as work ([`Simulation::changed_from`]). Meshes, plates and bodies that
     /// it does not touch are not made again.
     ///
@@ -381,6 +383,12 @@ impl LiveScene {
     fn rebuild(&mut self, scene: &Scene, hand: Option<Hand>) -> Result<(), SceneError> {
         let mut setup = scene.build_switched(&mut self.kept, &self.under_way.switches)?;
         let facts = setup.facts();
+        let before = (self.file.scene(), &self.under_way.facts);
+        SceneError::of(jumps(
+            before,
+            (scene, &facts),
+            self.under_way.simulation.state().t,
+        ))?;
         if let Some(hand) = &hand {
             setup.model = setup.model.with_hand(hand.clone());
         }

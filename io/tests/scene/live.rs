@@ -352,6 +352,56 @@ fn the_text_of_a_changed_scene_is_that_of_the_scene() {
     assert!(format!("{course:?}").contains("to: 3.0"), "{course:?}");
 }
 
+/// An obstacle that a change puts elsewhere would have passed through what is on its way; one that moves on from where
+/// it is meets the sheet.
+#[test]
+fn obstacles_do_not_jump() {
+    let mut live = live(
+        "version = 1\n[sheet]\nmesh = { square = { side = 0.2, level = 1 } }\ndensity = 0.08\n\
+         [[obstacle]]\nshape = { box = { size = [1, 1, 0.01] } }\npose = { position = [0, 0, -0.02] }\n",
+    );
+    step(&mut live, 1);
+    for (changed, at) in [
+        ("obstacle[0].pose.position=[0, 0, 0.2]", "obstacle[0]"),
+        ("obstacle[0].motion.z=0.2", "obstacle[0]"),
+        (
+            "obstacle[0].pose.turn={ axis = [1, 0, 0], angle = 180 }",
+            "obstacle[0]",
+        ),
+        (
+            "obstacle[0].shape={ box = { size = [9, 9, 0.01] } }",
+            "obstacle[0].shape",
+        ),
+    ] {
+        let before = (live.file().clone(), live.simulation().checkpoint());
+        let Err(SceneFileError::Scene(error)) = live.change(&[edit(changed)]) else {
+            panic!("{changed} is no error of the scene");
+        };
+        assert_eq!(error.problems()[0].key.to_string(), at, "{error}");
+        assert_eq!(
+            (live.file().clone(), live.simulation().checkpoint()),
+            before
+        );
+    }
+    live.change(&[
+        edit("obstacle[0].friction=0.5"),
+        edit("obstacle[0].motion.z={ smooth_step = { to = 0.1, begin = 0.01, end = 0.2 } }"),
+    ])
+    .expect("an obstacle that goes on from where it is");
+    live.drive(&[(key("obstacle[0].motion.z"), 0.05)], 0.1)
+        .expect("the same");
+    step(&mut live, 10);
+    let lowest = live
+        .simulation()
+        .state()
+        .x
+        .iter()
+        .skip(2)
+        .step_by(3)
+        .fold(f64::INFINITY, |l, z| l.min(*z));
+    assert!(lowest > 0.03, "the box lifts the sheet: {lowest} m");
+}
+
 /// A simulation goes on with the meshes that it has, wherever their files are now.
 #[test]
 fn a_scene_changes_without_its_files() {

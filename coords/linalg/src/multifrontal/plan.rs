@@ -274,7 +274,13 @@ impl Plan {
 
     /// Numbers the rows of the fronts. A subtree depends on the rows of its last front.
     fn number_rows(&mut self, symbolic: &SymbolicSupernodalCholesky<usize>) {
-        let rows_of = |s: usize| symbolic.supernode(s).pattern().iter().map(|&row| number(row));
+        let rows_of = |s: usize| {
+            symbolic
+                .supernode(s)
+                .pattern()
+                .iter()
+                .map(|&row| number(row))
+        };
         self.rows = (0..self.fronts.len()).flat_map(rows_of).collect();
         for tree in &mut self.subtrees {
             let fronts = &self.fronts[tree.fronts.clone()];

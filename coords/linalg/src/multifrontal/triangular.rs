@@ -179,7 +179,11 @@ pub(super) fn solve(factor: Factor<'_>, x: &mut [f64], locals: &mut [f64]) {
     let pass = |direction, locals: &mut [f64]| {
         let Ok(()) = Pass { factor, direction }.run_all(plan, [locals]);
     };
-    let trunk = || plan.trunk.iter().map(|&s| Supernode::of(factor, &plan.fronts[s as usize], 0));
+    let trunk = || {
+        plan.trunk
+            .iter()
+            .map(|&s| Supernode::of(factor, &plan.fronts[s as usize], 0))
+    };
     for tree in &plan.subtrees {
         let (own, rest) = locals[tree.local.clone()].split_at_mut(tree.columns.len());
         own.copy_from_slice(&x[tree.columns.clone()]);
