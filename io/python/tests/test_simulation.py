@@ -143,6 +143,9 @@ def test_what_cannot_change_is_refused_and_changes_nothing():
         simulation.drive({"sheet.mesh": 1.0}, until=1.0)
     with pytest.raises(KeyError):
         simulation.drive({"support[": 1.0}, until=1.0)
+    for h in (0, -0.01, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="positive length"):
+            simulation.step(h)
     assert simulation.checkpoint() == before
 
 

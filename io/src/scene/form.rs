@@ -49,12 +49,19 @@ fn visit(
             let items = forms.iter().filter_map(|form| form.get("items"));
             let items: Vec<&'static Schema> = items.flat_map(alternatives).collect();
             if !has_lists && !forms.is_empty() {
-                let message = format!("`{key}` is a list, and its keys belong in a table");
-                let remedy = format!(
-                    "write them below `[{}]`, or in braces as `key = value`; docs/scene.md describes all keys",
-                    header(key)
-                );
-                problems.push(place.problem(message, remedy));
+                problems.push(match properties(forms).is_empty() {
+                    true => place.problem(
+                        format!("`{key}` is a list, and the scene has one value there"),
+                        "write it without brackets; parts of a sheet that are of another material are `[[sheet.patch]]`",
+                    ),
+                    false => place.problem(
+                        format!("`{key}` is a list, and its keys belong in a table"),
+                        format!(
+                            "write them below `[{}]`, or in braces as `key = value`; docs/scene.md describes all keys",
+                            header(key)
+                        ),
+                    ),
+                });
             }
             for (k, entry) in entries.iter().enumerate() {
                 let place = ValuePlace {

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Patch {
-    /// Its faces: those of the group, or otherwise those all corners of which are selected.
+    /// Its faces: those by number or of the group, or otherwise those all corners of which are selected.
     pub at: Selection,
     /// What it is made of.
     pub material: Material,

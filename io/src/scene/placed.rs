@@ -164,6 +164,7 @@ impl<'a> PlacedSheets<'a> {
         let at = key.name("at");
         let number = match selection {
             Selection::Vertices(_) => Some(sheets::one_of(all, name, key, "the vertices")?),
+            Selection::Faces(_) => Some(sheets::one_of(all, name, key, "the faces")?),
             _ => sheets::number_of(all, name, &key.name("sheet"))?,
         };
         let Some(number) = number else {

@@ -25,6 +25,9 @@ pub enum Selection {
     Boundary,
     /// Vertices by their numbers, from 0.
     Vertices(Vec<usize>),
+    /// Faces by their numbers, from 0, and their vertices. Where the sheet is refined, these are its faces after that,
+    /// as in the frames of a run.
+    Faces(Vec<usize>),
     /// The faces of a group that the mesh file of the sheet names, and their vertices: of an OBJ file a group, an
     /// object or a material, of a PLY file an integer of its faces (`"label=3"`), of a glTF file a node, a mesh or a
     /// material, of a FOLD file an entry of `faces_isosheet:group`. `isosheet info` lists the groups of a file.
@@ -88,6 +91,13 @@ impl InPlace<'_> {
         };
         Ok(faces.iter().map(|&face| FaceId(face)).collect())
     }
+
+    /// Faces by their numbers.
+    fn numbered(&self, numbers: &[usize], key: &Key) -> Result<Vec<FaceId>, Problem> {
+        let count = self.topology.face_count();
+        check_numbers(numbers, &key.name("faces"), ("face", count))?;
+        Ok(numbers.iter().map(|&n| FaceId::from_index(n)).collect())
+    }
 }
 
 /// Allowance for round-off at the boundary of a region, as a part of the size of the sheet: far above the
@@ -97,7 +107,8 @@ const ROUND_OFF: f64 = 1e-9;
 impl Selection {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         match self {
-            Self::All | Self::Boundary | Self::Vertices(_) | Self::Group(_) => {}
+            Self::All | Self::Boundary => {}
+            Self::Vertices(_) | Self::Faces(_) | Self::Group(_) => {}
             Self::Nearest(points) => {
                 checks.points(key.name("nearest"), points);
             }
@@ -138,9 +149,10 @@ impl Selection {
                 ids.filter(|&v| topology.is_boundary_vertex(v)).collect()
             }
             Self::Vertices(numbers) => by_number(numbers, key, points.len())?,
-            Self::Group(group) => {
-                let faces = sheet.faces_of(group, key)?.into_iter();
-                faces.flat_map(|f| topology.faces()[f.index()]).collect()
+            Self::Faces(_) | Self::Group(_) => {
+                let faces = self.named_faces(key, sheet)?.unwrap_or_default();
+                let corners = faces.into_iter().map(|f| topology.faces()[f.index()]);
+                corners.flatten().collect()
             }
             Self::Nearest(wanted) => wanted.iter().map(|p| nearest(points, p).0).collect(),
             Self::Box { min, max } => {
@@ -175,11 +187,29 @@ impl Selection {
         }
     }
 
-    /// The faces that are meant of a sheet, ascending: those of the group, or those all corners of which are
-    /// selected.
+    /// Faces that are meant as such; nothing where vertices or a region are.
+    fn named_faces(&self, key: &Key, sheet: &InPlace<'_>) -> Result<Option<Vec<FaceId>>, Problem> {
+        Ok(match self {
+            Self::Faces(numbers) => Some(sheet.numbered(numbers, key)?),
+            Self::Group(group) => Some(sheet.faces_of(group, key)?),
+            _ => None,
+        })
+    }
+
+    /// The faces that are meant of a sheet, ascending: those by number or of the group, or those all corners of which
+    /// are selected.
     pub(crate) fn faces(&self, key: &Key, sheet: &InPlace<'_>) -> Result<Vec<FaceId>, Problem> {
-        if let Self::Group(group) = self {
-            return sheet.faces_of(group, key);
+        if let Some(mut faces) = self.named_faces(key, sheet)? {
+            faces.sort_unstable();
+            faces.dedup();
+            return match faces.is_empty() {
+                false => Ok(faces),
+                true => Err(Problem::new(
+                    key.name("faces"),
+                    "the list of faces is empty",
+                    "give numbers of faces",
+                )),
+            };
         }
         let vertices = self.resolve(key, sheet)?;
         let is_inside = |v: &VertexId| vertices.binary_search(v).is_ok();
@@ -210,14 +240,24 @@ pub(super) fn by_number(
     key: &Key,
     count: usize,
 ) -> Result<Vec<VertexId>, Problem> {
-    if let Some(k) = numbers.iter().position(|&n| n >= count) {
-        return Err(Problem::new(
-            key.name("vertices").entry(k),
-            format!("there is no vertex {}: the sheet has {count}", numbers[k]),
-            format!("give numbers from 0 to {}", count - 1),
-        ));
-    }
+    check_numbers(numbers, &key.name("vertices"), ("vertex", count))?;
     Ok(numbers.iter().map(|&n| VertexId::from_index(n)).collect())
+}
+
+/// Whether all numbers are of what there is of a kind in the sheet.
+fn check_numbers(
+    numbers: &[usize],
+    key: &Key,
+    (kind, count): (&str, usize),
+) -> Result<(), Problem> {
+    match numbers.iter().position(|&n| n >= count) {
+        None => Ok(()),
+        Some(k) => Err(Problem::new(
+            key.entry(k),
+            format!("there is no {kind} {}: the sheet has {count}", numbers[k]),
+            format!("give numbers from 0 to {}", count - 1),
+        )),
+    }
 }
 
 /// The vertex that is nearest to a point, and its distance.

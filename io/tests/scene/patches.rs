@@ -26,10 +26,11 @@ fn refused(text: &str) -> String {
 /// Half of paper and half of card, or of a number of one's own.
 #[test]
 fn the_mass_is_that_of_all_patches() {
-    let mass = |patch: &str| {
-        let setup = parse(&paper(&format!("[[sheet.patch]]\n{OUTER}\n{patch}")));
+    let mass_of = |patch: &str| {
+        let setup = parse(&paper(&format!("[[sheet.patch]]\n{patch}")));
         setup.unwrap().build().unwrap().model.mass().total()
     };
+    let mass = |patch: &str| mass_of(&format!("{OUTER}\n{patch}"));
     let half = 0.5 * 0.2 * 0.05;
     let [paper, card] = [Material::office_paper(), Material::card()].map(|m| m.density);
     let found = mass("material = \"card\"");
@@ -42,6 +43,10 @@ fn the_mass_is_that_of_all_patches() {
         (found / (half * (paper + 3.0)) - 1.0).abs() < 1e-12,
         "{found}"
     );
+    // Of 512 faces of one area, these three, one of them named twice.
+    let found = mass_of("at = { faces = [511, 7, 0, 7] }\nmaterial = \"card\"");
+    let expected = 2.0 * half / 512.0 * (509.0 * paper + 3.0 * card);
+    assert!((found / expected - 1.0).abs() < 1e-12, "{found}");
     // The last of two patches counts where they overlap.
     let found = mass(&format!(
         "material = \"card\"\n[[sheet.patch]]\n{OUTER}\nmaterial = \"cotton\""
@@ -99,6 +104,15 @@ fn patches_that_make_no_sense_are_refused() {
     let card = format!("{OUTER}\nmaterial = \"card\"");
     for (lines, reason) in [
         (format!("mass = 0.1\n{}", patch(&card)), "give `density`"),
+        (
+            patch("at = { faces = [0, 512] }\nmaterial = \"card\""),
+            "no face 512: the sheet has 512",
+        ),
+        (
+            patch("at = { faces = [] }\nmaterial = \"card\""),
+            "the list of faces is empty",
+        ),
+        ("thickness = [1e-4, 2e-4]".to_owned(), "[[sheet.patch]]"),
         (format!("bending = \"none\"\n{}", patch(&card)), "no plate"),
         (
             patch("at = { vertices = [0] }\nmaterial = \"card\""),
