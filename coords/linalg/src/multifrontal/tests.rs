@@ -125,6 +125,36 @@ fn any_number_of_threads_gives_the_same_bits() {
     }
 }
 
+/// Solutions are those of the matrix, the same to the bit for any number of threads.
+#[test]
+fn solutions_have_the_same_bits_on_any_number_of_threads() {
+    let (pattern, values) = grids(&[80, 12], 3);
+    let matrix = Analysed::new(pattern, 3, Ordering::NestedDissection);
+    let (mut fronts, mut factor) = (matrix.fronts(), matrix.factor());
+    fronts.factorise(&values, &mut factor).unwrap();
+    let order = matrix.perm().arrays().0;
+    let b: Vec<f64> = (0..order.len()).map(|i| (i as f64).sin()).collect();
+    let mut on = |threads: usize| {
+        let mut x = b.clone();
+        on_threads(threads, || fronts.solve(order, &factor, &mut x));
+        x
+    };
+    let one = on(1);
+    let mut residual = b.clone();
+    matrix
+        .pattern
+        .sub_symmetric_product(&values, &one, &mut residual);
+    assert!(residual.iter().all(|r| r.abs() < 1e-13));
+    for threads in [2, 3, 5] {
+        assert!(
+            on(threads)
+                .iter()
+                .map(|x| x.to_bits())
+                .eq(one.iter().map(|x| x.to_bits()))
+        );
+    }
+}
+
 #[test]
 fn the_first_bad_pivot_is_named_whatever_the_number_of_threads() {
     let (pattern, mut values) = grids(&[80], 3);
