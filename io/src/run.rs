@@ -45,6 +45,7 @@ mod extension_error;
 mod film;
 #[cfg(feature = "picture")]
 mod film_encoder;
+mod fold_order;
 mod fold_verdict;
 mod folder;
 mod frame_field;
@@ -89,10 +90,11 @@ pub use extension_error::ExtensionError;
 pub use film::{Film, FilmOptions, Marks};
 #[cfg(feature = "picture")]
 pub use film_encoder::FilmError;
-pub use fold_verdict::FoldVerdict;
-#[cfg(feature = "cli")]
-pub(crate) use folder::check_folder;
+pub use fold_order::{FoldOrder, GroupFold};
+pub use fold_verdict::{FoldVerdict, FoldedCrease};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
+#[cfg(feature = "cli")]
+pub(crate) use folder::{check_folder, check_run};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use incidence::Incidence;
@@ -116,7 +118,8 @@ use crate::format::{
 use crate::scene::{Kept, SceneFile, Setup, UnderWay};
 use crate::view::PageOptions;
 use checkpoint::RunProgress;
-use folder::{Existing, FolderState, RunFolder, RunInputs, stored_scene};
+pub(crate) use folder::Existing;
+use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use page::write_page_of;
 use recording::RunFrames;

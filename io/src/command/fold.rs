@@ -78,7 +78,8 @@ impl Fold {
             order: self.order.clone(),
             ..scene
         };
-        self.composing.begin(&self.pattern)?;
+        self.composing
+            .begin_one_of(&self.pattern, &pattern.candidates(&scene)?)?;
         let chosen = pattern.chosen(scene)?;
         let verdict = |recording: &Recording| {
             let verdict = FoldVerdict::of(recording)?;

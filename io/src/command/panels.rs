@@ -33,6 +33,15 @@ const WELL: f64 = 5.0;
 /// paper itself has 3000 times as much, and thirty.
 const SOFT: [u32; 2] = [8000, 2400];
 
+/// The panels that are tried after rigid ones, and how far creases may be from their angles, degrees in the mean, for these
+/// not to be tried.
+const OTHERS: [(Panels, f64); 4] = [
+    (Panels::Elastic { refine: 0 }, CLOSED),
+    (Panels::Soft { stiffness: SOFT[0] }, CLOSED),
+    (Panels::Soft { stiffness: SOFT[1] }, CLOSED),
+    (Panels::Elastic { refine: 1 }, WELL),
+];
+
 /// Faces of an elastic sheet whose panels are divided, at most.
 const MOST_FACES: usize = 3000;
 
@@ -105,6 +114,21 @@ impl Pattern<'_> {
         })
     }
 
+    /// The texts of the scenes of which one is chosen.
+    pub(super) fn candidates(&self, rigid: &FoldScene) -> Result<Vec<String>, Failure> {
+        let of = |panels: Panels| {
+            text_of(&FoldScene {
+                panels,
+                ..rigid.clone()
+            })
+        };
+        let others = OTHERS.into_iter().map(|(panels, _)| panels);
+        std::iter::once(Panels::Rigid)
+            .chain(others)
+            .map(of)
+            .collect()
+    }
+
     /// The scene whose panels close best.
     pub(super) fn chosen(&self, rigid: FoldScene) -> Result<Chosen, Failure> {
         let (chosen, trial) = self.best(rigid)?;
@@ -142,12 +166,11 @@ impl Pattern<'_> {
         }
         let faces = self.parsed(&rigid)?.build()?;
         let faces = faces.model.topology().face_count();
-        let mut others = vec![(Panels::Elastic { refine: 0 }, CLOSED)];
-        others.extend(SOFT.map(|stiffness| (Panels::Soft { stiffness }, CLOSED)));
-        if faces * 4 <= MOST_FACES {
-            others.push((Panels::Elastic { refine: 1 }, WELL));
-        }
-        for (panels, enough) in others {
+        let is_coarse = |panels: &Panels| match panels {
+            Panels::Elastic { refine } => faces << (2 * refine) <= MOST_FACES || *refine == 0,
+            Panels::Rigid | Panels::Soft { .. } => true,
+        };
+        for (panels, enough) in OTHERS.into_iter().filter(|(panels, _)| is_coarse(panels)) {
             if best.0.is_some_and(|trial| closes(&trial, enough)) {
                 break;
             }

@@ -2,6 +2,7 @@
 
 mod assignment;
 mod drawing;
+mod drawn;
 mod error;
 mod face_groups;
 mod faces;
@@ -25,6 +26,7 @@ mod vtk;
 mod weld;
 
 pub use assignment::EdgeAssignment;
+pub use drawn::DrawnLines;
 pub use error::{Location, MeshFileError, MeshFileProblem};
 pub use face_groups::FaceGroups;
 pub use fold_frame::FoldFrame;
@@ -33,6 +35,7 @@ pub use mesh::{FileCrease, MeshFile, ReadingChanges};
 pub use options::{MeshOptions, Polygons, SeparateBuffers};
 pub use repair::Repair;
 
+pub(super) use fold::LineRecord;
 pub(super) use plane::{Point, distance, twice_area};
 pub(super) use polygon::{cross, sub};
 

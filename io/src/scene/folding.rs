@@ -1,6 +1,7 @@
 //! Folding to the angles of a FOLD file.
 
 use super::Mesh;
+use super::fold_group::{DrivenCrease, FoldGroup};
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
 use super::problem::{Checks, Problem};
@@ -14,8 +15,6 @@ use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, angle_near, fold_angle};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use std::fmt;
-use std::str::FromStr;
 use std::sync::Arc;
 
 /// Folding to the angles of the crease pattern that is the mesh of the sheet: a FOLD, SVG, CP or OPX file, or a drawing
@@ -71,76 +70,6 @@ pub struct Folding {
     pub order: Vec<FoldGroup>,
 }
 
-/// Some creases of a pattern.
-///
-/// ```toml
-/// version = 1
-///
-/// [sheet]
-/// mesh = { file = { path = "crane.fold" } }
-/// material = "office paper"
-///
-/// [folding]
-/// stiffness = 0.05
-/// time = 3
-/// order = ["valleys", { edges = [3, 7] }, "mountains"]
-/// ```
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum FoldGroup {
-    /// Creases with a negative angle.
-    Mountains,
-    /// Creases with a positive angle.
-    Valleys,
-    /// Creases by the numbers of their edges in the file, from 0. (Of a drawing they are those of the FOLD file that
-    /// `isosheet convert` makes of it.)
-    Edges(Vec<usize>),
-}
-
-impl FoldGroup {
-    /// Whether it has a crease: the number of its edge in the file, and its angle.
-    fn has(&self, edge: usize, angle: f64) -> bool {
-        match self {
-            Self::Mountains => angle < 0.0,
-            Self::Valleys => angle > 0.0,
-            Self::Edges(edges) => edges.contains(&edge),
-        }
-    }
-}
-
-/// As a command line has it: `mountains`, `valleys`, or numbers of edges.
-impl FromStr for FoldGroup {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.trim() {
-            "mountain" | "mountains" => Ok(Self::Mountains),
-            "valley" | "valleys" => Ok(Self::Valleys),
-            numbers => {
-                let words = numbers.split([' ', ',']).filter(|word| !word.is_empty());
-                let edges: Result<Vec<usize>, _> = words.map(str::parse).collect();
-                match edges {
-                    Ok(edges) if !edges.is_empty() => Ok(Self::Edges(edges)),
-                    _ => Err(format!(
-                        "{text:?} is no group of creases: write mountains, valleys or numbers of edges"
-                    )),
-                }
-            }
-        }
-    }
-}
-
-/// As a scene has it.
-impl fmt::Display for FoldGroup {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Mountains => f.write_str("\"mountains\""),
-            Self::Valleys => f.write_str("\"valleys\""),
-            Self::Edges(edges) => write!(f, "{{ edges = {edges:?} }}"),
-        }
-    }
-}
-
 fn whole() -> f64 {
     1.0
 }
@@ -156,6 +85,8 @@ pub struct FoldTargets {
     pub creases: Vec<(EdgeId, f64)>,
     /// Of each of them the number of the group that it folds with.
     pub groups: Vec<usize>,
+    /// Of each of them the name of the line of the drawing that it follows, if it has one.
+    pub names: Vec<Option<Arc<str>>>,
     /// The edges that stay flat.
     pub flat: Vec<EdgeId>,
 }
@@ -272,6 +203,9 @@ impl Folding {
             Unit::Newton,
         );
         checks.within(key.name("part"), self.part, [-1.0, 1.0]);
+        for (k, group) in self.order.iter().enumerate() {
+            group.check(&key.name("order").entry(k), checks);
+        }
         match mesh {
             Mesh::File(_) => {}
             Mesh::Drawing(_) if self.frame.is_none() => {}
@@ -337,6 +271,9 @@ impl Folding {
             flat: refined.inside_faces(),
             ..FoldTargets::default()
         };
+        for (k, group) in self.order.iter().enumerate() {
+            group.refuse_idle(&frame.drawn, &key.name("order").entry(k))?;
+        }
         let shape = (!is_plane(t, &frame.positions)).then_some(&frame.positions[..]);
         let mut known = vec![false; self.order.len()];
         for (number, crease) in frame.creases.iter().enumerate() {
@@ -351,13 +288,21 @@ impl Folding {
             let parts = refined.parts(e).into_iter();
             let mut drive = |angle| {
                 let driven = parts.clone().map(|e| (e, self.part * angle));
-                let group = self.order.iter().position(|group| group.has(number, angle));
+                let driven_crease = DrivenCrease {
+                    edge: number,
+                    angle,
+                    drawn: crease.drawn,
+                };
+                let has = |group: &FoldGroup| group.has(&driven_crease, &frame.drawn);
+                let group = self.order.iter().position(has);
                 if let Some(group) = group {
                     known[group] = true;
                 }
                 let last = self.order.len().saturating_sub(1);
                 let groups = std::iter::repeat_n(group.unwrap_or(last), parts.len());
                 targets.groups.extend(groups);
+                let name = frame.drawn.name(crease.drawn).map(Arc::from);
+                targets.names.extend(std::iter::repeat_n(name, parts.len()));
                 targets.creases.extend(driven);
             };
             let angle = angle.or(match crease.assignment {
@@ -381,8 +326,8 @@ impl Folding {
         if let Some(empty) = known.iter().position(|known| !known) {
             let message =
                 format!("no crease that is driven folds with group {empty}, counted from 0");
-            let remedy = "name creases that no group before has, by the numbers of the edges in a FOLD file, which \
-                          `isosheet convert PATTERN FILE.fold` writes; edges of the outline do not fold";
+            let remedy = "name creases that no group before has, by lines of the drawing or by the numbers of the edges in a FOLD \
+                          file, which `isosheet convert PATTERN FILE.fold` writes; edges of the outline do not fold";
             return Err(Problem::new(
                 key.name("order").entry(empty),
                 message,
@@ -434,7 +379,7 @@ impl Folding {
     }
 
     /// When the creases of a group begin to fold and when they have reached their angles, seconds.
-    fn turn_of(&self, group: usize) -> [f64; 2] {
+    pub(crate) fn turn_of(&self, group: usize) -> [f64; 2] {
         let turns = self.order.len().max(1) as f64;
         [group, group + 1].map(|k| self.time * k as f64 / turns)
     }
