@@ -169,6 +169,138 @@ fn groups_of_creases_fold_one_after_the_other() {
     refused("valleys; 99", 3, "group 1");
 }
 
+/// A strip of three squares whose left end folds over the middle and whose right one, which is longer, over both.
+const LAYERED: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="10mm" viewBox="0 0 40 10" fill="none">
+  <path stroke="black" d="M0 0 H40 V10 H0 Z"/>
+  <g id="Left"><path stroke="blue" d="M10 0 V10"/></g>
+  <g id="Right"><path stroke="blue" d="M20 0 V10"/></g>
+</svg>"#;
+
+/// Groups are named by lines of the drawing, in its file and in the mesh of it; an order that is not achieved is told.
+#[test]
+fn groups_are_named_by_lines_of_the_drawing() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path();
+    fs::write(path.join("strip.svg"), LAYERED).unwrap();
+    let order = "layer:Left; layer:Right";
+    let words = [
+        "strip.svg",
+        "out",
+        "--part",
+        "0.5",
+        "--order",
+        order,
+        "-o",
+        "strip.toml",
+    ];
+    let (said, _, verdict) = folded(path, &words);
+    assert!(verdict.residual.largest < 1.0, "{:?}", verdict.residual);
+    assert!(!said.contains("the order"), "{said}");
+    let names: Vec<&str> = verdict.order.groups.iter().map(|g| &g.name[..]).collect();
+    assert_eq!(names, ["layer:Left", "layer:Right"]);
+    assert!(verdict.order.groups[0].at_next.unwrap() < FoldVerdict::OPEN);
+    let scene = fs::read_to_string(path.join("strip.toml")).unwrap();
+    assert!(scene.contains("{ drawn = [\"layer:Left\"] }"), "{scene}");
+    // The same by the mesh that is made of the drawing, and a crease of a scene.
+    let made = run(
+        path,
+        &["mesh", "strip.svg", "-o", "strip.fold", "--spacing", "5mm"],
+    );
+    assert_eq!(code(&made), Some(0), "{}", stderr(&made));
+    let words = [
+        "strip.fold",
+        "out",
+        "--part",
+        "0.5",
+        "--order",
+        order,
+        "--force",
+    ];
+    let (said, _, verdict) = folded(path, &words);
+    assert!(verdict.residual.largest < 1.0, "{said}");
+    let scene = "version = 1\n[sheet]\nmesh = { file = { path = \"strip.fold\" } }\nmaterial = \"office paper\"\n\
+                 [[crease]]\nname = \"left\"\nat = { drawn = [\"layer:Left\"] }\nstiffness = 0.05\n[stop]\ntime = 0.1\n";
+    fs::write(path.join("scene.toml"), scene).unwrap();
+    let checked = run(path, &["check", "scene.toml"]);
+    assert_eq!(code(&checked), Some(0), "{}", stderr(&checked));
+    let output = run(path, &["fold", "strip.svg", "no", "--order", "layer:Wing"]);
+    assert_eq!(code(&output), Some(3), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("\"Left\", \"Right\""),
+        "{}",
+        stderr(&output)
+    );
+    fs::write(
+        path.join("plain.cp"),
+        "1 0 0 1 0\n1 1 0 1 1\n1 1 1 0 1\n1 0 1 0 0\n3 0 0 1 1\n",
+    )
+    .unwrap();
+    let output = run(path, &["fold", "plain.cp", "no", "--order", "red"]);
+    assert_eq!(code(&output), Some(3), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("does not say which lines"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+/// A vertex of degree four has one motion, in which all creases fold at once: a crease alone does not reach its angle.
+#[test]
+fn an_order_that_is_not_achieved_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("vertex.fold"), VERTEX).unwrap();
+    let words = ["vertex.fold", "out", "--order", "0; 1 2 3"];
+    let (said, _, verdict) = folded(dir.path(), &words);
+    let [first, second] = &verdict.order.groups[..] else {
+        panic!("{:?}", verdict.order)
+    };
+    let off = first.at_next.unwrap();
+    assert!(
+        off > 20.0 && second.at_next.is_none(),
+        "{:?}",
+        verdict.order
+    );
+    let expected = format!(
+        "the order is not achieved: \"edges 0\" is up to {off:.0} degrees from its angles when \"edges 1 2 3\" begins, \
+         and {:.0} at the end",
+        first.at_end
+    );
+    assert!(said.contains(&expected), "{said}");
+}
+
+/// A folder with another run, and a scene file of another scene, are refused before anything is computed.
+#[test]
+fn used_folders_are_refused_before_the_trials() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("vertex.fold"), VERTEX).unwrap();
+    let words = ["vertex.fold", "out", "-o", "scene.toml"];
+    folded(dir.path(), &words);
+    let refused = |words: &[&str], expected: &str| {
+        let output = run(dir.path(), &[&["fold"], words].concat());
+        let said = stderr(&output);
+        assert_ne!(code(&output), Some(0), "{said}");
+        assert!(
+            said.contains(expected) && !said.contains("rigid panels"),
+            "{said}"
+        );
+    };
+    refused(
+        &["vertex.fold", "out", "--part", "0.5"],
+        "holds a run of another scene",
+    );
+    refused(
+        &["vertex.fold", "new", "--part", "0.5", "-o", "scene.toml"],
+        "is another scene",
+    );
+    // What was done already is not refused.
+    let (said, ..) = folded(dir.path(), &words);
+    assert!(said.contains("every crease closes"), "{said}");
+    folded(
+        dir.path(),
+        &["vertex.fold", "out", "--part", "0.5", "--force"],
+    );
+}
+
 /// A strip of three panels, of which those outside are twice as long as the one between them, with two valleys of 135 degrees.
 /// Their ends meet where the cosine of the angle is -1/4.
 const TRIANGLE: &str = "1 0 0.2 2 0.2\n1 2 0.2 2 0\n1 2 0 5 0\n1 5 0 5 1\n1 5 1 2 1\n1 2 1 2 0.8\n1 2 0.8 0 0.8\n1 0 0.8 0 0.2\n\
