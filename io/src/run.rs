@@ -52,6 +52,7 @@ mod frame_field;
 mod frames;
 #[cfg(feature = "picture")]
 mod gallery;
+mod held_open;
 mod incidence;
 mod intervention;
 mod page;
@@ -97,6 +98,7 @@ pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 pub(crate) use folder::{check_folder, check_run};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
+pub use held_open::TouchingFaces;
 pub use incidence::Incidence;
 pub use intervention::Intervention;
 pub use page::write_page;

@@ -370,7 +370,7 @@ impl Scene {
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
-            measure.check(&key, &self.crease, &mut checks);
+            measure.check(&key, self, &mut checks);
             let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
             bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }

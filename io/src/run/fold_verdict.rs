@@ -1,10 +1,10 @@
 //! What came of the folding of a crease pattern, in words.
 
 use super::passing::Passing;
-use super::{FoldOrder, Recording};
-use crate::scene::{FoldResidual, FollowedFolds, Isometry};
-use isosheet_mesh::fold_angle;
+use super::{FoldOrder, Recording, TouchingFaces};
+use crate::scene::{FoldResidual, FoldTargets, FollowedFolds, Isometry};
 use isosheet_mesh::wording::counted;
+use isosheet_mesh::{EdgeId, Topology, fold_angle};
 use std::fmt;
 
 /// How closely creases and panels do what they are meant to, at the end of a run that folds a pattern.
@@ -16,6 +16,8 @@ pub struct FoldVerdict {
     pub open: usize,
     /// The one that is furthest.
     pub furthest: Option<FoldedCrease>,
+    /// What touches the panels beside that one, if it is open.
+    pub held_open: Option<TouchingFaces>,
     /// The number of panels, and of those that bend by more than [`FoldVerdict::BENDS`] at an edge.
     pub panels: [usize; 2],
     /// Whether they can bend.
@@ -91,46 +93,36 @@ impl FoldVerdict {
         });
         let creases: Vec<(f64, usize)> = creases.collect();
         let furthest = creases.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let panel = panels(topology, targets);
+        let held_open = furthest.and_then(|&(off, k)| {
+            let [a, b] = topology.edge_faces(targets.creases[k].0);
+            let beside = [panel[a?.index()], panel[b?.index()]];
+            let is_held = off > Self::OPEN && scene.contact.self_contact;
+            let reach = scene.contact.activation.filter(|_| is_held)?;
+            TouchingFaces::find(&recording.sheet, x, &panel, beside, reach)
+        });
         let furthest = furthest.map(|&(_, k)| {
             let ends = topology.edges()[targets.creases[k].0.index()];
             let [p, q] = ends.map(|v| recording.sheet.position(v));
             FoldedCrease {
                 ends: ends.map(|v| v.0),
-                name: targets.names[k].as_deref().map(str::to_owned),
+                name: targets.name(k).map(str::to_owned),
                 middle: [0, 1].map(|k| 0.5 * (p[k] + q[k])),
             }
         });
-        // Panels are what is left when the sheet is cut along its creases.
-        let mut is_crease = vec![false; topology.edge_count()];
-        for (e, _) in &targets.creases {
-            is_crease[e.index()] = true;
-        }
-        let mut panel: Vec<usize> = (0..topology.face_count()).collect();
-        let inner = || {
-            topology
-                .edge_ids()
-                .filter(|e| !is_crease[e.index()] && !topology.is_boundary_edge(*e))
-        };
-        for e in inner() {
-            if let [Some(a), Some(b)] = topology.edge_faces(e) {
-                let [a, b] = [a, b].map(|f| root(&mut panel, f.index()));
-                panel[a] = b;
-            }
-        }
         let mut bends = vec![false; panel.len()];
-        for e in inner() {
+        for e in inside_panels(topology, targets) {
             if fold_angle(topology, x, e).unwrap_or(0.0).abs().to_degrees() > Self::BENDS {
                 let face = topology.edge_faces(e)[0].map_or(0, |f| f.index());
-                bends[root(&mut panel, face)] = true;
+                bends[panel[face]] = true;
             }
         }
-        let count = (0..panel.len())
-            .filter(|&f| root(&mut panel, f) == f)
-            .count();
+        let count = (0..panel.len()).filter(|&f| panel[f] == f).count();
         Some(Self {
             residual: folds.residual(targets, topology, x),
             open: creases.iter().filter(|(off, _)| *off > Self::OPEN).count(),
             furthest,
+            held_open,
             panels: [count, bends.iter().filter(|b| **b).count()],
             strain,
             is_elastic: scene.sheet[0].isometry() != Isometry::Rods,
@@ -167,6 +159,8 @@ impl FoldVerdict {
             false => String::new(),
         };
         let FoldResidual { rms, largest, .. } = self.residual;
+        let held = self.held_open.map(|touching| format!(", where {touching}"));
+        let held = held.unwrap_or_default();
         let creases = match (self.open, &self.furthest) {
             (0, _) | (_, None) if end > Self::STRETCHES => {
                 "every crease closes, but only with stretched panels, which is no shape of paper"
@@ -174,7 +168,7 @@ impl FoldVerdict {
             }
             (0, _) | (_, None) => "every crease closes".to_owned(),
             (open, Some(crease)) => format!(
-                "{} open by more than {} degrees, most by {largest:.0}{} {crease}",
+                "{} open by more than {} degrees, most by {largest:.0}{} {crease}{held}",
                 counted(open, "crease stays", "creases stay"),
                 Self::OPEN,
                 // Angles are followed from the flat sheet on.
@@ -197,6 +191,29 @@ impl FoldVerdict {
             self.order
         )
     }
+}
+
+/// The edges inside of panels: those that are no creases.
+fn inside_panels(topology: &Topology, targets: &FoldTargets) -> impl Iterator<Item = EdgeId> {
+    let mut is_crease = vec![false; topology.edge_count()];
+    for (e, _) in &targets.creases {
+        is_crease[e.index()] = true;
+    }
+    let edges = topology.edge_ids();
+    edges.filter(move |e| !is_crease[e.index()] && !topology.is_boundary_edge(*e))
+}
+
+/// Of each face the number of the face that stands for its panel. Panels are what is left when the sheet is cut along its
+/// creases.
+fn panels(topology: &Topology, targets: &FoldTargets) -> Vec<usize> {
+    let mut panel: Vec<usize> = (0..topology.face_count()).collect();
+    for e in inside_panels(topology, targets) {
+        if let [Some(a), Some(b)] = topology.edge_faces(e) {
+            let [a, b] = [a, b].map(|f| root(&mut panel, f.index()));
+            panel[a] = b;
+        }
+    }
+    (0..panel.len()).map(|f| root(&mut panel, f)).collect()
 }
 
 /// The representative of a set, with the path to it halved.

@@ -40,8 +40,8 @@ pub enum FoldGroup {
 }
 
 /// A crease that is driven to an angle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct DrivenCrease {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PatternCrease {
     /// The number of its edge in the file.
     pub(super) edge: usize,
     /// Radians.
@@ -52,7 +52,7 @@ pub(super) struct DrivenCrease {
 
 impl FoldGroup {
     /// Whether it has a crease of a mesh that is made of some lines.
-    pub(super) fn has(&self, crease: &DrivenCrease, lines: &DrawnLines) -> bool {
+    pub(super) fn has(&self, crease: &PatternCrease, lines: &DrawnLines) -> bool {
         match self {
             Self::Mountains => crease.angle < 0.0,
             Self::Valleys => crease.angle > 0.0,

@@ -1,7 +1,7 @@
 //! Folding to the angles of a FOLD file.
 
 use super::Mesh;
-use super::fold_group::{DrivenCrease, FoldGroup};
+use super::fold_group::{FoldGroup, PatternCrease};
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
 use super::problem::{Checks, Problem};
@@ -9,7 +9,7 @@ use super::profile::{Change, Course, Profile};
 use super::refined::Refined;
 use super::sheet::{Isometry, Sheet as SheetOfScene};
 use super::unit::Unit;
-use crate::format::{EdgeAssignment, FoldFrame};
+use crate::format::{DrawnLines, EdgeAssignment, FoldFrame};
 use isosheet_dynamics::{CreaseSpring, FLAT, RestAngle};
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, angle_near, fold_angle};
 use schemars::JsonSchema;
@@ -85,8 +85,10 @@ pub struct FoldTargets {
     pub creases: Vec<(EdgeId, f64)>,
     /// Of each of them the number of the group that it folds with.
     pub groups: Vec<usize>,
-    /// Of each of them the name of the line of the drawing that it follows, if it has one.
-    pub names: Vec<Option<Arc<str>>>,
+    /// What each of them is in the pattern.
+    of_pattern: Vec<PatternCrease>,
+    /// The lines of the drawing that the pattern is made of.
+    drawn: DrawnLines,
     /// The edges that stay flat.
     pub flat: Vec<EdgeId>,
 }
@@ -111,6 +113,24 @@ impl FoldTargets {
     pub(crate) fn renumber(&mut self, number: impl Fn(EdgeId) -> EdgeId) {
         self.creases.iter_mut().for_each(|(e, _)| *e = number(*e));
         self.flat.iter_mut().for_each(|e| *e = number(*e));
+    }
+
+    /// The numbers of the driven creases that a group has.
+    pub(super) fn of_group(&self, group: &FoldGroup) -> Vec<usize> {
+        let creases = self.of_pattern.iter().enumerate();
+        let own = creases.filter(|(_, crease)| group.has(crease, &self.drawn));
+        own.map(|(k, _)| k).collect()
+    }
+
+    /// The lines of the drawing that the pattern is made of.
+    pub(super) fn drawn(&self) -> &DrawnLines {
+        &self.drawn
+    }
+
+    /// The name of the line of the drawing that a driven crease follows, if it has one.
+    #[cfg(feature = "run")]
+    pub(crate) fn name(&self, crease: usize) -> Option<&str> {
+        self.drawn.name(self.of_pattern[crease].drawn)
     }
 
     /// The differences at positions `x` (`3V`, metres), taken the short way round as the springs do.
@@ -267,12 +287,14 @@ impl Folding {
         frame
             .orient_creases(t)
             .map_err(|e| Problem::from_error(key.name("frame"), &e))?;
+        let drawn = std::mem::take(&mut frame.drawn);
         let mut targets = FoldTargets {
             flat: refined.inside_faces(),
+            drawn: drawn.clone(),
             ..FoldTargets::default()
         };
         for (k, group) in self.order.iter().enumerate() {
-            group.refuse_idle(&frame.drawn, &key.name("order").entry(k))?;
+            group.refuse_idle(&drawn, &key.name("order").entry(k))?;
         }
         let shape = (!is_plane(t, &frame.positions)).then_some(&frame.positions[..]);
         let mut known = vec![false; self.order.len()];
@@ -288,12 +310,12 @@ impl Folding {
             let parts = refined.parts(e).into_iter();
             let mut drive = |angle| {
                 let driven = parts.clone().map(|e| (e, self.part * angle));
-                let driven_crease = DrivenCrease {
+                let of_pattern = PatternCrease {
                     edge: number,
                     angle,
                     drawn: crease.drawn,
                 };
-                let has = |group: &FoldGroup| group.has(&driven_crease, &frame.drawn);
+                let has = |group: &FoldGroup| group.has(&of_pattern, &drawn);
                 let group = self.order.iter().position(has);
                 if let Some(group) = group {
                     known[group] = true;
@@ -301,8 +323,9 @@ impl Folding {
                 let last = self.order.len().saturating_sub(1);
                 let groups = std::iter::repeat_n(group.unwrap_or(last), parts.len());
                 targets.groups.extend(groups);
-                let name = frame.drawn.name(crease.drawn).map(Arc::from);
-                targets.names.extend(std::iter::repeat_n(name, parts.len()));
+                targets
+                    .of_pattern
+                    .extend(std::iter::repeat_n(of_pattern, parts.len()));
                 targets.creases.extend(driven);
             };
             let angle = angle.or(match crease.assignment {

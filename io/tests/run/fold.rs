@@ -326,6 +326,27 @@ fn panels_that_pass_through_each_other_are_told() {
     let (said, _, verdict) = folded(dir.path(), &words);
     assert_eq!(verdict.passing, None, "{said}");
     assert_eq!(verdict.open, 2, "{said}");
+    // The panels at the ends touch, within the distance at which they feel each other: half a thickness of paper.
+    let touching = verdict.held_open.unwrap();
+    assert!(touching.gap < 2.5e-4 * 0.2, "{touching:?}");
+    let told = format!("where {touching}");
+    assert!(
+        said.contains(&told) && told.contains("mm from face"),
+        "{said}"
+    );
+    let recording = Recording::read(&dir.path().join("out")).unwrap();
+    let middle = |face: u32| {
+        let corners = recording.sheet.topology().faces()[face as usize];
+        corners
+            .map(|v| recording.sheet.position(v)[0])
+            .iter()
+            .sum::<f64>()
+            / 3.0
+    };
+    // The strip is 5 units and 0.2 m long, with creases at 2 and 3.
+    let mut places = touching.faces.map(middle).map(|x| x / 0.04);
+    places.sort_by(f64::total_cmp);
+    assert!(places[0] < 2.0 && places[1] > 3.0, "{places:?}");
     assert!(
         said.contains("without contact they pass through each other from"),
         "{said}"
