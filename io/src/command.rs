@@ -14,6 +14,7 @@ mod drape;
 mod exit;
 mod failure;
 mod fold;
+mod fold_options;
 mod frames;
 mod gallery;
 mod given;

@@ -55,6 +55,10 @@ pub struct Folding {
     /// keeps panels flat.
     #[serde(default)]
     pub flat_stiffness: Option<f64>,
+    /// Which part of their angles the springs are at, from 0 to 1, as a function of time. If left out, they go smoothly from the
+    /// angles of the start to the whole ones within `time`. Not beside an `order`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub course: Option<Profile>,
     /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on
     /// each other, which cross without self-contact: take less than 1.
     #[serde(default = "whole")]
@@ -223,6 +227,13 @@ impl Folding {
             Unit::Newton,
         );
         checks.within(key.name("part"), self.part, [-1.0, 1.0]);
+        if let Some(course) = &self.course {
+            course.check(key.name("course"), Unit::Factor, checks);
+            if !self.order.is_empty() {
+                let message = "groups of creases fold one after the other in a course of their own";
+                checks.report(key.name("course"), message, "leave out `course` or `order`");
+            }
+        }
         for (k, group) in self.order.iter().enumerate() {
             group.check(&key.name("order").entry(k), checks);
         }
@@ -383,8 +394,17 @@ impl Folding {
             Isometry::Elastic { .. } => None,
         });
         let driven = targets.creases.iter().zip(&targets.groups);
+        let smooth = Profile::smooth_step(1.0, self.time);
+        let other = self.course.as_ref().filter(|course| **course != smooth);
         let driven = driven.map(|(&(edge, target), &group)| {
-            spring(edge, self.stiffness, target, self.turn_of(group))
+            let spring = spring(edge, self.stiffness, target, self.turn_of(group));
+            match other {
+                None => spring,
+                Some(course) => CreaseSpring {
+                    rest: course.scaled(target.clamp(-PI, PI)).into(),
+                    ..spring
+                },
+            }
         });
         let flat = flat_stiffness.into_iter().flat_map(|stiffness| {
             let flat = targets.flat.iter();
@@ -396,6 +416,9 @@ impl Folding {
     /// The part of the way to their angles that the springs have gone at a time (seconds), from 0 to 1.
     #[cfg(feature = "run")]
     pub(crate) fn progress(&self, t: f64) -> f64 {
+        if let Some(course) = &self.course {
+            return course.value(t);
+        }
         let turns = self.order.len().max(1);
         let parts = (0..turns).map(|group| course(0.0, 1.0, self.turn_of(group)).at(t));
         parts.sum::<f64>() / turns as f64

@@ -57,6 +57,7 @@ impl Slider {
             "size" if owner.starts_with("forces.moment") => (above.to_owned(), "N m"),
             "profile" => (above.to_owned(), ""),
             "swell" | "stiffening" => (text.clone(), ""),
+            "course" => ("part of the folding".to_owned(), ""),
             "added" => (format!("gas added to {owner}"), "m³"),
             "size" => (above.to_owned(), "m/s²"),
             "wind[0]" => ("wind along x".to_owned(), WIND),
