@@ -24,6 +24,7 @@ mod interrupt;
 mod live;
 mod mesh;
 mod message;
+mod one_frame;
 mod open;
 mod page;
 mod panels;

@@ -45,6 +45,7 @@ mod extension_error;
 mod film;
 #[cfg(feature = "picture")]
 mod film_encoder;
+mod flat_vertex;
 mod fold_order;
 mod fold_verdict;
 mod folder;
@@ -91,6 +92,7 @@ pub use extension_error::ExtensionError;
 pub use film::{Film, FilmOptions, Marks};
 #[cfg(feature = "picture")]
 pub use film_encoder::FilmError;
+pub use flat_vertex::{FlatFoldingLaw, UnfoldableVertex};
 pub use fold_order::{FoldOrder, GroupFold};
 pub use fold_verdict::{FoldVerdict, FoldedCrease};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
@@ -458,6 +460,10 @@ fn finish(
         vibration: progress
             .vibrations
             .fastest(facts.mass, facts.sheet.mean_length()),
+        thickness: {
+            let sheets = plan.file.scene().sheet.iter();
+            sheets.map(|sheet| sheet.thickness).fold(0.0, f64::max)
+        },
         smallest_gap: progress.gap,
         iterations: progress.iterations,
         factorisations: progress.factorisations,

@@ -62,7 +62,8 @@ impl Fold {
         let verdict = |recording: &Recording| {
             let verdict = FoldVerdict::of(recording)?;
             let words = verdict.in_words(chosen.rigid.as_ref());
-            Some(words + &chosen.obstruction().unwrap_or_default())
+            let more = [chosen.others(), chosen.obstruction()];
+            Some(words + &more.into_iter().flatten().collect::<String>())
         };
         let text = text_of(&chosen.scene)?;
         self.composing.run(&self.pattern, text, verdict)

@@ -83,8 +83,15 @@ pub fn read_mesh_with(path: &Path, options: &MeshOptions) -> Result<MeshFile, Me
         let known = MeshFormat::ALL.map(|f| format!(".{}", f.extension()));
         let known = known.join(", ");
         let message = format!("{found} is no known format of meshes (known are {known})");
+        let has = |other: &str| extension.eq_ignore_ascii_case(other);
         let remedy = match is_picture(path) {
             true => "trace the picture in a drawing program, and save its lines as .svg",
+            false if has("abc") => {
+                "in the program that wrote it, export a mesh as .glb, .ply or .obj, and a mesh in motion as text of USD (.usda)"
+            }
+            false if has("fbx") => {
+                "in the program that wrote it, export the mesh as .glb, .ply or .obj; Blender opens .fbx files and exports these"
+            }
             false => "convert the file to a known format",
         };
         error(DataError::new(message, remedy).into())

@@ -1,7 +1,7 @@
 //! What came of the folding of a crease pattern, in words.
 
 use super::passing::Passing;
-use super::{FoldOrder, Recording, TouchingFaces};
+use super::{FoldOrder, Recording, TouchingFaces, UnfoldableVertex};
 use crate::scene::{FoldResidual, FoldTargets, FollowedFolds, Isometry};
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{EdgeId, Topology, fold_angle};
@@ -26,6 +26,8 @@ pub struct FoldVerdict {
     pub strain: [f64; 2],
     /// The part of the folding that is done when panels first pass through each other, if they do.
     pub passing: Option<f64>,
+    /// Vertices at which the pattern does not fold flat, if it is folded to the whole angles.
+    pub unfoldable: Vec<UnfoldableVertex>,
     /// Whether groups of creases fold in the order that is asked for.
     pub order: FoldOrder,
 }
@@ -127,6 +129,11 @@ impl FoldVerdict {
             strain,
             is_elastic: scene.sheet[0].isometry() != Isometry::Rods,
             passing: passing.part_of(scene.folding.as_ref()),
+            unfoldable: UnfoldableVertex::all(
+                &recording.sheet,
+                targets,
+                recording.fold_assignments.as_deref(),
+            ),
             order,
         })
     }
@@ -179,6 +186,16 @@ impl FoldVerdict {
                 }
             ),
         };
+        let unfoldable = match &self.unfoldable[..] {
+            [first, others @ ..] if self.open > 0 => match others.len() {
+                0 => format!("; {first}"),
+                more => format!(
+                    "; {first}; and {} besides",
+                    counted(more, "vertex", "vertices")
+                ),
+            },
+            _ => String::new(),
+        };
         let passing = match self.passing {
             Some(part) => format!(
                 "; panels pass through each other from {:.0} % of the folding on",
@@ -187,7 +204,7 @@ impl FoldVerdict {
             None => String::new(),
         };
         format!(
-            "folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}{stretch}{passing}{}",
+            "folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}{stretch}{unfoldable}{passing}{}",
             self.order
         )
     }

@@ -202,8 +202,8 @@ impl Rows {
         if let Some(elastic) = &summary.elastic {
             self.of_elastic(elastic);
         }
-        if let Some(gap) = summary.smallest_gap {
-            self.add("smallest gap", format!("{gap:.2e} m"));
+        if let Some(gap) = summary.gap_in_words() {
+            self.add("smallest gap", gap);
         }
         if let Some(plastic) = ending.plastic {
             self.add("dissipated by yielding", format!("{plastic:.2e} J"));

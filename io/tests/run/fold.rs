@@ -4,7 +4,7 @@ use crate::skip::data_folder;
 use crate::{code, run, stderr};
 use isosheet_io::mesh::{EdgeId, fold_angle};
 use isosheet_io::read_json;
-use isosheet_io::run::{FoldVerdict, Recording, Summary};
+use isosheet_io::run::{FlatFoldingLaw, FoldVerdict, Recording, Summary};
 use std::fs;
 use std::path::Path;
 
@@ -49,6 +49,33 @@ fn a_vertex_folds_flat_without_a_scene_file() {
     assert_eq!(code(&again), Some(0), "{}", stderr(&again));
     let again: Summary = read_json(&dir.path().join("again/summary.json")).unwrap();
     assert_eq!(again.ending.residuals, summary.ending.residuals);
+    // Panels that touch keep the thickness of the sheet, and what is told says that it is taken off the gap.
+    let (said, ..) = folded(
+        dir.path(),
+        &[
+            "vertex.fold",
+            "out",
+            "--contact",
+            "-o",
+            "touch.toml",
+            "--force",
+        ],
+    );
+    assert!(
+        said.contains("smallest gap") && !said.contains("taken off"),
+        "{said}"
+    );
+    let words = [
+        "simulate",
+        "touch.toml",
+        "-o",
+        "thick",
+        "--set",
+        "sheet.thickness=1e-4",
+    ];
+    let thick = run(dir.path(), &words);
+    let said = String::from_utf8_lossy(&thick.stdout).into_owned();
+    assert!(said.contains(" m (thickness taken off)"), "{said}");
 }
 
 #[test]
@@ -100,6 +127,31 @@ fn panels_are_elastic_where_rigid_ones_do_not_close() {
         verdict.open > 0 && said.contains("open by more than 5 degrees"),
         "{said}"
     );
+    assert!(
+        said.contains("at (0.100, -0.100) m does not fold flat: it has 4 mountains and 4 valleys"),
+        "{said}"
+    );
+    assert_eq!(verdict.unfoldable.len(), 1);
+    // Three mountains and a valley, with angles of 90 and 90, and 60 and 120 degrees by turns.
+    let wrong = "1 0 0 2 0\n1 2 0 2 2\n1 2 2 0 2\n1 0 2 0 0\n2 1 1 2 1\n2 1 1 1 2\n2 1 1 0 1\n3 1 1 0.423 0\n";
+    fs::write(dir.path().join("wrong.cp"), wrong).unwrap();
+    let (said, _, verdict) = folded(dir.path(), &["wrong.cp", "out", "--force"]);
+    assert!(
+        said.contains("does not fold flat: the angles between its creases add up to")
+            && said.contains("(Kawasaki)"),
+        "{said}"
+    );
+    let FlatFoldingLaw::Kawasaki { mut sums } = verdict.unfoldable[0].violates else {
+        panic!("{:?}", verdict.unfoldable)
+    };
+    sums.sort_by(f64::total_cmp);
+    assert!(
+        (sums[0] - 150.0).abs() < 0.1 && (sums[1] - 210.0).abs() < 0.1,
+        "{sums:?}"
+    );
+    // To a part of the angles it need not fold flat.
+    let (_, _, verdict) = folded(dir.path(), &["wrong.cp", "out", "--part", "0.5", "--force"]);
+    assert_eq!(verdict.unfoldable, []);
 }
 
 /// A mountain at -180 degrees is not where a valley at 180 degrees is: with its odd crease in the wrong place a vertex
