@@ -44,6 +44,8 @@ fn a_vertex_folds_flat_without_a_scene_file() {
         page.contains("\"folded\":[0.0,"),
         "the page knows how far each frame is folded"
     );
+    // What has closed is shown as paper, and what stays open by how far it does.
+    assert!(!page.contains("\"colour\":0"));
     // The scene is that of the run.
     let again = run(dir.path(), &["simulate", "scene.toml", "-o", "again"]);
     assert_eq!(code(&again), Some(0), "{}", stderr(&again));
@@ -132,6 +134,8 @@ fn panels_are_elastic_where_rigid_ones_do_not_close() {
         "{said}"
     );
     assert_eq!(verdict.unfoldable.len(), 1);
+    let page = fs::read_to_string(dir.path().join("out/index.html")).unwrap();
+    assert!(page.contains("\"colour\":0"));
     // Three mountains and a valley, with angles of 90 and 90, and 60 and 120 degrees by turns.
     let wrong = "1 0 0 2 0\n1 2 0 2 2\n1 2 2 0 2\n1 0 2 0 0\n2 1 1 2 1\n2 1 1 1 2\n2 1 1 0 1\n3 1 1 0.423 0\n";
     fs::write(dir.path().join("wrong.cp"), wrong).unwrap();
@@ -447,4 +451,22 @@ fn misuse_of_fold_says_what_to_do() {
     assert!(said.contains("above 0 and at most 1"), "{said}");
     let said = refused("m.cp", MIURA, 2, &["--material", "paperr"]);
     assert!(said.contains("office paper"), "{said}");
+}
+
+/// Panels that are chosen as they do not stretch may be further from their angles than others, which is told.
+#[test]
+fn panels_that_end_nearer_are_told() {
+    let Some(data) = data_folder() else { return };
+    let pattern = data.join("fold/hypar_tri.fold");
+    let dir = tempfile::tempdir().unwrap();
+    let (said, _, verdict) = folded(dir.path(), &[pattern.to_str().unwrap(), "out"]);
+    let words = said.split("panels end nearer to their angles, ").nth(1);
+    let mut numbers = words.unwrap_or_else(|| panic!("{said}")).split(' ');
+    let nearer: f64 = numbers.next().unwrap().parse().unwrap();
+    let strain: f64 = numbers.nth(5).unwrap().parse().unwrap();
+    assert!(nearer < verdict.residual.rms - 1.0, "{said}");
+    // By angles and strain together the panels that are chosen are nearer.
+    let error = |degrees: f64, strain: f64| degrees.to_radians().hypot(strain);
+    let chosen = error(verdict.residual.rms, verdict.strain[0]);
+    assert!(chosen < error(nearer, 0.01 * strain), "{said}");
 }
