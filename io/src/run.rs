@@ -460,10 +460,7 @@ fn finish(
         vibration: progress
             .vibrations
             .fastest(facts.mass, facts.sheet.mean_length()),
-        thickness: {
-            let sheets = plan.file.scene().sheet.iter();
-            sheets.map(|sheet| sheet.thickness).fold(0.0, f64::max)
-        },
+        thickness: plan.file.scene().largest_thickness(),
         smallest_gap: progress.gap,
         iterations: progress.iterations,
         factorisations: progress.factorisations,

@@ -122,8 +122,8 @@ impl Composing {
         self.how.prepare()
     }
 
-    /// Refuses what would be refused once one of some scenes is chosen: a folder that holds the run of another one, and a scene
-    /// file of another one.
+    /// Refuses what would be refused once one of some scenes is chosen: a folder that holds the run of
+    /// another one, and a scene file of another one.
     pub(super) fn begin_one_of(&self, of: &Path, texts: &[String]) -> Done {
         self.begin(of)?;
         self.check_scene_file(texts)?;

@@ -6,14 +6,16 @@ use clap::Args;
 /// How a crease pattern is folded.
 #[derive(Debug, Args)]
 pub(super) struct FoldOptions {
-    /// Of a crease pattern, which part of its angle each crease is folded by, above 0 and at most 1 [default: 1]
+    /// Of a crease pattern, which part of its angle each crease is folded by, above 0 and at most 1 [default:
+    /// 1]
     #[arg(long, value_name = "PART", value_parser = part)]
     part: Option<f64>,
     /// Of a crease pattern, panels touch each other, and do not pass through each other
     #[arg(long)]
     contact: bool,
-    /// Of a crease pattern, groups of creases that fold one after the other, with `;` between them: mountains, valleys, numbers
-    /// of edges of the FOLD file, or lines of the drawing (layer:NAME, red, #ff8000, dashed, solid) with `,` between them
+    /// Of a crease pattern, groups of creases that fold one after the other, with `;` between them:
+    /// mountains, valleys, numbers of edges of the FOLD file, or lines of the drawing (layer:NAME, red,
+    /// #ff8000, dashed, solid) with `,` between them
     #[arg(long, value_name = "GROUPS", value_delimiter = ';')]
     order: Vec<FoldGroup>,
     /// Which frame of a FOLD file, by its number from 0 [default: the first one with vertices]

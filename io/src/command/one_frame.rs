@@ -15,7 +15,8 @@ pub(super) struct OneFrame {
     /// Of a run, write the frame that is nearest to time T alone, seconds
     #[arg(long, value_name = "T", conflicts_with_all = ["frame", "frames", "every", "fps"])]
     time: Option<f64>,
-    /// Of a run that folds a pattern, write the frame alone that is nearest to the part P of the angles, from 0 to 1
+    /// Of a run that folds a pattern, write the frame alone that is nearest to the part P of the angles, from
+    /// 0 to 1
     #[arg(long, value_name = "P", conflicts_with_all = ["frame", "time", "frames", "every", "fps"])]
     part: Option<f64>,
 }

@@ -33,8 +33,8 @@ const WELL: f64 = 5.0;
 /// paper itself has 3000 times as much, and thirty.
 const SOFT: [u32; 2] = [8000, 2400];
 
-/// The panels that are tried after rigid ones, and how far creases may be from their angles, degrees in the mean, for these
-/// not to be tried.
+/// The panels that are tried after rigid ones, and how far creases may be from their angles, degrees in the
+/// mean, for these not to be tried.
 const OTHERS: [(Panels, f64); 4] = [
     (Panels::Elastic { refine: 0 }, CLOSED),
     (Panels::Soft { stiffness: SOFT[0] }, CLOSED),
@@ -51,7 +51,8 @@ pub(super) struct Chosen {
     pub(super) scene: FoldScene,
     /// How far rigid panels close; `None` if they do not reach an end.
     pub(super) rigid: Option<FoldResidual>,
-    /// Other panels whose creases end nearer to their angles, and where, if there are any: those that stretch.
+    /// Other panels whose creases end nearer to their angles, and where, if there are any: those that
+    /// stretch.
     pub(super) nearer: Option<(Panels, FoldTrial)>,
     /// Where the same pattern ends without contact, if panels with contact do not close.
     pub(super) untouched: Option<FoldTrial>,

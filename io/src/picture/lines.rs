@@ -14,8 +14,8 @@ const LIFT: f64 = 0.004;
 /// How far edges of bodies are drawn behind what lies on them, pixels.
 const SINK: f64 = 2.0;
 
-/// Edges within a sheet are not drawn where they are shorter than the first of so many pixels in the mean, and in full
-/// where they are longer than the second: fine meshes look like a sheet.
+/// Edges within a sheet are not drawn where they are shorter than the first of so many pixels in the mean,
+/// and in full where they are longer than the second: fine meshes look like a sheet.
 const FADING: [f64; 2] = [10.0, 30.0];
 
 /// The width of dots, as part of the mean length of edges in the picture, and its bounds, pixels.

@@ -99,7 +99,8 @@ pub struct Look {
     pub sides: [[[u8; 3]; 2]; 6],
     /// sRGB colour of bodies; a light grey by default.
     pub body: [u8; 3],
-    /// Width of the wires, pixels; 0.7 by default. Edges of the boundary are 1.7 times as wide, and creases 1.4 times.
+    /// Width of the wires, pixels; 0.7 by default. Edges of the boundary are 1.7 times as wide, and creases
+    /// 1.4 times.
     pub wire: f64,
 }
 

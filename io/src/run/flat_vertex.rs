@@ -35,12 +35,13 @@ pub enum FlatFoldingLaw {
     },
 }
 
-/// Sums of angles that differ by no more from 180 degrees are 180 degrees: creases that are so far from their angles are closed.
+/// Sums of angles that differ by no more from 180 degrees are 180 degrees: creases that are so far from their
+/// angles are closed.
 const CLOSED: f64 = 1.0;
 
 impl UnfoldableVertex {
-    /// Those of a flat sheet whose creases are driven to targets, of which `assignments` say what other edges do: an edge
-    /// of which they say nothing folds freely.
+    /// Those of a flat sheet whose creases are driven to targets, of which `assignments` say what other edges
+    /// do: an edge of which they say nothing folds freely.
     pub(super) fn all(
         sheet: &Sheet,
         targets: &FoldTargets,

@@ -9,7 +9,8 @@ use std::fmt;
 pub struct GroupFold {
     /// The creases of the group in words.
     pub name: String,
-    /// How far the one that is furthest is from its angle when the next group begins, degrees; `None` of the last group.
+    /// How far the one that is furthest is from its angle when the next group begins, degrees; `None` of the
+    /// last group.
     pub at_next: Option<f64>,
     /// The same at the end.
     pub at_end: f64,
@@ -56,7 +57,8 @@ impl FoldOrder {
     }
 }
 
-/// What is not as it was asked for, as the end of a sentence; nothing if all groups have reached their angles in turn.
+/// What is not as it was asked for, as the end of a sentence; nothing if all groups have reached their angles
+/// in turn.
 impl fmt::Display for FoldOrder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let is_short = |off: &f64| *off > FoldVerdict::OPEN;

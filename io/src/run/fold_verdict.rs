@@ -220,8 +220,8 @@ fn inside_panels(topology: &Topology, targets: &FoldTargets) -> impl Iterator<It
     edges.filter(move |e| !is_crease[e.index()] && !topology.is_boundary_edge(*e))
 }
 
-/// Of each face the number of the face that stands for its panel. Panels are what is left when the sheet is cut along its
-/// creases.
+/// Of each face the number of the face that stands for its panel. Panels are what is left when the sheet is
+/// cut along its creases.
 fn panels(topology: &Topology, targets: &FoldTargets) -> Vec<usize> {
     let mut panel: Vec<usize> = (0..topology.face_count()).collect();
     for e in inside_panels(topology, targets) {

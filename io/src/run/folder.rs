@@ -342,8 +342,8 @@ pub(crate) fn check_folder(root: &Path) -> Result<(), RunError> {
     }
 }
 
-/// Refuses a folder that holds the run of none of some scenes, one of which is to run there; where the run that it holds is to
-/// be deleted, one with a file that these scenes read.
+/// Refuses a folder that holds the run of none of some scenes, one of which is to run there; where the run
+/// that it holds is to be deleted, one with a file that these scenes read.
 ///
 /// # Errors
 /// As [`simulate`](super::simulate) refuses it.

@@ -18,8 +18,9 @@ pub struct TouchingFaces {
 }
 
 impl TouchingFaces {
-    /// The nearest at positions `x` (`3V`, metres) that are within reach (metres) of each other, of panels that are given by
-    /// their number for each face; none if nothing touches the two panels `beside` a crease.
+    /// The nearest at positions `x` (`3V`, metres) that are within reach (metres) of each other, of panels
+    /// that are given by their number for each face; none if nothing touches the two panels `beside` a
+    /// crease.
     pub(super) fn find(
         sheet: &Sheet,
         x: &[f64],

@@ -31,11 +31,12 @@ pub enum FoldGroup {
     Mountains,
     /// Creases with a positive angle.
     Valleys,
-    /// Creases by the numbers of their edges in the file, from 0. (Of a drawing they are those of the FOLD file that
-    /// `isosheet convert` makes of it.)
+    /// Creases by the numbers of their edges in the file, from 0. (Of a drawing they are those of the FOLD
+    /// file that `isosheet convert` makes of it.)
     Edges(Vec<usize>),
     /// Creases along lines of the drawing that the mesh is made of, in the words that select lines there:
-    /// `["layer:Wings", "#e6007e"]`. The mesh is an SVG file, a drawing, or a FOLD file that `isosheet mesh` made of one.
+    /// `["layer:Wings", "#e6007e"]`. The mesh is an SVG file, a drawing, or a FOLD file that `isosheet mesh`
+    /// made of one.
     Drawn(Vec<String>),
 }
 
@@ -109,7 +110,8 @@ impl FoldGroup {
     }
 }
 
-/// As a command line has it: `mountains`, `valleys`, numbers of edges, or lines of the drawing with `,` between them.
+/// As a command line has it: `mountains`, `valleys`, numbers of edges, or lines of the drawing with `,`
+/// between them.
 impl FromStr for FoldGroup {
     type Err = String;
 

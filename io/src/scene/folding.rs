@@ -55,8 +55,8 @@ pub struct Folding {
     /// keeps panels flat.
     #[serde(default)]
     pub flat_stiffness: Option<f64>,
-    /// Which part of their angles the springs are at, from 0 to 1, as a function of time. If left out, they go smoothly from the
-    /// angles of the start to the whole ones within `time`. Not beside an `order`.
+    /// Which part of their angles the springs are at, from 0 to 1, as a function of time. If left out, they
+    /// go smoothly from the angles of the start to the whole ones within `time`. Not beside an `order`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub course: Option<Profile>,
     /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on

@@ -175,7 +175,8 @@ fn a_measure_is_of_vertices_or_of_a_crease() {
     }
 }
 
-/// Creases that `[folding]` folds are measured by the groups of its order, in the scene that `isosheet fold` writes.
+/// Creases that `[folding]` folds are measured by the groups of its order, in the scene that `isosheet fold`
+/// writes.
 #[test]
 fn creases_of_patterns_are_measured_in_scenes_of_fold() {
     let dir = tempfile::tempdir().unwrap();

@@ -725,7 +725,8 @@ fn all_colours_of_unknown_lines_are_named() {
     assert!(said.contains(told), "{said}");
 }
 
-/// The carton of the book is glued while its creases are folded by 90 degrees, and stays closed when they spring back.
+/// The carton of the book is glued while its creases are folded by 90 degrees, and stays closed when they
+/// spring back.
 #[test]
 fn a_flap_is_glued_while_the_carton_is_folded() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/drawing.md");

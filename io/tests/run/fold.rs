@@ -225,14 +225,16 @@ fn groups_of_creases_fold_one_after_the_other() {
     refused("valleys; 99", 3, "group 1");
 }
 
-/// A strip of three squares whose left end folds over the middle and whose right one, which is longer, over both.
+/// A strip of three squares whose left end folds over the middle and whose right one, which is longer, over
+/// both.
 const LAYERED: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="10mm" viewBox="0 0 40 10" fill="none">
   <path stroke="black" d="M0 0 H40 V10 H0 Z"/>
   <g id="Left"><path stroke="blue" d="M10 0 V10"/></g>
   <g id="Right"><path stroke="blue" d="M20 0 V10"/></g>
 </svg>"#;
 
-/// Groups are named by lines of the drawing, in its file and in the mesh of it; an order that is not achieved is told.
+/// Groups are named by lines of the drawing, in its file and in the mesh of it; an order that is not achieved
+/// is told.
 #[test]
 fn groups_are_named_by_lines_of_the_drawing() {
     let dir = tempfile::tempdir().unwrap();
@@ -300,7 +302,8 @@ fn groups_are_named_by_lines_of_the_drawing() {
     );
 }
 
-/// A vertex of degree four has one motion, in which all creases fold at once: a crease alone does not reach its angle.
+/// A vertex of degree four has one motion, in which all creases fold at once: a crease alone does not reach
+/// its angle.
 #[test]
 fn an_order_that_is_not_achieved_is_told() {
     let dir = tempfile::tempdir().unwrap();
@@ -382,7 +385,8 @@ fn panels_that_pass_through_each_other_are_told() {
     let (said, _, verdict) = folded(dir.path(), &words);
     assert_eq!(verdict.passing, None, "{said}");
     assert_eq!(verdict.open, 2, "{said}");
-    // The panels at the ends touch, within the distance at which they feel each other: half a thickness of paper.
+    // The panels at the ends touch, within the distance at which they feel each other: half a thickness of
+    // paper.
     let touching = verdict.held_open.unwrap();
     assert!(touching.gap < 2.5e-4 * 0.2, "{touching:?}");
     let told = format!("where {touching}");

@@ -582,7 +582,8 @@ fn a_slider_folds_a_pattern() {
     let set = json!({ "set": { "slider": 0, "value": 0.5 } });
     assert_eq!(served.order(viewer.number, set), 204);
     assert_eq!(served.order(viewer.number, json!("play")), 204);
-    // A half of half of 180 degrees: the corners beside the diagonal of a square of 0.2 m come nearer to each other.
+    // A half of half of 180 degrees: the corners beside the diagonal of a square of 0.2 m come nearer to each
+    // other.
     let expected = 0.2 * 2.0_f64.sqrt() * 22.5_f64.to_radians().cos();
     viewer.frame(|f| {
         let corners = [0, 1, 2, 3].map(|k| vertex(f, k));

@@ -637,7 +637,8 @@ fn a_drawing_is_folded() {
     assert!(error.contains("a drawing has none"), "{error}");
 }
 
-/// The springs are at a part of the angles that is a function of time; the one that is taken by itself may be written.
+/// The springs are at a part of the angles that is a function of time; the one that is taken by itself may be
+/// written.
 #[test]
 fn the_course_of_a_folding_is_a_function_of_time() {
     let dir = tempfile::tempdir().unwrap();

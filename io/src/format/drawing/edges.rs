@@ -36,7 +36,8 @@ impl DrawnEdges {
 }
 
 impl Selector {
-    /// Whether one of the lines is meant that an edge follows, by its [`FileCrease::drawn`](crate::FileCrease::drawn).
+    /// Whether one of the lines is meant that an edge follows, by its
+    /// [`FileCrease::drawn`](crate::FileCrease::drawn).
     pub fn selects_any(&self, lines: &DrawnLines, drawn: Option<u32>) -> bool {
         lines.pens_of(drawn).any(|pen| self.selects(pen))
     }

@@ -98,7 +98,8 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
 }
 
 /// Writes one mesh with the creases that were read. Their fold angles are those of the file they were read
-/// from, and null where it has none, and so are the lines of a drawing that they follow. Other edges are `B` if they have one face, and `U` otherwise.
+/// from, and null where it has none, and so are the lines of a drawing that they follow. Other edges are `B`
+/// if they have one face, and `U` otherwise.
 pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
     let points = mesh.positions.as_chunks::<3>().0;
     let mut faces_at: BTreeMap<[u32; 2], usize> = BTreeMap::new();

@@ -49,8 +49,8 @@ impl DrawnLines {
         set.into_iter().flatten().copied()
     }
 
-    /// The name of a line that an edge follows, by its [`FileCrease::drawn`](super::FileCrease::drawn): the innermost of its
-    /// layers and groups, or its own.
+    /// The name of a line that an edge follows, by its [`FileCrease::drawn`](super::FileCrease::drawn): the
+    /// innermost of its layers and groups, or its own.
     pub fn name(&self, drawn: Option<u32>) -> Option<&str> {
         let mut pens = self.pens_of(drawn);
         pens.find_map(|pen| pen.layers.first()).map(String::as_str)

@@ -30,7 +30,8 @@ use std::collections::HashMap;
 ///   reversed faces are turned with them.
 /// - Edges with the assignment `C` separate the sheet: vertices there are doubled.
 /// - Fold angles are degrees in the file.
-/// - The keys `isosheet:lines` and `edges_isosheet:lines` say which lines of a drawing edges follow ([`lines`]).
+/// - The keys `isosheet:lines` and `edges_isosheet:lines` say which lines of a drawing edges follow
+///   ([`lines`]).
 /// - The key `faces_isosheet:group` has the name of a group, or null, for each of `faces_vertices`.
 pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Located> {
     let plain = |problem| (None, problem);

@@ -138,7 +138,8 @@ pub struct MeshFile {
     pub diagonals: Vec<[u32; 2]>,
     /// The edges of a FOLD file and the diagonals; empty for other formats.
     pub creases: Vec<FileCrease>,
-    /// How the lines of the drawing are drawn that the edges follow, of drawings and of FOLD files that were made of one.
+    /// How the lines of the drawing are drawn that the edges follow, of drawings and of FOLD files that were
+    /// made of one.
     pub drawn: DrawnLines,
     /// The groups of triangles that the file names: those of OBJ files by groups, objects and materials; of PLY
     /// files by properties of faces, as `property=value`; of glTF files by nodes, meshes and materials; of FOLD

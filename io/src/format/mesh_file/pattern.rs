@@ -83,8 +83,8 @@ pub(super) fn of_segments(segments: &[Segment], snap: Option<f64>) -> Result<Pla
     }
 }
 
-/// The planar graph of the edges of a crease pattern whose points are one within `snap`, or else within their round-off; where
-/// that leaves faults that a larger distance mends, within the distances of drawings.
+/// The planar graph of the edges of a crease pattern whose points are one within `snap`, or else within their
+/// round-off; where that leaves faults that a larger distance mends, within the distances of drawings.
 ///
 /// # Errors
 /// [`DataError`] for edges that are no drawing of a sheet.

@@ -1,5 +1,6 @@
-//! How the lines are drawn that edges of a FOLD file follow: the keys `isosheet:lines` of a frame, a list of colours
-//! (`"#rrggbb"`), dashes and layers, and `edges_isosheet:lines`, of each edge the numbers of its lines in that list.
+//! How the lines are drawn that edges of a FOLD file follow: the keys `isosheet:lines` of a frame, a list of
+//! colours (`"#rrggbb"`), dashes and layers, and `edges_isosheet:lines`, of each edge the numbers of its
+//! lines in that list.
 
 use crate::format::DataError;
 use crate::format::mesh_file::{DrawnLines, FileCrease};

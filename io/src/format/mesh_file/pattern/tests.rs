@@ -339,8 +339,8 @@ fn outlines_inside_the_sheet_are_cuts() {
     assert_eq!([whole, cut], [6, 8]);
 }
 
-/// Each line of this square has vertices of its own, as programs write them that do not join lines: those at one place are one
-/// vertex, within round-off or where faces would touch themselves otherwise.
+/// Each line of this square has vertices of its own, as programs write them that do not join lines: those at
+/// one place are one vertex, within round-off or where faces would touch themselves otherwise.
 #[test]
 fn vertices_at_one_place_of_patterns_without_faces_are_one() {
     let square = |off: f64, more: &str| {
