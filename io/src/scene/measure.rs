@@ -43,8 +43,8 @@ use std::sync::Arc;
 /// quantity = "moment"
 /// ```
 ///
-/// Creases that `[folding]` folds are named as in its `order`: `fold = "valleys"`, `fold = { edges = [3, 7]
-/// }`.
+/// Creases that `[folding]` folds are named as in its `order`: `fold = "valleys"` or
+/// `fold = { edges = [3, 7] }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Measure {
