@@ -71,9 +71,9 @@ pub enum CreaseEdges {
     },
     /// Edges of a crease pattern by what they are meant to do.
     Pattern(PatternEdges),
-    /// The edges along lines of `sheet.mesh.drawing`, in the words that select lines there: `["layer:Crease",
-    /// "#e6007e"]`, also where the mesh is a FOLD file that `isosheet mesh` made of the drawing, or an SVG
-    /// file of a crease pattern. A positive angle makes valleys of all of them.
+    /// The edges along lines of `sheet.mesh.drawing`, in the words that select lines there:
+    /// `["layer:Crease", "#e6007e"]`, also where the mesh is a FOLD file that `isosheet mesh` made of the
+    /// drawing, or an SVG file of a crease pattern. A positive angle makes valleys of all of them.
     Drawn(Vec<String>),
 }
 
