@@ -44,9 +44,9 @@ pub use json::{read_json, write_json};
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};
 pub use measures::{MeasureRow, MeasureWriter, read_measures};
 pub use mesh_file::{
-    EdgeAssignment, FaceGroups, FileCrease, FoldFrame, Location, MeshFile, MeshFileError,
-    MeshFileProblem, MeshFormat, MeshOptions, Polygons, ReadingChanges, Repair, SeparateBuffers,
-    parse_mesh, read_mesh, read_mesh_with, read_sheet,
+    DrawnLines, EdgeAssignment, FaceGroups, FileCrease, FoldFrame, Location, MeshFile,
+    MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, Polygons, ReadingChanges, Repair,
+    SeparateBuffers, parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
 #[cfg(feature = "run")]
 pub(crate) use motion_file::sources;

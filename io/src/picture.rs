@@ -28,6 +28,7 @@ mod animation;
 mod camera;
 mod canvas;
 mod error;
+mod lines;
 #[cfg(feature = "labels")]
 mod montage;
 mod occlusion;
@@ -45,7 +46,7 @@ pub use canvas::Image;
 pub use error::PictureError;
 #[cfg(feature = "labels")]
 pub use montage::{Labelled, montage};
-pub use sheet::{Look, SheetPicture, render};
+pub use sheet::{Look, SheetPicture, render, render_folded};
 pub use solid::Solid;
 #[cfg(feature = "labels")]
 pub use vector_drawing::svg_to_png;

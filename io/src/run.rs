@@ -45,12 +45,15 @@ mod extension_error;
 mod film;
 #[cfg(feature = "picture")]
 mod film_encoder;
+mod flat_vertex;
+mod fold_order;
 mod fold_verdict;
 mod folder;
 mod frame_field;
 mod frames;
 #[cfg(feature = "picture")]
 mod gallery;
+mod held_open;
 mod incidence;
 mod intervention;
 mod page;
@@ -89,12 +92,15 @@ pub use extension_error::ExtensionError;
 pub use film::{Film, FilmOptions, Marks};
 #[cfg(feature = "picture")]
 pub use film_encoder::FilmError;
-pub use fold_verdict::FoldVerdict;
-#[cfg(feature = "cli")]
-pub(crate) use folder::check_folder;
+pub use flat_vertex::{FlatFoldingLaw, UnfoldableVertex};
+pub use fold_order::{FoldOrder, GroupFold};
+pub use fold_verdict::{FoldVerdict, FoldedCrease};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
+#[cfg(feature = "cli")]
+pub(crate) use folder::{check_folder, check_run};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
+pub use held_open::TouchingFaces;
 pub use incidence::Incidence;
 pub use intervention::Intervention;
 pub use page::write_page;
@@ -116,7 +122,8 @@ use crate::format::{
 use crate::scene::{Kept, SceneFile, Setup, UnderWay};
 use crate::view::PageOptions;
 use checkpoint::RunProgress;
-use folder::{Existing, FolderState, RunFolder, RunInputs, stored_scene};
+pub(crate) use folder::Existing;
+use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use page::write_page_of;
 use recording::RunFrames;
@@ -453,6 +460,7 @@ fn finish(
         vibration: progress
             .vibrations
             .fastest(facts.mass, facts.sheet.mean_length()),
+        thickness: plan.file.scene().largest_thickness(),
         smallest_gap: progress.gap,
         iterations: progress.iterations,
         factorisations: progress.factorisations,

@@ -50,6 +50,7 @@ mod engine_problem;
 mod error;
 #[cfg(feature = "cli")]
 mod face_moments;
+mod fold_group;
 mod fold_scene;
 mod folding;
 mod follower_loads;
@@ -131,12 +132,13 @@ pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 #[cfg(feature = "cli")]
 pub(crate) use face_moments::FaceMoments;
+pub use fold_group::FoldGroup;
 pub use fold_scene::{FoldScene, Panels, Touch};
 #[cfg(feature = "run")]
 pub(crate) use folding::FollowedFolds;
 #[cfg(feature = "run")]
 pub(crate) use folding::off_target;
-pub use folding::{FoldGroup, FoldResidual, FoldTargets, Folding};
+pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use follower_loads::{Gas, Moment, Pressure};
 pub use forces::{Acceleration, Forces, Frame, Load};
 pub use glue::{Glue, SeamBend, SeamSide};
@@ -369,7 +371,7 @@ impl Scene {
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
-            measure.check(&key, &self.crease, &mut checks);
+            measure.check(&key, self, &mut checks);
             let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
             bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }

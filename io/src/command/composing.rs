@@ -6,7 +6,7 @@ use super::progress::event;
 use super::simulate::{How, default_folder};
 use crate::dynamics::Material;
 use crate::format::FileError;
-use crate::run::{Recording, check_folder, simulate, simulate_anew};
+use crate::run::{Existing, Recording, check_folder, check_run, simulate, simulate_anew};
 use crate::scene::SceneFile;
 use crate::{Advice, write_atomically};
 use clap::Args;
@@ -122,6 +122,36 @@ impl Composing {
         self.how.prepare()
     }
 
+    /// Refuses what would be refused once one of some scenes is chosen: a folder that holds the run of
+    /// another one, and a scene file of another one.
+    pub(super) fn begin_one_of(&self, of: &Path, texts: &[String]) -> Done {
+        self.begin(of)?;
+        self.check_scene_file(texts)?;
+        let scenes = texts
+            .iter()
+            .map(|text| parsed(&self.scene_path(of), text.clone()));
+        let scenes: Vec<SceneFile> = scenes.collect::<Result<_, _>>()?;
+        let existing = match self.force {
+            true => Existing::Delete,
+            false => Existing::Continue,
+        };
+        Ok(check_run(&self.folder(of), &scenes, existing)?)
+    }
+
+    /// Refuses to replace a scene by one of these texts unless it is one of them, or that was asked for.
+    fn check_scene_file(&self, texts: &[String]) -> Done {
+        let old = self.scene.as_ref().filter(|_| !self.force);
+        let Some((scene, old)) = old.and_then(|s| Some((s, fs::read_to_string(s).ok()?))) else {
+            return Ok(());
+        };
+        if texts.contains(&old) {
+            return Ok(());
+        }
+        let message = format!("{} is another scene", scene.display());
+        Err(Failure::misuse(message)
+            .remedy("give the scene another name, or replace it with --force"))
+    }
+
     /// How the scene of a file names another file.
     pub(super) fn named_from_scene(&self, of: &Path, file: &Path) -> Result<PathBuf, Failure> {
         named_from(&self.scene_path(of), file)
@@ -142,11 +172,7 @@ impl Composing {
         let file = parsed(&self.scene_path(of), text.clone());
         let file = file.map_err(|failure| self.naming_scene(failure))?;
         if let Some(scene) = &self.scene {
-            if !self.force && fs::read_to_string(scene).is_ok_and(|old| old != text) {
-                let message = format!("{} is another scene", scene.display());
-                return Err(Failure::misuse(message)
-                    .remedy("give the scene another name, or replace it with --force"));
-            }
+            self.check_scene_file(std::slice::from_ref(&text))?;
             write_atomically(scene, |w| w.write_all(text.as_bytes()))
                 .map_err(|e| Failure::of(Code::Output, &e))?;
         }

@@ -4,11 +4,13 @@ use super::failure::{Code, Done, Failure};
 use super::frames::{FrameRange, Size, View};
 use super::info::is_scene;
 use super::message::counted;
+use super::one_frame::OneFrame;
 use super::pictures::{self, FrameChoice, PictureFormat};
 use super::write::{is_same_file, to_stdout};
 use crate::format::drawing::Length;
 use crate::mesh::wording::given;
 use crate::run::{FilmOptions, Marks, Recording};
+use crate::scene::Folding;
 use crate::{
     Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem,
     MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, read_mesh_with, thickened,
@@ -49,6 +51,8 @@ Examples:
   isosheet convert cloth-run cloth.apng        a run as a film
   isosheet convert cloth-run end.png           a picture of its last frame
   isosheet convert cloth-run half.png --time 0.5 --plain
+  isosheet convert crane-run half.fold --part 0.5
+                                               a run that folds a pattern, where it is folded by half
   isosheet convert sheet.obj sheet.fold        a mesh in another format";
 
 /// Convert a mesh file to another format, or a run to files of other programs
@@ -63,12 +67,8 @@ pub(crate) struct Convert {
     /// The same, as the other commands have it
     #[arg(short, long, value_name = "OUTPUT")]
     out: Option<PathBuf>,
-    /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0)
-    #[arg(long, value_name = "K", conflicts_with_all = ["frames", "every", "fps"])]
-    frame: Option<usize>,
-    /// Of a run, write the frame that is nearest to time T alone, seconds
-    #[arg(long, value_name = "T", conflicts_with_all = ["frame", "frames", "every", "fps"])]
-    time: Option<f64>,
+    #[command(flatten)]
+    one: OneFrame,
     /// Of a run, write the frames from A to B, both included; A.. and ..B go to an end
     #[arg(long, value_name = "A..B")]
     frames: Option<FrameRange>,
@@ -132,7 +132,7 @@ impl Convert {
             let trajectory = self.at_rate(trajectory)?;
             let series = Series::new(&trajectory, &self.series_options()?);
             let series = series.map_err(|e| failed(&e, Code::Input))?;
-            return self.write_run(&series, &trajectory);
+            return self.write_run(&series, &trajectory, None);
         }
         self.check_input()?;
         let of_runs = [
@@ -140,7 +140,11 @@ impl Convert {
             ("--every", self.every.is_some(), "chooses frames"),
             ("--fps", self.fps.is_some(), "chooses frames"),
             ("--no-bodies", self.no_bodies, "leaves out bodies"),
-            ("--time", self.time.is_some(), "chooses a frame"),
+            (
+                self.one.of_run().unwrap_or_default(),
+                self.one.of_run().is_some(),
+                "chooses a frame",
+            ),
         ];
         if let Some((option, _, what)) = of_runs.iter().find(|(_, given, _)| *given) {
             let message = format!("{option} {what} of a run, and a mesh file has none");
@@ -149,7 +153,7 @@ impl Convert {
         self.check_look()?;
         let options = MeshOptions {
             weld: self.weld,
-            frame: self.frame.map(FoldFrame::Number),
+            frame: self.one.frame.map(FoldFrame::Number),
             ..MeshOptions::default()
         };
         let mesh = read_mesh_with(&self.input, &options).map_err(|e| match e.problem {
@@ -171,7 +175,8 @@ impl Convert {
         }
         let series = recording.series(&self.series_options()?);
         let series = series.map_err(|e| failed(&e, Code::Input))?;
-        self.write_run(&series, &recording.trajectory)
+        let folding = recording.scene.scene().folding.as_ref();
+        self.write_run(&series, &recording.trajectory, folding)
     }
 
     /// The chosen part of a motion at the rate that was asked for.
@@ -247,7 +252,7 @@ impl Convert {
             .any(|e| extension.eq_ignore_ascii_case(e));
         let is_many = self.frames.is_some() || self.every.is_some() || self.fps.is_some();
         let is_picture = extension.eq_ignore_ascii_case("png");
-        has_folder && self.frame.is_none() && self.time.is_none() || is_picture && is_many
+        has_folder && !self.one.is_asked_for() || is_picture && is_many
     }
 
     /// Refuses files of a run and scenes, of which a user means the run.
@@ -289,7 +294,8 @@ impl Convert {
         }
         let is_many = self.frames.is_some() || self.every.is_some() || self.fps.is_some();
         let count = recording.trajectory.len();
-        let choice = match self.frame_of(&recording.trajectory)? {
+        let folding = recording.scene.scene().folding.as_ref();
+        let choice = match self.one.of(&recording.trajectory, folding)? {
             Some(frame) => FrameChoice::One(frame),
             None if is_many || format != PictureFormat::Png => {
                 let [first, last] = self.range().of(count);
@@ -312,25 +318,13 @@ impl Convert {
         pictures::write(recording, choice, format, &options, self.output())
     }
 
-    /// The one frame of a motion that is asked for, if one is.
-    fn frame_of(&self, trajectory: &Trajectory) -> Result<Option<usize>, Failure> {
-        let Some(time) = self.time else {
-            return Ok(self.frame);
-        };
-        let times = trajectory.times().iter();
-        let away = times.map(|t| (t - time).abs()).enumerate();
-        let nearest = away.min_by(|a, b| a.1.total_cmp(&b.1));
-        match nearest.filter(|_| time.is_finite()) {
-            Some((frame, _)) => Ok(Some(frame)),
-            None => Err(wrong(
-                &format!("there is no frame near {} s", given(time)),
-                "give a time of the run, seconds",
-            )),
-        }
-    }
-
-    fn write_run(&self, series: &Series<'_>, trajectory: &Trajectory) -> Done {
-        if let Some(frame) = self.frame_of(trajectory)? {
+    fn write_run(
+        &self,
+        series: &Series<'_>,
+        trajectory: &Trajectory,
+        folding: Option<&Folding>,
+    ) -> Done {
+        if let Some(frame) = self.one.of(trajectory, folding)? {
             let mesh = series.mesh(frame).map_err(|e| failed(&e, Code::Input))?;
             if self.is_changed() {
                 return self.write_mesh(mesh);
@@ -358,7 +352,7 @@ impl Convert {
         let Exported { files, frames } = write_series(self.output(), series).map_err(|error| {
             let failure = failed(&error, Code::Output);
             match error {
-                ExportError::Extension { .. } => failure.remedy(
+                ExportError::Extension { .. } if is_unknown(&error) => failure.remedy(
                     "choose a known format, or .png or .apng for pictures of the folder of a run",
                 ),
                 _ => failure,
@@ -434,7 +428,7 @@ impl Convert {
 }
 
 /// What to do where one frame is needed.
-const ONE_FRAME: &str = "choose one, with `--frame K` or `--time T`";
+const ONE_FRAME: &str = "choose one, with `--frame K`, `--time T` or `--part P`";
 
 /// The file that was asked for.
 fn last(files: &[PathBuf]) -> &Path {
@@ -446,11 +440,16 @@ fn weld_of_run() -> Failure {
     wrong(message, "leave it out")
 }
 
+/// Whether nothing better is known to do about an error than to choose another format.
+fn is_unknown(error: &ExportError) -> bool {
+    error.advice() == Some("choose a known format")
+}
+
 /// Why a mesh is not written.
 fn no_mesh(error: &ExportError) -> Failure {
     let failure = failed(error, Code::Output);
     match error {
-        ExportError::Extension { .. } => failure.remedy(
+        ExportError::Extension { .. } if is_unknown(error) => failure.remedy(
             "choose a known format; pictures and the formats of moving sheets are made of the folder of a run",
         ),
         _ => failure,

@@ -2,9 +2,10 @@
 
 use super::composing::Composing;
 use super::failure::Done;
+use super::fold_options::FoldOptions;
 use super::panels::{Pattern, text_of};
 use crate::run::{FoldVerdict, Recording};
-use crate::scene::{FoldGroup, FoldScene, Touch};
+use crate::scene::FoldScene;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -35,25 +36,8 @@ pub(crate) struct Fold {
     pattern: PathBuf,
     #[command(flatten)]
     composing: Composing,
-    /// Which part of its angle each crease is folded by, above 0 and at most 1
-    #[arg(long, value_name = "PART", default_value_t = 1.0, value_parser = part)]
-    part: f64,
-    /// Panels touch each other, and do not pass through each other
-    #[arg(long)]
-    contact: bool,
-    /// Groups of creases that fold one after the other: mountains, valleys, or numbers of edges of the FOLD file
-    #[arg(long, value_name = "GROUPS", value_delimiter = ';')]
-    order: Vec<FoldGroup>,
-    /// Which frame of a FOLD file, by its number from 0 [default: the first one with vertices]
-    #[arg(long, value_name = "NUMBER")]
-    frame: Option<usize>,
-}
-
-/// A number from 0 to 1 that is not 0.
-fn part(text: &str) -> Result<f64, String> {
-    let part: Option<f64> = text.parse().ok();
-    part.filter(|p| *p > 0.0 && *p <= 1.0)
-        .ok_or_else(|| "give a number above 0 and at most 1".to_owned())
+    #[command(flatten)]
+    options: FoldOptions,
 }
 
 impl Fold {
@@ -67,23 +51,19 @@ impl Fold {
             file: &self.pattern,
             scene: self.composing.scene_path(&self.pattern),
         };
-        let scene = pattern.rigid(self.frame, self.composing.size())?;
-        let scene = FoldScene {
+        let scene = pattern.rigid(self.options.frame, self.composing.size())?;
+        let scene = self.options.of(FoldScene {
             material: self.composing.material_or(&scene.material),
-            part: self.part,
-            touch: match self.contact {
-                true => Touch::Touches,
-                false => Touch::Passes,
-            },
-            order: self.order.clone(),
             ..scene
-        };
-        self.composing.begin(&self.pattern)?;
+        });
+        self.composing
+            .begin_one_of(&self.pattern, &pattern.candidates(&scene)?)?;
         let chosen = pattern.chosen(scene)?;
         let verdict = |recording: &Recording| {
             let verdict = FoldVerdict::of(recording)?;
             let words = verdict.in_words(chosen.rigid.as_ref());
-            Some(words + &chosen.obstruction().unwrap_or_default())
+            let more = [chosen.others(), chosen.obstruction()];
+            Some(words + &more.into_iter().flatten().collect::<String>())
         };
         let text = text_of(&chosen.scene)?;
         self.composing.run(&self.pattern, text, verdict)

@@ -14,6 +14,7 @@ mod slider;
 
 use super::composing::unwritten;
 use super::failure::{Code, Done, Failure};
+use super::fold_options::FoldOptions;
 use super::interrupt;
 use super::message::print_result;
 use super::open::open_address;
@@ -37,6 +38,7 @@ const EXAMPLES: &str = "\
 Examples:
   isosheet live cloth.toml                     play a scene in the browser, and pull at its sheet
   isosheet live crane.svg                      fold a crease pattern, and pull at it
+  isosheet live crane.svg --part 0.8 --contact fold it to four fifths of its angles, with panels that touch
   isosheet live flag.toml --set stop.time=60   play it for a minute before it pauses";
 
 const NOTES: &str = "\
@@ -58,6 +60,8 @@ pub(crate) struct Live {
     /// Change a key of the scene, for example `method.step=0.005` or `obstacle[0].friction=0.3`
     #[arg(long = "set", value_name = "KEY=VALUE")]
     edits: Vec<String>,
+    #[command(flatten)]
+    options: FoldOptions,
     /// Do not open the page in a browser, only print its address
     #[arg(long)]
     no_open: bool,
@@ -80,13 +84,22 @@ impl Live {
         let is_pattern = MeshFormat::of(&self.scene)
             .is_some_and(|format| format == MeshFormat::Fold || format.is_drawing());
         if !is_pattern {
+            if let Some(option) = self.options.given() {
+                let message = format!(
+                    "{option} is for crease patterns, and {} is none",
+                    self.scene.display()
+                );
+                let remedy = "change keys of the scene, for example `--set folding.part=0.5`";
+                return Err(Failure::misuse(message).remedy(remedy));
+            }
             return Ok(SceneFile::read(&self.scene, &self.edits)?);
         }
         let pattern = Pattern {
             file: &self.scene,
             scene: unwritten(&self.scene),
         };
-        let scene = pattern.chosen(pattern.rigid(None, None)?)?.scene;
+        let scene = pattern.rigid(self.options.frame, None)?;
+        let scene = pattern.chosen(self.options.of(scene))?.scene;
         Ok(SceneFile::parse(
             text_of(&scene)?,
             &pattern.scene,

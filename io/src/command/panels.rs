@@ -33,6 +33,15 @@ const WELL: f64 = 5.0;
 /// paper itself has 3000 times as much, and thirty.
 const SOFT: [u32; 2] = [8000, 2400];
 
+/// The panels that are tried after rigid ones, and how far creases may be from their angles, degrees in the
+/// mean, for these not to be tried.
+const OTHERS: [(Panels, f64); 4] = [
+    (Panels::Elastic { refine: 0 }, CLOSED),
+    (Panels::Soft { stiffness: SOFT[0] }, CLOSED),
+    (Panels::Soft { stiffness: SOFT[1] }, CLOSED),
+    (Panels::Elastic { refine: 1 }, WELL),
+];
+
 /// Faces of an elastic sheet whose panels are divided, at most.
 const MOST_FACES: usize = 3000;
 
@@ -42,11 +51,25 @@ pub(super) struct Chosen {
     pub(super) scene: FoldScene,
     /// How far rigid panels close; `None` if they do not reach an end.
     pub(super) rigid: Option<FoldResidual>,
+    /// Other panels whose creases end nearer to their angles, and where, if there are any: those that
+    /// stretch.
+    pub(super) nearer: Option<(Panels, FoldTrial)>,
     /// Where the same pattern ends without contact, if panels with contact do not close.
     pub(super) untouched: Option<FoldTrial>,
 }
 
 impl Chosen {
+    /// Which other panels end nearer to their angles, as the end of a sentence.
+    pub(super) fn others(&self) -> Option<String> {
+        let (panels, trial) = self.nearer?;
+        Some(format!(
+            "; {} end nearer to their angles, {:.1} degrees rms, with strains of {:.0} %",
+            named(panels),
+            trial.residual.rms,
+            100.0 * trial.strain
+        ))
+    }
+
     /// Why panels with contact do not close that do without, as the end of a sentence.
     pub(super) fn obstruction(&self) -> Option<String> {
         let FoldTrial {
@@ -105,6 +128,21 @@ impl Pattern<'_> {
         })
     }
 
+    /// The texts of the scenes of which one is chosen.
+    pub(super) fn candidates(&self, rigid: &FoldScene) -> Result<Vec<String>, Failure> {
+        let of = |panels: Panels| {
+            text_of(&FoldScene {
+                panels,
+                ..rigid.clone()
+            })
+        };
+        let others = OTHERS.into_iter().map(|(panels, _)| panels);
+        std::iter::once(Panels::Rigid)
+            .chain(others)
+            .map(of)
+            .collect()
+    }
+
     /// The scene whose panels close best.
     pub(super) fn chosen(&self, rigid: FoldScene) -> Result<Chosen, Failure> {
         let (chosen, trial) = self.best(rigid)?;
@@ -132,22 +170,23 @@ impl Pattern<'_> {
         let first = self.tried(&rigid)?;
         let residual = first.map(|trial| trial.residual);
         let mut best = (first, rigid.clone());
-        let chosen = |scene| Chosen {
+        let chosen = |scene, nearer| Chosen {
             scene,
             rigid: residual,
+            nearer,
             untouched: None,
         };
         if first.is_some_and(|trial| closes(&trial, CLOSED)) {
-            return Ok((chosen(rigid), first));
+            return Ok((chosen(rigid, None), first));
         }
+        let mut nearest = first.map(|trial| (Panels::Rigid, trial));
         let faces = self.parsed(&rigid)?.build()?;
         let faces = faces.model.topology().face_count();
-        let mut others = vec![(Panels::Elastic { refine: 0 }, CLOSED)];
-        others.extend(SOFT.map(|stiffness| (Panels::Soft { stiffness }, CLOSED)));
-        if faces * 4 <= MOST_FACES {
-            others.push((Panels::Elastic { refine: 1 }, WELL));
-        }
-        for (panels, enough) in others {
+        let is_coarse = |panels: &Panels| match panels {
+            Panels::Elastic { refine } => faces << (2 * refine) <= MOST_FACES || *refine == 0,
+            Panels::Rigid | Panels::Soft { .. } => true,
+        };
+        for (panels, enough) in OTHERS.into_iter().filter(|(panels, _)| is_coarse(panels)) {
             if best.0.is_some_and(|trial| closes(&trial, enough)) {
                 break;
             }
@@ -156,6 +195,12 @@ impl Pattern<'_> {
                 ..rigid.clone()
             };
             let found = self.tried(&scene)?;
+            let rms = |trial: &FoldTrial| trial.residual.rms;
+            if let Some(trial) = found
+                && nearest.is_none_or(|(_, known)| rms(&trial) < rms(&known))
+            {
+                nearest = Some((panels, trial));
+            }
             let rank = |trial: Option<FoldTrial>| match trial {
                 Some(trial) => (!closes(&trial, WELL), trial.error()),
                 None => (true, f64::INFINITY),
@@ -165,7 +210,11 @@ impl Pattern<'_> {
                 best = (found, scene);
             }
         }
-        Ok((chosen(best.1), best.0))
+        let (trial, scene) = best;
+        let is_nearer = |(_, other): &(Panels, FoldTrial)| {
+            trial.is_some_and(|trial| other.residual.rms < trial.residual.rms - CLOSED)
+        };
+        Ok((chosen(scene, nearest.filter(is_nearer)), trial))
     }
 
     fn parsed(&self, scene: &FoldScene) -> Result<SceneFile, Failure> {
@@ -174,13 +223,7 @@ impl Pattern<'_> {
 
     /// How far the creases of a scene are from their angles in the end.
     fn tried(&self, scene: &FoldScene) -> Result<Option<FoldTrial>, Failure> {
-        let what = match scene.panels {
-            Panels::Rigid => "rigid panels",
-            Panels::Elastic { refine: 0 } => "elastic panels",
-            Panels::Elastic { .. } => "elastic panels with divided triangles",
-            Panels::Soft { stiffness } if stiffness == SOFT[0] => "soft panels",
-            Panels::Soft { .. } => "softer panels",
-        };
+        let what = named(scene.panels);
         let mut told = Instant::now();
         let mut watch = |done: f64| {
             if told.elapsed() >= LINES {
@@ -204,6 +247,17 @@ impl Pattern<'_> {
             None => print_progress(format_args!("{what}: no end is reached")),
         }
         Ok(found)
+    }
+}
+
+/// What panels are, in words.
+fn named(panels: Panels) -> &'static str {
+    match panels {
+        Panels::Rigid => "rigid panels",
+        Panels::Elastic { refine: 0 } => "elastic panels",
+        Panels::Elastic { .. } => "elastic panels with divided triangles",
+        Panels::Soft { stiffness } if stiffness == SOFT[0] => "soft panels",
+        Panels::Soft { .. } => "softer panels",
     }
 }
 

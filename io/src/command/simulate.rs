@@ -167,10 +167,8 @@ fn page(folder: &Path) -> Option<PathBuf> {
 }
 
 fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
-    let gap = match summary.smallest_gap {
-        Some(gap) => format!(", smallest gap {gap:.1e} m"),
-        None => String::new(),
-    };
+    let gap = summary.gap_in_words();
+    let gap = gap.map_or(String::new(), |gap| format!(", smallest gap {gap}"));
     let ending = &summary.ending;
     let taut = ending
         .taut

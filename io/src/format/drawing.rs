@@ -12,6 +12,8 @@ mod sheet;
 pub use super::vector::{Colour, Drawing, DrawingUnit, DrawnLine, Length, Pen};
 pub use class::LineClass;
 pub use edges::DrawnEdges;
+#[cfg(feature = "scene")]
+pub(crate) use edges::refuse_idle;
 pub use file::{DrawingFormat, parse_drawing, read_drawing};
 pub use options::DrawingOptions;
 pub use report::{ClassCount, DrawingReport, Places};

@@ -2,6 +2,7 @@
 
 mod assignment;
 mod drawing;
+mod drawn;
 mod error;
 mod face_groups;
 mod faces;
@@ -25,6 +26,7 @@ mod vtk;
 mod weld;
 
 pub use assignment::EdgeAssignment;
+pub use drawn::DrawnLines;
 pub use error::{Location, MeshFileError, MeshFileProblem};
 pub use face_groups::FaceGroups;
 pub use fold_frame::FoldFrame;
@@ -33,6 +35,7 @@ pub use mesh::{FileCrease, MeshFile, ReadingChanges};
 pub use options::{MeshOptions, Polygons, SeparateBuffers};
 pub use repair::Repair;
 
+pub(super) use fold::LineRecord;
 pub(super) use plane::{Point, distance, twice_area};
 pub(super) use polygon::{cross, sub};
 
@@ -80,8 +83,15 @@ pub fn read_mesh_with(path: &Path, options: &MeshOptions) -> Result<MeshFile, Me
         let known = MeshFormat::ALL.map(|f| format!(".{}", f.extension()));
         let known = known.join(", ");
         let message = format!("{found} is no known format of meshes (known are {known})");
+        let has = |other: &str| extension.eq_ignore_ascii_case(other);
         let remedy = match is_picture(path) {
             true => "trace the picture in a drawing program, and save its lines as .svg",
+            false if has("abc") => {
+                "in the program that wrote it, export a mesh as .glb, .ply or .obj, and a mesh in motion as text of USD (.usda)"
+            }
+            false if has("fbx") => {
+                "in the program that wrote it, export the mesh as .glb, .ply or .obj; Blender opens .fbx files and exports these"
+            }
             false => "convert the file to a known format",
         };
         error(DataError::new(message, remedy).into())

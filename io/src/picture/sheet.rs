@@ -5,12 +5,12 @@ use super::canvas::{Image, Light, light};
 use super::error::PictureError;
 use super::occlusion::{Occlusion, Surroundings};
 use super::pieces::{Cutter, Piece};
-use super::raster::{Corner, Drawing, Facet, Stroke};
+use super::raster::{Corner, Drawing, Facet};
 use super::solid::{Solid, Triangles};
-use super::vector::{axpy, dot};
+use super::vector::dot;
 use crate::DataError;
 use isosheet_mesh::wording::{brief, given};
-use isosheet_mesh::{Part, Topology, VertexId};
+use isosheet_mesh::{EdgeId, Part, Topology, VertexId};
 
 /// How far faces darken each other, as part of what the picture shows.
 const REACH: f64 = 0.3;
@@ -20,7 +20,7 @@ const REACH: f64 = 0.3;
 pub(super) const GROUND: f64 = 0.8;
 
 /// Largest edge over which the light on a body is interpolated, as part of the height of the picture.
-const GRAIN: f64 = 0.035;
+pub(super) const GRAIN: f64 = 0.035;
 
 /// The same at the rim of a shadow, where the openness would change by more than [`CONTRAST`] within a piece.
 const FINE_GRAIN: f64 = 0.007;
@@ -28,23 +28,8 @@ const FINE_GRAIN: f64 = 0.007;
 /// A change of the light that is seen as an edge.
 const CONTRAST: f64 = 0.12;
 
-/// How far lines are drawn in front of what they lie on, as part of what the picture shows.
-const LIFT: f64 = 0.004;
-
-/// How far edges of bodies are drawn behind what lies on them, pixels.
-const SINK: f64 = 2.0;
-
-/// Edges within a sheet are not drawn where they are shorter than the first of so many pixels in the mean, and in full
-/// where they are longer than the second: fine meshes look like a sheet.
-const FADING: [f64; 2] = [10.0, 30.0];
-
-/// The width of dots, as part of the mean length of edges in the picture, and its bounds, pixels.
-const DOT: f64 = 0.4;
-const SMALLEST_DOT: f64 = 2.0;
-const LARGEST_DOT: f64 = 9.0;
-
 /// sRGB colours of lines, of pins and of immobile vertices.
-const INK: [u8; 3] = [38, 42, 48];
+pub(super) const INK: [u8; 3] = [38, 42, 48];
 const PIN: [u8; 3] = [213, 94, 0];
 const IMMOBILE: [u8; 3] = [240, 228, 66];
 
@@ -114,7 +99,8 @@ pub struct Look {
     pub sides: [[[u8; 3]; 2]; 6],
     /// sRGB colour of bodies; a light grey by default.
     pub body: [u8; 3],
-    /// Width of the wires, pixels; 0.7 by default. Edges of the boundary are 1.7 times as wide.
+    /// Width of the wires, pixels; 0.7 by default. Edges of the boundary are 1.7 times as wide, and creases
+    /// 1.4 times.
     pub wire: f64,
 }
 
@@ -164,8 +150,29 @@ pub fn render(
     camera: &Camera,
     look: &Look,
 ) -> Result<Image, PictureError> {
+    render_folded(picture, &[], camera, look)
+}
+
+/// Draws a sheet on white with lines along some of its edges, where it folds, however fine its mesh is.
+///
+/// # Errors
+/// Those of [`render`].
+pub fn render_folded(
+    picture: &SheetPicture<'_>,
+    creases: &[EdgeId],
+    camera: &Camera,
+    look: &Look,
+) -> Result<Image, PictureError> {
     look.validate()?;
     picture.validate()?;
+    if let Some(crease) = creases
+        .iter()
+        .find(|e| e.index() >= picture.topology.edge_count())
+    {
+        let message = format!("the crease {crease} is none of the edges of the sheet");
+        let error = DataError::new(message, "name one of them").at(crease.index());
+        return Err(PictureError::Data(error));
+    }
     let painter = Painter::new(camera, look);
     let mut scene = painter.scene(picture);
     let pieces = painter.cutter(GRAIN).pieces(&mut scene);
@@ -173,7 +180,7 @@ pub fn render(
     let drawing = Drawing {
         size: look.size,
         facets,
-        strokes: painter.wires(picture.topology, &scene),
+        strokes: painter.wires(picture.topology, creases, &scene),
         ink: light(INK),
         dots: painter.dots(picture, &scene),
         faces: &scene.faces,
@@ -308,7 +315,7 @@ impl<'a> Painter<'a> {
         pieces.iter().zip(&around).map(facet).collect()
     }
 
-    fn corner(&self, p: &[f64; 3], light: Light) -> Corner {
+    pub(super) fn corner(&self, p: &[f64; 3], light: Light) -> Corner {
         let [x, y, nearness] = self.place(p);
         Corner {
             x,
@@ -316,92 +323,6 @@ impl<'a> Painter<'a> {
             nearness,
             light,
         }
-    }
-
-    /// Edges of bodies and of the sheet.
-    fn wires(&self, topology: &Topology, scene: &Triangles) -> Vec<Stroke> {
-        let stroke = |ends: [[f64; 3]; 2], vertices: [usize; 2], width: f64, cover: f64| Stroke {
-            ends: ends.map(|p| self.corner(&p, light(INK))),
-            vertices,
-            width: width * self.look.wire,
-            cover: cover as f32,
-            lift: LIFT * self.scale,
-            sink: 0.0,
-        };
-        let cutter = self.cutter(GRAIN);
-        let mut strokes = Vec::new();
-        for (vertices, skin) in &scene.ridges {
-            let parts = cutter.parts(vertices.map(|v| scene.x[v]), skin).into_iter();
-            strokes.extend(parts.map(|ends| Stroke {
-                sink: SINK * self.scale / self.size[1],
-                ..stroke(ends, *vertices, 1.0, 0.8)
-            }));
-        }
-        let edges = self.seen_edges(topology, scene);
-        let mean = self.mean_length(&edges, scene);
-        let [none, full] = FADING;
-        let inner = 0.55 * ((mean - none) / (full - none)).clamp(0.0, 1.0);
-        strokes.extend(edges.iter().map(|(vertices, is_boundary)| {
-            let ends = vertices.map(|v| scene.x[v]);
-            if *is_boundary {
-                stroke(ends, *vertices, 1.7, 0.9)
-            } else {
-                stroke(ends, *vertices, 1.0, inner)
-            }
-        }));
-        strokes
-    }
-
-    /// The edges of the sheet that are not behind the camera, and whether they are of its boundary.
-    fn seen_edges(&self, topology: &Topology, scene: &Triangles) -> Vec<([usize; 2], bool)> {
-        let seen =
-            |vertices: &[usize; 2]| !vertices.iter().any(|v| self.camera.is_behind(&scene.x[*v]));
-        let edges = topology.edge_ids().map(|e| {
-            let ends = topology.edges()[e.index()].map(VertexId::index);
-            (ends, topology.is_boundary_edge(e))
-        });
-        edges.filter(|(ends, _)| seen(ends)).collect()
-    }
-
-    /// The mean length of edges in the picture, pixels.
-    fn mean_length(&self, edges: &[([usize; 2], bool)], scene: &Triangles) -> f64 {
-        let length = |(ends, _): &([usize; 2], bool)| {
-            let [a, b] = ends.map(|v| self.place(&scene.x[v]));
-            (b[0] - a[0]).hypot(b[1] - a[1])
-        };
-        edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64
-    }
-
-    /// Dots with a rim, smaller where the mesh is finer.
-    fn dots(&self, picture: &SheetPicture<'_>, scene: &Triangles) -> Vec<Stroke> {
-        let mut strokes = Vec::new();
-        let mean = self.mean_length(&self.seen_edges(picture.topology, scene), scene);
-        let widest = (DOT * mean).clamp(SMALLEST_DOT, LARGEST_DOT);
-        for (v, colour) in picture.dots() {
-            let vertex = v.index();
-            let p = &scene.x[vertex];
-            if self.camera.is_behind(p) {
-                continue;
-            }
-            let raised = axpy(p, 3.0 * LIFT * self.scale, &self.camera.viewer(p));
-            for (width, colour) in [(widest, INK), (widest * 2.0 / 3.0, colour)] {
-                let [x, y, _] = self.place(p);
-                let end = Corner {
-                    x,
-                    y,
-                    ..self.corner(&raised, light(colour))
-                };
-                strokes.push(Stroke {
-                    ends: [end; 2],
-                    vertices: [vertex; 2],
-                    width,
-                    cover: 1.0,
-                    lift: 0.0,
-                    sink: 0.0,
-                });
-            }
-        }
-        strokes
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Recording, Viewpoint};
 use crate::DataError;
 use crate::picture::{
-    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render,
+    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render_folded,
 };
 use crate::scene::bounds;
 use isosheet_mesh::wording::given;
@@ -27,7 +27,7 @@ pub struct FilmOptions {
 /// What pictures have on the sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Marks {
-    /// The edges of the mesh, and the vertices that are held.
+    /// The edges of the mesh, unless it is fine, creases, and the vertices that are held.
     #[default]
     MeshAndPins,
     /// Nothing.
@@ -225,7 +225,7 @@ impl<'a> Film<'a> {
             solids: &solids.collect::<Vec<_>>(),
             parts: &self.parts,
         };
-        render(&picture, &self.camera, &self.look)
+        render_folded(&picture, &self.recording.creases, &self.camera, &self.look)
     }
 
     /// All pictures as an animated PNG file, in real time. `drawn` is told the number of pictures that are

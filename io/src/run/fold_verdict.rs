@@ -1,10 +1,11 @@
 //! What came of the folding of a crease pattern, in words.
 
-use super::Recording;
 use super::passing::Passing;
-use crate::scene::{FoldResidual, FollowedFolds, Isometry};
+use super::{FoldOrder, Recording, TouchingFaces, UnfoldableVertex};
+use crate::scene::{FoldResidual, FoldTargets, FollowedFolds, Isometry};
 use isosheet_mesh::wording::counted;
-use isosheet_mesh::{EdgeId, fold_angle};
+use isosheet_mesh::{EdgeId, Topology, fold_angle};
+use std::fmt;
 
 /// How closely creases and panels do what they are meant to, at the end of a run that folds a pattern.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,8 +14,10 @@ pub struct FoldVerdict {
     pub residual: FoldResidual,
     /// The number of creases that are further from their angles than [`FoldVerdict::OPEN`].
     pub open: usize,
-    /// The two vertices of the one that is furthest, and where its middle is in the rest shape, metres.
-    pub furthest: Option<([u32; 2], [f64; 2])>,
+    /// The one that is furthest.
+    pub furthest: Option<FoldedCrease>,
+    /// What touches the panels beside that one, if it is open.
+    pub held_open: Option<TouchingFaces>,
     /// The number of panels, and of those that bend by more than [`FoldVerdict::BENDS`] at an edge.
     pub panels: [usize; 2],
     /// Whether they can bend.
@@ -23,6 +26,32 @@ pub struct FoldVerdict {
     pub strain: [f64; 2],
     /// The part of the folding that is done when panels first pass through each other, if they do.
     pub passing: Option<f64>,
+    /// Vertices at which the pattern does not fold flat, if it is folded to the whole angles.
+    pub unfoldable: Vec<UnfoldableVertex>,
+    /// Whether groups of creases fold in the order that is asked for.
+    pub order: FoldOrder,
+}
+
+/// A crease of a folded sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoldedCrease {
+    /// The vertices at its ends.
+    pub ends: [u32; 2],
+    /// The name of the line of the drawing that it follows, if it has one.
+    pub name: Option<String>,
+    /// Where its middle is in the rest shape, metres.
+    pub middle: [f64; 2],
+}
+
+/// The name, if there is one, the vertices and the place.
+impl fmt::Display for FoldedCrease {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([a, b], [x, y]) = (self.ends, self.middle);
+        if let Some(name) = &self.name {
+            write!(f, "in \"{name}\" ")?;
+        }
+        write!(f, "between the vertices {a} and {b} at ({x:.3}, {y:.3}) m")
+    }
 }
 
 impl FoldVerdict {
@@ -48,16 +77,15 @@ impl FoldVerdict {
         let frame = |k: usize| recording.trajectory.frame(k).unwrap_or_default();
         let mut folds = FollowedFolds::begin(targets, topology, frame(0));
         let mut passing = Passing::begin(topology, frame(0));
+        let scene = recording.scene.scene();
+        let mut order = FoldOrder::begin(scene.folding.as_ref());
         let times = recording.trajectory.times();
         for (k, t) in times.iter().enumerate().skip(1) {
             folds.follow(targets, topology, frame(k));
             passing.follow(*t, frame(k));
+            order.follow(targets, *t, &folds.off(targets));
         }
-        let scene = recording.scene.scene();
-        let off: Vec<(f64, EdgeId)> = {
-            let edges = targets.creases.iter().map(|(e, _)| *e);
-            folds.off(targets).into_iter().zip(edges).collect()
-        };
+        let off: Vec<(f64, usize)> = folds.off(targets).into_iter().zip(0..).collect();
         let refine = scene.sheet[0].refine;
         // The parts of a crease follow one another.
         let creases = off.chunks(1 << refine);
@@ -65,48 +93,48 @@ impl FoldVerdict {
             let parts = parts.iter().copied();
             parts.max_by(|a, b| a.0.total_cmp(&b.0))
         });
-        let creases: Vec<(f64, EdgeId)> = creases.collect();
+        let creases: Vec<(f64, usize)> = creases.collect();
         let furthest = creases.iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        let furthest = furthest.map(|&(_, e)| {
-            let ends = topology.edges()[e.index()];
-            let [p, q] = ends.map(|v| recording.sheet.position(v));
-            (ends.map(|v| v.0), [0, 1].map(|k| 0.5 * (p[k] + q[k])))
+        let panel = panels(topology, targets);
+        let held_open = furthest.and_then(|&(off, k)| {
+            let [a, b] = topology.edge_faces(targets.creases[k].0);
+            let beside = [panel[a?.index()], panel[b?.index()]];
+            let is_held = off > Self::OPEN && scene.contact.self_contact;
+            let reach = scene.contact.activation.filter(|_| is_held)?;
+            TouchingFaces::find(&recording.sheet, x, &panel, beside, reach)
         });
-        // Panels are what is left when the sheet is cut along its creases.
-        let mut is_crease = vec![false; topology.edge_count()];
-        for (e, _) in &targets.creases {
-            is_crease[e.index()] = true;
-        }
-        let mut panel: Vec<usize> = (0..topology.face_count()).collect();
-        let inner = || {
-            topology
-                .edge_ids()
-                .filter(|e| !is_crease[e.index()] && !topology.is_boundary_edge(*e))
-        };
-        for e in inner() {
-            if let [Some(a), Some(b)] = topology.edge_faces(e) {
-                let [a, b] = [a, b].map(|f| root(&mut panel, f.index()));
-                panel[a] = b;
+        let furthest = furthest.map(|&(_, k)| {
+            let ends = topology.edges()[targets.creases[k].0.index()];
+            let [p, q] = ends.map(|v| recording.sheet.position(v));
+            FoldedCrease {
+                ends: ends.map(|v| v.0),
+                name: targets.name(k).map(str::to_owned),
+                middle: [0, 1].map(|k| 0.5 * (p[k] + q[k])),
             }
-        }
+        });
         let mut bends = vec![false; panel.len()];
-        for e in inner() {
+        for e in inside_panels(topology, targets) {
             if fold_angle(topology, x, e).unwrap_or(0.0).abs().to_degrees() > Self::BENDS {
                 let face = topology.edge_faces(e)[0].map_or(0, |f| f.index());
-                bends[root(&mut panel, face)] = true;
+                bends[panel[face]] = true;
             }
         }
-        let count = (0..panel.len())
-            .filter(|&f| root(&mut panel, f) == f)
-            .count();
+        let count = (0..panel.len()).filter(|&f| panel[f] == f).count();
         Some(Self {
             residual: folds.residual(targets, topology, x),
             open: creases.iter().filter(|(off, _)| *off > Self::OPEN).count(),
             furthest,
+            held_open,
             panels: [count, bends.iter().filter(|b| **b).count()],
             strain,
             is_elastic: scene.sheet[0].isometry() != Isometry::Rods,
             passing: passing.part_of(scene.folding.as_ref()),
+            unfoldable: UnfoldableVertex::all(
+                &recording.sheet,
+                targets,
+                recording.fold_assignments.as_deref(),
+            ),
+            order,
         })
     }
 
@@ -138,15 +166,16 @@ impl FoldVerdict {
             false => String::new(),
         };
         let FoldResidual { rms, largest, .. } = self.residual;
-        let creases = match (self.open, self.furthest) {
+        let held = self.held_open.map(|touching| format!(", where {touching}"));
+        let held = held.unwrap_or_default();
+        let creases = match (self.open, &self.furthest) {
             (0, _) | (_, None) if end > Self::STRETCHES => {
                 "every crease closes, but only with stretched panels, which is no shape of paper"
                     .to_owned()
             }
             (0, _) | (_, None) => "every crease closes".to_owned(),
-            (open, Some(([a, b], [x, y]))) => format!(
-                "{} open by more than {} degrees, most by {largest:.0}{} between the vertices {a} and {b} at ({x:.3}, \
-                 {y:.3}) m",
+            (open, Some(crease)) => format!(
+                "{} open by more than {} degrees, most by {largest:.0}{} {crease}{held}",
                 counted(open, "crease stays", "creases stay"),
                 Self::OPEN,
                 // Angles are followed from the flat sheet on.
@@ -157,6 +186,16 @@ impl FoldVerdict {
                 }
             ),
         };
+        let unfoldable = match &self.unfoldable[..] {
+            [first, others @ ..] if self.open > 0 => match others.len() {
+                0 => format!("; {first}"),
+                more => format!(
+                    "; {first}; and {} besides",
+                    counted(more, "vertex", "vertices")
+                ),
+            },
+            _ => String::new(),
+        };
         let passing = match self.passing {
             Some(part) => format!(
                 "; panels pass through each other from {:.0} % of the folding on",
@@ -164,8 +203,34 @@ impl FoldVerdict {
             ),
             None => String::new(),
         };
-        format!("folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}{stretch}{passing}")
+        format!(
+            "folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}{stretch}{unfoldable}{passing}{}",
+            self.order
+        )
     }
+}
+
+/// The edges inside of panels: those that are no creases.
+fn inside_panels(topology: &Topology, targets: &FoldTargets) -> impl Iterator<Item = EdgeId> {
+    let mut is_crease = vec![false; topology.edge_count()];
+    for (e, _) in &targets.creases {
+        is_crease[e.index()] = true;
+    }
+    let edges = topology.edge_ids();
+    edges.filter(move |e| !is_crease[e.index()] && !topology.is_boundary_edge(*e))
+}
+
+/// Of each face the number of the face that stands for its panel. Panels are what is left when the sheet is
+/// cut along its creases.
+fn panels(topology: &Topology, targets: &FoldTargets) -> Vec<usize> {
+    let mut panel: Vec<usize> = (0..topology.face_count()).collect();
+    for e in inside_panels(topology, targets) {
+        if let [Some(a), Some(b)] = topology.edge_faces(e) {
+            let [a, b] = [a, b].map(|f| root(&mut panel, f.index()));
+            panel[a] = b;
+        }
+    }
+    (0..panel.len()).map(|f| root(&mut panel, f)).collect()
 }
 
 /// The representative of a set, with the path to it halved.

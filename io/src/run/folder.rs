@@ -342,6 +342,34 @@ pub(crate) fn check_folder(root: &Path) -> Result<(), RunError> {
     }
 }
 
+/// Refuses a folder that holds the run of none of some scenes, one of which is to run there; where the run
+/// that it holds is to be deleted, one with a file that these scenes read.
+///
+/// # Errors
+/// As [`simulate`](super::simulate) refuses it.
+#[cfg(feature = "cli")]
+pub(crate) fn check_run(
+    root: &Path,
+    scenes: &[SceneFile],
+    existing: Existing,
+) -> Result<(), RunError> {
+    if !RunFolder::holds_run(root) {
+        return Ok(());
+    }
+    let mut refused = Ok(());
+    for scene in scenes {
+        let material = RunInputs::read(scene, &mut Files::in_folder(scene.folder()))?;
+        refused = match existing {
+            Existing::Continue => check_scene(root, &material),
+            Existing::Delete => material.check_apart(root),
+        };
+        if refused.is_ok() {
+            break;
+        }
+    }
+    refused
+}
+
 /// Refuses a folder with links, or with anything else that a run does not make, under the names of its files and
 /// folders: nothing is written or deleted through them.
 fn refuse_links(root: &Path) -> Result<(), RunError> {

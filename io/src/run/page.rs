@@ -4,7 +4,7 @@ use super::elastic::ElasticSummary;
 use super::frame_field::FrameField;
 use super::recording::{Recording, RunFrames};
 use super::spool::Spool;
-use super::{EndReason, RunError, SheetPlace, Summary, constraints};
+use super::{EndReason, FoldVerdict, RunError, SheetPlace, Summary, constraints};
 use crate::format::atomic::prepare_folder;
 use crate::format::{DataError, FrameQuantity, write_atomically};
 use crate::scene::bounds;
@@ -67,8 +67,12 @@ impl Recording {
             &self.scene.scene().measure,
         ));
         Replay {
-            // How far creases are from their angles.
-            colour: self.folding.as_ref().map(|_| 0),
+            // How far creases are from their angles, unless they have reached them.
+            colour: self
+                .folding
+                .as_ref()
+                .filter(|_| !self.is_folded())
+                .map(|_| 0),
             title: self.name.clone(),
             sheets: self
                 .parts
@@ -82,6 +86,16 @@ impl Recording {
             reproduce: self.reproduce(),
             ..replay
         }
+    }
+
+    /// Whether the run is complete and all creases of its pattern have reached their angles.
+    fn is_folded(&self) -> bool {
+        let residuals = self
+            .summary
+            .as_ref()
+            .map(|summary| &summary.ending.residuals);
+        let folding = residuals.and_then(|residuals| residuals.folding);
+        folding.is_some_and(|folding| folding.largest <= FoldVerdict::OPEN)
     }
 
     /// What came of the run so far as names and values: the table of the page.
@@ -202,8 +216,8 @@ impl Rows {
         if let Some(elastic) = &summary.elastic {
             self.of_elastic(elastic);
         }
-        if let Some(gap) = summary.smallest_gap {
-            self.add("smallest gap", format!("{gap:.2e} m"));
+        if let Some(gap) = summary.gap_in_words() {
+            self.add("smallest gap", gap);
         }
         if let Some(plastic) = ending.plastic {
             self.add("dissipated by yielding", format!("{plastic:.2e} J"));

@@ -12,7 +12,7 @@ use crate::scene::{FoldTargets, Origins, SceneFile, Setup};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
 use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{Part, Sheet, VertexId};
+use isosheet_mesh::{EdgeId, Part, Sheet, VertexId};
 use nalgebra::{Isometry3, Vector3};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -32,6 +32,8 @@ pub struct Recording {
     pub modelled: Vec<String>,
     /// What each edge of the sheet is meant to do, see [`Setup::fold_assignments`].
     pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
+    /// Where the sheet folds: mountains and valleys of a pattern, and creases whose angles change.
+    pub creases: Vec<EdgeId>,
     /// Vertices that are pinned, at rest or in motion.
     pub pins: Vec<VertexId>,
     /// Vertices that rods to pins keep in place ([`immobile_vertices`]).
@@ -118,6 +120,7 @@ impl Recording {
         let frames = RunFrames::Stored(StoredFrames { path, shape });
         let recording = Self {
             name: name_of(folder),
+            creases: setup.creases(),
             immobile: of_sheets(immobile_vertices(&setup.model, &setup.start.x)),
             pins: of_sheets(setup.model.pins()),
             model: setup.model,

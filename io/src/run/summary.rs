@@ -50,6 +50,9 @@ pub struct Summary {
     /// The largest angle between sheet and relative wind after any step, where the flow is attached.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub incidence: Option<Incidence>,
+    /// The largest thickness of the sheets, metres, which is taken off gaps.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub thickness: f64,
     /// Smallest gap in any step, metres; none without contact, or if nothing ever came close.
     pub smallest_gap: Option<f64>,
     /// Newton iterations.
@@ -128,6 +131,22 @@ impl Ending {
         });
         sizes > 2.0 * sum.norm()
     }
+}
+
+impl Summary {
+    /// The smallest gap in words, if there is one: whether the thickness of sheets has been taken off.
+    pub fn gap_in_words(&self) -> Option<String> {
+        let thickness = match self.thickness > 0.0 {
+            true => " (thickness taken off)",
+            false => "",
+        };
+        self.smallest_gap
+            .map(|gap| format!("{gap:.1e} m{thickness}"))
+    }
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 /// One of several sheets and bodies in the arrays of a run.

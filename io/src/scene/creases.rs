@@ -29,7 +29,7 @@ use std::collections::BTreeSet;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Crease {
-    /// A name, by which measures find it.
+    /// A name, by which measures find it, and which messages say.
     #[serde(default)]
     pub name: Option<String>,
     /// The name of the sheet, if there are several.
@@ -72,7 +72,8 @@ pub enum CreaseEdges {
     /// Edges of a crease pattern by what they are meant to do.
     Pattern(PatternEdges),
     /// The edges along lines of `sheet.mesh.drawing`, in the words that select lines there:
-    /// `["layer:Crease", "#e6007e"]`. A positive angle makes valleys of all of them.
+    /// `["layer:Crease", "#e6007e"]`, also where the mesh is a FOLD file that `isosheet mesh` made of the
+    /// drawing, or an SVG file of a crease pattern. A positive angle makes valleys of all of them.
     Drawn(Vec<String>),
 }
 
@@ -154,6 +155,15 @@ impl Crease {
             CreaseEdges::Drawn(lines) => drawing::check_lines(lines, &key.name("at.drawn"), checks),
             CreaseEdges::Ends(_) | CreaseEdges::Pattern(_) => {}
         }
+    }
+
+    /// Its name, or the lines of the drawing that it follows.
+    pub(crate) fn called(&self) -> Option<String> {
+        let lines = || match &self.at {
+            CreaseEdges::Drawn(lines) => Some(lines.join(", ")),
+            CreaseEdges::Ends(_) | CreaseEdges::Line { .. } | CreaseEdges::Pattern(_) => None,
+        };
+        self.name.clone().or_else(lines)
     }
 
     /// Whether the sheet folds along this crease, which may also be there to keep panels flat.
@@ -302,8 +312,9 @@ fn drawn(
     let Some(drawn) = roles.and_then(|roles| roles.drawn.as_ref()) else {
         return Err(Problem::new(
             key.clone(),
-            "the mesh of the sheet is no drawing",
-            "use `sheet.mesh.drawing`, or name the edges by `pattern`, `ends` or `line`",
+            "the mesh of the sheet is made of no drawing",
+            "use `sheet.mesh.drawing`, a FOLD file that `isosheet mesh` made of a drawing, or an SVG file of a crease pattern, or \
+             name the edges by `pattern`, `ends` or `line`",
         ));
     };
     let t = refined.mesh().topology();

@@ -1,6 +1,6 @@
 //! The scene that folds a crease pattern.
 
-use super::folding::FoldGroup;
+use super::fold_group::FoldGroup;
 use crate::format::FileError;
 use isosheet_dynamics::Material;
 use std::fmt::Write;

@@ -1,6 +1,7 @@
 //! Folding to the angles of a FOLD file.
 
 use super::Mesh;
+use super::fold_group::{FoldGroup, PatternCrease};
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
 use super::problem::{Checks, Problem};
@@ -8,14 +9,12 @@ use super::profile::{Change, Course, Profile};
 use super::refined::Refined;
 use super::sheet::{Isometry, Sheet as SheetOfScene};
 use super::unit::Unit;
-use crate::format::{EdgeAssignment, FoldFrame};
+use crate::format::{DrawnLines, EdgeAssignment, FoldFrame};
 use isosheet_dynamics::{CreaseSpring, FLAT, RestAngle};
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, angle_near, fold_angle};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use std::fmt;
-use std::str::FromStr;
 use std::sync::Arc;
 
 /// Folding to the angles of the crease pattern that is the mesh of the sheet: a FOLD, SVG, CP or OPX file, or a drawing
@@ -56,6 +55,10 @@ pub struct Folding {
     /// keeps panels flat.
     #[serde(default)]
     pub flat_stiffness: Option<f64>,
+    /// Which part of their angles the springs are at, from 0 to 1, as a function of time. If left out, they
+    /// go smoothly from the angles of the start to the whole ones within `time`. Not beside an `order`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub course: Option<Profile>,
     /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on
     /// each other, which cross without self-contact: take less than 1.
     #[serde(default = "whole")]
@@ -69,76 +72,6 @@ pub struct Folding {
     /// the last one. If left out, all fold at the same time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub order: Vec<FoldGroup>,
-}
-
-/// Some creases of a pattern.
-///
-/// ```toml
-/// version = 1
-///
-/// [sheet]
-/// mesh = { file = { path = "crane.fold" } }
-/// material = "office paper"
-///
-/// [folding]
-/// stiffness = 0.05
-/// time = 3
-/// order = ["valleys", { edges = [3, 7] }, "mountains"]
-/// ```
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum FoldGroup {
-    /// Creases with a negative angle.
-    Mountains,
-    /// Creases with a positive angle.
-    Valleys,
-    /// Creases by the numbers of their edges in the file, from 0. (Of a drawing they are those of the FOLD file that
-    /// `isosheet convert` makes of it.)
-    Edges(Vec<usize>),
-}
-
-impl FoldGroup {
-    /// Whether it has a crease: the number of its edge in the file, and its angle.
-    fn has(&self, edge: usize, angle: f64) -> bool {
-        match self {
-            Self::Mountains => angle < 0.0,
-            Self::Valleys => angle > 0.0,
-            Self::Edges(edges) => edges.contains(&edge),
-        }
-    }
-}
-
-/// As a command line has it: `mountains`, `valleys`, or numbers of edges.
-impl FromStr for FoldGroup {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.trim() {
-            "mountain" | "mountains" => Ok(Self::Mountains),
-            "valley" | "valleys" => Ok(Self::Valleys),
-            numbers => {
-                let words = numbers.split([' ', ',']).filter(|word| !word.is_empty());
-                let edges: Result<Vec<usize>, _> = words.map(str::parse).collect();
-                match edges {
-                    Ok(edges) if !edges.is_empty() => Ok(Self::Edges(edges)),
-                    _ => Err(format!(
-                        "{text:?} is no group of creases: write mountains, valleys or numbers of edges"
-                    )),
-                }
-            }
-        }
-    }
-}
-
-/// As a scene has it.
-impl fmt::Display for FoldGroup {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Mountains => f.write_str("\"mountains\""),
-            Self::Valleys => f.write_str("\"valleys\""),
-            Self::Edges(edges) => write!(f, "{{ edges = {edges:?} }}"),
-        }
-    }
 }
 
 fn whole() -> f64 {
@@ -156,6 +89,10 @@ pub struct FoldTargets {
     pub creases: Vec<(EdgeId, f64)>,
     /// Of each of them the number of the group that it folds with.
     pub groups: Vec<usize>,
+    /// What each of them is in the pattern.
+    of_pattern: Vec<PatternCrease>,
+    /// The lines of the drawing that the pattern is made of.
+    drawn: DrawnLines,
     /// The edges that stay flat.
     pub flat: Vec<EdgeId>,
 }
@@ -180,6 +117,24 @@ impl FoldTargets {
     pub(crate) fn renumber(&mut self, number: impl Fn(EdgeId) -> EdgeId) {
         self.creases.iter_mut().for_each(|(e, _)| *e = number(*e));
         self.flat.iter_mut().for_each(|e| *e = number(*e));
+    }
+
+    /// The numbers of the driven creases that a group has.
+    pub(super) fn of_group(&self, group: &FoldGroup) -> Vec<usize> {
+        let creases = self.of_pattern.iter().enumerate();
+        let own = creases.filter(|(_, crease)| group.has(crease, &self.drawn));
+        own.map(|(k, _)| k).collect()
+    }
+
+    /// The lines of the drawing that the pattern is made of.
+    pub(super) fn drawn(&self) -> &DrawnLines {
+        &self.drawn
+    }
+
+    /// The name of the line of the drawing that a driven crease follows, if it has one.
+    #[cfg(feature = "run")]
+    pub(crate) fn name(&self, crease: usize) -> Option<&str> {
+        self.drawn.name(self.of_pattern[crease].drawn)
     }
 
     /// The differences at positions `x` (`3V`, metres), taken the short way round as the springs do.
@@ -272,6 +227,16 @@ impl Folding {
             Unit::Newton,
         );
         checks.within(key.name("part"), self.part, [-1.0, 1.0]);
+        if let Some(course) = &self.course {
+            course.check(key.name("course"), Unit::Factor, checks);
+            if !self.order.is_empty() {
+                let message = "groups of creases fold one after the other in a course of their own";
+                checks.report(key.name("course"), message, "leave out `course` or `order`");
+            }
+        }
+        for (k, group) in self.order.iter().enumerate() {
+            group.check(&key.name("order").entry(k), checks);
+        }
         match mesh {
             Mesh::File(_) => {}
             Mesh::Drawing(_) if self.frame.is_none() => {}
@@ -333,10 +298,15 @@ impl Folding {
         frame
             .orient_creases(t)
             .map_err(|e| Problem::from_error(key.name("frame"), &e))?;
+        let drawn = std::mem::take(&mut frame.drawn);
         let mut targets = FoldTargets {
             flat: refined.inside_faces(),
+            drawn: drawn.clone(),
             ..FoldTargets::default()
         };
+        for (k, group) in self.order.iter().enumerate() {
+            group.refuse_idle(&drawn, &key.name("order").entry(k))?;
+        }
         let shape = (!is_plane(t, &frame.positions)).then_some(&frame.positions[..]);
         let mut known = vec![false; self.order.len()];
         for (number, crease) in frame.creases.iter().enumerate() {
@@ -351,13 +321,22 @@ impl Folding {
             let parts = refined.parts(e).into_iter();
             let mut drive = |angle| {
                 let driven = parts.clone().map(|e| (e, self.part * angle));
-                let group = self.order.iter().position(|group| group.has(number, angle));
+                let of_pattern = PatternCrease {
+                    edge: number,
+                    angle,
+                    drawn: crease.drawn,
+                };
+                let has = |group: &FoldGroup| group.has(&of_pattern, &drawn);
+                let group = self.order.iter().position(has);
                 if let Some(group) = group {
                     known[group] = true;
                 }
                 let last = self.order.len().saturating_sub(1);
                 let groups = std::iter::repeat_n(group.unwrap_or(last), parts.len());
                 targets.groups.extend(groups);
+                targets
+                    .of_pattern
+                    .extend(std::iter::repeat_n(of_pattern, parts.len()));
                 targets.creases.extend(driven);
             };
             let angle = angle.or(match crease.assignment {
@@ -381,8 +360,8 @@ impl Folding {
         if let Some(empty) = known.iter().position(|known| !known) {
             let message =
                 format!("no crease that is driven folds with group {empty}, counted from 0");
-            let remedy = "name creases that no group before has, by the numbers of the edges in a FOLD file, which \
-                          `isosheet convert PATTERN FILE.fold` writes; edges of the outline do not fold";
+            let remedy = "name creases that no group before has, by lines of the drawing or by the numbers of the edges in a FOLD \
+                          file, which `isosheet convert PATTERN FILE.fold` writes; edges of the outline do not fold";
             return Err(Problem::new(
                 key.name("order").entry(empty),
                 message,
@@ -415,8 +394,17 @@ impl Folding {
             Isometry::Elastic { .. } => None,
         });
         let driven = targets.creases.iter().zip(&targets.groups);
+        let smooth = Profile::smooth_step(1.0, self.time);
+        let other = self.course.as_ref().filter(|course| **course != smooth);
         let driven = driven.map(|(&(edge, target), &group)| {
-            spring(edge, self.stiffness, target, self.turn_of(group))
+            let spring = spring(edge, self.stiffness, target, self.turn_of(group));
+            match other {
+                None => spring,
+                Some(course) => CreaseSpring {
+                    rest: course.scaled(target.clamp(-PI, PI)).into(),
+                    ..spring
+                },
+            }
         });
         let flat = flat_stiffness.into_iter().flat_map(|stiffness| {
             let flat = targets.flat.iter();
@@ -428,13 +416,16 @@ impl Folding {
     /// The part of the way to their angles that the springs have gone at a time (seconds), from 0 to 1.
     #[cfg(feature = "run")]
     pub(crate) fn progress(&self, t: f64) -> f64 {
+        if let Some(course) = &self.course {
+            return course.value(t);
+        }
         let turns = self.order.len().max(1);
         let parts = (0..turns).map(|group| course(0.0, 1.0, self.turn_of(group)).at(t));
         parts.sum::<f64>() / turns as f64
     }
 
     /// When the creases of a group begin to fold and when they have reached their angles, seconds.
-    fn turn_of(&self, group: usize) -> [f64; 2] {
+    pub(crate) fn turn_of(&self, group: usize) -> [f64; 2] {
         let turns = self.order.len().max(1) as f64;
         [group, group + 1].map(|k| self.time * k as f64 / turns)
     }

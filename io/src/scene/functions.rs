@@ -31,6 +31,11 @@ impl Scene {
                 &mut crease.angle,
             ));
         }
+        let course = self
+            .folding
+            .as_mut()
+            .and_then(|folding| folding.course.as_mut());
+        all.extend(course.map(|course| (root.name("folding.course"), course)));
         for (k, support) in self.support.iter_mut().enumerate() {
             let (place, motion) = match &mut support.hold {
                 Hold::Pin | Hold::Clamp | Hold::Follow { .. } => continue,

@@ -4,7 +4,7 @@ use super::key::Key;
 use super::placed::PlacedSheets;
 use super::problem::{Checks, Problem};
 use super::profile::Profile;
-use super::selection::{ON_LINE, beside_line, by_number, nearest_in_words, size};
+use super::selection::{ON_LINE, beside_line, by_number, nearest, nearest_in_words, size};
 use super::switch::When;
 use super::unit::Unit;
 use super::{Body, Sheet, bodies, sheets};
@@ -106,6 +106,8 @@ pub enum SeamSide {
         /// Where the line ends, metres.
         to: [f64; 3],
     },
+    /// For each point (metres) the vertex nearest to it: dots of glue.
+    Nearest(Vec<[f64; 3]>),
 }
 
 /// Stiffness of glue in units of `(m g + D / L) / L`, see [`Glue::stiffness`].
@@ -193,8 +195,10 @@ impl Glue {
             .filter_map(|(name, side)| Some((name, side?)))
         {
             let key = key.name(name);
-            if let SeamSide::Line { from, to } = side {
-                checks.line(&key.name("line"), from, to);
+            match side {
+                SeamSide::Line { from, to } => checks.line(&key.name("line"), from, to),
+                SeamSide::Nearest(points) => checks.points(key.name("nearest"), points),
+                SeamSide::Vertices(_) => {}
             }
         }
         self.closing
@@ -248,7 +252,8 @@ impl Glue {
                     first.len(),
                     second.len()
                 ),
-                "give as many on both sides; a mesh with the same spacing along both has them",
+                "give as many on both sides: a mesh with the same spacing along both has them, and `nearest` finds the vertices \
+                 next to points",
             ));
         }
         let pairs = first.into_iter().zip(second).map(|(a, b)| [a, b]);
@@ -301,10 +306,11 @@ impl SeamSide {
         let found = match self {
             Self::Vertices(numbers) => by_number(numbers, key, points.len())?,
             Self::Line { from, to } => on_line(points, from, to),
+            Self::Nearest(wanted) => wanted.iter().map(|p| nearest(points, p).0).collect(),
         };
         if found.is_empty() {
             let nearest = match self {
-                Self::Vertices(_) => String::new(),
+                Self::Vertices(_) | Self::Nearest(_) => String::new(),
                 Self::Line { from, to } => {
                     nearest_in_words(points, |p| beside_line(p, [from, to]).1)
                 }

@@ -1,6 +1,8 @@
 //! Numbers that are read off the sheet at each step.
 
-use super::creases::Crease;
+use super::Scene;
+use super::fold_group::FoldGroup;
+use super::folding::FoldTargets;
 use super::key::Key;
 use super::placed::PlacedSheets;
 use super::placed_bodies::PlacedBodies;
@@ -40,6 +42,9 @@ use std::sync::Arc;
 /// crease = "lid"
 /// quantity = "moment"
 /// ```
+///
+/// Creases that `[folding]` folds are named as in its `order`: `fold = "valleys"` or
+/// `fold = { edges = [3, 7] }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Measure {
@@ -55,6 +60,9 @@ pub struct Measure {
     /// The name of a `[[crease]]`, of which an angle or a moment is measured.
     #[serde(default)]
     pub crease: Option<String>,
+    /// Creases of the pattern that `[folding]` folds, of which an angle or a moment is measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fold: Option<FoldGroup>,
     /// What is measured of it.
     pub quantity: Quantity,
 }
@@ -94,7 +102,7 @@ pub enum Quantity {
 }
 
 impl Measure {
-    pub(crate) fn check(&self, key: &Key, creases: &[Crease], checks: &mut Checks) {
+    pub(crate) fn check(&self, key: &Key, scene: &Scene, checks: &mut Checks) {
         let is_usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         // Spreadsheets take a name that begins with a minus for a formula.
         let is_text = self.name.starts_with(|c| is_usual(c) && c != '-');
@@ -105,7 +113,7 @@ impl Measure {
                 "use letters, digits, `_` and `-`, which is not the first",
             );
         }
-        self.check_of(key, creases, checks);
+        self.check_of(key, scene, checks);
         let key = key.name("quantity");
         match &self.quantity {
             Quantity::DistanceToPoint(point) => {
@@ -117,16 +125,29 @@ impl Measure {
     }
 
     /// Checks that it is of vertices or of a crease, as its quantity wants it.
-    fn check_of(&self, key: &Key, creases: &[Crease], checks: &mut Checks) {
+    fn check_of(&self, key: &Key, scene: &Scene, checks: &mut Checks) {
         let of_crease = self.quantity.of_crease().is_some();
-        match (&self.at, &self.crease) {
-            (Some(at), None) if !of_crease => at.check(&key.name("at"), checks),
-            (None, Some(name)) if of_crease => {
-                if self.sheet.is_some() {
-                    let message = "a crease is of one sheet";
-                    checks.report(key.name("sheet"), message, "leave it out");
+        if self.sheet.is_some() && of_crease {
+            let message = "a crease is of one sheet";
+            checks.report(key.name("sheet"), message, "leave it out");
+        }
+        match (&self.at, &self.crease, &self.fold) {
+            (Some(at), None, None) if !of_crease => at.check(&key.name("at"), checks),
+            (None, None, Some(group)) if of_crease => {
+                group.check(&key.name("fold"), checks);
+                if scene.folding.is_none() {
+                    let message = "the scene has no `[folding]`, whose creases these are";
+                    let remedy = "name a `[[crease]]` by `crease`";
+                    checks.report(key.name("fold"), message, remedy);
                 }
-                let names = || creases.iter().filter_map(|crease| crease.name.as_ref());
+            }
+            (None, Some(name), None) if of_crease => {
+                let names = || {
+                    scene
+                        .crease
+                        .iter()
+                        .filter_map(|crease| crease.name.as_ref())
+                };
                 if !names().any(|known| known == name) {
                     let known: Vec<String> = names().map(|name| format!("`{name}`")).collect();
                     let remedy = match known.is_empty() {
@@ -141,10 +162,13 @@ impl Measure {
             }
             _ => {
                 let (quantity, wanted) = match of_crease {
-                    true => ("of a crease", "`crease` with its name, and leave out `at`"),
+                    true => (
+                        "of a crease",
+                        "`crease` with its name, or `fold` with creases of `[folding]`, and leave out `at`",
+                    ),
                     false => (
                         "of vertices",
-                        "`at` with the vertices, and leave out `crease`",
+                        "`at` with the vertices, and leave out `crease` and `fold`",
                     ),
                 };
                 let message = format!("this quantity is one {quantity}");
@@ -153,17 +177,22 @@ impl Measure {
         }
     }
 
-    /// With the vertices or the crease that it is of; `creases` are those of the scene by their names.
+    /// With the vertices or the creases that it is of.
     pub(super) fn gauge(
         &self,
         key: &Key,
         sheets: &PlacedSheets<'_>,
         bodies: &PlacedBodies<'_>,
-        creases: &BTreeMap<String, CreaseGauge>,
+        creases: &CreaseGauges,
     ) -> Result<Gauge, Problem> {
         let name = self.name.clone();
+        if let Some((group, of)) = self.fold.as_ref().zip(self.quantity.of_crease()) {
+            let crease = creases.of_group(group, &key.name("fold"))?;
+            let of = Reading::Crease(crease, of);
+            return Ok(Gauge { name, of });
+        }
         if let Some((crease, of)) = self.crease.as_ref().zip(self.quantity.of_crease()) {
-            let crease = creases[crease].clone();
+            let crease = creases.named[crease].clone();
             let of = Reading::Crease(crease, of);
             return Ok(Gauge { name, of });
         }
@@ -260,12 +289,55 @@ enum OfCrease {
     MomentPerLength,
 }
 
+/// The creases of a scene that measures may be of.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CreaseGauges {
+    /// Those that have names.
+    pub(super) named: BTreeMap<String, CreaseGauge>,
+    /// Those of the pattern that is folded, in the order of its targets, and these.
+    pub(super) folded: Option<(CreaseGauge, FoldTargets)>,
+}
+
+impl CreaseGauges {
+    /// Those of a group of the pattern that is folded.
+    fn of_group(&self, group: &FoldGroup, key: &Key) -> Result<CreaseGauge, Problem> {
+        let own = match &self.folded {
+            Some((crease, targets)) => {
+                group.refuse_idle(targets.drawn(), key)?;
+                let own = targets.of_group(group);
+                let measured = own.iter().map(|&k| crease.measured[k]);
+                CreaseGauge {
+                    measured: measured.collect(),
+                    ..crease.clone()
+                }
+            }
+            // Refused by the checks.
+            None => {
+                return Err(Problem::new(
+                    key.clone(),
+                    "the scene has no `[folding]`",
+                    "leave it out",
+                ));
+            }
+        };
+        match own.measured.is_empty() {
+            false => Ok(own),
+            true => {
+                let message = "no crease that is driven is one of these";
+                let remedy = "name creases by lines of the drawing or by the numbers of the edges in a FOLD file, which \
+                              `isosheet convert PATTERN FILE.fold` writes; edges of the outline do not fold";
+                Err(Problem::new(key.clone(), message, remedy))
+            }
+        }
+    }
+}
+
 /// The springs of a crease, and where they are.
 #[derive(Clone, Debug)]
 pub(super) struct CreaseGauge {
     pub(super) springs: Arc<CreaseSprings>,
-    /// The rest length of the edge of each spring, metres.
-    pub(super) lengths: Vec<f64>,
+    /// The springs that are measured, by their numbers, with the rest length of the edge of each, metres.
+    pub(super) measured: Vec<(usize, f64)>,
     /// Its sheet.
     pub(super) part: Part,
     /// The number of the springs among the potentials of the model.
@@ -276,12 +348,15 @@ impl CreaseGauge {
     fn value(&self, of: OfCrease, t: f64, x: &[f64], memories: &Memories) -> f64 {
         let own = At::new(t, &x[self.part.coordinates()]);
         let at = own.with_memory(&memories.lists()[self.potential]);
-        let length: f64 = self.lengths.iter().sum();
-        let moment = || -self.springs.moments(at).iter().sum::<f64>();
+        let length: f64 = self.measured.iter().map(|(_, length)| length).sum();
+        let moment = || {
+            let moments = self.springs.moments(at);
+            -self.measured.iter().map(|(k, _)| moments[*k]).sum::<f64>()
+        };
         match of {
             OfCrease::Angle => {
                 let angles = self.springs.angles(at);
-                let weighted = angles.iter().zip(&self.lengths).map(|(a, l)| a * l);
+                let weighted = self.measured.iter().map(|(k, length)| angles[*k] * length);
                 (weighted.sum::<f64>() / length).to_degrees()
             }
             OfCrease::Moment => moment(),

@@ -11,6 +11,7 @@ use super::pattern::{
 };
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
+use crate::format::drawing::DrawnEdges;
 use crate::format::{self, FaceGroups, ReadingChanges};
 use isosheet_mesh::generate::{self, FoldPattern, GenerateError};
 use isosheet_mesh::{MeshError, Sheet};
@@ -420,12 +421,7 @@ impl Mesh {
             Self::File(file) => return read_sheet(file, &key, files),
             Self::Drawing(drawing) => {
                 let drawn = drawing.sheet(&key, files)?;
-                let made = rest_mesh(&drawn.mesh).map_err(|e| Problem::from_error(key, &e))?;
-                let roles = made.roles.map(|roles| EdgeRoles {
-                    drawn: Some(drawn.edges),
-                    ..roles
-                });
-                return Ok(RestMesh { roles, ..made });
+                return rest_mesh(&drawn.mesh).map_err(|e| Problem::from_error(key, &e));
             }
         };
         let sheet = made.map_err(|e| generator_problem(&key, &e))?;
@@ -455,6 +451,7 @@ fn rest_mesh(mesh: &format::MeshFile) -> Result<RestMesh, MeshError> {
     Ok(RestMesh {
         roles: assignments.map(|assignments| EdgeRoles {
             assignments,
+            drawn: DrawnEdges::of(mesh),
             ..EdgeRoles::default()
         }),
         sheet,

@@ -14,10 +14,14 @@ use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
 use isosheet_dynamics::contact::{Contact, SurfacePoints};
 use isosheet_dynamics::{Checkpoint, SheetModel, Simulation, SimulationError, State};
+#[cfg(feature = "run")]
+use isosheet_mesh::EdgeId;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Part, Sheet, VertexId};
 use nalgebra::Vector3;
 use std::borrow::Cow;
+#[cfg(feature = "run")]
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// What is known of a scene besides its simulation.
@@ -180,6 +184,26 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// Where sheets fold: the mountains and valleys of patterns, and creases whose angles change.
+    #[cfg(feature = "run")]
+    pub(crate) fn creases(&self) -> Vec<EdgeId> {
+        let folds = |a: &Option<FoldAssignment>| {
+            matches!(a, Some(FoldAssignment::Mountain | FoldAssignment::Valley))
+        };
+        let of_pattern = self.fold_assignments.iter().flatten().enumerate();
+        let of_pattern = of_pattern.filter(|(_, a)| folds(a));
+        let of_pattern = of_pattern.map(|(e, _)| EdgeId::from_index(e));
+        let driven = self.targets.creases.iter().flat_map(|crease| &crease.edges);
+        let driven = driven.map(|(e, _)| *e);
+        let folded = self
+            .targets
+            .folding
+            .iter()
+            .flat_map(|targets| &targets.creases);
+        let all = of_pattern.chain(driven).chain(folded.map(|(e, _)| *e));
+        all.collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
     /// What is known of the scene besides the simulation.
     pub(crate) fn facts(&self) -> Facts {
         Facts {

@@ -1,5 +1,6 @@
 //! What a scene asks its sheets to reach, and how far they are from it.
 
+use super::creases::Crease;
 use super::folding::{FoldResidual, FoldTargets, off_target};
 use isosheet_dynamics::{CreaseSpring, Glue, RestAngle};
 use isosheet_mesh::{EdgeId, Topology, VertexId};
@@ -21,15 +22,20 @@ pub struct Targets {
 pub struct DrivenCrease {
     /// Its number in the scene.
     pub number: usize,
+    /// Its name, or the lines of the drawing that it follows.
+    pub name: Option<String>,
     /// Its edges with their rest angles.
     pub edges: Vec<(EdgeId, RestAngle)>,
 }
 
 /// How far a driven crease is from its angle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CreaseResidual {
     /// Its number in the scene.
     pub number: usize,
+    /// Its name, or the lines of the drawing that it follows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// Largest difference at an edge, degrees.
     pub largest: f64,
     /// Root of the mean square of the differences, degrees.
@@ -55,13 +61,17 @@ impl DrivenCrease {
     /// Of the springs of a crease; nothing if none is driven. `edge` gives their edges in the union of all
     /// sheets.
     pub(super) fn of(
-        number: usize,
+        (number, crease): (usize, &Crease),
         springs: &[CreaseSpring],
         edge: impl Fn(EdgeId) -> EdgeId,
     ) -> Option<Self> {
         let driven = springs.iter().filter(|spring| spring.rest.is_driven());
         let edges: Vec<_> = driven.map(|s| (edge(s.edge), s.rest.clone())).collect();
-        (!edges.is_empty()).then_some(Self { number, edges })
+        (!edges.is_empty()).then(|| Self {
+            number,
+            name: crease.called(),
+            edges,
+        })
     }
 
     fn residual(&self, topology: &Topology, t: f64, x: &[f64]) -> CreaseResidual {
@@ -73,6 +83,7 @@ impl DrivenCrease {
         }
         CreaseResidual {
             number: self.number,
+            name: self.name.clone(),
             largest,
             rms: (squares / self.edges.len() as f64).sqrt(),
         }
@@ -124,8 +135,10 @@ impl Residuals {
             .iter()
             .max_by(|a, b| a.largest.total_cmp(&b.largest));
         if let Some(crease) = worst {
+            let name = crease.name.as_ref();
+            let name = name.map_or(String::new(), |name| format!(" (\"{name}\")"));
             words.push(format!(
-                "driven creases differ from their angles by {:.2} degrees at most, at `crease[{}]`",
+                "driven creases differ from their angles by {:.2} degrees at most, at `crease[{}]`{name}",
                 crease.largest, crease.number
             ));
         }

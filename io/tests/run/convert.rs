@@ -529,7 +529,8 @@ fn a_frame_is_found_by_its_time_and_a_mesh_is_made_thicker_and_larger() {
 
     let said = refused(dir, &["convert", "run", "x.stl"], 2);
     assert!(
-        said.contains("a .stl file has one mesh") && said.contains("`--frame K` or `--time T`"),
+        said.contains("a .stl file has one mesh")
+            && said.contains("`--frame K`, `--time T` or `--part P`"),
         "{said}"
     );
     let thick = ["--thickness", "2mm", "--scale", "1000"];
@@ -715,4 +716,56 @@ fn files_that_do_not_fit_are_one_error() {
         assert_eq!(rest, "  = help: check the free space\n", "{extension}");
         assert!(!dir.join(out).is_file());
     }
+}
+
+/// The frame in which a pattern is folded by a part is written alone.
+#[test]
+fn a_frame_of_a_fold_is_chosen_by_its_part() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let square = "1 0 0 1 0\n1 1 0 1 1\n1 1 1 0 1\n1 0 1 0 0\n3 0 0 1 1\n";
+    fs::write(dir.join("square.cp"), square).unwrap();
+    let folded = run(dir, &["fold", "square.cp", "out"]);
+    assert_eq!(code(&folded), Some(0), "{}", stderr(&folded));
+    let angle_of = |option: &str, value: &str| {
+        let done = run(dir, &["convert", "out", "half.fold", option, value]);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        let mesh = read_mesh(&dir.join("half.fold")).unwrap();
+        let angles = mesh.creases.iter().filter_map(|crease| crease.angle);
+        angles.fold(0.0, f64::max).to_degrees()
+    };
+    let angle = |part: &str| angle_of("--part", part);
+    // A frame is 2 % of the folding at most, and the crease lags its spring by some degrees.
+    assert!((angle("0.5") - 90.0).abs() < 8.0, "{}", angle("0.5"));
+    assert!((angle("1") - 180.0).abs() < 0.1, "{}", angle("1"));
+    assert_eq!(angle("0"), angle_of("--frame", "0"));
+    let refused = |words: &[&str], expected: &str| {
+        let output = run(dir, &[&["convert"], words].concat());
+        assert_eq!(code(&output), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+    };
+    refused(
+        &["out", "x.fold", "--part", "2"],
+        "the part of the folding is 2",
+    );
+    refused(
+        &["half.fold", "x.obj", "--part", "0.5"],
+        "--part chooses a frame of a run",
+    );
+    refused(&["out", "x.fbx"], "write .glb or .usda");
+    refused(&["out", "x.abc"], "write .usda");
+    refused(&["half.fold", "x.abc"], "write .usda");
+    for (name, expected) in [
+        ("a.fbx", "export the mesh as .glb"),
+        ("a.abc", "text of USD (.usda)"),
+    ] {
+        fs::write(dir.join(name), "no mesh").unwrap();
+        let output = run(dir, &["convert", name, "x.obj"]);
+        assert_eq!(code(&output), Some(3), "{}", stderr(&output));
+        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+    }
+    let other = with_short_run(StartingPoint::Drape);
+    let other = other.path().join("run");
+    let words = [other.to_str().unwrap(), "x.obj", "--part", "0.5"];
+    refused(&words, "this one folds none");
 }

@@ -174,3 +174,81 @@ fn a_measure_is_of_vertices_or_of_a_crease() {
         );
     }
 }
+
+/// Creases that `[folding]` folds are measured by the groups of its order, in the scene that `isosheet fold`
+/// writes.
+#[test]
+fn creases_of_patterns_are_measured_in_scenes_of_fold() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let strip = "1 0 0 3 0\n1 3 0 3 1\n1 3 1 0 1\n1 0 1 0 0\n3 1 0 1 1\n2 2 0 2 1\n";
+    fs::write(dir.join("strip.cp"), strip).unwrap();
+    let folded = run(
+        dir,
+        &[
+            "fold",
+            "strip.cp",
+            "out",
+            "--part",
+            "0.25",
+            "-o",
+            "strip.toml",
+        ],
+    );
+    assert_eq!(code(&folded), Some(0), "{}", stderr(&folded));
+    let text = fs::read_to_string(dir.join("strip.toml")).unwrap();
+    let measure = |name: &str, of: &str, quantity: &str| {
+        format!("[[measure]]\nname = \"{name}\"\nfold = {of}\nquantity = \"{quantity}\"\n")
+    };
+    let measured = [
+        measure("valley", "\"valleys\"", "fold_angle"),
+        measure("mountain", "\"mountains\"", "fold_angle"),
+        measure("moment", "\"valleys\"", "moment"),
+        measure("per-metre", "\"valleys\"", "moment_per_length"),
+    ];
+    fs::write(
+        dir.join("measured.toml"),
+        format!("{text}\n{}", measured.concat()),
+    )
+    .unwrap();
+    let done = run(dir, &["simulate", "measured.toml", "--out", "run"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let rows = read_measures(&dir.join("run/measures.csv")).unwrap();
+    let of = |name: &str| -> Vec<f64> {
+        let own = rows.iter().filter(|row| row.name == name);
+        own.map(|row| row.value).collect()
+    };
+    let last = |name: &str| *of(name).last().unwrap();
+    // A quarter of 180 degrees to either side, at rest.
+    let angles = ["valley", "mountain"].map(last);
+    assert!((angles[0] - 45.0).abs() < 0.1, "{angles:?}");
+    assert!((angles[1] + 45.0).abs() < 0.1, "{angles:?}");
+    // The springs lead by a moment on the way, over the 0.2 m / 3 of the crease.
+    let most = of("moment").iter().map(|m| m.abs()).fold(0.0, f64::max);
+    assert!(most > 0.0 && last("moment").abs() < 0.1 * most, "{most}");
+    for (whole, per_metre) in of("moment").iter().zip(of("per-metre")) {
+        let expected = whole / (0.2 / 3.0);
+        assert!(
+            (per_metre - expected).abs() <= 1e-9 * expected.abs(),
+            "{per_metre} {expected}"
+        );
+    }
+    let refused = |measure: String, expected: &str| {
+        fs::write(dir.join("wrong.toml"), format!("{text}\n{measure}")).unwrap();
+        let checked = run(dir, &["simulate", "wrong.toml", "--out", "no"]);
+        assert_eq!(code(&checked), Some(3), "{}", stderr(&checked));
+        assert!(stderr(&checked).contains(expected), "{}", stderr(&checked));
+    };
+    refused(
+        measure("a", "{ edges = [0] }", "fold_angle"),
+        "no crease that is driven is one of these",
+    );
+    refused(
+        measure("a", "{ drawn = [\"red\"] }", "fold_angle"),
+        "does not say which lines",
+    );
+    refused(
+        measure("a", "\"valleys\"", "x"),
+        "this quantity is one of vertices",
+    );
+}

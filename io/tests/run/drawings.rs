@@ -1,6 +1,7 @@
 //! `isosheet mesh`.
 
 use crate::{code, run, stderr};
+use isosheet_io::run::Recording;
 use isosheet_io::{EdgeAssignment, MeshFile, read_mesh};
 use std::fs;
 use std::path::Path;
@@ -722,4 +723,50 @@ fn all_colours_of_unknown_lines_are_named() {
     let said = refused(dir, "a.svg", &["--spacing", "5mm"], 3);
     let told = "what the lines of the colours #ff8000, dashed cyan are";
     assert!(said.contains(told), "{said}");
+}
+
+/// The carton of the book is glued while its creases are folded by 90 degrees, and stays closed when they
+/// spring back.
+#[test]
+fn a_flap_is_glued_while_the_carton_is_folded() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/drawing.md");
+    let page = fs::read_to_string(page).unwrap();
+    let block = |begin: &str, has: &str| {
+        let blocks = page.split(begin).skip(1);
+        let mut blocks = blocks.map(|b| b.split("```").next().unwrap());
+        blocks.find(|b| b.contains(has)).unwrap().to_owned()
+    };
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("sleeve.svg"), block("```xml\n", "M160 0 V60")).unwrap();
+    // How far apart the ends of the four sides are at two times, metres.
+    let apart = |name: &str, text: &str| {
+        fs::write(dir.join("sleeve.toml"), text).unwrap();
+        let done = run(dir, &["simulate", "sleeve.toml", "-o", name]);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        let recording = Recording::read(&dir.join(name)).unwrap();
+        let points = recording.sheet.positions().as_chunks::<3>().0;
+        let at = |x: f64| {
+            let mut vertices = points.iter();
+            let near = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - 0.06) < 1e-9;
+            3 * vertices.position(near).unwrap()
+        };
+        let [a, b] = [0.0, 0.16].map(at);
+        let times = recording.trajectory.times();
+        [1.5, 4.0].map(|t| {
+            let k = times.iter().position(|time| *time >= t - 1e-9).unwrap();
+            let x = recording.trajectory.frame(k).unwrap();
+            (0..3)
+                .map(|k| (x[a + k] - x[b + k]).powi(2))
+                .sum::<f64>()
+                .sqrt()
+        })
+    };
+    let text = block("```toml\n", "sleeve.svg\"");
+    let [glue, after] = ["[[glue]]", "[[measure]]"].map(|key| text.find(key).unwrap());
+    let [folded, end] = apart("glued", &text);
+    assert!(folded < 1e-4 && end < 1e-4, "{folded} {end}");
+    // Four sides of 40 mm that turn by 60 degrees are four of a hexagon.
+    let [_, end] = apart("open", &[&text[..glue], &text[after..]].concat());
+    assert!((end - 0.04 * 3.0_f64.sqrt()).abs() < 1e-3, "{end}");
 }

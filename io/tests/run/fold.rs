@@ -4,7 +4,7 @@ use crate::skip::data_folder;
 use crate::{code, run, stderr};
 use isosheet_io::mesh::{EdgeId, fold_angle};
 use isosheet_io::read_json;
-use isosheet_io::run::{FoldVerdict, Recording, Summary};
+use isosheet_io::run::{FlatFoldingLaw, FoldVerdict, Recording, Summary};
 use std::fs;
 use std::path::Path;
 
@@ -44,11 +44,40 @@ fn a_vertex_folds_flat_without_a_scene_file() {
         page.contains("\"folded\":[0.0,"),
         "the page knows how far each frame is folded"
     );
+    // What has closed is shown as paper, and what stays open by how far it does.
+    assert!(!page.contains("\"colour\":0"));
     // The scene is that of the run.
     let again = run(dir.path(), &["simulate", "scene.toml", "-o", "again"]);
     assert_eq!(code(&again), Some(0), "{}", stderr(&again));
     let again: Summary = read_json(&dir.path().join("again/summary.json")).unwrap();
     assert_eq!(again.ending.residuals, summary.ending.residuals);
+    // Panels that touch keep the thickness of the sheet, and what is told says that it is taken off the gap.
+    let (said, ..) = folded(
+        dir.path(),
+        &[
+            "vertex.fold",
+            "out",
+            "--contact",
+            "-o",
+            "touch.toml",
+            "--force",
+        ],
+    );
+    assert!(
+        said.contains("smallest gap") && !said.contains("taken off"),
+        "{said}"
+    );
+    let words = [
+        "simulate",
+        "touch.toml",
+        "-o",
+        "thick",
+        "--set",
+        "sheet.thickness=1e-4",
+    ];
+    let thick = run(dir.path(), &words);
+    let said = String::from_utf8_lossy(&thick.stdout).into_owned();
+    assert!(said.contains(" m (thickness taken off)"), "{said}");
 }
 
 #[test]
@@ -100,6 +129,33 @@ fn panels_are_elastic_where_rigid_ones_do_not_close() {
         verdict.open > 0 && said.contains("open by more than 5 degrees"),
         "{said}"
     );
+    assert!(
+        said.contains("at (0.100, -0.100) m does not fold flat: it has 4 mountains and 4 valleys"),
+        "{said}"
+    );
+    assert_eq!(verdict.unfoldable.len(), 1);
+    let page = fs::read_to_string(dir.path().join("out/index.html")).unwrap();
+    assert!(page.contains("\"colour\":0"));
+    // Three mountains and a valley, with angles of 90 and 90, and 60 and 120 degrees by turns.
+    let wrong = "1 0 0 2 0\n1 2 0 2 2\n1 2 2 0 2\n1 0 2 0 0\n2 1 1 2 1\n2 1 1 1 2\n2 1 1 0 1\n3 1 1 0.423 0\n";
+    fs::write(dir.path().join("wrong.cp"), wrong).unwrap();
+    let (said, _, verdict) = folded(dir.path(), &["wrong.cp", "out", "--force"]);
+    assert!(
+        said.contains("does not fold flat: the angles between its creases add up to")
+            && said.contains("(Kawasaki)"),
+        "{said}"
+    );
+    let FlatFoldingLaw::Kawasaki { mut sums } = verdict.unfoldable[0].violates else {
+        panic!("{:?}", verdict.unfoldable)
+    };
+    sums.sort_by(f64::total_cmp);
+    assert!(
+        (sums[0] - 150.0).abs() < 0.1 && (sums[1] - 210.0).abs() < 0.1,
+        "{sums:?}"
+    );
+    // To a part of the angles it need not fold flat.
+    let (_, _, verdict) = folded(dir.path(), &["wrong.cp", "out", "--part", "0.5", "--force"]);
+    assert_eq!(verdict.unfoldable, []);
 }
 
 /// A mountain at -180 degrees is not where a valley at 180 degrees is: with its odd crease in the wrong place a vertex
@@ -169,6 +225,141 @@ fn groups_of_creases_fold_one_after_the_other() {
     refused("valleys; 99", 3, "group 1");
 }
 
+/// A strip of three squares whose left end folds over the middle and whose right one, which is longer, over
+/// both.
+const LAYERED: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="10mm" viewBox="0 0 40 10" fill="none">
+  <path stroke="black" d="M0 0 H40 V10 H0 Z"/>
+  <g id="Left"><path stroke="blue" d="M10 0 V10"/></g>
+  <g id="Right"><path stroke="blue" d="M20 0 V10"/></g>
+</svg>"#;
+
+/// Groups are named by lines of the drawing, in its file and in the mesh of it; an order that is not achieved
+/// is told.
+#[test]
+fn groups_are_named_by_lines_of_the_drawing() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path();
+    fs::write(path.join("strip.svg"), LAYERED).unwrap();
+    let order = "layer:Left; layer:Right";
+    let words = [
+        "strip.svg",
+        "out",
+        "--part",
+        "0.5",
+        "--order",
+        order,
+        "-o",
+        "strip.toml",
+    ];
+    let (said, _, verdict) = folded(path, &words);
+    assert!(verdict.residual.largest < 1.0, "{:?}", verdict.residual);
+    assert!(!said.contains("the order"), "{said}");
+    let names: Vec<&str> = verdict.order.groups.iter().map(|g| &g.name[..]).collect();
+    assert_eq!(names, ["layer:Left", "layer:Right"]);
+    assert!(verdict.order.groups[0].at_next.unwrap() < FoldVerdict::OPEN);
+    let scene = fs::read_to_string(path.join("strip.toml")).unwrap();
+    assert!(scene.contains("{ drawn = [\"layer:Left\"] }"), "{scene}");
+    // The same by the mesh that is made of the drawing, and a crease of a scene.
+    let made = run(
+        path,
+        &["mesh", "strip.svg", "-o", "strip.fold", "--spacing", "5mm"],
+    );
+    assert_eq!(code(&made), Some(0), "{}", stderr(&made));
+    let words = [
+        "strip.fold",
+        "out",
+        "--part",
+        "0.5",
+        "--order",
+        order,
+        "--force",
+    ];
+    let (said, _, verdict) = folded(path, &words);
+    assert!(verdict.residual.largest < 1.0, "{said}");
+    let scene = "version = 1\n[sheet]\nmesh = { file = { path = \"strip.fold\" } }\nmaterial = \"office paper\"\n\
+                 [[crease]]\nname = \"left\"\nat = { drawn = [\"layer:Left\"] }\nstiffness = 0.05\n[stop]\ntime = 0.1\n";
+    fs::write(path.join("scene.toml"), scene).unwrap();
+    let checked = run(path, &["check", "scene.toml"]);
+    assert_eq!(code(&checked), Some(0), "{}", stderr(&checked));
+    let output = run(path, &["fold", "strip.svg", "no", "--order", "layer:Wing"]);
+    assert_eq!(code(&output), Some(3), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("\"Left\", \"Right\""),
+        "{}",
+        stderr(&output)
+    );
+    fs::write(
+        path.join("plain.cp"),
+        "1 0 0 1 0\n1 1 0 1 1\n1 1 1 0 1\n1 0 1 0 0\n3 0 0 1 1\n",
+    )
+    .unwrap();
+    let output = run(path, &["fold", "plain.cp", "no", "--order", "red"]);
+    assert_eq!(code(&output), Some(3), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("does not say which lines"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+/// A vertex of degree four has one motion, in which all creases fold at once: a crease alone does not reach
+/// its angle.
+#[test]
+fn an_order_that_is_not_achieved_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("vertex.fold"), VERTEX).unwrap();
+    let words = ["vertex.fold", "out", "--order", "0; 1 2 3"];
+    let (said, _, verdict) = folded(dir.path(), &words);
+    let [first, second] = &verdict.order.groups[..] else {
+        panic!("{:?}", verdict.order)
+    };
+    let off = first.at_next.unwrap();
+    assert!(
+        off > 20.0 && second.at_next.is_none(),
+        "{:?}",
+        verdict.order
+    );
+    let expected = format!(
+        "the order is not achieved: \"edges 0\" is up to {off:.0} degrees from its angles when \"edges 1 2 3\" begins, \
+         and {:.0} at the end",
+        first.at_end
+    );
+    assert!(said.contains(&expected), "{said}");
+}
+
+/// A folder with another run, and a scene file of another scene, are refused before anything is computed.
+#[test]
+fn used_folders_are_refused_before_the_trials() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("vertex.fold"), VERTEX).unwrap();
+    let words = ["vertex.fold", "out", "-o", "scene.toml"];
+    folded(dir.path(), &words);
+    let refused = |words: &[&str], expected: &str| {
+        let output = run(dir.path(), &[&["fold"], words].concat());
+        let said = stderr(&output);
+        assert_ne!(code(&output), Some(0), "{said}");
+        assert!(
+            said.contains(expected) && !said.contains("rigid panels"),
+            "{said}"
+        );
+    };
+    refused(
+        &["vertex.fold", "out", "--part", "0.5"],
+        "holds a run of another scene",
+    );
+    refused(
+        &["vertex.fold", "new", "--part", "0.5", "-o", "scene.toml"],
+        "is another scene",
+    );
+    // What was done already is not refused.
+    let (said, ..) = folded(dir.path(), &words);
+    assert!(said.contains("every crease closes"), "{said}");
+    folded(
+        dir.path(),
+        &["vertex.fold", "out", "--part", "0.5", "--force"],
+    );
+}
+
 /// A strip of three panels, of which those outside are twice as long as the one between them, with two valleys of 135 degrees.
 /// Their ends meet where the cosine of the angle is -1/4.
 const TRIANGLE: &str = "1 0 0.2 2 0.2\n1 2 0.2 2 0\n1 2 0 5 0\n1 5 0 5 1\n1 5 1 2 1\n1 2 1 2 0.8\n1 2 0.8 0 0.8\n1 0 0.8 0 0.2\n\
@@ -194,6 +385,28 @@ fn panels_that_pass_through_each_other_are_told() {
     let (said, _, verdict) = folded(dir.path(), &words);
     assert_eq!(verdict.passing, None, "{said}");
     assert_eq!(verdict.open, 2, "{said}");
+    // The panels at the ends touch, within the distance at which they feel each other: half a thickness of
+    // paper.
+    let touching = verdict.held_open.unwrap();
+    assert!(touching.gap < 2.5e-4 * 0.2, "{touching:?}");
+    let told = format!("where {touching}");
+    assert!(
+        said.contains(&told) && told.contains("mm from face"),
+        "{said}"
+    );
+    let recording = Recording::read(&dir.path().join("out")).unwrap();
+    let middle = |face: u32| {
+        let corners = recording.sheet.topology().faces()[face as usize];
+        corners
+            .map(|v| recording.sheet.position(v)[0])
+            .iter()
+            .sum::<f64>()
+            / 3.0
+    };
+    // The strip is 5 units and 0.2 m long, with creases at 2 and 3.
+    let mut places = touching.faces.map(middle).map(|x| x / 0.04);
+    places.sort_by(f64::total_cmp);
+    assert!(places[0] < 2.0 && places[1] > 3.0, "{places:?}");
     assert!(
         said.contains("without contact they pass through each other from"),
         "{said}"
@@ -242,4 +455,22 @@ fn misuse_of_fold_says_what_to_do() {
     assert!(said.contains("above 0 and at most 1"), "{said}");
     let said = refused("m.cp", MIURA, 2, &["--material", "paperr"]);
     assert!(said.contains("office paper"), "{said}");
+}
+
+/// Panels that are chosen as they do not stretch may be further from their angles than others, which is told.
+#[test]
+fn panels_that_end_nearer_are_told() {
+    let Some(data) = data_folder() else { return };
+    let pattern = data.join("fold/hypar_tri.fold");
+    let dir = tempfile::tempdir().unwrap();
+    let (said, _, verdict) = folded(dir.path(), &[pattern.to_str().unwrap(), "out"]);
+    let words = said.split("panels end nearer to their angles, ").nth(1);
+    let mut numbers = words.unwrap_or_else(|| panic!("{said}")).split(' ');
+    let nearer: f64 = numbers.next().unwrap().parse().unwrap();
+    let strain: f64 = numbers.nth(5).unwrap().parse().unwrap();
+    assert!(nearer < verdict.residual.rms - 1.0, "{said}");
+    // By angles and strain together the panels that are chosen are nearer.
+    let error = |degrees: f64, strain: f64| degrees.to_radians().hypot(strain);
+    let chosen = error(verdict.residual.rms, verdict.strain[0]);
+    assert!(chosen < error(nearer, 0.01 * strain), "{said}");
 }

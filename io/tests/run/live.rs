@@ -560,3 +560,49 @@ fn gaps_are_absent_while_nothing_is_close() {
         "{close}"
     );
 }
+
+/// A pattern is folded by a part of its angles, and the slider is the part of the way there.
+#[test]
+fn a_slider_folds_a_pattern() {
+    let dir = tempfile::tempdir().unwrap();
+    let square = "1 0 0 1 0\n1 1 0 1 1\n1 1 1 0 1\n1 0 1 0 0\n3 0 0 1 1\n";
+    fs::write(dir.path().join("square.cp"), square).unwrap();
+    let served = Served::of("square.cp", dir.path(), &["--part", "0.5", "--contact"]);
+    let host = format!("Host: 127.0.0.1:{}\r\n", served.port);
+    let page = served.raw(&format!("GET {} HTTP/1.1\r\n{host}\r\n", served.path("")));
+    let (_, data) = page.split_once("id=\"replay\">").unwrap();
+    let data: Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let slider = &data["live"]["sliders"][0];
+    assert_eq!(slider["name"], "part of the folding", "{slider}");
+    assert_eq!(
+        [&slider["low"], &slider["high"]],
+        [&json!(0.0), &json!(1.0)]
+    );
+    let mut viewer = served.watch();
+    let set = json!({ "set": { "slider": 0, "value": 0.5 } });
+    assert_eq!(served.order(viewer.number, set), 204);
+    assert_eq!(served.order(viewer.number, json!("play")), 204);
+    // A half of half of 180 degrees: the corners beside the diagonal of a square of 0.2 m come nearer to each
+    // other.
+    let expected = 0.2 * 2.0_f64.sqrt() * 22.5_f64.to_radians().cos();
+    viewer.frame(|f| {
+        let corners = [0, 1, 2, 3].map(|k| vertex(f, k));
+        let pairs = (0..4).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let apart = pairs.map(|(a, b)| distance(corners[a], corners[b]));
+        // The other diagonal is longer, and keeps its length.
+        let mut apart: Vec<f64> = apart.collect();
+        apart.sort_by(f64::total_cmp);
+        f["sliders"][0] == json!(0.5) && (apart[4] - expected).abs() < 1e-3
+    });
+    let folder = with_scene(StartingPoint::Flag);
+    let refused = run(
+        folder.path(),
+        &["live", "scene.toml", "--no-open", "--part", "0.5"],
+    );
+    assert_eq!(code(&refused), Some(2), "{}", stderr(&refused));
+    assert!(
+        stderr(&refused).contains("--part is for crease patterns"),
+        "{}",
+        stderr(&refused)
+    );
+}

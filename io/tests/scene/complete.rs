@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 15] = [
+const ALL_KEYS: [&str; 16] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -245,8 +245,24 @@ const ALL_KEYS: [&str; 15] = [
     stiffness = 0.01
     flat_stiffness = 0.5
     part = 0.75
-    order = ["mountains", { edges = [0] }, "valleys"]
-    frame = 1"#,
+    order = ["mountains", { edges = [0] }, { drawn = ["layer:Wing", "red"] }, "valleys"]
+    frame = 1
+    [[measure]]
+    name = "wing"
+    fold = { edges = [0] }
+    quantity = "fold_angle""#,
+    r#"version = 1
+    [sheet]
+    mesh = { file = { path = "a.fold" } }
+    material = "card"
+    [folding]
+    time = 1
+    stiffness = 0.01
+    course = { ramp = { to = 0.5, end = 1 } }
+    [[glue]]
+    first = { nearest = [[0, 0, 0], [0.1, 0, 0]] }
+    second = { nearest = [[0, 0.1, 0], [0.1, 0.1, 0]] }
+    from = 0.5"#,
     r#"version = 1
     [sheet]
     mesh = { square = { side = 0.2, level = 1 } }

@@ -237,7 +237,7 @@ fn only_a_drawing_has_lines_to_select() {
     let scene = SceneFile::parse(text, Path::new("scene.toml"), &[]).unwrap();
     let told = scene.build().unwrap_err().to_string();
     assert!(
-        told.contains("the mesh of the sheet is no drawing"),
+        told.contains("the mesh of the sheet is made of no drawing"),
         "{told}"
     );
 }

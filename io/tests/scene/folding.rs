@@ -636,3 +636,25 @@ fn a_drawing_is_folded() {
     let error = parse(scene("frame = 1\n")).unwrap_err().to_string();
     assert!(error.contains("a drawing has none"), "{error}");
 }
+
+/// The springs are at a part of the angles that is a function of time; the one that is taken by itself may be
+/// written.
+#[test]
+fn the_course_of_a_folding_is_a_function_of_time() {
+    let dir = tempfile::tempdir().unwrap();
+    let square = json!({
+        "vertices_coords": [[0, 0], [0.1, 0], [0.1, 0.1], [0, 0.1]], "faces_vertices": [[0, 1, 2], [0, 2, 3]],
+        "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2]], "edges_assignment": ["B", "B", "B", "B", "V"],
+    });
+    let folded = |keys: &str| folded(dir.path(), &square, keys);
+    let half = folded("course = { ramp = { to = 0.5, end = 1 } }");
+    assert!((half.largest - 90.0).abs() < 0.1, "{half:?}");
+    let whole = folded("course = { smooth_step = { to = 1, end = 1 } }");
+    assert_eq!(whole, folded(""));
+    assert!(whole.largest < 0.1, "{whole:?}");
+    let text = "version = 1\n[sheet]\nmesh = { file = { path = \"sheet.fold\" } }\ndensity = 0.1\n[folding]\ntime = 1\n\
+                stiffness = 0.01\norder = [\"valleys\"]\ncourse = 0.5\n";
+    let refused = SceneFile::parse(text.to_owned(), &dir.path().join("scene.toml"), &[]);
+    let said = refused.unwrap_err().to_string();
+    assert!(said.contains("leave out `course` or `order`"), "{said}");
+}

@@ -5,7 +5,7 @@ use super::slider::Slider;
 use crate::BodyPose;
 use crate::format::HistoryRow;
 use crate::run::HoldingBody;
-use crate::scene::{LiveScene, SceneError, SceneFile, bounds};
+use crate::scene::{Key, LiveScene, Profile, SceneError, SceneFile, bounds};
 use crate::view::TimeSeries;
 use isosheet_dynamics::{StepError, StepProgress};
 use isosheet_mesh::wording::brief;
@@ -46,12 +46,30 @@ pub(super) enum Stepped {
     Interrupted,
 }
 
+/// The scene with the course of its folding, which has a slider then.
+fn with_course(file: SceneFile) -> Result<SceneFile, SceneError> {
+    let mut scene = file.scene().clone();
+    let Some(folding) = scene
+        .folding
+        .as_mut()
+        .filter(|folding| folding.order.is_empty())
+    else {
+        return Ok(file);
+    };
+    folding
+        .course
+        .get_or_insert(Profile::smooth_step(1.0, folding.time));
+    let key = Key::root().name("folding.course");
+    file.changed(scene, [key])
+}
+
 impl Session {
     /// The scene at its start. It does not play yet.
     ///
     /// # Errors
     /// [`SceneError`] if it cannot be built.
     pub(super) fn start(file: SceneFile) -> Result<Self, SceneError> {
+        let file = with_course(file)?;
         let live = LiveScene::start(file)?;
         let scene = live.file().scene();
         let corners = bounds(live.positions().as_chunks::<3>().0);

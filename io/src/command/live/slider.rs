@@ -25,6 +25,7 @@ impl Slider {
         let functions = functions.functions_mut().into_iter();
         let slider = |(key, profile): (Key, &mut Profile)| {
             let (name, unit) = Self::called(&key)?;
+            let name = with_names(name, scene);
             let reach = if unit == WIND { STRONGER } else { 1.0 };
             let [least, most] = profile.range(scene.stop.time).map(|end| reach * end);
             let [low, high] = [least.min(0.0), most.max(0.0)];
@@ -56,6 +57,7 @@ impl Slider {
             "size" if owner.starts_with("forces.moment") => (above.to_owned(), "N m"),
             "profile" => (above.to_owned(), ""),
             "swell" | "stiffening" => (text.clone(), ""),
+            "course" => ("part of the folding".to_owned(), ""),
             "added" => (format!("gas added to {owner}"), "m³"),
             "size" => (above.to_owned(), "m/s²"),
             "wind[0]" => ("wind along x".to_owned(), WIND),
@@ -86,6 +88,15 @@ impl Slider {
             end,
         }));
     }
+}
+
+/// What a slider is called, where a crease has a name by that.
+fn with_names(called: String, scene: &Scene) -> String {
+    let creases = scene.crease.iter().enumerate();
+    let named = creases.filter_map(|(k, crease)| Some((format!("crease[{k}]"), crease.called()?)));
+    named.fold(called, |called, (key, name)| {
+        called.replace(&key, &format!("\"{name}\""))
+    })
 }
 
 #[cfg(test)]

@@ -1,35 +1,26 @@
 //! Which edges of the mesh of a drawing follow which lines.
 
 use super::selector::Selector;
-use crate::format::DataError;
 use crate::format::vector::Pen;
-use std::collections::{BTreeSet, HashMap};
+use crate::format::{DataError, DrawnLines, MeshFile};
+use std::collections::BTreeSet;
 
 /// The edges of the mesh of a drawing that follow lines, with how these are drawn.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DrawnEdges {
-    /// How lines are drawn.
-    pens: Vec<Pen>,
-    /// The vertices at the ends of each edge, and the pens of the lines that it follows.
-    edges: Vec<([u32; 2], BTreeSet<usize>)>,
+    lines: DrawnLines,
+    /// The vertices at the ends of each edge, and the lines that it follows.
+    edges: Vec<([u32; 2], Option<u32>)>,
 }
 
 impl DrawnEdges {
-    /// Of the pens of edges by their ends, the smaller number first, among the edges that a mesh has.
-    pub(super) fn new(
-        pens: &[Pen],
-        of_edge: &HashMap<[u32; 2], BTreeSet<usize>>,
-        ends: impl Iterator<Item = [u32; 2]>,
-        original: impl Fn(u32) -> u32,
-    ) -> Self {
-        let with_pens = |ends: [u32; 2]| {
-            let [a, b] = ends.map(&original);
-            Some((ends, of_edge.get(&[a.min(b), a.max(b)])?.clone()))
-        };
-        Self {
-            pens: pens.to_vec(),
-            edges: ends.filter_map(with_pens).collect(),
-        }
+    /// Those of a mesh; `None` if it does not say of which lines it is made.
+    pub fn of(mesh: &MeshFile) -> Option<Self> {
+        let edges = mesh.creases.iter().filter(|crease| crease.drawn.is_some());
+        (!mesh.drawn.pens().is_empty()).then(|| Self {
+            lines: mesh.drawn.clone(),
+            edges: edges.map(|crease| (crease.ends, crease.drawn)).collect(),
+        })
     }
 
     /// The edges along the lines that are selected, by the vertices at their ends.
@@ -37,16 +28,23 @@ impl DrawnEdges {
     /// # Errors
     /// [`DataError`] if the drawing has no such line.
     pub fn along(&self, selector: &Selector) -> Result<Vec<[u32; 2]>, DataError> {
-        refuse_idle(selector, &self.pens)?;
-        let is_along =
-            |pens: &BTreeSet<usize>| pens.iter().any(|k| selector.selects(&self.pens[*k]));
-        let edges = self.edges.iter().filter(|(_, pens)| is_along(pens));
+        refuse_idle(selector, self.lines.pens())?;
+        let is_along = |drawn| selector.selects_any(&self.lines, drawn);
+        let edges = self.edges.iter().filter(|(_, drawn)| is_along(*drawn));
         Ok(edges.map(|(ends, _)| *ends).collect())
     }
 }
 
+impl Selector {
+    /// Whether one of the lines is meant that an edge follows, by its
+    /// [`FileCrease::drawn`](crate::FileCrease::drawn).
+    pub fn selects_any(&self, lines: &DrawnLines, drawn: Option<u32>) -> bool {
+        lines.pens_of(drawn).any(|pen| self.selects(pen))
+    }
+}
+
 /// Refuses a selector that selects nothing: what it was meant for would be taken for something else.
-pub(super) fn refuse_idle(selector: &Selector, pens: &[Pen]) -> Result<(), DataError> {
+pub(crate) fn refuse_idle(selector: &Selector, pens: &[Pen]) -> Result<(), DataError> {
     if pens.iter().any(|pen| selector.selects(pen)) {
         return Ok(());
     }

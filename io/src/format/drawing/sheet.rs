@@ -1,12 +1,12 @@
 //! The mesh of a drawing.
 
 use super::class::LineClass;
-use super::edges::{DrawnEdges, listed, refuse_idle};
+use super::edges::{listed, refuse_idle};
 use super::file::read_drawing;
 use super::options::DrawingOptions;
 use super::report::{ClassCount, DrawingReport, Places};
 use crate::format::vector::{Drawing, DrawnLine};
-use crate::format::{DataError, EdgeAssignment, FileCrease, FileError, MeshFile};
+use crate::format::{DataError, DrawnLines, EdgeAssignment, FileCrease, FileError, MeshFile};
 use isosheet_mesh::plane::{
     Piece, PlaneCurve, PlaneError, PlaneGraph, PlaneMesh, PlaneOptions, Role,
 };
@@ -51,8 +51,6 @@ impl Advice for DrawingError {
 pub struct DrawnSheet {
     /// The mesh, metres, in the plane z = 0, with its creases. Cuts have vertices of their own on both sides.
     pub mesh: MeshFile,
-    /// Which of its edges follow which lines.
-    pub edges: DrawnEdges,
     /// What was taken for what, and what was changed.
     pub report: DrawingReport,
 }
@@ -111,6 +109,12 @@ pub fn mesh_drawing(
         };
         (opacity < 1.0).then_some(sign * opacity * PI)
     };
+    let (mut drawn, numbers) = DrawnLines::of_pens(&drawing.pens);
+    let of_piece = graph.pieces.iter().map(|piece| {
+        let pens = piece.sources.iter().map(|s| numbers[lines[*s].pen]);
+        drawn.set(pens.collect())
+    });
+    let of_piece: Vec<u32> = of_piece.collect();
     let creases: Vec<FileCrease> = plane
         .edges
         .iter()
@@ -118,21 +122,11 @@ pub fn mesh_drawing(
             ends: *ends,
             assignment: classes[*piece].assignment(),
             angle: angle(*piece),
+            drawn: Some(of_piece[*piece]),
         })
         .collect();
-    let (mesh, originals) = assemble(&plane, creases);
-    let pens = |piece: usize| graph.pieces[piece].sources.iter().map(|s| lines[*s].pen);
-    let of_edge = plane.edges.iter();
-    let of_edge = of_edge.map(|&([a, b], piece)| ([a.min(b), a.max(b)], pens(piece).collect()));
-    let edges = DrawnEdges::new(
-        &drawing.pens,
-        &of_edge.collect(),
-        mesh.creases.iter().map(|crease| crease.ends),
-        |v| match (v as usize).checked_sub(plane.points.len()) {
-            Some(copy) => originals[copy],
-            None => v,
-        },
-    );
+    let mut mesh = assemble(&plane, creases);
+    mesh.drawn = drawn;
     Sheet::new(mesh.positions.clone(), &mesh.faces)?;
     let report = DrawingReport {
         size: extent(&plane.points),
@@ -157,11 +151,7 @@ pub fn mesh_drawing(
         assumed_unit: drawing.assumed_unit,
         by_own_unit: drawing.by_own_unit,
     };
-    Ok(DrawnSheet {
-        mesh,
-        edges,
-        report,
-    })
+    Ok(DrawnSheet { mesh, report })
 }
 
 /// No line bounds an area, perhaps because a tolerance that was given has joined all of them.
@@ -330,9 +320,8 @@ fn diagonal(lines: &[&DrawnLine]) -> f64 {
     w.hypot(h)
 }
 
-/// The mesh with vertices of their own on both sides of cuts, and which vertices these are copies of; edges
-/// within panels stay flat.
-fn assemble(plane: &PlaneMesh, mut creases: Vec<FileCrease>) -> (MeshFile, Vec<u32>) {
+/// The mesh with vertices of their own on both sides of cuts; edges within panels stay flat.
+fn assemble(plane: &PlaneMesh, mut creases: Vec<FileCrease>) -> MeshFile {
     let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
     let mut known: HashSet<[u32; 2]> = creases.iter().map(|c| sorted(c.ends)).collect();
     for &[a, b, c] in &plane.faces {
@@ -342,19 +331,20 @@ fn assemble(plane: &PlaneMesh, mut creases: Vec<FileCrease>) -> (MeshFile, Vec<u
                     ends,
                     assignment: EdgeAssignment::Flat,
                     angle: None,
+                    drawn: None,
                 });
             }
         }
     }
     let positions = plane.points.iter().flat_map(|p| [p[0], p[1], 0.0]);
     let mut mesh = MeshFile::of_frame(positions.collect(), plane.faces.clone(), creases);
-    let originals = mesh.separate_cuts();
+    mesh.separate_cuts();
     for crease in &mut mesh.creases {
         if crease.assignment == EdgeAssignment::Cut {
             crease.assignment = EdgeAssignment::Boundary;
         }
     }
-    (mesh, originals)
+    mesh
 }
 
 fn count(drawing: &Drawing, kinds: &[(LineClass, String)]) -> Vec<ClassCount> {

@@ -38,7 +38,15 @@ pub enum ExportError {
 impl Advice for ExportError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::Extension { .. } => Some("choose a known format"),
+            Self::Extension { extension, .. } => Some(match &extension.to_lowercase()[..] {
+                "abc" => {
+                    "write .usda, which Blender, Houdini and Maya read where they read Alembic, or .glb"
+                }
+                "fbx" => {
+                    "write .glb or .usda, which Blender and engines of games read where they read FBX"
+                }
+                _ => "choose a known format",
+            }),
             Self::Frames(error) | Self::Data(error) => error.advice(),
             Self::Topology(error) => error.advice(),
             Self::File(error) => error.advice(),

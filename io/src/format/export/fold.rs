@@ -2,7 +2,7 @@
 
 use super::{ExportError, Series};
 use crate::format::atomic::{FileWriter, write_atomically};
-use crate::format::mesh_file::{EdgeAssignment, MeshFile};
+use crate::format::mesh_file::{EdgeAssignment, LineRecord, MeshFile};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -26,6 +26,11 @@ struct FoldFile<'a> {
     /// Left out where no edge has an angle.
     #[serde(rename = "edges_foldAngle", skip_serializing_if = "Vec::is_empty")]
     fold_angles: Vec<Option<f64>>,
+    /// Left out where edges follow no lines of a drawing.
+    #[serde(rename = "isosheet:lines", skip_serializing_if = "Vec::is_empty")]
+    lines: Vec<LineRecord>,
+    #[serde(rename = "edges_isosheet:lines", skip_serializing_if = "Vec::is_empty")]
+    lines_of_edges: Vec<Vec<usize>>,
     faces_vertices: &'a [[u32; 3]],
     #[serde(skip_serializing_if = "Vec::is_empty")]
     file_frames: Vec<FoldFileFrame<'a>>,
@@ -83,6 +88,8 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
         edges_vertices: first.creases.iter().map(|c| c.ends).collect(),
         edges_assignment: first.creases.iter().map(|c| letter(c.assignment)).collect(),
         fold_angles: degrees(frames[0]).map(Some).collect(),
+        lines: Vec::new(),
+        lines_of_edges: Vec::new(),
         faces_vertices: series.faces(),
         file_frames: frames[1..].iter().map(later).collect(),
     };
@@ -91,7 +98,8 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
 }
 
 /// Writes one mesh with the creases that were read. Their fold angles are those of the file they were read
-/// from, and null where it has none. Other edges are `B` if they have one face, and `U` otherwise.
+/// from, and null where it has none, and so are the lines of a drawing that they follow. Other edges are `B`
+/// if they have one face, and `U` otherwise.
 pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
     let points = mesh.positions.as_chunks::<3>().0;
     let mut faces_at: BTreeMap<[u32; 2], usize> = BTreeMap::new();
@@ -101,17 +109,24 @@ pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError
         }
     }
     let (mut ends, mut assignments, mut angles) = (Vec::new(), Vec::new(), Vec::new());
+    let mut lines_of_edges = Vec::new();
     for crease in &mesh.creases {
         let [a, b] = crease.ends;
         faces_at.remove(&[a.min(b), a.max(b)]);
         ends.push(crease.ends);
         assignments.push(letter(crease.assignment));
         angles.push(crease.angle.map(f64::to_degrees));
+        lines_of_edges.push(mesh.drawn.numbers(crease.drawn).collect());
     }
     for (edge, faces) in faces_at {
         ends.push(edge);
         assignments.push(if faces == 1 { "B" } else { "U" });
         angles.push(None);
+        lines_of_edges.push(Vec::new());
+    }
+    let lines: Vec<LineRecord> = mesh.drawn.pens().iter().map(LineRecord::from).collect();
+    if lines.is_empty() {
+        lines_of_edges.clear();
     }
     if angles.iter().all(Option::is_none) {
         angles.clear();
@@ -134,6 +149,8 @@ pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError
         edges_vertices: ends,
         edges_assignment: assignments,
         fold_angles: angles,
+        lines,
+        lines_of_edges,
         faces_vertices: &mesh.faces,
         file_frames: Vec::new(),
     };

@@ -391,6 +391,7 @@ impl<'a> Series<'a> {
                     Some(FoldAssignment::Boundary) | None => EdgeAssignment::Unassigned,
                 },
                 angle: Some(angle),
+                drawn: None,
             }
         };
         let creases = t

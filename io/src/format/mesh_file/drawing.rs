@@ -28,6 +28,7 @@ pub(super) fn parse(
     }
     let mut mesh = polyhedron.assemble(options)?;
     mesh.take_edges(planar);
+    mesh.drawn = lines.drawn;
     mesh.changes.other_lines = lines.of_other_colours;
     mesh.changes.other_elements = lines.other_elements;
     mesh.cut_along_outlines_inside();

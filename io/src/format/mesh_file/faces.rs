@@ -1,7 +1,7 @@
 //! Polygons of a file, and what becomes of them.
 
 use super::error::{COPY, Located, Location, MeshFileProblem, no_such_vertex};
-use super::{FaceGroups, MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
+use super::{DrawnLines, FaceGroups, MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
 use crate::format::DataError;
 use isosheet_mesh::wording::given;
 use std::ops::Range;
@@ -120,6 +120,7 @@ impl Polyhedron {
             polygons: 0,
             diagonals: Vec::new(),
             creases: Vec::new(),
+            drawn: DrawnLines::default(),
             groups: FaceGroups::default(),
             texture: Vec::new(),
             changes: ReadingChanges::default(),

@@ -3,6 +3,7 @@
 
 mod cuts;
 mod frames;
+mod lines;
 mod sides;
 #[cfg(test)]
 mod tests;
@@ -12,9 +13,10 @@ use super::faces::Polyhedron;
 use super::plane::{self, NEAR, Point};
 use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
 use crate::format::DataError;
-use crate::format::mesh_file::pattern::{FileUnit, Planar, planar};
+use crate::format::mesh_file::pattern::{self, FileUnit, Planar, planar};
 use frames::FrameRecord;
 use isosheet_mesh::wording::brief;
+pub(in crate::format) use lines::LineRecord;
 use std::collections::HashMap;
 
 /// Reads a frame of a FOLD file.
@@ -22,12 +24,14 @@ use std::collections::HashMap;
 /// - Vertices have two or three coordinates; two mean z = 0. A `frame_unit` that is a length is converted to
 ///   metres.
 /// - Without `faces_vertices` the faces are those of the flat crease pattern, and so they are where those of the file leave
-///   out creases.
+///   out creases. Vertices of the pattern that are at one place are one then.
 /// - The faces of a flat frame that is no folded form are made counter-clockwise, as the format demands. Mountains,
 ///   valleys and fold angles are as seen from the side from which faces are counter-clockwise, so that those at
 ///   reversed faces are turned with them.
 /// - Edges with the assignment `C` separate the sheet: vertices there are doubled.
 /// - Fold angles are degrees in the file.
+/// - The keys `isosheet:lines` and `edges_isosheet:lines` say which lines of a drawing edges follow
+///   ([`lines`]).
 /// - The key `faces_isosheet:group` has the name of a group, or null, for each of `faces_vertices`.
 pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Located> {
     let plain = |problem| (None, problem);
@@ -37,6 +41,12 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     let vertices = polyhedron.positions.len() / 3;
     let is_folded = frame.has_class("foldedForm");
     let mut edges = read_edges(&frame, vertices).map_err(|e| plain(e.into()))?;
+    let drawn = lines::read(
+        frame.lines.as_deref().unwrap_or_default(),
+        frame.lines_of_edges.as_deref().unwrap_or_default(),
+        &mut edges,
+    );
+    let drawn = drawn.map_err(|e| plain(e.into()))?;
     if !is_folded {
         check_angles(&edges).map_err(|e| plain(e.into()))?;
     }
@@ -69,10 +79,14 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
         }
         _ => {
             replaced_faces = given.map_or(0, Vec::len);
-            drawing = of_drawing(points, &edges).map_err(|e| plain(e.into()))?;
+            drawing = match is_folded {
+                true => folded_drawing(points, &edges),
+                false => pattern::of_edges(points, &edges, options.weld),
+            }
+            .and_then(|planar| planar.closed(FileUnit::SAME))
+            .map_err(|e| plain(without_faces(e).into()))?;
             edges = std::mem::take(&mut drawing.edges);
-            let crossings = drawing.points.iter().skip(vertices).flatten();
-            polyhedron.positions.extend(crossings);
+            polyhedron.positions = std::mem::take(&mut drawing.points).into_flattened();
             std::mem::take(&mut drawing.faces)
         }
     };
@@ -99,35 +113,34 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     }
     polyhedron.lines = edges.len();
     let mut mesh = polyhedron.assemble(options)?;
+    mesh.changes.welded_vertices = drawing.welded;
+    mesh.drawn = drawn;
     drawing.edges = edges;
     mesh.take_edges(drawing);
     mesh.changes.reversed_faces = reversed_faces;
     mesh.changes.replaced_faces = replaced_faces;
     mesh.changes.inner_boundaries = mesh.boundaries_inside().count();
+    if given.is_none() || replaced_faces > 0 {
+        mesh.drop_unreferenced();
+    }
     mesh.separate_cuts();
     Ok(mesh)
 }
 
-/// The planar graph of a frame without faces.
-fn of_drawing(points: &[Point], edges: &[FileCrease]) -> Result<Planar, DataError> {
-    let extent = |k: usize| {
-        let [low, high] = points
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| {
-                [l.min(p[k]), h.max(p[k])]
-            });
-        high - low
-    };
-    let near = NEAR * extent(0).max(extent(1));
-    let made = planar(points.to_vec(), edges, near);
-    let made = made.and_then(|planar| planar.closed(FileUnit::SAME));
-    made.map_err(|e| DataError {
+/// The planar graph of a folded form without faces, in which vertices at one place are different ones.
+fn folded_drawing(points: &[Point], edges: &[FileCrease]) -> Result<Planar, DataError> {
+    planar(points.to_vec(), edges, NEAR * pattern::extent(points))
+}
+
+/// The edges of a file make no faces.
+fn without_faces(e: DataError) -> DataError {
+    DataError {
         message: format!(
             "the file has no `faces_vertices` that fit its edges, and {}",
             e.message
         ),
         ..e
-    })
+    }
 }
 
 fn add_vertices(frame: &FrameRecord, polyhedron: &mut Polyhedron) -> Result<(), DataError> {
@@ -207,6 +220,7 @@ fn read_edges(frame: &FrameRecord, vertices: usize) -> Result<Vec<FileCrease>, D
             ends,
             assignment: assignment(edge, text)?,
             angle: angle.map(f64::to_radians),
+            drawn: None,
         })
     };
     ends.iter().enumerate().map(crease).collect()

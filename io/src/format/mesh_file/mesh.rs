@@ -1,6 +1,7 @@
 //! The mesh that a file has.
 
 use super::assignment::EdgeAssignment;
+use super::drawn::DrawnLines;
 use super::error::MeshFileError;
 use super::face_groups::FaceGroups;
 use isosheet_mesh::generate::FoldAssignment;
@@ -20,6 +21,8 @@ pub struct FileCrease {
     pub assignment: EdgeAssignment,
     /// The fold angle that the file gives, in radians within [-pi, pi], positive for a valley.
     pub angle: Option<f64>,
+    /// Where it follows lines of a drawing, which: see [`MeshFile::drawn`].
+    pub drawn: Option<u32>,
 }
 
 /// What reading changed besides cutting polygons into triangles.
@@ -135,6 +138,9 @@ pub struct MeshFile {
     pub diagonals: Vec<[u32; 2]>,
     /// The edges of a FOLD file and the diagonals; empty for other formats.
     pub creases: Vec<FileCrease>,
+    /// How the lines of the drawing are drawn that the edges follow, of drawings and of FOLD files that were
+    /// made of one.
+    pub drawn: DrawnLines,
     /// The groups of triangles that the file names: those of OBJ files by groups, objects and materials; of PLY
     /// files by properties of faces, as `property=value`; of glTF files by nodes, meshes and materials; of FOLD
     /// files by the key `faces_isosheet:group`.
@@ -161,6 +167,7 @@ impl MeshFile {
             polygons: 0,
             diagonals: Vec::new(),
             creases,
+            drawn: DrawnLines::default(),
             groups: FaceGroups::default(),
             texture: Vec::new(),
             changes: ReadingChanges::default(),
@@ -175,6 +182,7 @@ impl MeshFile {
             ends,
             assignment: EdgeAssignment::Flat,
             angle: Some(0.0),
+            drawn: None,
         };
         self.creases.extend(self.diagonals.iter().map(diagonal));
     }

@@ -12,7 +12,8 @@ pub(super) mod svg;
 #[cfg(test)]
 mod tests;
 
-use super::{EdgeAssignment, FileCrease, polygon};
+use super::plane::{NEAR, Point};
+use super::{DrawnLines, EdgeAssignment, FileCrease, polygon};
 use crate::format::DataError;
 pub(super) use faces::faces;
 pub(super) use planar::{FileUnit, Planar, planar};
@@ -25,12 +26,16 @@ pub(super) struct Segment {
     pub(super) assignment: EdgeAssignment,
     /// The fold angle in radians, positive for a valley, where the drawing says it.
     pub(super) angle: Option<f64>,
+    /// How it is drawn, see [`PatternLines::drawn`].
+    pub(super) drawn: Option<u32>,
 }
 
 /// The lines of a drawing, and how much of it is something else.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PatternLines {
     pub(super) segments: Vec<Segment>,
+    /// How they are drawn, where the format has colours and layers.
+    pub(super) drawn: DrawnLines,
     /// Visible lines of colours that mean nothing.
     pub(super) of_other_colours: usize,
     /// Elements that are no lines: texts, images, what is hidden.
@@ -56,13 +61,8 @@ pub(super) fn of_segments(segments: &[Segment], snap: Option<f64>) -> Result<Pla
         let message = format!("an end of line {line}, counted from 0, is not finite");
         return Err(DataError::new(message, "correct it, or remove the line").at(line));
     }
-    let size = [0, 1]
-        .map(|k| {
-            let [low, high] = faces::bounds(ends().map(|p| p[k]));
-            high - low
-        })
-        .into_iter()
-        .fold(0.0, f64::max);
+    let points: Vec<Point> = ends().map(|[x, y]| [x, y, 0.0]).collect();
+    let size = extent(&points);
     if size <= 0.0 {
         let message = "the drawing has no lines of the colours or kinds of a crease pattern";
         let remedy = "draw the outline of the sheet and its creases in the colours of the page \"Folding a crease pattern\" of \
@@ -70,22 +70,68 @@ pub(super) fn of_segments(segments: &[Segment], snap: Option<f64>) -> Result<Pla
                       layer:NAME` (or a colour), and fold FILE.fold";
         return Err(DataError::new(message, remedy));
     }
-    let Some(snap) = snap else {
-        let mut best = within(segments, SNAP[0] * size);
-        for snap in &SNAP[1..] {
-            let least = best.as_ref().map_or((usize::MAX, 0), faults);
-            if least == (0, 0) {
-                break;
-            }
-            if let Ok(planar) = within(segments, snap * size)
-                && faults(&planar) < least
-            {
-                best = Ok(planar);
-            }
-        }
-        return best;
+    let edge = |(k, segment): (u32, &Segment)| FileCrease {
+        ends: [2 * k, 2 * k + 1],
+        assignment: segment.assignment,
+        angle: segment.angle,
+        drawn: segment.drawn,
     };
-    within(segments, snap)
+    let edges: Vec<FileCrease> = (0..).zip(segments).map(edge).collect();
+    match snap {
+        Some(snap) => within(&points, &edges, snap),
+        None => snapped(&points, &edges, SNAP.map(|snap| snap * size)),
+    }
+}
+
+/// The planar graph of the edges of a crease pattern whose points are one within `snap`, or else within their
+/// round-off; where that leaves faults that a larger distance mends, within the distances of drawings.
+///
+/// # Errors
+/// [`DataError`] for edges that are no drawing of a sheet.
+pub(super) fn of_edges(
+    points: &[Point],
+    edges: &[FileCrease],
+    snap: Option<f64>,
+) -> Result<Planar, DataError> {
+    let size = extent(points);
+    match snap {
+        Some(snap) => within(points, edges, snap),
+        None => {
+            let distances = std::iter::once(NEAR).chain(SNAP);
+            snapped(points, edges, distances.map(|snap| snap * size))
+        }
+    }
+}
+
+/// The longer side of the box about points.
+pub(super) fn extent(points: &[Point]) -> f64 {
+    let side = |k: usize| {
+        let [low, high] = faces::bounds(points.iter().map(|p| p[k]));
+        high - low
+    };
+    side(0).max(side(1))
+}
+
+/// The planar graph with the first of some distances that leaves fewest faults.
+fn snapped(
+    points: &[Point],
+    edges: &[FileCrease],
+    distances: impl IntoIterator<Item = f64>,
+) -> Result<Planar, DataError> {
+    let mut distances = distances.into_iter();
+    let mut best = within(points, edges, distances.next().unwrap_or(0.0));
+    for snap in distances {
+        let least = best.as_ref().map_or((usize::MAX, 0), faults);
+        if least == (0, 0) {
+            break;
+        }
+        if let Ok(planar) = within(points, edges, snap)
+            && faults(&planar) < least
+        {
+            best = Ok(planar);
+        }
+    }
+    best
 }
 
 /// The number of faces that cross or touch themselves, as lines bend where their ends are moved, and of lines that lead nowhere
@@ -99,19 +145,18 @@ fn faults(planar: &Planar) -> (usize, usize) {
     (crossed, planar.loose + planar.contradicting)
 }
 
-/// The planar graph of a drawing whose points are one within a distance.
-fn within(segments: &[Segment], near: f64) -> Result<Planar, DataError> {
+/// The planar graph of edges whose points are one within a distance.
+fn within(points: &[Point], edges: &[FileCrease], near: f64) -> Result<Planar, DataError> {
     let mut merged = planar::Points::within(near);
-    let mut edges = Vec::with_capacity(segments.len());
-    for segment in segments {
-        let ends = segment.ends.map(|[x, y]| merged.add([x, y, 0.0]));
-        if ends[0] != ends[1] {
-            edges.push(FileCrease {
-                ends,
-                assignment: segment.assignment,
-                angle: segment.angle,
-            });
-        }
-    }
-    planar(merged.into_points(), &edges, near)
+    let label: Vec<u32> = points.iter().map(|p| merged.add(*p)).collect();
+    let moved = edges.iter().map(|edge| FileCrease {
+        ends: edge.ends.map(|v| label[v as usize]),
+        ..*edge
+    });
+    let edges: Vec<FileCrease> = moved.filter(|e| e.ends[0] != e.ends[1]).collect();
+    let places = merged.into_points();
+    let welded = points.len() - places.len();
+    let mut planar = planar(places, &edges, near)?;
+    planar.welded = welded;
+    Ok(planar)
 }

@@ -84,8 +84,8 @@ fn numbers(entry: &GalleryEntry) -> Vec<(&str, String)> {
     rows.push(("time", format!("{:.3} s", entry.t)));
     rows.push(("steps", summary.steps.to_string()));
     rows.push(("largest strain", format!("{:.1e}", summary.largest_strain)));
-    if let Some(gap) = summary.smallest_gap {
-        rows.push(("smallest gap", format!("{gap:.1e} m")));
+    if let Some(gap) = summary.gap_in_words() {
+        rows.push(("smallest gap", gap));
     }
     rows.push(("wall time", format!("{:.2} s", summary.wall_time)));
     rows

@@ -228,7 +228,7 @@ impl Builder<'_> {
             let key = Key::root().name("crease").entry(k);
             if is_own(crease.sheet.as_deref(), &key, "the edges")? {
                 let found = crease.springs(&key, &own.form.unplaced, own.form.roles.as_ref())?;
-                let driven = DrivenCrease::of(k, &found, |e| own.part.edge(e));
+                let driven = DrivenCrease::of((k, crease), &found, |e| own.part.edge(e));
                 self.targets.creases.extend(driven);
                 springs.add(key, crease.folds(), found);
             }
@@ -273,17 +273,21 @@ impl Builder<'_> {
             let lengths = springs
                 .iter()
                 .map(|s| form.placed.lengths()[s.edge.index()]);
-            let lengths = lengths.collect();
+            let measured = (0..).zip(lengths).collect();
             let springs = CreaseSprings::new(form.placed.topology(), springs);
             let springs = Arc::new(springs.map_err(at(&key))?);
+            let gauge = CreaseGauge {
+                springs: Arc::clone(&springs),
+                measured,
+                part: part.clone(),
+                potential: self.model().potentials().count(),
+            };
             if let Some((_, name)) = named.iter().find(|(known, _)| *known == key) {
-                let gauge = CreaseGauge {
-                    springs: Arc::clone(&springs),
-                    lengths,
-                    part: part.clone(),
-                    potential: self.model().potentials().count(),
-                };
-                self.creases.insert(name.clone(), gauge);
+                self.creases.named.insert(name.clone(), gauge);
+            } else if key == Key::root().name("folding") && self.creases.folded.is_none() {
+                // The springs of the creases come before those that keep edges flat.
+                let targets = self.targets.folding.clone();
+                self.creases.folded = targets.map(|targets| (gauge, targets));
             }
             self.add_potential_of(number, springs);
         }

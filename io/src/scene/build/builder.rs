@@ -4,7 +4,7 @@ use crate::scene::bond::Bond;
 use crate::scene::driven::DrivenObstacles;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
-use crate::scene::measure::CreaseGauge;
+use crate::scene::measure::CreaseGauges;
 use crate::scene::mesh_file::Files;
 use crate::scene::obstacles;
 use crate::scene::placed::{Form, PlacedSheets};
@@ -89,8 +89,8 @@ pub(super) struct Builder<'a> {
     pub(super) clamps: Vec<(usize, Vec<VertexId>, RigidDisplacement)>,
     pub(super) modelled: Vec<String>,
     pub(super) targets: Targets,
-    /// The creases of the scene that have names.
-    pub(super) creases: BTreeMap<String, CreaseGauge>,
+    /// The creases of the scene that measures may be of.
+    pub(super) creases: CreaseGauges,
     /// As what sheets bend, by their numbers.
     pub(super) plates: BTreeMap<usize, Arc<PlateBending>>,
 }
@@ -172,7 +172,7 @@ impl<'a> Builder<'a> {
             clamps: Vec::new(),
             modelled,
             targets: Targets::default(),
-            creases: BTreeMap::new(),
+            creases: CreaseGauges::default(),
             plates: BTreeMap::new(),
         })
     }

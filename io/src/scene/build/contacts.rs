@@ -56,8 +56,7 @@ impl Builder<'_> {
             None => ContactOptions::for_sheet(self.model()),
             Some(surface) => ContactOptions::for_surface(&surface.sheet, &surface.points),
         };
-        let thickest = scene.sheet.iter().map(|sheet| sheet.thickness);
-        let thickest = thickest.fold(0.0, f64::max);
+        let thickest = scene.largest_thickness();
         let options = scene.contact.options(automatic, thickest);
         let contacts = match &self.surface {
             None => Contacts::new(self.model(), options),

@@ -9,8 +9,7 @@ impl MeshFile {
     ///
     /// At each end of a cut edge, the faces that are neighbours across edges that are not cut stay together:
     /// those with the first face keep the vertex, the others get copies of it. A cut edge becomes two edges.
-    /// Returns which vertices the copies are of, which are the last ones.
-    pub(crate) fn separate_cuts(&mut self) -> Vec<u32> {
+    pub(crate) fn separate_cuts(&mut self) {
         let cuts: BTreeSet<[u32; 2]> = self
             .creases
             .iter()
@@ -18,7 +17,7 @@ impl MeshFile {
             .map(|c| sorted(c.ends))
             .collect();
         if cuts.is_empty() {
-            return Vec::new();
+            return;
         }
         let mut at_edge: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
         let mut at_vertex: BTreeMap<u32, Vec<usize>> =
@@ -34,7 +33,6 @@ impl MeshFile {
             }
         }
         let mut copies: HashMap<(usize, u32), u32> = HashMap::new();
-        let mut originals = Vec::new();
         for (&v, faces) in &at_vertex {
             let groups = self.groups(v, faces, &at_edge, &cuts);
             for group in groups.iter().skip(1) {
@@ -42,7 +40,6 @@ impl MeshFile {
                 let k = 3 * v as usize;
                 self.positions.extend_from_within(k..k + 3);
                 self.changes.vertices_at_cuts += 1;
-                originals.push(v);
                 copies.extend(group.iter().map(|&f| ((f, v), copy)));
             }
         }
@@ -73,7 +70,6 @@ impl MeshFile {
         for (f, face) in self.faces.iter_mut().enumerate() {
             *face = face.map(|v| label(f, v));
         }
-        originals
     }
 
     /// The faces at a vertex in groups that no cut separates there, each in the order of the faces.

@@ -1,5 +1,6 @@
 //! Frames of FOLD files and what they inherit.
 
+use super::lines::LineRecord;
 use crate::format::DataError;
 use crate::format::mesh_file::error::{CORRECT, excerpt};
 use crate::format::mesh_file::faces::empty;
@@ -25,6 +26,11 @@ pub(super) struct FrameRecord {
     /// The groups of each face.
     #[serde(rename = "faces_isosheet:group")]
     pub(super) groups: Option<Vec<Option<String>>>,
+    /// How the lines of a drawing are drawn that edges follow, and of each edge which of them.
+    #[serde(rename = "isosheet:lines")]
+    pub(super) lines: Option<Vec<LineRecord>>,
+    #[serde(rename = "edges_isosheet:lines")]
+    pub(super) lines_of_edges: Option<Vec<Vec<usize>>>,
     /// The other frames; in the key frame alone, whose keys are those of the file itself.
     file_frames: Option<Vec<FrameRecord>>,
 }
@@ -162,6 +168,8 @@ fn inherited(frames: &[FrameRecord], number: usize) -> Result<FrameRecord, DataE
             fold_angles: frame.fold_angles.or_else(|| from.fold_angles.clone()),
             faces_vertices: frame.faces_vertices.or_else(|| from.faces_vertices.clone()),
             groups: frame.groups.or_else(|| from.groups.clone()),
+            lines: frame.lines.or_else(|| from.lines.clone()),
+            lines_of_edges: (frame.lines_of_edges).or_else(|| from.lines_of_edges.clone()),
             file_frames: None,
         }
     };

@@ -51,5 +51,6 @@ fn segment(words: &[&str]) -> Option<Segment> {
         ends: [[x1, -y1], [x2, -y2]],
         assignment: assignment(kind)?,
         angle: None,
+        drawn: None,
     })
 }

@@ -52,5 +52,6 @@ fn segment(number: usize, line: Node<'_, '_>) -> Result<Segment, DataError> {
         ],
         assignment: cp::assignment(kind).ok_or_else(|| wrong("type", kind))?,
         angle: None,
+        drawn: None,
     })
 }

@@ -13,6 +13,8 @@ use std::collections::{HashMap, HashSet};
 pub(in crate::format) struct Planar {
     /// The points that were given, and behind them those where edges cross.
     pub(in crate::format) points: Vec<Point>,
+    /// Points that were given and became one with others.
+    pub(in crate::format) welded: usize,
     pub(in crate::format) edges: Vec<FileCrease>,
     /// Corners of the faces, counter-clockwise.
     pub(in crate::format) faces: Vec<Vec<i64>>,

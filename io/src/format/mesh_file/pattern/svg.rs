@@ -2,8 +2,9 @@
 
 use super::{PatternLines, Segment};
 use crate::format::DataError;
-use crate::format::mesh_file::EdgeAssignment;
+use crate::format::mesh_file::{DrawnLines, EdgeAssignment};
 use crate::format::vector::{Pen, svg};
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 /// Curves become lines that turn by so much at most, radians: 10 degrees.
@@ -14,6 +15,7 @@ const TURN: f64 = PI / 18.0;
 /// other colours are none of the pattern, and counted.
 pub(in crate::format) fn parse(bytes: &[u8]) -> Result<PatternLines, DataError> {
     let drawing = svg::parse(bytes, None, 1.0)?;
+    let (mut drawn, numbers) = DrawnLines::of_pens(&drawing.pens);
     let mut segments = Vec::new();
     let mut of_other_colours = 0;
     for line in &drawing.lines {
@@ -28,16 +30,19 @@ pub(in crate::format) fn parse(bytes: &[u8]) -> Result<PatternLines, DataError> 
             EdgeAssignment::Valley => Some(pen.opacity * PI),
             _ => None,
         };
+        let of_pen = drawn.set(BTreeSet::from([numbers[line.pen]]));
         let places = line.curve.subdivide([0.0, 1.0], f64::INFINITY, TURN);
         let segment = |ends: &[f64]| Segment {
             ends: [ends[0], ends[1]].map(|t| line.curve.point(t)),
             assignment,
             angle,
+            drawn: Some(of_pen),
         };
         segments.extend(places.windows(2).map(segment));
     }
     Ok(PatternLines {
         segments,
+        drawn,
         of_other_colours,
         other_elements: drawing.left_out.values().sum(),
     })

@@ -2,6 +2,7 @@
 
 use crate::format::mesh_file::EdgeAssignment;
 use crate::format::{MeshFile, MeshFileError, MeshFormat, MeshOptions, parse_mesh};
+use isosheet_mesh::generate::FoldAssignment;
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -336,4 +337,58 @@ fn outlines_inside_the_sheet_are_cuts() {
     let whole = vertices(&format!("{square}3 0 1 2 1\n"));
     let cut = vertices(&format!("{square}1 0 1 2 1\n"));
     assert_eq!([whole, cut], [6, 8]);
+}
+
+/// Each line of this square has vertices of its own, as programs write them that do not join lines: those at
+/// one place are one vertex, within round-off or where faces would touch themselves otherwise.
+#[test]
+fn vertices_at_one_place_of_patterns_without_faces_are_one() {
+    let square = |off: f64, more: &str| {
+        format!(
+            r#"{{"vertices_coords": [[0,0],[1,0], [1,0],[1,1], [1,1],[0,1], [0,1],[0,0], [{off},{off}],[1,1]]{more},
+            "edges_vertices": [[0,1],[2,3],[4,5],[6,7],[8,9]], "edges_assignment": ["B","B","B","B","V"]}}"#
+        )
+    };
+    for off in [0.0, 1e-15, 4e-4, 3e-3] {
+        let mesh = read(MeshFormat::Fold, &square(off, "")).unwrap();
+        assert_eq!(mesh.changes.welded_vertices, 6, "{off}");
+        assert_eq!((mesh.vertex_count(), mesh.faces.len()), (4, 2), "{off}");
+        let sheet = mesh.clone().into_sheet().unwrap();
+        assert!((sheet.area() - 1.0).abs() < 1e-12, "{off}");
+        let assignments = mesh.fold_assignments(sheet.topology()).unwrap();
+        let valleys = assignments
+            .iter()
+            .filter(|a| **a == Some(FoldAssignment::Valley));
+        assert_eq!(valleys.count(), 1, "{off}");
+    }
+    // What ends inside leads nowhere, and no line is moved for it.
+    let mesh = read(MeshFormat::Fold, &square(0.1, "")).unwrap();
+    let changes = mesh.changes;
+    assert_eq!((changes.loose_lines, changes.welded_vertices), (1, 5));
+    // The tolerance that is asked for counts.
+    let welded = |text: &str, weld| {
+        let options = MeshOptions {
+            weld: Some(weld),
+            ..MeshOptions::default()
+        };
+        parse_mesh(
+            text.as_bytes(),
+            MeshFormat::Fold,
+            Path::new("x.fold"),
+            &options,
+        )
+    };
+    assert_eq!(welded(&square(0.1, ""), 0.15).unwrap().faces.len(), 2);
+    // An edge between two vertices at one place is none.
+    let point = r#"{"vertices_coords": [[0,0],[1,0],[1,1],[0,1],[0,0]],
+        "edges_vertices": [[0,1],[1,2],[2,3],[3,0],[0,4]]}"#;
+    let mesh = read(MeshFormat::Fold, point).unwrap();
+    assert_eq!((mesh.changes.welded_vertices, mesh.faces.len()), (1, 2));
+    // Vertices of faces that fit and those of folded forms are different ones, as those of a slit are.
+    let slit = r#"{"vertices_coords": [[0,0],[1,0],[1,1],[0,1],[1,1]], "faces_vertices": [[0,1,2],[0,4,3]],
+        "edges_vertices": [[0,1],[1,2],[0,2],[4,3],[3,0],[0,4]], "edges_assignment": ["B","B","B","B","B","B"]}"#;
+    let slit = read(MeshFormat::Fold, slit).unwrap();
+    assert_eq!((slit.vertex_count(), slit.changes.welded_vertices), (5, 0));
+    let folded = square(0.0, r#", "frame_classes": ["foldedForm"]"#);
+    assert!(read(MeshFormat::Fold, &folded).is_err());
 }

@@ -1,0 +1,72 @@
+//! Which frame of a run is meant.
+
+use super::failure::Failure;
+use crate::Trajectory;
+use crate::mesh::wording::given;
+use crate::scene::Folding;
+use clap::Args;
+
+/// The one frame of a run that is written, if one alone is.
+#[derive(Debug, Args)]
+pub(super) struct OneFrame {
+    /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0)
+    #[arg(long, value_name = "K", conflicts_with_all = ["frames", "every", "fps"])]
+    pub(super) frame: Option<usize>,
+    /// Of a run, write the frame that is nearest to time T alone, seconds
+    #[arg(long, value_name = "T", conflicts_with_all = ["frame", "frames", "every", "fps"])]
+    time: Option<f64>,
+    /// Of a run that folds a pattern, write the frame alone that is nearest to the part P of the angles, from
+    /// 0 to 1
+    #[arg(long, value_name = "P", conflicts_with_all = ["frame", "time", "frames", "every", "fps"])]
+    part: Option<f64>,
+}
+
+impl OneFrame {
+    /// The name of the option that chooses a frame of a run, and of no mesh file, if one is given.
+    pub(super) fn of_run(&self) -> Option<&'static str> {
+        let part = self.part.map(|_| "--part");
+        self.time.map(|_| "--time").or(part)
+    }
+
+    /// Whether one frame alone is written.
+    pub(super) fn is_asked_for(&self) -> bool {
+        self.frame.is_some() || self.of_run().is_some()
+    }
+
+    /// The frame of a motion that is asked for, if one is: of several that are as near the last.
+    pub(super) fn of(
+        &self,
+        trajectory: &Trajectory,
+        folding: Option<&Folding>,
+    ) -> Result<Option<usize>, Failure> {
+        let nearest = |away: &dyn Fn(f64) -> f64| {
+            let times = trajectory.times().iter().enumerate().rev();
+            let away = times.map(|(frame, t)| (frame, away(*t)));
+            let nearest = away.min_by(|a, b| a.1.total_cmp(&b.1));
+            nearest.map(|(frame, _)| frame)
+        };
+        let wrong = |message: String, remedy: &str| Err(Failure::misuse(message).remedy(remedy));
+        match (self.time, self.part, folding) {
+            (Some(time), ..) => match nearest(&|t| (t - time).abs()).filter(|_| time.is_finite()) {
+                Some(frame) => Ok(Some(frame)),
+                None => wrong(
+                    format!("there is no frame near {} s", given(time)),
+                    "give a time of the run, seconds",
+                ),
+            },
+            (_, Some(part), Some(folding)) if (0.0..=1.0).contains(&part) => {
+                let folded = |t: f64| folding.part.abs() * folding.progress(t);
+                Ok(nearest(&|t| (folded(t) - part).abs()))
+            }
+            (_, Some(part), Some(_)) => wrong(
+                format!("the part of the folding is {}", given(part)),
+                "give a number from 0 to 1",
+            ),
+            (_, Some(_), None) => wrong(
+                "--part chooses a frame of a run that folds a crease pattern, and this one folds none".to_owned(),
+                "choose a frame with `--frame K` or `--time T`",
+            ),
+            _ => Ok(self.frame),
+        }
+    }
+}
