@@ -7,10 +7,11 @@ use super::show::View;
 use super::{Effort, Made, Picture, Play, Table, whole_percent};
 use crate::draw::{Viewpoint, mesh_name};
 use crate::report::columns;
-use crate::runs::{FigureScene, Run};
+use crate::runs::{Ensemble, FigureScene, Run, about_ensembles, members};
 use crate::store::Store;
 use anyhow::{Result, bail, ensure};
 use isosheet_mesh::{Dof, Sheet};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// What elastic tablecloths are made of. The bending length of this film, the third root of its rigidity over
@@ -24,10 +25,16 @@ const FILMS: [&str; 3] = ["polyethylene film", PLASTIC, "PET film"];
 /// Times of the pictures, seconds.
 const TIMES: [f64; 6] = [0.0, 0.15, 0.3, 0.6, 1.2, 8.0];
 
-/// A cloth at the end of its run.
+/// A cloth and its neighbours.
 struct Draped {
     label: String,
     run: Run,
+    all: Ensemble<Drapery>,
+}
+
+/// What is measured of a cloth at the end of its run.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Drapery {
     folds: CornerFolds,
     hem: Hem,
     /// How far the hem hangs below the table, as part of its distance from the table in the flat cloth (means
@@ -35,26 +42,46 @@ struct Draped {
     drop: f64,
 }
 
-fn drape(label: &str, scene: FigureScene, store: &Store) -> Result<Draped> {
+impl Drapery {
+    fn of(run: &Run) -> Result<Self> {
+        let (sheet, x) = (&run.sheet, run.end());
+        let layout = Layout::of(run.scene.scene())?;
+        Ok(Self {
+            folds: CornerFolds::of(sheet, x, &layout.table, &layout.cloth),
+            hem: Hem::of(sheet, x),
+            drop: drop(sheet, x, &layout),
+        })
+    }
+
+    fn along(&self) -> f64 {
+        self.folds.along as f64
+    }
+
+    fn folds(&self) -> f64 {
+        self.hem.folds as f64
+    }
+}
+
+/// A cloth of which the ensemble has so many members.
+fn drape(label: &str, scene: FigureScene, members: usize, store: &Store) -> Result<Draped> {
     let run = Run::of(store, scene)?;
-    let (sheet, x) = (&run.sheet, run.end());
-    let layout = Layout::of(run.scene.scene())?;
     Ok(Draped {
         label: label.into(),
-        folds: CornerFolds::of(sheet, x, &layout.table, &layout.cloth),
-        hem: Hem::of(sheet, x),
-        drop: drop(sheet, x, &layout),
+        all: Ensemble::of(store, &run, members, Drapery::of)?,
         run,
     })
 }
 
+/// A cloth that is to be made: its name, its scene, and how many members its ensemble has.
+type Planned = (String, FigureScene, usize);
+
 /// Cloths of rods and the same of plastic, alternately.
-fn of_both(scenes: Vec<(String, FigureScene)>, store: &Store) -> Result<Vec<Draped>> {
+fn of_both(scenes: Vec<Planned>, store: &Store) -> Result<Vec<Draped>> {
     let mut all = Vec::new();
-    for (label, scene) in scenes {
+    for (label, scene, members) in scenes {
         let elastic = scene.made_of(PLASTIC)?;
         for scene in [scene, elastic] {
-            all.push(drape(&label, scene, store)?);
+            all.push(drape(&label, scene, members, store)?);
         }
     }
     Ok(all)
@@ -94,11 +121,32 @@ impl Draped {
         self.run.summary.elastic.is_none()
     }
 
+    /// The number of corner lines along which folds may run.
+    fn lines(&self) -> f64 {
+        self.all.median(|d| d.folds.lines as f64)
+    }
+
+    /// Corner lines along which folds run, of how many, with the part that chance gives.
+    fn along(&self) -> String {
+        let along = self.all.spread(Drapery::along).text(count);
+        let chance = whole_percent(self.all.median(|d| d.folds.part));
+        format!("{along} of {} ({chance})", count(self.lines()))
+    }
+
+    fn percent(&self, value: impl Fn(&Drapery) -> f64) -> String {
+        self.all.spread(value).text(whole_percent)
+    }
+
     /// Internal degrees of freedom, which rods leave.
     fn internal(&self) -> Option<String> {
         let dof = Dof::of(self.run.sheet.topology()).internal;
         self.is_of_rods().then(|| dof.to_string())
     }
+}
+
+/// A number of folds, of which a median may be between two.
+fn count(folds: f64) -> String {
+    format!("{folds}")
 }
 
 /// How a cloth is shown.
@@ -138,24 +186,30 @@ fn ends(file: &str, all: &[&Draped], effort: Effort) -> Result<Picture> {
     view.ends(&rows, effort, [file, &alt])
 }
 
+/// The caption of a table of ensembles.
+fn of_medians(about: &str) -> String {
+    format!("{about} {}", about_ensembles())
+}
+
 fn fold_table(all: &[Draped]) -> Table {
     Table::of(
-        "Principal folds at rest. A fold runs along a corner line, from a table corner to its cloth corner, if the cloth is in the outer \
+        of_medians(
+            "Principal folds at rest. A fold runs along a corner line, from a table corner to its cloth corner, if the cloth is in the outer \
          half of a bulge there at all of three distances from the table (in brackets: the part of all directions from the axis in which it \
          is, which is what chance gives). Drop: how far the hem hangs below the table, of its distance from the table in the flat cloth. \
          Triangles whose edges keep their lengths leave a cloth only as many internal degrees of freedom as it has boundary edges less three: \
          it cannot shear as woven cloth does.",
+        ),
         all,
         columns! { d;
             "cloth" => d.label.as_str(),
             "sheet" => d.sheet(),
             "V/F" => d.run.summary.mesh(),
-            "folds along corner lines" => {
-                let CornerFolds { along, lines, part } = d.folds;
-                format!("{along} of {lines} ({})", whole_percent(part))
-            },
+            "mean edge, mm" => 1e3 * d.run.sheet.mean_length(),
             "internal DOF" => d.internal(),
-            "drop" => whole_percent(d.drop),
+            "runs" => d.all.len(),
+            "folds along corner lines" => d.along(),
+            "drop" => d.percent(|d| d.drop),
         },
     )
 }
@@ -188,9 +242,9 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
     let levels = effort.quick_or(&[2, 1][..], &[2, 3, 4]);
     let mut scenes = Vec::new();
     for &level in levels {
-        scenes.push((mesh_name(level), rectangle(level, effort)?));
+        scenes.push((mesh_name(level), rectangle(level, effort)?, members(effort)));
     }
-    scenes.push(("irregular".to_owned(), irregular(effort)?));
+    scenes.push(("irregular".to_owned(), irregular(effort)?, members(effort)));
     let all = of_both(scenes, store)?;
     let each: Vec<&Draped> = all.iter().collect();
     if effort != Effort::Quick {
@@ -218,7 +272,7 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
 /// rectangle, and on the finer octagons.
 fn check_corners(fine: &[&Draped]) -> Result<()> {
     for d in fine.iter().filter(|d| !d.is_of_rods()) {
-        let CornerFolds { along, lines, .. } = d.folds;
+        let (along, lines) = (d.all.median(Drapery::along), d.lines());
         ensure!(
             along == lines,
             "folds of {} run along {along} of {lines} corner lines",
@@ -234,7 +288,7 @@ fn check_folds(irregular: &[Draped], films: &[Draped]) -> Result<()> {
     // Every second cloth is round.
     let octagons: Vec<&Draped> = films.iter().step_by(2).collect();
     for (softer, stiffer) in octagons.iter().zip(&octagons[1..]) {
-        let folds = [softer, stiffer].map(|d| d.hem.folds);
+        let folds = [softer, stiffer].map(|d| d.all.median(Drapery::folds));
         ensure!(
             folds[0] > folds[1],
             "{} and {} have {folds:?} folds",
@@ -245,7 +299,13 @@ fn check_folds(irregular: &[Draped], films: &[Draped]) -> Result<()> {
     let [.., rods, film] = irregular else {
         bail!("there are no irregular meshes");
     };
-    let [rods, film] = [rods, film].map(|d| [d.hem.spacing_spread, d.hem.size_spread]);
+    let spreads = |d: &Draped| {
+        [
+            d.all.median(|d| d.hem.spacing_spread),
+            d.all.median(|d| d.hem.size_spread),
+        ]
+    };
+    let [rods, film] = [rods, film].map(spreads);
     ensure!(
         film[0] < rods[0] && film[1] < rods[1],
         "spacing and size of folds of rods spread by {rods:?}, those of film by {film:?}"
@@ -260,6 +320,9 @@ const RINGS: [(u32, u32); 5] = [(4, 11), (6, 9), (8, 8), (12, 7), (16, 6)];
 /// Corners of the irregular polygons of the study; 48 stand for the circle.
 const SIDES: [u32; 5] = [4, 6, 8, 12, 16];
 
+/// Members of the ensembles of large cloths and of those of which nothing is said but in the tables.
+const FEW: usize = 4;
+
 /// Polygons that the picture shows.
 const SHOWN: [&str; 4] = ["n = 4", "n = 8", "n = 16", "round, finer"];
 
@@ -270,38 +333,43 @@ fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
         let name = format!("drape-octagon-{name}");
         polygon(&name, 8, effort.quick_or(0.2, spacing), effort)
     };
+    let (many, few) = (members(effort), effort.quick_or(members(effort), FEW));
     let mut octagons = vec![
-        ("244/440".to_owned(), octagon(effort)?),
-        ("finer".to_owned(), fine("fine", 0.045)?),
+        ("244/440".to_owned(), octagon(effort)?, many),
+        ("finer".to_owned(), fine("fine", 0.045)?, many),
     ];
     if effort != Effort::Quick {
-        octagons.push(("finest".to_owned(), fine("finest", 0.03)?));
+        octagons.push(("finest".to_owned(), fine("finest", 0.03)?, few));
     }
-    octagons.push(("rings".to_owned(), ringed(8, RINGS[2].1, effort)?));
+    octagons.push(("rings".to_owned(), ringed(8, RINGS[2].1, effort)?, many));
     let irregular = |n: u32, spacing| {
         let name = format!("drape-{n}-gon");
         polygon(&name, n, effort.quick_or(0.2, spacing), effort)
     };
     let mut polygons = Vec::new();
     for &n in effort.quick_or(&SIDES[..1], &SIDES) {
-        polygons.push((format!("n = {n}"), irregular(n, 0.06)?));
+        polygons.push((format!("n = {n}"), irregular(n, 0.06)?, few));
     }
+    let round = ("round".to_owned(), irregular(48, 0.06)?, many);
     if effort != Effort::Quick {
-        polygons.push(("round".to_owned(), irregular(48, 0.06)?));
+        polygons.push(round.clone());
         let finer = polygon("drape-48-gon-finer", 48, 0.03, effort)?;
-        polygons.push(("round, finer".to_owned(), finer));
+        polygons.push(("round, finer".to_owned(), finer, few));
     }
     let mut films = Vec::new();
     for film in effort.quick_or(&FILMS[1..2], &FILMS) {
-        for (label, scene) in [
-            octagons[1].clone(),
-            ("round".to_owned(), irregular(48, 0.06)?),
-        ] {
-            films.push(drape(&label, scene.made_of(film)?, store)?);
+        for (label, scene, members) in [&octagons[1], &round] {
+            films.push(drape(label, scene.made_of(film)?, *members, store)?);
         }
     }
     for &(n, rings) in effort.quick_or(&RINGS[2..3], &RINGS) {
-        polygons.push((format!("n = {n}, rings"), ringed(n, rings, effort)?));
+        // The octagon has as many as above.
+        let members = if n == 8 { many } else { few };
+        polygons.push((
+            format!("n = {n}, rings"),
+            ringed(n, rings, effort)?,
+            members,
+        ));
     }
     Ok([of_both(octagons, store)?, of_both(polygons, store)?, films])
 }
@@ -354,22 +422,25 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
 
 fn hem_table(all: &[Draped]) -> Table {
     Table::of(
-        "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are \
+        of_medians(
+            "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are \
          standard deviations over means, of the angles between neighbouring folds and of how far the folds stand out: both are 0 for a \
          uniform pattern. Folds are outward bulges of the hem's distance from the axis, divided by that of the flat cloth, that stand out by \
-         more than 0.02.",
+         more than 0.02 of that distance.",
+        ),
         all,
         columns! { d;
             "cloth" => d.label.as_str(),
             "sheet" => d.sheet(),
             "V/F" => d.run.summary.mesh(),
-            "folds" => d.hem.folds.to_string(),
-            "along corner lines" => format!("{} ({})", d.folds.along, whole_percent(d.folds.part)),
-            "spread of spacing" => whole_percent(d.hem.spacing_spread),
-            "spread of size" => whole_percent(d.hem.size_spread),
+            "mean edge, mm" => 1e3 * d.run.sheet.mean_length(),
             "internal DOF" => d.internal(),
-            "drop" => whole_percent(d.drop),
-            "at rest from" => d.run.summary.at_rest_from.map(|t| format!("{t:.1} s")),
+            "runs" => d.all.len(),
+            "folds" => d.all.spread(Drapery::folds).text(count),
+            "along corner lines" => d.along(),
+            "spread of spacing" => d.percent(|d| d.hem.spacing_spread),
+            "spread of size" => d.percent(|d| d.hem.size_spread),
+            "drop" => d.percent(|d| d.drop),
         },
     )
 }
