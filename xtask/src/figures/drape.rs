@@ -242,7 +242,8 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
     let levels = effort.quick_or(&[2, 1][..], &[2, 3, 4]);
     let mut scenes = Vec::new();
     for &level in levels {
-        scenes.push((mesh_name(level), rectangle(level, effort)?, members(effort)));
+        let members = if level == 4 { FEW } else { members(effort) };
+        scenes.push((mesh_name(level), rectangle(level, effort)?, members));
     }
     scenes.push(("irregular".to_owned(), irregular(effort)?, members(effort)));
     let all = of_both(scenes, store)?;

@@ -142,7 +142,7 @@ impl<'a> Folded<'a> {
     }
 
     fn drawing(&self) -> Drawing {
-        let mut d = Sketch::seen(-64.0, 32.0, 112.0);
+        let mut d = Sketch::seen(-90.0, 36.0, 112.0);
         let t = self.sheet.topology();
         let near = |f: &[[f64; 3]; 3]| f.iter().map(|p| d.view.nearness(p)).sum::<f64>();
         let mut faces: Vec<[[f64; 3]; 3]> = t

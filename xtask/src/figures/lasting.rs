@@ -10,7 +10,7 @@ use crate::draw::{
     row,
 };
 use crate::report::columns;
-use crate::runs::{Energy, Ensemble, FigureScene, Run, members};
+use crate::runs::{Energy, Ensemble, FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
 use serde::{Deserialize, Serialize};
@@ -129,12 +129,12 @@ struct Crumpled {
 }
 
 impl Crumpled {
-    fn of(store: &Store, label: &str, scene: FigureScene, members: usize) -> Result<Self> {
+    fn of(store: &Store, label: &str, scene: FigureScene) -> Result<Self> {
         let run = Run::of(store, scene)?;
         let cells: usize = run.scene.value("/sheet/mesh/rectangle/columns")?;
         Ok(Self {
             label: format!("{label}, {cells} × {cells} cells"),
-            all: Ensemble::of(store, &run, members, |run| Ok(Facts::of(run)))?,
+            all: Ensemble::of(store, &run, MEMBERS, |run| Ok(Facts::of(run)))?,
             run,
         })
     }
@@ -230,11 +230,11 @@ fn scene(cells: usize, effort: Effort) -> Result<FigureScene> {
     FigureScene::of("fig12-marks", &format!("crumple-marks-{cells}"), &edits)
 }
 
-/// Members of the ensembles, whose runs take half a minute and more.
-const MEMBERS: [usize; 3] = [3, 5, 3];
+/// Members of the ensembles, of which a run takes half a minute and more.
+const MEMBERS: usize = 3;
 
 /// Parts of the step for which the energy balance of the coarser sheet is compared.
-const PARTS: [u32; 3] = [1, 2, 4];
+const PARTS: [u32; 2] = [1, 4];
 
 /// The balance of energy in the same run with shorter steps.
 fn balance(coarse: &FigureScene, store: &Store) -> Result<Vec<(f64, Energy)>> {
@@ -262,10 +262,9 @@ pub(super) fn make(store: &Store) -> Result<Lasting> {
     let [coarse, fine] = [scene(coarse, effort)?, scene(fine, effort)?];
     let springs = fine.without_yield("crumple-marks-elastic")?;
     let balance = balance(&coarse, store)?;
-    let [a, b, c] = effort.quick_or([members(effort); 3], MEMBERS);
-    let springs = Crumpled::of(store, "never yields", springs, a)?;
-    let coarse = Crumpled::of(store, "yields", coarse, b)?;
-    let stays = Crumpled::of(store, "yields", fine, c)?;
+    let springs = Crumpled::of(store, "never yields", springs)?;
+    let coarse = Crumpled::of(store, "yields", coarse)?;
+    let stays = Crumpled::of(store, "yields", fine)?;
     let all = [&springs, &coarse, &stays];
     if effort != Effort::Quick {
         check(all)?;

@@ -90,8 +90,10 @@ fn bending(fall: &Fall) -> f64 {
 
 /// Checks that the total bending of rods is larger on the finest mesh than on the coarsest.
 pub(super) fn check(all: &[Falls]) -> Result<()> {
-    let [.., finest] = all else { return Ok(()) };
-    let ends = [&all[0], finest].map(|falls| falls.falls[0].median(bending));
+    let [coarsest, .., finest] = all else {
+        return Ok(());
+    };
+    let ends = [coarsest, finest].map(|falls| falls.falls[0].median(bending));
     ensure!(
         ends[0] < ends[1],
         "the total bending of rods does not grow with the mesh: {ends:?}"

@@ -188,10 +188,14 @@ impl Punched {
         let shown = Curve::of(&self.run, self.stroke).0;
         let series = vec![
             Series::line("shown run", palette::SKY, shown),
-            spreads(0, &format!("{} runs", self.all.len()), largest),
+            spreads(
+                0,
+                &format!("{} runs, largest by parts", self.all.len()),
+                largest,
+            ),
             Series::guide("weight", vec![[0.0, self.weight], [stroke, self.weight]]),
         ];
-        Chart::new(x, y, [165.0, 118.0], series)
+        Chart::new(x, y, [165.0, 132.0], series)
     }
 }
 
