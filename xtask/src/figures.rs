@@ -1,5 +1,6 @@
 //! The figures, one module each, and what is kept about them.
 
+mod balance;
 mod cloths;
 mod crumple;
 mod drape;

@@ -83,13 +83,14 @@ const PAPER: [&str; 2] = [
 ];
 
 const HERE: [&str; 2] = [
-    "A square of office paper falls from exactly flat and horizontal (the side that was above is warm, the other one blue), first as \
+    "A square of office paper falls from exactly flat and horizontal (the side that was above is bright, the other one dark), first as \
      rods, which do not resist bending and crumple, then as an elastic sheet, which bends as office paper does and does not crumple.",
     "The crescent marks of which the paper speaks do not come of its model, in which nothing of a bend stays: \
-     rods, which do not resist bending, crumple as they fall, the more the finer their mesh is (M³ is not in the paper), and an elastic \
-     sheet of office paper does not. In the last pictures office paper that yields (docs/materials.md) is crumpled between six plates, \
+     rods, which do not resist bending, crumple as they fall, in the median more on M² and M³ (which is not in the paper) than on coarser \
+     meshes, and an elastic sheet of office paper does not. In the last pictures office paper that yields (docs/materials.md) is crumpled between six plates, \
      pressed to a height of 1.5 mm and let go: it stands on its marks, which take a small part of its area, at a height that grows with \
-     finer meshes and has not converged, while elastic paper lies flat again.",
+     finer meshes and has not converged, while elastic paper lies flat again. Energies of that squeeze are not to be relied on: the \
+     balance lacks more than what yielding dissipates, and no less with steps a quarter as long (tables).",
 ];
 
 /// What Fig. 12 has beside Fig. 11: softness by mesh, and marks.

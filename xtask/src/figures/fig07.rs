@@ -67,13 +67,8 @@ const GAMMA: f64 = 0.2;
 
 /// Draws the arc of the angle of the line at its middle vertex, and its name.
 fn gamma(d: &mut Sketch, points: &[[f64; 3]]) {
-    d.line(points, Stroke::new(palette::VERMILION, 1.0));
-    d.label(
-        &points[points.len() / 2],
-        [0.0, 7.0],
-        "γ",
-        palette::VERMILION,
-    );
+    d.line(points, Stroke::new(palette::GREEN, 1.2));
+    d.label(&points[points.len() / 4], [-7.0, 4.0], "γ", palette::GREEN);
 }
 
 /// How both panels are seen.

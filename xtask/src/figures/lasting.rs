@@ -1,6 +1,7 @@
 //! Fig. 12, and after: a sheet of paper that has been crumpled is pressed flat and let go. Marks that stay do
 //! not let it lie flat again.
 
+use super::balance::{self, Balance};
 use super::show::View;
 use super::{
     Effort, FigureRow, Picture, Play, Table, caption, compared, course, height, of_ensembles, rows,
@@ -9,8 +10,7 @@ use crate::draw::{
     Anchor, Colour, Drawing, Stroke, TEXT, Vertical, Viewpoint, flat_edges, flat_faces, palette,
     row,
 };
-use crate::report::columns;
-use crate::runs::{Energy, Ensemble, FigureScene, Run};
+use crate::runs::{Ensemble, FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
 use serde::{Deserialize, Serialize};
@@ -233,27 +233,8 @@ fn scene(cells: usize, effort: Effort) -> Result<FigureScene> {
 /// Members of the ensembles, of which a run takes half a minute and more.
 const MEMBERS: usize = 3;
 
-/// Parts of the step for which the energy balance of the coarser sheet is compared.
-const PARTS: [u32; 2] = [1, 4];
-
-/// The balance of energy in the same run with shorter steps.
-fn balance(coarse: &FigureScene, store: &Store) -> Result<Vec<(f64, Energy)>> {
-    let parts = store.effort.quick_or(&PARTS[..1], &PARTS).iter();
-    let one = |&part: &u32| {
-        let step = coarse.frame() / f64::from(part);
-        let edits = [
-            format!("method.step={step:?}"),
-            format!("output.frames_per_second={:?}", 1.0 / step),
-        ];
-        let name = format!("{}-step-{part}", coarse.name());
-        let scene = match part {
-            1 => coarse.clone(),
-            _ => coarse.edited(&name, &edits)?,
-        };
-        Ok((step, Run::of(store, scene)?.summary.energy))
-    };
-    parts.map(one).collect()
-}
+/// Factors by which steps are shorter of the runs whose balance of energy is compared.
+const FACTORS: [u32; 2] = [1, 4];
 
 /// Makes the runs.
 pub(super) fn make(store: &Store) -> Result<Lasting> {
@@ -261,7 +242,6 @@ pub(super) fn make(store: &Store) -> Result<Lasting> {
     let [coarse, fine] = cells(effort);
     let [coarse, fine] = [scene(coarse, effort)?, scene(fine, effort)?];
     let springs = fine.without_yield("crumple-marks-elastic")?;
-    let balance = balance(&coarse, store)?;
     let springs = Crumpled::of(store, "never yields", springs)?;
     let coarse = Crumpled::of(store, "yields", coarse)?;
     let stays = Crumpled::of(store, "yields", fine)?;
@@ -269,6 +249,8 @@ pub(super) fn make(store: &Store) -> Result<Lasting> {
     if effort != Effort::Quick {
         check(all)?;
     }
+    let factors = effort.quick_or(&FACTORS[..1], &FACTORS);
+    let balance = Balance::by_step(store, &coarse.label, &coarse.run.scene, factors)?;
     let ends = all.map(|c| (c.label.clone(), &c.run));
     let shown = [&coarse, &stays].map(|c| Facts::of(&c.run).largest());
     let full = shown.into_iter().fold(f64::MIN_POSITIVE, f64::max);
@@ -291,7 +273,7 @@ pub(super) fn make(store: &Store) -> Result<Lasting> {
                 &all.map(|c| &c.label[..]),
                 &all.map(Crumpled::rows),
             )),
-            balance_table(&coarse.label, &balance),
+            balance::table(&balance),
         ],
     })
 }
@@ -315,22 +297,4 @@ fn check([springs, coarse, stays]: [&Crumpled; 3]) -> Result<()> {
         "marks are not localised: half of the squared plastic curvature takes {half} of the area"
     );
     Ok(())
-}
-
-fn balance_table(label: &str, balance: &[(f64, Energy)]) -> Table {
-    let caption = format!(
-        "Energy, {label}, by the length of the steps: what the balance lacks is taken out by the time integration"
-    );
-    Table::of(
-        caption,
-        balance,
-        columns! { row;
-            "step, ms" => 1e3 * row.0,
-            "work of the plates, mJ" => 1e3 * row.1.work,
-            "dissipated by yielding, mJ" => 1e3 * row.1.plastic,
-            "taken out by damping, mJ" => 1e3 * row.1.damped,
-            "lost to friction, mJ" => 1e3 * row.1.friction,
-            "error of the balance, mJ" => 1e3 * row.1.drift,
-        },
-    )
 }
