@@ -2,9 +2,9 @@
 
 use isosheet_mesh::{Sheet, generate};
 
-/// The union-jack square `M^level` of side 1 m, which is flat at rest, and its positions (3V, metres) bent by `angle`
-/// radians at each of its inner lines of edges that are parallel to y: a developable state in which no inner vertex is
-/// flat, so that the lengths are independent of each other.
+/// The union-jack square `M^level` of side 1 m, which is flat at rest, and its positions (3V, metres) bent by
+/// `angle` radians at each of its inner lines of edges that are parallel to y: a developable state in which
+/// no inner vertex is flat, so that the lengths are independent of each other.
 pub fn bent(level: u32, angle: f64) -> (Sheet, Vec<f64>) {
     let sheet = generate::isotropic_square(level, 1.0).expect("a level that memory can hold");
     let cells = 2 << level;

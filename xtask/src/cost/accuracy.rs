@@ -1,5 +1,5 @@
-//! Error against time: the methods without a chart and textbook ones on problems with known solutions, with ever finer
-//! steps.
+//! Error against time: the methods without a chart and textbook ones on problems with known solutions, with
+//! ever finer steps.
 
 use super::DEFAULT;
 use super::baselines::Baseline;
@@ -94,8 +94,8 @@ const RUNS: [u32; 2] = [8, 14];
 /// Runs of sheets that are made in any case, which take longer and come to the order with longer steps.
 const SHEET_RUNS: u32 = 4;
 
-/// Steps of references: sixteen times as many as the runs that are made in any case have, so that round-off is all of
-/// their error.
+/// Steps of references: sixteen times as many as the runs that are made in any case have, so that round-off
+/// is all of their error.
 const REFERENCE: usize = 2048;
 
 /// Most repetitions of short runs.
@@ -291,8 +291,8 @@ fn of<'a>(points: &'a [Point], method: &'a str) -> impl Iterator<Item = &'a Poin
     points.iter().filter(move |p| p.method == method)
 }
 
-/// Order of a method: the slope of its error over its step in the finest runs above the floor; nothing from fewer
-/// than three.
+/// Order of a method: the slope of its error over its step in the finest runs above the floor; nothing from
+/// fewer than three.
 fn order(points: &[Point], method: &str) -> Option<f64> {
     let errors = of(points, method).filter_map(|p| Some([p.step_s, p.position_error_m?]));
     let usable: Vec<[f64; 2]> = errors.filter(|[_, error]| *error > FLOOR).collect();

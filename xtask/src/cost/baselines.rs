@@ -1,5 +1,5 @@
-//! Textbook methods for the same equations, with which the methods of isosheet are compared. Vertices have lumped masses,
-//! and forces depend on time and positions alone.
+//! Textbook methods for the same equations, with which the methods of isosheet are compared. Vertices have
+//! lumped masses, and forces depend on time and positions alone.
 
 use crate::interrupt::{self, Interrupted};
 use crate::report::LENGTHS;
@@ -12,11 +12,12 @@ use nalgebra::{DMatrix, DVector};
 /// A textbook method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Baseline {
-    /// Accelerations with Lagrange multipliers and Baumgarte's feedback, `c'' + 2 g c' + g^2 c = 0` for every rod, by the
-    /// classical Runge-Kutta method of fourth order. The gain `g` (1/s) is such that a violation decays critically damped.
+    /// Accelerations with Lagrange multipliers and Baumgarte's feedback, `c'' + 2 g c' + g^2 c = 0` for every
+    /// rod, by the classical Runge-Kutta method of fourth order. The gain `g` (1/s) is such that a violation
+    /// decays critically damped.
     Baumgarte { gain: f64 },
-    /// Position-based dynamics: rods are projected one after the other, and swept until all have their lengths to
-    /// [`LENGTHS`].
+    /// Position-based dynamics: rods are projected one after the other, and swept until all have their
+    /// lengths to [`LENGTHS`].
     PositionBased,
 }
 
@@ -252,8 +253,9 @@ mod tests {
         assert!(apart < 1e-9, "{apart:e} m");
     }
 
-    /// Position-based dynamics keeps the lengths to the tolerance, and Baumgarte's feedback the smaller a violation the
-    /// larger its gain is; a violation that is there at the start decays as a critically damped one.
+    /// Position-based dynamics keeps the lengths to the tolerance, and Baumgarte's feedback the smaller a
+    /// violation the larger its gain is; a violation that is there at the start decays as a critically damped
+    /// one.
     #[test]
     fn lengths_are_kept_and_violations_decay() {
         let (sheet, x) = bent(0, 0.4);
@@ -273,7 +275,8 @@ mod tests {
             method.run(&model, &mut state, (100, 1e-3)).unwrap();
             model.rods().max_strain(&state.x)
         };
-        // c = c0 (1 + g t) exp(-g t), and G v = 2 c0 (...) is small beside it: the velocities were those of the lengths.
+        // c = c0 (1 + g t) exp(-g t), and G v = 2 c0 (...) is small beside it: the velocities were those of
+        // the lengths.
         for gain in [10.0, 50.0] {
             let s: f64 = gain * 0.1;
             let ratio = strain(gain) / (1e-6 * (1.0 + s) * (-s).exp());

@@ -264,8 +264,8 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
         title: "Rectangular cloth on a rectangular table",
         paper: "A rectangular plastic tablecloth is draped over a rectangular table with M², and with a second resolution: the principal folds run from \
                 the table corners to the cloth corners.",
-        here: "The paper's own model, rods that do not resist bending, has such folds at about half of the corners, another half in every \
-               run; the regular meshes have diagonals through the corners of the table that could favour what is to be shown, and \
+        here: "The paper's own model, rods that do not resist bending, has such folds at one or two of the four corners, at others in \
+               every run; the regular meshes have diagonals through the corners of the table that could favour what is to be shown, and \
                the irregular triangulation has none. On the finest regular mesh of acetate film, an elastic sheet that resists \
                bending (the second sequence), folds run along most of these lines, and more than of rods. A large part of the \
                energy of the fall is taken out by the time integration, the less the shorter its steps are (last table but one).",
@@ -287,8 +287,8 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
 const FACTORS: [u32; 4] = [1, 4, 16, 32];
 
 /// What is seen of the folds of film where the mesh is fine enough, on the finest regular mesh of the
-/// rectangle and on the finer octagons: they run along most corner lines, and along more than those of rods. Cloths of
-/// rods and of film by turns.
+/// rectangle and on the finer octagons: they run along most corner lines, and along more than those of rods.
+/// Cloths of rods and of film by turns.
 fn check_corners(fine: &[&Draped]) -> Result<()> {
     for pair in fine.chunks(2) {
         let [rods, film] = pair else {

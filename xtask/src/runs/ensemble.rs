@@ -1,5 +1,5 @@
-//! Ensembles: a run and its neighbours, the same scene from starts that differ by a small part of an edge. Sheets that
-//! fall, buckle and crumple do so in another way each time, so that one run alone says little.
+//! Ensembles: a run and its neighbours, the same scene from starts that differ by a small part of an edge.
+//! Sheets that fall, buckle and crumple do so in another way each time, so that one run alone says little.
 
 use super::{FigureScene, Run, displaced};
 use crate::draw::Series;
@@ -12,8 +12,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::json;
 
-/// Random displacements of the starts of neighbours, mean edge lengths: a fiftieth of a millimetre on M^3 of a sheet as
-/// wide as A4.
+/// Random displacements of the starts of neighbours, mean edge lengths: a fiftieth of a millimetre on M^3 of
+/// a sheet as wide as A4.
 const BUMP: f64 = 1e-3;
 
 /// Members of an ensemble where a run takes seconds, and with quick runs.
@@ -40,8 +40,9 @@ pub(crate) fn about_ensembles() -> String {
 }
 
 impl<T: Serialize + DeserializeOwned + Send> Ensemble<T> {
-    /// Measures a run, which is the first member, and its neighbours, which are made side by side on the threads that
-    /// rayon has and of which nothing else is kept. No number depends on how many threads there are.
+    /// Measures a run, which is the first member, and its neighbours, which are made side by side on the
+    /// threads that rayon has and of which nothing else is kept. No number depends on how many threads there
+    /// are.
     ///
     /// # Errors
     /// [`Interrupted`](crate::interrupt::Interrupted) after Ctrl-C; those of the simulation and of `measure`.
@@ -125,8 +126,8 @@ impl Spread {
     }
 }
 
-/// Medians with error bars from the least to the greatest value, each at its place on the horizontal axis, as the series
-/// `k` of a chart.
+/// Medians with error bars from the least to the greatest value, each at its place on the horizontal axis, as
+/// the series `k` of a chart.
 pub(crate) fn spreads(
     k: usize,
     name: &str,
@@ -151,7 +152,8 @@ mod tests {
         assert_eq!(same.text(|v| format!("{v:.1}")), "1.0");
     }
 
-    /// Neighbours part from the run that is shown and from each other, and are the same on any number of threads.
+    /// Neighbours part from the run that is shown and from each other, and are the same on any number of
+    /// threads.
     #[test]
     fn members_differ_and_do_not_depend_on_threads() {
         let quick = ["stop.time=0.2".to_owned()];

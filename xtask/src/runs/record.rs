@@ -255,7 +255,8 @@ struct Times {
     cpu: f64,
 }
 
-/// Runs a scene in an empty folder and says `stepped` after each step. What came of it, and what its steps took.
+/// Runs a scene in an empty folder and says `stepped` after each step. What came of it, and what its steps
+/// took.
 fn simulate(
     scene: &FigureScene,
     folder: &Path,
