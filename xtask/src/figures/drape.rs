@@ -243,8 +243,8 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
     let levels = effort.quick_or(&[2, 1][..], &[2, 3, 4]);
     let mut scenes = Vec::new();
     for &level in levels {
-        let members = if level == 4 { FEW } else { members(effort) };
-        scenes.push((mesh_name(level), rectangle(level, effort)?, members));
+        let scene = rectangle(level, effort)?;
+        scenes.push((mesh_name(level), scene, members(effort)));
     }
     scenes.push(("irregular".to_owned(), irregular(effort)?, members(effort)));
     let all = of_both(scenes, store)?;
@@ -343,7 +343,8 @@ const RINGS: [(u32, u32); 5] = [(4, 11), (6, 9), (8, 8), (12, 7), (16, 6)];
 /// Corners of the irregular polygons of the study; 48 stand for the circle.
 const SIDES: [u32; 5] = [4, 6, 8, 12, 16];
 
-/// Members of the ensembles of large cloths and of those of which nothing is said but in the tables.
+/// Members of the ensembles of Fig. 15 but of those with the smallest meshes: with all of them the figure would
+/// take a quarter of an hour.
 const FEW: usize = 4;
 
 /// Polygons that the picture shows.
@@ -359,7 +360,7 @@ fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
     let (many, few) = (members(effort), effort.quick_or(members(effort), FEW));
     let mut octagons = vec![
         ("244/440".to_owned(), octagon(effort)?, many),
-        ("finer".to_owned(), fine("fine", 0.045)?, many),
+        ("finer".to_owned(), fine("fine", 0.045)?, few),
     ];
     if effort != Effort::Quick {
         octagons.push(("finest".to_owned(), fine("finest", 0.03)?, few));
@@ -373,7 +374,7 @@ fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
     for &n in effort.quick_or(&SIDES[..1], &SIDES) {
         polygons.push((format!("n = {n}"), irregular(n, 0.06)?, few));
     }
-    let round = ("round".to_owned(), irregular(48, 0.06)?, many);
+    let round = ("round".to_owned(), irregular(48, 0.06)?, few);
     if effort != Effort::Quick {
         polygons.push(round.clone());
         let finer = polygon("drape-48-gon-finer", 48, 0.03, effort)?;
