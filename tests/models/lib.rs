@@ -1,8 +1,9 @@
 //! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a
 //! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for [`bumped`]
-//! sheets, for [`RigidBody`], which gives the motion of any sheet that cannot bend, and for states of rest:
+//! and [`bent`] sheets, for [`RigidBody`], which gives the motion of any sheet that cannot bend, and for states of rest:
 //! [`Elastica`], [`buckled`] strips and [`ExcessCone`].
 
+mod bent;
 mod buckled;
 mod bumped;
 mod catenary;
@@ -19,6 +20,7 @@ mod strip;
 mod triangle;
 mod tumbling;
 
+pub use bent::bent;
 pub use buckled::buckled;
 pub use bumped::{bumped, corner, raised};
 pub use catenary::Catenary;
@@ -34,7 +36,7 @@ pub use pendulum::Pendulum;
 pub use rigid_body::RigidBody;
 pub use strip::{HangingStrip, laguerre, laguerre_zeros, strip_faces};
 pub use triangle::FreeTriangle;
-pub use tumbling::tumbling;
+pub use tumbling::{tumbling, tumbling_from};
 
 /// Observed orders `log2(e_k / e_{k+1})` of a sequence of errors at halved steps.
 pub fn orders(errors: &[f64]) -> Vec<f64> {

@@ -4,11 +4,15 @@ use isosheet_dynamics::{SheetModel, State};
 use isosheet_mesh::{MassKind, Sheet};
 use nalgebra::{DMatrix, DVector};
 
-/// A sheet of 0.1 kg about the square `[0, 1]^2` (metres) without gravity and supports, and a start at which
-/// it flies, turns and bends: smooth velocities, made compatible with the lengths.
+/// A sheet of 0.1 kg about the square `[0, 1]^2` (metres) without gravity and supports, and a start in its
+/// rest positions at which it flies, turns and bends: smooth velocities, made compatible with the lengths.
 pub fn tumbling(sheet: &Sheet) -> (SheetModel, State) {
+    tumbling_from(sheet, sheet.positions().to_vec())
+}
+
+/// The same from other positions (3V, metres) that keep the lengths.
+pub fn tumbling_from(sheet: &Sheet, x: Vec<f64>) -> (SheetModel, State) {
     let model = SheetModel::new(sheet, 0.1, MassKind::Lumped).expect("valid");
-    let x = sheet.positions().to_vec();
     let v = x.chunks(3).flat_map(|p| {
         [
             0.3 - 2.0 * p[1] + p[2],
@@ -20,8 +24,8 @@ pub fn tumbling(sheet: &Sheet) -> (SheetModel, State) {
     (model, State::moving(x, v))
 }
 
-/// The velocities nearest to the given ones, in the sense of lumped masses, that keep the lengths at positions
-/// `x`.
+/// The velocities nearest to the given ones, in the sense of lumped masses, that keep the lengths at
+/// positions `x`.
 fn compatible(model: &SheetModel, x: &[f64], v: DVector<f64>) -> Vec<f64> {
     let rods = model.rods();
     // A column for each rod: the momentum of a unit of its impulse, and the velocity.

@@ -4,6 +4,7 @@
 //! continues where it stopped.
 
 mod accuracy;
+mod baselines;
 mod solvers;
 mod works;
 

@@ -1,5 +1,6 @@
 //! The figures, one module each, and what is kept about them.
 
+mod balance;
 mod cloths;
 mod crumple;
 mod drape;
@@ -23,7 +24,7 @@ mod style;
 
 use crate::draw::{Anchor, Drawing, Vertical, palette};
 use crate::report::{Effort, Picture, Table, extremes};
-use crate::runs::RunSummary;
+use crate::runs::{RunSummary, about_ensembles};
 use crate::store::{Files, Store};
 use anyhow::Result;
 
@@ -118,11 +119,6 @@ fn caption(drawing: &mut Drawing, at: [f64; 2], size: f64, lines: &[String]) {
     }
 }
 
-/// The mean of some values.
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
 /// The place of the value that is nearest to another one, 0 if there are none.
 fn nearest(values: impl IntoIterator<Item = f64>, wanted: f64) -> usize {
     let off = values.into_iter().map(|v| (v - wanted).abs()).enumerate();
@@ -154,6 +150,14 @@ fn compared(names: &[&str], columns: &[Vec<FigureRow>]) -> Table {
             .collect()
     };
     Table::new("Measured", &[&["quantity"], names].concat()).with_texts((0..rows).map(row))
+}
+
+/// A table of the runs that are shown, of which some rows are of ensembles.
+fn of_ensembles(table: Table) -> Table {
+    Table {
+        caption: format!("{}. {}", table.caption, about_ensembles()),
+        ..table
+    }
 }
 
 /// What the course of a run was.

@@ -1,6 +1,8 @@
-//! Error against time: the methods without a chart on problems with exact solutions, with ever finer steps.
+//! Error against time: the methods without a chart and textbook ones on problems with known solutions, with
+//! ever finer steps.
 
 use super::DEFAULT;
+use super::baselines::Baseline;
 use crate::draw::{Chart, Charts, Legend, Series};
 use crate::progress::Progress;
 use crate::report::{
@@ -8,9 +10,12 @@ use crate::report::{
 };
 use crate::runs::{Course, Plan, unseen};
 use crate::store::Files;
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
-use isosheet_tests::{Flap, FreeTriangle, Pendulum, conservative, implicit_euler, max_difference};
+use isosheet_tests::{
+    Flap, FreeTriangle, Pendulum, bent, bumped, conservative, implicit_euler, max_difference,
+    rattle_composition, tumbling, tumbling_from,
+};
 use maud::html;
 use serde::Serialize;
 
@@ -20,6 +25,8 @@ pub(super) enum ExactProblem {
     Pendulum,
     Triangle,
     Flap,
+    Bumped,
+    Developable,
 }
 
 /// What is measured, in words.
@@ -27,10 +34,22 @@ pub(super) const ABOUT: &str = "\
     Methods without a chart are run with ever finer steps. Times are CPU seconds for a simulated second on one core, set-up left out; \
     short runs are repeated up to five times and the minimum is taken. Position errors are the largest distance of a vertex from its \
     exact place at the end, energy errors the largest change of T + V as part of the largest kinetic energy, strains the largest \
-    relative edge length error. Differences in time below 10 % are noise.";
+    relative edge length error. Differences in time below 10 % are noise. Two textbook methods are run with the same steps: \
+    accelerations with Lagrange multipliers and Baumgarte's feedback, c'' + 2 g c' + g² c = 0 for every rod, by the classical \
+    Runge-Kutta method, with the gain g = 1 / (longest step); and position-based dynamics, whose rods are projected one after \
+    the other until all have their lengths to 1e-12. Both are written for this report, with dense matrices and without \
+    sparse solvers.";
+
+/// Who takes the steps.
+#[derive(Clone, Debug)]
+enum Stepping {
+    Method(Method),
+    Baumgarte,
+    PositionBased,
+}
 
 /// The methods with the orders that docs/methods.md says.
-fn methods() -> impl Iterator<Item = (&'static str, Method, f64)> {
+fn methods() -> impl Iterator<Item = (&'static str, Stepping, f64)> {
     let damped = [
         (DEFAULT, Method::default(), 2.0),
         ("implicit Euler", implicit_euler(), 1.0),
@@ -38,7 +57,13 @@ fn methods() -> impl Iterator<Item = (&'static str, Method, f64)> {
     let orders = [2.0, 2.0, 4.0];
     let conservative = conservative().into_iter().zip(orders);
     let conservative = conservative.map(|((name, method), order)| (name, method, order));
-    damped.into_iter().chain(conservative)
+    let own = damped.into_iter().chain(conservative);
+    let textbook = [
+        ("multipliers, Baumgarte", Stepping::Baumgarte, 4.0),
+        ("position-based, converged", Stepping::PositionBased, 1.0),
+    ];
+    own.map(|(name, method, order)| (name, Stepping::Method(method), order))
+        .chain(textbook)
 }
 
 /// A run of a method. The fields are columns of a table, by their names.
@@ -66,6 +91,13 @@ const COARSEST: usize = 16;
 /// how fast the machine is. And most runs.
 const RUNS: [u32; 2] = [8, 14];
 
+/// Runs of sheets that are made in any case, which take longer and come to the order with longer steps.
+const SHEET_RUNS: u32 = 4;
+
+/// Steps of references: sixteen times as many as the runs that are made in any case have, so that round-off
+/// is all of their error.
+const REFERENCE: usize = 2048;
+
 /// Most repetitions of short runs.
 const REPETITIONS: usize = 5;
 
@@ -80,7 +112,9 @@ const FLOOR: f64 = 1e-11;
 impl ExactProblem {
     /// All of them with their names.
     pub(super) fn named() -> Vec<(&'static str, Self)> {
-        let all = [Self::Pendulum, Self::Triangle, Self::Flap].into_iter();
+        let exact = [Self::Pendulum, Self::Triangle, Self::Flap];
+        let sheets = [Self::Bumped, Self::Developable];
+        let all = exact.into_iter().chain(sheets);
         all.map(|problem| (problem.name(), problem)).collect()
     }
 
@@ -90,19 +124,29 @@ impl ExactProblem {
             Self::Pendulum => "pendulum",
             Self::Triangle => "triangle",
             Self::Flap => "flap",
+            Self::Bumped => "bumped",
+            Self::Developable => "developable",
         }
     }
 
     fn about(self) -> &'static str {
         match self {
             Self::Pendulum => {
-                "A triangle pinned along an edge: a pendulum of 0.7 m released at 2 rad, one period; exact by Jacobi functions."
+                "A triangle pinned along an edge: a pendulum of 0.7 m released at 2 rad, seven tenths of a period, so that it moves at the end; exact by Jacobi functions."
             }
             Self::Triangle => {
                 "A tumbling triangle without gravity, one period of its spin; exact by Jacobi functions and a quadrature."
             }
             Self::Flap => {
                 "Two triangles that open about their hinge, 0.6 s; exact by a quadrature."
+            }
+            Self::Bumped => {
+                "A tumbling sheet M^1 whose rest shape has a bump of a tenth of its side, so that it is not developable, 0.375 s; \
+                 compared with the composition of RATTLE at 2048 steps."
+            }
+            Self::Developable => {
+                "A tumbling sheet M^1 that is flat at rest, and starts bent by 0.3 rad at each line of edges along one side, 0.375 s; \
+                 compared with the composition of RATTLE at 2048 steps."
             }
         }
     }
@@ -115,43 +159,85 @@ impl ExactProblem {
                 (triangle.model(), triangle.start())
             }
             Self::Flap => (Flap::default().model(), Flap::default().start()),
+            Self::Bumped => tumbling(&bumped(1, 0.1)),
+            Self::Developable => {
+                let (sheet, x) = bent(1, 0.3);
+                tumbling_from(&sheet, x)
+            }
+        }
+    }
+
+    /// Runs that are made however long they take.
+    fn least_runs(self) -> u32 {
+        match self {
+            Self::Bumped | Self::Developable => SHEET_RUNS,
+            _ => RUNS[0],
         }
     }
 
     /// The time that is simulated, seconds.
     fn duration(self) -> f64 {
         match self {
-            Self::Pendulum => Pendulum::default().period(),
+            Self::Pendulum => 0.7 * Pendulum::default().period(),
             Self::Triangle => FreeTriangle::default().period(),
             Self::Flap => 0.6,
+            Self::Bumped | Self::Developable => 0.375,
         }
     }
 
-    /// The exact positions at the end.
-    fn exact(self) -> Vec<f64> {
+    /// The positions at the end: exact ones, or those of a reference.
+    fn end(self) -> Result<Vec<f64>> {
         let end = self.duration();
-        match self {
+        Ok(match self {
             Self::Pendulum => Pendulum::default().exact(end),
             Self::Triangle => FreeTriangle::default().positions(&[end]).remove(0),
             Self::Flap => Flap::default().exact(end),
-        }
+            Self::Bumped | Self::Developable => self.reference()?,
+        })
+    }
+
+    fn reference(self) -> Result<Vec<f64>> {
+        let method = Stepping::Method(rattle_composition());
+        let (course, end) = self.course(&method, REFERENCE)?;
+        ensure!(
+            course.is_good(),
+            "the reference of {}: {:?}",
+            self.name(),
+            course.ending
+        );
+        Ok(end)
+    }
+
+    /// So many steps: their course, and the positions at the end.
+    fn course(self, stepping: &Stepping, steps: usize) -> Result<(Course, Vec<f64>)> {
+        let step = self.duration() / steps as f64;
+        let (model, mut state) = self.start();
+        let baseline = match stepping {
+            Stepping::Method(method) => {
+                let mut run = Simulation::new(model, state, method.clone())?;
+                let course = Plan::new(step, self.duration()).run(&mut run, &mut unseen)?;
+                return Ok((course, run.state().x.clone()));
+            }
+            Stepping::Baumgarte => Baseline::Baumgarte {
+                gain: COARSEST as f64 / self.duration(),
+            },
+            Stepping::PositionBased => Baseline::PositionBased,
+        };
+        let course = baseline.run(&model, &mut state, (steps, step))?;
+        Ok((course, state.x))
     }
 
     /// Runs a method with so many steps, and again while it takes less than `again` CPU seconds.
     fn point(
         self,
-        (name, method): (&'static str, &Method),
-        steps: usize,
+        (name, stepping): (&'static str, &Stepping),
+        (steps, known): (usize, &[f64]),
         again: f64,
     ) -> Result<Point> {
-        let step = self.duration() / steps as f64;
-        let plan = Plan::new(step, self.duration());
         let (mut fastest, mut end, mut spent) = (None::<Course>, Vec::new(), 0.0);
         for _ in 0..REPETITIONS {
-            let (model, state) = self.start();
-            let mut run = Simulation::new(model, state, method.clone())?;
-            let course = plan.run(&mut run, &mut unseen)?;
-            end.clone_from(&run.state().x);
+            let (course, positions) = self.course(stepping, steps)?;
+            end = positions;
             spent += course.cost.cpu;
             if fastest
                 .as_ref()
@@ -168,9 +254,9 @@ impl ExactProblem {
         let if_good = |value: f64| is_as_asked.then_some(value);
         Ok(Point {
             method: name,
-            step_s: step,
+            step_s: self.duration() / steps as f64,
             cpu_s_per_simulated_s: course.cpu_rate().unwrap_or(0.0),
-            position_error_m: if_good(max_difference(&end, &self.exact())),
+            position_error_m: if_good(max_difference(&end, known)),
             relative_energy_error: if_good(course.drift / course.most_kinetic),
             strain: if_good(course.strain),
             factorisations: course.cost.factorisations,
@@ -182,14 +268,15 @@ impl ExactProblem {
 /// Measures all methods on a problem, coarse to fine, until a run takes longer than so many CPU seconds.
 fn measure(problem: ExactProblem, limit: f64) -> Result<Vec<Point>> {
     let bar = Progress::start(problem.name(), methods().count());
+    let known = problem.end()?;
     let mut points = Vec::new();
-    for (name, method, _) in methods() {
+    for (name, stepping, _) in methods() {
         for k in 0..RUNS[1] {
-            let point = problem.point((name, &method), COARSEST << k, 0.2 * limit)?;
+            let point = problem.point((name, &stepping), (COARSEST << k, &known), 0.2 * limit)?;
             let spent = point.cpu_s_per_simulated_s * problem.duration();
             let is_exact = point.position_error_m.is_some_and(|e| e < 0.1 * FLOOR);
             points.push(point);
-            if is_exact || k + 1 >= RUNS[0] && spent > limit {
+            if is_exact || k + 1 >= problem.least_runs() && spent > limit {
                 break;
             }
         }
@@ -204,8 +291,8 @@ fn of<'a>(points: &'a [Point], method: &'a str) -> impl Iterator<Item = &'a Poin
     points.iter().filter(move |p| p.method == method)
 }
 
-/// Order of a method: the slope of its error over its step in the finest runs above the floor; nothing from fewer
-/// than three.
+/// Order of a method: the slope of its error over its step in the finest runs above the floor; nothing from
+/// fewer than three.
 fn order(points: &[Point], method: &str) -> Option<f64> {
     let errors = of(points, method).filter_map(|p| Some([p.step_s, p.position_error_m?]));
     let usable: Vec<[f64; 2]> = errors.filter(|[_, error]| *error > FLOOR).collect();

@@ -164,6 +164,18 @@ impl Chart {
             } else {
                 chart.draw_series(LineSeries::new(points.clone(), line))?;
             }
+            let bars = s.points.iter().zip(&s.bars);
+            let bars = bars.filter(|(p, [low, high])| {
+                self.x.holds(p[0]) && self.y.holds(*low) && self.y.holds(*high)
+            });
+            let thin = stroke(s.colour, 0.7);
+            for (p, [low, high]) in bars {
+                let ends = [(p[0], *low), (p[0], *high)];
+                chart.draw_series([PathElement::new(ends, thin)])?;
+                let half = units(1.6);
+                let cap = || PathElement::new([(-half, 0), (half, 0)], thin);
+                chart.draw_series(ends.map(|end| EmptyElement::at(end) + cap()))?;
+            }
             let marked = points.filter(|_| s.marker.is_some()).map(|p| {
                 let [rim, inside] = look.symbol(2.4);
                 EmptyElement::at(p) + rim + inside

@@ -9,6 +9,8 @@ pub(crate) struct Series {
     /// Name in the legend; left out there when empty.
     pub(crate) name: String,
     pub(crate) points: Vec<[f64; 2]>,
+    /// The ends of the vertical error bars of the first points, none beyond them.
+    pub(crate) bars: Vec<[f64; 2]>,
     pub(crate) colour: Colour,
     pub(crate) marker: Option<Marker>,
     /// Whether its line is dashed.
@@ -31,6 +33,7 @@ impl Series {
         Self {
             name: name.to_owned(),
             points,
+            bars: Vec::new(),
             colour,
             marker: None,
             is_dashed: false,
@@ -45,6 +48,11 @@ impl Series {
     /// As [`Series::styled`], without symbols.
     pub(crate) fn curve(k: usize, name: &str, points: Vec<[f64; 2]>) -> Self {
         Self::line(name, STYLES[k % STYLES.len()].0, points)
+    }
+
+    /// The same with a vertical error bar at each point, from one value to another.
+    pub(crate) fn with_bars(self, bars: Vec<[f64; 2]>) -> Self {
+        Self { bars, ..self }
     }
 
     /// A grey dashed line for comparison.

@@ -1,16 +1,18 @@
 //! Fig. 14: a rectangular cloth on a rectangular table. Fig. 15: an octagonal one on an octagonal table, and
 //! on towards the round.
 
+use super::balance::{self, Balance};
 use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{CornerFolds, Hem};
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Table, whole_percent};
-use crate::draw::{Viewpoint, mesh_name};
+use crate::draw::{Axis, Chart, Charts, Viewpoint, mesh_name};
 use crate::report::columns;
-use crate::runs::{FigureScene, Run};
+use crate::runs::{Ensemble, FigureScene, Run, about_ensembles, members, spreads};
 use crate::store::Store;
 use anyhow::{Result, bail, ensure};
 use isosheet_mesh::{Dof, Sheet};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// What elastic tablecloths are made of. The bending length of this film, the third root of its rigidity over
@@ -24,10 +26,16 @@ const FILMS: [&str; 3] = ["polyethylene film", PLASTIC, "PET film"];
 /// Times of the pictures, seconds.
 const TIMES: [f64; 6] = [0.0, 0.15, 0.3, 0.6, 1.2, 8.0];
 
-/// A cloth at the end of its run.
+/// A cloth and its neighbours.
 struct Draped {
     label: String,
     run: Run,
+    all: Ensemble<Drapery>,
+}
+
+/// What is measured of a cloth at the end of its run.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Drapery {
     folds: CornerFolds,
     hem: Hem,
     /// How far the hem hangs below the table, as part of its distance from the table in the flat cloth (means
@@ -35,26 +43,46 @@ struct Draped {
     drop: f64,
 }
 
-fn drape(label: &str, scene: FigureScene, store: &Store) -> Result<Draped> {
+impl Drapery {
+    fn of(run: &Run) -> Result<Self> {
+        let (sheet, x) = (&run.sheet, run.end());
+        let layout = Layout::of(run.scene.scene())?;
+        Ok(Self {
+            folds: CornerFolds::of(sheet, x, &layout.table, &layout.cloth),
+            hem: Hem::of(sheet, x),
+            drop: drop(sheet, x, &layout),
+        })
+    }
+
+    fn along(&self) -> f64 {
+        self.folds.along as f64
+    }
+
+    fn folds(&self) -> f64 {
+        self.hem.folds as f64
+    }
+}
+
+/// A cloth of which the ensemble has so many members.
+fn drape(label: &str, scene: FigureScene, members: usize, store: &Store) -> Result<Draped> {
     let run = Run::of(store, scene)?;
-    let (sheet, x) = (&run.sheet, run.end());
-    let layout = Layout::of(run.scene.scene())?;
     Ok(Draped {
         label: label.into(),
-        folds: CornerFolds::of(sheet, x, &layout.table, &layout.cloth),
-        hem: Hem::of(sheet, x),
-        drop: drop(sheet, x, &layout),
+        all: Ensemble::of(store, &run, members, Drapery::of)?,
         run,
     })
 }
 
+/// A cloth that is to be made: its name, its scene, and how many members its ensemble has.
+type Planned = (String, FigureScene, usize);
+
 /// Cloths of rods and the same of plastic, alternately.
-fn of_both(scenes: Vec<(String, FigureScene)>, store: &Store) -> Result<Vec<Draped>> {
+fn of_both(scenes: Vec<Planned>, store: &Store) -> Result<Vec<Draped>> {
     let mut all = Vec::new();
-    for (label, scene) in scenes {
+    for (label, scene, members) in scenes {
         let elastic = scene.made_of(PLASTIC)?;
         for scene in [scene, elastic] {
-            all.push(drape(&label, scene, store)?);
+            all.push(drape(&label, scene, members, store)?);
         }
     }
     Ok(all)
@@ -94,11 +122,32 @@ impl Draped {
         self.run.summary.elastic.is_none()
     }
 
+    /// The number of corner lines along which folds may run.
+    fn lines(&self) -> f64 {
+        self.all.median(|d| d.folds.lines as f64)
+    }
+
+    /// Corner lines along which folds run, of how many, with the part that chance gives.
+    fn along(&self) -> String {
+        let along = self.all.spread(Drapery::along).text(count);
+        let chance = whole_percent(self.all.median(|d| d.folds.part));
+        format!("{along} of {} ({chance})", count(self.lines()))
+    }
+
+    fn percent(&self, value: impl Fn(&Drapery) -> f64) -> String {
+        self.all.spread(value).text(whole_percent)
+    }
+
     /// Internal degrees of freedom, which rods leave.
     fn internal(&self) -> Option<String> {
         let dof = Dof::of(self.run.sheet.topology()).internal;
         self.is_of_rods().then(|| dof.to_string())
     }
+}
+
+/// A number of folds, of which a median may be between two.
+fn count(folds: f64) -> String {
+    format!("{folds}")
 }
 
 /// How a cloth is shown.
@@ -138,24 +187,30 @@ fn ends(file: &str, all: &[&Draped], effort: Effort) -> Result<Picture> {
     view.ends(&rows, effort, [file, &alt])
 }
 
+/// The caption of a table of ensembles.
+fn of_medians(about: &str) -> String {
+    format!("{about} {}", about_ensembles())
+}
+
 fn fold_table(all: &[Draped]) -> Table {
     Table::of(
-        "Principal folds at rest. A fold runs along a corner line, from a table corner to its cloth corner, if the cloth is in the outer \
+        of_medians(
+            "Principal folds at rest. A fold runs along a corner line, from a table corner to its cloth corner, if the cloth is in the outer \
          half of a bulge there at all of three distances from the table (in brackets: the part of all directions from the axis in which it \
          is, which is what chance gives). Drop: how far the hem hangs below the table, of its distance from the table in the flat cloth. \
          Triangles whose edges keep their lengths leave a cloth only as many internal degrees of freedom as it has boundary edges less three: \
          it cannot shear as woven cloth does.",
+        ),
         all,
         columns! { d;
             "cloth" => d.label.as_str(),
             "sheet" => d.sheet(),
             "V/F" => d.run.summary.mesh(),
-            "folds along corner lines" => {
-                let CornerFolds { along, lines, part } = d.folds;
-                format!("{along} of {lines} ({})", whole_percent(part))
-            },
+            "mean edge, mm" => 1e3 * d.run.sheet.mean_length(),
             "internal DOF" => d.internal(),
-            "drop" => whole_percent(d.drop),
+            "runs" => d.all.len(),
+            "folds along corner lines" => d.along(),
+            "drop" => d.percent(|d| d.drop),
         },
     )
 }
@@ -188,41 +243,63 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
     let levels = effort.quick_or(&[2, 1][..], &[2, 3, 4]);
     let mut scenes = Vec::new();
     for &level in levels {
-        scenes.push((mesh_name(level), rectangle(level, effort)?));
+        let scene = rectangle(level, effort)?;
+        scenes.push((mesh_name(level), scene, members(effort)));
     }
-    scenes.push(("irregular".to_owned(), irregular(effort)?));
+    scenes.push(("irregular".to_owned(), irregular(effort)?, members(effort)));
     let all = of_both(scenes, store)?;
     let each: Vec<&Draped> = all.iter().collect();
     if effort != Effort::Quick {
         check_corners(&each[2 * levels.len() - 2..2 * levels.len()])?;
     }
+    // Of the paper's mesh, of rods and of film.
+    let mut balances = Vec::new();
+    for d in &all[..2] {
+        let factors = effort.quick_or(&FACTORS[..1], &FACTORS);
+        let balance = Balance::by_step(store, &d.name(), &d.run.scene, factors)?;
+        balance::check(&balance)?;
+        balances.extend(balance);
+    }
     Ok(Made {
         title: "Rectangular cloth on a rectangular table",
         paper: "A rectangular plastic tablecloth is draped over a rectangular table with M², and with a second resolution: the principal folds run from \
                 the table corners to the cloth corners.",
-        here: "The paper's own model, rods that do not resist bending, has such folds at some of the corners alone on finer meshes, of which the \
-               regular ones have diagonals through the corners of the table that could favour what is to be shown, and the irregular \
-               triangulation has none. On the finest regular mesh of acetate film, an elastic sheet that resists bending (the second \
-               sequence), a fold runs from every table corner to its cloth corner; the table counts these folds on the other meshes and of rods.",
+        here: "The paper's own model, rods that do not resist bending, has such folds at one or two of the four corners, at others in \
+               every run; the regular meshes have diagonals through the corners of the table that could favour what is to be shown, and \
+               the irregular triangulation has none. On the finest regular mesh of acetate film, an elastic sheet that resists \
+               bending (the second sequence), folds run along most of these lines, and more than of rods. A large part of the \
+               energy of the fall is taken out by the time integration, the less the shorter its steps are (last table but one).",
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
             all[2 * levels.len() - 1].picture("fig14-elastic.png", effort)?,
             ends("fig14-ends.png", &each, effort)?,
         ],
         pages: pages(14, &each, effort)?,
-        tables: vec![fold_table(&all), runs_table(&each)],
+        tables: vec![
+            fold_table(&all),
+            balance::table(&balances),
+            runs_table(&each),
+        ],
     })
 }
 
-/// What is seen of the folds of film where the mesh is fine enough: on the finest regular mesh of the
-/// rectangle, and on the finer octagons.
+/// Factors by which steps are shorter of the runs whose balance of energy is compared.
+const FACTORS: [u32; 4] = [1, 4, 16, 32];
+
+/// What is seen of the folds of film where the mesh is fine enough, on the finest regular mesh of the
+/// rectangle and on the finer octagons: they run along most corner lines, and along more than those of rods.
+/// Cloths of rods and of film by turns.
 fn check_corners(fine: &[&Draped]) -> Result<()> {
-    for d in fine.iter().filter(|d| !d.is_of_rods()) {
-        let CornerFolds { along, lines, .. } = d.folds;
+    for pair in fine.chunks(2) {
+        let [rods, film] = pair else {
+            bail!("there is no film of {}", pair[0].name());
+        };
+        let along = [rods, film].map(|d| d.all.median(Drapery::along));
         ensure!(
-            along == lines,
-            "folds of {} run along {along} of {lines} corner lines",
-            d.name()
+            along[1] > 0.5 * film.lines() && along[1] > along[0],
+            "folds of rods and of {} run along {along:?} of {} corner lines",
+            film.name(),
+            film.lines()
         );
     }
     Ok(())
@@ -234,7 +311,7 @@ fn check_folds(irregular: &[Draped], films: &[Draped]) -> Result<()> {
     // Every second cloth is round.
     let octagons: Vec<&Draped> = films.iter().step_by(2).collect();
     for (softer, stiffer) in octagons.iter().zip(&octagons[1..]) {
-        let folds = [softer, stiffer].map(|d| d.hem.folds);
+        let folds = [softer, stiffer].map(|d| d.all.median(Drapery::folds));
         ensure!(
             folds[0] > folds[1],
             "{} and {} have {folds:?} folds",
@@ -245,7 +322,13 @@ fn check_folds(irregular: &[Draped], films: &[Draped]) -> Result<()> {
     let [.., rods, film] = irregular else {
         bail!("there are no irregular meshes");
     };
-    let [rods, film] = [rods, film].map(|d| [d.hem.spacing_spread, d.hem.size_spread]);
+    let spreads = |d: &Draped| {
+        [
+            d.all.median(|d| d.hem.spacing_spread),
+            d.all.median(|d| d.hem.size_spread),
+        ]
+    };
+    let [rods, film] = [rods, film].map(spreads);
     ensure!(
         film[0] < rods[0] && film[1] < rods[1],
         "spacing and size of folds of rods spread by {rods:?}, those of film by {film:?}"
@@ -260,6 +343,10 @@ const RINGS: [(u32, u32); 5] = [(4, 11), (6, 9), (8, 8), (12, 7), (16, 6)];
 /// Corners of the irregular polygons of the study; 48 stand for the circle.
 const SIDES: [u32; 5] = [4, 6, 8, 12, 16];
 
+/// Members of the ensembles of Fig. 15 but of those with the smallest meshes: with all of them the figure would
+/// take a quarter of an hour.
+const FEW: usize = 4;
+
 /// Polygons that the picture shows.
 const SHOWN: [&str; 4] = ["n = 4", "n = 8", "n = 16", "round, finer"];
 
@@ -270,38 +357,43 @@ fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
         let name = format!("drape-octagon-{name}");
         polygon(&name, 8, effort.quick_or(0.2, spacing), effort)
     };
+    let (many, few) = (members(effort), effort.quick_or(members(effort), FEW));
     let mut octagons = vec![
-        ("244/440".to_owned(), octagon(effort)?),
-        ("finer".to_owned(), fine("fine", 0.045)?),
+        ("244/440".to_owned(), octagon(effort)?, many),
+        ("finer".to_owned(), fine("fine", 0.045)?, few),
     ];
     if effort != Effort::Quick {
-        octagons.push(("finest".to_owned(), fine("finest", 0.03)?));
+        octagons.push(("finest".to_owned(), fine("finest", 0.03)?, few));
     }
-    octagons.push(("rings".to_owned(), ringed(8, RINGS[2].1, effort)?));
+    octagons.push(("rings".to_owned(), ringed(8, RINGS[2].1, effort)?, many));
     let irregular = |n: u32, spacing| {
         let name = format!("drape-{n}-gon");
         polygon(&name, n, effort.quick_or(0.2, spacing), effort)
     };
     let mut polygons = Vec::new();
     for &n in effort.quick_or(&SIDES[..1], &SIDES) {
-        polygons.push((format!("n = {n}"), irregular(n, 0.06)?));
+        polygons.push((format!("n = {n}"), irregular(n, 0.06)?, few));
     }
+    let round = ("round".to_owned(), irregular(48, 0.06)?, few);
     if effort != Effort::Quick {
-        polygons.push(("round".to_owned(), irregular(48, 0.06)?));
+        polygons.push(round.clone());
         let finer = polygon("drape-48-gon-finer", 48, 0.03, effort)?;
-        polygons.push(("round, finer".to_owned(), finer));
+        polygons.push(("round, finer".to_owned(), finer, few));
     }
     let mut films = Vec::new();
     for film in effort.quick_or(&FILMS[1..2], &FILMS) {
-        for (label, scene) in [
-            octagons[1].clone(),
-            ("round".to_owned(), irregular(48, 0.06)?),
-        ] {
-            films.push(drape(&label, scene.made_of(film)?, store)?);
+        for (label, scene, members) in [&octagons[1], &round] {
+            films.push(drape(label, scene.made_of(film)?, *members, store)?);
         }
     }
     for &(n, rings) in effort.quick_or(&RINGS[2..3], &RINGS) {
-        polygons.push((format!("n = {n}, rings"), ringed(n, rings, effort)?));
+        // The octagon has as many as above.
+        let members = if n == 8 { many } else { few };
+        polygons.push((
+            format!("n = {n}, rings"),
+            ringed(n, rings, effort)?,
+            members,
+        ));
     }
     Ok([of_both(octagons, store)?, of_both(polygons, store)?, films])
 }
@@ -322,14 +414,15 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
         check_corners(&finer.collect::<Vec<_>>())?;
         check_folds(irregular, &films)?;
     }
+    let alt = "Folds of the hem of an octagonal and of a round cloth, by film";
     Ok(Made {
         title: "Octagonal cloth on an octagonal table",
         paper: "An octagonal plastic tablecloth (244/440) is draped over an octagonal table: principal folds run from table corners to cloth corners, and for \
                 more and more corners the paper infers that uniform folding patterns will occur.",
-        here: "The paper's own model, rods that do not resist bending, has such folds at some of the corners alone; in the irregular \
+        here: "The paper's own model, rods that do not resist bending, has such folds at some of the corners; in the irregular \
                meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
-               the meshes of concentric rings some do. On the finer meshes of acetate film (the second sequence) a fold runs from every table \
-               corner to its cloth corner, on round cloths its folds are more evenly spaced and more alike than those of rods, and the \
+               the meshes of concentric rings some do. On the finer meshes of acetate film (the second sequence) folds run along most of these \
+               lines, on round cloths its folds are more evenly spaced and more alike than those of rods, and the \
                stiffer the film, the fewer folds has the octagon.",
         pictures: vec![
             octagons[0].picture("fig15.png", effort)?,
@@ -341,6 +434,7 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
                 effort,
             )?,
             ends("fig15-polygons.png", &shown, effort)?,
+            Picture::svg("fig15-films", &Charts::from(films_plot(&films)), alt),
         ],
         pages: pages(15, &all, effort)?,
         tables: vec![
@@ -352,24 +446,51 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
     })
 }
 
+/// Folds of the hem by film, of the octagon and of the round cloth, which follow each other.
+fn films_plot(films: &[Draped]) -> Chart {
+    let of = |k: usize| {
+        let beside = 0.08 * (k as f64 - 0.5);
+        let same = films.iter().skip(k).step_by(2).enumerate();
+        let place = same.map(|(at, d)| (at as f64 + beside, d.all.spread(Drapery::folds)));
+        spreads(k, ["octagon, finer", "round"][k], place)
+    };
+    let series = vec![of(0), of(1)];
+    let tops = series.iter().flat_map(|s| &s.bars).map(|bar| bar[1]);
+    let top = tops.fold(0.0, f64::max) + 1.0;
+    let names = films.iter().step_by(2).enumerate();
+    let ticks: Vec<_> = names
+        .map(|(at, d)| (at as f64, d.sheet().to_owned()))
+        .collect();
+    let x = Axis::named(
+        "the stiffer, the further to the right",
+        [-0.4, ticks.len() as f64 - 0.6],
+        ticks,
+    );
+    let y = Axis::linear("folds of the hem", [0.0, top]);
+    Chart::new(x, y, [230.0, 130.0], series)
+}
+
 fn hem_table(all: &[Draped]) -> Table {
     Table::of(
-        "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are \
+        of_medians(
+            "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are \
          standard deviations over means, of the angles between neighbouring folds and of how far the folds stand out: both are 0 for a \
          uniform pattern. Folds are outward bulges of the hem's distance from the axis, divided by that of the flat cloth, that stand out by \
-         more than 0.02.",
+         more than 0.02 of that distance.",
+        ),
         all,
         columns! { d;
             "cloth" => d.label.as_str(),
             "sheet" => d.sheet(),
             "V/F" => d.run.summary.mesh(),
-            "folds" => d.hem.folds.to_string(),
-            "along corner lines" => format!("{} ({})", d.folds.along, whole_percent(d.folds.part)),
-            "spread of spacing" => whole_percent(d.hem.spacing_spread),
-            "spread of size" => whole_percent(d.hem.size_spread),
+            "mean edge, mm" => 1e3 * d.run.sheet.mean_length(),
             "internal DOF" => d.internal(),
-            "drop" => whole_percent(d.drop),
-            "at rest from" => d.run.summary.at_rest_from.map(|t| format!("{t:.1} s")),
+            "runs" => d.all.len(),
+            "folds" => d.all.spread(Drapery::folds).text(count),
+            "along corner lines" => d.along(),
+            "spread of spacing" => d.percent(|d| d.hem.spacing_spread),
+            "spread of size" => d.percent(|d| d.hem.size_spread),
+            "drop" => d.percent(|d| d.drop),
         },
     )
 }

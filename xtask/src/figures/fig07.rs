@@ -2,11 +2,12 @@
 
 use super::sketch::{PLACED, Sketch, captioned};
 use super::{Made, degrees, measured, rows, style, svg};
-use crate::draw::spatial::{arc, axpy, dot, norm, sub, unit};
-use crate::draw::{Drawing, palette};
+use crate::draw::spatial::{angle_arc, arc, axpy, dot, norm, sub, unit};
+use crate::draw::{Drawing, Stroke, palette};
 use anyhow::{Result, bail, ensure};
 use isosheet_coords::placement::{COLLINEAR, collinearity, place_f, place_on_line};
 use isosheet_coords::{Branch, EulerParameters, PlacementError};
+use std::f64::consts::PI;
 
 const TOLERANCE: f64 = 1e-12;
 
@@ -35,7 +36,7 @@ pub(super) fn make() -> Result<Made> {
         worst < 1e-12,
         "the middle rod changes its length by {worst}"
     );
-    let angle = degrees(std::f64::consts::PI - bend);
+    let angle = degrees(PI - bend);
     let words = [
         [format!("γ = {angle}"), "two mirror images".to_owned()],
         ["γ = π", "one coordinate left"].map(str::to_owned),
@@ -51,7 +52,7 @@ pub(super) fn make() -> Result<Made> {
         here: "On the bent line (left) the function f has two solutions; on the straight line (right) it refuses, and the vertex \
                keeps the angle that it had before.",
         tables: vec![measured(rows! {
-            "bend of the line on the left" => degrees(bend),
+            "γ on the left" => degrees(PI - bend),
             "sine of the smallest angle on the right" => sine.to_string(),
             "limit below which f refuses" => format!("{COLLINEAR:.0e}"),
             "change of the length of the middle rod, which is not used" => format!("{worst:.0e}"),
@@ -59,6 +60,15 @@ pub(super) fn make() -> Result<Made> {
         pictures: svg(7, &all, alt),
         ..Made::default()
     })
+}
+
+/// Radius of the arc of the angle of the line.
+const GAMMA: f64 = 0.2;
+
+/// Draws the arc of the angle of the line at its middle vertex, and its name.
+fn gamma(d: &mut Sketch, points: &[[f64; 3]]) {
+    d.line(points, Stroke::new(palette::GREEN, 1.2));
+    d.label(&points[points.len() / 4], [-7.0, 4.0], "γ", palette::GREEN);
 }
 
 /// How both panels are seen.
@@ -99,6 +109,9 @@ fn degenerate(lengths: [f64; 3]) -> Result<(Drawing, f64)> {
     let out = (q[0] - o[0]).hypot(q[1] - o[1]) / 9.0;
     let shift = [(q[0] - o[0]) / out, (q[1] - o[1]) / out];
     d.label(named, shift, "q", palette::INK);
+    // Half a turn, over the side on which the bent line has it.
+    let (back, up) = ([0.0, -GAMMA, 0.0], [0.0, 0.0, GAMMA]);
+    gamma(&mut d, &arc(&LINE[1], &back, &up, PI));
     d.known(&LINE);
     Ok((d.drawing, worst))
 }
@@ -117,6 +130,7 @@ fn regular(bent: &[[f64; 3]; 3], lengths: [f64; 3]) -> Result<Drawing> {
     }
     d.blue_face([bent[0], bent[1], shown], 0.92);
     d.blue_face([bent[1], bent[2], shown], 0.92);
+    gamma(&mut d, &angle_arc(&bent[1], &bent[0], &bent[2], GAMMA));
     d.known(bent);
     d.placed(&shown);
     d.mirrored(&ghost);

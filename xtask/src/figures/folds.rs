@@ -1,6 +1,7 @@
 //! Where the folds of a draped cloth are, and how many.
 
 use isosheet_mesh::{Sheet, VertexId};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// A convex outline, counter-clockwise.
@@ -45,7 +46,7 @@ impl Outline {
 }
 
 /// Along which lines from corners of the table to corners of the cloth folds run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct CornerFolds {
     /// Corner lines along which a fold runs, and their number.
     pub(super) along: usize,
@@ -117,7 +118,7 @@ fn ring(sheet: &Sheet, x: &[f64], cloth: &Outline, level: f64) -> Vec<f64> {
 
 /// The hem of a cloth at rest, by angle about the middle of the table: its distance from the axis, divided by
 /// that of the flat cloth, so that corners of the outline do not count as folds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Hem {
     /// Number of folds: outward bulges of the hem that stand out by [`PROMINENCE`].
     pub(super) folds: usize,

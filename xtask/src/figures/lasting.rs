@@ -1,15 +1,19 @@
 //! Fig. 12, and after: a sheet of paper that has been crumpled is pressed flat and let go. Marks that stay do
 //! not let it lie flat again.
 
+use super::balance::{self, Balance};
 use super::show::View;
-use super::{Effort, FigureRow, Picture, Play, Table, caption, compared, course, height, rows};
+use super::{
+    Effort, FigureRow, Picture, Play, Table, caption, compared, course, height, of_ensembles, rows,
+};
 use crate::draw::{
     Anchor, Colour, Drawing, Stroke, TEXT, Vertical, Viewpoint, flat_edges, flat_faces, palette,
     row,
 };
-use crate::runs::{FigureScene, Run};
+use crate::runs::{Ensemble, FigureScene, Run};
 use crate::store::Store;
 use anyhow::{Result, ensure};
+use serde::{Deserialize, Serialize};
 use std::slice;
 
 /// Times of the pictures, seconds: before, between six plates, freed, pressed flat, and at the end.
@@ -32,23 +36,25 @@ const VIEW: View = View {
 pub(super) struct Lasting {
     pub(super) pictures: Vec<Picture>,
     pub(super) pages: Vec<Play>,
-    pub(super) table: Table,
+    pub(super) tables: Vec<Table>,
 }
 
 /// The numbers of a sheet that was crumpled and pressed flat.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Facts {
-    label: String,
     /// Its height above its lowest point when it is pressed, and at the end, metres.
     pressed: f64,
     height: f64,
     /// Dissipated by yielding, joules.
     dissipated: f64,
+    /// What the energy balance lacks at the end, joules.
+    drift: f64,
+    /// Of a sheet that yields.
     marks: Option<PlasticMarks>,
 }
 
 /// Where the plastic curvature of a sheet lies.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct PlasticMarks {
     /// The largest one, 1/m.
     largest: f64,
@@ -88,47 +94,70 @@ impl PlasticMarks {
     }
 }
 
-/// A run, and what was measured of it.
-struct Crumpled {
-    run: Run,
-    facts: Facts,
-}
-
-impl Crumpled {
-    fn of(store: &Store, label: &str, scene: FigureScene) -> Result<Self> {
-        let run = Run::of(store, scene)?;
+impl Facts {
+    fn of(run: &Run) -> Self {
         let times = run.trajectory.times();
         let at = |t: f64| {
             let frame = times.partition_point(|time| *time < t - 1e-9);
             let x = run.trajectory.frame(frame.min(times.len() - 1));
             height(x.unwrap_or_default())
         };
+        Self {
+            pressed: at(TIMES[3]),
+            height: at(TIMES[4]),
+            dissipated: run.summary.energy.plastic,
+            drift: run.summary.energy.drift,
+            marks: PlasticMarks::of(run),
+        }
+    }
+
+    /// The part of the area that carries half of the squared plastic curvature; all of it without marks.
+    fn half(&self) -> f64 {
+        self.marks.map_or(1.0, |m| m.half)
+    }
+
+    fn largest(&self) -> f64 {
+        self.marks.map_or(0.0, |m| m.largest)
+    }
+}
+
+/// A run, and what was measured of it and of its neighbours.
+struct Crumpled {
+    label: String,
+    run: Run,
+    all: Ensemble<Facts>,
+}
+
+impl Crumpled {
+    fn of(store: &Store, label: &str, scene: FigureScene) -> Result<Self> {
+        let run = Run::of(store, scene)?;
         let cells: usize = run.scene.value("/sheet/mesh/rectangle/columns")?;
         Ok(Self {
-            facts: Facts {
-                pressed: at(TIMES[3]),
-                height: at(TIMES[4]),
-                dissipated: run.summary.energy.plastic,
-                marks: PlasticMarks::of(&run),
-                label: format!("{label}, {cells} × {cells} cells"),
-            },
+            label: format!("{label}, {cells} × {cells} cells"),
+            all: Ensemble::of(store, &run, MEMBERS, |run| Ok(Facts::of(run)))?,
             run,
         })
     }
 
     fn rows(&self) -> Vec<FigureRow> {
-        let facts = &self.facts;
-        let millimetres = |length: f64| format!("{:.3} mm", 1e3 * length);
-        let millijoules = |energy: f64| format!("{:.2} mJ", 1e3 * energy);
-        let of_marks = |f: fn(&PlasticMarks) -> String| facts.marks.as_ref().map_or("–".into(), f);
+        let millimetres = |value: fn(&Facts) -> f64| {
+            let spread = self.all.spread(value);
+            spread.text(|length| format!("{:.2}", 1e3 * length))
+        };
+        let of_marks = |value: fn(&Facts) -> f64, show: fn(f64) -> String| {
+            let yields = self.run.scene.scene().sheet[0].yields();
+            yields.map_or("–".into(), |_| self.all.spread(value).text(show))
+        };
+        let millijoules = |energy: f64| format!("{:.1}", 1e3 * energy);
         let mut rows = rows! {
-            "height when it is pressed" => millimetres(facts.pressed),
-            "height at the end" => millimetres(facts.height),
-            "dissipated by yielding" => millijoules(facts.dissipated),
-            "error of the energy balance" => millijoules(self.run.summary.energy.drift),
-            "largest plastic curvature" => of_marks(|m| format!("{:.0} per m", m.largest)),
+            "runs of the ensemble" => self.all.len().to_string(),
+            "height when it is pressed, mm" => millimetres(|f| f.pressed),
+            "height at the end, mm" => millimetres(|f| f.height),
+            "dissipated by yielding, mJ" => self.all.spread(|f| f.dissipated).text(millijoules),
+            "error of the energy balance, mJ" => self.all.spread(|f| f.drift).text(millijoules),
+            "largest plastic curvature, 1/m" => of_marks(Facts::largest, |k| format!("{k:.0}")),
             "part of the area with half of the squared plastic curvature" =>
-                of_marks(|m| format!("{:.1} %", 100.0 * m.half)),
+                of_marks(Facts::half, |part| format!("{:.1} %", 100.0 * part)),
         };
         rows.extend(course(&self.run.summary));
         rows
@@ -149,7 +178,7 @@ impl Crumpled {
         });
         let below = drawing.bounds();
         let at = [below.centre()[0], below.min[1] - 6.0];
-        caption(&mut drawing, at, TEXT, slice::from_ref(&self.facts.label));
+        caption(&mut drawing, at, TEXT, slice::from_ref(&self.label));
         drawing
     }
 }
@@ -201,6 +230,12 @@ fn scene(cells: usize, effort: Effort) -> Result<FigureScene> {
     FigureScene::of("fig12-marks", &format!("crumple-marks-{cells}"), &edits)
 }
 
+/// Members of the ensembles, of which a run takes half a minute and more.
+const MEMBERS: usize = 3;
+
+/// Factors by which steps are shorter of the runs whose balance of energy is compared.
+const FACTORS: [u32; 2] = [1, 4];
+
 /// Makes the runs.
 pub(super) fn make(store: &Store) -> Result<Lasting> {
     let effort = store.effort;
@@ -211,53 +246,55 @@ pub(super) fn make(store: &Store) -> Result<Lasting> {
     let coarse = Crumpled::of(store, "yields", coarse)?;
     let stays = Crumpled::of(store, "yields", fine)?;
     let all = [&springs, &coarse, &stays];
-    // What the figure shows: the sheet that yields stands higher than it was pressed, the elastic one lies
-    // flat.
-    let [flat, high] = [&springs, &stays].map(|c| c.facts.height);
-    ensure!(
-        effort == Effort::Quick || flat < stays.facts.pressed && stays.facts.pressed < high,
-        "marks do not stay: the sheet that yields is {high:e} m high at the end, the elastic one {flat:e} m"
-    );
-    let low = coarse.facts.height;
-    ensure!(
-        effort == Effort::Quick || low < 0.8 * high,
-        "the height does not grow with the mesh: {low:e} m and {high:e} m"
-    );
-    // Where bends were spread evenly, half of the area would carry half of the integral.
-    let half = stays.facts.marks.map_or(f64::INFINITY, |m| m.half);
-    ensure!(
-        effort == Effort::Quick || half > 0.0 && half < 0.25,
-        "marks are not localised: half of the squared plastic curvature takes {half} of the area"
-    );
-    let ends = all.map(|c| (c.facts.label.clone(), &c.run));
-    let full = [&coarse, &stays].map(|c| c.facts.marks.map_or(0.0, |m| m.largest));
-    let full = full.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+    if effort != Effort::Quick {
+        check(all)?;
+    }
+    let factors = effort.quick_or(&FACTORS[..1], &FACTORS);
+    let balance = Balance::by_step(store, &coarse.label, &coarse.run.scene, factors)?;
+    let ends = all.map(|c| (c.label.clone(), &c.run));
+    let shown = [&coarse, &stays].map(|c| Facts::of(&c.run).largest());
+    let full = shown.into_iter().fold(f64::MIN_POSITIVE, f64::max);
     let maps = row(&[coarse.map(full), stays.map(full), colour_bar(full)], 14.0);
     let sequence = "Paper that yields is crumpled between six plates, which are not drawn, freed, pressed flat and let go";
     let left =
         "The sheets at the end: elastic paper lies flat, paper that yields stands on its marks";
     let crescents =
         "Where plastic curvature stays, in the flat sheet: at folds and around their corners";
+    let page = |c: &Crumpled| VIEW.play(&c.run, effort, 12, &format!("pressed flat, {}", c.label));
     Ok(Lasting {
         pictures: vec![
             VIEW.picture(&stays.run, effort, ["fig12-yields.png", sequence], &TIMES)?,
             VIEW.ends(&ends, effort, ["fig12-released.png", left])?,
             Picture::svg("fig12-plastic", &maps, crescents),
         ],
-        pages: vec![
-            VIEW.play(
-                &springs.run,
-                effort,
-                12,
-                &format!("pressed flat, {}", springs.facts.label),
-            )?,
-            VIEW.play(
-                &stays.run,
-                effort,
-                12,
-                &format!("pressed flat, {}", stays.facts.label),
-            )?,
+        pages: vec![page(&springs)?, page(&stays)?],
+        tables: vec![
+            of_ensembles(compared(
+                &all.map(|c| &c.label[..]),
+                &all.map(Crumpled::rows),
+            )),
+            balance::table(&balance),
         ],
-        table: compared(&all.map(|c| &c.facts.label[..]), &all.map(Crumpled::rows)),
     })
+}
+
+/// What the figure shows of the springy sheet, of the coarser one that yields and of the finer one.
+fn check([springs, coarse, stays]: [&Crumpled; 3]) -> Result<()> {
+    let [flat, low, high] = [springs, coarse, stays].map(|c| c.all.median(|f| f.height));
+    let pressed = stays.all.median(|f| f.pressed);
+    ensure!(
+        flat < pressed && pressed < high,
+        "marks do not stay: the sheet that yields is {high:e} m high at the end, the elastic one {flat:e} m"
+    );
+    ensure!(
+        low < high,
+        "the height does not grow with the mesh: {low:e} m and {high:e} m"
+    );
+    // Where bends were spread evenly, half of the area would carry half of the integral.
+    let half = stays.all.median(Facts::half);
+    ensure!(
+        half > 0.0 && half < 0.25,
+        "marks are not localised: half of the squared plastic curvature takes {half} of the area"
+    );
+    Ok(())
 }

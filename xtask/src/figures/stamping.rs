@@ -1,11 +1,12 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::show::View;
-use super::{Effort, FigureRow, Made, Picture, Play, compared, course, height, rows};
+use super::{Effort, FigureRow, Made, Picture, Play, compared, course, height, of_ensembles, rows};
 use crate::draw::{Axis, Chart, Charts, Series, Viewpoint, palette};
-use crate::runs::{FigureScene, Run};
+use crate::runs::{Ensemble, FigureScene, Run, Spread, members, spreads};
 use crate::store::Store;
 use anyhow::{Result, ensure};
+use serde::{Deserialize, Serialize};
 
 /// What the elastic blank is made of.
 const METAL: &str = "steel sheet";
@@ -66,15 +67,45 @@ fn page(run: &Run, effort: Effort) -> Result<Play> {
 /// A sheet that has been punched.
 struct Punched {
     run: Run,
-    /// Stroke (mm) and force on the die (N).
-    curve: Vec<[f64; 2]>,
-    /// Its largest force, and the weight of the sheet, newtons.
-    peak: f64,
+    stroke: Stroke,
+    all: Ensemble<Curve>,
+    /// The weight of the sheet, newtons.
     weight: f64,
-    /// The whole stroke, metres, and the time that it takes, seconds.
-    stroke: f64,
-    full: f64,
 }
+
+/// How the die moves.
+#[derive(Clone, Copy, Debug)]
+struct Stroke {
+    /// The whole stroke, metres, and the time that it takes, seconds.
+    length: f64,
+    time: f64,
+}
+
+/// Stroke (mm) and force on the die (N).
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Curve(Vec<[f64; 2]>);
+
+impl Curve {
+    fn of(run: &Run, stroke: Stroke) -> Self {
+        // The sheet presses the die down.
+        let forces = run.forces(DIE).into_iter().filter(|f| f[0] <= stroke.time);
+        let per_second = 1e3 * stroke.length / stroke.time;
+        Self(forces.map(|f| [per_second * f[0], -f[3]]).collect())
+    }
+
+    fn peak(&self) -> f64 {
+        self.0.iter().map(|p| p[1]).fold(0.0, f64::max)
+    }
+
+    /// The largest force in a part of the stroke, mm.
+    fn peak_within(&self, [from, to]: [f64; 2]) -> f64 {
+        let within = self.0.iter().filter(|p| p[0] > from && p[0] <= to);
+        within.map(|p| p[1]).fold(0.0, f64::max)
+    }
+}
+
+/// Parts of the stroke for each of which the chart shows the largest force.
+const PARTS: u32 = 14;
 
 impl Punched {
     fn of(store: &Store, scene: FigureScene) -> Result<Self> {
@@ -83,21 +114,22 @@ impl Punched {
             let key = format!("/obstacle/0/motion/z/ramp/{key}");
             run.scene.value::<f64>(&key)
         };
-        let stroke = rise("to")? - rise("from")?;
-        let full = rise("end")? - rise("begin")?;
-        // The sheet presses the die down.
-        let forces = run.forces(DIE).into_iter().filter(|f| f[0] <= full);
-        let curve: Vec<[f64; 2]> = forces
-            .map(|f| [1e3 * stroke / full * f[0], -f[3]])
-            .collect();
+        let stroke = Stroke {
+            length: rise("to")? - rise("from")?,
+            time: rise("end")? - rise("begin")?,
+        };
+        let curve = |run: &Run| Ok(Curve::of(run, stroke));
         Ok(Self {
-            peak: curve.iter().map(|p| p[1]).fold(0.0, f64::max),
+            all: Ensemble::of(store, &run, members(store.effort), curve)?,
             weight: 9.8 * run.scene.scene().sheet[0].areal_density() * run.sheet.area(),
-            curve,
             stroke,
-            full,
             run,
         })
+    }
+
+    /// The largest force on the die, newtons.
+    fn peak(&self) -> Spread {
+        self.all.spread(Curve::peak)
     }
 
     fn picture(&self, file: &str, effort: Effort) -> Result<Picture> {
@@ -105,7 +137,7 @@ impl Punched {
         let alt = format!(
             "A square die rises through the opening of a frame and punches the sheet that lies on it, {sheet}"
         );
-        let times = STROKES.map(|s| s * self.full);
+        let times = STROKES.map(|s| s * self.stroke.time);
         VIEW.picture(&self.run, effort, [file, &alt], &times)
     }
 
@@ -122,7 +154,8 @@ impl Punched {
             self.run.sheet.area().sqrt(),
             scene.scene().sheet[0].areal_density()
         );
-        let motion = [self.stroke / self.full, self.stroke].map(millimetres);
+        let Stroke { length, time } = self.stroke;
+        let motion = [length / time, length].map(millimetres);
         let holders = [value("/obstacle/2/shape/box/size/1")?, clearance].map(millimetres);
         let mut rows = rows! {
             "blank" => blank,
@@ -131,24 +164,38 @@ impl Punched {
             "speed and stroke of the die" => motion.join("/s, "),
             "width of the holders, and their height above the frame" => holders.join(", "),
             "friction on all tools" => scene.scene().obstacle[DIE].friction.to_string(),
-            "largest force on the die" => format!("{:.1} N", self.peak),
+            "largest force on the die, N" => self.peak().text(|f| format!("{f:.1}")),
+            "runs of the ensemble" => self.all.len().to_string(),
             "weight of the blank" => format!("{:.1} N", self.weight),
         };
         rows.extend(course(&self.run.summary));
         Ok(rows)
     }
 
-    /// Its force on the die over the stroke.
+    /// Its force on the die over the stroke: of the run that is shown, and of the ensemble.
     fn plot(&self) -> Chart {
-        let stroke = 1e3 * self.stroke;
+        let stroke = 1e3 * self.stroke.length;
         let x = Axis::linear("stroke (mm)", [0.0, stroke]);
         let label = format!("force on the die (N), {}", self.run.scene.sheet_name());
-        let y = Axis::linear(&label, [0.0, 1.1 * self.peak.max(self.weight)]);
+        let top = self.peak().range[1].max(self.weight);
+        let y = Axis::linear(&label, [0.0, 1.1 * top]);
+        let part = |k: u32| stroke * f64::from(k) / f64::from(PARTS);
+        let largest = (0..PARTS).map(|k| {
+            let ends = [part(k), part(k + 1)];
+            let force = self.all.spread(|curve| curve.peak_within(ends));
+            (0.5 * (ends[0] + ends[1]), force)
+        });
+        let shown = Curve::of(&self.run, self.stroke).0;
         let series = vec![
-            Series::line("force", palette::BLUE, self.curve.clone()),
+            Series::line("shown run", palette::SKY, shown),
+            spreads(
+                0,
+                &format!("{} runs, largest by parts", self.all.len()),
+                largest,
+            ),
             Series::guide("weight", vec![[0.0, self.weight], [stroke, self.weight]]),
         ];
-        Chart::new(x, y, [165.0, 118.0], series)
+        Chart::new(x, y, [165.0, 132.0], series)
     }
 }
 
@@ -156,37 +203,60 @@ impl Punched {
 struct Released {
     label: &'static str,
     run: Run,
+    all: Ensemble<Left>,
+}
+
+/// What is measured of such a blank.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Left {
     /// Its height above its lowest point at the end, and the largest one before, metres.
     height: f64,
     largest: f64,
+    /// Work of the die, and what yielding dissipated of it, joules.
+    work: f64,
+    dissipated: f64,
+}
+
+impl Left {
+    fn of(run: &Run) -> Self {
+        let energy = &run.summary.energy;
+        Self {
+            height: height(run.end()),
+            largest: run.frames().map(height).fold(0.0, f64::max),
+            work: energy.work,
+            dissipated: energy.plastic,
+        }
+    }
+
+    /// The part of the largest height that is left.
+    fn kept(&self) -> f64 {
+        self.height / self.largest
+    }
 }
 
 impl Released {
     fn of(store: &Store, [name, label]: [&'static str; 2], edits: &[&str]) -> Result<Self> {
         let scene = scene_of("fig13-release", name, edits, store.effort)?;
         let run = Run::of(store, scene)?;
-        let heights: Vec<f64> = run.frames().map(height).collect();
-        Ok(Self {
-            height: heights.last().copied().unwrap_or_default(),
-            largest: heights.into_iter().fold(0.0, f64::max),
-            label,
-            run,
-        })
+        let all = Ensemble::of(store, &run, members(store.effort), |run| Ok(Left::of(run)))?;
+        Ok(Self { label, run, all })
     }
 
     fn rows(&self) -> Vec<FigureRow> {
-        let millimetres = |length: f64| format!("{:.1} mm", 1e3 * length);
         let yields = self.run.scene.scene().sheet[0].yields();
         let yields = yields.map_or("never".into(), |y| {
             format!("at {:.1} N m/m, hardening {:.3} N m", y.moment, y.hardening)
         });
-        let energy = &self.run.summary.energy;
+        let spread = |value: fn(&Left) -> f64, digits: usize| {
+            self.all.spread(value).text(|v| format!("{v:.digits$}"))
+        };
         let mut rows = rows! {
             "yields" => yields,
-            "largest height of the blank" => millimetres(self.largest),
-            "its height when the die is back" => millimetres(self.height),
-            "work of the die" => format!("{:.2} J", energy.work),
-            "dissipated by yielding" => format!("{:.2} J", energy.plastic),
+            "largest height of the blank, mm" => spread(|l| 1e3 * l.largest, 1),
+            "its height when the die is back, mm" => spread(|l| 1e3 * l.height, 1),
+            "work of the die, J" => spread(|l| l.work, 2),
+            "dissipated by yielding, J" => spread(|l| l.dissipated, 2),
+            "runs of the ensemble" => self.all.len().to_string(),
         };
         rows.extend(course(&self.run.summary));
         rows
@@ -208,16 +278,15 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     let stays = ["stamping-release", "steel that yields"];
     let stays = Released::of(store, stays, &[YIELDS])?;
     let both = [&springs, &stays];
-    let kept = both.map(|r| r.height / r.largest);
+    let kept = both.map(|r| r.all.median(Left::kept));
     ensure!(
         effort == Effort::Quick || kept[0] < KEPT && kept[1] > KEPT,
         "elastic steel and steel that yields keep the parts {kept:?} of their heights"
     );
+    let peaks = [&steel, &rods].map(|punched| punched.peak().median);
     ensure!(
-        effort == Effort::Quick || steel.peak > HARDER * rods.peak,
-        "steel presses the die with up to {:.0} N, rods with {:.0} N",
-        steel.peak,
-        rods.peak
+        effort == Effort::Quick || peaks[0] > HARDER * peaks[1],
+        "steel and rods press the die with up to {peaks:?} N"
     );
     let ends = both.map(|r| (r.label.to_owned(), &r.run));
     let left = "The blank after the die has withdrawn: elastic steel is flat, steel that yields keeps a shape";
@@ -232,8 +301,8 @@ pub(super) fn make(store: &Store) -> Result<Made> {
                pictures the die withdraws: the blank of elastic steel springs back, and one that yields (S235, docs/materials.md) \
                keeps its shape.",
         tables: vec![
-            compared(&["rods", METAL], &[rods.rows()?, steel.rows()?]),
-            compared(&both.map(|r| r.label), &both.map(Released::rows)),
+            of_ensembles(compared(&["rods", METAL], &[rods.rows()?, steel.rows()?])),
+            of_ensembles(compared(&both.map(|r| r.label), &both.map(Released::rows))),
         ],
         pictures: vec![
             rods.picture("fig13.png", effort)?,

@@ -12,6 +12,7 @@ use isosheet_mesh::Sheet;
 use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
 use std::fs;
+use std::path::Path;
 
 /// A run of rods with an edge strain from here on is an error: figures of rods promise that nothing
 /// stretches.
@@ -169,7 +170,27 @@ impl Run {
     /// [`Interrupted`](interrupt::Interrupted) after Ctrl-C; those of the simulation.
     pub(crate) fn of(store: &Store, scene: FigureScene) -> Result<Self> {
         let (summary, times, recorded) = kept(store, &scene)?;
-        let summary = RunSummary::new(&summary, &recorded.history, times);
+        Self::new(scene, &summary, times, recorded)
+    }
+
+    /// A run that is made now and of which nothing is kept but what the caller takes from it.
+    ///
+    /// # Errors
+    /// As [`Run::of`]; those of temporary files.
+    pub(super) fn passing(scene: FigureScene) -> Result<Self> {
+        let folder = tempfile::tempdir()?;
+        let (summary, times) = simulate(&scene, folder.path(), &mut || ())?;
+        let recorded = Recording::read(folder.path())?;
+        Self::new(scene, &summary, times, recorded)
+    }
+
+    fn new(
+        scene: FigureScene,
+        summary: &Summary,
+        times: Times,
+        recorded: Recording,
+    ) -> Result<Self> {
+        let summary = RunSummary::new(summary, &recorded.history, times);
         summary.check()?;
         Ok(Self {
             sheet: recorded.sheet,
@@ -234,17 +255,28 @@ struct Times {
     cpu: f64,
 }
 
-/// Runs a scene. What came of it, and what its steps took.
-fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<(Summary, Times)> {
-    let folder = files.folder(&folder(scene))?;
-    let bar = Progress::start(format!("run {}", scene.name()), scene.frames());
+/// Runs a scene in an empty folder and says `stepped` after each step. What came of it, and what its steps
+/// took.
+fn simulate(
+    scene: &FigureScene,
+    folder: &Path,
+    stepped: &mut dyn FnMut(),
+) -> Result<(Summary, Times)> {
     let mut times = Times::default();
     let mut look = |tick: &Tick| {
         times.wall += tick.wall.as_secs_f64();
         times.cpu += tick.cpu.as_secs_f64();
-        bar.step();
+        stepped();
     };
-    let summary = interrupt::simulate(&scene.without_page()?, &folder, &mut look)??;
+    let summary = interrupt::simulate(&scene.without_page()?, folder, &mut look)??;
+    Ok((summary, times))
+}
+
+/// Runs a scene and keeps what it recorded.
+fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<(Summary, Times)> {
+    let folder = files.folder(&folder(scene))?;
+    let bar = Progress::start(format!("run {}", scene.name()), scene.frames());
+    let (summary, times) = simulate(scene, &folder, &mut || bar.step())?;
     // The trajectory has all of these frames, and a run that is complete needs no others.
     fs::remove_file(folder.join("frames.bin"))?;
     bar.finish(&format!(

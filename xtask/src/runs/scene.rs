@@ -1,8 +1,6 @@
 //! The scenes of the figures: files of the folder `xtask/scenes`, which `isosheet simulate` runs too.
 
-use crate::interrupt;
 use anyhow::{Context, Result};
-use isosheet_dynamics::{Frames, Observer, Simulation};
 use isosheet_io::scene::{Material, Scene, SceneFile, Setup, StartingPoint};
 use isosheet_mesh::Sheet;
 use rand::{RngExt, SeedableRng};
@@ -16,9 +14,6 @@ use toml_edit::DocumentMut;
 
 /// The folder of the files.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
-
-/// The edit that lets a sheet pass through itself.
-const THROUGH_ITSELF: &str = "contact.self_contact=false";
 
 /// A scene, and the name of the folder that its run is kept in.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,14 +62,6 @@ impl FigureScene {
             name: name.to_owned(),
             file: SceneFile::parse(text.text.clone(), &text.path, edits)?,
         })
-    }
-
-    /// The same scene with a sheet that may pass through itself, under another name.
-    ///
-    /// # Errors
-    /// None that is known.
-    pub(crate) fn without_self_contact(&self, name: &str) -> Result<Self> {
-        self.edited(name, &[THROUGH_ITSELF.to_owned()])
     }
 
     /// The same scene with an elastic sheet of a named material in place of rods. The material brings its own
@@ -203,18 +190,6 @@ impl FigureScene {
     /// Values of which no simulation can be made.
     pub(crate) fn setup(&self) -> Result<Setup> {
         Ok(self.file.build()?)
-    }
-
-    /// Runs a simulation of the scene to its end, with all frames.
-    ///
-    /// # Errors
-    /// Ctrl-C and errors of the simulation.
-    pub(super) fn play(&self, simulation: &mut Simulation) -> Result<Frames> {
-        let mut frames = Frames::every(1);
-        let mut observers: [&mut dyn Observer; 2] = [&mut frames, &mut interrupt::observe];
-        simulation.run(self.scene().stop.time, self.frame(), &mut observers)?;
-        interrupt::check()?;
-        Ok(frames)
     }
 
     /// The sheet at rest, placed in space.

@@ -3,9 +3,10 @@
 use super::Hanging;
 use anyhow::Result;
 use isosheet_mesh::{EdgeId, MassKind, MassMatrix, VertexId, fold_angle};
+use serde::{Deserialize, Serialize};
 
 /// Measures of a state of a sheet that is held at a corner. Lengths in sides of the sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SheetShape {
     /// Depth of the centre of mass below the pin.
     pub(crate) centre_depth: f64,
