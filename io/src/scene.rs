@@ -279,6 +279,12 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The thickness of the thickest sheet, metres.
+    pub(crate) fn largest_thickness(&self) -> f64 {
+        let sheets = self.sheet.iter().map(|sheet| sheet.thickness);
+        sheets.fold(0.0, f64::max)
+    }
+
     /// A sheet alone in space, free and without gravity.
     pub fn new(sheet: Sheet) -> Self {
         Self {
@@ -371,7 +377,7 @@ impl Scene {
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
-            measure.check(&key, self, &mut checks);
+            measure.check(&key, (&self.crease, self.folding.as_ref()), &mut checks);
             let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
             bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }

@@ -36,10 +36,10 @@ use std::sync::{Arc, Mutex};
 
 const EXAMPLES: &str = "\
 Examples:
-  isosheet live cloth.toml                     play a scene in the browser, and pull at its sheet
-  isosheet live crane.svg                      fold a crease pattern, and pull at it
-  isosheet live crane.svg --part 0.8 --contact fold it to four fifths of its angles, with panels that touch
-  isosheet live flag.toml --set stop.time=60   play it for a minute before it pauses";
+  isosheet live cloth.toml                       play a scene in the browser, and pull at its sheet
+  isosheet live crane.svg                        fold a crease pattern, and pull at it
+  isosheet live crane.svg --part 0.8 --contact   fold it to four fifths of its angles, with panels that touch
+  isosheet live flag.toml --set stop.time=60     play it for a minute before it pauses";
 
 const NOTES: &str = "\
 The page is that of a run, with the 3D view and the plots. It shows the run as it goes: play, pause, single steps;

@@ -1,8 +1,10 @@
 //! Whether groups of creases fold in the order that is asked for.
 
-use super::FoldVerdict;
 use crate::scene::{FoldTargets, Folding};
 use std::fmt;
+
+/// Creases that are further from their angles than this, degrees, are open.
+pub(super) const OPEN: f64 = 5.0;
 
 /// How near to their angles the creases of a group come.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +63,7 @@ impl FoldOrder {
 /// in turn.
 impl fmt::Display for FoldOrder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let is_short = |off: &f64| *off > FoldVerdict::OPEN;
+        let is_short = |off: &f64| *off > OPEN;
         let told = self.groups.iter().enumerate().filter_map(|(k, group)| {
             let GroupFold { name, at_end, .. } = group;
             let next = self.groups.get(k + 1).map(|next| &next.name);

@@ -1,5 +1,6 @@
 //! What came of the folding of a crease pattern, in words.
 
+use super::fold_order::OPEN;
 use super::passing::Passing;
 use super::{FoldOrder, Recording, TouchingFaces, UnfoldableVertex};
 use crate::scene::{FoldResidual, FoldTargets, FollowedFolds, Isometry};
@@ -56,7 +57,7 @@ impl fmt::Display for FoldedCrease {
 
 impl FoldVerdict {
     /// A crease is open that is further from its angle, degrees.
-    pub const OPEN: f64 = 5.0;
+    pub const OPEN: f64 = OPEN;
     /// A panel bends that is folded further at an edge inside, degrees.
     pub const BENDS: f64 = 5.0;
 

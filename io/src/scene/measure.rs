@@ -1,8 +1,8 @@
 //! Numbers that are read off the sheet at each step.
 
-use super::Scene;
+use super::creases::Crease;
 use super::fold_group::FoldGroup;
-use super::folding::FoldTargets;
+use super::folding::{FoldTargets, Folding};
 use super::key::Key;
 use super::placed::PlacedSheets;
 use super::placed_bodies::PlacedBodies;
@@ -102,7 +102,8 @@ pub enum Quantity {
 }
 
 impl Measure {
-    pub(crate) fn check(&self, key: &Key, scene: &Scene, checks: &mut Checks) {
+    /// Checks it, with the creases of the scene and its folding.
+    pub(crate) fn check(&self, key: &Key, of: (&[Crease], Option<&Folding>), checks: &mut Checks) {
         let is_usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         // Spreadsheets take a name that begins with a minus for a formula.
         let is_text = self.name.starts_with(|c| is_usual(c) && c != '-');
@@ -113,7 +114,7 @@ impl Measure {
                 "use letters, digits, `_` and `-`, which is not the first",
             );
         }
-        self.check_of(key, scene, checks);
+        self.check_of(key, of, checks);
         let key = key.name("quantity");
         match &self.quantity {
             Quantity::DistanceToPoint(point) => {
@@ -125,7 +126,12 @@ impl Measure {
     }
 
     /// Checks that it is of vertices or of a crease, as its quantity wants it.
-    fn check_of(&self, key: &Key, scene: &Scene, checks: &mut Checks) {
+    fn check_of(
+        &self,
+        key: &Key,
+        (creases, folding): (&[Crease], Option<&Folding>),
+        checks: &mut Checks,
+    ) {
         let of_crease = self.quantity.of_crease().is_some();
         if self.sheet.is_some() && of_crease {
             let message = "a crease is of one sheet";
@@ -135,19 +141,14 @@ impl Measure {
             (Some(at), None, None) if !of_crease => at.check(&key.name("at"), checks),
             (None, None, Some(group)) if of_crease => {
                 group.check(&key.name("fold"), checks);
-                if scene.folding.is_none() {
+                if folding.is_none() {
                     let message = "the scene has no `[folding]`, whose creases these are";
                     let remedy = "name a `[[crease]]` by `crease`";
                     checks.report(key.name("fold"), message, remedy);
                 }
             }
             (None, Some(name), None) if of_crease => {
-                let names = || {
-                    scene
-                        .crease
-                        .iter()
-                        .filter_map(|crease| crease.name.as_ref())
-                };
+                let names = || creases.iter().filter_map(|crease| crease.name.as_ref());
                 if !names().any(|known| known == name) {
                     let known: Vec<String> = names().map(|name| format!("`{name}`")).collect();
                     let remedy = match known.is_empty() {

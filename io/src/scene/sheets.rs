@@ -4,7 +4,7 @@ use super::key::Key;
 use super::patched;
 use super::problem::{Checks, Problem};
 use super::sheet::Sheet;
-use super::{Scene, size};
+use super::size;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
@@ -21,14 +21,6 @@ pub(super) enum OneOrSeveral {
     One(Box<Sheet>),
     /// The sheets.
     Several(Vec<Sheet>),
-}
-
-impl Scene {
-    /// The thickness of the thickest sheet, metres.
-    pub(crate) fn largest_thickness(&self) -> f64 {
-        let sheets = self.sheet.iter().map(|sheet| sheet.thickness);
-        sheets.fold(0.0, f64::max)
-    }
 }
 
 pub(super) fn serialize<S: Serializer>(sheets: &[Sheet], to: S) -> Result<S::Ok, S::Error> {

@@ -312,6 +312,9 @@ const ALL_KEYS: [&str; 16] = [
     material = "cotton"
     direction = [0, 1, 0]
     density = 0.3
+    [[sheet.patch]]
+    at = { faces = [3, 0] }
+    material = "card"
     [stop]
     time = 1
     "#,

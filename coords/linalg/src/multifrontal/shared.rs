@@ -1,12 +1,6 @@
 //! Work on the subtrees of an elimination tree, on the threads of rayon's current pool.
 
-use super::plan::{Plan, Subtree};
-
-/// Multiplications of a factorisation from which its subtrees are shared among the threads of rayon's current pool.
-/// To wake a thread takes 0.1 ms, so that two threads need 1.05 times the time of one for factorisations in steps of
-/// sheets of 688 and 876 vertices (7 to 10 million multiplications), 0.97 times for 1089 vertices (10 million) and
-/// 0.82 times for 4225 vertices (84 million).
-pub(super) const WORTH_SHARING: f64 = 2e7;
+use super::plan::{Plan, Subtree, WORTH_SHARING};
 
 /// A part of an array, with the place in the array where the part begins.
 pub(super) type Part<'a> = (usize, &'a mut [f64]);

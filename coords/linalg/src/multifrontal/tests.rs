@@ -1,7 +1,7 @@
 use super::super::ordering::{Ordering, elimination_order};
 use super::super::symbolic::analyse;
 use super::super::testing::grids;
-use super::shared::WORTH_SHARING;
+use super::plan::WORTH_SHARING;
 use super::*;
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
 
