@@ -302,7 +302,8 @@ fn boxes_stand_on_each_other() {
     assert!((floor.z / -weight - 1.0).abs() < 0.01, "{floor}");
 }
 
-/// A ball lies in a cloth that is held at two edges: the supports carry the weight of both.
+/// A ball lies in a cloth that is held at two edges: the supports carry the weight of both. Of forces at rest the
+/// tolerance of scenes with bodies, 1e-4, leaves its root.
 #[test]
 fn a_ball_lies_in_a_hammock() {
     let mut live = live(&format!(
@@ -331,9 +332,9 @@ fn a_ball_lies_in_a_hammock() {
     play(&mut live, 3.0);
     let held: f64 = live.support_forces().iter().map(|f| f[2]).sum();
     let weight = G * (0.03 + 3.2e-3);
-    assert!((held / weight - 1.0).abs() < 5e-3, "{held} {weight}");
+    assert!((held / weight - 1.0).abs() < 1e-2, "{held} {weight}");
     let load = live.body_loads()[0].force[2];
-    assert!((load / (0.03 * G) - 1.0).abs() < 5e-3, "{load}");
+    assert!((load / (0.03 * G) - 1.0).abs() < 1e-2, "{load}");
 }
 
 /// Bodies that are thin are carried by thicker tetrahedra: a disc that spins keeps its axis.

@@ -89,8 +89,8 @@ const HERE: [&str; 2] = [
      rods, which do not resist bending, crumple as they fall, in the median more on M² and M³ (which is not in the paper) than on coarser \
      meshes, and an elastic sheet of office paper does not. In the last pictures office paper that yields (docs/materials.md) is crumpled between six plates, \
      pressed to a height of 1.5 mm and let go: it stands on its marks, which take a small part of its area, at a height that grows with \
-     finer meshes and has not converged, while elastic paper lies flat again. Energies of that squeeze are not to be relied on: the \
-     balance lacks more than what yielding dissipates, and no less with steps a quarter as long (tables).",
+     finer meshes and has not converged, while elastic paper lies flat again; energies of that squeeze are not to be relied on, as \
+     their balance lacks more than what yielding dissipates, and no less with steps a quarter as long (tables).",
 ];
 
 /// What Fig. 12 has beside Fig. 11: softness by mesh, and marks.
