@@ -25,11 +25,11 @@ use whole::WholeMatrix;
 /// Pairs without contact that keep their room, per pair and rod in use: room costs fill, analysing
 /// costs about ten factorisations.
 const EXTRA_LIMIT: usize = 2;
-/// The least and the largest error of what conjugate gradients solve for, relative to what the factorised matrix
-/// alone leaves, in the norm of the matrix: each Newton iteration leaves so much of the error of the one before
-/// (Dembo, Eisenstat and Steihaug, SIAM J. Numer. Anal. 19, 1982). Hanging sheets of 289 and 1089 vertices take as
-/// many factorisations with 0.3, 0.1, 0.01 and 0.001 as with the whole matrix, small clamped ones fewer with 0.1.
-const GRADIENT_ACCURACY: [f64; 2] = [0.1, 0.3];
+/// Error of what conjugate gradients solve for, relative to what the factorised matrix alone leaves, in the
+/// norm of the matrix: each Newton iteration leaves so much of the error of the one before (Dembo, Eisenstat
+/// and Steihaug, SIAM J. Numer. Anal. 19, 1982). Hanging sheets of 289 and 1089 vertices take as many
+/// factorisations with 0.3, 0.1, 0.01 and 0.001 as with the whole matrix.
+const GRADIENT_ACCURACY: f64 = 0.1;
 
 /// The symmetric matrix
 ///
@@ -57,8 +57,6 @@ pub(crate) struct PrimalMatrix {
     costs: Option<[Direct; 2]>,
     /// Norm of the masses of the free vertices, kilograms.
     masses: f64,
-    /// Error that conjugate gradients leave.
-    accuracy: f64,
     /// Whether conjugate gradients have been too slow since [`PrimalMatrix::begin`].
     is_slow: bool,
     iteration: ConjugateGradients,
@@ -164,7 +162,6 @@ impl PrimalMatrix {
                 .filter(|&v| free[v] != PINNED)
                 .map(|v| model.mass().vertex[v])
                 .sum(),
-            accuracy: GRADIENT_ACCURACY[0],
             is_slow: false,
             iteration: ConjugateGradients::new(n),
             free_slots: vertex_slots.iter().flatten().copied().collect(),
@@ -185,7 +182,6 @@ impl PrimalMatrix {
         std::mem::swap(&mut changed.far, &mut self.far);
         changed.costs = self.costs;
         changed.is_slow = self.is_slow;
-        changed.accuracy = self.accuracy;
         *self = changed;
         Ok(())
     }
@@ -377,7 +373,7 @@ impl PrimalMatrix {
     /// Whether conjugate gradients are expected to be cheaper than a factorisation of the whole matrix.
     fn is_iteration_cheaper(&self) -> bool {
         let substitutes = self.far.substitute_norm();
-        let expected = expected_iterations(substitutes, self.masses, GRADIENT_ACCURACY[0]);
+        let expected = expected_iterations(substitutes, self.masses, GRADIENT_ACCURACY);
         // (A substitute that is not a number is left to the factorisation of the whole matrix.)
         expected <= self.iterations_worth() as f64
     }
@@ -385,14 +381,6 @@ impl PrimalMatrix {
     /// Forgets that conjugate gradients have been too slow: a step begins.
     pub(crate) fn begin(&mut self) {
         self.is_slow = false;
-    }
-
-    /// Solves the next systems as accurately as a Newton iteration that leaves this part of the error deserves, since
-    /// what it leaves hides what conjugate gradients leave (S. C. Eisenstat and H. F. Walker, "Choosing the forcing
-    /// terms in an inexact Newton method", SIAM J. Sci. Comput. 17, 1996).
-    pub(crate) fn set_accuracy(&mut self, left: f64) {
-        let [least, most] = GRADIENT_ACCURACY;
-        self.accuracy = left.max(least).min(most);
     }
 
     fn add_substitutes(&mut self, scale: f64) {
@@ -484,7 +472,7 @@ impl PrimalMatrix {
         }
         gather(model, b, &mut self.rhs);
         let goal = Goal {
-            relative: self.accuracy,
+            relative: GRADIENT_ACCURACY,
             max_iterations: self.iterations_worth(),
         };
         let Self { near, low_rank, .. } = self;

@@ -85,8 +85,6 @@ pub(super) struct Newton<'a, 'b, 'w> {
     /// The part of the Hessian that is tried first: all of it until that turns out to be indefinite.
     hessian: HessianPart,
     residual: f64,
-    /// The part of the residual that the last iteration has left.
-    left: f64,
     outcome: StepOutcome,
 }
 
@@ -112,7 +110,6 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             has_sought_saddle: false,
             hessian: HessianPart::Full,
             residual: f64::INFINITY,
-            left: 0.0,
             outcome: StepOutcome::Newton,
         }
     }
@@ -218,7 +215,6 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// Solves for the step `-dx` at the iterate and, where the phase asks for it, for the multipliers.
     fn direction(&mut self) -> Result<Direction, Reason> {
         self.effort.iterations += 1;
-        self.work.lagrangian.matrix.set_accuracy(self.left);
         let hessian = match self.phase.multipliers {
             MultiplierUpdate::Solved => self.solve_with_multipliers()?,
             MultiplierUpdate::Rounds => self.solve()?,
@@ -247,9 +243,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             self.residual = 0.0;
             return Quality::RoundOff;
         }
-        let residual = (slope.abs() / before.inertia).sqrt();
-        self.left = residual / self.residual;
-        self.residual = residual;
+        self.residual = (slope.abs() / before.inertia).sqrt();
         match slope.abs() <= tolerance * before.inertia {
             true => Quality::Converged,
             false => Quality::Descends,
