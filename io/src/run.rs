@@ -67,6 +67,7 @@ mod stepping;
 mod steps;
 mod summary;
 mod sweep;
+mod time_error;
 #[cfg(feature = "cli")]
 mod trial;
 mod vibration;
@@ -108,6 +109,7 @@ pub use recorder::{ExistingRun, RecordedStepError, Recorder, RecorderOptions, Re
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
+pub use time_error::TimeError;
 #[cfg(feature = "cli")]
 pub(crate) use trial::FoldTrial;
 pub use vibration::Vibration;
@@ -457,6 +459,7 @@ fn finish(
         largest_displacement: progress.displacement,
         energy: progress.energy,
         incidence: progress.incidence,
+        time_error: progress.time_error,
         vibration: progress
             .vibrations
             .fastest(facts.mass, facts.sheet.mean_length()),

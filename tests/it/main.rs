@@ -1,5 +1,6 @@
 //! Tests that span several crates.
 
+mod accuracy;
 mod air;
 mod attached_flow;
 mod balance;

@@ -7,6 +7,7 @@ use crate::damped::restitution::FormulaStep;
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
+use crate::step::local_error::LocalError;
 use crate::step::tuning::Tuning;
 use crate::term::{Formula, StepStart};
 use crate::{ImplicitOptions, SheetModel, State};
@@ -167,6 +168,7 @@ fn two_step(
         residual: minimum.residual,
         outcome: minimum.outcome,
         exchange,
+        error: Some(LocalError::of(model, previous, state, &motion.state)),
     };
     Ok(())
 }

@@ -115,6 +115,19 @@ impl Default for Method {
 /// Subdivision of steps that the integrator rejects.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StepControl {
+    /// Largest estimated error that a sub-step of BDF2 or implicit Euler may add to the positions, metres, as the root
+    /// of the mean square over the vertices that are not pinned. Sub-steps are halved until it is met, down to
+    /// `min_fraction`, and doubled again where the estimate of twice the length meets it. With the lengths `h` of a
+    /// sub-step and `h / w` of the one before it is
+    ///
+    /// ```text
+    /// h (1 + w) / (3 (1 + 2 w)) |v1 - v0 - w (v0 - v_)|   for BDF2,   h / 2 |v1 - v0|   for implicit Euler,
+    /// ```
+    ///
+    /// which is of third and of second order in `h` for smooth motions, and of first order in impacts. Errors of
+    /// sub-steps add up, and what the motion makes of them later is not in it. Default none: sub-steps are as long as
+    /// they are asked for.
+    pub accuracy: Option<f64>,
     /// Smallest sub-step relative to the step asked for. Default 2^-14.
     pub min_fraction: f64,
     /// Largest number of factorisations in a sub-step of a sheet of rods with supports at two vertices or
@@ -154,6 +167,7 @@ pub enum Fallback {
 impl Default for StepControl {
     fn default() -> Self {
         Self {
+            accuracy: None,
             min_fraction: 2.0_f64.powi(-14),
             max_factorisations: 500,
             fallback: Fallback::Refuse,
@@ -166,6 +180,9 @@ impl StepControl {
     /// # Errors
     /// [`OptionsError`] naming the option that makes no sense.
     pub fn validate(&self) -> Result<(), OptionsError> {
+        if let Some(accuracy) = self.accuracy {
+            OptionsError::check_range("accuracy", accuracy, f64::MIN_POSITIVE, f64::MAX)?;
+        }
         OptionsError::check_range("min_fraction", self.min_fraction, 1e-12, 1.0)?;
         OptionsError::check_count("max_factorisations", self.max_factorisations)?;
         match &self.fallback {

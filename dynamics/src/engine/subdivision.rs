@@ -12,6 +12,8 @@ pub(crate) struct Subdivision {
     patience: usize,
     /// Sub-steps accepted after a refusal before a longer one is tried.
     most_patience: usize,
+    /// Largest sub-step, as a fraction of the step.
+    largest: f64,
 }
 
 impl Subdivision {
@@ -24,7 +26,19 @@ impl Subdivision {
             done: 0.0,
             patience: 0,
             most_patience: patience,
+            largest: 1.0,
         }
+    }
+
+    /// Makes no sub-step longer than `length` seconds from now on, if there is one as short as that on the grid.
+    pub(crate) fn limit(&mut self, length: f64) {
+        // Lengths that were sub-steps of another step differ by round-off.
+        let mut largest = 1.0;
+        while largest * self.h > length * (1.0 + 1e-9) && largest > f64::MIN_POSITIVE {
+            largest *= 0.5;
+        }
+        self.largest = largest;
+        self.fraction = self.fraction.min(largest);
     }
 
     pub(crate) fn is_finished(&self) -> bool {
@@ -78,7 +92,7 @@ impl Subdivision {
         self.done += self.fraction;
         self.patience = self.patience.saturating_sub(1);
         let growth = if self.patience == 0 { 2.0 } else { 1.0 };
-        self.fraction = self.longest().min(growth * self.fraction);
+        self.fraction = self.longest().min(growth * self.fraction).min(self.largest);
         self.start + self.done * self.h
     }
 
@@ -116,6 +130,22 @@ mod tests {
         }
         assert_eq!((t, steps.end()), (1.3, 1.3));
         assert!(refusals == 4 && count > 5);
+    }
+
+    #[test]
+    fn a_limit_holds_until_it_is_lifted() {
+        let mut steps = Subdivision::new(0.0, 0.3, 4);
+        // The length of a sub-step of another step, with its round-off.
+        steps.limit(0.6 / 8.0);
+        assert_eq!(steps.length(), 0.075);
+        steps.advance();
+        steps.limit(0.14);
+        assert_eq!((steps.length(), steps.advance()), (0.075, 0.15));
+        steps.limit(0.16);
+        assert_eq!(steps.length(), 0.075);
+        steps.advance();
+        assert_eq!((steps.length(), steps.advance()), (0.075, 0.3));
+        assert!(steps.is_finished());
     }
 
     #[test]

@@ -235,6 +235,9 @@ impl Engine {
 
     pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
         control.validate()?;
+        if control.accuracy.is_some() && !self.method.is_minimising() {
+            return Err(SimulationError::Accuracy);
+        }
         self.fallback = fallback(&self.model, &control, &self.tuning)?;
         self.control = control;
         Ok(())
@@ -250,7 +253,10 @@ impl Engine {
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
-        let lengths = Subdivision::new(self.state().t, h, PATIENCE);
+        let mut lengths = Subdivision::new(self.state().t, h, PATIENCE);
+        if let (Some(_), Some(longest)) = (self.control.accuracy, self.motion.history.longest) {
+            lengths.limit(longest);
+        }
         let mut run = Substeps {
             limit: self.work_limit(self.state().t + h),
             engine: self,
@@ -424,6 +430,7 @@ impl Substeps<'_, '_> {
             fallback,
             motion,
             proposal,
+            control,
             ..
         } = &mut *self.engine;
         let t = motion.state.t + h;
@@ -464,6 +471,18 @@ impl Substeps<'_, '_> {
             exchange.work += model.applied_work_at_pins(before, after);
         }
         self.exchange = exchange;
+        if let (Some(error), Some(accuracy)) = (proposal.account.error, control.accuracy)
+            && error.size > accuracy
+            && can_be_divided
+            && !is_fallback
+        {
+            return Err(StepError::Inaccurate {
+                t: before.t,
+                h,
+                error: error.size,
+                accuracy,
+            });
+        }
         // The conservative methods keep the energy by themselves.
         let damps = integrator.traits().demand == RodDemand::Nothing || is_fallback;
         let account = match damps {
@@ -489,6 +508,7 @@ impl Substeps<'_, '_> {
     /// | refused | with a history | without | by the fallback |
     /// |---|---|---|---|
     /// | since it would create energy | restart as a one-step method | halve | stop |
+    /// | since it is not accurate enough | halve, remembering all | halve | |
     /// | for any other reason | halve | halve | stop |
     ///
     /// Where the step is not to be halved any more, the fallback takes it if there is one.
@@ -501,7 +521,9 @@ impl Substeps<'_, '_> {
             // Contact came or went, or rods snapped through: the history of the motion does not continue.
             Decision::Restart
         } else if let Some(shorter) = self.lengths.halve(self.engine.control.min_fraction) {
-            self.memory = self.memory.min(Memory::State);
+            if !matches!(refusal, StepError::Inaccurate { .. }) {
+                self.memory = self.memory.min(Memory::State);
+            }
             Decision::Shorten(shorter)
         } else if self.engine.fallback.is_some() {
             Decision::FallBack(self.lengths.lengthen())
@@ -584,6 +606,15 @@ impl Stepping for Substeps<'_, '_> {
         let (model, before, motion) = (&engine.model, &engine.proposal.motion, &mut engine.motion);
         motion.memories.copy_from(&before.memories);
         motion.has_moved = true;
+        if let (Some(error), Some(accuracy)) = (step.error, engine.control.accuracy) {
+            let growth = if error.of_twice() <= accuracy {
+                2.0
+            } else {
+                1.0
+            };
+            self.lengths.limit(growth * h);
+            motion.history.longest = Some(growth * h);
+        }
         // Free of accumulated round-off, for the pins in motion too.
         motion.state.t = self.lengths.advance();
         model.place_pins(motion.state.t, &mut motion.state.x);
@@ -595,6 +626,9 @@ impl Stepping for Substeps<'_, '_> {
         totals.substeps += 1;
         totals.residual = totals.residual.max(step.residual);
         totals.outcome = totals.outcome.max(step.outcome);
+        if let Some(error) = step.error {
+            totals.error = Some(totals.error.unwrap_or(0.0).max(error.size));
+        }
         totals.work += exchange.work + exchange.driven;
         totals.friction += exchange.friction;
         let dissipated = model.damping_loss(&motion.state.v, h);

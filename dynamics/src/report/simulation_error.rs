@@ -60,6 +60,9 @@ pub enum SimulationError {
     /// The method does not support attached flow.
     #[error("the flow of the air is attached, and the method has no place for its wake")]
     AttachedFlow,
+    /// The method has no estimate of its error, and an accuracy was asked for.
+    #[error("an accuracy is asked for, and the method does not estimate the errors of its steps")]
+    Accuracy,
     /// The checkpoint is invalid or of another model.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
@@ -82,7 +85,7 @@ impl Advice for SimulationError {
             Self::Chart(error) => error.advice(),
             Self::Contact(error) => error.advice(),
             Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
-            Self::Elastic | Self::Plastic | Self::AttachedFlow | Self::Held => {
+            Self::Elastic | Self::Plastic | Self::AttachedFlow | Self::Held | Self::Accuracy => {
                 Some("use BDF2 or implicit Euler")
             }
             Self::Checkpoint(error) => error.advice(),

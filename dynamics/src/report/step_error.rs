@@ -50,6 +50,10 @@ pub struct StepReport {
     /// the last iteration, as the root of its energy over the inertia term; for projection the length rates
     /// over the speed.
     pub residual: f64,
+    /// The largest estimated error that a sub-step added to the positions, metres, the root of the mean square over
+    /// the vertices that are not pinned; `None` for methods other than BDF2 and implicit Euler. See
+    /// [`StepControl::accuracy`](crate::StepControl::accuracy).
+    pub error: Option<f64>,
     /// Kinetic energy at the end, joules.
     pub kinetic: f64,
     /// Potential energy at the end, contact included, joules.
@@ -280,6 +284,22 @@ pub enum StepError {
         /// Kinetic energy at the end of the step, joules.
         kinetic: f64,
     },
+    /// The estimated error of a step is above the accuracy that was asked for. Shorter steps follow.
+    #[error(
+        "a step of {h} s at t = {t} s adds an estimated error of {error} m to the positions, {accuracy} m was \
+         asked for",
+        h = brief(*h), t = brief(*t), error = brief(*error), accuracy = given(*accuracy)
+    )]
+    Inaccurate {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// The estimate, metres.
+        error: f64,
+        /// [`StepControl::accuracy`](crate::StepControl::accuracy), metres.
+        accuracy: f64,
+    },
     /// Friction in a step belongs to other normal forces than those at its end.
     #[error(
         "friction takes {lost} J in a step of {h} s at t = {t} s, and {settled} J by the normal forces at its \
@@ -414,6 +434,7 @@ impl Advice for StepError {
             Self::Swelling { .. } => Some("give a function of time from -0.2 to 0.2"),
             Self::NotConverged { .. }
             | Self::EnergyGain { .. }
+            | Self::Inaccurate { .. }
             | Self::Friction { .. }
             | Self::Contact { .. } => Some("take a smaller step"),
             Self::RankDeficient { .. } => Some(
@@ -445,6 +466,7 @@ pub(crate) struct StepTotals<'w> {
     pub(crate) rejected: usize,
     pub(crate) effort: SolverEffort<'w>,
     pub(crate) residual: f64,
+    pub(crate) error: Option<f64>,
     pub(crate) outcome: StepOutcome,
     pub(crate) work: f64,
     pub(crate) dissipated: f64,
@@ -460,6 +482,7 @@ impl Default for StepTotals<'_> {
             rejected: 0,
             effort: SolverEffort::default(),
             residual: 0.0,
+            error: None,
             outcome: StepOutcome::Newton,
             work: 0.0,
             dissipated: 0.0,

@@ -641,6 +641,7 @@ impl Simulation {
             iterations: totals.effort.iterations,
             factorisations: totals.effort.factorisations,
             residual: totals.residual,
+            error: totals.error,
             kinetic,
             potential,
             work,

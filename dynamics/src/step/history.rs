@@ -20,6 +20,9 @@ pub(crate) struct History {
     /// Stiffness of the rods in the linear systems at the end of the last step, in units of that of the
     /// masses; zero for methods without such systems and before the first step.
     pub(crate) rod_stiffness: f64,
+    /// The longest sub-step that the accuracy asked for allows by the last one, seconds; none before, and where none is
+    /// asked for.
+    pub(crate) longest: Option<f64>,
 }
 
 impl History {
@@ -33,6 +36,7 @@ impl History {
         self.previous = None;
         self.couplings.clear();
         self.rod_stiffness = 0.0;
+        self.longest = None;
     }
 
     /// Takes over another history, in place.
@@ -41,6 +45,7 @@ impl History {
         self.multipliers.copy_from(&other.multipliers);
         self.couplings.clone_from(&other.couplings);
         self.rod_stiffness = other.rod_stiffness;
+        self.longest = other.longest;
     }
 
     /// Sets the state before the present one, in place.

@@ -6,6 +6,7 @@ use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::{StepError, StepOutcome};
 use crate::step::history::{History, Multipliers};
+use crate::step::local_error::LocalError;
 use crate::step::motion::Motion;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::term::Exchange;
@@ -36,6 +37,8 @@ pub(crate) struct StepAccount {
     pub(crate) outcome: StepOutcome,
     /// Energy exchanged at the free vertices.
     pub(crate) exchange: Exchange,
+    /// The estimated error of the positions, by methods that have an estimate.
+    pub(crate) error: Option<LocalError>,
 }
 
 impl Proposal {
@@ -59,6 +62,7 @@ impl StepAccount {
                 work,
                 ..Exchange::default()
             },
+            error: None,
         }
     }
 }

@@ -5,6 +5,7 @@ pub(crate) mod control;
 pub(crate) mod energy_account;
 pub(crate) mod history;
 pub(crate) mod integrator;
+pub(crate) mod local_error;
 pub(crate) mod motion;
 pub(crate) mod reaction;
 pub(crate) mod residual_momentum;

@@ -128,6 +128,7 @@ impl Motion {
         check_finite("velocities of the step before", &previous.v)?;
         check_finite("multipliers of the isometry", &multipliers.rods)?;
         check_finite("stiffnesses of the rods", &[history.rod_stiffness])?;
+        check_finite("lengths of sub-steps", history.longest.as_slice())?;
         for memory in self.memories.lists() {
             check_finite("memories of potentials", memory)?;
         }

@@ -108,6 +108,7 @@ class StepReport:
     rejected: int
     iterations: int
     factorisations: int
+    error: float | None
     residual: float
     kinetic: float
     potential: float

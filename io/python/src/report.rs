@@ -57,6 +57,9 @@ values_of! {
         iterations: usize = report.iterations;
         /// Matrix factorisations.
         factorisations: usize = report.factorisations;
+        /// The largest estimated error that a sub-step added to the positions, metres, the root of the mean square over
+        /// the vertices; None for methods without an estimate.
+        error: Option<f64> = report.error;
         /// Largest relative residual of the sub-steps.
         residual: f64 = report.residual;
         /// Kinetic energy at the end.

@@ -7,6 +7,7 @@ use super::error::BEGIN_ANEW;
 use super::incidence::Incidence;
 use super::intervention::Intervention;
 use super::summary::{Ending, Measured};
+use super::time_error::TimeError;
 use super::vibration::Vibrations;
 use crate::format::{FileError, Written, input, write_atomically};
 use crc::{CRC_64_XZ, Crc};
@@ -63,6 +64,9 @@ pub(crate) struct RunProgress {
     /// Vibrations so far.
     #[serde(default)]
     pub(crate) vibrations: Vibrations,
+    /// The largest estimated error of a step so far.
+    #[serde(default)]
+    pub(crate) time_error: Option<TimeError>,
     /// The largest angle of attached flow so far.
     #[serde(default)]
     pub(crate) incidence: Option<Incidence>,

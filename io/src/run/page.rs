@@ -211,6 +211,9 @@ impl Rows {
             "solver",
             format!("{} iterations, {} factorisations", solves.0, solves.1),
         );
+        if let Some(error) = summary.time_error {
+            self.add("largest estimated error of a step", error.to_string());
+        }
         self.add("wall time", format!("{:.2} s", summary.wall_time));
         self.add("largest strain", format!("{:.1e}", summary.largest_strain));
         if let Some(elastic) = &summary.elastic {

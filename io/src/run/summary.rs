@@ -4,6 +4,7 @@ use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::incidence::Incidence;
 use super::intervention::Intervention;
+use super::time_error::TimeError;
 use super::vibration::Vibration;
 use crate::scene::Residuals;
 use isosheet_mesh::Part;
@@ -47,6 +48,9 @@ pub struct Summary {
     /// differentiation formula and no state of rest is asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vibration: Option<Vibration>,
+    /// The largest estimated error that a part of a step added to the positions, with BDF2 and implicit Euler.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_error: Option<TimeError>,
     /// The largest angle between sheet and relative wind after any step, where the flow is attached.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub incidence: Option<Incidence>,

@@ -2,7 +2,7 @@
 
 use super::{ElasticSummary, Summary};
 use crate::scene::Warning;
-use isosheet_mesh::wording::brief;
+use isosheet_mesh::wording::{brief, given};
 
 impl Summary {
     /// Part by which the chord of the sharpest bend of an elastic sheet may be shorter than its arc before
@@ -72,6 +72,14 @@ impl Summary {
                           the history says when energy is gained";
             warnings.push(Warning::new(message, remedy));
         }
+        if let Some((error, asked)) = self.time_error.and_then(|e| Some((e, e.unmet()?))) {
+            let message = format!(
+                "the accuracy asked for, {} m a step, is not met: the largest estimated error of a step is {error}",
+                given(asked)
+            );
+            let remedy = "allow a smaller `method.min_fraction`";
+            warnings.push(Warning::new(message, remedy));
+        }
         let vibration = self.vibration.filter(|v| v.slowing() > Self::SLOWING);
         if let Some(vibration) = vibration {
             let message = format!(
@@ -81,7 +89,7 @@ impl Summary {
                 brief(100.0 * vibration.slowing()),
                 brief(vibration.step_for(0.01)),
             );
-            let remedy = "take a smaller `method.step` if it matters how the sheet swings; where it comes to rest does not \
+            let remedy = "take a smaller `method.step`, or ask for a `method.accuracy`, if it matters how the sheet swings; where it comes to rest does not \
                           depend on that";
             warnings.push(Warning::new(message, remedy));
         }

@@ -11,6 +11,7 @@ use super::recording::Tables;
 use super::row::dissipated;
 use super::steps::step_count;
 use super::summary::{EndReason, Ending, Measured};
+use super::time_error::TimeError;
 use crate::format::{
     EventRow, EventWriter, FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter,
     MeasureRow, MeasureWriter,
@@ -329,6 +330,8 @@ impl RunWriter {
         progress.strain = progress.strain.max(report.strain);
         progress.displacement = progress.displacement.max(displacement);
         progress.energy.observe(report, mass, size);
+        let (asked, before) = (scene.method.accuracy, progress.time_error);
+        progress.time_error = TimeError::after(report, asked, before);
         // Whoever looks for a state of rest needs no vibrations on the way.
         if scene.method.integrator == Integrator::Bdf2 && scene.stop.rest.is_none() {
             let (t, h) = (report.t, report.h);

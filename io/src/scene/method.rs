@@ -23,8 +23,12 @@ use serde::{Deserialize, Serialize};
 pub struct Method {
     /// The integrator.
     pub integrator: Integrator,
-    /// Length of a step, seconds.
+    /// Length of a step, seconds; the longest one where an accuracy is asked for.
     pub step: f64,
+    /// Largest estimated error that a part of a step may add to the positions, metres, as the root of the mean square
+    /// over the vertices, with `bdf2` and `implicit_euler`: steps are divided until it is met, down to
+    /// `min_fraction`. If left out, steps are as long as `step` says. See "The length of a step" in the chapter on methods.
+    pub accuracy: Option<f64>,
     /// Largest relative length error of an accepted step, from 1e-15 to 0.01; if left out, that of the
     /// integrator (1e-12, or 2e-13 for conservative ones).
     pub strain_tolerance: Option<f64>,
@@ -98,6 +102,7 @@ impl Default for Method {
         Self {
             integrator: Integrator::default(),
             step: STEP,
+            accuracy: None,
             strain_tolerance: None,
             max_iterations: None,
             rod_stiffness: None,
@@ -121,6 +126,16 @@ impl Method {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("step"), self.step, Unit::Second);
         checks.within(key.name("min_fraction"), self.min_fraction, [1e-12, 1.0]);
+        if let Some(accuracy) = self.accuracy {
+            checks.positive(key.name("accuracy"), accuracy, Unit::Metre);
+            if !self.integrator.is_minimising() {
+                checks.report(
+                    key.name("accuracy"),
+                    "this integrator does not estimate the errors of its steps",
+                    "leave the key out, or choose `bdf2` or `implicit_euler`",
+                );
+            }
+        }
         checks.within(
             key.name("strain_tolerance"),
             self.strain_tolerance,
@@ -221,6 +236,7 @@ impl Method {
     /// What happens to rejected steps.
     fn control(&self) -> engine::StepControl {
         engine::StepControl {
+            accuracy: self.accuracy,
             min_fraction: self.min_fraction,
             max_factorisations: self.max_factorisations,
             fallback: match self.fallback {

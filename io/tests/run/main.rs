@@ -33,6 +33,7 @@ mod skip;
 #[cfg(unix)]
 mod strangers;
 mod sweeps;
+mod time_error;
 mod tools;
 mod traces;
 mod trajectories;

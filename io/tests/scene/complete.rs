@@ -162,6 +162,7 @@ const ALL_KEYS: [&str; 16] = [
     strain_tolerance = 1e-10
     max_iterations = 50
     rod_stiffness = 1e5
+    accuracy = 1e-4
     min_fraction = 0.1
     max_factorisations = 600
     fallback = "implicit_euler"
