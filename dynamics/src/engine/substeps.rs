@@ -255,7 +255,7 @@ impl Engine {
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
         let mut lengths = Subdivision::new(self.state().t, h, PATIENCE);
         if let (Some(_), Some(longest)) = (self.control.accuracy, self.motion.history.longest) {
-            lengths.limit(longest);
+            lengths.limit(longest.max(lengths.part(self.control.min_fraction)));
         }
         let mut run = Substeps {
             limit: self.work_limit(self.state().t + h),
