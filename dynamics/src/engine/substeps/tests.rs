@@ -440,6 +440,7 @@ fn propose(engine: &mut Engine, start: &Motion, h: f64) -> Result<Vec<u8>, StepE
         residual,
         outcome,
         exchange,
+        error,
     } = proposal.account;
     let exchange = [
         exchange.work,
@@ -448,7 +449,7 @@ fn propose(engine: &mut Engine, start: &Motion, h: f64) -> Result<Vec<u8>, StepE
         exchange.friction,
         exchange.length_slack,
     ];
-    let account = (residual, outcome, exchange);
+    let account = (residual, outcome, exchange, error.map(|error| error.size));
     Ok(bits(&(&proposal.motion.compact(), account)))
 }
 
