@@ -2,6 +2,7 @@
 
 use isosheet_io::scene::{SceneFile, StartingPoint};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -72,25 +73,66 @@ fn the_scenes_of_the_book_can_start() {
     );
 }
 
-/// Pages refer to pages that exist, and the table of contents has all of them.
+/// What a page says outside of its blocks of code.
+fn prose(page: &str) -> String {
+    page.split("```").step_by(2).collect()
+}
+
+/// What links into a page may name behind `#`: its headings, as mdBook and GitHub write them, and anchors of its own.
+fn anchors(page: &str) -> BTreeSet<String> {
+    let prose = prose(page);
+    let headings = prose.lines().filter(|line| line.starts_with('#'));
+    let headings = headings.map(|line| {
+        let heading = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = heading
+            .chars()
+            .filter(|c| c.is_alphanumeric() || " _-".contains(*c));
+        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+    });
+    let own = prose.split("<a id=\"").skip(1);
+    let own = own.filter_map(|rest| rest.split('"').next().map(str::to_owned));
+    headings.chain(own).collect()
+}
+
+/// Pages refer to pages and sections that exist, those of the book to no file outside of it, and the table of contents
+/// has all of them.
 #[test]
 fn links_between_pages_lead_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let docs = fs::canonicalize(root.join("docs")).expect("the folder of the book");
+    let others = ["ARCHITECTURE.md", "CONTRIBUTING.md"].map(|name| root.join(name));
     let mut links = 0;
-    for path in pages() {
+    for path in pages().into_iter().chain(others) {
         let page = fs::read_to_string(&path).expect("a page");
         let folder = path.parent().expect("pages are in folders");
-        for target in page.split("](").skip(1) {
-            let target = target.split(')').next().unwrap_or_default();
-            let file = target.split('#').next().unwrap_or_default();
-            if file.is_empty() || file.contains("://") {
+        for link in prose(&page).split("](").skip(1) {
+            let link = link.split(')').next().unwrap_or_default();
+            if link.contains("://") {
                 continue;
             }
-            assert!(folder.join(file).exists(), "{}: {target}", path.display());
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let target = match file {
+                "" => path.clone(),
+                file => folder.join(file),
+            };
+            let shown = format!("{}: {link}", path.display());
+            let target = fs::canonicalize(target).unwrap_or_else(|e| panic!("{shown}: {e}"));
+            let is_of_book = fs::canonicalize(folder).is_ok_and(|folder| folder == docs);
+            assert!(
+                !is_of_book || target.starts_with(&docs),
+                "{shown} leaves the book"
+            );
+            if !anchor.is_empty() {
+                let target = fs::read_to_string(target).expect("a page");
+                assert!(
+                    anchors(&target).contains(anchor),
+                    "{shown}: no such section"
+                );
+            }
             links += 1;
         }
     }
-    assert!(links > 20, "{links} links were found");
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    assert!(links > 150, "{links} links were found");
     let contents = fs::read_to_string(docs.join("SUMMARY.md")).expect("the contents");
     for path in pages() {
         let name = path.file_name().expect("a name").to_string_lossy();
@@ -145,8 +187,7 @@ fn keys_in_the_text_of_the_book_exist() {
     for path in pages() {
         let page = fs::read_to_string(&path).expect("a page");
         // What is in blocks is read as a scene by another test.
-        let text: String = page.split("```").step_by(2).collect();
-        for code in text.split('`').skip(1).step_by(2) {
+        for code in prose(&page).split('`').skip(1).step_by(2) {
             let Some(words) = key_words(code) else {
                 continue;
             };
