@@ -89,8 +89,8 @@ impl Summary {
                 brief(100.0 * vibration.slowing()),
                 brief(vibration.step_for(0.01)),
             );
-            let remedy = "take a smaller `method.step`, or ask for a `method.accuracy`, if it matters how the sheet swings; where it comes to rest does not \
-                          depend on that";
+            let remedy = "take a smaller `method.step`, or ask for a `method.accuracy`, if it matters how the sheet swings; \
+                          where it comes to rest does not depend on that";
             warnings.push(Warning::new(message, remedy));
         }
         if let Some(incidence) = self.incidence.filter(|i| i.angle > Self::SEPARATION) {

@@ -332,8 +332,10 @@ impl RunWriter {
         progress.energy.observe(report, mass, size);
         let (asked, before) = (scene.method.accuracy, progress.time_error);
         progress.time_error = TimeError::after(report, asked, before);
-        // Whoever looks for a state of rest needs no vibrations on the way.
-        if scene.method.integrator == Integrator::Bdf2 && scene.stop.rest.is_none() {
+        // Whoever looks for a state of rest needs no vibrations on the way, and an accuracy divides the steps.
+        let method = &scene.method;
+        let is_resolved = method.accuracy.is_some() || scene.stop.rest.is_some();
+        if method.integrator == Integrator::Bdf2 && !is_resolved {
             let (t, h) = (report.t, report.h);
             progress.vibrations.observe(t, h, report.kinetic);
         }
