@@ -275,7 +275,7 @@ const ALL_KEYS: [&str; 16] = [
     hold = "clamp"
     [[support]]
     at = { vertices = [2, 3] }
-    hold = { moving_clamp = { z = 0.0 } }
+    hold = { moving_clamp = { poses = { frame = { position = [0, 0, 0], orientation = [1, 0, 0, 0] }, keys = [{ time = 0, position = [0, 0, 0], orientation = [1, 0, 0, 0] }] } } }
     [[support]]
     at = { vertices = [4, 5] }
     hold = { sliding_clamp = { direction = [1, 0, 0], motion = { z = 0.0 } } }
