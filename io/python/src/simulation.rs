@@ -13,7 +13,7 @@ use isosheet_io::mesh::VertexId;
 use isosheet_io::run::{
     ExistingRun, RecordedStepError, Recorder, RecorderOptions, Recording, RecordingEnd,
 };
-use isosheet_io::scene::{EditError, FramePose, Key, KeyError, LiveScene, SceneFileError, Target};
+use isosheet_io::scene::{FramePose, Key, KeyError, LiveScene, Problem, Target};
 use isosheet_io::view::{PageOptions, Replay};
 use isosheet_io::{DataError, Trajectory};
 use numpy::{PyArray1, PyArray2};
@@ -139,15 +139,16 @@ impl Simulation {
 }
 
 /// The pose that a dictionary is, to which the motion at a key is driven.
-fn pose_of(key: &str, pose: &Bound<'_, PyDict>) -> PyResult<FramePose> {
-    let pose_table = table(pose, Mesh::value_of)?;
-    pose_table.try_into().map_err(|e: toml::de::Error| {
-        let remedy = "give `position`, three metres, and `orientation`, a unit quaternion w, x, y, z";
-        let error = EditError {
-            edit: key.to_owned(),
-            problem: DataError::new(format!("it is no pose: {}", e.message()), remedy),
-        };
-        of_file(pose.py(), &SceneFileError::Edit(error))
+fn pose_of(key: &Key, pose: &Bound<'_, PyDict>) -> PyResult<FramePose> {
+    let values = table(pose, Mesh::value_of)?;
+    values.try_into().map_err(|e: toml::de::Error| {
+        let message = format!("what `{key}` is driven to is no pose: {}", e.message());
+        let remedy =
+            "give `position`, three metres, and `orientation`, a unit quaternion w, x, y, z";
+        of_scene(
+            pose.py(),
+            &Problem::new(key.clone(), message, remedy).into(),
+        )
     })
 }
 
@@ -349,7 +350,10 @@ impl Simulation {
                 .parse()
                 .map_err(|e: KeyError| PyKeyError::new_err(e.to_string()))?;
             match value.cast::<PyDict>() {
-                Ok(pose) => Ok((key, Target::Pose(pose_of(&text, pose)?))),
+                Ok(pose) => {
+                    let pose = pose_of(&key, pose)?;
+                    Ok((key, Target::Pose(pose)))
+                }
                 Err(_) => Ok((key, Target::Value(value.extract()?))),
             }
         };
