@@ -289,11 +289,8 @@ fn what_moves_too_fast_is_told() {
         "hold = { moving_clamp = { poses = { keys = [{ position = [0.01, 0.05, 0.02] }] } } }";
     let text = HELD.replace(clamp, "hold = { moving_clamp = {} }");
     let mut live = live(&text);
-    live.drive(
-        &[(key("support[0].hold.moving_clamp.z"), 1e4.into())],
-        0.01,
-    )
-    .expect("a function of time");
+    live.drive(&[(key("support[0].hold.moving_clamp.z"), 1e4.into())], 0.01)
+        .expect("a function of time");
     let error = live.step(0.01).map(drop).unwrap_err().to_string();
     // The diagonal of 0.2 m x 0.1 m, and that in a step.
     for says in [
