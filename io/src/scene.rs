@@ -167,7 +167,7 @@ pub use problem::Problem;
 pub use profile::{Change, Course, Interpolation, Profile};
 pub use schema::{as_written, documented_schema, schema};
 pub use selection::Selection;
-pub use sequence::{Outside, Sequence};
+pub use sequence::{MeshFrames, Outside, Sequence};
 pub use setup::Setup;
 pub use sheet::{Bending, Elasticity, Isometry, RestShape, Sheet};
 pub use source::{SceneFile, SceneFileError};
@@ -490,7 +490,8 @@ impl Scene {
         for (k, support) in self.support.iter_mut().enumerate() {
             if let Hold::Follow { sequence, .. } = &mut support.hold {
                 let key = root.name("support").entry(k).name("hold.follow.sequence");
-                files.push(NamedFile::motion(key, &mut sequence.path));
+                let path = sequence.path.as_mut();
+                files.extend(path.map(|path| NamedFile::motion(key, path)));
             }
         }
         files

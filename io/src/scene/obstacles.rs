@@ -254,7 +254,10 @@ impl Shape {
         let key = key.name(self.name());
         match self {
             Self::File(file) => Some(NamedFile::mesh(key, &mut file.path)),
-            Self::Sequence(sequence) => Some(NamedFile::motion(key, &mut sequence.path)),
+            Self::Sequence(sequence) => {
+                let path = sequence.path.as_mut()?;
+                Some(NamedFile::motion(key, path))
+            }
             _ => None,
         }
     }

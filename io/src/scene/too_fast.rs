@@ -25,11 +25,10 @@ pub(super) fn too_fast(
     error: &StepError,
     h: f64,
 ) -> Option<Problem> {
-    let Some(Fastest { key, way }) =
-        fastest(scene, under_way, h).filter(|_| is_without_room(error))
-    else {
+    if !is_without_room(error) {
         return None;
-    };
+    }
+    let Fastest { key, way } = fastest(scene, under_way, h)?;
     let [low, high] = bounds(under_way.facts.sheet.positions().as_chunks::<3>().0);
     let size = (Vector3::from(high) - Vector3::from(low)).norm();
     if way <= size {
