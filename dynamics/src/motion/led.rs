@@ -2,15 +2,16 @@
 
 use std::sync::{Arc, PoisonError, RwLock};
 
-/// A motion that a program leads: all that has it, also in clones, goes on with another one from a moment on. The
-/// other one has to be where this one is at that moment, which nothing here checks.
+/// A motion that a program leads: all that has it, also in clones, goes on with another one from a moment on.
+/// The other one has to be where this one is at that moment, which nothing here checks.
 ///
 /// ```
 /// use isosheet_dynamics::{Led, PointMotion, PointProfile, Profile};
 ///
 /// let led = Led::new(PointProfile::default());
 /// let motion = PointMotion::Led(led.clone());
-/// led.lead(PointProfile { z: Profile::Ramp { from: 0.0, to: 0.1, begin: 1.0, end: 2.0 }, ..PointProfile::default() });
+/// let z = Profile::Ramp { from: 0.0, to: 0.1, begin: 1.0, end: 2.0 };
+/// led.lead(PointProfile { z, ..PointProfile::default() });
 /// assert_eq!(motion.position(3.0), [0.0, 0.0, 0.1]);
 /// ```
 #[derive(Debug, Clone)]

@@ -286,12 +286,13 @@ impl Run {
         Ok(columns)
     }
 
-    /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ..., "body[0]", ...
-    /// and "guide[0]", ... with the numbers of bodies; obstacles and bodies that the scene gives a name, by that: a dict of
-    /// "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and "torque" of shape (S, 3), newton
-    /// metres: of a support those on the sheet, the torque about the mean of its vertices; of an obstacle those
-    /// of the sheet on it, the torque about the origin of its own frame; of a body those of all that touches it,
-    /// the torque about its centre of mass; of its guide those on the body.
+    /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...,
+    /// "body[0]", ... and "guide[0]", ... with the numbers of bodies; obstacles and bodies that the scene
+    /// gives a name, by that: a dict of "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and
+    /// "torque" of shape (S, 3), newton metres: of a support those on the sheet, the torque about the mean of
+    /// its vertices; of an obstacle those of the sheet on it, the torque about the origin of its own frame;
+    /// of a body those of all that touches it, the torque about its centre of mass; of its guide those on the
+    /// body.
     #[getter]
     fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         // Supports come first, then obstacles, bodies and guides, by their numbers.

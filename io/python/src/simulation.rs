@@ -338,11 +338,12 @@ impl Simulation {
     /// ``simulation.drive({"support[0].hold.moving_pin.z": 0.01}, until=simulation.time + 0.1)``.
     ///
     /// Values have the units of scenes: metres, degrees, newtons. A rigid motion goes to a pose:
-    /// ``simulation.drive({"obstacle[0].motion": {"position": p, "orientation": q}}, until=simulation.time + 0.02)``,
-    /// with the origin of its frame p, metres, and a unit quaternion q, w x y z, that takes directions of the frame to
-    /// those of space. The frame of an obstacle is its own, and that of a support, `support[0].hold.moving_clamp`, the
-    /// one of space at the start, if the scene says no other with `poses`. Until then the origin goes straight, and
-    /// the frame turns about one axis, the shorter way round.
+    /// ``simulation.drive({"obstacle[0].motion": {"position": p, "orientation": q}}, until=0.1)``, with the
+    /// origin of its frame p, metres, and a unit quaternion q, w x y z, that takes directions of the frame to
+    /// those of space. The frame of an obstacle is its own, and that of a support,
+    /// `support[0].hold.moving_clamp`, the one of space at the start, if the scene says no other with
+    /// `poses`. Until then the origin goes straight, and the frame turns about one axis, the shorter way
+    /// round.
     fn drive(&self, py: Python<'_>, targets: &Bound<'_, PyDict>, until: f64) -> PyResult<()> {
         let target = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
             let text: String = key.extract()?;

@@ -274,8 +274,8 @@ impl Trajectory {
         &self.t
     }
 
-    /// The frame that is nearest to a time, seconds; of several that are as near the last. `None` without frames, and
-    /// of a time that is not finite.
+    /// The frame that is nearest to a time, seconds; of several that are as near the last. `None` without
+    /// frames, and of a time that is not finite.
     pub fn nearest(&self, time: f64) -> Option<usize> {
         let nearest = self.with_least(|t| (t - time).abs());
         nearest.filter(|_| time.is_finite())

@@ -359,8 +359,8 @@ impl Recorder {
     }
 
     /// Ends the recording and writes what a complete run has, the summary last; returns what was recorded.
-    /// Without a step there is no run, and what it has is its start; where the first step failed, it is a run of the
-    /// start alone.
+    /// Without a step there is no run, and what it has is its start; where the first step failed, it is a run
+    /// of the start alone.
     ///
     /// # Errors
     /// [`RunError`] if a file cannot be written.

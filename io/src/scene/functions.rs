@@ -82,7 +82,8 @@ impl Scene {
 pub(crate) struct Moved<'a> {
     pub(crate) key: Key,
     pub(crate) motion: &'a mut Motion,
-    /// The frame of what moves while it is not displaced: that of an obstacle, and that of space of a support.
+    /// The frame of what moves while it is not displaced: that of an obstacle, and that of space of a
+    /// support.
     pub(crate) frame: Isometry3<f64>,
 }
 

@@ -368,10 +368,11 @@ impl LiveScene {
 
     /// Lets functions of time in the scene go from their present values to others until time `until`
     /// (seconds), along a ramp, and keep these: displacements and angles of supports and bodies, angles of
-    /// creases, profiles of curls and swellings, sizes of loads. Values are in the units of the scene. A rigid motion,
-    /// `obstacle[0].motion` or `support[0].hold.moving_pin`, goes to a pose of its frame, see [`Poses`](super::Poses):
-    /// that of an obstacle is its own, and that of a support the one of space at the start, where the motion has no
-    /// `poses` that say another. Where it goes is led on from the second time on without building anything anew.
+    /// creases, profiles of curls and swellings, sizes of loads. Values are in the units of the scene. A
+    /// rigid motion, `obstacle[0].motion` or `support[0].hold.moving_pin`, goes to a pose of its frame, see
+    /// [`Poses`](super::Poses): that of an obstacle is its own, and that of a support the one of space at the
+    /// start, where the motion has no `poses` that say another. Where it goes is led on from the second time
+    /// on without building anything anew.
     ///
     /// # Errors
     /// As [`LiveScene::change`]; [`EditError`] at a key that is no function of time, or no motion.

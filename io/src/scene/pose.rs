@@ -160,8 +160,9 @@ impl Motion {
         self.rotation.is_some() || self.poses.is_some()
     }
 
-    /// The motion that goes from its pose at time `from` (seconds) to another one of its frame until time `to`, and
-    /// rests there. `rest` is the frame while nothing is displaced, where the motion has no poses yet.
+    /// The motion that goes from its pose at time `from` (seconds) to another one of its frame until time
+    /// `to`, and rests there. `rest` is the frame while nothing is displaced, where the motion has no poses
+    /// yet.
     pub(super) fn led(&self, pose: FramePose, rest: Isometry3<f64>, [from, to]: [f64; 2]) -> Self {
         let frame = self.poses.as_ref().map(Poses::frame);
         let frame = frame.unwrap_or(rest.into());

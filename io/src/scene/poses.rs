@@ -9,13 +9,13 @@ use nalgebra::{Isometry3, Quaternion, UnitQuaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// By how much the norm of a quaternion may differ from one: numbers in single precision leave up to 6e-8 of it, six
-/// decimals 1e-6.
+/// By how much the norm of a quaternion may differ from one: numbers in single precision leave up to 6e-8 of
+/// it, six decimals 1e-6.
 const ROUND_OFF: f64 = 1e-6;
 
-/// A motion through poses of a frame, which carries what moves. Between two of them the origin of the frame goes
-/// straight at constant speed, and the frame turns about one axis at a constant rate, the shorter way round. It rests
-/// before the first and after the last.
+/// A motion through poses of a frame, which carries what moves. Between two of them the origin of the frame
+/// goes straight at constant speed, and the frame turns about one axis at a constant rate, the shorter way
+/// round. It rests before the first and after the last.
 ///
 /// ```toml
 /// [[support]]
@@ -32,8 +32,8 @@ const ROUND_OFF: f64 = 1e-6;
 pub struct Poses {
     /// The poses, in the order of time.
     pub keys: Vec<TimedPose>,
-    /// The frame while an obstacle is in its `pose`, or vertices are where they start. If left out, that of the first
-    /// key.
+    /// The frame while an obstacle is in its `pose`, or vertices are where they start. If left out, that of
+    /// the first key.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<FramePose>,
 }

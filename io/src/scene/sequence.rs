@@ -22,11 +22,11 @@ use std::path::{Path, PathBuf};
 pub struct Sequence {
     /// Path, relative to the scene file: the folder of a run, whose trajectory is taken; an archive of numpy
     /// (`.npz`) with the arrays `t` (T times, seconds), `x` (T x V x 3) and `faces` (F x 3, from 0), which
-    /// `numpy.savez("body.npz", t=t, x=x, faces=faces)` writes; text of Universal Scene Description (`.usda`),
-    /// of which all meshes that it shows are taken, in metres and with z upwards; a list of mesh files with
-    /// their times in seconds (`.pvd`, `.vtk.series`); or a folder of mesh files whose names end in the numbers
-    /// of frames, or a pattern with one `*` for these numbers, `walk/walk_*.obj`. VTK files may have times. Without it
-    /// the scene has `frames`.
+    /// `numpy.savez("body.npz", t=t, x=x, faces=faces)` writes; text of Universal Scene Description
+    /// (`.usda`), of which all meshes that it shows are taken, in metres and with z upwards; a list of mesh
+    /// files with their times in seconds (`.pvd`, `.vtk.series`); or a folder of mesh files whose names end
+    /// in the numbers of frames, or a pattern with one `*` for these numbers, `walk/walk_*.obj`. VTK files
+    /// may have times. Without it the scene has `frames`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<PathBuf>,
     /// The frames from a program, in place of a file.
@@ -84,8 +84,12 @@ impl MeshFrames {
                 "give one frame for each time",
             );
         }
+        for (key, time) in key.name("times").entries(&self.times) {
+            checks.number(key, *time, Unit::Second);
+        }
         let first = self.positions.first().map_or(0, Vec::len);
         for (key, frame) in key.name("positions").entries(&self.positions) {
+            checks.points(key.clone(), frame);
             if frame.len() != first {
                 let message = format!(
                     "the frame has {} vertices, and the first one {first}",

@@ -17,8 +17,9 @@ struct Fastest {
     way: f64,
 }
 
-/// What is wrong with a step of `h` seconds that failed while a support or an obstacle moves farther in it than the
-/// sheets are large: where the sheets end, they have little to do with where they began. Nothing if none does.
+/// What is wrong with a step of `h` seconds that failed while a support or an obstacle moves farther in it
+/// than the sheets are large: where the sheets end, they have little to do with where they began. Nothing if
+/// none does.
 pub(super) fn too_fast(
     scene: &Scene,
     under_way: &UnderWay,

@@ -594,7 +594,8 @@ fn remedies_are_those_of_scenes() {
     assert!(told.contains("the face is at (0."), "{told}");
 }
 
-/// Problems of the entries of one list tend to have one cause: the first are shown, and how many there are besides.
+/// Problems of the entries of one list tend to have one cause: the first are shown, and how many there are
+/// besides.
 #[test]
 fn problems_of_a_list_are_shown_up_to_a_few() {
     let rows = vec!["[nan, 0, 0]"; 25].join(", ");

@@ -70,9 +70,9 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// A tool turns by an angle about an axis of no coordinate while it moves: at half of the time its held vertices are at
-/// half of the way, turned by half of the angle (the formula of Rodrigues), and at the end where the matrix of the
-/// quaternion takes them.
+/// A tool turns by an angle about an axis of no coordinate while it moves: at half of the time its held
+/// vertices are at half of the way, turned by half of the angle (the formula of Rodrigues), and at the end
+/// where the matrix of the quaternion takes them.
 #[test]
 fn a_tool_carries_what_it_holds_through_poses() {
     let mut live = live(HELD);
@@ -226,7 +226,8 @@ fn wrong_poses_are_refused() {
     assert!(error.contains("in place of `x`"), "{error}");
 }
 
-/// From the second time on nothing is built anew for what is driven: the bits are those of a simulation that is.
+/// From the second time on nothing is built anew for what is driven: the bits are those of a simulation that
+/// is.
 #[test]
 fn what_is_led_has_the_bits_of_what_is_built_anew() {
     let pins = HELD.replace(
@@ -282,7 +283,8 @@ fn what_is_led_has_the_bits_of_what_is_built_anew() {
     }
 }
 
-/// A hand that jumps farther in a step than the sheet is large is told, with its speed and one that is below that.
+/// A hand that jumps farther in a step than the sheet is large is told, with its speed and one that is below
+/// that.
 #[test]
 fn what_moves_too_fast_is_told() {
     let clamp =
