@@ -426,7 +426,7 @@ mod tests {
                 positions: sheet.positions(),
                 pins: &[],
                 immobile: &[],
-                solids: &[floor.clone()],
+                solids: std::slice::from_ref(&floor),
                 parts: &[],
             };
             let camera = Camera::new([0.0; 3], -60.0, 30.0, 1.0, 6.0);
