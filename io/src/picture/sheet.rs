@@ -437,7 +437,8 @@ mod tests {
             let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
             let border = all.filter(|(x, y)| is_border(*x, *y));
             let darkest = border.map(|(x, y)| dark(x, y)).fold(0.0, f32::max);
-            assert!(darkest < 0.02, "{size:?}: {darkest}");
+            // Pieces are a few pixels large, over which the light is linear.
+            assert!(f64::from(darkest) < 0.5 * CONTRAST, "{size:?}: {darkest}");
             assert!(dark(width / 2, 2 * height / 3) > 0.2, "{size:?}");
         }
     }
