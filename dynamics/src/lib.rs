@@ -116,8 +116,8 @@ pub use model::turning_load::TurningLoad;
 pub use model::{Isometry, ModelError, SheetModel};
 pub use motion::profile::{Interpolation, Profile, ProfileError};
 pub use motion::{
-    AxisRotation, Keyframe, Kinematics, MotionError, PointMotion, PointProfile, RigidDisplacement,
-    RigidMotion, RigidProfile,
+    AxisRotation, Keyframe, Kinematics, Led, MotionError, PointMotion, PointProfile,
+    RigidDisplacement, RigidMotion, RigidProfile,
 };
 pub use options::OptionsError;
 pub use potential::{

@@ -63,6 +63,7 @@ mod in_words;
 mod integration;
 mod jump;
 mod key;
+mod led;
 mod live;
 mod material;
 mod measure;
@@ -81,6 +82,7 @@ mod periods;
 mod placed;
 mod placed_bodies;
 mod pose;
+mod poses;
 mod problem;
 mod profile;
 mod refined;
@@ -104,6 +106,7 @@ mod switch;
 mod switches;
 mod targets;
 mod toml_problem;
+mod too_fast;
 mod under_way;
 mod unit;
 mod up_axis;
@@ -145,7 +148,7 @@ pub use glue::{Glue, SeamBend, SeamSide};
 pub use guides::{BodyForce, BodyTorque, Guide};
 pub use integration::Integration;
 pub use key::{Key, KeyError, KeyPart};
-pub use live::{FailedStep, HoldError, LiveScene};
+pub use live::{FailedStep, HoldError, LiveScene, Target};
 pub use material::{Material, Plate};
 pub use measure::{Gauge, Measure, Quantity};
 pub use mesh::{Diagonals, Mesh};
@@ -159,11 +162,12 @@ pub use pattern::{
     AlikeCreases, DegreeFour, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
 };
 pub use pose::{Motion, Pose, Rotation, Turn};
+pub use poses::{FramePose, Poses, TimedPose};
 pub use problem::Problem;
 pub use profile::{Change, Course, Interpolation, Profile};
 pub use schema::{as_written, documented_schema, schema};
 pub use selection::Selection;
-pub use sequence::{Outside, Sequence};
+pub use sequence::{MeshFrames, Outside, Sequence};
 pub use setup::Setup;
 pub use sheet::{Bending, Elasticity, Isometry, RestShape, Sheet};
 pub use source::{SceneFile, SceneFileError};
@@ -184,6 +188,8 @@ pub use yields::{CreaseYield, SheetYield};
 pub(crate) use build::Kept;
 #[cfg(feature = "run")]
 pub(crate) use bytes::bytes_in_words;
+#[cfg(feature = "run")]
+pub(crate) use functions::Moved;
 #[cfg(feature = "run")]
 pub(crate) use mesh_file::Files;
 #[cfg(feature = "run")]
@@ -484,7 +490,8 @@ impl Scene {
         for (k, support) in self.support.iter_mut().enumerate() {
             if let Hold::Follow { sequence, .. } = &mut support.hold {
                 let key = root.name("support").entry(k).name("hold.follow.sequence");
-                files.push(NamedFile::motion(key, &mut sequence.path));
+                let path = sequence.path.as_mut();
+                files.extend(path.map(|path| NamedFile::motion(key, path)));
             }
         }
         files

@@ -1,10 +1,12 @@
 //! Prescribed motions of points and of rigid bodies: by profiles, by poses, or as functions of time.
 
+mod led;
 pub(crate) mod profile;
 mod rigid;
 #[cfg(test)]
 mod tests;
 
+pub use led::Led;
 pub use rigid::{AxisRotation, Keyframe, Kinematics, RigidDisplacement, RigidMotion, RigidProfile};
 
 use crate::motion::profile::{Profile, ProfileError};
@@ -145,6 +147,8 @@ pub enum PointMotion {
     Profile(PointProfile),
     /// Any function of time.
     Custom(Arc<PointFunction>),
+    /// One that a program leads.
+    Led(Led<PointMotion>),
 }
 
 impl fmt::Debug for PointMotion {
@@ -152,6 +156,7 @@ impl fmt::Debug for PointMotion {
         match self {
             Self::Profile(profile) => profile.fmt(f),
             Self::Custom(_) => f.write_str("Custom"),
+            Self::Led(led) => led.with(|motion| motion.fmt(f)),
         }
     }
 }
@@ -177,6 +182,7 @@ impl PointMotion {
         match self {
             Self::Profile(profile) => profile.validate(),
             Self::Custom(_) => Ok(()),
+            Self::Led(led) => led.with(Self::validate),
         }
     }
 
@@ -185,6 +191,7 @@ impl PointMotion {
         match self {
             Self::Profile(profile) => profile.position(t),
             Self::Custom(position) => position(t),
+            Self::Led(led) => led.with(|motion| motion.position(t)),
         }
     }
 
@@ -194,6 +201,7 @@ impl PointMotion {
         match self {
             Self::Profile(profile) => profile.derivatives(t)[1],
             Self::Custom(at) => first_difference(|s| at(s).into(), t, span),
+            Self::Led(led) => led.with(|motion| motion.velocity(t, span)),
         }
     }
 
@@ -203,6 +211,7 @@ impl PointMotion {
         match self {
             Self::Profile(profile) => profile.derivatives(t)[2],
             Self::Custom(at) => second_difference(|s| at(s).into(), t, span),
+            Self::Led(led) => led.with(|motion| motion.acceleration(t, span)),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Prescribed rigid motions.
 
 use super::{
-    MotionError, check_finite, check_profile, check_profiles, first_difference, second_difference,
-    vector_derivatives,
+    Led, MotionError, check_finite, check_profile, check_profiles, first_difference,
+    second_difference, vector_derivatives,
 };
 use crate::motion::profile::Profile;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -163,8 +163,10 @@ pub enum RigidProfile {
     /// speed and the body turns about a fixed axis at constant rate, the shorter way round. Before the first
     /// and after the last keyframe it rests.
     Keyframes {
-        /// The poses.
+        /// The poses of a frame.
         keys: Vec<Keyframe>,
+        /// Where the body's frame is in that one, metres; the identity if it is the same.
+        body: Isometry3<f64>,
     },
 }
 
@@ -176,7 +178,8 @@ impl From<RigidDisplacement> for RigidProfile {
 
 impl From<Vec<Keyframe>> for RigidProfile {
     fn from(keys: Vec<Keyframe>) -> Self {
-        Self::Keyframes { keys }
+        let body = Isometry3::identity();
+        Self::Keyframes { keys, body }
     }
 }
 
@@ -201,7 +204,17 @@ impl RigidProfile {
     pub fn validate(&self) -> Result<(), MotionError> {
         match self {
             Self::Displacement(displacement) => displacement.validate(),
-            Self::Keyframes { keys } => check_keys(keys),
+            Self::Keyframes { keys, body } => {
+                check_finite(
+                    "the position of the body in its frame",
+                    body.translation.vector.as_slice(),
+                )?;
+                check_finite(
+                    "the rotation of the body in its frame",
+                    body.rotation.coords.as_slice(),
+                )?;
+                check_keys(keys)
+            }
         }
     }
 
@@ -209,7 +222,7 @@ impl RigidProfile {
     pub(crate) fn is_fixed(&self) -> bool {
         match self {
             Self::Displacement(displacement) => displacement.is_fixed(),
-            Self::Keyframes { keys } => keys.iter().all(|k| k.pose == keys[0].pose),
+            Self::Keyframes { keys, .. } => keys.iter().all(|k| k.pose == keys[0].pose),
         }
     }
 
@@ -218,7 +231,7 @@ impl RigidProfile {
     pub fn kinematics(&self, t: f64) -> Kinematics {
         match self {
             Self::Displacement(displacement) => displacement.kinematics(t),
-            Self::Keyframes { keys } => between(keys, t),
+            Self::Keyframes { keys, body } => between(keys, t).carried(body),
         }
     }
 }
@@ -290,6 +303,8 @@ pub enum RigidMotion {
     Profile(RigidProfile),
     /// Any function of time.
     Custom(Arc<PoseFunction>),
+    /// One that a program leads.
+    Led(Led<RigidMotion>),
 }
 
 impl fmt::Debug for RigidMotion {
@@ -297,6 +312,7 @@ impl fmt::Debug for RigidMotion {
         match self {
             Self::Profile(profile) => profile.fmt(f),
             Self::Custom(_) => f.write_str("Custom"),
+            Self::Led(led) => led.with(|motion| motion.fmt(f)),
         }
     }
 }
@@ -334,14 +350,15 @@ impl RigidMotion {
         match self {
             Self::Profile(profile) => profile.validate(),
             Self::Custom(_) => Ok(()),
+            Self::Led(led) => led.with(Self::validate),
         }
     }
 
-    /// Whether the body is known never to move; of a function nothing is known.
+    /// Whether the body is known never to move; of a function nothing is known, nor of one that is led.
     pub(crate) fn is_fixed(&self) -> bool {
         match self {
             Self::Profile(profile) => profile.is_fixed(),
-            Self::Custom(_) => false,
+            Self::Custom(_) | Self::Led(_) => false,
         }
     }
 
@@ -350,6 +367,7 @@ impl RigidMotion {
         match self {
             Self::Profile(profile) => profile.kinematics(t).pose,
             Self::Custom(pose) => pose(t),
+            Self::Led(led) => led.with(|motion| motion.pose(t)),
         }
     }
 
@@ -360,6 +378,7 @@ impl RigidMotion {
         let at = match self {
             Self::Profile(profile) => return profile.kinematics(t),
             Self::Custom(pose) => pose,
+            Self::Led(led) => return led.with(|motion| motion.kinematics(t, span)),
         };
         let pose = at(t);
         let origin = |s: f64| at(s).translation.vector;
@@ -400,6 +419,18 @@ impl Kinematics {
             angular_velocity: zero,
             acceleration: zero,
             angular_acceleration: zero,
+        }
+    }
+
+    /// The motion of a frame that this one carries: its place in this one, metres.
+    fn carried(self, place: &Isometry3<f64>) -> Self {
+        let pose = self.pose * place;
+        let at = pose.translation.vector;
+        Self {
+            pose,
+            velocity: self.velocity_at(&at),
+            acceleration: self.acceleration_at(&at),
+            ..self
         }
     }
 

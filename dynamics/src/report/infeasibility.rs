@@ -30,28 +30,34 @@ fn as_numbers<S: serde::Serializer>(vertices: &[VertexId], to: S) -> Result<S::O
 
 impl fmt::Display for Infeasibility {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} asks", self.by)?;
+        f.write_str(&self.named(|body| format!("body {body}")))
+    }
+}
+
+impl Infeasibility {
+    /// The same in words, with bodies by the names that their numbers have.
+    pub fn named(&self, name: impl Fn(usize) -> String) -> String {
+        let by = match self.by {
+            Driver::Support(support) => support.to_string(),
+            Driver::Body(body) => name(body),
+        };
+        let mut words = format!("{by} asks");
         if !self.pressed.is_empty() {
-            write!(f, " at {}", listed(&self.pressed))?;
+            words += &format!(" at {}", listed(&self.pressed));
         }
-        write!(f, " for {} m more than ", brief(self.distance))?;
+        words += &format!(" for {} m more than ", brief(self.distance));
         match self.strain_limit {
-            Some(limit) => write!(f, "the strain limit of {}", given(limit))?,
-            None => f.write_str("the rods")?,
+            Some(limit) => words += &format!("the strain limit of {}", given(limit)),
+            None => words += "the rods",
         }
-        if let Some((last, first)) = self.against.split_last() {
-            let plural = if first.is_empty() { "body" } else { "bodies" };
-            let numbers = first
-                .iter()
-                .map(|body| format!("{body}, "))
-                .collect::<String>();
-            write!(f, " and {plural} {numbers}{last}")?;
+        for other in &self.against {
+            words += &format!(" and {}", name(*other));
         }
         let allows = match self.strain_limit {
             Some(_) if self.against.is_empty() => "allows",
             _ => "allow",
         };
-        write!(f, " {allows} at t = {} s", brief(self.t))
+        format!("{words} {allows} at t = {} s", brief(self.t))
     }
 }
 

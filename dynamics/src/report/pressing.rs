@@ -18,14 +18,21 @@ pub struct Pressing {
     pub against: Vec<usize>,
 }
 
+impl Pressing {
+    /// The same in words, with bodies by the names that their numbers have.
+    pub fn named(&self, name: impl Fn(usize) -> String) -> String {
+        let force = brief(self.force);
+        let mut words = format!("{} presses the sheet with {force} N", name(self.body));
+        for (k, other) in self.against.iter().enumerate() {
+            words += if k == 0 { " against " } else { " and " };
+            words += &name(*other);
+        }
+        format!("{words} at {}", listed(&self.vertices))
+    }
+}
+
 impl fmt::Display for Pressing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let force = brief(self.force);
-        write!(f, "body {} presses the sheet with {force} N", self.body)?;
-        for (k, other) in self.against.iter().enumerate() {
-            let link = if k == 0 { "against body" } else { "and body" };
-            write!(f, " {link} {other}")?;
-        }
-        write!(f, " at {}", listed(&self.vertices))
+        f.write_str(&self.named(|body| format!("body {body}")))
     }
 }

@@ -29,18 +29,24 @@ def plot(run, names, ax):
             raise ModuleNotFoundError(message, name="matplotlib") from error
         ax = pyplot.gca()
     history, measures, loads = run.history, run.measures, run.loads
-    for name in names or list(measures) or ["kinetic", "potential", "total"]:
-        if name in measures:
-            values = measures[name]
-            ax.plot(history["time"][: values.size], values, label=name)
-        elif name in history:
-            ax.plot(history["time"], history[name], label=name)
-        elif name in loads:
-            load = loads[name]
-            ax.plot(load["time"], np.linalg.norm(load["force"], axis=1), label=name)
-        else:
+    names, known_units = names or list(measures) or ["kinetic", "potential", "total"], run.units
+    for name in names:
+        if name not in known_units:
             known = ", ".join([*measures, *history, *loads])
             raise KeyError(f"the run has no {name!r}; it has {known}")
+    units = {name: known_units[name] for name in names}
+    # One unit is that of the axis; of several each curve has its own.
+    one = set(units.values()) if len(set(units.values())) == 1 else set()
+    for name, unit in units.items():
+        label = name if one or not unit else f"{name}, {unit}"
+        if name in measures:
+            ax.plot(history["time"][: measures[name].size], measures[name], label=label)
+        elif name in history:
+            ax.plot(history["time"], history[name], label=label)
+        else:
+            ax.plot(loads[name]["time"], np.linalg.norm(loads[name]["force"], axis=1), label=label)
     ax.set_xlabel("time, s")
+    what = [list(units)[0] if len(units) == 1 else "", *one]
+    ax.set_ylabel(", ".join(part for part in what if part))
     ax.legend()
     return ax

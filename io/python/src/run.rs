@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::value::to_python;
 use isosheet_io::run::{self, Recording};
 use isosheet_io::view::{PageOptions, TimeSeries};
-use isosheet_io::{HistoryRow, LoadKind, LoadRow, SeriesOptions, write_series};
+use isosheet_io::{HistoryRow, LoadKind, LoadRow, SeriesOptions, write_frame, write_series};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -46,6 +46,38 @@ impl Run {
         let changed = py.detach(|| self.recording.trajectory.at_rate(rate, all));
         run.trajectory = changed.map_err(|e| plain(py, &e))?;
         Ok(Some(run))
+    }
+
+    /// The frame of a number or the one that is nearest to a time, seconds, if one is asked for.
+    fn frame_at(&self, frame: Option<isize>, time: Option<f64>) -> PyResult<Option<usize>> {
+        let trajectory = &self.recording.trajectory;
+        let count = trajectory.len();
+        match (frame, time) {
+            (None, None) => Ok(None),
+            (Some(_), Some(_)) => Err(PyValueError::new_err(
+                "frame and time both choose a frame; give one of them",
+            )),
+            (Some(frame), None) => {
+                let number = match frame < 0 {
+                    true => count.checked_add_signed(frame),
+                    false => Some(frame.unsigned_abs()),
+                };
+                let number = number.filter(|k| *k < count).ok_or_else(|| {
+                    PyIndexError::new_err(format!(
+                        "the run has {count} frames, and no frame {frame}"
+                    ))
+                })?;
+                Ok(Some(number))
+            }
+            (None, Some(time)) => {
+                let number = trajectory.nearest(time).ok_or_else(|| {
+                    PyValueError::new_err(format!(
+                        "there is no frame near {time} s; give a time of the run, seconds"
+                    ))
+                })?;
+                Ok(Some(number))
+            }
+        }
     }
 
     /// The values of all frames one after the other, and how many each frame has; `None` if frames have none.
@@ -254,12 +286,13 @@ impl Run {
         Ok(columns)
     }
 
-    /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ..., "body[0]", ...
-    /// and "guide[0]", ... with the numbers of bodies: a dict of
-    /// "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and "torque" of shape (S, 3), newton
-    /// metres: of a support those on the sheet, the torque about the mean of its vertices; of an obstacle those
-    /// of the sheet on it, the torque about the origin of its own frame; of a body those of all that touches it,
-    /// the torque about its centre of mass; of its guide those on the body.
+    /// The loads of `loads.csv` at the ends of the steps, by "support[0]", ..., "obstacle[0]", ...,
+    /// "body[0]", ... and "guide[0]", ... with the numbers of bodies; obstacles and bodies that the scene
+    /// gives a name, by that: a dict of "time" of shape (S,), seconds, "force" of shape (S, 3), newtons, and
+    /// "torque" of shape (S, 3), newton metres: of a support those on the sheet, the torque about the mean of
+    /// its vertices; of an obstacle those of the sheet on it, the torque about the origin of its own frame;
+    /// of a body those of all that touches it, the torque about its centre of mass; of its guide those on the
+    /// body.
     #[getter]
     fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         // Supports come first, then obstacles, bodies and guides, by their numbers.
@@ -269,6 +302,12 @@ impl Run {
         }
         let loads = PyDict::new(py);
         for ((on, number), steps) in bodies {
+            let scene = self.recording.scene.scene();
+            let called = match on {
+                LoadKind::Obstacle => scene.obstacle.get(number).map(|o| o.called(number)),
+                LoadKind::Body => scene.body.get(number).map(|b| b.called(number)),
+                LoadKind::Support | LoadKind::Guide => None,
+            };
             let kind = match on {
                 LoadKind::Support => "support",
                 LoadKind::Obstacle => "obstacle",
@@ -282,9 +321,33 @@ impl Run {
             columns.set_item("force", rows(py, &forces)?)?;
             let torques: Vec<[f64; 3]> = steps.iter().map(|row| row.torque).collect();
             columns.set_item("torque", rows(py, &torques)?)?;
-            loads.set_item(format!("{kind}[{number}]"), columns)?;
+            let name = called.unwrap_or_else(|| format!("{kind}[{number}]"));
+            loads.set_item(name, columns)?;
         }
         Ok(loads)
+    }
+
+    /// The units of what `history`, `measures` and the forces of `loads` show, by their names; "" of numbers
+    /// without one.
+    #[getter]
+    fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let units = PyDict::new(py);
+        for name in self.loads(py)?.keys() {
+            units.set_item(name, "N")?;
+        }
+        for name in self.history(py)?.keys() {
+            let unit = match name.extract::<String>()?.as_str() {
+                "time" | "h" => "s",
+                "gap" => "m",
+                "strain" | "substeps" | "iterations" | "factorisations" | "rejected" => "",
+                _ => "J",
+            };
+            units.set_item(name, unit)?;
+        }
+        for measure in &self.recording.scene.scene().measure {
+            units.set_item(&measure.name, measure.quantity.unit())?;
+        }
+        Ok(units)
     }
 
     /// What `summary.json` says; None of a run that is not complete.
@@ -332,18 +395,35 @@ impl Run {
     /// .obj, .fold, .csv or .npz; see `isosheet convert`. A picture or a film is written by `picture` and
     /// `film`.
     ///
+    /// frame: one frame alone, by its number, from the end where negative; then .stl, .off and .ply, too.
+    /// time: one frame alone, the one that is nearest to a time, seconds; of two that are as near the later.
     /// every: every so many frames one.
     /// fps: frames a second in place of those that were recorded, between which vertices go straight on.
     ///
-    /// Returns the files, the one with that name last. ``run.save("cloth.usda", fps=24)``
-    #[pyo3(signature = (path, *, every = 1, fps = None))]
+    /// Returns the files, the one with that name last. ``run.save("cloth.usda", fps=24)``,
+    /// ``run.save("end.obj", frame=-1)``
+    #[pyo3(signature = (path, *, frame = None, time = None, every = 1, fps = None))]
     fn save(
         &self,
         py: Python<'_>,
         path: PathBuf,
+        frame: Option<isize>,
+        time: Option<f64>,
         every: usize,
         fps: Option<f64>,
     ) -> PyResult<Vec<PathBuf>> {
+        if let Some(number) = self.frame_at(frame, time)? {
+            if every != 1 || fps.is_some() {
+                return Err(PyValueError::new_err(
+                    "every and fps choose many frames, and frame and time one; leave out one or the other",
+                ));
+            }
+            let saved = py.detach(|| {
+                let series = self.recording.series(&SeriesOptions::default())?;
+                write_frame(&path, &series, number)
+            });
+            return saved.map(|()| vec![path]).map_err(|e| plain(py, &e));
+        }
         let options = SeriesOptions {
             every,
             rate: fps.unwrap_or(SeriesOptions::default().rate),
@@ -357,29 +437,28 @@ impl Run {
 
     /// Writes a shaded picture of a frame as a PNG file: ``run.picture("end.png")``.
     ///
-    /// frame: its number, from the end where negative.
+    /// frame: its number, from the end where negative; by default the last one.
+    /// time: the frame that is nearest to a time, seconds, in its place.
     /// height: pixels; the width follows from what is seen.
     /// view: where the viewer is, degrees counter-clockwise from the x axis and above the horizon.
-    #[pyo3(signature = (path, frame = -1, *, height = 480, view = None))]
+    #[pyo3(signature = (path, frame = None, *, time = None, height = 480, view = None))]
     fn picture(
         &self,
         py: Python<'_>,
         path: PathBuf,
-        frame: isize,
+        frame: Option<isize>,
+        time: Option<f64>,
         height: usize,
         view: Option<(f64, f64)>,
     ) -> PyResult<()> {
-        let count = self.recording.trajectory.len();
-        let number = match frame < 0 {
-            true => count.checked_add_signed(frame),
-            false => Some(frame.unsigned_abs()),
+        let last = || self.frame_at(Some(-1), None);
+        let number = match self.frame_at(frame, time)? {
+            Some(number) => Some(number),
+            None => last()?,
         };
-        let number = number.filter(|k| *k < count).ok_or_else(|| {
-            PyIndexError::new_err(format!("the run has {count} frames, and no frame {frame}"))
-        })?;
         let shown = Shown {
             recording: &self.recording,
-            frames: vec![number],
+            frames: number.into_iter().collect(),
             options: options(height, view),
         };
         shown.write(py, &path, Kind::Picture)

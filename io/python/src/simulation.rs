@@ -7,13 +7,13 @@ use crate::picture::framed;
 use crate::recorder;
 use crate::report::StepReport;
 use crate::scene::{Scene, Signals};
-use crate::value::{Remade, edits as edits_of, remade};
+use crate::value::{Remade, edits as edits_of, remade, table};
 use isosheet_io::dynamics::{self, Checkpoint, StepProgress};
 use isosheet_io::mesh::VertexId;
 use isosheet_io::run::{
     ExistingRun, RecordedStepError, Recorder, RecorderOptions, Recording, RecordingEnd,
 };
-use isosheet_io::scene::{Key, KeyError, LiveScene};
+use isosheet_io::scene::{FramePose, Key, KeyError, LiveScene, Problem, Target};
 use isosheet_io::view::{PageOptions, Replay};
 use isosheet_io::{DataError, Trajectory};
 use numpy::{PyArray1, PyArray2};
@@ -136,6 +136,20 @@ impl Simulation {
             Some(Err((RecordedStepError::Run(error), _))) => Err(of_run(py, &error)),
         }
     }
+}
+
+/// The pose that a dictionary is, to which the motion at a key is driven.
+fn pose_of(key: &Key, pose: &Bound<'_, PyDict>) -> PyResult<FramePose> {
+    let values = table(pose, Mesh::value_of)?;
+    values.try_into().map_err(|e: toml::de::Error| {
+        let message = format!("what `{key}` is driven to is no pose: {}", e.message());
+        let remedy =
+            "give `position`, three metres, and `orientation`, a unit quaternion w, x, y, z";
+        of_scene(
+            pose.py(),
+            &Problem::new(key.clone(), message, remedy).into(),
+        )
+    })
 }
 
 /// The length of a step.
@@ -323,19 +337,31 @@ impl Simulation {
     /// (seconds):
     /// ``simulation.drive({"support[0].hold.moving_pin.z": 0.01}, until=simulation.time + 0.1)``.
     ///
-    /// Values have the units of scenes: metres, degrees, newtons.
+    /// Values have the units of scenes: metres, degrees, newtons. A rigid motion goes to a pose:
+    /// ``simulation.drive({"obstacle[0].motion": {"position": p, "orientation": q}}, until=0.1)``, with the
+    /// origin of its frame p, metres, and a unit quaternion q, w x y z, that takes directions of the frame to
+    /// those of space. The frame of an obstacle is its own, and that of a support,
+    /// `support[0].hold.moving_clamp`, the one of space at the start, if the scene says no other with
+    /// `poses`. Until then the origin goes straight, and the frame turns about one axis, the shorter way
+    /// round.
     fn drive(&self, py: Python<'_>, targets: &Bound<'_, PyDict>, until: f64) -> PyResult<()> {
         let target = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
             let text: String = key.extract()?;
             let key: Key = text
                 .parse()
                 .map_err(|e: KeyError| PyKeyError::new_err(e.to_string()))?;
-            Ok((key, value.extract()?))
+            match value.cast::<PyDict>() {
+                Ok(pose) => {
+                    let pose = pose_of(&key, pose)?;
+                    Ok((key, Target::Pose(pose)))
+                }
+                Err(_) => Ok((key, Target::Value(value.extract()?))),
+            }
         };
         let targets = targets
             .iter()
             .map(target)
-            .collect::<PyResult<Vec<(Key, f64)>>>()?;
+            .collect::<PyResult<Vec<(Key, Target)>>>()?;
         self.with(py, |live| live.drive(&targets, until))
             .map_err(|e| of_file(py, &e))
     }

@@ -153,6 +153,39 @@ def test_what_would_change_the_columns_is_refused(tmp_path):
     assert isosheet.Run(tmp_path / "run").summary["steps"] == 1
 
 
+def test_poses_are_in_the_scene_and_make_the_motion_again(tmp_path):
+    one = simulation()
+    with one.record(tmp_path / "run") as recorder:
+        for k in range(1, 8):
+            end, half = one.time + 0.02, 0.01 * k
+            pin = {"position": [0.0005 * k, 0, 0.001 * k], "orientation": [np.cos(half), 0, np.sin(half), 0]}
+            box = {"position": [0, 0, -0.05], "orientation": [np.cos(half), 0, 0, np.sin(half)]}
+            one.drive({"support[0].hold.moving_pin": pin, "obstacle[0].motion": box}, until=end)
+            one.run(end)
+    run = recorder.run
+    control = {done["what"]: done for done in run.summary["control"]}
+    assert set(control) == {"support[0].hold.moving_pin", "obstacle[0].motion"}
+    assert all(done["in_scene"] and done["times"] == 7 for done in control.values())
+    last = run.scene["support[0].hold.moving_pin.poses.keys"][-1]
+    assert last["time"] == pytest.approx(0.14) and last["position"] == pytest.approx([0.0035, 0, 0.007])
+    again = run.scene.simulate(tmp_path / "again")
+    assert again.x == pytest.approx(run.x, abs=1e-9)
+
+
+def test_a_first_step_that_fails_leaves_a_page_that_says_so(tmp_path):
+    one = simulation()
+    one.drive({"support[0].hold.moving_pin.x": 1e9}, until=1e-3)
+    with pytest.raises(isosheet.StepFailed) as caught:
+        with one.record(tmp_path / "run"):
+            one.step()
+    run = isosheet.Run(tmp_path / "run")
+    assert run.time == [0.0] and run.summary["steps"] == 0
+    ending = run.summary["ending"]
+    assert ending["reason"] == "error" and ending["failed"].startswith(caught.value.key)
+    page = (tmp_path / "run" / "index.html").read_text()
+    assert "the step after that failed" in page
+
+
 def test_an_exception_leaves_what_was_computed(tmp_path):
     one = simulation()
     with pytest.raises(RuntimeError, match="enough"):

@@ -44,6 +44,24 @@ def test_every_second_frame_is_saved(run, tmp_path):
         run.save(tmp_path / "none.npz", every=0)
 
 
+def test_one_frame_is_saved_by_number_or_time(run, tmp_path):
+    for k, choice in ((0, {"frame": 0}), (-1, {"frame": -1}), (2, {"time": run.time[2] + 1e-4}), (-1, {"time": 9.0})):
+        (file,) = run.save(tmp_path / "one.ply", **choice)
+        assert isosheet.Mesh.read(file).vertices == pytest.approx(run.x[k], abs=1e-6)
+    # As the command has it: of two that are as near the later one.
+    (file,) = run.save(tmp_path / "between.ply", time=float(np.mean(run.time[1:3])))
+    assert isosheet.Mesh.read(file).vertices == pytest.approx(run.x[2], abs=1e-6)
+    run.picture(tmp_path / "timed.png", time=run.time[1], height=100)
+    run.picture(tmp_path / "numbered.png", 1, height=100)
+    assert (tmp_path / "timed.png").read_bytes() == (tmp_path / "numbered.png").read_bytes()
+    with pytest.raises(IndexError, match="no frame 99"):
+        run.save(tmp_path / "none.obj", frame=99)
+    for wrong in ({"time": float("nan")}, {"frame": 0, "time": 0.0}, {"frame": 0, "fps": 10}, {"time": 0.0, "every": 2}):
+        with pytest.raises(ValueError):
+            run.save(tmp_path / "none.obj", **wrong)
+    assert not (tmp_path / "none.obj").exists()
+
+
 def test_pictures_and_films(run, tmp_path, monkeypatch):
     run.picture(tmp_path / "end.png", height=200, view=(30, 40))
     run.picture(tmp_path / "same.png", run.time.size - 1, height=200, view=(30, 40))
@@ -93,16 +111,22 @@ class Axes:
     def set_xlabel(self, text):
         assert text == "time, s"
 
+    def set_ylabel(self, text):
+        self.ylabel = text
+
     def legend(self):
         pass
 
 
 def test_plots(run):
     axes = Axes()
-    assert run.plot(ax=axes) is axes and list(axes.lines) == ["tip"]
+    assert run.plot(ax=axes) is axes and list(axes.lines) == ["tip"] and axes.ylabel == "tip, m"
+    assert run.plot("kinetic", "total", ax=axes).ylabel == "J" and "kinetic" in axes.lines
+    assert run.plot("strain", ax=axes).ylabel == "strain"
     run.plot("tip", "total", "support[0]", ax=axes)
-    assert np.array_equal(axes.lines["tip"], run.measures["tip"])
-    assert axes.lines["support[0]"] == pytest.approx(np.linalg.norm(run.loads["support[0]"]["force"], axis=1))
+    assert axes.ylabel == "" and run.units["support[0]"] == "N"
+    assert np.array_equal(axes.lines["tip, m"], run.measures["tip"])
+    assert axes.lines["support[0], N"] == pytest.approx(np.linalg.norm(run.loads["support[0]"]["force"], axis=1))
     with pytest.raises(KeyError, match="no 'speed'; it has tip, time"):
         run.plot("speed", ax=axes)
 

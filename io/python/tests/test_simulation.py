@@ -183,6 +183,47 @@ def test_objects_are_copied_and_pickled(again):
     assert np.array_equal(again(mesh).vertices, mesh.vertices) and np.array_equal(again(mesh).faces, mesh.faces)
 
 
+def turned(axis, angle):
+    """The unit quaternion w, x, y, z of a rotation, and its matrix by the formula of Rodrigues."""
+    n = np.array(axis) / np.linalg.norm(axis)
+    cross = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
+    matrix = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return np.array([np.cos(angle / 2), *(np.sin(angle / 2) * n)]), matrix
+
+
+def test_a_hand_is_set_to_a_pose_in_each_control_step():
+    clamp = {"box": {"min": [-1e-6, 0, 0], "max": [1e-6, 1, 0]}}
+    poses = {"keys": [{"position": [0.0, 0.1, 0.05]}]}
+    scene = hanging(
+        sheet={"mesh": {"square": {"side": 0.2, "level": 1}}, "material": "office paper"},
+        support=[{"at": clamp, "hold": {"moving_clamp": {"poses": poses}}}],
+        obstacle=[{"name": "hand", "shape": {"box": {"size": [0.05] * 3}}, "pose": {"position": [0, 0, -1]}}],
+    )
+    simulation = isosheet.Simulation(scene)
+    start, tool = simulation.x, np.array([0.0, 0.1, 0.05])
+    held = np.flatnonzero(start[:, 0] < 1e-9)
+    with_obstacle = {"obstacle[0].motion": {"position": [0.1, 0, -1], "orientation": [0.5, 0.5, 0.5, 0.5]}}
+    for k in range(1, 9):
+        q, matrix = turned([1, 2, -0.5], 0.03 * k)
+        tool_now = tool + [0.001 * k, 0, 0.002 * k]
+        pose = {"position": tool_now, "orientation": q if k % 2 else list(-q)}
+        simulation.drive({"support[0].hold.moving_clamp": pose, **with_obstacle}, until=simulation.time + 0.01)
+        simulation.step()
+        assert simulation.x[held] == pytest.approx((start[held] - tool) @ matrix.T + tool_now, abs=1e-14)
+    for wrong, says in (
+        ([2, 0, 0, 0], "norm differs by 1 from 1"),
+        ([np.nan, 0, 0, 0], "nan"),
+        ([1, 0, 0], "no pose"),
+    ):
+        with pytest.raises(isosheet.SceneError, match=says) as caught:
+            pose = {"position": [0, 0, 0], "orientation": wrong}
+            simulation.drive({"obstacle[0].motion": pose}, until=simulation.time + 0.01)
+        assert caught.value.key.startswith("obstacle[0].motion") and caught.value.advice
+    with pytest.raises(isosheet.SceneError, match="no rigid motion"):
+        simulation.drive({"obstacle[0].motion.x": {"position": [0, 0, 0]}}, until=1.0)
+    simulation.step()
+
+
 def test_a_failed_step_has_time_and_advice():
     simulation = isosheet.Simulation(hanging())
     simulation.step()

@@ -39,15 +39,9 @@ impl OneFrame {
         trajectory: &Trajectory,
         folding: Option<&Folding>,
     ) -> Result<Option<usize>, Failure> {
-        let nearest = |away: &dyn Fn(f64) -> f64| {
-            let times = trajectory.times().iter().enumerate().rev();
-            let away = times.map(|(frame, t)| (frame, away(*t)));
-            let nearest = away.min_by(|a, b| a.1.total_cmp(&b.1));
-            nearest.map(|(frame, _)| frame)
-        };
         let wrong = |message: String, remedy: &str| Err(Failure::misuse(message).remedy(remedy));
         match (self.time, self.part, folding) {
-            (Some(time), ..) => match nearest(&|t| (t - time).abs()).filter(|_| time.is_finite()) {
+            (Some(time), ..) => match trajectory.nearest(time) {
                 Some(frame) => Ok(Some(frame)),
                 None => wrong(
                     format!("there is no frame near {} s", given(time)),
@@ -56,7 +50,7 @@ impl OneFrame {
             },
             (_, Some(part), Some(folding)) if (0.0..=1.0).contains(&part) => {
                 let folded = |t: f64| folding.part.abs() * folding.progress(t);
-                Ok(nearest(&|t| (folded(t) - part).abs()))
+                Ok(trajectory.with_least(|t| (folded(t) - part).abs()))
             }
             (_, Some(part), Some(_)) => wrong(
                 format!("the part of the folding is {}", given(part)),

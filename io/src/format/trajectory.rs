@@ -274,6 +274,20 @@ impl Trajectory {
         &self.t
     }
 
+    /// The frame that is nearest to a time, seconds; of several that are as near the last. `None` without
+    /// frames, and of a time that is not finite.
+    pub fn nearest(&self, time: f64) -> Option<usize> {
+        let nearest = self.with_least(|t| (t - time).abs());
+        nearest.filter(|_| time.is_finite())
+    }
+
+    /// The last frame of those whose time makes a value the smallest.
+    pub(crate) fn with_least(&self, value: impl Fn(f64) -> f64) -> Option<usize> {
+        let values = self.t.iter().map(|t| value(*t)).enumerate().rev();
+        let least = values.min_by(|a, b| a.1.total_cmp(&b.1));
+        least.map(|(frame, _)| frame)
+    }
+
     /// The positions (length 3V, metres) of a frame; `None` when there is no such frame.
     pub fn frame(&self, k: usize) -> Option<&[f64]> {
         let n = 3 * self.vertex_count;

@@ -44,6 +44,15 @@ impl Image {
         out
     }
 
+    /// The number of columns from the first to the last that is not white.
+    fn ink_width(&self) -> usize {
+        let rows = self.pixels.chunks_exact(self.width.max(1));
+        let inked = |x: &usize| rows.clone().any(|row| row[*x] != [1.0; 3]);
+        let mut columns = (0..self.width).filter(inked);
+        let first = columns.next();
+        first.map_or(0, |first| columns.next_back().unwrap_or(first) + 1 - first)
+    }
+
     /// Copies another picture in, its upper left corner at (x, y).
     fn paste(&mut self, other: &Self, x: usize, y: usize) {
         for row in 0..other.height.min(self.height.saturating_sub(y)) {
@@ -74,12 +83,24 @@ pub fn montage(frames: &[Labelled], columns: usize) -> Result<Image, PictureErro
     Ok(all)
 }
 
-/// The strip below a picture.
+/// Part of the width of a picture that its label has at most.
+const FILLED: f64 = 0.94;
+
+/// The strip below a picture; letters are smaller where they would not fit.
 fn label(text: &str, width: usize) -> Result<Image, PictureError> {
+    // No letter is wider than it is high.
+    let room = width.max((LABEL * text.chars().count() as f64) as usize);
+    let wide = strip(text, room, LABEL)?.ink_width() as f64;
+    let fits = FILLED * width as f64;
+    strip(text, width, LABEL * (fits / wide).min(1.0))
+}
+
+/// A strip with a text in its middle, in letters of a size, pixels.
+fn strip(text: &str, width: usize, size: f64) -> Result<Image, PictureError> {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     vector_drawing::image(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{STRIP}\"><text x=\"{}\" y=\"{}\" \
-         font-size=\"{LABEL}\" text-anchor=\"middle\" font-family=\"sans-serif\" fill=\"#222222\">{text}</text></svg>",
+         font-size=\"{size}\" text-anchor=\"middle\" font-family=\"sans-serif\" fill=\"#222222\">{text}</text></svg>",
         0.5 * width as f64,
         0.43 * STRIP as f64
     ))
@@ -99,5 +120,19 @@ mod tests {
         assert_eq!((all.width, all.height), (180, 2 * (40 + STRIP)));
         let dark = all.pixels.iter().filter(|p| p[0] < 0.5).count();
         assert!(dark > 5 * 20, "the labels are written: {dark} dark pixels");
+    }
+
+    #[test]
+    fn long_labels_are_whole_and_short_ones_are_large() {
+        let text = "a cloth that is pulled from under a vase";
+        let long = label(text, 480).unwrap();
+        assert!(
+            (440..=452).contains(&long.ink_width()),
+            "{}",
+            long.ink_width()
+        );
+        let short = label("a vase", 480).unwrap();
+        assert_eq!(short.pixels, strip("a vase", 480, LABEL).unwrap().pixels);
+        assert!((80..200).contains(&short.ink_width()));
     }
 }

@@ -15,9 +15,11 @@ use isosheet_mesh::{EdgeId, Part, Topology, VertexId};
 /// How far faces darken each other, as part of what the picture shows.
 const REACH: f64 = 0.3;
 
-/// How far half-spaces are drawn around the middle, as part of what the picture shows: they have faded out
-/// where the picture ends.
+/// How far half-spaces are drawn around the middle, as part of what the picture shows.
 pub(super) const GROUND: f64 = 0.8;
+
+/// How far from its border a picture lets half-spaces fade out, as part of its smaller side.
+const BORDER: f64 = 0.15;
 
 /// Largest edge over which the light on a body is interpolated, as part of the height of the picture.
 pub(super) const GRAIN: f64 = 0.035;
@@ -270,8 +272,21 @@ impl<'a> Painter<'a> {
             return light(side).map(|c| c * shade as f32);
         };
         // What has faded out is white, as the background is.
-        let strength = skin.strength(p) as f32;
+        let inside = if skin.is_ground() {
+            self.inside(p)
+        } else {
+            1.0
+        };
+        let strength = (inside * skin.strength(p)) as f32;
         light(self.look.body).map(|c| 1.0 + strength * (c * shade as f32 - 1.0))
+    }
+
+    /// 0 at the border of the picture and beyond, 1 well inside, and smooth between.
+    fn inside(&self, p: &[f64; 3]) -> f64 {
+        let ([x, y, _], [width, height]) = (self.place(p), self.size);
+        let distance = x.min(width - x).min(y).min(height - y);
+        let s = (distance / (BORDER * width.min(height))).clamp(0.0, 1.0);
+        s * s * (3.0 - 2.0 * s)
     }
 
     /// All pieces in their light; those of bodies at the rim of a shadow are cut once more.
@@ -391,6 +406,41 @@ mod tests {
         let (above, below) = (middle(80.0), middle(-80.0));
         assert!(above[0] > above[2], "warm above: {above:?}");
         assert!(below[2] > below[0], "blue below: {below:?}");
+    }
+
+    /// A floor ends nowhere at the border of a picture, whatever the shape of that, and is there in its
+    /// middle.
+    #[test]
+    fn floors_fade_out_before_the_picture_ends() {
+        use isosheet_collide::{Obstacle, Shape};
+        let sheet = isotropic_square(0, 0.1).unwrap();
+        let floor = Obstacle::at(Shape::HalfSpace, [0.0, 0.0, -0.1]).unwrap();
+        let floor = Solid::of(&floor, 0.0).unwrap();
+        for size in [[96, 64], [64, 96], [80, 80]] {
+            let look = Look {
+                size,
+                ..Look::default()
+            };
+            let picture = SheetPicture {
+                topology: sheet.topology(),
+                positions: sheet.positions(),
+                pins: &[],
+                immobile: &[],
+                solids: std::slice::from_ref(&floor),
+                parts: &[],
+            };
+            let camera = Camera::new([0.0; 3], -60.0, 30.0, 1.0, 6.0);
+            let image = render(&picture, &camera, &look).unwrap();
+            let [width, height] = size;
+            let dark = |x: usize, y: usize| 1.0 - image.pixels[y * width + x][1];
+            let is_border = |x, y| x == 0 || y == 0 || x == width - 1 || y == height - 1;
+            let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+            let border = all.filter(|(x, y)| is_border(*x, *y));
+            let darkest = border.map(|(x, y)| dark(x, y)).fold(0.0, f32::max);
+            // Pieces are a few pixels large, over which the light is linear.
+            assert!(f64::from(darkest) < 0.5 * CONTRAST, "{size:?}: {darkest}");
+            assert!(dark(width / 2, 2 * height / 3) > 0.2, "{size:?}");
+        }
     }
 
     #[test]

@@ -252,6 +252,11 @@ impl Skin {
         !matches!(self, Self::Flat { is_closed: false })
     }
 
+    /// Whether it is the plane of a half-space, which has no ends.
+    pub(super) fn is_ground(&self) -> bool {
+        matches!(self, Self::Ground { .. })
+    }
+
     /// How much of its colour a point of the surface has, from 0 to 1.
     pub(super) fn strength(&self, p: &[f64; 3]) -> f64 {
         match self {

@@ -2,7 +2,7 @@
 
 use super::RunError;
 use super::intervention::{Intervention, note};
-use crate::scene::{Course, Interpolation, Key, KeyPart, Profile, Scene, SceneFile};
+use crate::scene::{Course, Interpolation, Key, KeyPart, Motion, Moved, Profile, Scene, SceneFile};
 use toml::Value;
 
 /// What was changed in the course of a run.
@@ -10,6 +10,16 @@ use toml::Value;
 pub(super) struct Control {
     /// Functions of time that were replaced, in the order of time.
     courses: Vec<NewCourse>,
+    /// Rigid motions that were replaced, as a whole, in the order of time.
+    motions: Vec<NewMotion>,
+}
+
+/// A rigid motion that replaced another one.
+#[derive(Clone, Debug)]
+struct NewMotion {
+    begin: f64,
+    key: Key,
+    motion: Motion,
 }
 
 /// A function of time that replaced another one.
@@ -43,6 +53,21 @@ impl Control {
             return Err(RunError::NotRecordable { key: key.into() });
         }
         let (mut patched, mut after) = (before.clone(), after.clone());
+        let moved = patched.motions_mut().into_iter().zip(after.motions_mut());
+        for (known, Moved { key, motion, .. }) in moved.filter(|(a, b)| a.key == b.key) {
+            if known.motion == motion {
+                continue;
+            }
+            self.motions.push(NewMotion {
+                begin: t,
+                key: key.clone(),
+                motion: motion.clone(),
+            });
+            if known.motion.poses != motion.poses {
+                note(done, &key.to_string(), t, true);
+                *known.motion = motion.clone();
+            }
+        }
         for (key, profile) in after.functions_mut() {
             let mut functions = patched.functions_mut();
             let known = functions.iter_mut().find(|(known, _)| *known == key);
@@ -72,7 +97,7 @@ impl Control {
 
     /// Whether no function of time was replaced.
     pub(super) fn is_empty(&self) -> bool {
-        self.courses.is_empty()
+        self.courses.is_empty() && self.motions.is_empty()
     }
 
     /// The scene that a run began with, with the functions of time as they went at these times, and with this
@@ -94,8 +119,25 @@ impl Control {
             let all = std::iter::once(0.0).chain(times.iter().copied().filter(|t| *t > 0.0));
             *function = Profile::Course(Course::Keyframes {
                 interpolation: Interpolation::Linear,
-                keys: without_rests(all.map(|t| [t, value(t)]).collect()),
+                keys: without_rests(all.map(|t| [t, value(t)]).collect(), |a, b| a[1] == b[1]),
             });
+            keys.push(key);
+        }
+        for Moved { key, motion, .. } in scene.motions_mut() {
+            let new = self.motions.iter().filter(|new| new.key == key);
+            let new: Vec<&NewMotion> = new.collect();
+            let Some(poses) = new.iter().find_map(|new| new.motion.poses.as_ref()) else {
+                continue;
+            };
+            let frame = poses.frame();
+            let at = |t: f64| {
+                let last = new.iter().rev().find(|new| new.begin < t);
+                last.map_or(&*motion, |new| &new.motion)
+            };
+            let all = std::iter::once(0.0).chain(times.iter().copied().filter(|t| *t > 0.0));
+            let keys_of = all.map(|t| at(t).pose_of(frame, t)).collect();
+            let keys_of = without_rests(keys_of, |a, b| a.is_as(b));
+            *motion = Motion::through(frame, keys_of);
             keys.push(key);
         }
         if scene.stop.time != stop {
@@ -107,10 +149,10 @@ impl Control {
 }
 
 /// Keyframes without those between two of the same value.
-fn without_rests(keys: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+fn without_rests<T: Copy>(keys: Vec<T>, same: fn(&T, &T) -> bool) -> Vec<T> {
     let is_needed = |k: usize| {
         let neighbours = (k.checked_sub(1).and_then(|k| keys.get(k)), keys.get(k + 1));
-        !matches!(neighbours, (Some(a), Some(b)) if a[1] == keys[k][1] && b[1] == keys[k][1])
+        !matches!(neighbours, (Some(a), Some(b)) if same(a, &keys[k]) && same(b, &keys[k]))
     };
     let needed = (0..keys.len()).filter(|k| is_needed(*k));
     needed.map(|k| keys[k]).collect()

@@ -7,7 +7,7 @@ use super::spool::Spool;
 use super::{EndReason, FoldVerdict, RunError, SheetPlace, Summary, constraints};
 use crate::format::atomic::prepare_folder;
 use crate::format::{DataError, FrameQuantity, write_atomically};
-use crate::scene::bounds;
+use crate::scene::{Scene, bounds};
 use crate::view::{PageOptions, Replay, TimeSeries, no_frames};
 use isosheet_mesh::wording::brief;
 use std::io::Write;
@@ -54,7 +54,7 @@ impl Recording {
     fn still(&self, times: Vec<f64>, corners: [[f64; 3]; 2]) -> Replay {
         let mut replay = Replay::still(&self.sheet, &self.obstacles, times, &self.history);
         for (k, body) in replay.bodies.iter_mut().enumerate() {
-            body.name = format!("obstacle[{}]", self.origins.obstacle_number(k));
+            body.name = self.origins.obstacle_called(k);
         }
         if let Some(folding) = &self.scene.scene().folding {
             let part = |t: &f64| folding.part.abs() * folding.progress(*t);
@@ -103,7 +103,7 @@ impl Recording {
         let mut rows = Rows(Vec::new());
         rows.add("modelled", self.modelled.join(", "));
         match &self.summary {
-            Some(summary) => rows.of_summary(summary),
+            Some(summary) => rows.of_summary(summary, self.scene.scene()),
             None => {
                 let t = self.history.last().map_or(0.0, |row| row.t);
                 rows.add("state", format!("not complete: up to {t:.4} s"));
@@ -173,7 +173,7 @@ impl Rows {
         }
     }
 
-    fn of_summary(&mut self, summary: &Summary) {
+    fn of_summary(&mut self, summary: &Summary, scene: &Scene) {
         let ending = &summary.ending;
         let reason = match ending.reason {
             EndReason::Time => "the whole time has passed",
@@ -185,6 +185,9 @@ impl Rows {
         };
         let reason = ending.taut.as_deref().unwrap_or(reason);
         self.add("ended", format!("at {:.4} s: {reason}", ending.t));
+        if let Some(failed) = &ending.failed {
+            self.add("the step after that failed", failed.clone());
+        }
         self.add(
             "steps",
             format!("{}, {} rejected", summary.steps, summary.rejected),
@@ -246,12 +249,12 @@ impl Rows {
             let name = format!("force of support[{k}] on the sheet at the end");
             self.add(&name, vector(force));
         }
-        for (k, force) in ending.obstacles.iter().enumerate() {
-            let name = format!("force of the sheet on obstacle[{k}] at the end");
+        for (k, (force, obstacle)) in ending.obstacles.iter().zip(&scene.obstacle).enumerate() {
+            let name = format!("force of the sheet on {} at the end", obstacle.called(k));
             self.add(&name, vector(force));
         }
-        for (k, force) in ending.bodies.iter().enumerate() {
-            let name = format!("force of contact on body[{k}] at the end");
+        for (k, (force, body)) in ending.bodies.iter().zip(&scene.body).enumerate() {
+            let name = format!("force of contact on {} at the end", body.called(k));
             self.add(&name, vector(force));
         }
     }

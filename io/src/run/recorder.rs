@@ -8,7 +8,7 @@ use super::recording::Recording;
 use super::stepping::Plan;
 use super::steps::{ROUND_OFF, step_length};
 use super::summary::{EndReason, Ending};
-use super::writer::{Rows, RunWriter, Subject, ending};
+use super::writer::{Rows, RunWriter, Subject, ending, ending_at_start};
 use super::{RunError, finish, write_trajectory};
 use crate::format::{EventRow, FileError, FrameQuantity, HistoryRow, Row, write_atomically};
 use crate::scene::{FailedStep, Files, Kept, Key, LiveScene, Scene, SceneFile, UnderWay};
@@ -114,6 +114,8 @@ pub struct Recorder {
     /// What was taken up and released after it, which counts once there is another one.
     events: Vec<EventRow>,
     last: Option<LastStep>,
+    /// What was wrong with the step after it, if that failed.
+    failed: Option<String>,
     interval: Duration,
 }
 
@@ -209,6 +211,7 @@ impl Recorder {
             reached,
             events: Vec::new(),
             last: None,
+            failed: None,
             interval: Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX),
         })
     }
@@ -230,9 +233,11 @@ impl Recorder {
     ) -> Result<StepReport, RecordedStepError> {
         self.note_changes(live, h)?;
         let mut recorded = Ok(());
-        let report = live.step_observed(h, watch, &mut |under_way, report| {
+        let stepped = live.step_observed(h, watch, &mut |under_way, report| {
             recorded = self.record(under_way, report);
-        })?;
+        });
+        self.failed = stepped.as_ref().err().and_then(FailedStep::in_short);
+        let report = stepped?;
         recorded?;
         self.events = live.events().to_vec();
         if self.writer.clock.elapsed() >= self.interval {
@@ -354,24 +359,30 @@ impl Recorder {
     }
 
     /// Ends the recording and writes what a complete run has, the summary last; returns what was recorded.
-    /// Without a step there is no run, and what it has is its start.
+    /// Without a step there is no run, and what it has is its start; where the first step failed, it is a run
+    /// of the start alone.
     ///
     /// # Errors
     /// [`RunError`] if a file cannot be written.
     pub fn finish(mut self, live: &LiveScene, end: RecordingEnd) -> Result<Recording, RunError> {
         let root = self.folder.root().to_owned();
-        let Some(last) = self.last.take() else {
+        let last = self.last.take();
+        if last.is_none() && self.failed.is_none() {
             drop(self);
             return Recording::read(&root);
-        };
+        }
+        let has_frame = last
+            .as_ref()
+            .is_none_or(|last| last.frame != LastFrame::None);
         let under_way = live.under_way();
         let t = live.simulation().state().t;
         if t != self.reached {
             note(&mut self.writer.progress.control, UNRECORDED, t, false);
-        } else if last.frame == LastFrame::None {
+        } else if !has_frame {
             self.writer.record_frame(under_way)?;
         }
-        let stop = match last.ending.is_some() || is_end(self.begun.scene(), self.reached) {
+        let by_scene = last.as_ref().is_none_or(|last| last.ending.is_some());
+        let stop = match by_scene || is_end(self.begun.scene(), self.reached) {
             true => self.begun.scene().stop.time,
             false => self.reached,
         };
@@ -380,8 +391,15 @@ impl Recorder {
             RecordingEnd::Program => EndReason::Program,
             RecordingEnd::Error => EndReason::Error,
         };
-        let of_program = || ending(under_way, reason, &last.report);
-        self.writer.progress.ending = Some(last.ending.unwrap_or_else(of_program));
+        let ended = match last {
+            None => ending_at_start(under_way, reason),
+            Some(last) => {
+                let of_program = || ending(under_way, reason, &last.report);
+                last.ending.unwrap_or_else(of_program)
+            }
+        };
+        let failed = self.failed.take();
+        self.writer.progress.ending = Some(Ending { failed, ..ended });
         self.writer.save(&live.simulation().checkpoint())?;
         let mut kept = Kept::in_folder(file.folder());
         let plan = Plan {

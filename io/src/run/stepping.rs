@@ -91,12 +91,7 @@ impl<'a> Stepping<'a> {
                 return Ok(None);
             }
             Err(error) => {
-                let problem = SceneError::from(
-                    self.under_way
-                        .facts
-                        .origins
-                        .of_failed_step(&error, &self.under_way.simulation),
-                );
+                let problem = SceneError::from(self.under_way.problem(scene, &error, h));
                 return Err(RunError::Step(problem.in_text(self.plan.file.text())));
             }
         };

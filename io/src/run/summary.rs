@@ -118,6 +118,9 @@ pub struct Ending {
     /// What asked for more than the lengths allow, where the run ended for that reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taut: Option<String>,
+    /// What was wrong with the step that failed, if one failed after the last one that was recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
     /// How far the sheets are from what the scene asks for.
     #[serde(flatten)]
     pub residuals: Residuals,

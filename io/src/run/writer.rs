@@ -451,14 +451,31 @@ fn largest_speed(under_way: &UnderWay) -> f64 {
 
 /// The state at the end of a step, which ends a run for a reason.
 pub(super) fn ending(under_way: &UnderWay, reason: EndReason, report: &StepReport) -> Ending {
-    let loads = under_way.facts.obstacle_loads(&under_way.simulation);
     Ending {
-        reason,
         t: report.t,
         kinetic: report.kinetic,
         potential: report.potential,
         plastic: dissipated(under_way.simulation.model(), report.plastic),
         energy_drift: report.energy_drift,
+        taut: report.taut.as_ref().map(|demand| {
+            let origins = &under_way.facts.origins;
+            demand.named(|body| format!("`{}`", origins.obstacle_called(body)))
+        }),
+        ..ending_at_start(under_way, reason)
+    }
+}
+
+/// The present state, which ends a run without a step for a reason.
+pub(super) fn ending_at_start(under_way: &UnderWay, reason: EndReason) -> Ending {
+    let row = HistoryRow::of_start(&under_way.simulation);
+    let loads = under_way.facts.obstacle_loads(&under_way.simulation);
+    Ending {
+        reason,
+        t: row.t,
+        kinetic: row.kinetic,
+        potential: row.potential,
+        plastic: row.plastic,
+        energy_drift: 0.0,
         largest_speed: largest_speed(under_way),
         supports: under_way.support_forces(),
         obstacles: loads.iter().map(|load| load.force).collect(),
@@ -466,7 +483,8 @@ pub(super) fn ending(under_way: &UnderWay, reason: EndReason, report: &StepRepor
             .iter()
             .map(|load| load.force)
             .collect(),
-        taut: report.taut.as_ref().map(|demand| demand.to_string()),
+        taut: None,
+        failed: None,
         residuals: {
             let State { t, x, .. } = under_way.simulation.state();
             under_way

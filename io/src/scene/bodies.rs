@@ -168,6 +168,12 @@ impl Body {
     }
 
     /// Its name as the body of a number.
+    /// What it is called in messages and results: its name, or `body[0]` by its number in the scene.
+    pub fn called(&self, number: usize) -> String {
+        let numbered = || Key::root().name("body").entry(number).to_string();
+        self.name.clone().unwrap_or_else(numbered)
+    }
+
     pub(super) fn name(&self, number: usize) -> String {
         self.name
             .clone()

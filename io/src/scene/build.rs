@@ -23,6 +23,7 @@ use builder::Builder;
 pub(crate) use builder::Kept;
 use isosheet_collide::{Contacts, Obstacle};
 use std::path::Path;
+pub(super) use supports::pin_motion;
 
 impl Scene {
     /// Makes everything that a simulation needs. Masses are lumped: a third of that of each face at each of
@@ -125,6 +126,7 @@ impl Builder<'_> {
             measures: Vec::new(),
             bonds: self.bonds,
             switches: self.switches.clone(),
+            led: self.led.into_list(),
             fold_assignments,
             of_sheets,
             origins: self.origins,

@@ -75,6 +75,14 @@ pub(super) fn no_function(place: &Key) -> DataError {
     DataError::new(message, remedy)
 }
 
+/// What is driven to a pose is no rigid motion.
+pub(super) fn no_motion(place: &Key) -> DataError {
+    let message = format!("the scene has no rigid motion at `{place}`");
+    let remedy = "name one of an obstacle, for example `obstacle[0].motion`, or of a support that moves in the scene, \
+                  `support[0].hold.moving_clamp`";
+    DataError::new(message, remedy)
+}
+
 /// The document with all edits made, in their order. A value that is not TOML is taken as a string, so that
 /// names need no quotes.
 pub(crate) fn apply(document: &mut DocumentMut, edits: &[String]) -> Result<(), EditError> {

@@ -28,6 +28,8 @@ pub struct Origins {
     pub(crate) bodies: Vec<Range<usize>>,
     /// The obstacles that deform.
     pub(crate) driven: Vec<DrivenSurface>,
+    /// What each obstacle of the scene is called.
+    pub(crate) obstacles: Vec<String>,
 }
 
 impl Origins {
@@ -35,6 +37,54 @@ impl Origins {
     pub(crate) fn is_driven(&self, vertex: VertexId) -> bool {
         let mut driven = self.driven.iter();
         driven.any(|surface| surface.vertices.contains(&vertex.index()))
+    }
+
+    /// What one of the obstacles that do not deform is called.
+    pub(crate) fn obstacle_called(&self, rigid: usize) -> String {
+        let number = self.obstacle_number(rigid);
+        let called = self.obstacles.get(number).cloned();
+        called.unwrap_or_else(|| self.obstacle_key(rigid).to_string())
+    }
+
+    /// The same in a message at its place, which has its number.
+    fn the_obstacle(&self, rigid: usize) -> String {
+        let called = self.obstacle_called(rigid);
+        match called == self.obstacle_key(rigid).to_string() {
+            true => "the obstacle".to_owned(),
+            false => format!("the obstacle `{called}`"),
+        }
+    }
+
+    /// What moves by the motion at a key is called.
+    pub(super) fn called(&self, motion: &Key) -> String {
+        let named = match motion.parts() {
+            [KeyPart::Name(list), KeyPart::Entry(number), ..] if list == "obstacle" => {
+                self.obstacles.get(*number)
+            }
+            _ => None,
+        };
+        format!("`{}`", named.cloned().unwrap_or_else(|| motion.to_string()))
+    }
+
+    /// A step that failed, in words with the names of obstacles.
+    pub(super) fn in_words(&self, error: &StepError) -> String {
+        let named = |body: usize| format!("`{}`", self.obstacle_called(body));
+        let text = error.to_string();
+        match error {
+            StepError::StepTooSmall {
+                pressing, cause, ..
+            } => {
+                let text = text.replace(&cause.to_string(), &self.in_words(cause));
+                match pressing {
+                    Some(pressing) => text.replace(&pressing.to_string(), &pressing.named(named)),
+                    None => text,
+                }
+            }
+            StepError::Unsatisfiable { infeasibility, .. } => {
+                text.replace(&infeasibility.to_string(), &infeasibility.named(named))
+            }
+            _ => text,
+        }
     }
 
     /// The number in the scene of one of the obstacles that do not deform.
@@ -115,13 +165,7 @@ impl Origins {
 
     /// A step of a simulation that failed. Supports that leave the sheet no room are named.
     pub fn of_failed_step(&self, error: &StepError, simulation: &Simulation) -> Problem {
-        let is_without_room = matches!(
-            error,
-            StepError::StepTooSmall { .. }
-                | StepError::Contact { .. }
-                | StepError::NotConverged { .. }
-        );
-        let meeting = is_without_room.then(|| self.meeting_supports(simulation));
+        let meeting = is_without_room(error).then(|| self.meeting_supports(simulation));
         let Some(Meeting {
             supports,
             distance,
@@ -141,9 +185,10 @@ impl Origins {
         let [first, second] = supports.map(|k| list.entry(k));
         let message = format!(
             "`{first}` and `{second}` are driven into each other: they are {} m apart, less than an edge of the sheet \
-             is long, and come closer by {} m/s; {error}",
+             is long, and come closer by {} m/s; {}",
             brief(distance),
-            brief(rate)
+            brief(rate),
+            self.in_words(error)
         );
         let remedy = "shorten their motions, so that the sheet has room between them";
         Problem::new(second.name("hold"), message, remedy)
@@ -193,7 +238,7 @@ impl Origins {
                 remedy_of_press(cause),
             ),
             StepError::StepTooSmall { cause, .. } => {
-                let message = error.to_string();
+                let message = self.in_words(error);
                 return Problem {
                     message,
                     ..self.of_step(cause)
@@ -275,7 +320,7 @@ impl Origins {
                 "take a smaller `method.step` or more damping",
             ),
         };
-        Problem::new(key, error.to_string(), remedy)
+        Problem::new(key, self.in_words(error), remedy)
     }
 
     /// A change that a simulation cannot go on with: what it keeps is not that of the changed scene.
@@ -352,7 +397,14 @@ impl Origins {
     }
 
     fn of_body_motion(&self, error: &BodyMotionError) -> Problem {
-        Problem::from_error(self.obstacle_key(error.body).name("motion"), error)
+        let named = format!("`{}`", self.obstacle_called(error.body));
+        let problem = Problem::from_error(self.obstacle_key(error.body).name("motion"), error);
+        Problem {
+            message: problem
+                .message
+                .replace(&format!("body {}", error.body), &named),
+            ..problem
+        }
     }
 
     fn of_contact(&self, error: &ContactError) -> Problem {
@@ -366,8 +418,9 @@ impl Origins {
             } => Problem::new(
                 self.obstacle_key(*body),
                 format!(
-                    "the obstacle touches {} at the start (gap {} m, thickness of the \
+                    "{} touches {} at the start (gap {} m, thickness of the \
                      sheet taken off)",
+                    self.the_obstacle(*body),
                     self.point_in_words(*vertex),
                     brief(*gap)
                 ),
@@ -414,6 +467,14 @@ impl Origins {
             _ => Problem::from_error(root.name("contact"), error),
         }
     }
+}
+
+/// Whether no step was found that leaves the sheet room.
+pub(super) fn is_without_room(error: &StepError) -> bool {
+    matches!(
+        error,
+        StepError::StepTooSmall { .. } | StepError::Contact { .. } | StepError::NotConverged { .. }
+    )
 }
 
 /// Where a body presses the sheet and no step is found.

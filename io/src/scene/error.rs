@@ -6,6 +6,7 @@ use super::problem::Problem;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use isosheet_mesh::Advice;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -72,6 +73,46 @@ impl SceneText {
 /// Most problems that are shown at once.
 const MOST_PROBLEMS: usize = 50;
 
+/// Most problems that are shown of the entries of one list: they tend to have one cause.
+const MOST_OF_LIST: usize = 3;
+
+/// The problems without most of those of the entries of one list, of which their number is told.
+fn first_of_lists(problems: Vec<Problem>) -> Vec<Problem> {
+    // Of each list, or key of its entries, which one was the last that is shown, and how many are not.
+    let mut lists: BTreeMap<String, (usize, usize, usize)> = BTreeMap::new();
+    let mut shown: Vec<Problem> = Vec::new();
+    for problem in problems {
+        let Some(list) = problem.key.of_entries() else {
+            shown.push(problem);
+            continue;
+        };
+        let (count, last, hidden) = lists.entry(list).or_default();
+        if *count == MOST_OF_LIST {
+            *hidden += 1;
+            continue;
+        }
+        *count += 1;
+        *last = shown.len();
+        shown.push(problem);
+    }
+    let mut hidden: Vec<(usize, usize)> = lists
+        .into_values()
+        .filter_map(|(_, last, hidden)| (hidden > 0).then_some((last, hidden)))
+        .collect();
+    hidden.sort_unstable();
+    for (last, hidden) in hidden.into_iter().rev() {
+        let list = shown[last].key.list();
+        let message = format!(
+            "`{list}` has {} more such {}",
+            hidden,
+            if hidden == 1 { "problem" } else { "problems" }
+        );
+        let more = Problem::new(list, message, "correct those above first");
+        shown.insert(last + 1, more);
+    }
+    shown
+}
+
 /// A problem with its place, as a value for programs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct PlacedProblem {
@@ -108,10 +149,11 @@ pub struct SceneError {
 
 impl SceneError {
     /// The error of some problems, if there are any.
-    pub(crate) fn of(mut problems: Vec<Problem>) -> Result<(), Self> {
+    pub(crate) fn of(problems: Vec<Problem>) -> Result<(), Self> {
         if problems.is_empty() {
             return Ok(());
         }
+        let mut problems = first_of_lists(problems);
         if let Some(more) = problems.len().checked_sub(MOST_PROBLEMS).filter(|&n| n > 0) {
             problems.truncate(MOST_PROBLEMS);
             let message = format!("{more} further problems are not shown");

@@ -5,9 +5,15 @@ use super::key::Key;
 use super::pose::Motion;
 use super::profile::Profile;
 use super::sheets::sheet_key;
-use super::supports::Hold;
+use super::{Obstacle, Support};
+use nalgebra::Isometry3;
 
 impl Scene {
+    /// All rigid motions of supports and obstacles.
+    pub(crate) fn motions_mut(&mut self) -> Vec<Moved<'_>> {
+        moved(&mut self.support, &mut self.obstacle)
+    }
+
     /// All functions of time with their keys.
     pub(crate) fn functions_mut(&mut self) -> Vec<(Key, &mut Profile)> {
         let (root, mut all) = (Key::root(), Vec::new());
@@ -36,20 +42,8 @@ impl Scene {
             .as_mut()
             .and_then(|folding| folding.course.as_mut());
         all.extend(course.map(|course| (root.name("folding.course"), course)));
-        for (k, support) in self.support.iter_mut().enumerate() {
-            let (place, motion) = match &mut support.hold {
-                Hold::Pin | Hold::Clamp | Hold::Follow { .. } => continue,
-                Hold::MovingPin(motion) => ("hold.moving_pin", motion),
-                Hold::MovingClamp(motion) => ("hold.moving_clamp", motion),
-                Hold::SlidingClamp { motion, .. } => ("hold.sliding_clamp.motion", motion),
-                Hold::Curve { motion, .. } => ("hold.curve.motion", motion),
-                Hold::Surface { motion, .. } => ("hold.surface.motion", motion),
-            };
-            all.extend(motion.functions_mut(&root.name("support").entry(k).name(place)));
-        }
-        for (k, obstacle) in self.obstacle.iter_mut().enumerate() {
-            let key = root.name("obstacle").entry(k).name("motion");
-            all.extend(obstacle.motion.functions_mut(&key));
+        for Moved { key, motion, .. } in moved(&mut self.support, &mut self.obstacle) {
+            all.extend(motion.functions_mut(&key));
         }
         for (k, body) in self.body.iter_mut().enumerate() {
             all.extend(body.functions_mut(&root.name("body").entry(k)));
@@ -84,9 +78,39 @@ impl Scene {
     }
 }
 
+/// A rigid motion of a scene.
+pub(crate) struct Moved<'a> {
+    pub(crate) key: Key,
+    pub(crate) motion: &'a mut Motion,
+    /// The frame of what moves while it is not displaced: that of an obstacle, and that of space of a
+    /// support.
+    pub(crate) frame: Isometry3<f64>,
+}
+
+fn moved<'a>(supports: &'a mut [Support], obstacles: &'a mut [Obstacle]) -> Vec<Moved<'a>> {
+    let supports = supports.iter_mut().enumerate();
+    let of_supports = supports.filter_map(|(k, support)| {
+        let place = support.hold.motion_place()?;
+        Some(Moved {
+            key: Key::root().name("support").entry(k).name(place),
+            motion: support.hold.motion_mut()?,
+            frame: Isometry3::identity(),
+        })
+    });
+    let obstacles = obstacles.iter_mut().enumerate();
+    let of_obstacles = obstacles.map(|(k, obstacle)| Moved {
+        key: Key::root().name("obstacle").entry(k).name("motion"),
+        frame: obstacle.pose.isometry(),
+        motion: &mut obstacle.motion,
+    });
+    of_supports.chain(of_obstacles).collect()
+}
+
 impl Motion {
     fn functions_mut(&mut self, key: &Key) -> Vec<(Key, &mut Profile)> {
-        let Self { x, y, z, rotation } = self;
+        let Self {
+            x, y, z, rotation, ..
+        } = self;
         let mut all = vec![(key.name("x"), x), (key.name("y"), y), (key.name("z"), z)];
         let rotation = rotation.as_mut();
         all.extend(rotation.map(|r| (key.name("rotation.angle"), &mut r.angle)));

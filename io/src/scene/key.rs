@@ -74,6 +74,28 @@ impl Key {
         entries.map(|(k, entry)| (self.entry(k), entry))
     }
 
+    /// Whether the key is another one, or leads on from it.
+    pub(super) fn is_within(&self, other: &Self) -> bool {
+        self.0.starts_with(&other.0)
+    }
+
+    /// The list that the key has an entry of, the first one; itself if it has none.
+    pub(super) fn list(&self) -> Self {
+        let is_name = |part: &&KeyPart| matches!(part, KeyPart::Name(_));
+        Self(self.0.iter().take_while(is_name).cloned().collect())
+    }
+
+    /// The key without the numbers of entries, if there are any: the same for all entries of lists.
+    pub(super) fn of_entries(&self) -> Option<String> {
+        let mut whole = Self::root();
+        for part in &self.0 {
+            if let KeyPart::Name(name) = part {
+                whole = whole.name(name);
+            }
+        }
+        (whole != *self).then(|| whole.to_string())
+    }
+
     /// The place one step further.
     #[must_use]
     pub(crate) fn part(&self, part: &KeyPart) -> Self {

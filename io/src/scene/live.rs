@@ -8,16 +8,17 @@ pub use hand::HoldError;
 use super::Files;
 use super::build::Kept;
 use super::changed::edited;
-use super::edit::{Edit, EditError, no_function};
+use super::edit::{Edit, EditError, no_function, no_motion};
 use super::jump::jumps;
 use super::key::Key;
 use super::profile::{Change, Course};
 use super::sheets::sheet_key;
 use super::under_way::UnderWay;
 use super::{
-    Body, BodyLoad, CarriedBody, Method, Problem, Profile, Scene, SceneError, SceneFile,
-    SceneFileError, Setup,
+    Body, BodyLoad, CarriedBody, FramePose, Method, Motion, Problem, Profile, Scene, SceneError,
+    SceneFile, SceneFileError, Setup,
 };
+use crate::DataError;
 use crate::format::EventRow;
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
@@ -48,7 +49,7 @@ use thiserror::Error;
 /// live.step(0.01)?;
 /// // The corner rises by 1 mm until t = 0.02 s, and weight has gone.
 /// live.change(&["forces.gravity=[0, 0, 0]".parse()?])?;
-/// live.drive(&[("support[0].hold.moving_pin.z".parse()?, 0.001)], 0.02)?;
+/// live.drive(&[("support[0].hold.moving_pin.z".parse()?, 0.001.into())], 0.02)?;
 /// live.step(0.01)?;
 /// assert!((live.simulation().state().x[62] - 0.001).abs() < 1e-15);
 /// # Ok(())
@@ -78,10 +79,41 @@ pub struct FailedStep {
     pub scene: SceneError,
 }
 
+impl FailedStep {
+    /// The place of the scene and what is wrong, on one line; nothing where somebody interrupted the step.
+    #[cfg(feature = "run")]
+    pub(crate) fn in_short(&self) -> Option<String> {
+        let is_ended = matches!(self.step, Some(StepError::Interrupted { .. }));
+        let first = self.scene.problems().first().filter(|_| !is_ended);
+        first.map(|problem| problem.to_string())
+    }
+}
+
 impl Advice for FailedStep {
     /// Always `None`: the text has the remedy.
     fn advice(&self) -> Option<&'static str> {
         self.scene.advice()
+    }
+}
+
+/// What something is driven to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// A function of time to a value, in its unit.
+    Value(f64),
+    /// A rigid motion to a pose of its frame.
+    Pose(FramePose),
+}
+
+impl From<f64> for Target {
+    fn from(value: f64) -> Self {
+        Self::Value(value)
+    }
+}
+
+impl From<FramePose> for Target {
+    fn from(pose: FramePose) -> Self {
+        Self::Pose(pose)
     }
 }
 
@@ -227,10 +259,10 @@ impl LiveScene {
         &self.under_way.facts.obstacles
     }
 
-    /// The number in the scene of one of these.
+    /// What one of these is called.
     #[cfg(feature = "cli")]
-    pub(crate) fn obstacle_number(&self, k: usize) -> usize {
-        self.under_way.facts.origins.obstacle_number(k)
+    pub(crate) fn obstacle_called(&self, k: usize) -> String {
+        self.under_way.facts.origins.obstacle_called(k)
     }
 
     /// What the sheet does to the obstacles at the end of the last step, in the order of the scene.
@@ -291,11 +323,7 @@ impl LiveScene {
         self.events.clear();
         let stepped = self.under_way.step_watched(h, watch);
         let report = stepped.map_err(|step| {
-            let problem = self
-                .under_way
-                .facts
-                .origins
-                .of_failed_step(&step, &self.under_way.simulation);
+            let problem = self.under_way.problem(self.file.scene(), &step, h);
             let scene = SceneError::from(problem).in_text(self.file.text());
             let step = Some(step);
             FailedStep { step, scene }
@@ -340,29 +368,62 @@ impl LiveScene {
 
     /// Lets functions of time in the scene go from their present values to others until time `until`
     /// (seconds), along a ramp, and keep these: displacements and angles of supports and bodies, angles of
-    /// creases, profiles of curls and swellings, sizes of loads. Values are in the units of the scene.
+    /// creases, profiles of curls and swellings, sizes of loads. Values are in the units of the scene. A
+    /// rigid motion, `obstacle[0].motion` or `support[0].hold.moving_pin`, goes to a pose of its frame, see
+    /// [`Poses`](super::Poses): that of an obstacle is its own, and that of a support the one of space at the
+    /// start, where the motion has no `poses` that say another. Where it goes is led on from the second time
+    /// on without building anything anew.
     ///
     /// # Errors
-    /// As [`LiveScene::change`]; [`EditError`] at a key that is no function of time.
-    pub fn drive(&mut self, targets: &[(Key, f64)], until: f64) -> Result<(), SceneFileError> {
+    /// As [`LiveScene::change`]; [`EditError`] at a key that is no function of time, or no motion.
+    pub fn drive(&mut self, targets: &[(Key, Target)], until: f64) -> Result<(), SceneFileError> {
         let begin = self.under_way.simulation.state().t;
         let mut scene = self.file.scene().clone();
-        let mut functions = scene.functions_mut();
-        for (key, to) in targets {
-            let found = functions.iter_mut().find(|(place, _)| place == key);
-            let (_, function) = found.ok_or_else(|| EditError {
+        for (key, target) in targets {
+            let refused = |problem: fn(&Key) -> DataError| EditError {
                 edit: key.to_string(),
-                problem: no_function(key),
-            })?;
-            **function = Profile::Course(Course::Ramp(Change {
-                from: function.value(begin),
-                to: *to,
-                begin,
-                end: until,
-            }));
+                problem: problem(key),
+            };
+            match target {
+                Target::Value(to) => {
+                    let mut functions = scene.functions_mut().into_iter();
+                    let found = functions.find(|(place, _)| place == key);
+                    let (_, function) = found.ok_or_else(|| refused(no_function))?;
+                    *function = Profile::Course(Course::Ramp(Change {
+                        from: function.value(begin),
+                        to: *to,
+                        begin,
+                        end: until,
+                    }));
+                }
+                Target::Pose(to) => {
+                    let found = scene.motions_mut().into_iter().find(|m| m.key == *key);
+                    let moved = found.ok_or_else(|| refused(no_motion))?;
+                    *moved.motion = moved.motion.led(*to, moved.frame, [begin, until]);
+                }
+            }
         }
+        let moved = moved_by(&mut scene, targets);
         let keys = targets.iter().map(|(key, _)| key.clone());
         let file = self.file.changed(scene, keys)?;
+        let led = &self.under_way.facts.led;
+        if targets
+            .iter()
+            .all(|(key, _)| led.iter().any(|led| led.has(key)))
+        {
+            for (key, motion) in &moved {
+                for led in led.iter().filter(|led| led.has(key)) {
+                    led.lead(motion);
+                }
+            }
+            self.file = file;
+            return Ok(());
+        }
+        for (key, _) in moved {
+            if !self.kept.led.contains(&key) {
+                self.kept.led.push(key);
+            }
+        }
         Ok(self.go_on_with(file)?)
     }
 
@@ -400,6 +461,15 @@ impl LiveScene {
         self.hand = hand;
         Ok(())
     }
+}
+
+/// The rigid motions of a scene that some keys are those of, or of a part.
+fn moved_by(scene: &mut Scene, targets: &[(Key, Target)]) -> Vec<(Key, Motion)> {
+    let all = scene.motions_mut().into_iter();
+    let driven = all.filter(|moved| targets.iter().any(|(key, _)| key.is_within(&moved.key)));
+    driven
+        .map(|moved| (moved.key, moved.motion.clone()))
+        .collect()
 }
 
 fn other_periods() -> Problem {

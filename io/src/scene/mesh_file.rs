@@ -176,9 +176,15 @@ impl Files {
             of.check_times(mesh, end, key)?;
             return Ok(mesh.clone());
         }
-        let archive = self.motion(&of.path, key)?;
-        let read = MovingMesh::parse(&archive, &self.folder.join(&of.path));
-        let mesh = read.map_err(|e| Problem::from_error(key.name("path"), &e))?;
+        let mesh = match (&of.path, &of.frames) {
+            (None, Some(frames)) => frames.mesh(&key.name("frames"))?,
+            (path, _) => {
+                let path = path.as_deref().unwrap_or(Path::new(""));
+                let archive = self.motion(path, key)?;
+                let read = MovingMesh::parse(&archive, &self.folder.join(path));
+                read.map_err(|e| Problem::from_error(key.name("path"), &e))?
+            }
+        };
         let mesh = Arc::new(of.place(mesh, key)?);
         self.sequences.push((of.clone(), mesh.clone()));
         of.check_times(&mesh, end, key)?;

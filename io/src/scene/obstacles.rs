@@ -157,6 +157,12 @@ impl Obstacle {
         }
     }
 
+    /// What it is called in messages and results: its name, or `obstacle[0]` by its number in the scene.
+    pub fn called(&self, number: usize) -> String {
+        let numbered = || Key::root().name("obstacle").entry(number).to_string();
+        self.name.clone().unwrap_or_else(numbered)
+    }
+
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         self.shape.check(&key.name("shape"), checks);
         self.pose.check(&key.name("pose"), checks);
@@ -167,17 +173,6 @@ impl Obstacle {
             checks.report(key.name("motion"), message, remedy);
         }
         checks.not_negative(key.name("friction"), self.friction, Unit::One);
-    }
-
-    /// The body of a shape that has been made.
-    pub(crate) fn body(
-        &self,
-        shape: collide::Shape,
-        key: &Key,
-    ) -> Result<collide::Obstacle, Problem> {
-        let motion = self.motion.of_body(self.pose.isometry());
-        let motion = isosheet_dynamics::RigidProfile::from(motion);
-        collide::Obstacle::new(shape, motion).map_err(|e| Problem::from_error(key.clone(), &e))
     }
 }
 
@@ -259,7 +254,10 @@ impl Shape {
         let key = key.name(self.name());
         match self {
             Self::File(file) => Some(NamedFile::mesh(key, &mut file.path)),
-            Self::Sequence(sequence) => Some(NamedFile::motion(key, &mut sequence.path)),
+            Self::Sequence(sequence) => {
+                let path = sequence.path.as_mut()?;
+                Some(NamedFile::motion(key, path))
+            }
             _ => None,
         }
     }

@@ -1,10 +1,11 @@
 //! Where things are and how they move.
 
 use super::key::Key;
+use super::poses::{FramePose, Poses, TimedPose};
 use super::problem::Checks;
 use super::profile::Profile;
 use super::unit::Unit;
-use isosheet_dynamics::{AxisRotation, RigidDisplacement};
+use isosheet_dynamics::{AxisRotation, RigidDisplacement, RigidProfile};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -89,7 +90,7 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// A prescribed rigid motion: a rotation, then a translation by three displacements.
+/// A prescribed rigid motion: a rotation, then a translation by three displacements; or through poses.
 ///
 /// ```toml
 /// [[support]]
@@ -110,6 +111,9 @@ pub struct Motion {
     pub z: Profile,
     /// The rotation, if there is one.
     pub rotation: Option<Rotation>,
+    /// Poses in place of displacements and rotation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub poses: Option<Poses>,
 }
 
 /// A rotation about an axis of fixed direction. The axis moves with the translation.
@@ -134,8 +138,11 @@ pub struct Rotation {
 
 impl Motion {
     /// The motion of a body that is in a pose while displacements and angle are zero.
-    pub(crate) fn of_body(&self, pose: Isometry3<f64>) -> RigidDisplacement {
-        RigidDisplacement {
+    pub(crate) fn of_body(&self, pose: Isometry3<f64>) -> RigidProfile {
+        if let Some(poses) = &self.poses {
+            return poses.of_body(pose);
+        }
+        RigidProfile::from(RigidDisplacement {
             pose,
             x: self.x.as_given(),
             y: self.y.as_given(),
@@ -145,6 +152,34 @@ impl Motion {
                 axis: r.axis,
                 angle: r.angle.as_angle(),
             }),
+        })
+    }
+
+    /// Whether what moves can turn.
+    pub(super) fn turns(&self) -> bool {
+        self.rotation.is_some() || self.poses.is_some()
+    }
+
+    /// The motion that goes from its pose at time `from` (seconds) to another one of its frame until time
+    /// `to`, and rests there. `rest` is the frame while nothing is displaced, where the motion has no poses
+    /// yet.
+    pub(super) fn led(&self, pose: FramePose, rest: Isometry3<f64>, [from, to]: [f64; 2]) -> Self {
+        let frame = self.poses.as_ref().map(Poses::frame);
+        let frame = frame.unwrap_or(rest.into());
+        Self::through(frame, vec![self.pose_of(frame, from), pose.at(to)])
+    }
+
+    /// Where a frame is at time `t`, seconds.
+    pub(crate) fn pose_of(&self, frame: FramePose, t: f64) -> TimedPose {
+        FramePose::from(self.of_body(frame.isometry()).kinematics(t).pose).at(t)
+    }
+
+    /// The motion through poses of a frame.
+    pub(crate) fn through(frame: FramePose, keys: Vec<TimedPose>) -> Self {
+        let frame = Some(frame);
+        Self {
+            poses: Some(Poses { keys, frame }),
+            ..Self::default()
         }
     }
 
@@ -159,6 +194,20 @@ impl Motion {
             rotation
                 .angle
                 .check(key.name("angle"), Unit::Degree, checks);
+        }
+        if let Some(poses) = &self.poses {
+            let key = key.name("poses");
+            poses.check(&key, checks);
+            let poses = self.poses.clone();
+            if *self
+                != (Self {
+                    poses,
+                    ..Self::default()
+                })
+            {
+                let message = "poses stand in place of `x`, `y`, `z` and `rotation`, which the motion has, too";
+                checks.report(key, message, "leave out one or the other");
+            }
         }
     }
 }

@@ -5,6 +5,7 @@ use super::carried::{BodyLoad, CarriedBody};
 use super::error::{SceneError, SceneText};
 use super::integration::Integration;
 use super::key::Key;
+use super::led::LedMotion;
 use super::problem::Problem;
 use super::switches::{Switches, other_switches};
 use super::targets::Targets;
@@ -50,6 +51,8 @@ pub(crate) struct Facts {
     pub(crate) origins: Origins,
     /// The seams of the scene that hold, in its order.
     pub(crate) bonds: Vec<Option<Bond>>,
+    /// The motions that a program leads.
+    pub(crate) led: Vec<LedMotion>,
 }
 
 impl Facts {
@@ -179,6 +182,8 @@ pub struct Setup {
     pub(crate) bonds: Vec<Option<Bond>>,
     /// What holds.
     pub(crate) switches: Switches,
+    /// The motions that a program leads.
+    pub(crate) led: Vec<LedMotion>,
     /// The text of the scene, if it is a file.
     pub(crate) text: Option<SceneText>,
 }
@@ -219,6 +224,7 @@ impl Setup {
             measures: self.measures.clone(),
             origins: self.origins.clone(),
             bonds: self.bonds.clone(),
+            led: self.led.clone(),
         }
     }
 

@@ -354,6 +354,30 @@ impl Hold {
         matches!(self, Self::Pin | Self::Clamp)
     }
 
+    /// Where its motion is below the key of the support, if it has one.
+    pub(super) fn motion_place(&self) -> Option<&'static str> {
+        match self {
+            Self::Pin | Self::Clamp | Self::Follow { .. } => None,
+            Self::MovingPin(_) => Some("hold.moving_pin"),
+            Self::MovingClamp(_) => Some("hold.moving_clamp"),
+            Self::SlidingClamp { .. } => Some("hold.sliding_clamp.motion"),
+            Self::Curve { .. } => Some("hold.curve.motion"),
+            Self::Surface { .. } => Some("hold.surface.motion"),
+        }
+    }
+
+    /// Its motion, if it has one.
+    pub(super) fn motion_mut(&mut self) -> Option<&mut Motion> {
+        match self {
+            Self::Pin | Self::Clamp | Self::Follow { .. } => None,
+            Self::MovingPin(motion)
+            | Self::MovingClamp(motion)
+            | Self::SlidingClamp { motion, .. }
+            | Self::Curve { motion, .. }
+            | Self::Surface { motion, .. } => Some(motion),
+        }
+    }
+
     /// Its motion, if it has one.
     fn motion(&self) -> Option<&Motion> {
         match self {
@@ -466,8 +490,5 @@ impl SurfaceSide {
 
 /// The motion of a curve or surface, if it has any.
 pub(crate) fn frame_motion(motion: &Motion) -> Option<RigidMotion> {
-    (*motion != Motion::default()).then(|| {
-        let displacement = motion.of_body(Isometry3::identity());
-        isosheet_dynamics::RigidProfile::from(displacement).into()
-    })
+    (*motion != Motion::default()).then(|| motion.of_body(Isometry3::identity()).into())
 }

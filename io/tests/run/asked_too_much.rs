@@ -113,7 +113,7 @@ fn pins_and_plates_that_are_driven_into_bodies_are_named() {
         message.contains("the pin at vertex 0 asks at vertex 0 for "),
         "{message}"
     );
-    assert!(message.contains("and body 0 allow"), "{message}");
+    assert!(message.contains("and `obstacle[0]` allow"), "{message}");
     let plates = "version = 1
         [sheet]
         mesh = { square = { side = 0.1, level = 1 } }
@@ -122,6 +122,7 @@ fn pins_and_plates_that_are_driven_into_bodies_are_named() {
         [[obstacle]]
         shape = \"half_space\"
         [[obstacle]]
+        name = \"plate\"
         shape = { box = { size = [0.3, 0.3, 0.01] } }
         pose = { position = [0.05, 0.05, 0.007] }
         motion = { z = { ramp = { to = -0.0103, end = 1 } } }
@@ -130,8 +131,8 @@ fn pins_and_plates_that_are_driven_into_bodies_are_named() {
     let plates = problem(folder_with(plates).path());
     assert_eq!(plates["key"], "obstacle[1].motion");
     let message = text(&plates, "message");
-    assert!(message.contains("body 1 asks at vertex "), "{message}");
-    assert!(message.contains("and body 0 allow"), "{message}");
+    assert!(message.contains("`plate` asks at vertex "), "{message}");
+    assert!(message.contains("and `obstacle[0]` allow"), "{message}");
 }
 
 /// A sheet of rods that a punch draws into an opening that is too narrow.
@@ -154,8 +155,14 @@ fn stamped_rods_name_what_presses_them() {
     let problem = problem(folder_with(scene).path());
     assert_eq!(problem["key"], "obstacle[1].motion");
     let message = text(&problem, "message");
-    assert!(message.starts_with("body 1 asks at vertex 12"), "{message}");
-    assert!(message.contains("the rods and body 0 allow"), "{message}");
+    assert!(
+        message.starts_with("`obstacle[1]` asks at vertex 12"),
+        "{message}"
+    );
+    assert!(
+        message.contains("the rods and `obstacle[0]` allow"),
+        "{message}"
+    );
 }
 
 /// A tube of nine faces, glued along a seam, between a floor and a plate that come as close as a tenth of its
@@ -225,10 +232,10 @@ fn friction_that_does_not_settle_is_no_step() {
     assert_eq!(jam["key"], "obstacle[1].motion");
     let message = text(&jam, "message");
     assert!(
-        message.contains("body 1 presses the sheet with"),
+        message.contains("`obstacle[1]` presses the sheet with"),
         "{message}"
     );
-    assert!(message.contains("against body 0"), "{message}");
+    assert!(message.contains("against `obstacle[0]`"), "{message}");
     let history = read_history(&dir.join("scene-run/history.csv")).unwrap();
     let exchanged = |work: f64| history.iter().all(|row| row.work.abs() < work);
     // (What was accepted with unsettled friction worked 27 203 J.)

@@ -158,7 +158,7 @@ fn frames_and_tables_have_bodies() {
                 .all(|name| text.contains(&format!("\"{name}\"")))
         );
         let page = fs::read_to_string(dir.join("run/index.html")).unwrap();
-        assert!(page.contains("body[0]"));
+        assert!(page.contains("force of contact on ball at the end"));
         let info = stdout(&run(dir, &["info", "bodies.toml"]));
         assert!(
             info.contains("body             ball: vertices 81"),

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 16] = [
+const ALL_KEYS: [&str; 17] = [
     r#"version = 1
     [sheet]
     name = "main"
@@ -276,7 +276,7 @@ const ALL_KEYS: [&str; 16] = [
     hold = "clamp"
     [[support]]
     at = { vertices = [2, 3] }
-    hold = { moving_clamp = { z = 0.0 } }
+    hold = { moving_clamp = { poses = { frame = { position = [0, 0, 0], orientation = [1, 0, 0, 0] }, keys = [{ time = 0, position = [0, 0, 0], orientation = [1, 0, 0, 0] }] } } }
     [[support]]
     at = { vertices = [4, 5] }
     hold = { sliding_clamp = { direction = [1, 0, 0], motion = { z = 0.0 } } }
@@ -497,6 +497,13 @@ const ALL_KEYS: [&str; 16] = [
     angle = 10
     [[obstacle]]
     shape = { triangles = { vertices = [[0, 0, -1], [1, 0, -1], [0, 1, -1]], faces = [[0, 1, 2]] } }"##,
+    r#"version = 1
+    [sheet]
+    mesh = { square = { side = 0.2, level = 1 } }
+    [[obstacle]]
+    shape = { sequence = { frames = { times = [0, 1], positions = [[[0, 0, 9], [1, 0, 9], [0, 1, 9]], [[0, 0, 8], [1, 0, 8], [0, 1, 8]]], faces = [[0, 1, 2]] } } }
+    [stop]
+    time = 1"#,
 ];
 
 /// Scenes that have every key of the reference between them.

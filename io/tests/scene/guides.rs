@@ -329,7 +329,7 @@ fn a_force_pushes_a_body_where_it_acts() {
     let own = turning - centre(&live, 0).cross(&linear);
     assert!((own.y / (-5e-4 * 0.5) - 1.0).abs() < 1e-3, "{own}");
     let key = "body[0].force[0].size".parse().unwrap();
-    live.drive(&[(key, 0.0)], 0.502).unwrap();
+    live.drive(&[(key, 0.0.into())], 0.502).unwrap();
     play(&mut live, 0.1);
     let before: Vector3<f64> = live.bodies()[0].centre(&live.simulation().state().v).into();
     play(&mut live, 0.1);

@@ -62,7 +62,7 @@ fn a_driven_pin_begins_where_it_is_and_ends_where_it_is_sent() {
     let start = live.sheet().positions()[62];
     let before = 0.01 * (std::f64::consts::TAU * 2.0 * live.simulation().state().t).sin();
     assert!((pin(&live)[2] - start - before).abs() < 1e-15);
-    live.drive(&[(key("support[0].hold.moving_pin.z"), 0.05)], 0.05)
+    live.drive(&[(key("support[0].hold.moving_pin.z"), 0.05.into())], 0.05)
         .expect("a function of time");
     step(&mut live, 1);
     assert!((pin(&live)[2] - start - 0.5 * (before + 0.05)).abs() < 1e-15);
@@ -78,7 +78,7 @@ fn angles_are_driven_from_where_they_are() {
     let mut live = live(HANGING);
     step(&mut live, 4);
     let before = live.simulation().energy();
-    live.drive(&[(key("crease[0].angle"), 90.0)], 1.0)
+    live.drive(&[(key("crease[0].angle"), 90.0.into())], 1.0)
         .expect("a function of time");
     let after = live.simulation().energy();
     assert!(
@@ -112,8 +112,11 @@ fn a_changed_scene_is_resumed_bit_for_bit() {
     step(&mut live, 2);
     live.change(&[edit("forces.load[0].size=0.01"), edit("sheet.damping=1")])
         .expect("a change");
-    live.drive(&[(key("support[0].hold.moving_pin.x"), -0.02)], 0.1)
-        .expect("a change");
+    live.drive(
+        &[(key("support[0].hold.moving_pin.x"), (-0.02).into())],
+        0.1,
+    )
+    .expect("a change");
     step(&mut live, 1);
     let bytes = live.simulation().checkpoint().to_bytes().expect("bytes");
     let checkpoint = Checkpoint::from_bytes(&bytes).expect("a checkpoint");
@@ -155,7 +158,7 @@ fn what_cannot_change_is_refused() {
     }
     for wrong in ["support[0].hold.pin.z", "sheet.mesh", "forces.load[1].size"] {
         let error = live
-            .drive(&[(key(wrong), 1.0)], 1.0)
+            .drive(&[(key(wrong), 1.0.into())], 1.0)
             .expect_err("no function of time");
         assert!(
             error
@@ -165,7 +168,7 @@ fn what_cannot_change_is_refused() {
         );
     }
     let past = live
-        .drive(&[(key("crease[0].angle"), 1.0)], 0.0)
+        .drive(&[(key("crease[0].angle"), 1.0.into())], 0.0)
         .expect_err("it is over");
     assert!(
         past.to_string().contains("crease[0].angle.ramp.end") || past.to_string().contains("end")
@@ -281,7 +284,7 @@ fn a_scene_changes_while_a_vertex_is_held() {
     live.lead([start[0], start[1], start[2] + 0.02], 0.05)
         .expect("finite");
     step(&mut live, 2);
-    live.drive(&[(key("crease[0].angle"), 45.0)], 0.1)
+    live.drive(&[(key("crease[0].angle"), 45.0.into())], 0.1)
         .expect("a function of time");
     assert_eq!(live.hand().map(|(vertex, _)| vertex), Some(VertexId(0)));
     step(&mut live, 8);
@@ -331,7 +334,10 @@ fn the_text_of_a_changed_scene_is_that_of_the_scene() {
     let mut live = live(&text);
     step(&mut live, 1);
     live.drive(
-        &[(key("air.wind[1]"), 2.0), (key("crease[0].angle"), 20.0)],
+        &[
+            (key("air.wind[1]"), 2.0.into()),
+            (key("crease[0].angle"), 20.0.into()),
+        ],
         1.0,
     )
     .expect("functions of time");
@@ -340,7 +346,7 @@ fn the_text_of_a_changed_scene_is_that_of_the_scene() {
         edit("contact.friction=0.5"),
     ])
     .expect("a change");
-    live.drive(&[(key("air.wind[1]"), 3.0)], 2.0)
+    live.drive(&[(key("air.wind[1]"), 3.0.into())], 2.0)
         .expect("a function of time");
     let changed = live.file();
     let text = &changed.text().text;
@@ -388,7 +394,7 @@ fn obstacles_do_not_jump() {
         edit("obstacle[0].motion.z={ smooth_step = { to = 0.1, begin = 0.01, end = 0.2 } }"),
     ])
     .expect("an obstacle that goes on from where it is");
-    live.drive(&[(key("obstacle[0].motion.z"), 0.05)], 0.1)
+    live.drive(&[(key("obstacle[0].motion.z"), 0.05.into())], 0.1)
         .expect("the same");
     step(&mut live, 10);
     let lowest = live

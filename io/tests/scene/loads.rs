@@ -112,7 +112,7 @@ fn a_pressure_is_driven_by_hand() {
     live.step(0.01).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(live.simulation().state().v, vec![0.0; 12]);
     let key = "forces.pressure[0].size".parse().expect("a key");
-    live.drive(&[(key, 20.0)], 0.02)
+    live.drive(&[(key, 20.0.into())], 0.02)
         .unwrap_or_else(|e| panic!("{e}"));
     for _ in 0..10 {
         live.step(0.01).unwrap_or_else(|e| panic!("{e}"));

@@ -22,6 +22,7 @@ mod messages;
 mod pairs;
 mod patches;
 mod peel;
+mod poses;
 mod random_bodies;
 mod restitution;
 mod seams;

@@ -593,3 +593,21 @@ fn remedies_are_those_of_scenes() {
     let told = scene.build().unwrap_err().to_string();
     assert!(told.contains("the face is at (0."), "{told}");
 }
+
+/// Problems of the entries of one list tend to have one cause: the first are shown, and how many there are
+/// besides.
+#[test]
+fn problems_of_a_list_are_shown_up_to_a_few() {
+    let rows = vec!["[nan, 0, 0]"; 25].join(", ");
+    let text = format!(
+        "version = 1\n[sheet]\nmesh = {{ square = {{ side = 0.2, level = 1 }} }}\nstart = {{ positions = [{rows}] }}\n\
+         [stop]\ntime = -1\n"
+    );
+    let error = parse(&text).map(drop).unwrap_err().to_string();
+    assert_eq!(error.matches("has the component").count(), 3, "{error}");
+    assert!(
+        error.contains("`sheet.start.positions` has 22 more such problems"),
+        "{error}"
+    );
+    assert!(error.contains("`stop.time` is -1"), "{error}");
+}

@@ -587,3 +587,68 @@ fn meshes_in_motion_that_cannot_be_obstacles_are_refused() {
     }
     assert!(simulation(dir.path(), &obstacle("below", "")).is_ok());
 }
+
+/// The frames of an archive as numbers are the same mesh in motion, bit for bit.
+#[test]
+fn frames_as_numbers_move_as_those_of_a_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let body = generate::grid(2, 2, 0.3, 0.2, generate::Diagonals::UnionJack).unwrap();
+    let frames = [0.0, 0.6].map(|t| (t, moved(body.positions(), [-0.05, -0.05, 0.1 * t - 0.02])));
+    write(&dir.path().join("body.npz"), &body, &frames);
+    let list = |x: &[f64]| format!("{:?}", x.as_chunks::<3>().0);
+    let numbers = format!(
+        "frames = {{ times = [0, 0.6], positions = [{}, {}], faces = {:?} }}",
+        list(&frames[0].1),
+        list(&frames[1].1),
+        body.face_indices()
+    );
+    let scene = |source: &str| {
+        let obstacle = format!("[[obstacle]]\nshape = {{ sequence = {{ {source} }} }}\n");
+        format!("{CLOTH}{obstacle}[stop]\ntime = 0.5\n")
+    };
+    let start = |source: &str| simulation(dir.path(), &scene(source)).unwrap();
+    let [mut file, mut here] = [start("path = \"body.npz\""), start(&numbers)];
+    for _ in 0..10 {
+        assert_eq!(file.step(1.0 / 60.0), here.step(1.0 / 60.0));
+    }
+    assert_eq!(file.state(), here.state());
+    // It lies on the mesh, and has not fallen by 0.14 m.
+    let heights = here.state().x[..3 * 45].iter().skip(2).step_by(3);
+    let lowest = heights.fold(f64::INFINITY, |low, z| low.min(*z));
+    assert!(lowest > -0.03, "{lowest} m");
+    let ragged = "frames = { times = [0, 1], positions = [[[0, 0, 9]], []], faces = [] }";
+    let index =
+        "frames = { times = [0, 1], positions = [[[0, 0, 9]], [[0, 0, 8]]], faces = [[0, 0, 1]] }";
+    let short = "frames = { times = [0, 0.2], positions = [[[0, 0, 9]], [[0, 0, 8]]], faces = [[0, 0, 0]] }";
+    for (source, says) in [
+        (
+            format!("path = \"body.npz\", {numbers}"),
+            "has a `path` and `frames`",
+        ),
+        (String::new(), "neither a `path` nor `frames`"),
+        (
+            ragged.to_owned(),
+            "the frame has 0 vertices, and the first one 1",
+        ),
+        (
+            numbers.replace("[0, 0.6]", "[0]"),
+            "positions of 2 frames at 1 times",
+        ),
+        (
+            numbers.replace("[0, 0.6]", "[0.6, 0]"),
+            "has the time 0 s after 0.6 s",
+        ),
+        (
+            numbers.replace("[0, 0.6]", "[0, nan]"),
+            "frames.times[1]` is NaN",
+        ),
+        (index.to_owned(), "refers to vertex 1 of 1"),
+        (short.to_owned(), "goes from 0 s to 0.2 s"),
+        (format!("{numbers}, rate = 24"), "leave `rate` out"),
+    ] {
+        let error = simulation(dir.path(), &scene(&source))
+            .map(drop)
+            .unwrap_err();
+        assert!(error.contains(says), "{source}: {error}");
+    }
+}

@@ -127,7 +127,10 @@ fn curls_and_swelling_are_driven_by_hand() {
     let text = strip(lines, "[forces]\ngravity = [0, 0, 0]\n");
     let mut live = LiveScene::start(parse(&text).unwrap()).unwrap();
     let key = |text: &str| text.parse().unwrap();
-    let targets = [(key("sheet.swell"), 0.01), (key("sheet.curl.profile"), 0.0)];
+    let targets = [
+        (key("sheet.swell"), 0.01.into()),
+        (key("sheet.curl.profile"), 0.0.into()),
+    ];
     live.drive(&targets, 0.5).unwrap();
     for _ in 0..60 {
         live.step(1.0 / 60.0).unwrap();

@@ -16,7 +16,7 @@ pub(super) fn page(session: &Session, title: &str, nonce: &str) -> Result<String
     let times = [state.t];
     let obstacles = live.obstacles().iter().enumerate();
     let obstacles = obstacles.map(|(k, body)| {
-        let name = format!("obstacle[{}]", live.obstacle_number(k));
+        let name = live.obstacle_called(k);
         Body::of_obstacle(&name, body, &times)
     });
     let holding = session.holding().iter().map(|body| {

@@ -217,7 +217,10 @@ impl Session {
         let until = t + DRIVING_STEPS * h;
         for (number, value) in std::mem::take(&mut self.put) {
             let slider = &mut self.sliders[number];
-            match self.live.drive(&[(slider.key.clone(), value)], until) {
+            match self
+                .live
+                .drive(&[(slider.key.clone(), value.into())], until)
+            {
                 Ok(()) => slider.driven(value, t, until),
                 Err(error) => self.refuse(&error),
             }

@@ -12,8 +12,7 @@ use crate::scene::sheet::{Bending, Elasticity, Isometry, RestShape};
 use crate::scene::targets::DrivenCrease;
 use isosheet_dynamics::{
     CreaseSprings, ElasticSheet, ElasticSheetError, LineClamp, Patched, PlateBending, PlateEdges,
-    PlateLaw, Potential, PotentialOfPart, RigidDisplacement, SheetModel, Stiffening,
-    start_of_folding,
+    PlateLaw, Potential, PotentialOfPart, RigidMotion, SheetModel, Stiffening, start_of_folding,
 };
 use isosheet_mesh::{EdgeId, MassMatrix, Part, VertexId};
 use std::collections::BTreeSet;
@@ -148,14 +147,14 @@ impl Builder<'_> {
 
     pub(super) fn line_clamps(&self, number: usize) -> Vec<(usize, LineClamp)> {
         let part = &self.sheets.list[number].part;
-        let of_clamp = |(support, vertices, motion): &(usize, Vec<VertexId>, RigidDisplacement)| {
+        let of_clamp = |(support, vertices, motion): &(usize, Vec<VertexId>, RigidMotion)| {
             let own = vertices
                 .iter()
                 .filter(|v| part.vertices.contains(&v.index()));
             let clamp = LineClamp {
                 vertices: own.map(|v| part.local_vertex(*v)).collect(),
                 positions: self.held_positions(*support)[part.coordinates()].to_vec(),
-                motion: motion.clone().into(),
+                motion: motion.clone(),
             };
             (!clamp.vertices.is_empty()).then_some((*support, clamp))
         };

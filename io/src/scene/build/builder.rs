@@ -4,6 +4,7 @@ use crate::scene::bond::Bond;
 use crate::scene::driven::DrivenObstacles;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
+use crate::scene::led::LedMotions;
 use crate::scene::measure::CreaseGauges;
 use crate::scene::mesh_file::Files;
 use crate::scene::obstacles;
@@ -17,9 +18,7 @@ use crate::scene::switches::Switches;
 use crate::scene::targets::Targets;
 use crate::scene::{Origins, Scene};
 use isosheet_collide as collide;
-use isosheet_dynamics::{
-    Patched, PlateBending, PlateLaw, PointMotion, RigidDisplacement, SheetModel,
-};
+use isosheet_dynamics::{Patched, PlateBending, PlateLaw, PointMotion, RigidMotion, SheetModel};
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, VertexId};
 use std::collections::BTreeMap;
@@ -40,6 +39,8 @@ pub(crate) struct Kept {
     pub(super) plates: Slots<PlateMadeOf, Arc<PlateBending>>,
     /// Those of the obstacles.
     pub(super) shapes: Slots<obstacles::Shape, collide::Shape>,
+    /// The motions that a program leads.
+    pub(crate) led: Vec<Key>,
     /// Where the simulation starts, once that is known.
     pub(super) start: Option<StartPlaces>,
 }
@@ -86,7 +87,8 @@ pub(super) struct Builder<'a> {
     pub(super) model: Option<SheetModel>,
     pub(super) origins: Origins,
     /// The supports that hold slopes, with their vertices.
-    pub(super) clamps: Vec<(usize, Vec<VertexId>, RigidDisplacement)>,
+    pub(super) clamps: Vec<(usize, Vec<VertexId>, RigidMotion)>,
+    pub(super) led: LedMotions,
     pub(super) modelled: Vec<String>,
     pub(super) targets: Targets,
     /// The creases of the scene that measures may be of.
@@ -147,8 +149,15 @@ impl<'a> Builder<'a> {
         let origins = Origins {
             bodies: surfaces.collect(),
             driven: driven.list.iter().map(|o| o.surface.clone()).collect(),
+            obstacles: scene
+                .obstacle
+                .iter()
+                .enumerate()
+                .map(|(k, o)| o.called(k))
+                .collect(),
             ..Origins::default()
         };
+        let led = LedMotions::of(&kept.led);
         Ok(Self {
             scene,
             kept,
@@ -170,6 +179,7 @@ impl<'a> Builder<'a> {
             model: Some(model),
             origins,
             clamps: Vec::new(),
+            led,
             modelled,
             targets: Targets::default(),
             creases: CreaseGauges::default(),

@@ -96,7 +96,10 @@ impl Builder<'_> {
             let shape = shapes.get(k, obstacle.shape.clone(), |shape| {
                 shape.build(&key.name("shape"), files)
             });
-            let body = obstacle.body(shape?, &key)?;
+            let (moved, pose) = (key.name("motion"), obstacle.pose.isometry());
+            let motion = self.led.of_body(&moved, &obstacle.motion, pose);
+            let body =
+                Obstacle::new(shape?, motion).map_err(|e| Problem::from_error(key.clone(), &e))?;
             obstacles.push(body.clone());
             let coefficients = Coefficients::equal(obstacle.friction);
             contacts = contacts.with_body(body, coefficients).map_err(at(&key))?;

@@ -7,10 +7,10 @@ use crate::scene::placed::PlacedSheet;
 use crate::scene::pose::Motion;
 use crate::scene::problem::Problem;
 use crate::scene::sheet::Bending;
-use crate::scene::supports::{Hold, frame_motion};
+use crate::scene::supports::Hold;
 use crate::scene::switch::Holder;
 use isosheet_dynamics::constraint::Line;
-use isosheet_dynamics::{PointMotion, PointProfile, RigidProfile, VertexConstraint};
+use isosheet_dynamics::{PointMotion, PointProfile, VertexConstraint};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Isometry3, Point3};
 use std::collections::BTreeSet;
@@ -21,13 +21,15 @@ impl Builder<'_> {
             let key = Key::root().name("support").entry(k);
             let name = support.sheet.as_deref();
             let mut vertices = self.sheets.vertices(name, &support.at, &key)?;
+            let moved = support.hold.motion_place().map(|place| key.name(place));
+            let moved = moved.unwrap_or_else(|| key.name("hold"));
             if let Some(motion) = support.hold.clamp_motion() {
                 let slides = matches!(support.hold, Hold::SlidingClamp { .. });
                 vertices.extend(self.clamped_faces(&vertices, slides, &key)?);
                 if !self.switches.holds(Holder::Support(k)) {
                     continue;
                 }
-                let motion = motion.of_body(Isometry3::identity());
+                let motion = self.led.of_body(&moved, &motion, Isometry3::identity());
                 self.clamps.push((k, vertices.clone(), motion));
             }
             if !self.switches.holds(Holder::Support(k)) {
@@ -42,13 +44,14 @@ impl Builder<'_> {
                         let point = self.held_position(k, v);
                         let line = Line::new(point, *direction).map_err(at(&key))?;
                         let constraint = VertexConstraint::on_curve(v, line);
-                        self.constrain(constraint, motion, k)?;
+                        self.constrain(constraint, motion, (k, &moved))?;
                     }
                 }
                 Hold::Pin | Hold::Clamp => self.change(|m| m.with_pins(&vertices), at(&key))?,
                 Hold::MovingPin(motion) | Hold::MovingClamp(motion) => {
                     for &v in &vertices {
-                        let motion = pin_motion(motion, self.held_position(k, v));
+                        let place = self.held_position(k, v);
+                        let motion = self.led.of_pin(&moved, motion, place);
                         self.change(|m| m.with_moving_pin(v, motion), at(&key))?;
                     }
                 }
@@ -62,7 +65,7 @@ impl Builder<'_> {
                 Hold::Curve { shape, motion } => {
                     for &v in &vertices {
                         let constraint = shape.constrain(v).map_err(at(&key))?;
-                        self.constrain(constraint, motion, k)?;
+                        self.constrain(constraint, motion, (k, &moved))?;
                     }
                 }
                 Hold::Surface {
@@ -73,7 +76,7 @@ impl Builder<'_> {
                     for &v in &vertices {
                         let constraint = shape.constrain(v, side.as_engine());
                         let constraint = constraint.map_err(at(&key))?;
-                        self.constrain(constraint, motion, k)?;
+                        self.constrain(constraint, motion, (k, &moved))?;
                     }
                 }
             }
@@ -91,7 +94,7 @@ impl Builder<'_> {
         for (k, support) in self.scene.support.iter().enumerate() {
             let turns = match &support.hold {
                 Hold::Pin => false,
-                Hold::MovingPin(motion) => motion.rotation.is_some(),
+                Hold::MovingPin(motion) => motion.turns(),
                 _ => continue,
             };
             let held = |v: &VertexId| self.origins.pins.get(v) == Some(&k);
@@ -172,12 +175,15 @@ impl Builder<'_> {
         &mut self,
         constraint: VertexConstraint,
         motion: &Motion,
-        number: usize,
+        (number, moved): (usize, &Key),
     ) -> Result<(), SceneError> {
         let key = Key::root().name("support").entry(number).name("hold");
-        let constraint = match frame_motion(motion) {
-            None => constraint,
-            Some(motion) => constraint.moving(motion),
+        let constraint = match *motion != Motion::default() || self.led.has(moved) {
+            false => constraint,
+            true => {
+                let motion = self.led.of_body(moved, motion, Isometry3::identity());
+                constraint.moving(motion)
+            }
         };
         self.change(|m| m.with_constraint(constraint), at(&key))?;
         self.origins.constraints.push(number);
@@ -186,8 +192,8 @@ impl Builder<'_> {
 }
 
 /// The motion of a pinned vertex that starts at `p`.
-fn pin_motion(motion: &Motion, p: [f64; 3]) -> PointMotion {
-    if motion.rotation.is_none() {
+pub(in crate::scene) fn pin_motion(motion: &Motion, p: [f64; 3]) -> PointMotion {
+    if !motion.turns() {
         return PointMotion::from(PointProfile {
             offset: p,
             x: motion.x.as_given(),
@@ -195,7 +201,7 @@ fn pin_motion(motion: &Motion, p: [f64; 3]) -> PointMotion {
             z: motion.z.as_given(),
         });
     }
-    let rigid = RigidProfile::from(motion.of_body(Isometry3::identity()));
+    let rigid = motion.of_body(Isometry3::identity());
     PointMotion::from(move |t: f64| -> [f64; 3] {
         (rigid.kinematics(t).pose * Point3::from(p)).coords.into()
     })

@@ -1,0 +1,94 @@
+//! Motions that a program leads, in a simulation that is under way.
+
+use super::build::pin_motion;
+use super::key::Key;
+use super::pose::Motion;
+use isosheet_dynamics::{Led, PointMotion, RigidMotion};
+use nalgebra::Isometry3;
+
+/// All that the engine has of a rigid motion of the scene.
+#[derive(Clone, Debug)]
+pub(crate) struct LedMotion {
+    key: Key,
+    /// Bodies, with the pose of each while nothing is displaced.
+    bodies: Vec<(Isometry3<f64>, Led<RigidMotion>)>,
+    /// Pinned vertices, with the place of each while nothing is displaced, metres.
+    points: Vec<([f64; 3], Led<PointMotion>)>,
+}
+
+impl LedMotion {
+    /// Whether a key is that of the motion, or of a part of it.
+    pub(super) fn has(&self, key: &Key) -> bool {
+        key.is_within(&self.key)
+    }
+
+    /// Goes on with another motion, which is where this one is now.
+    pub(super) fn lead(&self, motion: &Motion) {
+        for (body, led) in &self.bodies {
+            led.lead(motion.of_body(*body));
+        }
+        for (point, led) in &self.points {
+            led.lead(pin_motion(motion, *point));
+        }
+    }
+}
+
+/// What a model that is on its way has of the motions that are led.
+#[derive(Debug)]
+pub(super) struct LedMotions(Vec<LedMotion>);
+
+impl LedMotions {
+    /// Of these keys, which have nothing yet.
+    pub(super) fn of(keys: &[Key]) -> Self {
+        let motion = |key: &Key| LedMotion {
+            key: key.clone(),
+            bodies: Vec::new(),
+            points: Vec::new(),
+        };
+        Self(keys.iter().map(motion).collect())
+    }
+
+    fn find(&mut self, key: &Key) -> Option<&mut LedMotion> {
+        self.0.iter_mut().find(|led| led.key == *key)
+    }
+
+    /// Whether a motion is led.
+    pub(super) fn has(&mut self, key: &Key) -> bool {
+        self.find(key).is_some()
+    }
+
+    /// The motion of a body in a pose, as the engine has it.
+    pub(super) fn of_body(
+        &mut self,
+        key: &Key,
+        motion: &Motion,
+        pose: Isometry3<f64>,
+    ) -> RigidMotion {
+        let now = RigidMotion::from(motion.of_body(pose));
+        match self.find(key) {
+            None => now,
+            Some(led) => {
+                let cell = Led::new(now);
+                led.bodies.push((pose, cell.clone()));
+                RigidMotion::Led(cell)
+            }
+        }
+    }
+
+    /// The motion of a pinned vertex at a place (metres), as the engine has it.
+    pub(super) fn of_pin(&mut self, key: &Key, motion: &Motion, place: [f64; 3]) -> PointMotion {
+        let now = pin_motion(motion, place);
+        match self.find(key) {
+            None => now,
+            Some(led) => {
+                let cell = Led::new(now);
+                led.points.push((place, cell.clone()));
+                PointMotion::Led(cell)
+            }
+        }
+    }
+
+    pub(super) fn into_list(self) -> Vec<LedMotion> {
+        self.0
+    }
+}

@@ -1,0 +1,85 @@
+//! Supports and obstacles that move too fast for a step.
+
+use super::engine_problem::is_without_room;
+use super::functions::Moved;
+use super::key::{Key, KeyPart};
+use super::selection::bounds;
+use super::under_way::UnderWay;
+use super::{Problem, Scene};
+use isosheet_dynamics::StepError;
+use isosheet_mesh::wording::brief;
+use nalgebra::{Point3, Vector3};
+
+/// What moved.
+struct Fastest {
+    key: Key,
+    /// The largest way of a point in the step, metres.
+    way: f64,
+}
+
+/// What is wrong with a step of `h` seconds that failed while a support or an obstacle moves farther in it
+/// than the sheets are large: where the sheets end, they have little to do with where they began. Nothing if
+/// none does.
+pub(super) fn too_fast(
+    scene: &Scene,
+    under_way: &UnderWay,
+    error: &StepError,
+    h: f64,
+) -> Option<Problem> {
+    if !is_without_room(error) {
+        return None;
+    }
+    let Fastest { key, way } = fastest(scene, under_way, h)?;
+    let [low, high] = bounds(under_way.facts.sheet.positions().as_chunks::<3>().0);
+    let size = (Vector3::from(high) - Vector3::from(low)).norm();
+    if way <= size {
+        return None;
+    }
+    let name = under_way.facts.origins.called(&key);
+    let message = format!(
+        "{name} moves by {} m in a step of {} s, at {} m/s, and the sheet is {} m across; {}",
+        brief(way),
+        brief(h),
+        brief(way / h),
+        brief(size),
+        under_way.facts.origins.in_words(error)
+    );
+    let remedy = format!(
+        "move it more slowly, below {} m/s, over several steps, or take a `method.step` below {} s",
+        brief(size / h),
+        brief(h * size / way)
+    );
+    Some(Problem::new(key, message, remedy))
+}
+
+/// What moves farthest in a step from the present state.
+fn fastest(scene: &Scene, under_way: &UnderWay, h: f64) -> Option<Fastest> {
+    let simulation = &under_way.simulation;
+    let (t, x) = (
+        simulation.state().t,
+        simulation.state().x.as_chunks::<3>().0,
+    );
+    let (origins, model) = (&under_way.facts.origins, simulation.model());
+    let held = origins.vertices(model, scene.support.len());
+    let mut scene = scene.clone();
+    let ways = scene.motions_mut().into_iter().filter_map(|moved| {
+        let Moved { key, motion, frame } = moved;
+        let Some(KeyPart::Entry(number)) = key.parts().get(1) else {
+            return None;
+        };
+        let body = motion.of_body(frame);
+        let [from, to] = [t, t + h].map(|t| body.kinematics(t).pose);
+        let points: Vec<Point3<f64>> = match &key.parts()[0] {
+            KeyPart::Name(list) if list == "support" => {
+                let vertices = held.get(*number)?.iter();
+                vertices.map(|v| Point3::from(x[v.index()])).collect()
+            }
+            _ => vec![from * Point3::origin()],
+        };
+        let there = to * from.inverse();
+        let ways = points.iter().map(|p| (there * p - p).norm());
+        let way = ways.fold(0.0, f64::max);
+        Some(Fastest { key, way })
+    });
+    ways.max_by(|a, b| a.way.total_cmp(&b.way))
+}
