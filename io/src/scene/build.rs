@@ -23,7 +23,6 @@ use builder::Builder;
 pub(crate) use builder::Kept;
 use isosheet_collide::{Contacts, Obstacle};
 use std::path::Path;
-pub(super) use supports::pin_motion;
 
 impl Scene {
     /// Makes everything that a simulation needs. Masses are lumped: a third of that of each face at each of

@@ -1,6 +1,5 @@
 //! Motions that a program leads, in a simulation that is under way.
 
-use super::build::pin_motion;
 use super::key::Key;
 use super::pose::Motion;
 use isosheet_dynamics::{Led, PointMotion, RigidMotion};
@@ -28,7 +27,7 @@ impl LedMotion {
             led.lead(motion.of_body(*body));
         }
         for (point, led) in &self.points {
-            led.lead(pin_motion(motion, *point));
+            led.lead(motion.of_pin(*point));
         }
     }
 }
@@ -77,7 +76,7 @@ impl LedMotions {
 
     /// The motion of a pinned vertex at a place (metres), as the engine has it.
     pub(super) fn of_pin(&mut self, key: &Key, motion: &Motion, place: [f64; 3]) -> PointMotion {
-        let now = pin_motion(motion, place);
+        let now = motion.of_pin(place);
         match self.find(key) {
             None => now,
             Some(led) => {

@@ -5,8 +5,8 @@ use super::poses::{FramePose, Poses, TimedPose};
 use super::problem::Checks;
 use super::profile::Profile;
 use super::unit::Unit;
-use isosheet_dynamics::{AxisRotation, RigidDisplacement, RigidProfile};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use isosheet_dynamics::{AxisRotation, PointMotion, PointProfile, RigidDisplacement, RigidProfile};
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -155,6 +155,22 @@ impl Motion {
         })
     }
 
+    /// The motion of a pinned vertex that starts at `p`.
+    pub(super) fn of_pin(&self, p: [f64; 3]) -> PointMotion {
+        if !self.turns() {
+            return PointMotion::from(PointProfile {
+                offset: p,
+                x: self.x.as_given(),
+                y: self.y.as_given(),
+                z: self.z.as_given(),
+            });
+        }
+        let rigid = self.of_body(Isometry3::identity());
+        PointMotion::from(move |t: f64| -> [f64; 3] {
+            (rigid.kinematics(t).pose * Point3::from(p)).coords.into()
+        })
+    }
+
     /// Whether what moves can turn.
     pub(super) fn turns(&self) -> bool {
         self.rotation.is_some() || self.poses.is_some()
@@ -228,7 +244,7 @@ mod tests {
         for angle in [-500.0, -90.0, 0.0, 33.0, 90.0, 180.0, 270.0, 450.0] {
             let pose = pose([1.0, 2.0, -0.5], angle);
             let placed = Vector3::from(pose.place(p));
-            let expected = pose.isometry() * nalgebra::Point3::from(p);
+            let expected = pose.isometry() * Point3::from(p);
             assert!((placed - expected.coords).norm() < 1e-14, "{angle}");
         }
         for (angle, expected) in [

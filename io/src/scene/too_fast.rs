@@ -17,15 +17,18 @@ struct Fastest {
     way: f64,
 }
 
+impl UnderWay {
+    /// What is wrong with a step of `h` seconds that failed.
+    pub(crate) fn problem(&self, scene: &Scene, error: &StepError, h: f64) -> Problem {
+        let of_engine = || self.facts.origins.of_failed_step(error, &self.simulation);
+        too_fast(scene, self, error, h).unwrap_or_else(of_engine)
+    }
+}
+
 /// What is wrong with a step of `h` seconds that failed while a support or an obstacle moves farther in it
 /// than the sheets are large: where the sheets end, they have little to do with where they began. Nothing if
 /// none does.
-pub(super) fn too_fast(
-    scene: &Scene,
-    under_way: &UnderWay,
-    error: &StepError,
-    h: f64,
-) -> Option<Problem> {
+fn too_fast(scene: &Scene, under_way: &UnderWay, error: &StepError, h: f64) -> Option<Problem> {
     if !is_without_room(error) {
         return None;
     }

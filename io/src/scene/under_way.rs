@@ -3,8 +3,7 @@
 use super::build::Kept;
 use super::setup::Facts;
 use super::switches::{Reached, Switches, not_taken_up};
-use super::too_fast::too_fast;
-use super::{Problem, Scene, SceneError, Setup, SupportForces};
+use super::{Scene, SceneError, Setup, SupportForces};
 use crate::format::EventRow;
 use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{Hand, Simulation, StepError, StepProgress, StepReport};
@@ -58,12 +57,6 @@ impl UnderWay {
         let stepped = self.simulation.step_watched(h, watch);
         self.before = None;
         stepped
-    }
-
-    /// What is wrong with a step of `h` seconds that failed.
-    pub(crate) fn problem(&self, scene: &Scene, error: &StepError, h: f64) -> Problem {
-        let of_engine = || self.facts.origins.of_failed_step(error, &self.simulation);
-        too_fast(scene, self, error, h).unwrap_or_else(of_engine)
     }
 
     /// Takes up and releases what the step that has ended asks for, and goes on with it; what has happened. `hand`

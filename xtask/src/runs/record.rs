@@ -280,9 +280,8 @@ fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<(Summary, Times)
     // The trajectory has all of these frames, and a run that is complete needs no others.
     fs::remove_file(folder.join("frames.bin"))?;
     bar.finish(&format!(
-        "{} of {} frames, {:.1} frames/s",
+        "{} steps, {:.1} steps/s",
         summary.steps,
-        scene.frames(),
         summary.steps as f64 / times.wall.max(1e-9)
     ));
     Ok((summary, times))

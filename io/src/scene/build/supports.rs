@@ -9,10 +9,10 @@ use crate::scene::problem::Problem;
 use crate::scene::sheet::Bending;
 use crate::scene::supports::Hold;
 use crate::scene::switch::Holder;
+use isosheet_dynamics::VertexConstraint;
 use isosheet_dynamics::constraint::Line;
-use isosheet_dynamics::{PointMotion, PointProfile, VertexConstraint};
 use isosheet_mesh::{EdgeId, VertexId};
-use nalgebra::{Isometry3, Point3};
+use nalgebra::Isometry3;
 use std::collections::BTreeSet;
 
 impl Builder<'_> {
@@ -189,20 +189,4 @@ impl Builder<'_> {
         self.origins.constraints.push(number);
         Ok(())
     }
-}
-
-/// The motion of a pinned vertex that starts at `p`.
-pub(in crate::scene) fn pin_motion(motion: &Motion, p: [f64; 3]) -> PointMotion {
-    if !motion.turns() {
-        return PointMotion::from(PointProfile {
-            offset: p,
-            x: motion.x.as_given(),
-            y: motion.y.as_given(),
-            z: motion.z.as_given(),
-        });
-    }
-    let rigid = motion.of_body(Isometry3::identity());
-    PointMotion::from(move |t: f64| -> [f64; 3] {
-        (rigid.kinematics(t).pose * Point3::from(p)).coords.into()
-    })
 }
