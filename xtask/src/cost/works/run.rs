@@ -133,7 +133,8 @@ impl WorkRow {
     }
 }
 
-/// Runs a work from all starts. After a run that does not come to its end, no other start is tried.
+/// Runs a work from all starts. After a start that is refused, or a run that does not come to its end, no other start is
+/// tried.
 ///
 /// # Errors
 /// A scene of which no simulation can be made; [`Interrupted`](crate::interrupt::Interrupted).
@@ -169,9 +170,16 @@ pub(super) fn measure(task: &Task, effort: Effort) -> Result<WorkRow> {
         scene: work.command(task.size),
         ..WorkRow::default()
     };
-    let mut runs = Vec::new();
+    let (mut runs, mut refused) = (Vec::new(), None);
     for number in 1..=starts {
-        let mut start = start(number)?;
+        // The first start was one.
+        let mut start = match start(number) {
+            Err(error) if number > 1 => {
+                refused = Some(format!("start {number}: {}", in_short(&error)));
+                break;
+            }
+            start => start?,
+        };
         let Plan { step, duration, .. } = start.plan;
         start.plan = Plan::new(step, duration.min(steps * step)).within(patience);
         runs.push(pool.install(|| run(start))?);
@@ -181,9 +189,20 @@ pub(super) fn measure(task: &Task, effort: Effort) -> Result<WorkRow> {
         }
     }
     let row = row.with(&runs);
+    let row = WorkRow {
+        failure: row.failure.or(refused),
+        ..row
+    };
     let rate = row.cpu_s_per_simulated_s;
     bar.finish(&format!("{:.2} CPU s/s", rate.unwrap_or(f64::NAN)));
     Ok(row)
+}
+
+/// The first line of an error, without the place in a scene.
+fn in_short(error: &anyhow::Error) -> String {
+    let text = error.to_string();
+    let line = text.lines().next().unwrap_or_default();
+    line.strip_prefix("error: ").unwrap_or(line).to_owned()
 }
 
 fn run(start: PreparedRun) -> Result<TimedRun> {
