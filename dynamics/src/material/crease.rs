@@ -20,10 +20,10 @@ use super::plasticity::Yield;
 use crate::motion::profile::ProfileError;
 use crate::options::OptionsError;
 use crate::{HessianSink, Potential};
-use fold::Fold;
+use fold::{Fold, SecondDerivatives};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Sheet, Topology, VertexId};
-use nalgebra::Vector1;
+use nalgebra::{Matrix3, Vector1};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
@@ -176,8 +176,8 @@ impl Advice for CreaseError {
 ///
 /// The work of driving a rest angle, the integral of `dV/dt` at fixed positions, enters the energy balance.
 /// The derivatives of the angle are those of Bridson, Marino and Fedkiw, *Simulation of clothing with folds
-/// and wrinkles* (2003), Eq. 3; of the Hessian the semidefinite part `k grad theta grad theta^T` is given,
-/// exact where the spring is at rest.
+/// and wrinkles* (2003), Eq. 3, the second ones those of Tamstorf and Grinspun, *Discrete bending forces and
+/// their Jacobians* (2013); the semidefinite part of the Hessian is `k grad theta grad theta^T`.
 ///
 /// Springs that [yield](Yield) remember plastic angles `p_e` besides (radians, one for each layer, in
 /// [`Potential::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a
@@ -462,6 +462,27 @@ impl Hinge {
     }
 }
 
+impl Hinge {
+    /// Adds the blocks of its vertices by their places, rows at the first.
+    fn add_blocks(
+        &self,
+        hessian: &mut dyn HessianSink,
+        block: impl Fn(usize, usize) -> Matrix3<f64>,
+    ) {
+        for (i, &v) in self.vertices.iter().enumerate() {
+            hessian.add_vertex(v, &block(i, i));
+        }
+        for &(between, i, j) in &self.pairs {
+            match between {
+                Between::Edge(e) => hessian.add_edge(e, &block(i, j)),
+                Between::Nothing => {
+                    hessian.add_pair(self.vertices[i], self.vertices[j], &block(i, j));
+                }
+            }
+        }
+    }
+}
+
 impl Potential for CreaseSprings {
     fn energy(&self, at: At<'_>) -> f64 {
         let At { t, x, .. } = at;
@@ -486,26 +507,28 @@ impl Potential for CreaseSprings {
     }
 
     fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
-        let At { t, x, .. } = at;
         for (h, p) in self.with_plastic(at.memory) {
-            let fold = Fold::at(x, &h.vertices);
+            let fold = Fold::at(at.x, &h.vertices);
+            let Response {
+                elastic, tangent, ..
+            } = h.respond(at.t, fold.angle(), p);
+            let (g, second) = (fold.gradient(), SecondDerivatives::of(&fold));
+            let moment = h.stiffness * elastic;
+            h.add_blocks(hessian, |i, j| {
+                tangent * g[i] * g[j].transpose() + moment * second.block(i, j)
+            });
+        }
+    }
+
+    fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
+        for (h, p) in self.with_plastic(at.memory) {
+            let fold = Fold::at(at.x, &h.vertices);
             let tangent = match h.yields {
                 None => h.stiffness,
-                Some(_) => h.respond(t, fold.angle(), p).tangent,
+                Some(_) => h.respond(at.t, fold.angle(), p).tangent,
             };
             let g = fold.gradient();
-            let block = |i: usize, j: usize| tangent * g[i] * g[j].transpose();
-            for (i, &v) in h.vertices.iter().enumerate() {
-                hessian.add_vertex(v, &block(i, i));
-            }
-            for &(between, i, j) in &h.pairs {
-                match between {
-                    Between::Edge(e) => hessian.add_edge(e, &block(i, j)),
-                    Between::Nothing => {
-                        hessian.add_pair(h.vertices[i], h.vertices[j], &block(i, j));
-                    }
-                }
-            }
+            h.add_blocks(hessian, |i, j| tangent * g[i] * g[j].transpose());
         }
     }
 

@@ -85,6 +85,8 @@ pub(super) struct Newton<'a, 'b, 'w> {
     /// The part of the Hessian that is tried first: all of it until that turns out to be indefinite.
     hessian: HessianPart,
     residual: f64,
+    /// What the iteration before has left.
+    last_residual: f64,
     outcome: StepOutcome,
 }
 
@@ -110,6 +112,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             has_sought_saddle: false,
             hessian: HessianPart::Full,
             residual: f64::INFINITY,
+            last_residual: f64::INFINITY,
             outcome: StepOutcome::Newton,
         }
     }
@@ -239,6 +242,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     fn judge(&mut self, direction: &Direction) -> Quality {
         let Direction { before, slope, .. } = direction;
         let tolerance = self.work.tolerance;
+        self.last_residual = self.residual;
         if slope.abs() <= before.round_off + self.noise(before) {
             self.residual = 0.0;
             return Quality::RoundOff;
@@ -402,12 +406,45 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             self.work.lagrangian.merit(self.problem);
             return Ok(Some(1.0));
         }
-        let (length, cut) = self.line_search(limit, direction);
+        let (mut length, cut) = self.line_search(limit, direction);
+        if length == Some(1.0) && cut == Cut::Nothing && self.is_overestimated(direction) {
+            length = Some(self.prolong());
+        }
         self.trace(length.unwrap_or(0.0), cut, direction.hessian);
         match length {
             None if quality != Quality::RoundOff => Err(self.effort.failed(Reason::NoDescent)),
             length => Ok(length),
         }
+    }
+
+    /// Whether whole steps leave nearly all of the residual, as they do along directions in which the part of
+    /// the Hessian without negative eigenvalues is many times stiffer than the energy. In contact, and where
+    /// lengths are kept, longer steps would have to be checked again.
+    fn is_overestimated(&self, direction: &Direction) -> bool {
+        direction.hessian == Definiteness::Modified
+            && self.residual > self.work.tuning.slow * self.last_residual
+            && self.phase.iterate_strain == f64::INFINITY
+            && !self.problem.has_contact()
+    }
+
+    /// Doubles the step, which has been taken, as long as the merit function decreases; its length.
+    fn prolong(&mut self) -> f64 {
+        let mut best = self.work.lagrangian.merit(self.problem).value;
+        let mut length = 1.0;
+        loop {
+            self.work.lagrangian.return_to_start(self.problem);
+            let longer = 2.0 * length;
+            let reached = self.work.lagrangian.go_to(self.problem, longer);
+            let value = self.work.lagrangian.merit(self.problem).value;
+            if reached != Some(longer) || !(value < best) {
+                break;
+            }
+            (best, length) = (value, longer);
+        }
+        self.work.lagrangian.return_to_start(self.problem);
+        let _ = self.work.lagrangian.go_to(self.problem, length);
+        self.work.lagrangian.merit(self.problem);
+        length
     }
 
     /// Goes on by up to `limit` of the step, not far from the rest lengths; the part of the step, or nothing

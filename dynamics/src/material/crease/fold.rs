@@ -2,7 +2,7 @@
 
 use crate::vectors::point;
 use isosheet_mesh::VertexId;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// The two faces at an edge.
 pub(super) struct Fold {
@@ -62,5 +62,59 @@ impl Fold {
             g_l,
             g_r,
         ]
+    }
+}
+
+/// The second derivatives of a fold angle, 3 x 3 blocks by the two ends and the two opposite vertices.
+///
+/// With the edge `e` from the first end and the vertex at `p` from there, the gradient of the angle by that
+/// vertex is `g = |e| n / |n|^2`, `n` the normal of the face, and by the ends `(s - 1) g` and `-s g`, `s = p .
+/// e / |e|^2`, for each of the two faces: the blocks are the derivatives of these, and that of the two opposite
+/// vertices is zero. (Tamstorf and Grinspun, "Discrete bending forces and their Jacobians", Graphical Models 75,
+/// 2013.)
+pub(super) struct SecondDerivatives {
+    blocks: [[Matrix3<f64>; 4]; 4],
+}
+
+impl SecondDerivatives {
+    pub(super) fn of(fold: &Fold) -> Self {
+        let mut blocks = [[Matrix3::zeros(); 4]; 4];
+        let sides = [
+            (2, fold.to_left, fold.left, 1.0),
+            (3, fold.to_right, fold.right, -1.0),
+        ];
+        let e = fold.along;
+        let squared = e.norm_squared();
+        let length = squared.sqrt();
+        for (corner, p, normal, sign) in sides {
+            let area = normal.norm_squared();
+            let g = normal * (length / area);
+            let s = p.dot(&e) / squared;
+            let by_normal = (Matrix3::identity() - normal * normal.transpose() * (2.0 / area))
+                * (sign * length / area);
+            let g_by_edge = normal * e.transpose() / (area * length) - by_normal * p.cross_matrix();
+            let g_by_corner = by_normal * e.cross_matrix();
+            let s_by_edge = (p - e * (2.0 * s)).transpose() / squared;
+            let s_by_corner = e.transpose() / squared;
+            let first_by_edge = g * s_by_edge + g_by_edge * (s - 1.0);
+            let first_by_corner = g * s_by_corner + g_by_corner * (s - 1.0);
+            blocks[0][0] -= first_by_edge + first_by_corner;
+            blocks[0][1] += first_by_edge;
+            blocks[1][1] -= g * s_by_edge + g_by_edge * s;
+            blocks[0][corner] = first_by_corner;
+            blocks[1][corner] = -(g * s_by_corner + g_by_corner * s);
+            blocks[corner][corner] = g_by_corner;
+        }
+        for row in 1..4 {
+            for column in 0..row {
+                blocks[row][column] = blocks[column][row].transpose();
+            }
+        }
+        Self { blocks }
+    }
+
+    /// The block of two of the four vertices, rows at the first.
+    pub(super) fn block(&self, i: usize, j: usize) -> Matrix3<f64> {
+        self.blocks[i][j]
     }
 }

@@ -87,14 +87,10 @@ fn the_gradient_matches_differences_of_the_energy() {
 }
 
 #[test]
-fn the_hessian_matches_differences_of_the_gradient_where_the_springs_rest() {
+fn the_hessian_matches_differences_of_the_gradient() {
     let (sheet, x) = crumpled();
     let t = sheet.topology();
-    let rest: Vec<f64> = t
-        .edge_ids()
-        .map(|e| fold_angle(t, &x, e).unwrap_or(0.0))
-        .collect();
-    let p = springs(t, |e| rest[e.index()]);
+    let p = springs(t, |e| 0.7 * (e.index() as f64).sin());
     // Driven angles are at their amplitude at t = 1.
     let pinned = [VertexId(3), VertexId(12)];
     let model = SheetModel::new(&sheet, 1e-9, MassKind::Lumped)
