@@ -4,7 +4,7 @@ use crate::material::crease::folding_from_flat;
 use crate::vectors::diameter;
 use crate::{
     CreaseSpring, CreaseSprings, ImplicitOptions, Method, SheetModel, Simulation, State,
-    project_positions,
+    StepControl, project_positions,
 };
 use isosheet_mesh::{EdgeId, MassMatrix, Sheet, VertexId, fold_angle};
 
@@ -72,8 +72,14 @@ pub fn start_of_folding(
             ..ImplicitOptions::default()
         };
         let start = State::at_rest(start.to_vec());
-        let mut simulation =
-            Simulation::new(model()?, start, Method::ImplicitEuler(options)).ok()?;
+        // Shorter steps lead to no equilibrium.
+        let control = StepControl {
+            min_fraction: 1.0 / LONG,
+            ..StepControl::default()
+        };
+        let method = Method::ImplicitEuler(options);
+        let simulation = Simulation::new(model()?, start, method).ok()?;
+        let mut simulation = simulation.with_control(control).ok()?;
         for _ in 0..STEPS {
             simulation.step(h).ok()?;
         }

@@ -205,8 +205,9 @@ impl Pattern<'_> {
                 Some(trial) => (!closes(&trial, WELL), trial.error()),
                 None => (true, f64::INFINITY),
             };
-            let is_first = best.1.panels == Panels::Rigid && best.0.is_none();
-            if is_first || rank(found) < rank(best.0) {
+            // Soft panels come to an end, if it takes longer.
+            let is_only = best.0.is_none() && matches!(panels, Panels::Soft { .. });
+            if is_only || rank(found) < rank(best.0) {
                 best = (found, scene);
             }
         }

@@ -9,6 +9,11 @@ type Point = [f64; 3];
 /// coordinates of seven digits. A panel has the same cuts in every position then, flat and folded.
 const EQUAL_CUTS: f64 = 1e-6;
 
+/// Height of a triangle beside the cut at its foot below which others are cut off first, which points of a curve
+/// that hardly bends leave: slopes across such a triangle are so much greater than lengths along it, and the
+/// numbers of a matrix differ by the square, a million.
+const SLIVER: f64 = 1e-3;
+
 /// More corners of a polygon are refused: cutting takes up to the third power of their number, a second for
 /// so many.
 pub(super) const MOST_CORNERS: usize = 1000;
@@ -24,8 +29,8 @@ pub(super) struct Pieces {
 /// or touches itself, seen along its normal, or has no area. It may come to a corner more than once, as that of a face does
 /// into which another one reaches from a corner, and run along a line to a hole in both directions.
 ///
-/// Corner after corner is cut off, always by the shortest cut that is inside: a quad is cut along its shorter
-/// diagonal if both will do. Of equal cuts that with the smallest vertex number is made. A Delaunay
+/// Corner after corner is cut off, always by the shortest cut that is inside and leaves no sliver, if there is
+/// one: a quad is cut along its shorter diagonal if both will do. Of equal cuts that with the smallest vertex number is made. A Delaunay
 /// triangulation would leave it to round-off how the corners of a rectangle are joined.
 pub(super) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<Pieces> {
     let (places, near) = outline(corners, at)?;
@@ -75,10 +80,13 @@ fn next_ear(left: &[usize], corners: &[u32], places: &[Point], near: f64) -> Opt
         let [a, _, c] = around(left, k).map(|k| places[k]);
         (a[0] - c[0]).hypot(a[1] - c[1])
     };
+    let is_sliver = |k: usize| height(around(left, k), places) <= SLIVER * length(k);
     let ears: Vec<(usize, f64)> = (0..left.len())
         .filter(is_ear)
         .map(|k| (k, length(k)))
         .collect();
+    let (good, slivers): (Vec<_>, Vec<_>) = ears.into_iter().partition(|ear| !is_sliver(ear.0));
+    let ears = if good.is_empty() { slivers } else { good };
     let shortest = ears.iter().map(|ear| ear.1).min_by(f64::total_cmp)?;
     let equal = ears
         .iter()
@@ -212,6 +220,25 @@ mod tests {
         ];
         let triangles = cut(&arrow).unwrap();
         assert!(triangles.iter().all(|t| t.contains(&1) && t.contains(&3)));
+    }
+
+    /// A strip between two curves that bend outwards by a ten thousandth of their length: all triangles reach from
+    /// one to the other.
+    #[test]
+    fn curves_that_hardly_bend_leave_no_slivers() {
+        let bend = |x: f64| 1e-4 * x * (10.0 - x);
+        let lower = (0..=10).map(f64::from).map(|x| [x, -bend(x), 0.0]);
+        let upper = (0..=10)
+            .rev()
+            .map(f64::from)
+            .map(|x| [x, 1.0 + bend(x), 0.0]);
+        let points: Vec<Point> = lower.chain(upper).collect();
+        let triangles = cut(&points).unwrap();
+        assert_eq!(triangles.len(), 20);
+        for t in &triangles {
+            let places = t.map(|c| points[c as usize]);
+            assert!(twice_area(places.iter()) > 0.9, "{t:?}");
+        }
     }
 
     /// A square from whose corner 0 a square hole reaches inwards: the outline comes to the corner twice.
