@@ -58,6 +58,8 @@ mod incidence;
 mod intervention;
 mod page;
 mod passing;
+#[cfg(feature = "picture")]
+mod quantity;
 mod recorder;
 mod recording;
 mod replay;

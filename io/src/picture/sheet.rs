@@ -2,6 +2,7 @@
 
 use super::camera::{Camera, normal};
 use super::canvas::{Image, Light, light};
+use super::colours::Colours;
 use super::error::PictureError;
 use super::occlusion::{Occlusion, Surroundings};
 use super::pieces::{Cutter, Piece};
@@ -35,6 +36,9 @@ pub(super) const INK: [u8; 3] = [38, 42, 48];
 const PIN: [u8; 3] = [213, 94, 0];
 const IMMOBILE: [u8; 3] = [240, 228, 66];
 
+/// How much of the light and shade of a sheet is left where its colours are values, which shade would change.
+const SHADE_OF_VALUES: f64 = 0.5;
+
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct SheetPicture<'a> {
@@ -50,6 +54,8 @@ pub struct SheetPicture<'a> {
     pub solids: &'a [Solid],
     /// Of several sheets where each is in the topology, in their order; empty for one.
     pub parts: &'a [Part],
+    /// What the sheet is coloured by instead of its sides.
+    pub colours: Option<&'a Colours>,
 }
 
 impl SheetPicture<'_> {
@@ -71,6 +77,9 @@ impl SheetPicture<'_> {
             let message = format!("{} is at {}", VertexId(vertex as u32), given(value));
             let error = DataError::new(message, "draw finite positions");
             return Err(PictureError::Data(error.at(vertex).value(value)));
+        }
+        if let Some(colours) = self.colours {
+            colours.validate(self.topology)?;
         }
         match self
             .pins
@@ -175,7 +184,10 @@ pub fn render_folded(
         let error = DataError::new(message, "name one of them").at(crease.index());
         return Err(PictureError::Data(error));
     }
-    let painter = Painter::new(camera, look);
+    let painter = Painter {
+        colours: picture.colours,
+        ..Painter::new(camera, look)
+    };
     let mut scene = painter.scene(picture);
     let pieces = painter.cutter(GRAIN).pieces(&mut scene);
     let facets = painter.facets(pieces, &mut scene);
@@ -184,7 +196,7 @@ pub fn render_folded(
         facets,
         strokes: painter.wires(picture.topology, creases, &scene),
         ink: light(INK),
-        dots: painter.dots(picture, &scene),
+        marks: painter.marks(picture, &scene),
         faces: &scene.faces,
     };
     Ok(drawing.picture())
@@ -209,6 +221,8 @@ pub(super) struct Painter<'a> {
     pub(super) size: [f64; 2],
     /// The larger side of what the picture shows, metres.
     pub(super) scale: f64,
+    /// What the sheet is coloured by instead of its sides.
+    colours: Option<&'a Colours>,
 }
 
 impl<'a> Painter<'a> {
@@ -220,6 +234,7 @@ impl<'a> Painter<'a> {
             look,
             size,
             scale,
+            colours: None,
         }
     }
 
@@ -258,15 +273,22 @@ impl<'a> Painter<'a> {
         ]
     }
 
-    /// The colour of a point of a body or of a sheet, under light of this strength.
+    /// The colour of a corner of a piece of a body or of a sheet, under light of this strength.
     pub(super) fn colour(
         &self,
         piece: &Piece,
         scene: &Triangles,
-        p: &[f64; 3],
+        corner: usize,
         shade: f64,
     ) -> Light {
+        let vertex = piece.corners[corner];
+        let p = &scene.x[vertex];
         let Some(skin) = scene.skin(piece.face) else {
+            let of_value = |colours: &Colours| colours.of_corner(piece.face, vertex);
+            if let Some(colour) = self.colours.and_then(of_value) {
+                let shade = 1.0 + SHADE_OF_VALUES * (shade - 1.0);
+                return light(colour).map(|c| c * shade as f32);
+            }
             let sides = self.look.sides;
             let side = sides[scene.sheet(piece.face) % sides.len()][usize::from(piece.back)];
             return light(side).map(|c| c * shade as f32);
@@ -320,7 +342,7 @@ impl<'a> Painter<'a> {
                     Some(skin) => light_on(self.camera, &skin.normal(&flat, p), p),
                 };
                 let shade = sky * o + sun * (0.4 + 0.6 * o);
-                self.corner(p, self.colour(piece, scene, p, shade))
+                self.corner(p, self.colour(piece, scene, k, shade))
             });
             Facet {
                 corners,
@@ -367,6 +389,7 @@ mod tests {
                 immobile: &[],
                 solids: &[],
                 parts,
+                colours: None,
             };
             let camera = Camera::new([1.25, 0.5, 0.0], -90.0, 90.0, 1.5, 100.0);
             let image = render(&picture, &camera, &look).unwrap();
@@ -396,6 +419,7 @@ mod tests {
             immobile: &[],
             solids: &[],
             parts: &[],
+            colours: None,
         };
         let middle = |elevation: f64| {
             let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
@@ -428,6 +452,7 @@ mod tests {
                 immobile: &[],
                 solids: std::slice::from_ref(&floor),
                 parts: &[],
+                colours: None,
             };
             let camera = Camera::new([0.0; 3], -60.0, 30.0, 1.0, 6.0);
             let image = render(&picture, &camera, &look).unwrap();
@@ -443,6 +468,56 @@ mod tests {
         }
     }
 
+    /// Colours of vertices, faces and edges are where they belong, on both sides; edges that show nothing leave the sides
+    /// as they are.
+    #[test]
+    fn sheets_are_coloured_by_values() {
+        let sheet = isotropic_square(1, 1.0).unwrap();
+        let (t, red) = (sheet.topology(), [220, 0, 0]);
+        let look = Look {
+            size: [96, 96],
+            wire: 0.0,
+            ..Look::default()
+        };
+        let seen = |colours: &Colours, elevation: f64| {
+            let picture = SheetPicture {
+                topology: t,
+                positions: sheet.positions(),
+                pins: &[],
+                immobile: &[],
+                solids: &[],
+                parts: &[],
+                colours: Some(colours),
+            };
+            let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
+            render(&picture, &camera, &look).unwrap()
+        };
+        // The square has 64 x 64 pixels.
+        let red_part = |image: &Image| {
+            let is_red = |p: &&Light| p[0] > 0.2 && p[1] < 0.75 * p[0];
+            image.pixels.iter().filter(is_red).count() as f64 / (64.0 * 64.0)
+        };
+        let faces = Colours::Faces(vec![red; t.face_count()]);
+        let vertices = Colours::Vertices(vec![red; t.vertex_count()]);
+        for elevation in [85.0, -85.0] {
+            for colours in [&faces, &vertices] {
+                assert!(red_part(&seen(colours, elevation)) > 0.95);
+            }
+        }
+        let half = (0..t.face_count()).map(|f| if f % 2 == 0 { red } else { [0, 0, 220] });
+        let part = red_part(&seen(&Colours::Faces(half.collect()), 85.0));
+        assert!((part - 0.5).abs() < 0.05, "{part}");
+        let all = red_part(&seen(&Colours::Edges(vec![red; t.edge_count()]), 85.0));
+        let mut one = vec![None; t.edge_count()];
+        let none = seen(&Colours::Creases(one.clone()), 85.0);
+        one[0] = Some(red);
+        let crease = red_part(&seen(&Colours::Creases(one), 85.0));
+        assert!(0.0 < crease && 5.0 * crease < all, "{crease} and {all}");
+        assert_eq!(red_part(&none), 0.0);
+        let middle = none.pixels[40 * 96 + 55];
+        assert!(middle[0] > middle[2], "paper: {middle:?}");
+    }
+
     #[test]
     fn what_does_not_fit_together_is_named() {
         let sheet = isotropic_square(0, 1.0).unwrap();
@@ -455,6 +530,7 @@ mod tests {
                 immobile: &[],
                 solids: &[],
                 parts: &[],
+                colours: None,
             };
             render(&picture, &camera, &look).map(|image| image.size())
         };

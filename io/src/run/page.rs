@@ -31,7 +31,7 @@ impl Recording {
     }
 
     /// The fields of the page.
-    fn fields(&self) -> Vec<FrameField<'_>> {
+    pub(super) fn fields(&self) -> Vec<FrameField<'_>> {
         let has = |quantity: FrameQuantity| self.shape.has(quantity);
         let folding = self.folding.as_ref();
         let open = folding.map(|targets| FrameField::open(&self.sheet, targets));
