@@ -16,7 +16,7 @@ const IN_RANGE: f64 = 0.98;
 /// Fold angles up to this size, degrees, have no say in the range of colours, which is not smaller; as in pages.
 const LEAST_FOLD: f64 = 1.0;
 
-/// The part of the range of colours up to which edges are shown as flat; as in pages.
+/// Creases whose value differs from zero by no more than this part of the range of colours show nothing; as in pages.
 const FLAT: f64 = 0.01;
 
 /// The values of a quantity in some frames, and which colours they have.
@@ -122,10 +122,10 @@ impl Quantity {
             Centering::Edge => Colours::Edges(colours.collect()),
             Centering::Face => Colours::Faces(colours.collect()),
             Centering::Crease => {
-                let [low, high] = self.scale.range;
-                let least = FLAT * f64::max(low.abs(), high.abs());
+                let place = |value: f64| self.scale.place(value);
+                let is_shown = |value: f64| (place(value) - place(0.0)).abs() > FLAT;
                 let shown = values.iter().zip(colours);
-                let shown = shown.map(|(value, colour)| (value.abs() > least).then_some(colour));
+                let shown = shown.map(|(value, colour)| is_shown(*value).then_some(colour));
                 Colours::Creases(shown.collect())
             }
         })

@@ -119,12 +119,13 @@ export class SheetObjects {
     this.setQuantity(this.quantity);
   }
 
-  /** Colours by another quantity. Faces that show values are white beneath, beside coloured edges pale. */
+  /** Colours by another quantity. Faces that show values are white beneath, beside coloured edges pale, and beside
+   * coloured creases they have the two colours of their sheet. */
   setQuantity(quantity) {
     this.quantity = quantity;
     this.place = quantity.map ? placing(quantity) : null;
     const onFaces = quantity.place === "vertex" || quantity.place === "face";
-    const pale = quantity.place === "edge";
+    const pale = quantity.place === "edge" && !quantity.ofCreases;
     this.materials.forEach((materials, side) =>
       materials.forEach((material, sheet) => {
         const own = this.colours.sheets[sheet % this.colours.sheets.length][side];
