@@ -19,6 +19,7 @@
 //!     solids: &[],
 //!     parts: &[],
 //!     colours: None,
+//!     ground: None,
 //! };
 //! let image = render(&picture, &camera, &Look { size: [80, 80], ..Look::default() })?;
 //! assert!(image.to_png()?.starts_with(b"\x89PNG"));

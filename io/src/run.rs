@@ -53,6 +53,7 @@ mod frame_field;
 mod frames;
 #[cfg(feature = "picture")]
 mod gallery;
+mod ground;
 mod held_open;
 mod incidence;
 mod intervention;

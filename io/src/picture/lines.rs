@@ -187,6 +187,7 @@ mod tests {
             solids: &[],
             parts: &[],
             colours: None,
+            ground: None,
         };
         let camera = Camera::new([0.5, 0.5, 0.0], -90.0, 90.0, 1.25, 100.0);
         let look = Look {

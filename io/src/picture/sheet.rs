@@ -7,7 +7,7 @@ use super::error::PictureError;
 use super::occlusion::{Occlusion, Surroundings};
 use super::pieces::{Cutter, Piece};
 use super::raster::{Corner, Drawing, Facet};
-use super::solid::{Solid, Triangles};
+use super::solid::{Skin, Solid, Triangles};
 use super::vector::dot;
 use crate::DataError;
 use isosheet_mesh::wording::{brief, given};
@@ -56,6 +56,8 @@ pub struct SheetPicture<'a> {
     pub parts: &'a [Part],
     /// What the sheet is coloured by instead of its sides.
     pub colours: Option<&'a Colours>,
+    /// The height of a ground that shows nothing but soft shadows, metres; none by default.
+    pub ground: Option<f64>,
 }
 
 impl SheetPicture<'_> {
@@ -249,6 +251,9 @@ impl<'a> Painter<'a> {
             ..
         } = *picture;
         let mut scene = Triangles::new(topology, positions, solids, &target, reach);
+        if let Some(height) = picture.ground {
+            scene.add_ground(height, &target, reach);
+        }
         scene.sheets = parts.iter().map(|part| part.faces.end).collect();
         scene
     }
@@ -294,13 +299,13 @@ impl<'a> Painter<'a> {
             return light(side).map(|c| c * shade as f32);
         };
         // What has faded out is white, as the background is.
-        let inside = if skin.is_ground() {
-            self.inside(p)
-        } else {
-            1.0
-        };
+        let inside = if skin.is_plane() { self.inside(p) } else { 1.0 };
         let strength = (inside * skin.strength(p)) as f32;
-        light(self.look.body).map(|c| 1.0 + strength * (c * shade as f32 - 1.0))
+        let own = match skin {
+            Skin::Shadow { .. } => [1.0; 3],
+            _ => light(self.look.body),
+        };
+        own.map(|c| 1.0 + strength * (c * shade as f32 - 1.0))
     }
 
     /// 0 at the border of the picture and beyond, 1 well inside, and smooth between.
@@ -338,6 +343,8 @@ impl<'a> Painter<'a> {
             let corners = [0, 1, 2].map(|k| {
                 let (Surroundings { open: o, normal }, p) = (around[k], &points[k]);
                 let [sky, sun] = match &skin {
+                    // White where nothing is above it.
+                    Some(Skin::Shadow { .. }) => [1.0, 0.0],
                     None => light_on(self.camera, &normal, p),
                     Some(skin) => light_on(self.camera, &skin.normal(&flat, p), p),
                 };
@@ -390,6 +397,7 @@ mod tests {
                 solids: &[],
                 parts,
                 colours: None,
+                ground: None,
             };
             let camera = Camera::new([1.25, 0.5, 0.0], -90.0, 90.0, 1.5, 100.0);
             let image = render(&picture, &camera, &look).unwrap();
@@ -420,6 +428,7 @@ mod tests {
             solids: &[],
             parts: &[],
             colours: None,
+            ground: None,
         };
         let middle = |elevation: f64| {
             let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
@@ -453,6 +462,7 @@ mod tests {
                 solids: std::slice::from_ref(&floor),
                 parts: &[],
                 colours: None,
+                ground: None,
             };
             let camera = Camera::new([0.0; 3], -60.0, 30.0, 1.0, 6.0);
             let image = render(&picture, &camera, &look).unwrap();
@@ -488,6 +498,7 @@ mod tests {
                 solids: &[],
                 parts: &[],
                 colours: Some(colours),
+                ground: None,
             };
             let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
             render(&picture, &camera, &look).unwrap()
@@ -518,6 +529,48 @@ mod tests {
         assert!(middle[0] > middle[2], "paper: {middle:?}");
     }
 
+    /// A ground is dark below the sheet and white elsewhere, as the border of the picture is; from below it is not seen.
+    #[test]
+    fn a_ground_shows_shadows_alone() {
+        let sheet = isotropic_square(0, 0.1).unwrap();
+        let look = Look {
+            size: [96, 96],
+            ..Look::default()
+        };
+        let seen = |elevation: f64, ground: Option<f64>| {
+            let picture = SheetPicture {
+                topology: sheet.topology(),
+                positions: sheet.positions(),
+                pins: &[],
+                immobile: &[],
+                solids: &[],
+                parts: &[],
+                colours: None,
+                ground,
+            };
+            let camera = Camera::new([0.05, 0.05, 0.0], -90.0, elevation, 0.4, 6.0);
+            render(&picture, &camera, &look).unwrap().pixels
+        };
+        let (with, without) = (seen(30.0, Some(-0.05)), seen(30.0, None));
+        // 0.05 m below the sheet are ten pixels, from its near side on.
+        let below = 64 * 96 + 48;
+        assert_eq!(without[below], [1.0; 3]);
+        assert!(with[below][0] < 0.95, "{:?}", with[below]);
+        for corner in [0, 95, 96 * 95, 96 * 96 - 1] {
+            assert!(with[corner].iter().all(|c| *c > 0.999), "{corner}");
+        }
+        let changed = with
+            .iter()
+            .zip(&without)
+            .filter(|(a, b)| a[0] > b[0] + 1e-3);
+        assert_eq!(changed.count(), 0, "nothing is brighter");
+        let is_white = |pixels: &[Light]| pixels.iter().filter(|p| **p == [1.0; 3]).count();
+        assert_eq!(
+            is_white(&seen(-30.0, Some(-0.05))),
+            is_white(&seen(-30.0, None))
+        );
+    }
+
     #[test]
     fn what_does_not_fit_together_is_named() {
         let sheet = isotropic_square(0, 1.0).unwrap();
@@ -531,6 +584,7 @@ mod tests {
                 solids: &[],
                 parts: &[],
                 colours: None,
+                ground: None,
             };
             render(&picture, &camera, &look).map(|image| image.size())
         };

@@ -102,6 +102,8 @@ pub struct Film<'a> {
     camera: Camera,
     look: Look,
     marks: Marks,
+    /// The height of the ground that shows shadows.
+    ground: Option<f64>,
     quantity: Option<Quantity>,
     /// What is below the sheet: the scale of colours.
     strip: Option<Image>,
@@ -116,6 +118,9 @@ const MARGIN: f64 = 0.06;
 /// Corners of bodies that are outside of the box around the sheet by no more than this part of its size are
 /// in view too: a table below a cloth, a ball that falls on it, but not the far ends of a floor.
 const BESIDE: f64 = 0.35;
+
+/// Of what is lower above the ground than this part of the size of the sheet the shadow is in view.
+const NEAR_GROUND: f64 = 0.3;
 
 impl<'a> Film<'a> {
     /// The given frames of a run.
@@ -144,6 +149,9 @@ impl<'a> Film<'a> {
             .collect();
         let [low, high] = bounds(&points);
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        let all = (0..trajectory.len()).filter_map(|k| trajectory.frame(k));
+        let corners = bounds(all.flat_map(|x| x.as_chunks::<3>().0));
+        let ground = recording.ground(trajectory.times(), corners);
         for frame in &frames {
             for solid in placed(&solids, recording, trajectory.times()[*frame]) {
                 points.extend(solid.outline().filter(|p| {
@@ -152,6 +160,14 @@ impl<'a> Film<'a> {
                 }));
             }
         }
+        // What is near to the ground is in view with the place below it.
+        let feet = |ground: f64| {
+            let near = points
+                .iter()
+                .filter(move |p| p[2] < ground + NEAR_GROUND * size);
+            near.map(|p| [p[0], p[1], ground]).collect::<Vec<_>>()
+        };
+        points.extend(ground.map(feet).into_iter().flatten());
         let [low, high] = bounds(&points);
         let middle = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
@@ -202,6 +218,7 @@ impl<'a> Film<'a> {
                 ..look
             },
             marks,
+            ground,
             quantity,
             strip,
         })
@@ -260,6 +277,7 @@ impl<'a> Film<'a> {
             solids: &solids.collect::<Vec<_>>(),
             parts: &self.parts,
             colours: colours.as_ref(),
+            ground: self.ground,
         };
         let picture = render_folded(&picture, &self.recording.creases, &self.camera, &self.look)?;
         Ok(match &self.strip {

@@ -707,6 +707,41 @@ fn pictures_show_a_quantity_with_its_scale() {
     assert!(!dir.join("y.png").exists() && !dir.join("y.usda").exists());
 }
 
+/// Pages have a ground below the lowest point of bodies and sheet where something falls, and none where nothing does or
+/// where there is a floor.
+#[test]
+fn runs_have_a_ground_where_something_falls() {
+    let ground = |kind, edits: &[&str]| {
+        let dir = with_scene(kind);
+        let edits = edits.iter().flat_map(|edit| ["--set", edit]);
+        let arguments = [
+            "simulate",
+            "scene.toml",
+            "--out",
+            "run",
+            "--set",
+            "stop.time=0.02",
+        ];
+        done(
+            dir.path(),
+            &arguments.into_iter().chain(edits).collect::<Vec<_>>(),
+        );
+        let recording = Recording::read(&dir.path().join("run")).unwrap();
+        let x = (0..recording.trajectory.len()).filter_map(|k| recording.trajectory.frame(k));
+        let heights = x.flat_map(|x| x.as_chunks::<3>().0).map(|p| p[2]);
+        let lowest = heights.fold(f64::INFINITY, f64::min);
+        (recording.replay().unwrap().ground, lowest)
+    };
+    // The sheet is on a table, whose foot is lower.
+    let (on_table, sheet) = ground(StartingPoint::Drape, &[]);
+    let (hanging, lowest) = ground(StartingPoint::Hanging, &[]);
+    assert!(on_table.unwrap() < sheet - 0.01, "{on_table:?} {sheet}");
+    assert!(hanging.unwrap() < lowest, "{hanging:?} {lowest}");
+    assert_eq!(ground(StartingPoint::Fold, &[]).0, None);
+    let aslant = ["forces.gravity=[1, 0, -9.81]"];
+    assert_eq!(ground(StartingPoint::Hanging, &aslant).0, None);
+}
+
 /// Where a plate stands between the usual viewer and the sheet, the picture is taken from elsewhere. Bodies
 /// can be left out.
 #[test]

@@ -21,6 +21,7 @@ import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { put } from "./colour.js";
 import { Sides, drawEdges, edgeUniforms } from "./edges.js";
+import { castOnGround } from "./ground.js";
 import { Normals } from "./normals.js";
 import { placing } from "./replay.js";
 
@@ -100,6 +101,7 @@ export class SheetObjects {
     this.pins.frustumCulled = false;
     for (const object of this.surfaces) {
       Object.assign(object, { frustumCulled: false, castShadow: true, receiveShadow: true });
+      castOnGround(object);
     }
     this.group.add(...this.surfaces, this.lines, this.bars, this.ghost, this.mark, this.pins);
     this.quantity = replay.quantities[0];

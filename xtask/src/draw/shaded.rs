@@ -64,6 +64,7 @@ impl Viewpoint {
                 solids: &shot.solids,
                 parts: &[],
                 colours: None,
+                ground: None,
             };
             Ok(render(&picture, &camera, &look)?)
         };
