@@ -441,8 +441,8 @@ impl Run {
     /// time: the frame that is nearest to a time, seconds, in its place.
     /// height: pixels; the width follows from what is seen.
     /// view: where the viewer is, degrees counter-clockwise from the x axis and above the horizon.
-    /// colour: a quantity that the sheet is coloured by, such as "gap", with a scale of colours below the sheet; an
-    ///     unknown name raises an `Error` with those that the run has.
+    /// colour: a quantity that the sheet is coloured by, such as "gap", with a scale of colours below the
+    ///     sheet; an unknown name raises an `Error` with those that the run has.
     /// range: the values at both ends of the scale, by default those in what is drawn.
     #[pyo3(signature = (path, frame = None, *, time = None, height = 480, view = None, colour = None, range = None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]

@@ -92,12 +92,12 @@ pub(crate) struct Convert {
     /// Of pictures, leave out the edges of the mesh and the marks of pins
     #[arg(long)]
     plain: bool,
-    /// Of pictures, colour the sheet by a quantity, such as "fold angle" or "gap", with a scale of colours below; an
-    /// unknown name is answered with those that the run has
+    /// Of pictures, colour the sheet by a quantity, such as "fold angle" or "gap", with a scale of colours
+    /// below; an unknown name is answered with those that the run has
     #[arg(long, visible_alias = "color", value_name = "QUANTITY")]
     colour: Option<String>,
-    /// Of pictures with a quantity, the values at both ends of the scale of colours [default: those in all frames that
-    /// are drawn]
+    /// Of pictures with a quantity, the values at both ends of the scale of colours [default: those in all
+    /// frames that are drawn]
     #[arg(
         long,
         value_name = "LOW..HIGH",

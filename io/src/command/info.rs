@@ -216,7 +216,8 @@ fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
     )
 }
 
-/// How a sheet at positions `x` may move: with rigid rods, or an elastic one, whose edges may change their lengths.
+/// How a sheet at positions `x` may move: with rigid rods, or an elastic one, whose edges may change their
+/// lengths.
 fn describe_freedom(t: &Topology, model: &SheetModel, x: &[f64]) -> String {
     if model.rod_edges().is_empty() {
         let coordinates = 3 * t.vertex_count();

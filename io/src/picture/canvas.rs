@@ -68,8 +68,8 @@ impl Image {
         both
     }
 
-    /// Covers a part of a pixel with an sRGB colour, if there is one at this place. Colours are mixed by their sRGB values,
-    /// as other programs do: fine letters would be pale in linear light.
+    /// Covers a part of a pixel with an sRGB colour, if there is one at this place. Colours are mixed by
+    /// their sRGB values, as other programs do: fine letters would be pale in linear light.
     pub(super) fn cover(&mut self, [x, y]: [i64; 2], ink: [u8; 3], part: f32) {
         let inside = |c: i64, size: usize| usize::try_from(c).ok().filter(|c| *c < size);
         let (Some(x), Some(y)) = (inside(x, self.width), inside(y, self.height)) else {

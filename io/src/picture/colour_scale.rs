@@ -12,8 +12,8 @@ pub enum ColourMap {
     /// From blue by grey to red, after Moreland (2009), "Diverging Color Maps for Scientific Visualization",
     /// every eighth part.
     Diverging,
-    /// From dark to orange: inferno by Smith and van der Walt (CC0), the first seven tenths of it, whose colours stand
-    /// out from both sides of paper.
+    /// From dark to orange: inferno by Smith and van der Walt (CC0), the first seven tenths of it, whose
+    /// colours stand out from both sides of paper.
     Dark,
 }
 
@@ -63,7 +63,8 @@ pub struct ColourScale {
     pub unit: String,
     /// The values at both ends, of which the second may not be below the first.
     pub range: [f64; 2],
-    /// Whether there are values below the first end, and above the second, which have the colours of the ends.
+    /// Whether there are values below the first end, and above the second, which have the colours of the
+    /// ends.
     pub is_open: [bool; 2],
     /// How values are laid out between the ends.
     pub spacing: Spacing,
@@ -98,8 +99,8 @@ impl ColourScale {
         Ok(())
     }
 
-    /// The place of a value, 0 and 1 at the ends, less and more beyond. Where both ends are equal all values are in the
-    /// middle. On a logarithmic scale zero is at the low end.
+    /// The place of a value, 0 and 1 at the ends, less and more beyond. Where both ends are equal all values
+    /// are in the middle. On a logarithmic scale zero is at the low end.
     pub(crate) fn place(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         match self.spacing {

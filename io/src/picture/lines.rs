@@ -23,8 +23,8 @@ const DOT: f64 = 0.4;
 const SMALLEST_DOT: f64 = 2.0;
 const LARGEST_DOT: f64 = 9.0;
 
-/// The width of bars, as part of the mean length of edges in the picture, and its bounds, as parts of the height of the
-/// picture.
+/// The width of bars, as part of the mean length of edges in the picture, and its bounds, as parts of the
+/// height of the picture.
 const BAR_OF_EDGE: f64 = 1.0 / 6.0;
 const BAR: [f64; 2] = [1.0 / 480.0, 1.0 / 160.0];
 

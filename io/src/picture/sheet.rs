@@ -478,8 +478,8 @@ mod tests {
         }
     }
 
-    /// Colours of vertices, faces and edges are where they belong, on both sides; edges that show nothing leave the sides
-    /// as they are.
+    /// Colours of vertices, faces and edges are where they belong, on both sides; edges that show nothing
+    /// leave the sides as they are.
     #[test]
     fn sheets_are_coloured_by_values() {
         let sheet = isotropic_square(1, 1.0).unwrap();
@@ -529,7 +529,8 @@ mod tests {
         assert!(middle[0] > middle[2], "paper: {middle:?}");
     }
 
-    /// A ground is dark below the sheet and white elsewhere, as the border of the picture is; from below it is not seen.
+    /// A ground is dark below the sheet and white elsewhere, as the border of the picture is; from below it
+    /// is not seen.
     #[test]
     fn a_ground_shows_shadows_alone() {
         let sheet = isotropic_square(0, 0.1).unwrap();

@@ -23,7 +23,8 @@ const SUPERSCRIPTS: [(char, char); 11] = [
     ('⁹', '9'),
 ];
 
-/// The size of superscripts, and how far their base line is above that of the text, as parts of the size of letters.
+/// The size of superscripts, and how far their base line is above that of the text, as parts of the size of
+/// letters.
 const RAISED_SIZE: f32 = 0.65;
 const RAISED: f32 = 0.35;
 
@@ -64,8 +65,8 @@ impl Line {
         }
     }
 
-    /// Writes the text with its left end at a place, pixels from the upper left corner. What is outside of the picture
-    /// is left out.
+    /// Writes the text with its left end at a place, pixels from the upper left corner. What is outside of
+    /// the picture is left out.
     pub(super) fn draw(&self, image: &mut Image, [left, base]: [f64; 2], ink: [u8; 3]) {
         let [left, base] = [left.round() as i64, base.round() as i64];
         for glyph in &self.glyphs {

@@ -4,7 +4,8 @@ use super::colour_scale::{ColourScale, Spacing};
 
 /// The values that are named, and what is written.
 pub(super) struct Ticks {
-    /// Name and unit of the quantity; of a unit with a prefix or a power of ten by which labels are to be multiplied.
+    /// Name and unit of the quantity; of a unit with a prefix or a power of ten by which labels are to be
+    /// multiplied.
     pub(super) title: String,
     /// Values in ascending order, with their labels.
     pub(super) labels: Vec<(f64, String)>,
@@ -84,7 +85,8 @@ fn title(name: &str, unit: &str) -> String {
     }
 }
 
-/// The power of ten, a multiple of three, by which numbers up to a size are short; 0 for sizes that are short themselves.
+/// The power of ten, a multiple of three, by which numbers up to a size are short; 0 for sizes that are short
+/// themselves.
 fn exponent(size: f64) -> i32 {
     if size == 0.0 || (0.1..1e4).contains(&size) {
         return 0;

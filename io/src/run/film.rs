@@ -23,11 +23,11 @@ pub struct FilmOptions {
     pub view: Option<Viewpoint>,
     /// What is drawn on the sheet; the edges of the mesh and the pins by default.
     pub marks: Marks,
-    /// The quantity that the sheet is coloured by, one of [`Recording::quantities`], with a scale of colours below; none
-    /// by default.
+    /// The quantity that the sheet is coloured by, one of [`Recording::quantities`], with a scale of colours
+    /// below; none by default.
     pub colour: Option<String>,
-    /// The values at both ends of the scale of colours; by default those in all frames of the film, without the largest
-    /// 2 % of quantities that differ by orders of magnitude.
+    /// The values at both ends of the scale of colours; by default those in all frames of the film, without
+    /// the largest 2 % of quantities that differ by orders of magnitude.
     pub range: Option<[f64; 2]>,
 }
 

@@ -5,8 +5,8 @@ use crate::body_mesh::BodyMesh;
 use isosheet_collide::{Obstacle, Shape};
 use nalgebra::Point3;
 
-/// How far the ground is below bodies that stand on it, as part of the size of the space that the sheet passes through:
-/// nothing lies in its plane.
+/// How far the ground is below bodies that stand on it, as part of the size of the space that the sheet
+/// passes through: nothing lies in its plane.
 const STANDING: f64 = 0.01;
 
 /// The same below a sheet that is lower than all bodies, and so hangs or falls.
@@ -16,9 +16,9 @@ const HANGING: f64 = 0.1;
 const SIDES: usize = 32;
 
 impl Recording {
-    /// The height of the ground, metres, below all that a run shows at some times: the sheet, which is in the box between
-    /// two corners, and its bodies. None where the scene has no gravity along z, and so no side that is below, or a
-    /// half-space, which is a floor, a wall or a slope.
+    /// The height of the ground, metres, below all that a run shows at some times: the sheet, which is in the
+    /// box between two corners, and its bodies. None where the scene has no gravity along z, and so no side
+    /// that is below, or a half-space, which is a floor, a wall or a slope.
     pub(super) fn ground(&self, times: &[f64], [low, high]: [[f64; 3]; 2]) -> Option<f64> {
         let gravity = self.scene.scene().forces.gravity?;
         let is_down = gravity[0] == 0.0 && gravity[1] == 0.0 && gravity[2] < 0.0;

@@ -9,14 +9,16 @@ use crate::view::{Centering, Field, Scale};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
-/// The share of values that differ by orders of magnitude, those that are zero apart, that is inside the range of
-/// colours; as in pages.
+/// The share of values that differ by orders of magnitude, those that are zero apart, that is inside the
+/// range of colours; as in pages.
 const IN_RANGE: f64 = 0.98;
 
-/// Fold angles up to this size, degrees, have no say in the range of colours, which is not smaller; as in pages.
+/// Fold angles up to this size, degrees, have no say in the range of colours, which is not smaller; as in
+/// pages.
 const LEAST_FOLD: f64 = 1.0;
 
-/// Creases whose value differs from zero by no more than this part of the range of colours show nothing; as in pages.
+/// Creases whose value differs from zero by no more than this part of the range of colours show nothing; as
+/// in pages.
 const FLAT: f64 = 0.01;
 
 /// The values of a quantity in some frames, and which colours they have.
@@ -28,8 +30,8 @@ pub(super) struct Quantity {
 }
 
 impl Recording {
-    /// The names of the quantities that pictures of this run can have as colours: the fold angle, the height, and the
-    /// fields of the page.
+    /// The names of the quantities that pictures of this run can have as colours: the fold angle, the height,
+    /// and the fields of the page.
     pub fn quantities(&self) -> Vec<String> {
         let fields = self.coloured();
         fields.into_iter().map(|field| field.head.name).collect()
@@ -79,7 +81,8 @@ fn height<'a>() -> FrameField<'a> {
 }
 
 impl Quantity {
-    /// That of a name in some frames of a run, on a scale that has the values in all of them, or another range.
+    /// That of a name in some frames of a run, on a scale that has the values in all of them, or another
+    /// range.
     ///
     /// # Errors
     /// [`PictureError::Options`] for a name that no quantity has, with those that there are, and for a range that makes

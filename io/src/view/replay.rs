@@ -43,8 +43,8 @@ pub struct Replay {
     pub rest: Vec<f64>,
     /// The direction that is up on the screen and along which heights are measured.
     pub up: Axis,
-    /// The height of a ground that shows nothing but shadows, metres along the direction that is up; none where the bodies
-    /// have a floor, or where nothing falls.
+    /// The height of a ground that shows nothing but shadows, metres along the direction that is up; none
+    /// where the bodies have a floor, or where nothing falls.
     pub ground: Option<f64>,
     /// Of several sheets the number of faces of each, so that each has a colour of its own.
     pub sheets: Vec<usize>,

@@ -661,7 +661,8 @@ fn share_of_paper(png: &[u8]) -> f64 {
     pixels.iter().filter(is_paper).count() as f64 / pixels.len() as f64
 }
 
-/// The sheet is coloured by a quantity, on the scale of colours that is below it; a range that is given fixes both.
+/// The sheet is coloured by a quantity, on the scale of colours that is below it; a range that is given fixes
+/// both.
 #[test]
 fn pictures_show_a_quantity_with_its_scale() {
     let dir = with_short_run(StartingPoint::Drape);
@@ -707,8 +708,8 @@ fn pictures_show_a_quantity_with_its_scale() {
     assert!(!dir.join("y.png").exists() && !dir.join("y.usda").exists());
 }
 
-/// Pages have a ground below the lowest point of bodies and sheet where something falls, and none where nothing does or
-/// where there is a floor.
+/// Pages have a ground below the lowest point of bodies and sheet where something falls, and none where
+/// nothing does or where there is a floor.
 #[test]
 fn runs_have_a_ground_where_something_falls() {
     let ground = |kind, edits: &[&str]| {

@@ -142,8 +142,8 @@ fn every_body_is_drawn_and_moves() {
     assert_eq!(result["plots"].as_u64(), Some(2));
 }
 
-/// The slider of a crease pattern is the part of the folding, and creases are coloured by how open they are at first, on
-/// the two colours of the paper.
+/// The slider of a crease pattern is the part of the folding, and creases are coloured by how open they are
+/// at first, on the two colours of the paper.
 #[test]
 fn the_slider_of_a_fold_is_the_part_of_the_folding() {
     let mut replay = waving(2, 5);

@@ -1,5 +1,5 @@
-// A ground that shows nothing but soft shadows: the sheet and the bodies as seen from below, darker where they are
-// nearer, and blurred. As the contact shadows in the examples of three.js.
+// A ground that shows nothing but soft shadows: the sheet and the bodies as seen from below, darker where
+// they are nearer, and blurred. As the contact shadows in the examples of three.js.
 
 import {
   Group,
