@@ -18,6 +18,8 @@
 //!     immobile: &[],
 //!     solids: &[],
 //!     parts: &[],
+//!     colours: None,
+//!     ground: None,
 //! };
 //! let image = render(&picture, &camera, &Look { size: [80, 80], ..Look::default() })?;
 //! assert!(image.to_png()?.starts_with(b"\x89PNG"));
@@ -27,15 +29,19 @@
 mod animation;
 mod camera;
 mod canvas;
+mod colour_bar;
+mod colour_scale;
+mod colours;
 mod error;
 mod lines;
-#[cfg(feature = "labels")]
 mod montage;
 mod occlusion;
 mod pieces;
 mod raster;
 mod sheet;
 mod solid;
+mod text;
+mod ticks;
 mod vector;
 #[cfg(feature = "labels")]
 mod vector_drawing;
@@ -43,8 +49,11 @@ mod vector_drawing;
 pub use animation::animated_png;
 pub use camera::Camera;
 pub use canvas::Image;
+#[cfg(feature = "run")]
+pub(crate) use colour_bar::strip;
+pub use colour_scale::{ColourMap, ColourScale, Spacing};
+pub use colours::Colours;
 pub use error::PictureError;
-#[cfg(feature = "labels")]
 pub use montage::{Labelled, montage};
 pub use sheet::{Look, SheetPicture, render, render_folded};
 pub use solid::Solid;

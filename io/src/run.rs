@@ -53,11 +53,14 @@ mod frame_field;
 mod frames;
 #[cfg(feature = "picture")]
 mod gallery;
+mod ground;
 mod held_open;
 mod incidence;
 mod intervention;
 mod page;
 mod passing;
+#[cfg(feature = "picture")]
+mod quantity;
 mod recorder;
 mod recording;
 mod replay;

@@ -93,7 +93,7 @@ pub(crate) fn run(args: &GalleryArgs) -> Result<()> {
         pictures.push(Labelled { image, label });
         bar.step();
     }
-    let all = montage(&pictures, gallery.columns)?;
+    let all = montage(&pictures, gallery.columns);
     store.write("gallery.png", &all.to_png()?)?;
     let Filmed {
         scene,

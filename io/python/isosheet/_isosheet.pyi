@@ -263,6 +263,8 @@ class Run:
         time: float | None = None,
         height: int = 480,
         view: tuple[float, float] | None = None,
+        colour: str | None = None,
+        range: Sequence[float] | None = None,
     ) -> None: ...
     def film(
         self,
@@ -272,6 +274,8 @@ class Run:
         fps: float | None = None,
         height: int = 480,
         view: tuple[float, float] | None = None,
+        colour: str | None = None,
+        range: Sequence[float] | None = None,
     ) -> None: ...
     def plot(self, *names: str, ax: Any = None) -> Any: ...
     def _repr_html_(self) -> str: ...

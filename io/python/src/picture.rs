@@ -25,11 +25,20 @@ pub(crate) struct Shown<'a> {
     pub(crate) options: FilmOptions,
 }
 
+/// A quantity with the values at both ends of its scale of colours.
+pub(crate) type Coloured = (Option<String>, Option<[f64; 2]>);
+
 /// How a run is shown.
-pub(crate) fn options(height: usize, view: Option<(f64, f64)>) -> FilmOptions {
+pub(crate) fn options(
+    height: usize,
+    view: Option<(f64, f64)>,
+    (colour, range): Coloured,
+) -> FilmOptions {
     FilmOptions {
         height,
         view: view.map(|(azimuth, elevation)| Viewpoint { azimuth, elevation }),
+        colour,
+        range,
         ..FilmOptions::default()
     }
 }

@@ -441,7 +441,11 @@ impl Run {
     /// time: the frame that is nearest to a time, seconds, in its place.
     /// height: pixels; the width follows from what is seen.
     /// view: where the viewer is, degrees counter-clockwise from the x axis and above the horizon.
-    #[pyo3(signature = (path, frame = None, *, time = None, height = 480, view = None))]
+    /// colour: a quantity that the sheet is coloured by, such as "gap", with a scale of colours below the
+    ///     sheet; an unknown name raises an `Error` with those that the run has.
+    /// range: the values at both ends of the scale, by default those in what is drawn.
+    #[pyo3(signature = (path, frame = None, *, time = None, height = 480, view = None, colour = None, range = None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn picture(
         &self,
         py: Python<'_>,
@@ -450,6 +454,8 @@ impl Run {
         time: Option<f64>,
         height: usize,
         view: Option<(f64, f64)>,
+        colour: Option<String>,
+        range: Option<[f64; 2]>,
     ) -> PyResult<()> {
         let last = || self.frame_at(Some(-1), None);
         let number = match self.frame_at(frame, time)? {
@@ -459,7 +465,7 @@ impl Run {
         let shown = Shown {
             recording: &self.recording,
             frames: number.into_iter().collect(),
-            options: options(height, view),
+            options: options(height, view, (colour, range)),
         };
         shown.write(py, &path, Kind::Picture)
     }
@@ -467,8 +473,9 @@ impl Run {
     /// Writes shaded pictures of the frames in real time as an animated PNG file, which browsers and notebooks
     /// show, or where ffmpeg is installed as an .mp4, .webm or .gif file: ``run.film("cloth.apng")``.
     ///
-    /// every and fps are those of `save`, height and view those of `picture`.
-    #[pyo3(signature = (path, *, every = 1, fps = None, height = 480, view = None))]
+    /// every and fps are those of `save`, height, view, colour and range those of `picture`.
+    #[pyo3(signature = (path, *, every = 1, fps = None, height = 480, view = None, colour = None, range = None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn film(
         &self,
         py: Python<'_>,
@@ -477,6 +484,8 @@ impl Run {
         fps: Option<f64>,
         height: usize,
         view: Option<(f64, f64)>,
+        colour: Option<String>,
+        range: Option<[f64; 2]>,
     ) -> PyResult<()> {
         if every == 0 {
             return Err(PyValueError::new_err(
@@ -488,7 +497,7 @@ impl Run {
         let shown = Shown {
             recording,
             frames: (0..recording.trajectory.len()).step_by(every).collect(),
-            options: options(height, view),
+            options: options(height, view, (colour, range)),
         };
         shown.write(py, &path, Kind::Film)
     }

@@ -68,6 +68,12 @@ def test_pictures_and_films(run, tmp_path, monkeypatch):
     (width, height), names = png(tmp_path / "end.png")
     assert height == 200 and width > 0 and b"acTL" not in names
     assert (tmp_path / "end.png").read_bytes() == (tmp_path / "same.png").read_bytes()
+    run.picture(tmp_path / "strain.png", height=200, colour="strain", range=(1e-6, 1e-2))
+    assert png(tmp_path / "strain.png")[0][1] == 200
+    assert (tmp_path / "strain.png").read_bytes() != (tmp_path / "end.png").read_bytes()
+    for wrong, words in (({"colour": "warmth"}, "no quantity `warmth`.*`height`"), ({"range": (0, 1)}, "no quantity")):
+        with pytest.raises(isosheet.Error, match=words):
+            run.picture(tmp_path / "none.png", **wrong)
     run.film(tmp_path / "film.apng", every=2, height=100)
     (_, height), names = png(tmp_path / "film.apng")
     assert height == 100 and names.count(b"fcTL") == len(run.time[::2])

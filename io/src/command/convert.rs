@@ -1,7 +1,7 @@
 //! `isosheet convert`.
 
 use super::failure::{Code, Done, Failure};
-use super::frames::{FrameRange, Size, View};
+use super::frames::{ColourRange, FrameRange, Size, View};
 use super::info::is_scene;
 use super::message::counted;
 use super::one_frame::OneFrame;
@@ -51,6 +51,8 @@ Examples:
   isosheet convert cloth-run cloth.apng        a run as a film
   isosheet convert cloth-run end.png           a picture of its last frame
   isosheet convert cloth-run half.png --time 0.5 --plain
+  isosheet convert cloth-run gap.png --colour gap --size 1200
+                                               its colours are a quantity, with their scale
   isosheet convert crane-run half.fold --part 0.5
                                                a run that folds a pattern, where it is folded by half
   isosheet convert sheet.obj sheet.fold        a mesh in another format";
@@ -90,6 +92,19 @@ pub(crate) struct Convert {
     /// Of pictures, leave out the edges of the mesh and the marks of pins
     #[arg(long)]
     plain: bool,
+    /// Of pictures, colour the sheet by a quantity, such as "fold angle" or "gap", with a scale of colours
+    /// below; an unknown name is answered with those that the run has
+    #[arg(long, visible_alias = "color", value_name = "QUANTITY")]
+    colour: Option<String>,
+    /// Of pictures with a quantity, the values at both ends of the scale of colours [default: those in all
+    /// frames that are drawn]
+    #[arg(
+        long,
+        value_name = "LOW..HIGH",
+        allow_hyphen_values = true,
+        requires = "colour"
+    )]
+    range: Option<ColourRange>,
     /// Of one mesh as .stl, .obj, .off or .ply, make it larger by this factor: 1000 for the millimetres of
     /// printers
     #[arg(long, value_name = "FACTOR")]
@@ -210,6 +225,7 @@ impl Convert {
             ("--size", self.size.is_some()),
             ("--view", self.view.is_some()),
             ("--plain", self.plain),
+            ("--colour", self.colour.is_some()),
         ];
         match options.iter().find(|(_, given)| *given) {
             Some((option, _)) => Err(wrong(
@@ -312,6 +328,8 @@ impl Convert {
             (options.width, options.height) = (size.width, size.height);
         }
         options.view = self.view.map(|View(view)| view);
+        options.colour = self.colour.clone();
+        options.range = self.range.map(|ColourRange(range)| range);
         if self.plain {
             options.marks = Marks::Nothing;
         }

@@ -95,6 +95,21 @@ impl FromStr for View {
     }
 }
 
+/// The values at both ends of a scale of colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ColourRange(pub(crate) [f64; 2]);
+
+impl FromStr for ColourRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let help = || "give two values with .. between them, such as 0..0.01".to_owned();
+        let (low, high) = text.split_once("..").ok_or_else(help)?;
+        let value = |text: &str| text.trim().parse().map_err(|_| help());
+        Ok(Self([value(low)?, value(high)?]))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -115,6 +130,9 @@ mod tests {
         let view = |text: &str| text.parse::<View>().map(|View(v)| (v.azimuth, v.elevation));
         assert_eq!(view("-30,12.5"), Ok((-30.0, 12.5)));
         assert_eq!(view("top"), Ok((-90.0, 90.0)));
+        let colours = |text: &str| text.parse::<ColourRange>().map(|ColourRange(r)| r);
+        assert_eq!(colours("-1e-3..0.5"), Ok([-1e-3, 0.5]));
+        assert!(colours("0").is_err() && colours("0..").is_err());
         assert!(view("above").is_err() && view("1,2,3").is_err());
     }
 }

@@ -5,7 +5,7 @@ use super::message::{counted, print_warnings};
 use super::reading::what_reading_did;
 use super::write::to_stdout;
 use crate::dynamics::{SheetModel, rod_rank};
-use crate::mesh::{Dof, MassKind, Sheet, VertexId};
+use crate::mesh::{Dof, MassKind, Sheet, Topology, VertexId};
 use crate::run::Recording;
 use crate::scene::{CarriedBody, SceneFile, Setup, bounds};
 use crate::{FaceGroups, MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with};
@@ -170,18 +170,8 @@ pub(crate) fn describe_scene(setup: &Setup) -> String {
 /// A sheet at positions `x` in a few lines.
 fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
     let t = sheet.topology();
-    let Dof {
-        total, internal, ..
-    } = Dof::of(t);
     let loops = t.boundary_loops();
     let lengths: Vec<String> = loops.iter().map(|l| l.len().to_string()).collect();
-    let rank = match rod_rank(model, x) {
-        Some(rank) => format!(
-            "{} as given (rank {} of {} rods, smallest singular value {:.1e})",
-            rank.deficiency, rank.rank, rank.rods, rank.smallest
-        ),
-        None => "not computed as given: a position is not finite".to_owned(),
-    };
     let [shortest, longest] = [
         sheet
             .lengths()
@@ -198,8 +188,7 @@ fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
          faces            {}, together {} m2\n\
          components       {}, Euler characteristic {}\n\
          boundary loops   {}{}\n\
-         degrees of freedom {total} = 3V - E, {internal} besides rigid motions\n\
-         dependent rods   {} in a flat state, {rank}\n\
+         {}\
          bounds           x {} to {}, y {} to {}, z {} to {} m\n",
         t.vertex_count(),
         t.boundary_vertex_count(),
@@ -217,13 +206,37 @@ fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
         } else {
             format!(", of {} vertices", lengths.join(", "))
         },
-        Dof::flat_redundancy(t),
+        describe_freedom(t, model, x),
         low[0],
         high[0],
         low[1],
         high[1],
         low[2],
         high[2],
+    )
+}
+
+/// How a sheet at positions `x` may move: with rigid rods, or an elastic one, whose edges may change their
+/// lengths.
+fn describe_freedom(t: &Topology, model: &SheetModel, x: &[f64]) -> String {
+    if model.rod_edges().is_empty() {
+        let coordinates = 3 * t.vertex_count();
+        return format!("degrees of freedom {coordinates} = 3V, as no edge is a rigid rod\n");
+    }
+    let Dof {
+        total, internal, ..
+    } = Dof::of(t);
+    let rank = match rod_rank(model, x) {
+        Some(rank) => format!(
+            "{} as given (rank {} of {} rods, smallest singular value {:.1e})",
+            rank.deficiency, rank.rank, rank.rods, rank.smallest
+        ),
+        None => "not computed as given: a position is not finite".to_owned(),
+    };
+    format!(
+        "degrees of freedom {total} = 3V - E, {internal} besides rigid motions\n\
+         dependent rods   {} in a flat state, {rank}\n",
+        Dof::flat_redundancy(t)
     )
 }
 

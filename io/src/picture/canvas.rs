@@ -49,6 +49,40 @@ impl Image {
         }
     }
 
+    /// Copies another picture in, its upper left corner at (x, y).
+    pub(super) fn paste(&mut self, other: &Self, x: usize, y: usize) {
+        for row in 0..other.height.min(self.height.saturating_sub(y)) {
+            let width = other.width.min(self.width.saturating_sub(x));
+            let to = (y + row) * self.width + x;
+            self.pixels[to..to + width]
+                .copy_from_slice(&other.pixels[row * other.width..row * other.width + width]);
+        }
+    }
+
+    /// This picture with another one of the same width below it.
+    #[cfg(feature = "run")]
+    pub(crate) fn above(&self, other: &Self) -> Self {
+        let mut both = Self::white(self.width, self.height + other.height);
+        both.paste(self, 0, 0);
+        both.paste(other, 0, self.height);
+        both
+    }
+
+    /// Covers a part of a pixel with an sRGB colour, if there is one at this place. Colours are mixed by
+    /// their sRGB values, as other programs do: fine letters would be pale in linear light.
+    pub(super) fn cover(&mut self, [x, y]: [i64; 2], ink: [u8; 3], part: f32) {
+        let inside = |c: i64, size: usize| usize::try_from(c).ok().filter(|c| *c < size);
+        let (Some(x), Some(y)) = (inside(x, self.width), inside(y, self.height)) else {
+            return;
+        };
+        let pixel = &mut self.pixels[y * self.width + x];
+        let mixed = [0, 1, 2].map(|k| {
+            let [from, to] = [srgb(pixel[k]), ink[k]].map(f32::from);
+            (from + part * (to - from)).round() as u8
+        });
+        *pixel = light(mixed);
+    }
+
     /// Width and height, pixels.
     pub fn size(&self) -> [usize; 2] {
         [self.width, self.height]

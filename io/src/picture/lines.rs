@@ -23,6 +23,11 @@ const DOT: f64 = 0.4;
 const SMALLEST_DOT: f64 = 2.0;
 const LARGEST_DOT: f64 = 9.0;
 
+/// The width of bars, as part of the mean length of edges in the picture, and its bounds, as parts of the
+/// height of the picture.
+const BAR_OF_EDGE: f64 = 1.0 / 6.0;
+const BAR: [f64; 2] = [1.0 / 480.0, 1.0 / 160.0];
+
 impl Painter<'_> {
     /// Edges of bodies and of the sheet.
     pub(super) fn wires(
@@ -89,10 +94,44 @@ impl Painter<'_> {
         edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64
     }
 
-    /// Dots with a rim, smaller where the mesh is finer.
-    pub(super) fn dots(&self, picture: &SheetPicture<'_>, scene: &Triangles) -> Vec<Stroke> {
-        let mut strokes = Vec::new();
+    /// Bars along edges that show values, and on top of these dots.
+    pub(super) fn marks(&self, picture: &SheetPicture<'_>, scene: &Triangles) -> Vec<Stroke> {
         let mean = self.mean_length(&self.seen_edges(picture.topology, scene), scene);
+        let mut marks = self.bars(picture, mean, scene);
+        marks.extend(self.dots(picture, mean, scene));
+        marks
+    }
+
+    /// Bars along edges, thinner where the mesh is finer; those that are nearer to the viewer come last.
+    fn bars(&self, picture: &SheetPicture<'_>, mean: f64, scene: &Triangles) -> Vec<Stroke> {
+        let Some(colours) = picture.colours else {
+            return Vec::new();
+        };
+        let [thinnest, widest] = BAR.map(|part| part * self.size[1]);
+        let width = (BAR_OF_EDGE * mean).clamp(thinnest, widest);
+        let topology = picture.topology;
+        let bar = |e: EdgeId| {
+            let vertices = topology.edges()[e.index()].map(VertexId::index);
+            let ends = vertices.map(|v| scene.x[v]);
+            let colour = light(colours.of_edge(e)?);
+            (!ends.iter().any(|p| self.camera.is_behind(p))).then(|| Stroke {
+                ends: ends.map(|p| self.corner(&p, colour)),
+                vertices,
+                width,
+                cover: 1.0,
+                lift: LIFT * self.scale,
+                sink: 0.0,
+            })
+        };
+        let mut bars: Vec<Stroke> = topology.edge_ids().filter_map(bar).collect();
+        let nearness = |bar: &Stroke| bar.ends[0].nearness + bar.ends[1].nearness;
+        bars.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)));
+        bars
+    }
+
+    /// Dots with a rim, smaller where the mesh is finer.
+    fn dots(&self, picture: &SheetPicture<'_>, mean: f64, scene: &Triangles) -> Vec<Stroke> {
+        let mut strokes = Vec::new();
         let widest = (DOT * mean).clamp(SMALLEST_DOT, LARGEST_DOT);
         for (v, colour) in picture.dots() {
             let vertex = v.index();
@@ -147,6 +186,8 @@ mod tests {
             immobile: &[],
             solids: &[],
             parts: &[],
+            colours: None,
+            ground: None,
         };
         let camera = Camera::new([0.5, 0.5, 0.0], -90.0, 90.0, 1.25, 100.0);
         let look = Look {

@@ -151,7 +151,7 @@ impl Cutter<'_> {
                 continue;
             }
             let (side, length) = longest(&points, |a, b| self.pixels(a, b));
-            if length > self.pixels {
+            if length > self.pixels * skin.grain() {
                 let middle = middle(&mut halves.in_picture, piece.corners, side, |a, b| {
                     let part = self.camera.middle(&x[a], &x[b]);
                     x.push(skin.middle(&x[a], &x[b], part));

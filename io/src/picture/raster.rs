@@ -52,8 +52,8 @@ pub(super) struct Drawing<'a> {
     /// Lines of the colour of ink. Where several meet the darkest counts.
     pub(super) strokes: Vec<Stroke>,
     pub(super) ink: Light,
-    /// Dots on top of all lines, in their order, each of the light of its first end.
-    pub(super) dots: Vec<Stroke>,
+    /// Dots and lines on top of all others, in their order, each of the light of its first end.
+    pub(super) marks: Vec<Stroke>,
 }
 
 /// What is seen at a point of the picture.
@@ -99,9 +99,9 @@ impl Drawing<'_> {
                     sample.ink = sample.ink.max(stroke.cover);
                 });
             }
-            for dot in &self.dots {
-                band.stroke(dot, self.faces, |sample| {
-                    (sample.light, sample.ink) = (dot.ends[0].light, 0.0);
+            for mark in &self.marks {
+                band.stroke(mark, self.faces, |sample| {
+                    (sample.light, sample.ink) = (mark.ends[0].light, 0.0);
                 });
             }
             band.reduce(self.ink, pixels);
@@ -286,7 +286,7 @@ mod tests {
             facets,
             strokes: Vec::new(),
             ink: [0.0; 3],
-            dots: Vec::new(),
+            marks: Vec::new(),
         }
     }
 

@@ -2,11 +2,12 @@
 
 use super::camera::{Camera, normal};
 use super::canvas::{Image, Light, light};
+use super::colours::Colours;
 use super::error::PictureError;
 use super::occlusion::{Occlusion, Surroundings};
 use super::pieces::{Cutter, Piece};
 use super::raster::{Corner, Drawing, Facet};
-use super::solid::{Solid, Triangles};
+use super::solid::{Skin, Solid, Triangles};
 use super::vector::dot;
 use crate::DataError;
 use isosheet_mesh::wording::{brief, given};
@@ -35,6 +36,9 @@ pub(super) const INK: [u8; 3] = [38, 42, 48];
 const PIN: [u8; 3] = [213, 94, 0];
 const IMMOBILE: [u8; 3] = [240, 228, 66];
 
+/// How much of the light and shade of a sheet is left where its colours are values, which shade would change.
+const SHADE_OF_VALUES: f64 = 0.5;
+
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct SheetPicture<'a> {
@@ -50,6 +54,10 @@ pub struct SheetPicture<'a> {
     pub solids: &'a [Solid],
     /// Of several sheets where each is in the topology, in their order; empty for one.
     pub parts: &'a [Part],
+    /// What the sheet is coloured by instead of its sides.
+    pub colours: Option<&'a Colours>,
+    /// The height of a ground that shows nothing but soft shadows, metres; none by default.
+    pub ground: Option<f64>,
 }
 
 impl SheetPicture<'_> {
@@ -71,6 +79,9 @@ impl SheetPicture<'_> {
             let message = format!("{} is at {}", VertexId(vertex as u32), given(value));
             let error = DataError::new(message, "draw finite positions");
             return Err(PictureError::Data(error.at(vertex).value(value)));
+        }
+        if let Some(colours) = self.colours {
+            colours.validate(self.topology)?;
         }
         match self
             .pins
@@ -175,7 +186,10 @@ pub fn render_folded(
         let error = DataError::new(message, "name one of them").at(crease.index());
         return Err(PictureError::Data(error));
     }
-    let painter = Painter::new(camera, look);
+    let painter = Painter {
+        colours: picture.colours,
+        ..Painter::new(camera, look)
+    };
     let mut scene = painter.scene(picture);
     let pieces = painter.cutter(GRAIN).pieces(&mut scene);
     let facets = painter.facets(pieces, &mut scene);
@@ -184,7 +198,7 @@ pub fn render_folded(
         facets,
         strokes: painter.wires(picture.topology, creases, &scene),
         ink: light(INK),
-        dots: painter.dots(picture, &scene),
+        marks: painter.marks(picture, &scene),
         faces: &scene.faces,
     };
     Ok(drawing.picture())
@@ -209,6 +223,8 @@ pub(super) struct Painter<'a> {
     pub(super) size: [f64; 2],
     /// The larger side of what the picture shows, metres.
     pub(super) scale: f64,
+    /// What the sheet is coloured by instead of its sides.
+    colours: Option<&'a Colours>,
 }
 
 impl<'a> Painter<'a> {
@@ -220,6 +236,7 @@ impl<'a> Painter<'a> {
             look,
             size,
             scale,
+            colours: None,
         }
     }
 
@@ -234,6 +251,9 @@ impl<'a> Painter<'a> {
             ..
         } = *picture;
         let mut scene = Triangles::new(topology, positions, solids, &target, reach);
+        if let Some(height) = picture.ground {
+            scene.add_ground(height, &target, reach);
+        }
         scene.sheets = parts.iter().map(|part| part.faces.end).collect();
         scene
     }
@@ -258,27 +278,34 @@ impl<'a> Painter<'a> {
         ]
     }
 
-    /// The colour of a point of a body or of a sheet, under light of this strength.
+    /// The colour of a corner of a piece of a body or of a sheet, under light of this strength.
     pub(super) fn colour(
         &self,
         piece: &Piece,
         scene: &Triangles,
-        p: &[f64; 3],
+        corner: usize,
         shade: f64,
     ) -> Light {
+        let vertex = piece.corners[corner];
+        let p = &scene.x[vertex];
         let Some(skin) = scene.skin(piece.face) else {
+            let of_value = |colours: &Colours| colours.of_corner(piece.face, vertex);
+            if let Some(colour) = self.colours.and_then(of_value) {
+                let shade = 1.0 + SHADE_OF_VALUES * (shade - 1.0);
+                return light(colour).map(|c| c * shade as f32);
+            }
             let sides = self.look.sides;
             let side = sides[scene.sheet(piece.face) % sides.len()][usize::from(piece.back)];
             return light(side).map(|c| c * shade as f32);
         };
         // What has faded out is white, as the background is.
-        let inside = if skin.is_ground() {
-            self.inside(p)
-        } else {
-            1.0
-        };
+        let inside = if skin.is_plane() { self.inside(p) } else { 1.0 };
         let strength = (inside * skin.strength(p)) as f32;
-        light(self.look.body).map(|c| 1.0 + strength * (c * shade as f32 - 1.0))
+        let own = match skin {
+            Skin::Shadow { .. } => [1.0; 3],
+            _ => light(self.look.body),
+        };
+        own.map(|c| 1.0 + strength * (c * shade as f32 - 1.0))
     }
 
     /// 0 at the border of the picture and beyond, 1 well inside, and smooth between.
@@ -316,11 +343,13 @@ impl<'a> Painter<'a> {
             let corners = [0, 1, 2].map(|k| {
                 let (Surroundings { open: o, normal }, p) = (around[k], &points[k]);
                 let [sky, sun] = match &skin {
+                    // White where nothing is above it.
+                    Some(Skin::Shadow { .. }) => [1.0, 0.0],
                     None => light_on(self.camera, &normal, p),
                     Some(skin) => light_on(self.camera, &skin.normal(&flat, p), p),
                 };
                 let shade = sky * o + sun * (0.4 + 0.6 * o);
-                self.corner(p, self.colour(piece, scene, p, shade))
+                self.corner(p, self.colour(piece, scene, k, shade))
             });
             Facet {
                 corners,
@@ -367,6 +396,8 @@ mod tests {
                 immobile: &[],
                 solids: &[],
                 parts,
+                colours: None,
+                ground: None,
             };
             let camera = Camera::new([1.25, 0.5, 0.0], -90.0, 90.0, 1.5, 100.0);
             let image = render(&picture, &camera, &look).unwrap();
@@ -396,6 +427,8 @@ mod tests {
             immobile: &[],
             solids: &[],
             parts: &[],
+            colours: None,
+            ground: None,
         };
         let middle = |elevation: f64| {
             let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
@@ -428,6 +461,8 @@ mod tests {
                 immobile: &[],
                 solids: std::slice::from_ref(&floor),
                 parts: &[],
+                colours: None,
+                ground: None,
             };
             let camera = Camera::new([0.0; 3], -60.0, 30.0, 1.0, 6.0);
             let image = render(&picture, &camera, &look).unwrap();
@@ -443,6 +478,100 @@ mod tests {
         }
     }
 
+    /// Colours of vertices, faces and edges are where they belong, on both sides; edges that show nothing
+    /// leave the sides as they are.
+    #[test]
+    fn sheets_are_coloured_by_values() {
+        let sheet = isotropic_square(1, 1.0).unwrap();
+        let (t, red) = (sheet.topology(), [220, 0, 0]);
+        let look = Look {
+            size: [96, 96],
+            wire: 0.0,
+            ..Look::default()
+        };
+        let seen = |colours: &Colours, elevation: f64| {
+            let picture = SheetPicture {
+                topology: t,
+                positions: sheet.positions(),
+                pins: &[],
+                immobile: &[],
+                solids: &[],
+                parts: &[],
+                colours: Some(colours),
+                ground: None,
+            };
+            let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
+            render(&picture, &camera, &look).unwrap()
+        };
+        // The square has 64 x 64 pixels.
+        let red_part = |image: &Image| {
+            let is_red = |p: &&Light| p[0] > 0.2 && p[1] < 0.75 * p[0];
+            image.pixels.iter().filter(is_red).count() as f64 / (64.0 * 64.0)
+        };
+        let faces = Colours::Faces(vec![red; t.face_count()]);
+        let vertices = Colours::Vertices(vec![red; t.vertex_count()]);
+        for elevation in [85.0, -85.0] {
+            for colours in [&faces, &vertices] {
+                assert!(red_part(&seen(colours, elevation)) > 0.95);
+            }
+        }
+        let half = (0..t.face_count()).map(|f| if f % 2 == 0 { red } else { [0, 0, 220] });
+        let part = red_part(&seen(&Colours::Faces(half.collect()), 85.0));
+        assert!((part - 0.5).abs() < 0.05, "{part}");
+        let all = red_part(&seen(&Colours::Edges(vec![red; t.edge_count()]), 85.0));
+        let mut one = vec![None; t.edge_count()];
+        let none = seen(&Colours::Creases(one.clone()), 85.0);
+        one[0] = Some(red);
+        let crease = red_part(&seen(&Colours::Creases(one), 85.0));
+        assert!(0.0 < crease && 5.0 * crease < all, "{crease} and {all}");
+        assert_eq!(red_part(&none), 0.0);
+        let middle = none.pixels[40 * 96 + 55];
+        assert!(middle[0] > middle[2], "paper: {middle:?}");
+    }
+
+    /// A ground is dark below the sheet and white elsewhere, as the border of the picture is; from below it
+    /// is not seen.
+    #[test]
+    fn a_ground_shows_shadows_alone() {
+        let sheet = isotropic_square(0, 0.1).unwrap();
+        let look = Look {
+            size: [96, 96],
+            ..Look::default()
+        };
+        let seen = |elevation: f64, ground: Option<f64>| {
+            let picture = SheetPicture {
+                topology: sheet.topology(),
+                positions: sheet.positions(),
+                pins: &[],
+                immobile: &[],
+                solids: &[],
+                parts: &[],
+                colours: None,
+                ground,
+            };
+            let camera = Camera::new([0.05, 0.05, 0.0], -90.0, elevation, 0.4, 6.0);
+            render(&picture, &camera, &look).unwrap().pixels
+        };
+        let (with, without) = (seen(30.0, Some(-0.05)), seen(30.0, None));
+        // 0.05 m below the sheet are ten pixels, from its near side on.
+        let below = 64 * 96 + 48;
+        assert_eq!(without[below], [1.0; 3]);
+        assert!(with[below][0] < 0.95, "{:?}", with[below]);
+        for corner in [0, 95, 96 * 95, 96 * 96 - 1] {
+            assert!(with[corner].iter().all(|c| *c > 0.999), "{corner}");
+        }
+        let changed = with
+            .iter()
+            .zip(&without)
+            .filter(|(a, b)| a[0] > b[0] + 1e-3);
+        assert_eq!(changed.count(), 0, "nothing is brighter");
+        let is_white = |pixels: &[Light]| pixels.iter().filter(|p| **p == [1.0; 3]).count();
+        assert_eq!(
+            is_white(&seen(-30.0, Some(-0.05))),
+            is_white(&seen(-30.0, None))
+        );
+    }
+
     #[test]
     fn what_does_not_fit_together_is_named() {
         let sheet = isotropic_square(0, 1.0).unwrap();
@@ -455,6 +584,8 @@ mod tests {
                 immobile: &[],
                 solids: &[],
                 parts: &[],
+                colours: None,
+                ground: None,
             };
             render(&picture, &camera, &look).map(|image| image.size())
         };

@@ -45,6 +45,8 @@ pub(super) enum Skin {
     Tube { ends: [[f64; 3]; 2], radius: f64 },
     /// A half-space: its plane is drawn around a point, and fades out towards this radius.
     Ground { centre: [f64; 3], radius: f64 },
+    /// A plane that is seen where there is a shadow on it, and fades out likewise.
+    Shadow { centre: [f64; 3], radius: f64 },
 }
 
 /// What is drawn of a body: corners, faces and edges in space.
@@ -197,7 +199,7 @@ impl Skin {
     /// Whether the surface between two points of it is curved; the flat ends of a cylinder are not.
     pub(super) fn is_arc(&self, a: &[f64; 3], b: &[f64; 3]) -> bool {
         match self {
-            Self::Flat { .. } | Self::Ground { .. } => false,
+            Self::Flat { .. } | Self::Ground { .. } | Self::Shadow { .. } => false,
             Self::Round { .. } => true,
             Self::Tube { ends, radius } => [a, b].into_iter().all(|p| {
                 let d = sub(p, &nearest(ends, p));
@@ -209,7 +211,7 @@ impl Skin {
     /// How far a point outside of the body is from the curved part of its surface, metres.
     pub(super) fn distance(&self, p: &[f64; 3]) -> f64 {
         match self {
-            Self::Flat { .. } | Self::Ground { .. } => 0.0,
+            Self::Flat { .. } | Self::Ground { .. } | Self::Shadow { .. } => 0.0,
             Self::Round { ends, radius } => length(&sub(p, &nearest(ends, p))) - radius,
             Self::Tube { ends, radius } => {
                 let axis = unit(&sub(&ends[1], &ends[0]));
@@ -225,7 +227,7 @@ impl Skin {
     /// The outer unit normal of the surface at a corner of a face that has the normal `flat`.
     pub(super) fn normal(&self, flat: &[f64; 3], p: &[f64; 3]) -> [f64; 3] {
         match self {
-            Self::Flat { .. } | Self::Ground { .. } => *flat,
+            Self::Flat { .. } | Self::Ground { .. } | Self::Shadow { .. } => *flat,
             Self::Round { ends, .. } => unit(&sub(p, &nearest(ends, p))),
             Self::Tube { ends, .. } => {
                 let axis = unit(&sub(&ends[1], &ends[0]));
@@ -242,7 +244,7 @@ impl Skin {
     /// The radius of the surface, metres, if it is curved.
     pub(super) fn radius(&self) -> Option<f64> {
         match self {
-            Self::Flat { .. } | Self::Ground { .. } => None,
+            Self::Flat { .. } | Self::Ground { .. } | Self::Shadow { .. } => None,
             Self::Round { radius, .. } | Self::Tube { radius, .. } => Some(*radius),
         }
     }
@@ -252,15 +254,23 @@ impl Skin {
         !matches!(self, Self::Flat { is_closed: false })
     }
 
-    /// Whether it is the plane of a half-space, which has no ends.
-    pub(super) fn is_ground(&self) -> bool {
-        matches!(self, Self::Ground { .. })
+    /// Whether it is a plane, which has no ends.
+    pub(super) fn is_plane(&self) -> bool {
+        matches!(self, Self::Ground { .. } | Self::Shadow { .. })
+    }
+
+    /// Up to which length in the picture edges stay whole, as part of that of other surfaces.
+    pub(super) fn grain(&self) -> f64 {
+        match self {
+            Self::Shadow { .. } => 0.3,
+            _ => 1.0,
+        }
     }
 
     /// How much of its colour a point of the surface has, from 0 to 1.
     pub(super) fn strength(&self, p: &[f64; 3]) -> f64 {
         match self {
-            Self::Ground { centre, radius } => {
+            Self::Ground { centre, radius } | Self::Shadow { centre, radius } => {
                 let d = sub(p, centre);
                 // Full out to 0.35 of the radius, then fading smoothly.
                 let s = ((1.0 - dot(&d, &d).sqrt() / radius) / 0.65).clamp(0.0, 1.0);
@@ -335,6 +345,21 @@ impl Triangles {
             scene.skins.push((shell.skin, scene.faces.len()));
         }
         scene
+    }
+
+    /// Adds the level plane at a height that shows shadows, out to `reach` metres from below `centre`.
+    pub(super) fn add_ground(&mut self, height: f64, centre: &[f64; 3], reach: f64) {
+        let first = self.x.len();
+        let centre = [centre[0], centre[1], height];
+        let square = BodyMesh::square(reach);
+        self.x
+            .extend(square.points.iter().map(|p| axpy(p, 1.0, &centre)));
+        let faces = square.faces.iter();
+        self.faces
+            .extend(faces.map(|f| f.map(|v| first + v as usize)));
+        let radius = reach;
+        let skin = Skin::Shadow { centre, radius };
+        self.skins.push((skin, self.faces.len()));
     }
 
     /// The number of the sheet that a face is of.

@@ -1,6 +1,6 @@
 //! Vector drawings as pixels, with a font that comes with the program.
 
-use super::canvas::{Image, light, png};
+use super::canvas::png;
 use super::error::PictureError;
 use resvg::{tiny_skia, usvg};
 
@@ -20,17 +20,6 @@ pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>, PictureError> {
         .flat_map(|p| [p[0], p[1], p[2]])
         .collect();
     png(pixels.width(), pixels.height(), &data)
-}
-
-/// An SVG document as a picture on white.
-pub(super) fn image(svg: &str) -> Result<Image, PictureError> {
-    let pixels = pixels(svg, 1.0)?;
-    let colours = pixels.data().chunks_exact(4);
-    Ok(Image {
-        width: pixels.width() as usize,
-        height: pixels.height() as usize,
-        pixels: colours.map(|p| light([p[0], p[1], p[2]])).collect(),
-    })
 }
 
 fn pixels(svg: &str, scale: f32) -> Result<tiny_skia::Pixmap, PictureError> {
@@ -65,14 +54,14 @@ mod tests {
             )
         };
         let dark = |inside: &str| {
-            let image = image(&document(inside)).unwrap();
-            assert_eq!((image.width, image.height), (60, 40));
-            image.pixels.iter().filter(|p| p[0] < 0.5).count()
+            let pixels = pixels(&document(inside), 1.0).unwrap();
+            assert_eq!((pixels.width(), pixels.height()), (60, 40));
+            pixels.pixels().iter().filter(|p| p.red() < 128).count()
         };
         assert_eq!(dark(""), 0);
         assert_eq!(dark("<rect width=\"30\" height=\"20\"/>"), 600);
         assert!(dark("<text y=\"30\" font-family=\"sans-serif\">M2</text>") > 20);
-        assert!(matches!(image("<svg"), Err(PictureError::Svg(_))));
+        assert!(matches!(pixels("<svg", 1.0), Err(PictureError::Svg(_))));
         let file = svg_to_png(&document(""), 1.5).unwrap();
         let info = png::Decoder::new(std::io::Cursor::new(file)).read_info();
         assert_eq!(info.unwrap().info().size(), (90, 60));

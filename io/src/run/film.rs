@@ -1,9 +1,10 @@
 //! Shaded pictures of the frames of a run.
 
+use super::quantity::Quantity;
 use super::{Recording, Viewpoint};
 use crate::DataError;
 use crate::picture::{
-    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render_folded,
+    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render_folded, strip,
 };
 use crate::scene::bounds;
 use isosheet_mesh::wording::given;
@@ -11,7 +12,7 @@ use isosheet_mesh::{Part, VertexId};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How a run is shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FilmOptions {
     /// Height of the pictures, pixels; 480 by default.
     pub height: usize,
@@ -22,6 +23,12 @@ pub struct FilmOptions {
     pub view: Option<Viewpoint>,
     /// What is drawn on the sheet; the edges of the mesh and the pins by default.
     pub marks: Marks,
+    /// The quantity that the sheet is coloured by, one of [`Recording::quantities`], with a scale of colours
+    /// below; none by default.
+    pub colour: Option<String>,
+    /// The values at both ends of the scale of colours; by default those in all frames of the film, without
+    /// the largest 2 % of quantities that differ by orders of magnitude.
+    pub range: Option<[f64; 2]>,
 }
 
 /// What pictures have on the sheet.
@@ -41,6 +48,8 @@ impl Default for FilmOptions {
             width: None,
             view: None,
             marks: Marks::default(),
+            colour: None,
+            range: None,
         }
     }
 }
@@ -61,6 +70,15 @@ impl FilmOptions {
             return Err(PictureError::size(width, height));
         }
         let Viewpoint { azimuth, elevation } = self.view.unwrap_or_default();
+        if let (None, Some([low, high])) = (&self.colour, self.range) {
+            let message = format!(
+                "the range of colours is {}..{}, and the sheet is coloured by no quantity",
+                given(low),
+                given(high)
+            );
+            let remedy = "name a quantity, or leave the range out";
+            return Err(PictureError::Options(DataError::new(message, remedy)));
+        }
         let wrong = match (azimuth.is_finite(), (-90.0..=90.0).contains(&elevation)) {
             (true, true) => return Ok(()),
             (false, _) => ("azimuth", azimuth),
@@ -84,6 +102,11 @@ pub struct Film<'a> {
     camera: Camera,
     look: Look,
     marks: Marks,
+    /// The height of the ground that shows shadows.
+    ground: Option<f64>,
+    quantity: Option<Quantity>,
+    /// What is below the sheet: the scale of colours.
+    strip: Option<Image>,
 }
 
 /// The viewer is so many times as far away as the sheet is large: little perspective.
@@ -95,6 +118,9 @@ const MARGIN: f64 = 0.06;
 /// Corners of bodies that are outside of the box around the sheet by no more than this part of its size are
 /// in view too: a table below a cloth, a ball that falls on it, but not the far ends of a floor.
 const BESIDE: f64 = 0.35;
+
+/// Of what is lower above the ground than this part of the size of the sheet the shadow is in view.
+const NEAR_GROUND: f64 = 0.3;
 
 impl<'a> Film<'a> {
     /// The given frames of a run.
@@ -123,6 +149,9 @@ impl<'a> Film<'a> {
             .collect();
         let [low, high] = bounds(&points);
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        let all = (0..trajectory.len()).filter_map(|k| trajectory.frame(k));
+        let corners = bounds(all.flat_map(|x| x.as_chunks::<3>().0));
+        let ground = recording.ground(trajectory.times(), corners);
         for frame in &frames {
             for solid in placed(&solids, recording, trajectory.times()[*frame]) {
                 points.extend(solid.outline().filter(|p| {
@@ -131,6 +160,14 @@ impl<'a> Film<'a> {
                 }));
             }
         }
+        // What is near to the ground is in view with the place below it.
+        let feet = |ground: f64| {
+            let near = points
+                .iter()
+                .filter(move |p| p[2] < ground + NEAR_GROUND * size);
+            near.map(|p| [p[0], p[1], ground]).collect::<Vec<_>>()
+        };
+        points.extend(ground.map(feet).into_iter().flatten());
         let [low, high] = bounds(&points);
         let middle = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
@@ -139,7 +176,13 @@ impl<'a> Film<'a> {
             width,
             view,
             marks,
+            ref colour,
+            range,
         } = *options;
+        let quantity = colour
+            .as_ref()
+            .map(|name| Quantity::of(recording, name, &frames, range));
+        let quantity = quantity.transpose()?;
         let look = Look::default();
         let wire = match marks {
             Marks::MeshAndPins => look.wire,
@@ -156,6 +199,9 @@ impl<'a> Film<'a> {
                 .max(1.0) as usize
         };
         let width = width.unwrap_or_else(natural);
+        let strip = quantity.as_ref().map(|q| strip(&q.scale, [width, height]));
+        let strip = strip.transpose()?;
+        let height = height - strip.as_ref().map_or(0, |strip| strip.size()[1]);
         Ok(Self {
             recording,
             frames,
@@ -172,6 +218,9 @@ impl<'a> Film<'a> {
                 ..look
             },
             marks,
+            ground,
+            quantity,
+            strip,
         })
     }
 
@@ -182,7 +231,9 @@ impl<'a> Film<'a> {
 
     /// Width and height of the pictures, pixels.
     pub fn size(&self) -> [usize; 2] {
-        self.look.size
+        let [width, height] = self.look.size;
+        let below = self.strip.as_ref().map_or(0, |strip| strip.size()[1]);
+        [width, height + below]
     }
 
     /// Pictures a second, in real time; one for a single picture.
@@ -217,6 +268,7 @@ impl<'a> Film<'a> {
             Marks::MeshAndPins => (&self.recording.pins, &self.recording.immobile),
             Marks::Nothing => (&[], &[]),
         };
+        let colours = self.quantity.as_ref().and_then(|q| q.colours(frame));
         let picture = SheetPicture {
             topology: self.recording.sheet.topology(),
             positions,
@@ -224,8 +276,14 @@ impl<'a> Film<'a> {
             immobile,
             solids: &solids.collect::<Vec<_>>(),
             parts: &self.parts,
+            colours: colours.as_ref(),
+            ground: self.ground,
         };
-        render_folded(&picture, &self.recording.creases, &self.camera, &self.look)
+        let picture = render_folded(&picture, &self.recording.creases, &self.camera, &self.look)?;
+        Ok(match &self.strip {
+            Some(strip) => picture.above(strip),
+            None => picture,
+        })
     }
 
     /// All pictures as an animated PNG file, in real time. `drawn` is told the number of pictures that are
@@ -238,7 +296,7 @@ impl<'a> Film<'a> {
         // Conversion from floats saturates: the longest time of a picture is a minute.
         let delay = delay.round().max(1.0) as u16;
         let count = AtomicUsize::new(0);
-        animated_png(self.look.size, delay, self.frames.len(), |k| {
+        animated_png(self.size(), delay, self.frames.len(), |k| {
             let picture = self.picture(k);
             drawn(count.fetch_add(1, Ordering::Relaxed) + 1);
             picture

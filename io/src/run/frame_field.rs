@@ -20,7 +20,7 @@ pub(super) struct FrameField<'a> {
 type Values<'a> = dyn Fn(&MotionFrame<'_>) -> Vec<f64> + 'a;
 
 impl<'a> FrameField<'a> {
-    fn new(head: Field, values: impl Fn(&MotionFrame<'_>) -> Vec<f64> + 'a) -> Self {
+    pub(super) fn new(head: Field, values: impl Fn(&MotionFrame<'_>) -> Vec<f64> + 'a) -> Self {
         Self {
             head,
             values: Box::new(values),
@@ -152,7 +152,7 @@ impl<'a> FrameField<'a> {
 
     /// Of edges that yield the plastic angle, degrees.
     fn plastic_angle() -> Self {
-        let head = plastic("angle that stays (valley +)", "°", Centering::Edge);
+        let head = plastic("angle that stays (valley +)", "°", Centering::Crease);
         Self::new(head, |frame| {
             let angles = frame.data.plastic_angles.iter();
             angles.map(|a| a.to_degrees()).collect()
@@ -164,7 +164,7 @@ impl<'a> FrameField<'a> {
         let head = Field {
             name: "crease short of its angle".into(),
             unit: "°".into(),
-            place: Centering::Edge,
+            place: Centering::Crease,
             scale: Scale::Linear,
             note: "How far each crease is from the angle that it is folded to in the end.".into(),
             values: Vec::new(),

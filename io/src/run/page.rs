@@ -31,7 +31,7 @@ impl Recording {
     }
 
     /// The fields of the page.
-    fn fields(&self) -> Vec<FrameField<'_>> {
+    pub(super) fn fields(&self) -> Vec<FrameField<'_>> {
         let has = |quantity: FrameQuantity| self.shape.has(quantity);
         let folding = self.folding.as_ref();
         let open = folding.map(|targets| FrameField::open(&self.sheet, targets));
@@ -52,6 +52,7 @@ impl Recording {
     /// The page without its frames, which are at these times, and whose positions lie in the box between two
     /// corners.
     fn still(&self, times: Vec<f64>, corners: [[f64; 3]; 2]) -> Replay {
+        let ground = self.ground(&times, corners);
         let mut replay = Replay::still(&self.sheet, &self.obstacles, times, &self.history);
         for (k, body) in replay.bodies.iter_mut().enumerate() {
             body.name = self.origins.obstacle_called(k);
@@ -82,6 +83,7 @@ impl Recording {
             pins: self.pins.iter().map(|v| v.0).collect(),
             immobile: self.immobile.iter().map(|v| v.0).collect(),
             summary: self.facts(),
+            ground,
             scene: self.scene.text().text.clone(),
             reproduce: self.reproduce(),
             ..replay

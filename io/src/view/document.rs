@@ -32,6 +32,8 @@ pub(super) struct Document<'a> {
     low: [f64; 3],
     step: f64,
     positions: Packed,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ground: Option<f64>,
     sheets: &'a [usize],
     pins: &'a [u32],
     immobile: &'a [u32],
@@ -124,6 +126,7 @@ impl<'a> Document<'a> {
             low,
             step,
             positions: packed,
+            ground: replay.ground,
             sheets: &replay.sheets,
             pins: &replay.pins,
             immobile: &replay.immobile,

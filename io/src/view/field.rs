@@ -14,6 +14,9 @@ pub enum Centering {
     Vertex,
     /// One value for each edge, in the order of [`Topology::edges`]: by smaller, then by larger vertex.
     Edge,
+    /// The same, of which values that are not zero are shown, on the two colours of the sheet: most edges are
+    /// no creases.
+    Crease,
     /// One value for each face.
     Face,
 }
@@ -126,7 +129,7 @@ impl Field {
         let what = || format!("{}, frame {frame}", self.place_in_page(index));
         let expected = match self.place {
             Centering::Vertex => topology.vertex_count(),
-            Centering::Edge => topology.edge_count(),
+            Centering::Edge | Centering::Crease => topology.edge_count(),
             Centering::Face => topology.face_count(),
         };
         check::length_of(values.len(), expected, what)?;

@@ -43,6 +43,9 @@ pub struct Replay {
     pub rest: Vec<f64>,
     /// The direction that is up on the screen and along which heights are measured.
     pub up: Axis,
+    /// The height of a ground that shows nothing but shadows, metres along the direction that is up; none
+    /// where the bodies have a floor, or where nothing falls.
+    pub ground: Option<f64>,
     /// Of several sheets the number of faces of each, so that each has a colour of its own.
     pub sheets: Vec<usize>,
     /// Bodies that the sheet meets.
@@ -127,6 +130,9 @@ impl Replay {
         let topology = check::topology(vertices, &self.faces)?;
         check::finite("the rest positions", &self.rest)?;
         check::times("the times of the frames", &self.times)?;
+        if let Some(ground) = self.ground {
+            check::finite("the height of the ground", &[ground])?;
+        }
         if !self.sheets.is_empty() {
             let of_sheets = self.sheets.iter().sum();
             check::length("the faces of all sheets", self.faces.len(), of_sheets)?;

@@ -644,16 +644,103 @@ fn refined_patterns_are_exported() {
     assert_eq!(count("halves", "sheet.refine=1"), whole.map(|n| 2 * n));
 }
 
-/// The share of the pixels of a PNG file that have the warm tint of the upper side of a sheet.
-fn share_of_paper(png: &[u8]) -> f64 {
+/// The colours of the pixels of a PNG file.
+fn pixels(png: &[u8]) -> Vec<[u8; 3]> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(png))
         .read_info()
         .unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut pixels).unwrap();
-    let pixels = pixels.as_chunks::<3>().0;
+    pixels.as_chunks::<3>().0.to_vec()
+}
+
+/// The share of the pixels of a PNG file that have the warm tint of the upper side of a sheet.
+fn share_of_paper(png: &[u8]) -> f64 {
+    let pixels = pixels(png);
     let is_paper = |p: &&[u8; 3]| i16::from(p[0]) > i16::from(p[2]) + 15;
     pixels.iter().filter(is_paper).count() as f64 / pixels.len() as f64
+}
+
+/// The sheet is coloured by a quantity, on the scale of colours that is below it; a range that is given fixes
+/// both.
+#[test]
+fn pictures_show_a_quantity_with_its_scale() {
+    let dir = with_short_run(StartingPoint::Drape);
+    let dir = dir.path();
+    let picture = |options: &[&str]| {
+        let convert = ["convert", "run", "x.png", "--size", "300x280", "--plain"];
+        done(dir, &[&convert, options].concat());
+        let png = fs::read(dir.join("x.png")).unwrap();
+        assert_eq!(size(&png), [300, 280]);
+        pixels(&png)
+    };
+    let has = |pixels: &[[u8; 3]], colour: [u8; 3]| {
+        let off = |p: &[u8; 3]| (0..3).map(|k| p[k].abs_diff(colour[k])).max();
+        pixels.iter().filter(|p| off(p) <= Some(2)).count()
+    };
+    // The ends of viridis, and letters of ten pixels below which the bar has eight rows.
+    let [low, high] = [[0x44, 0x01, 0x54], [0xfd, 0xe7, 0x25]];
+    let plain = picture(&[]);
+    let gap = picture(&["--colour", "Gap"]);
+    for end in [low, high] {
+        assert_eq!(has(&plain, end), 0);
+        assert!(has(&gap, end) >= 8, "{end:?}");
+    }
+    // Far above all gaps the sheet has the colour of the low end, and the bar both.
+    let far = picture(&["--color", "gap", "--range", "1..2"]);
+    let small = has(&far, high);
+    assert!((8..100).contains(&small), "{small}");
+    assert!(has(&gap, high) > 100 + small);
+    let said = refused(dir, &["convert", "run", "y.png", "--colour", "warmth"], 2);
+    assert!(
+        said.contains("no quantity `warmth`; it has `fold angle"),
+        "{said}"
+    );
+    for wrong in [
+        &["y.png", "--colour", "gap", "--range", "2..1"][..],
+        &["y.png", "--colour", "gap", "--range", "1"],
+        &["y.png", "--range", "0..1"],
+        &["y.png", "--colour", "gap", "--size", "30"],
+        &["y.usda", "--colour", "gap"],
+    ] {
+        refused(dir, &[&["convert", "run"], wrong].concat(), 2);
+    }
+    assert!(!dir.join("y.png").exists() && !dir.join("y.usda").exists());
+}
+
+/// Pages have a ground below the lowest point of bodies and sheet where something falls, and none where
+/// nothing does or where there is a floor.
+#[test]
+fn runs_have_a_ground_where_something_falls() {
+    let ground = |kind, edits: &[&str]| {
+        let dir = with_scene(kind);
+        let edits = edits.iter().flat_map(|edit| ["--set", edit]);
+        let arguments = [
+            "simulate",
+            "scene.toml",
+            "--out",
+            "run",
+            "--set",
+            "stop.time=0.02",
+        ];
+        done(
+            dir.path(),
+            &arguments.into_iter().chain(edits).collect::<Vec<_>>(),
+        );
+        let recording = Recording::read(&dir.path().join("run")).unwrap();
+        let x = (0..recording.trajectory.len()).filter_map(|k| recording.trajectory.frame(k));
+        let heights = x.flat_map(|x| x.as_chunks::<3>().0).map(|p| p[2]);
+        let lowest = heights.fold(f64::INFINITY, f64::min);
+        (recording.replay().unwrap().ground, lowest)
+    };
+    // The sheet is on a table, whose foot is lower.
+    let (on_table, sheet) = ground(StartingPoint::Drape, &[]);
+    let (hanging, lowest) = ground(StartingPoint::Hanging, &[]);
+    assert!(on_table.unwrap() < sheet - 0.01, "{on_table:?} {sheet}");
+    assert!(hanging.unwrap() < lowest, "{hanging:?} {lowest}");
+    assert_eq!(ground(StartingPoint::Fold, &[]).0, None);
+    let aslant = ["forces.gravity=[1, 0, -9.81]"];
+    assert_eq!(ground(StartingPoint::Hanging, &aslant).0, None);
 }
 
 /// Where a plate stands between the usual viewer and the sheet, the picture is taken from elsewhere. Bodies

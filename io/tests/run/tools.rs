@@ -49,6 +49,11 @@ fn new_check_info_and_completions() {
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
+    // An elastic sheet has no rods, and none that depend on each other.
+    let info = run(dir, &["info", "drape.toml"]);
+    let text = String::from_utf8_lossy(&info.stdout).into_owned();
+    assert!(text.contains("= 3V, as no edge is a rigid rod"), "{text}");
+    assert!(!text.contains("dependent"), "{text}");
     let script = run(dir, &["completions", "bash"]);
     assert!(String::from_utf8_lossy(&script.stdout).contains("simulate"));
     let help = run(dir, &["--help"]);

@@ -233,5 +233,5 @@ time = 1
         .iter()
         .find(|f| f.name == "angle that stays (valley +)")
         .unwrap();
-    assert_eq!((field.place, &*field.unit), (Centering::Edge, "°"));
+    assert_eq!((field.place, &*field.unit), (Centering::Crease, "°"));
 }

@@ -5,7 +5,7 @@
 use super::decoder::{checksum, document, field, positions, rows};
 use super::scenes::{every_body, waving};
 use crate::headless::self_test;
-use isosheet_io::view::{BodyShape, PageOptions, Replay};
+use isosheet_io::view::{BodyShape, Centering, Field, PageOptions, Replay, Scale};
 use isosheet_mesh::{Topology, fold_angle};
 use serde_json::Value;
 
@@ -142,10 +142,21 @@ fn every_body_is_drawn_and_moves() {
     assert_eq!(result["plots"].as_u64(), Some(2));
 }
 
-/// The slider of a crease pattern is the part of the folding, and creases are coloured by how open they are at first.
+/// The slider of a crease pattern is the part of the folding, and creases are coloured by how open they are
+/// at first, on the two colours of the paper.
 #[test]
 fn the_slider_of_a_fold_is_the_part_of_the_folding() {
     let mut replay = waving(2, 5);
+    let mut open = vec![0.0; replay.fields[0].values[0].len()];
+    open[20] = 30.0;
+    replay.fields.push(Field {
+        name: "crease short of its angle".into(),
+        unit: "°".into(),
+        place: Centering::Crease,
+        scale: Scale::Linear,
+        note: String::new(),
+        values: vec![open; 5],
+    });
     replay.folded = vec![0.0, 0.1, 0.5, 0.9, 1.0];
     replay.colour = Some(replay.fields.len() - 1);
     let page = replay.to_html().unwrap();
@@ -157,6 +168,14 @@ fn the_slider_of_a_fold_is_the_part_of_the_folding() {
     }
     let key = format!("field-{}", replay.fields.len() - 1);
     assert_eq!(result["startColour"], key.as_str());
+    // Plain, the fold angle, the height, and the fields: those of creases leave the sides as they are.
+    let modes = result["modes"].as_array().unwrap().len();
+    assert_eq!(number(&result["pictures"]["colourings"]), modes as f64);
+    let sides = &result["sides"];
+    assert_ne!(sides[0][0], sides[0][1]);
+    assert!(sides[1] == sides[0] && sides[modes - 1] == sides[0]);
+    // Strains and forces of edges are shown on pale faces.
+    assert_eq!(sides[3][0], sides[3][1]);
     let slid = &result["slid"];
     assert_eq!(slid["label"], "Part of the folding");
     let said = [

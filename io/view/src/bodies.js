@@ -20,6 +20,7 @@ import {
   Vector3,
 } from "three";
 import { drawEdges, edgeUniforms, outline } from "./edges.js";
+import { castOnGround } from "./ground.js";
 
 /** Shapes of three.js stand along y, those of the document along z. */
 const upright = (geometry) => geometry.rotateX(Math.PI / 2);
@@ -50,6 +51,7 @@ export function makeBody(body) {
     const [surface] = group.children;
     surface.position.set(...centreOf(body.shape));
     Object.assign(surface, { castShadow: true, receiveShadow: true });
+    castOnGround(surface);
   }
   return group;
 }

@@ -1,10 +1,14 @@
-// Colours of values: a sequential map (viridis) and a diverging one (blue, grey, red).
+// Colours of values: a sequential map (viridis), a diverging one (blue, grey, red), and one that stands out
+// from paper.
 
 // Viridis by Smith and van der Walt (CC0), every eighth part.
 const VIRIDIS = [0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725];
 // Diverging colours after Moreland (2009), "Diverging Color Maps for Scientific Visualization", every eighth
 // part.
 const COOLWARM = [0x3b4cc0, 0x688aef, 0x99baff, 0xc9d8ef, 0xdddddd, 0xf7c4ad, 0xf49a7b, 0xde614d, 0xb40426];
+// Inferno by Smith and van der Walt (CC0), the first seven tenths of it, whose colours stand out from both
+// sides of paper.
+const INFERNO = [0x000004, 0x160b39, 0x420a68, 0x6a176e, 0x932667, 0xbc3754, 0xdd513a, 0xf37819];
 const SIZE = 256;
 
 function table(stops) {
@@ -27,6 +31,7 @@ function table(stops) {
 
 export const SEQUENTIAL = table(VIRIDIS);
 export const DIVERGING = table(COOLWARM);
+export const DARK = table(INFERNO);
 /** Of what has no value, such as the fold angle of a boundary edge. */
 const NONE = 0.22;
 

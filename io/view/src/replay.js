@@ -1,7 +1,7 @@
 // The decoded replay: positions and values of a frame, and the quantities that the sheet can be coloured by.
 
 import { number } from "./format.js";
-import { DIVERGING, SEQUENTIAL } from "./colour.js";
+import { DARK, DIVERGING, SEQUENTIAL } from "./colour.js";
 import { Mesh } from "./mesh.js";
 
 const AXES = { x: 0, y: 1, z: 2 };
@@ -127,11 +127,12 @@ export class Replay {
 }
 
 // A quantity has a value for each vertex, edge or face (`place`), a range, a scale and a map of colours. Its
-// place in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. Ranges are those
+// place in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. A quantity
+// `ofCreases` is of some edges, and is shown on the two colours of the sheet. Ranges are those
 // of the whole run, so that colours mean the same in every frame; `open` says beyond which ends there are
 // values.
 
-/** Edges whose fold angle is less than this share of the range of colours are shown as flat. */
+/** Creases whose value differs from zero by less than this share of the range of colours show nothing. */
 const FLAT = 0.01;
 const DEGREES = 180 / Math.PI;
 
@@ -141,13 +142,25 @@ function foldQuantity(replay) {
     label: "Fold angle",
     unit: "°",
     place: "edge",
+    ofCreases: true,
     map: DIVERGING,
     scale: "linear",
     open: () => ({ below: replay.foldRange.open, above: replay.foldRange.open }),
-    leavesOut: (place) => !(Math.abs(place - 0.5) > FLAT),
+    leavesOut: farFrom(0.5),
     range: () => replay.foldRange.range,
     value: (edge) => replay.fold(edge) * DEGREES,
   };
+}
+
+/** Leaves out creases whose place is that of zero. */
+function farFrom(zero) {
+  return (place) => !(Math.abs(place - zero) > FLAT);
+}
+
+/** Where the values of a field are, and what shows nothing: of creases those whose value is zero. */
+function placeOf(field, zero) {
+  const ofCreases = field.place === "crease";
+  return { place: ofCreases ? "edge" : field.place, ofCreases, leavesOut: ofCreases ? farFrom(zero) : Number.isNaN };
 }
 
 function foldTurns(replay) {
@@ -230,11 +243,10 @@ function fieldQuantity(replay, field, k) {
     label: field.name,
     note: field.note,
     unit: field.unit,
-    place: field.place,
-    map: SEQUENTIAL,
+    ...placeOf(field, 0),
+    map: field.place === "crease" ? DARK : SEQUENTIAL,
     scale: field.scale,
-    range: () => [decode(logarithmic ? Math.min(1, largest) : 0), decode(largest)],
-    leavesOut: Number.isNaN,
+    range: () => [field.place === "crease" ? 0 : decode(logarithmic ? Math.min(1, largest) : 0), decode(largest)],
     value: (index) => decode(values[replay.frame * width + index]),
   };
 }
@@ -258,12 +270,11 @@ function forceQuantity(replay, field, k) {
     label: field.name,
     note: field.note,
     unit: field.unit,
-    place: field.place,
+    ...placeOf(field, hasSigns ? 0.5 : 0),
     map: hasSigns ? DIVERGING : SEQUENTIAL,
     scale: "linear",
     open: () => ({ below: hasSigns && end().open, above: end().open }),
     range: () => [hasSigns ? -end().size : 0, end().size],
-    leavesOut: Number.isNaN,
     value: (index) => decode(values[replay.frame * width + index]),
   };
 }

@@ -130,6 +130,10 @@ export async function selfTest(page, exceptions) {
     modes.map((mode) => () => page.colourBy(mode.key)),
     log,
   );
+  const sides = modes.map((mode) => {
+    page.colourBy(mode.key);
+    return stage.sheet.materials.map(([first]) => first.color.getHexString());
+  });
   const toggles = ["wireframe", "rest", "edges"].map((id) => () => document.getElementById(id).click());
   const styles = distinct(stage, [() => page.colourBy("plain"), ...toggles], log);
   for (const act of toggles) act();
@@ -163,6 +167,7 @@ export async function selfTest(page, exceptions) {
     covered: Math.min(...log.map((p) => p.covered)),
     glErrors: log.map((p) => p.error).filter((error) => error !== 0),
     modes,
+    sides,
     bodies,
     looks,
     hover,

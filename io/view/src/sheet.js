@@ -21,6 +21,7 @@ import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import { put } from "./colour.js";
 import { Sides, drawEdges, edgeUniforms } from "./edges.js";
+import { castOnGround } from "./ground.js";
 import { Normals } from "./normals.js";
 import { placing } from "./replay.js";
 
@@ -100,6 +101,7 @@ export class SheetObjects {
     this.pins.frustumCulled = false;
     for (const object of this.surfaces) {
       Object.assign(object, { frustumCulled: false, castShadow: true, receiveShadow: true });
+      castOnGround(object);
     }
     this.group.add(...this.surfaces, this.lines, this.bars, this.ghost, this.mark, this.pins);
     this.quantity = replay.quantities[0];
@@ -119,12 +121,13 @@ export class SheetObjects {
     this.setQuantity(this.quantity);
   }
 
-  /** Colours by another quantity. Faces that show values are white beneath, beside coloured edges pale. */
+  /** Colours by another quantity. Faces that show values are white beneath, beside coloured edges pale, and beside
+   * coloured creases they have the two colours of their sheet. */
   setQuantity(quantity) {
     this.quantity = quantity;
     this.place = quantity.map ? placing(quantity) : null;
     const onFaces = quantity.place === "vertex" || quantity.place === "face";
-    const pale = quantity.place === "edge";
+    const pale = quantity.place === "edge" && !quantity.ofCreases;
     this.materials.forEach((materials, side) =>
       materials.forEach((material, sheet) => {
         const own = this.colours.sheets[sheet % this.colours.sheets.length][side];

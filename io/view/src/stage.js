@@ -17,6 +17,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { addPatch, makeBody, placeBody } from "./bodies.js";
+import { Ground } from "./ground.js";
 import { SheetObjects } from "./sheet.js";
 import { themeColours } from "./theme.js";
 
@@ -143,6 +144,11 @@ export class Stage {
     this.bodies.scale.setScalar(1 / this.size);
     this.bodies.position.set(...this.centre.map((c) => -c / this.size));
     this.meanLength = this.replay.mesh.meanLength(rest) / this.size;
+    const { ground } = this.replay.data;
+    if (ground === undefined) return;
+    const place = new Vector3().setComponent(this.replay.up, (ground - this.centre[this.replay.up]) / this.size);
+    this.ground = new Ground(place, this.up);
+    this.scene.add(this.ground.object);
   }
 
   /** The mean place of the vertices, on the stage. */
@@ -177,6 +183,7 @@ export class Stage {
     this.replay.data.bodies.forEach((body, k) => {
       if (body.poses.length > 7) placeBody(this.bodyGroups[k], body, this.replay.frame);
     });
+    if (this.ground) this.ground.isStale = true;
     this.request();
   }
 
@@ -227,6 +234,7 @@ export class Stage {
       Object.assign(material, { transparent: glass, opacity: glass ? GLASS : 1, depthWrite: !glass });
       material.needsUpdate = true;
     });
+    if (this.ground) this.ground.isStale = true;
     this.request();
   }
 
@@ -311,6 +319,7 @@ export class Stage {
     const distance = this.camera.position.distanceTo(this.controls.target);
     const height = 2 * distance * Math.tan((ANGLE_OF_VIEW * Math.PI) / 360);
     this.sheet.fade((this.meanLength / height) * this.container.clientHeight);
+    this.ground?.update(this.renderer, this.scene);
     this.renderer.render(this.scene, this.camera);
   }
 

@@ -63,6 +63,8 @@ impl Viewpoint {
                 immobile: &[],
                 solids: &shot.solids,
                 parts: &[],
+                colours: None,
+                ground: None,
             };
             Ok(render(&picture, &camera, &look)?)
         };
@@ -80,7 +82,7 @@ impl Viewpoint {
         let labels = shots.into_iter().map(|shot| shot.label);
         let labelled = images.zip(labels);
         let labelled = labelled.map(|(image, label)| Labelled { image, label });
-        Ok(montage(&labelled.collect::<Vec<_>>(), columns)?)
+        Ok(montage(&labelled.collect::<Vec<_>>(), columns))
     }
 
     /// One picture of a height in pixels as a PNG file.
