@@ -2,15 +2,20 @@
 //!
 //! Every entry is computed on its own, so that results are the same for any number of threads.
 
+mod awake;
+
+pub use awake::Awake;
 use rayon::prelude::*;
 
 /// Time of one thread, in nanoseconds, from which work is shared. To wake a thread that sleeps takes 0.1 ms: two threads
 /// need as long as one for what takes one thread 0.2 ms, and three quarters of the time for 0.4 ms.
 const WORTH_SHARING: f64 = 3e5;
 
-/// Time of the smallest pieces that threads take from each other, nanoseconds: a tenth of the smallest work that is
-/// shared. Each costs some hundred nanoseconds.
-const PIECE: f64 = 3e4;
+/// The same where the other threads are awake, and take up work within some microseconds.
+const WORTH_SHARING_AWAKE: f64 = 3e4;
+
+/// Time of the smallest pieces that threads take from each other, nanoseconds. Each costs some hundred nanoseconds.
+const PIECE: f64 = 1e4;
 
 /// How many entries are computed, and how long each takes.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +29,10 @@ pub struct Work {
 impl Work {
     /// Whether it takes less time on several threads than on one, and there are several.
     pub fn is_shared(self) -> bool {
-        self.count as f64 * self.each >= WORTH_SHARING && rayon::current_num_threads() > 1
+        let time = self.count as f64 * self.each;
+        time >= WORTH_SHARING_AWAKE
+            && (time >= WORTH_SHARING || Awake::is_held())
+            && rayon::current_num_threads() > 1
     }
 
     /// Entries of a piece.
@@ -55,7 +63,9 @@ pub fn in_order<T: Send>(
 ) {
     if work.is_shared() {
         fill(room, work, entry);
-        room.iter().enumerate().for_each(|(k, value)| take(k, value));
+        room.iter()
+            .enumerate()
+            .for_each(|(k, value)| take(k, value));
     } else {
         (0..work.count).for_each(|k| take(k, &entry(k)));
     }
@@ -71,4 +81,15 @@ pub fn pieces<T: Send>(list: &mut [T], each: f64, change: impl Fn(usize, &mut [T
     let size = count.div_ceil(rayon::current_num_threads());
     let pieces = list.par_chunks_mut(size).enumerate();
     pieces.for_each(|(k, piece)| change(k * size, piece));
+}
+
+/// Does two things, side by side where the other threads are [awake](Awake).
+pub fn both<A: Send, B: Send>(
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    match Awake::is_held() {
+        true => rayon::join(first, second),
+        false => (first(), second()),
+    }
 }

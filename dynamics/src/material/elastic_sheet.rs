@@ -423,8 +423,7 @@ impl Potential for ElasticSheet {
 
     /// Along the part every face keeps a part of its distance from the limit.
     fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
-        let cut = |part: f64, face: &Face| face.safe_part(at, dx, part);
-        self.faces.iter().fold(1.0, cut)
+        self.part_within(at, dx)
     }
 
     /// Whether every face keeps a part of its distance from the limit.

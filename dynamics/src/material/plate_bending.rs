@@ -36,8 +36,8 @@ pub use line_clamp::{LineClamp, PlateEdges};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use natural::NaturalCurvature;
 pub use natural::{Curl, Curvature, NaturalTensor};
-pub(crate) use second_derivatives::SecondDerivatives;
 use points::{FlatPoints, add_forces};
+pub(crate) use second_derivatives::SecondDerivatives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use stencil::{Stencil, Stencils, face_of};
@@ -384,7 +384,9 @@ impl Potential for PlateBending {
     fn energy(&self, at: At<'_>) -> f64 {
         let stencils = &self.stencils;
         match &self.stress_free {
-            None => self.flat.at(stencils, at, |points| points.iter().map(|(_, e)| e).sum()),
+            None => self
+                .flat
+                .at(stencils, at, |points| points.iter().map(|(_, e)| e).sum()),
             Some(curvature) => curvature.evaluate(stencils, at, |points| {
                 let energy = |(k, bent)| curvature.energy(k, bent);
                 points.iter().enumerate().map(energy).sum()

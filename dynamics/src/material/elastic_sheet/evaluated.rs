@@ -1,8 +1,8 @@
 //! The faces of an elastic sheet where it is evaluated, on the threads of rayon's current pool.
 
-use super::bend::Bend;
-use super::face::{Blocks, Face, Strained};
 use super::ElasticSheet;
+use super::bend::Bend;
+use super::face::{Blocks, Course, Face, Strained};
 use crate::HessianSink;
 use crate::material::evaluation::{Evaluation, Room};
 use crate::potential::At;
@@ -12,12 +12,15 @@ use isosheet_coords::linalg::parallel::{Work, in_order};
 /// vertices on one core at 2.4 GHz.
 const STATE_TIME: f64 = 90.0;
 const BLOCKS_TIME: f64 = 110.0;
+/// The same for what a face does along a displacement.
+const COURSE_TIME: f64 = 40.0;
 
 /// The faces where a sheet was evaluated last, with their energies, and room for their Hessians.
 #[derive(Debug, Default, Clone)]
 pub(super) struct EvaluatedFaces {
     states: Evaluation<(Strained, f64)>,
     blocks: Room<Vec<Blocks>>,
+    courses: Room<Vec<Option<Course>>>,
 }
 
 /// The stiffness of the barrier in a memory, joules per square metre; none without.
@@ -40,11 +43,7 @@ impl ElasticSheet {
     }
 
     /// Hands the states of the faces to `take`, with their energies, joules.
-    pub(super) fn evaluate<R>(
-        &self,
-        at: At<'_>,
-        take: impl FnOnce(&[(Strained, f64)]) -> R,
-    ) -> R {
+    pub(super) fn evaluate<R>(&self, at: At<'_>, take: impl FnOnce(&[(Strained, f64)]) -> R) -> R {
         let barrier = barrier_of(at.memory);
         let state = |k| {
             let (face, strained) = self.strained(k, at);
@@ -53,6 +52,21 @@ impl ElasticSheet {
         };
         let work = self.work(STATE_TIME);
         self.evaluated.states.at(at, work, state, take)
+    }
+
+    /// Largest part of the displacement `dx` along which every face keeps a part of its distance from the limit.
+    pub(super) fn part_within(&self, at: At<'_>, dx: &[f64]) -> f64 {
+        let mut part = 1.0;
+        let course = |k: usize| self.faces[k].course(at, dx);
+        let cut = |_, course: &Option<Course>| {
+            if let Some(course) = course {
+                part = course.safe_part(part);
+            }
+        };
+        let work = self.work(COURSE_TIME);
+        let room = &self.evaluated.courses;
+        room.with(|room| in_order(room, work, course, cut));
+        part
     }
 
     /// Adds the Hessian, with a part of the force densities of the edges.

@@ -386,13 +386,9 @@ impl Face {
         }
     }
 
-    /// Largest part of the displacement `dx`, at most `most`, along which the strain keeps its distance from
-    /// the limit but for [`KEPT_MARGIN`] of it.
-    ///
-    /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients
-    /// in Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval
-    /// is halved.
-    pub(super) fn safe_part(&self, at: At<'_>, dx: &[f64], most: f64) -> f64 {
+    /// The strains along the displacement `dx`, unless all of it keeps the distance from the limit but for
+    /// [`KEPT_MARGIN`] of it.
+    pub(super) fn course(&self, at: At<'_>, dx: &[f64]) -> Option<Course> {
         let growth = self.swelling.growth(at.t);
         let vectors = self.edge_vectors(at.x);
         let changes = self.edge_vectors(dx);
@@ -401,14 +397,48 @@ impl Face {
         let [e1, e2] = [first, second].map(|errors| self.strains * errors / growth);
         let e0 = self.strain(at);
         let bound = self.bound(e0.norm());
-        if e0.norm() + most * (e1.norm() + most * e2.norm()) <= bound {
+        let course = Course {
+            strains: [e0, e1, e2],
+            bound,
+        };
+        (!course.is_within(1.0)).then_some(course)
+    }
+}
+
+/// The strain of a face along a displacement.
+#[derive(Debug)]
+pub(super) struct Course {
+    /// Coefficients of its powers of the part of the displacement.
+    strains: [Vector3<f64>; 3],
+    /// What its norm may be.
+    bound: f64,
+}
+
+impl Course {
+    /// Whether norms alone show that it stays within its bound up to a part.
+    fn is_within(&self, part: f64) -> bool {
+        let [e0, e1, e2] = self.strains.map(|e| e.norm());
+        e0 + part * (e1 + part * e2) <= self.bound
+    }
+
+    /// Largest part of the displacement, at most `most`, along which it stays within its bound.
+    ///
+    /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients
+    /// in Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval
+    /// is halved.
+    pub(super) fn safe_part(&self, most: f64) -> f64 {
+        if self.is_within(most) {
             return most;
         }
+        let Self {
+            strains: [e0, e1, e2],
+            bound,
+        } = self;
         let powers = [
             e0.norm_squared() - bound * bound,
-            2.0 * e0.dot(&e1),
-            e1.norm_squared() + 2.0 * e0.dot(&e2),
-            2.0 * e1.dot(&e2),
+            2.0 * e0.dot(e1),
+            e1.norm_squared() + 2.0 * e0.dot(e2),
+            2.0 * e1.dot(e2),
             e2.norm_squared(),
         ];
         let (mut from, mut to) = (0.0, most);
