@@ -27,11 +27,13 @@ pub struct Work {
 }
 
 impl Work {
-    /// Whether it takes less time on several threads than on one, and there are several.
+    /// Whether it takes less time on several threads than on one, and this is one of the threads of a pool. (Any other
+    /// thread would sleep until those of the pool are done, and have to be woken, too.)
     pub fn is_shared(self) -> bool {
         let time = self.count as f64 * self.each;
         time >= WORTH_SHARING_AWAKE
             && (time >= WORTH_SHARING || Awake::is_held())
+            && rayon::current_thread_index().is_some()
             && rayon::current_num_threads() > 1
     }
 
@@ -93,3 +95,6 @@ pub fn both<A: Send, B: Send>(
         false => (first(), second()),
     }
 }
+
+#[cfg(test)]
+mod tests;

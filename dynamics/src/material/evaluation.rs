@@ -96,3 +96,48 @@ impl<T: Send> Evaluation<T> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is kept belongs to time, positions and memory, and a caller within another one gets memory of its own.
+    #[test]
+    fn parts_are_those_of_the_place() {
+        let evaluation = Evaluation::default();
+        let work = Work {
+            count: 3,
+            each: 1.0,
+        };
+        let ask = |at: At<'_>| {
+            let part = |k: usize| at.t + at.x[k] + at.memory.iter().sum::<f64>();
+            evaluation.at(at, work, part, <[f64]>::to_vec)
+        };
+        let (x, y) = ([0.0, 1.0, 2.0], [5.0; 3]);
+        for _ in 0..2 {
+            assert_eq!(ask(At::new(0.0, &x)), [0.0, 1.0, 2.0]);
+            assert_eq!(ask(At::new(10.0, &x)), [10.0, 11.0, 12.0]);
+            assert_eq!(ask(At::new(10.0, &y)), [15.0; 3]);
+            let with_memory = At::new(10.0, &y).with_memory(&[100.0]);
+            assert_eq!(ask(with_memory), [115.0; 3]);
+        }
+        let at = At::new(0.0, &x);
+        let inner = evaluation.at(at, work, |k| k as f64, |_| ask(At::new(0.0, &y)));
+        assert_eq!(inner, [5.0; 3]);
+        assert_eq!(ask(at), [0.0, 1.0, 2.0]);
+    }
+
+    #[test]
+    fn parts_are_computed_once() {
+        let evaluation = Evaluation::default();
+        let work = Work {
+            count: 1,
+            each: 1.0,
+        };
+        let at = At::new(0.0, &[1.0]);
+        let first = evaluation.at(at, work, |_| 1.0, |parts| parts[0]);
+        let again = evaluation.at(at, work, |_| 2.0, |parts| parts[0]);
+        let of_clone = evaluation.clone().at(at, work, |_| 3.0, |parts| parts[0]);
+        assert_eq!([first, again, of_clone], [1.0, 1.0, 3.0]);
+    }
+}

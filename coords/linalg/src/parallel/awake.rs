@@ -6,13 +6,18 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// Keeps the other threads of rayon's current pool awake for as long as it lives, if this one belongs to a pool.
 ///
 /// A thread without work falls asleep within some 20 microseconds, and to wake it takes 0.1 ms: much of the time that
-/// the pieces of an iteration take. Threads that stay awake look for work, and let other programs run in between; they
-/// use processor time. Those that keep others awake themselves, as in ensembles of runs, do not stay for anyone else.
+/// the pieces of an iteration take. Threads that stay awake look for work, and let other programs run where there is none
+/// for longer; they use processor time. Those that keep others awake themselves, as in ensembles of runs, do not stay for anyone else.
 #[derive(Debug)]
 pub struct Awake {
     /// Nothing where the thread has kept others awake before.
     held: Option<Arc<Watch>>,
 }
+
+/// How often a thread looks for work before it lets other programs run: for about the 0.1 ms that it takes to wake a
+/// thread, as most pauses between the pieces of an iteration are not longer. (A program that is let run may keep the core
+/// for milliseconds.)
+const PATIENCE: usize = 1000;
 
 /// What a thread asks of others.
 #[derive(Debug, Default)]
@@ -68,9 +73,15 @@ impl Drop for Awake {
 impl Watch {
     /// Does work of the pool for as long as others are to be awake.
     fn stay(&self) {
+        let mut idle = 0;
         while self.is_held.load(Ordering::Relaxed) && !Awake::is_held() {
-            if rayon::yield_now() != Some(rayon::Yield::Executed) {
-                std::thread::yield_now();
+            idle = match rayon::yield_now() {
+                Some(rayon::Yield::Executed) => 0,
+                _ => idle + 1,
+            };
+            match idle < PATIENCE {
+                true => std::hint::spin_loop(),
+                false => std::thread::yield_now(),
             }
         }
         self.staying.fetch_sub(1, Ordering::Relaxed);
