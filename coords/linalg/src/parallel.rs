@@ -48,7 +48,7 @@ impl Work {
 pub fn fill<T: Send>(list: &mut Vec<T>, work: Work, entry: impl Fn(usize) -> T + Sync) {
     if work.is_shared() {
         let entries = (0..work.count).into_par_iter().with_min_len(work.piece());
-        entries.map(|k| entry(k)).collect_into_vec(list);
+        entries.map(&entry).collect_into_vec(list);
     } else {
         list.clear();
         list.extend((0..work.count).map(entry));
