@@ -29,7 +29,7 @@ use super::plate_bending::PlateBending;
 use arcs::Arcs;
 use bend::NUMBERS;
 pub use error::ElasticSheetError;
-use evaluated::{EvaluatedFaces, barrier_of};
+use evaluated::{EvaluatedFaces, barrier_of, strained};
 use face::Face;
 use isosheet_mesh::{FaceId, Part, Sheet};
 use load::strain_barrier;
@@ -307,7 +307,7 @@ impl ElasticSheet {
     pub fn face_energies<'a>(&'a self, at: At<'a>) -> impl ExactSizeIterator<Item = f64> + 'a {
         let barrier = barrier_of(at.memory);
         (0..self.faces.len()).map(move |k| {
-            let (face, strained) = self.strained(k, at);
+            let (face, strained) = strained(&self.faces, k, at);
             face.energy(&strained, barrier)
         })
     }
@@ -318,7 +318,7 @@ impl ElasticSheet {
         at: At<'a>,
     ) -> impl ExactSizeIterator<Item = f64> + 'a {
         (0..self.faces.len()).map(move |k| {
-            let (face, strained) = self.strained(k, at);
+            let (face, strained) = strained(&self.faces, k, at);
             face.slack_energy(&strained)
         })
     }
@@ -392,12 +392,14 @@ impl ElasticSheet {
 
 impl Potential for ElasticSheet {
     fn energy(&self, at: At<'_>) -> f64 {
-        self.evaluate(at, |states| states.iter().map(|(_, energy)| energy).sum())
+        self.evaluated.evaluate(&self.faces, at, |states| {
+            states.iter().map(|(_, energy)| energy).sum()
+        })
     }
 
     fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
         let barrier = barrier_of(at.memory);
-        self.evaluate(at, |states| {
+        self.evaluated.evaluate(&self.faces, at, |states| {
             for (face, (strained, _)) in self.faces.iter().zip(states) {
                 face.add_gradient(strained, barrier, gradient);
             }
@@ -405,12 +407,14 @@ impl Potential for ElasticSheet {
     }
 
     fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
-        self.add_blocks(at, |density| density, hessian);
+        self.evaluated
+            .add_blocks(&self.faces, at, |density| density, hessian);
     }
 
     /// With the curvature of edges under tension alone.
     fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
-        self.add_blocks(at, |density| density.max(0.0), hessian);
+        self.evaluated
+            .add_blocks(&self.faces, at, |density| density.max(0.0), hessian);
     }
 
     fn is_driven(&self) -> bool {
@@ -423,7 +427,7 @@ impl Potential for ElasticSheet {
 
     /// Along the part every face keeps a part of its distance from the limit.
     fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
-        self.part_within(at, dx)
+        self.evaluated.part_within(&self.faces, at, dx)
     }
 
     /// Whether every face keeps a part of its distance from the limit.
@@ -435,7 +439,7 @@ impl Potential for ElasticSheet {
     /// The tangent law of each face times the strains of second order, `|dx_a - dx_b|^2 / 2` for each edge.
     fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, gradient: &mut [f64]) -> bool {
         let barrier = barrier_of(at.memory);
-        self.evaluate(at, |states| {
+        self.evaluated.evaluate(&self.faces, at, |states| {
             for (face, (strained, _)) in self.faces.iter().zip(states) {
                 face.add_second_order(strained, dx, barrier, scale, gradient);
             }
