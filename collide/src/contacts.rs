@@ -5,6 +5,7 @@ mod body_pairs;
 mod displacements;
 mod evaluate;
 mod features;
+mod limit;
 mod motion;
 mod neighbours;
 mod options;
@@ -27,6 +28,7 @@ use isosheet_dynamics::contact::{
 };
 use isosheet_dynamics::{SheetModel, State};
 use isosheet_mesh::{Topology, VertexId};
+use limit::Limit;
 use motion::SheetMotion;
 use nalgebra::Vector3;
 use neighbours::{Neighbours, SelfPairs};
@@ -145,9 +147,10 @@ pub struct Contacts {
     has_self_contact: bool,
     /// Made at the first positions, in scenes that need them.
     neighbours: Option<Neighbours>,
-    /// Working memory: the motions of the bodies, and displacements of a part of a long motion.
+    /// Working memory: the motions of the bodies, displacements of a part of a long motion, and which candidates are near.
     parts: Vec<PartOfStep>,
     part_of_motion: Vec<f64>,
+    near: Vec<bool>,
 }
 
 impl Contacts {
@@ -206,6 +209,7 @@ impl Contacts {
             neighbours: None,
             parts: Vec::new(),
             part_of_motion: Vec::new(),
+            near: Vec::new(),
         })
     }
 
@@ -442,16 +446,14 @@ impl Contacts {
                 .update(sheet, &mut self.bodies, &self.parts);
         }
         let neighbours = self.neighbours.as_ref();
-        let mut limit = 1.0;
+        let (limit, near) = (Limit::new(1.0), &mut self.near);
         for (body, part) in self.bodies.iter().zip(&self.parts) {
-            limit = body.query(sheet, neighbours, part, limit, pairs);
+            body.query(sheet, neighbours, part, &limit, near, pairs);
         }
-        match neighbours {
-            Some(neighbours) if self.has_self_contact => {
-                sheet::query(sheet, neighbours, limit, pairs)
-            }
-            _ => limit,
+        if let Some(neighbours) = neighbours.filter(|_| self.has_self_contact) {
+            sheet::query(sheet, neighbours, &limit, near, pairs);
         }
+        limit.part()
     }
 }
 

@@ -2,8 +2,10 @@
 //! extreme masses, short steps, many threads.
 
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
-use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepError};
-use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, fold_angle};
+use isosheet_dynamics::{
+    ElasticSheet, Method, PlateBending, SheetModel, Simulation, State, StepError,
+};
+use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, fold_angle, generate};
 use isosheet_tests::{
     Flap, Named, Pendulum, RigidBody, bumped, conservative, energy_momentum, implicit_euler,
     max_difference, orders,
@@ -253,4 +255,36 @@ fn a_cloth_has_the_same_bits_on_any_number_of_threads() {
     };
     let one = on(1);
     assert!([2, 4].iter().all(|&threads| on(threads) == one));
+}
+
+/// A film with a plate, of as many vertices as whole steps are shared from, that touches a ball and itself: faces,
+/// points, products, pairs and factorisations are shared among threads that stay awake.
+#[test]
+fn a_film_has_the_same_bits_on_any_number_of_threads() {
+    let film = || {
+        let sheet = generate::disk(30, 0.5).expect("a disk");
+        let plate = PlateBending::new(&sheet, 1e-3).expect("a rigidity");
+        let elastic = ElasticSheet::new(&sheet, 5e5, 0.3).expect("a stiffness");
+        let elastic = elastic.beside(&sheet, &plate);
+        let model = pinned(&sheet, &[]).with_potential(plate);
+        let model = model.with_elastic_sheet(elastic).expect("its own sheet");
+        let options = ContactOptions::for_sheet(&model);
+        let below = Isometry3::translation(0.0, 0.0, -0.2 - 0.9 * options.activation);
+        let ball = Obstacle::fixed(Shape::Sphere { radius: 0.2 }, below).expect("a ball");
+        let friction = Coefficients::equal(0.3);
+        let contacts = Contacts::new(&model, options)
+            .and_then(|c| c.with_body(ball, friction))
+            .and_then(|c| c.with_self_contact(friction));
+        let start = State::at_rest(sheet.positions().to_vec());
+        let run = Simulation::new(model, start, Method::default()).expect("valid");
+        let run = run.with_contact(contacts.expect("apart")).expect("apart");
+        let (x, _) = go(run, 1.0 / 60.0, 2).expect("accepted");
+        x.into_iter().map(f64::to_bits).collect::<Vec<_>>()
+    };
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().expect("threads").install(film)
+    };
+    let one = on(1);
+    assert!([2, 3, 5].iter().all(|&threads| on(threads) == one));
 }

@@ -2,6 +2,7 @@
 
 use super::body::Body;
 use super::features::Features;
+use super::limit::{Limit, for_each_near};
 use super::motion::SheetMotion;
 use super::neighbours::Neighbours;
 use super::path::{Course, PartOfStep};
@@ -13,35 +14,35 @@ use nalgebra::Vector3;
 
 impl Body {
     /// Appends the pairs within reach on the motion of the sheet and the given part of the body's,
-    /// and returns the part of it, up to `limit`, that brings nothing into contact. `neighbours` are those of
-    /// the motion.
+    /// and shortens the part of it that brings nothing into contact. `neighbours` are those of the motion; `near` is
+    /// room.
     pub(super) fn query(
         &self,
         sheet: SheetMotion<'_>,
         neighbours: Option<&Neighbours>,
         part: &PartOfStep,
-        limit: f64,
+        limit: &Limit,
+        near: &mut Vec<bool>,
         pairs: &mut Vec<ContactKey>,
-    ) -> f64 {
-        let mut limit = self.query_vertices(sheet, part, limit, pairs);
+    ) {
+        self.query_vertices(sheet, part, limit, pairs);
         if let (Some(neighbours), Some(features)) = (neighbours, self.features()) {
-            self.query_features(sheet, part, (neighbours, features), &mut limit, pairs);
+            let check = Check { sheet, part, limit };
+            self.query_features(check, (neighbours, features), near, pairs);
         }
-        limit
     }
 
     fn query_vertices(
         &self,
         sheet: SheetMotion<'_>,
         part: &PartOfStep,
-        limit: f64,
+        limit: &Limit,
         pairs: &mut Vec<ContactKey>,
-    ) -> f64 {
+    ) {
         let shape = self.obstacle().shape();
         if matches!(shape, Shape::Surface(_)) {
-            return limit;
+            return;
         }
-        let mut limit = limit;
         let places = sheet.x.as_chunks::<3>().0.iter();
         let steps = sheet.dx.as_chunks::<3>().0.iter();
         let vertices = (0..).zip(places.zip(steps));
@@ -57,81 +58,82 @@ impl Body {
             if nearest > clearance.trigger_distance() {
                 continue;
             }
-            limit = part.advance(&clearance.ccd(sheet.ccd), &[course], limit, |[p]| {
+            let support = |[p]: &[Vector3<f64>; 1]| {
                 let d = shape.signed_distance(p);
                 (d.normal, d.normal.dot(p) - d.value)
-            });
+            };
+            let ccd = clearance.ccd(sheet.ccd);
+            limit.shorten(|limit| part.advance(&ccd, &[course], limit, support));
         }
-        limit
     }
 
     fn query_features(
         &self,
-        sheet: SheetMotion<'_>,
-        part: &PartOfStep,
+        check: Check<'_>,
         (neighbours, features): (&Neighbours, &Features),
-        limit: &mut f64,
+        near: &mut Vec<bool>,
         pairs: &mut Vec<ContactKey>,
     ) {
         let candidates = neighbours.with_body(self.number() as usize);
         let (own, others) = (neighbours.boxes(), features.phase());
         let radius = features.radius;
+        let Check { sheet, part, .. } = check;
         let course = |v: u32| {
             let ([x], [dx]) = (gather(sheet.x, [v]), gather(sheet.dx, [v]));
             part.course(&x, &dx)
         };
-        let mut check = Check { sheet, part, limit };
-        for &[v, f] in &candidates.vertex_face {
+        let mut take = |kind, pair| pairs.push(self.key(kind, pair));
+        let is_near = |[v, f]: [u32; 2]| {
             if !sheet.mesh.meets_bodies(v) || !own.vertex_meets_face(others, [v, f]) {
-                continue;
+                return false;
             }
             let corners = features.face(f);
-            let is_near = check.is_near(v, &[course(v)], |[p]| {
+            check.is_near(v, &[course(v)], |[p]| {
                 let [a, b, c] = corners;
                 let closest = point_triangle(&[*p, a, b, c]);
                 support(&closest, 1.0, &corners, radius)
-            });
-            if is_near {
-                pairs.push(self.key(ContactKind::VertexFace, [v, f]));
-            }
-        }
-        for &[f, v] in &candidates.face_vertex {
+            })
+        };
+        for_each_near(&candidates.vertex_face, near, is_near, |pair| {
+            take(ContactKind::VertexFace, pair);
+        });
+        let is_near = |[f, v]: [u32; 2]| {
             let corners = sheet.mesh.faces()[f as usize];
             if features.is_flat_vertex(v)
                 || !sheet.mesh.meets_bodies(corners[0])
                 || !others.vertex_meets_face(own, [v, f])
             {
-                continue;
+                return false;
             }
             let corner = features.vertex(v);
             let courses = corners.map(course);
-            let is_near = check.is_near(corners[0], &courses, |[p, q, r]| {
+            check.is_near(corners[0], &courses, |[p, q, r]| {
                 let closest = point_triangle(&[corner, *p, *q, *r]);
                 support(&closest, -1.0, &[corner], radius)
-            });
-            if is_near {
-                pairs.push(self.key(ContactKind::FaceVertex, [f, v]));
-            }
-        }
-        for &[e, g] in &candidates.edge_edge {
+            })
+        };
+        for_each_near(&candidates.face_vertex, near, is_near, |pair| {
+            take(ContactKind::FaceVertex, pair);
+        });
+        let is_near = |[e, g]: [u32; 2]| {
             let own_ends = sheet.mesh.edges()[e as usize];
             if features.is_flat_edge(g)
                 || !sheet.mesh.meets_bodies(own_ends[0])
                 || !own.edge_meets_edge(others, [e, g])
             {
-                continue;
+                return false;
             }
             let ends = features.edge(g);
             let courses = own_ends.map(course);
-            let is_near = check.is_near(own_ends[0], &courses, |[p, q]| {
+            check.is_near(own_ends[0], &courses, |[p, q]| {
                 let [c, d] = ends;
                 let closest = edge_edge(&[*p, *q, c, d]);
                 support(&closest, 1.0, &ends, radius)
-            });
-            if is_near {
-                pairs.push(self.key(ContactKind::EdgeEdge, [e, g]));
-            }
-        }
+            })
+        };
+        for_each_near(&candidates.edge_edge, near, is_near, |pair| {
+            take(ContactKind::EdgeEdge, pair);
+        });
     }
 }
 
@@ -149,17 +151,18 @@ fn support<const N: usize>(
 }
 
 /// The two questions about a pair.
+#[derive(Clone, Copy)]
 struct Check<'a> {
     sheet: SheetMotion<'a>,
     part: &'a PartOfStep,
-    limit: &'a mut f64,
+    limit: &'a Limit,
 }
 
 impl Check<'_> {
     /// Whether the pair of a primitive with this vertex may come within reach. Shortens the motion to what is safe
     /// for it.
     fn is_near<const N: usize>(
-        &mut self,
+        &self,
         vertex: u32,
         courses: &[Course; N],
         support: impl Fn(&[Vector3<f64>; N]) -> (Vector3<f64>, f64),
@@ -178,7 +181,8 @@ impl Check<'_> {
         }
         if nearest <= clearance.trigger_distance() || nearest.is_nan() {
             let ccd = clearance.ccd(self.sheet.ccd);
-            *self.limit = self.part.advance(&ccd, courses, *self.limit, support);
+            let advance = |limit| self.part.advance(&ccd, courses, limit, support);
+            self.limit.shorten(advance);
         }
         true
     }

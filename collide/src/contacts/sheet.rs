@@ -1,5 +1,6 @@
 //! The pairs of the sheet with itself.
 
+use super::limit::{Limit, for_each_near};
 use super::motion::{SheetMotion, two_edges, vertex_face};
 use super::neighbours::Neighbours;
 use crate::distance::{edge_edge, point_triangle};
@@ -15,20 +16,20 @@ fn key(kind: ContactKind, pair: [u32; 2]) -> ContactKey {
     }
 }
 
-/// Appends the pairs of the sheet with itself within reach on a motion and returns the part of it, up to
-/// `limit`, that brings nothing into contact. `neighbours` are those of the motion.
+/// Appends the pairs of the sheet with itself within reach on a motion and shortens the part of it that brings nothing
+/// into contact. `neighbours` are those of the motion; `near` is room.
 pub(super) fn query(
     sheet: SheetMotion<'_>,
     neighbours: &Neighbours,
-    limit: f64,
+    limit: &Limit,
+    near: &mut Vec<bool>,
     pairs: &mut Vec<ContactKey>,
-) -> f64 {
+) {
     let boxes = neighbours.boxes();
     let SheetMotion { mesh, x, dx, .. } = sheet;
-    let mut limit = limit;
-    for pair in neighbours.vertex_face() {
+    let is_near = |(_, pair): (f64, [u32; 2])| {
         if !boxes.vertex_meets_face(boxes, pair) {
-            continue;
+            return false;
         }
         let vertices = vertex_face(mesh, pair);
         let clearance = sheet.of_pair(vertices);
@@ -37,21 +38,22 @@ pub(super) fn query(
         let [p, a, b, c] = places;
         let directions = [(a - p) + (b - p) + (c - p), (b - a).cross(&(c - a))];
         if are_apart(&places, 1, &directions, clearance.reach + closer) {
-            continue;
+            return false;
         }
         let nearest = point_triangle(&places).distance() - closer;
         if nearest <= clearance.trigger_distance() || nearest.is_nan() {
-            limit = clearance
-                .ccd(sheet.ccd)
-                .point_triangle(&places, &steps, limit);
+            let ccd = clearance.ccd(sheet.ccd);
+            limit.shorten(|limit| ccd.point_triangle(&places, &steps, limit));
         }
-        if nearest <= clearance.reach || nearest.is_nan() {
-            pairs.push(key(ContactKind::VertexFace, pair));
-        }
-    }
-    for pair in neighbours.edge_edge() {
+        nearest <= clearance.reach || nearest.is_nan()
+    };
+    let kind = ContactKind::VertexFace;
+    for_each_near(neighbours.vertex_face(), near, is_near, |(_, pair)| {
+        pairs.push(key(kind, pair));
+    });
+    let is_near = |(_, pair): (f64, [u32; 2])| {
         if !boxes.edge_meets_edge(boxes, pair) {
-            continue;
+            return false;
         }
         let vertices = two_edges(mesh, pair);
         let clearance = sheet.of_pair(vertices);
@@ -60,17 +62,19 @@ pub(super) fn query(
         let [a, b, c, d] = places;
         let directions = [(c - a) + (d - b), (b - a).cross(&(d - c))];
         if are_apart(&places, 2, &directions, clearance.reach + closer) {
-            continue;
+            return false;
         }
         let nearest = edge_edge(&places).distance() - closer;
         if nearest <= clearance.trigger_distance() || nearest.is_nan() {
-            limit = clearance.ccd(sheet.ccd).edge_edge(&places, &steps, limit);
+            let ccd = clearance.ccd(sheet.ccd);
+            limit.shorten(|limit| ccd.edge_edge(&places, &steps, limit));
         }
-        if nearest <= clearance.reach || nearest.is_nan() {
-            pairs.push(key(ContactKind::EdgeEdge, pair));
-        }
-    }
-    limit
+        nearest <= clearance.reach || nearest.is_nan()
+    };
+    let kind = ContactKind::EdgeEdge;
+    for_each_near(neighbours.edge_edge(), near, is_near, |(_, pair)| {
+        pairs.push(key(kind, pair));
+    });
 }
 
 /// Bound on how much closer two primitives come: the largest displacements of the points of both

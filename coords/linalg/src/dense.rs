@@ -5,9 +5,10 @@
 //! in registers.
 
 use pulp::Simd;
+use std::ops::Range;
 
 /// Columns that are handled together.
-const TOGETHER: usize = 3;
+pub(super) const TOGETHER: usize = 3;
 
 /// What becomes of the values that a product is meant for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,21 +113,28 @@ fn factorise_columns<S: Simd, const N: usize>(
     Ok(())
 }
 
-/// Sets the lower triangle of the square matrix `out` to `-B B^T`, where `B` is what columns of `height`
-/// values have in their last rows. What is above the diagonal has no meaning.
+/// Sets the lower triangle of some columns of the square matrix `-B B^T` of a size, where `B` is what columns of `height`
+/// values have in their last rows; `out` begins with the first of them. What is above the diagonal has no meaning. The
+/// first column and the one after the last are multiples of [`TOGETHER`], or all that are left.
 #[inline(always)]
-pub(super) fn square<S: Simd>(simd: S, panel: &[f64], height: usize, out: &mut [f64], size: usize) {
-    let whole = size - size % TOGETHER;
+pub(super) fn square<S: Simd>(
+    simd: S,
+    (panel, height): (&[f64], usize),
+    (out, size): (&mut [f64], usize),
+    columns: Range<usize>,
+) {
+    let whole = (size - size % TOGETHER).clamp(columns.start, columns.end);
+    let place = |j: usize| (j - columns.start) * size + j;
     let left = |column: usize| Left {
         columns: panel,
         height,
         first_row: height - size + column,
     };
-    for j in (0..whole).step_by(TOGETHER) {
-        left(j).product::<S, TOGETHER>(simd, &mut out[j * size + j..], size, Onto::Nothing);
+    for j in (columns.start..whole).step_by(TOGETHER) {
+        left(j).product::<S, TOGETHER>(simd, &mut out[place(j)..], size, Onto::Nothing);
     }
-    for j in whole..size {
-        left(j).product::<S, 1>(simd, &mut out[j * size + j..], size, Onto::Nothing);
+    for j in whole..columns.end {
+        left(j).product::<S, 1>(simd, &mut out[place(j)..], size, Onto::Nothing);
     }
 }
 

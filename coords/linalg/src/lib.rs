@@ -7,8 +7,8 @@
 //! returns, so assembling is a plain scatter-add.
 //!
 //! faer's generic code is instantiated only here, which keeps the build of every crate
-//! above short. Large Cholesky factorisations are shared among the threads of rayon's current pool; all else
-//! runs sequentially. Results do not depend on the number of threads.
+//! above short. Large Cholesky factorisations are shared among the threads of rayon's current pool, and so
+//! are lists that are filled by [`parallel`]; all else runs sequentially. Results do not depend on the number of threads.
 
 mod dense;
 mod dense_lu;
@@ -20,6 +20,7 @@ mod lu;
 mod multifrontal;
 mod nested_dissection;
 mod ordering;
+pub mod parallel;
 mod pattern;
 mod separator;
 mod symbolic;

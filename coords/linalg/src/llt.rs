@@ -102,6 +102,11 @@ impl SparseLlt {
         }
     }
 
+    /// Whether factorisations are shared among threads, where there are several.
+    pub fn is_shared(&self) -> bool {
+        self.fronts.as_ref().is_some_and(Multifrontal::is_shared)
+    }
+
     /// Number of stored entries of the factor, including the zeros that supernodes pad in.
     pub fn factor_len(&self) -> usize {
         self.factor.len()

@@ -9,12 +9,13 @@
 mod plan;
 mod shared;
 mod triangular;
+mod trunk;
 
 use super::dense;
 use super::pattern::Pattern;
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
-use plan::{Front, Plan, Subtree};
+use plan::{Front, Plan, Subtree, WORTH_SHARING};
 use pulp::{Arch, Simd, WithSimd};
 use shared::{Job, Part};
 use triangular::Factor;
@@ -51,6 +52,11 @@ impl Multifrontal {
     /// Multiplications of a factorisation, those of square roots and divisions left out.
     pub(super) fn operations(&self) -> f64 {
         self.plan.operations
+    }
+
+    /// Whether subtrees are shared among threads, where there are several.
+    pub(super) fn is_shared(&self) -> bool {
+        self.plan.operations >= WORTH_SHARING
     }
 
     /// Sets `factor` to the Cholesky factor of the matrix with the given values. The result does not depend
@@ -127,6 +133,7 @@ impl Numbers<'_> {
         panel: &mut [f64],
         update: &mut [f64],
         others: Others<'_>,
+        square: impl FnOnce((&[f64], usize), (&mut [f64], usize)),
     ) -> Result<(), usize> {
         let plan = self.plan;
         panel.fill(0.0);
@@ -149,7 +156,7 @@ impl Numbers<'_> {
             }
         }
         dense::factorise(simd, panel, height).map_err(|j| front.start + j)?;
-        dense::square(simd, panel, height, update, front.rows);
+        square((panel, height), (update, front.rows));
         for (values, places, within) in children() {
             for j in within..places.len() {
                 let to = places[j] as usize - front.columns;
@@ -226,8 +233,11 @@ impl WithSimd for Branch<'_> {
                 end: front.work,
                 after: &[],
             };
+            let square = |panel: (&[f64], usize), (out, size): (&mut [f64], usize)| {
+                dense::square(simd, panel, (out, size), 0..size);
+            };
             self.numbers
-                .eliminate(simd, front, panel, &mut work[..size], others)?;
+                .eliminate(simd, front, panel, &mut work[..size], others, square)?;
             let work = front.work - start;
             if front.work != front.update {
                 updates.copy_within(work..work + size, front.update - start);
@@ -261,7 +271,8 @@ impl WithSimd for Trunk<'_> {
                 after,
             };
             let panel = &mut self.factor[front.values.clone()];
-            self.numbers.eliminate(simd, front, panel, update, others)?;
+            self.numbers
+                .eliminate(simd, front, panel, update, others, trunk::square)?;
         }
         Ok(())
     }

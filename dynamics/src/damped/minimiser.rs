@@ -20,6 +20,7 @@ use crate::step::tuning::Tuning;
 use crate::term::Exchange;
 use crate::{ImplicitOptions, SheetModel};
 use isosheet_coords::linalg::LinalgError;
+use isosheet_coords::linalg::parallel::Awake;
 use lagrangian::{Merit, OPERATIONS};
 use newton::{Failure, Minimum, Newton};
 use phase::{Faces, MultiplierUpdate, Phase};
@@ -128,6 +129,8 @@ impl Minimiser {
         effort: &mut SolverEffort<'_>,
     ) -> Result<(Minimum, Exchange), StepError> {
         let problem = &mut problem;
+        // An iteration has many short pieces between the factorisations that are shared.
+        let _awake = self.work.lagrangian.matrix.is_shared().then(Awake::new);
         self.work.lagrangian.begin(problem)?;
         let is_driven = self.work.lagrangian.is_driven(problem) || problem.model.has_drives();
         let bound = (!is_driven).then(|| self.work.lagrangian.merit(problem));

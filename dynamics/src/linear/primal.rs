@@ -378,6 +378,11 @@ impl PrimalMatrix {
         expected <= self.iterations_worth() as f64
     }
 
+    /// Whether its factorisations are shared among threads, where there are several.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.near.is_shared()
+    }
+
     /// Forgets that conjugate gradients have been too slow: a step begins.
     pub(crate) fn begin(&mut self) {
         self.is_slow = false;

@@ -7,6 +7,7 @@ mod bend_tests;
 #[cfg(test)]
 mod direction_tests;
 mod error;
+mod evaluated;
 mod face;
 mod law;
 mod limit;
@@ -26,8 +27,9 @@ use crate::{HessianSink, Potential};
 use super::patched::Patched;
 use super::plate_bending::PlateBending;
 use arcs::Arcs;
-use bend::{Bend, NUMBERS};
+use bend::NUMBERS;
 pub use error::ElasticSheetError;
+use evaluated::{EvaluatedFaces, barrier_of, strained};
 use face::Face;
 use isosheet_mesh::{FaceId, Part, Sheet};
 use load::strain_barrier;
@@ -114,6 +116,7 @@ pub struct ElasticSheet {
     acceleration: f64,
     /// How the sheets bend; nothing of those without a plate.
     arcs: Vec<Arcs>,
+    evaluated: EvaluatedFaces,
 }
 
 /// The strain of a face of an [`ElasticSheet`].
@@ -179,6 +182,7 @@ impl ElasticSheet {
             vertices: 0..0,
             acceleration: 0.0,
             arcs: Vec::new(),
+            evaluated: EvaluatedFaces::default(),
         })
     }
 
@@ -198,6 +202,7 @@ impl ElasticSheet {
             }
             self.arcs = vec![Arcs::new(sheet, plate, &self.faces)];
         }
+        self.evaluated = EvaluatedFaces::default();
         self
     }
 
@@ -212,6 +217,7 @@ impl ElasticSheet {
         for face in &mut self.faces {
             face.set_limit(limit);
         }
+        self.evaluated = EvaluatedFaces::default();
         Ok(self)
     }
 
@@ -230,6 +236,7 @@ impl ElasticSheet {
         for face in &mut self.faces {
             face.set_swelling(swelling.clone());
         }
+        self.evaluated = EvaluatedFaces::default();
         Ok(self)
     }
 
@@ -257,6 +264,7 @@ impl ElasticSheet {
             union.arcs.append(&mut sheet.arcs);
             union.stiffness = union.stiffness.max(sheet.stiffness);
         }
+        union.evaluated = EvaluatedFaces::default();
         union
     }
 
@@ -298,8 +306,10 @@ impl ElasticSheet {
     /// The elastic energy of each face, joules, with that of the barrier; infinite beyond the limit.
     pub fn face_energies<'a>(&'a self, at: At<'a>) -> impl ExactSizeIterator<Item = f64> + 'a {
         let barrier = barrier_of(at.memory);
-        self.strained(at)
-            .map(move |(face, strained)| face.energy(&strained, barrier))
+        (0..self.faces.len()).map(move |k| {
+            let (face, strained) = strained(&self.faces, k, at);
+            face.energy(&strained, barrier)
+        })
     }
 
     /// The part of the slack in these energies, joules.
@@ -307,19 +317,9 @@ impl ElasticSheet {
         &'a self,
         at: At<'a>,
     ) -> impl ExactSizeIterator<Item = f64> + 'a {
-        let strained = self.strained(at);
-        strained.map(|(face, strained)| face.slack_energy(&strained))
-    }
-
-    /// The faces, each with its state.
-    fn strained<'a>(
-        &'a self,
-        at: At<'a>,
-    ) -> impl ExactSizeIterator<Item = (&'a Face, face::Strained)> + 'a {
-        let bends = at.memory.get(1..).unwrap_or_default().as_chunks().0;
-        self.faces.iter().enumerate().map(move |(k, face)| {
-            let bend = bends.get(k).map_or(Bend::FLAT, Bend::remembered);
-            (face, face.at(at, &bend))
+        (0..self.faces.len()).map(move |k| {
+            let (face, strained) = strained(&self.faces, k, at);
+            face.slack_energy(&strained)
         })
     }
 
@@ -390,36 +390,31 @@ impl ElasticSheet {
     }
 }
 
-/// The stiffness of the barrier in a memory, joules per square metre; none without.
-fn barrier_of(memory: &[f64]) -> f64 {
-    memory.first().copied().unwrap_or(0.0)
-}
-
 impl Potential for ElasticSheet {
     fn energy(&self, at: At<'_>) -> f64 {
-        self.face_energies(at).sum()
+        self.evaluated.evaluate(&self.faces, at, |states| {
+            states.iter().map(|(_, energy)| energy).sum()
+        })
     }
 
     fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
         let barrier = barrier_of(at.memory);
-        for (face, strained) in self.strained(at) {
-            face.add_gradient(&strained, barrier, gradient);
-        }
+        self.evaluated.evaluate(&self.faces, at, |states| {
+            for (face, (strained, _)) in self.faces.iter().zip(states) {
+                face.add_gradient(strained, barrier, gradient);
+            }
+        });
     }
 
     fn add_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
-        let barrier = barrier_of(at.memory);
-        for (face, strained) in self.strained(at) {
-            face.add_hessian(&strained, barrier, |density| density, hessian);
-        }
+        self.evaluated
+            .add_blocks(&self.faces, at, |density| density, hessian);
     }
 
     /// With the curvature of edges under tension alone.
     fn add_semidefinite_hessian(&self, at: At<'_>, hessian: &mut dyn HessianSink) {
-        let barrier = barrier_of(at.memory);
-        for (face, strained) in self.strained(at) {
-            face.add_hessian(&strained, barrier, |density| density.max(0.0), hessian);
-        }
+        self.evaluated
+            .add_blocks(&self.faces, at, |density| density.max(0.0), hessian);
     }
 
     fn is_driven(&self) -> bool {
@@ -432,8 +427,7 @@ impl Potential for ElasticSheet {
 
     /// Along the part every face keeps a part of its distance from the limit.
     fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
-        let cut = |part: f64, face: &Face| face.safe_part(at, dx, part);
-        self.faces.iter().fold(1.0, cut)
+        self.evaluated.part_within(&self.faces, at, dx)
     }
 
     /// Whether every face keeps a part of its distance from the limit.
@@ -445,9 +439,11 @@ impl Potential for ElasticSheet {
     /// The tangent law of each face times the strains of second order, `|dx_a - dx_b|^2 / 2` for each edge.
     fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, gradient: &mut [f64]) -> bool {
         let barrier = barrier_of(at.memory);
-        for (face, strained) in self.strained(at) {
-            face.add_second_order(&strained, dx, barrier, scale, gradient);
-        }
+        self.evaluated.evaluate(&self.faces, at, |states| {
+            for (face, (strained, _)) in self.faces.iter().zip(states) {
+                face.add_second_order(strained, dx, barrier, scale, gradient);
+            }
+        });
         true
     }
 

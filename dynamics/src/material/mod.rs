@@ -5,6 +5,7 @@ pub(crate) mod crease;
 pub(crate) mod direction;
 mod directions;
 pub(crate) mod elastic_sheet;
+mod evaluation;
 pub(crate) mod glue;
 mod orthotropy;
 pub(crate) mod patched;

@@ -11,6 +11,7 @@ mod natural;
 mod natural_tests;
 #[cfg(test)]
 mod plastic_tests;
+mod points;
 #[cfg(test)]
 mod poisson_tests;
 mod second_derivatives;
@@ -35,6 +36,7 @@ pub use line_clamp::{LineClamp, PlateEdges};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 use natural::NaturalCurvature;
 pub use natural::{Curl, Curvature, NaturalTensor};
+use points::{FlatPoints, add_forces};
 pub(crate) use second_derivatives::SecondDerivatives;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -101,6 +103,7 @@ pub struct PlateBending {
     stencils: Arc<Stencils>,
     /// Nothing for a plate that is flat without stress, and stays so.
     stress_free: Option<StressFreeCurvature>,
+    flat: FlatPoints,
     /// Whether the rest shape is that of the sheet.
     is_curved: bool,
     /// The Hessian of the elastic plate: one multiple of the identity for each vertex, edge and further pair
@@ -234,6 +237,7 @@ impl PlateBending {
             roots,
             stencils,
             stress_free: None,
+            flat: FlatPoints::default(),
             is_curved: false,
             at_vertices,
             at_edges,
@@ -378,13 +382,16 @@ impl PlateBending {
 
 impl Potential for PlateBending {
     fn energy(&self, at: At<'_>) -> f64 {
-        if let Some(curvature) = &self.stress_free {
-            let points = self.stencils.iter().enumerate();
-            let energy = |(k, s)| curvature.energy(k, &curvature.bent(k, &s, at));
-            return points.map(energy).sum();
+        let stencils = &self.stencils;
+        match &self.stress_free {
+            None => self
+                .flat
+                .at(stencils, at, |points| points.iter().map(|(_, e)| e).sum()),
+            Some(curvature) => curvature.evaluate(stencils, at, |points| {
+                let energy = |(k, bent)| curvature.energy(k, bent);
+                points.iter().enumerate().map(energy).sum()
+            }),
         }
-        let energy = |h: Matrix3<f64>| 0.5 * h.norm_squared();
-        self.stencils.iter().map(|s| energy(s.apply(at))).sum()
     }
 
     fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
@@ -394,25 +401,15 @@ impl Potential for PlateBending {
     }
 
     fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
-        let mut add = |v: usize, force: Vector3<f64>| {
-            for k in 0..3 {
-                gradient[3 * v + k] += force[k];
-            }
-        };
-        for (k, stencil) in self.stencils.iter().enumerate() {
-            let h = match &self.stress_free {
-                None => stencil.apply(at),
-                Some(curvature) => {
-                    let bent = curvature.bent(k, &stencil, at);
-                    for (v, force) in bent.turning_forces() {
-                        add(v.index(), force);
-                    }
-                    bent.elastic
-                }
-            };
-            for (v, weights) in stencil {
-                add(v, h * weights);
-            }
+        let stencils = &self.stencils;
+        match &self.stress_free {
+            None => self.flat.at(stencils, at, |points| {
+                add_forces(stencils, |k| &points[k].0, |_| [], gradient);
+            }),
+            Some(curvature) => curvature.evaluate(stencils, at, |points| {
+                let turning = |k: usize| points[k].turning_forces();
+                add_forces(stencils, |k| &points[k].elastic, turning, gradient);
+            }),
         }
     }
 

@@ -14,6 +14,7 @@ use crate::term::{Barrier, Exchange, Iterate, Refusal, StepStart, Term, Value};
 use acting::Acting;
 use inertia::Inertia;
 use isosheet_coords::linalg::LinalgError;
+use isosheet_coords::linalg::parallel::both;
 use std::sync::Arc;
 
 pub(crate) use crate::hessian::HessianPart;
@@ -213,14 +214,28 @@ impl Objective {
 
     /// Largest part of a displacement that all terms allow, and what cut it; see [`Term::safe_part`].
     pub(crate) fn safe_part(&mut self, at: Iterate<'_>, dx: &[f64]) -> (f64, Option<Barrier>) {
-        let (mut least, mut by) = (1.0, None);
-        for term in self.barriers() {
-            let part = term.safe_part(at, dx);
-            if part < 1.0 && part <= least {
-                (least, by) = (part, term.barrier());
+        let Self {
+            acting,
+            contact,
+            others,
+            ..
+        } = self;
+        let part = |term: &mut dyn Term| {
+            let barrier = term.barrier();
+            (barrier.map_or(1.0, |_| term.safe_part(at, dx)), barrier)
+        };
+        let (of_contact, own) = match contact {
+            None => (None, part(acting)),
+            Some(contact) => both(|| Some(part(contact)), || part(acting)),
+        };
+        let others = others.iter_mut().map(|term| part(&mut **term));
+        let all = [own].into_iter().chain(of_contact).chain(others);
+        all.fold((1.0, None), |(least, by), (part, barrier)| {
+            match part < 1.0 && part <= least {
+                true => (part, barrier),
+                false => (least, by),
             }
-        }
-        (least, by)
+        })
     }
 
     /// Largest part of the chord of a curved way that is allowed but for limits of the strain, which are

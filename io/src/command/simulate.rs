@@ -91,10 +91,12 @@ pub(super) fn threads() -> RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(1..=MOST_THREADS)
 }
 
-/// Computes with a number of threads from now on.
+/// Computes with a number of threads from now on, of which this one is the first: it would otherwise sleep while others
+/// do what it shares with them.
 pub(super) fn use_threads(number: u16) -> Done {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(number));
     let threads = |e| Failure::new(Code::Step, format!("cannot start the threads: {e}"));
+    let pool = pool.use_current_thread();
     pool.build_global().map_err(threads)
 }
 

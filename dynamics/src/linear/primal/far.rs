@@ -2,11 +2,15 @@
 
 use crate::model::PINNED;
 use crate::{CouplingKind, SheetModel};
+use isosheet_coords::linalg::parallel::pieces;
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, Vector3};
 
 /// Part of the square of a block's norm by which the block may differ from one of rank one: round-off.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+
+/// Nanoseconds for the product with a pair, in drapes of 2437 and 9919 vertices on one core at 2.4 GHz.
+const PAIR_TIME: f64 = 1.6;
 
 /// The blocks `B_ij` of a symmetric matrix for the pairs of free vertices that potentials couple and that
 /// have no common edge.
@@ -199,18 +203,8 @@ impl FarCouplings {
     pub(super) fn add_difference(&self, x: &[f64], y: &mut [f64]) {
         if self.has_multiples {
             let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);
-            for ((x, y), value) in x.iter().zip(&mut *y).zip(&self.substitute_multiples) {
-                for k in 0..3 {
-                    y[k] -= value * x[k];
-                }
-            }
-            for (&[i, j], value) in self.pairs.iter().zip(&self.multiples) {
-                let (i, j) = (i as usize, j as usize);
-                for k in 0..3 {
-                    y[i][k] += value * x[j][k];
-                    y[j][k] += value * x[i][k];
-                }
-            }
+            let each = PAIR_TIME * self.pairs.len() as f64 / y.len().max(1) as f64;
+            pieces(y, each, |first, y| self.add_multiples(x, first, y));
         }
         if self.has_blocks {
             let at = |x: &[f64], i: usize| Vector3::from_column_slice(&x[3 * i..3 * i + 3]);
@@ -227,6 +221,30 @@ impl FarCouplings {
                 add(i, block * at(x, j));
                 add(j, block.tr_mul(&at(x, i)));
             }
+        }
+    }
+
+    /// Adds the product of `x` with the multiples of the identity, less their substitutes, to the rows from `first` on.
+    fn add_multiples(&self, x: &[[f64; 3]], first: usize, y: &mut [[f64; 3]]) {
+        let own = x[first..].iter().zip(&self.substitute_multiples[first..]);
+        for (y, (x, value)) in y.iter_mut().zip(own) {
+            for k in 0..3 {
+                y[k] -= value * x[k];
+            }
+        }
+        // Pairs before have both vertices before.
+        let begin = self.pairs.partition_point(|[i, _]| (*i as usize) < first);
+        let mut add = |row: usize, value: f64, x: &[f64; 3]| {
+            if let Some(y) = y.get_mut(row.wrapping_sub(first)) {
+                for k in 0..3 {
+                    y[k] += value * x[k];
+                }
+            }
+        };
+        for (&[i, j], value) in self.pairs.iter().zip(&self.multiples).skip(begin) {
+            let (i, j) = (i as usize, j as usize);
+            add(i, *value, &x[j]);
+            add(j, *value, &x[i]);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Elastic sheets that bend, and sheets that are taut, against closed forms.
 
-use super::bend::NUMBERS;
+use super::bend::{Bend, NUMBERS};
 use super::*;
 use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;

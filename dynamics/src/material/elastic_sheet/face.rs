@@ -1,7 +1,7 @@
 //! One face of an elastic sheet.
 
 use super::bend::Bend;
-use super::law::Law;
+use super::law::{self, Law, Pull};
 use super::limit::StrainLimit;
 use super::slack::Slack;
 use super::swelling::Swelling;
@@ -37,6 +37,7 @@ pub(super) struct Face {
 }
 
 /// The state of a face.
+#[derive(Debug)]
 pub(super) struct Strained {
     /// The square of the factor by which its lengths at rest have grown.
     growth: f64,
@@ -47,6 +48,16 @@ pub(super) struct Strained {
     /// Length errors beyond those of the chords of arcs, m2.
     beyond: Vector3<f64>,
     slack: Slack,
+    pull: Pull,
+}
+
+/// What a face adds to a Hessian.
+#[derive(Debug)]
+pub(super) struct Blocks {
+    /// At its corners.
+    vertices: [Matrix3<f64>; 3],
+    /// Along its edges, as the mesh has them.
+    edges: [Matrix3<f64>; 3],
 }
 
 /// Part of its distance from the limit that a face keeps in one displacement, at least.
@@ -175,7 +186,7 @@ impl Face {
         }
         let energy = |squared: f64| {
             let at = self.at(here, &Bend { squared, ..bend });
-            self.area * self.law.at(&at.beyond, &at.slack).energy()
+            self.area * self.law_at(&at).energy()
         };
         let before = energy(bend.squared);
         let cost = energy(wanted) - before;
@@ -233,12 +244,23 @@ impl Face {
         let growth = self.swelling.growth(t);
         let vectors = self.edge_vectors(x);
         let errors = self.errors(&vectors, growth);
+        let (beyond, slack) = (errors - bend.chords, self.slack(bend));
         Strained {
             growth,
             strain: self.strains * errors / growth,
             vectors,
-            beyond: errors - bend.chords,
-            slack: self.slack(bend),
+            pull: self.law.pull(&beyond, &slack),
+            beyond,
+            slack,
+        }
+    }
+
+    fn law_at<'a>(&'a self, at: &'a Strained) -> law::At<'a> {
+        law::At {
+            law: &self.law,
+            strain: &at.beyond,
+            slack: &at.slack,
+            pull: at.pull,
         }
     }
 
@@ -246,13 +268,13 @@ impl Face {
     /// beyond.
     pub(super) fn energy(&self, at: &Strained, barrier: f64) -> f64 {
         let limit = self.limit.with_barrier(barrier);
-        let elastic = self.law.at(&at.beyond, &at.slack).energy();
+        let elastic = self.law_at(at).energy();
         self.area * (elastic + limit.value(at.strain.norm_squared()))
     }
 
     /// What the slack has of it, joules.
     pub(super) fn slack_energy(&self, at: &Strained) -> f64 {
-        self.area * self.law.at(&at.beyond, &at.slack).stored()
+        self.area * self.law_at(at).stored()
     }
 
     /// Size of the round-off in the energy of a face at rest whose coordinates are of the given size,
@@ -268,13 +290,13 @@ impl Face {
         let limit = self.limit.with_barrier(barrier);
         let [slope, _] = limit.derivatives(at.strain.norm_squared());
         let barrier = 2.0 * slope * (self.strains.transpose() * at.strain) / at.growth;
-        self.area * (self.law.at(&at.beyond, &at.slack).slope() + barrier)
+        self.area * (self.law_at(at).slope() + barrier)
     }
 
     /// The second derivatives of the energy by the length errors, newtons per cubic metre.
     fn tangent_law(&self, at: &Strained, barrier: f64) -> Matrix3<f64> {
         let limit = self.limit.with_barrier(barrier);
-        let mut law = self.law.at(&at.beyond, &at.slack).curvature();
+        let mut law = self.law_at(at).curvature();
         let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
         if slope != 0.0 {
             let along = self.strains.transpose() * at.strain;
@@ -330,14 +352,8 @@ impl Face {
         ends[1].norm() <= self.bound(ends[0].norm())
     }
 
-    /// Adds the Hessian; `part` says which part of the force density of an edge counts for its curvature.
-    pub(super) fn add_hessian(
-        &self,
-        at: &Strained,
-        barrier: f64,
-        part: impl Fn(f64) -> f64,
-        hessian: &mut dyn HessianSink,
-    ) {
+    /// Its part of the Hessian; `part` says which part of the force density of an edge counts for its curvature.
+    pub(super) fn blocks(&self, at: &Strained, barrier: f64, part: fn(f64) -> f64) -> Blocks {
         let law = self.tangent_law(at, barrier);
         let densities = self.densities(at, barrier).map(part);
         // Products of the derivatives of two length errors, `law_ij v_i v_j^T`.
@@ -347,25 +363,32 @@ impl Face {
         };
         let own = [0, 1, 2].map(|i| product(i, i) + Matrix3::from_diagonal_element(densities[i]));
         let mixed = [0, 1, 2].map(|i| product((i + 1) % 3, (i + 2) % 3));
-        for i in 0..3 {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            let block = own[j] + own[k] - mixed[i] - mixed[i].transpose();
-            hessian.add_vertex(self.corners[i], &block);
-            // Rows at corner `j`, columns at corner `k`.
-            let block = mixed[k] + mixed[j] - own[i] - mixed[i].transpose();
-            let is_first = self.first_ends[i] == self.corners[j];
-            let block = if is_first { block } else { block.transpose() };
-            hessian.add_edge(self.edges[i], &block);
+        let others = |i: usize| ((i + 1) % 3, (i + 2) % 3);
+        Blocks {
+            vertices: [0, 1, 2].map(|i| {
+                let (j, k) = others(i);
+                own[j] + own[k] - mixed[i] - mixed[i].transpose()
+            }),
+            edges: [0, 1, 2].map(|i| {
+                // Rows at corner `j`, columns at corner `k`.
+                let (j, k) = others(i);
+                let block = mixed[k] + mixed[j] - own[i] - mixed[i].transpose();
+                let is_first = self.first_ends[i] == self.corners[j];
+                if is_first { block } else { block.transpose() }
+            }),
         }
     }
 
-    /// Largest part of the displacement `dx`, at most `most`, along which the strain keeps its distance from
-    /// the limit but for [`KEPT_MARGIN`] of it.
-    ///
-    /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients
-    /// in Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval
-    /// is halved.
-    pub(super) fn safe_part(&self, at: At<'_>, dx: &[f64], most: f64) -> f64 {
+    pub(super) fn add_hessian(&self, blocks: &Blocks, hessian: &mut dyn HessianSink) {
+        for i in 0..3 {
+            hessian.add_vertex(self.corners[i], &blocks.vertices[i]);
+            hessian.add_edge(self.edges[i], &blocks.edges[i]);
+        }
+    }
+
+    /// The strains along the displacement `dx`, unless all of it keeps the distance from the limit but for
+    /// [`KEPT_MARGIN`] of it.
+    pub(super) fn course(&self, at: At<'_>, dx: &[f64]) -> Option<Course> {
         let growth = self.swelling.growth(at.t);
         let vectors = self.edge_vectors(at.x);
         let changes = self.edge_vectors(dx);
@@ -374,14 +397,48 @@ impl Face {
         let [e1, e2] = [first, second].map(|errors| self.strains * errors / growth);
         let e0 = self.strain(at);
         let bound = self.bound(e0.norm());
-        if e0.norm() + most * (e1.norm() + most * e2.norm()) <= bound {
+        let course = Course {
+            strains: [e0, e1, e2],
+            bound,
+        };
+        (!course.is_within(1.0)).then_some(course)
+    }
+}
+
+/// The strain of a face along a displacement.
+#[derive(Debug)]
+pub(super) struct Course {
+    /// Coefficients of its powers of the part of the displacement.
+    strains: [Vector3<f64>; 3],
+    /// What its norm may be.
+    bound: f64,
+}
+
+impl Course {
+    /// Whether norms alone show that it stays within its bound up to a part.
+    fn is_within(&self, part: f64) -> bool {
+        let [e0, e1, e2] = self.strains.map(|e| e.norm());
+        e0 + part * (e1 + part * e2) <= self.bound
+    }
+
+    /// Largest part of the displacement, at most `most`, along which it stays within its bound.
+    ///
+    /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients
+    /// in Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval
+    /// is halved.
+    pub(super) fn safe_part(&self, most: f64) -> f64 {
+        if self.is_within(most) {
             return most;
         }
+        let Self {
+            strains: [e0, e1, e2],
+            bound,
+        } = self;
         let powers = [
             e0.norm_squared() - bound * bound,
-            2.0 * e0.dot(&e1),
-            e1.norm_squared() + 2.0 * e0.dot(&e2),
-            2.0 * e1.dot(&e2),
+            2.0 * e0.dot(e1),
+            e1.norm_squared() + 2.0 * e0.dot(e2),
+            2.0 * e1.dot(e2),
             e2.norm_squared(),
         ];
         let (mut from, mut to) = (0.0, most);

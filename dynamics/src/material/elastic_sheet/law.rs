@@ -93,49 +93,51 @@ impl Law {
         }
     }
 
-    /// The state at a strain.
-    pub(super) fn at<'a>(&'a self, strain: &'a Vector3<f64>, slack: &'a Slack) -> At<'a> {
-        let (size, force) = match self {
+    /// What a strain does to it.
+    pub(super) fn pull(&self, strain: &Vector3<f64>, slack: &Slack) -> Pull {
+        match self {
             Self::Isotropic { stiffness, norm } => {
                 let size = strain.dot(&(norm * strain)).max(0.0).sqrt();
-                (size, slack.force_at(*stiffness, size))
+                let force = slack.force_at(*stiffness, size);
+                Pull { size, force }
             }
             Self::Orthotropic { stiffnesses, modes } => {
                 let components = modes * strain;
                 let size = components.norm();
-                (size, force(stiffnesses, &components, size, slack))
+                let force = force(stiffnesses, &components, size, slack);
+                Pull { size, force }
             }
-        };
-        At {
-            law: self,
-            strain,
-            slack,
-            size,
-            force,
         }
     }
 }
 
-/// A law at a strain.
-pub(super) struct At<'a> {
-    law: &'a Law,
-    strain: &'a Vector3<f64>,
-    slack: &'a Slack,
-    /// The norm of the strain.
+/// The norms of a strain and of the force that it takes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pull {
     size: f64,
-    /// That of the force, N/m.
+    /// N/m.
     force: f64,
+}
+
+/// A law at a strain.
+#[derive(Clone, Copy)]
+pub(super) struct At<'a> {
+    pub(super) law: &'a Law,
+    pub(super) strain: &'a Vector3<f64>,
+    pub(super) slack: &'a Slack,
+    /// That of the law at this strain with this slack.
+    pub(super) pull: Pull,
 }
 
 impl At<'_> {
     /// Joules per square metre.
     pub(super) fn energy(&self) -> f64 {
         match self.law {
-            Law::Isotropic { stiffness, .. } => self.slack.energy(*stiffness, self.force),
+            Law::Isotropic { stiffness, .. } => self.slack.energy(*stiffness, self.pull.force),
             Law::Orthotropic { stiffnesses, modes } => {
                 let components = modes * self.strain;
                 let spring = |k: usize| {
-                    let secant = self.slack.secant(stiffnesses[k], self.force);
+                    let secant = self.slack.secant(stiffnesses[k], self.pull.force);
                     let force = secant * components[k];
                     0.5 * force * force / stiffnesses[k]
                 };
@@ -146,14 +148,14 @@ impl At<'_> {
 
     /// What the slack has of it, joules per square metre.
     pub(super) fn stored(&self) -> f64 {
-        self.slack.stored(self.force)
+        self.slack.stored(self.pull.force)
     }
 
     /// The derivatives of the energy by the strain.
     pub(super) fn slope(&self) -> Vector3<f64> {
         match self.law {
             Law::Isotropic { stiffness, norm } => {
-                let secant = self.slack.secant(*stiffness, self.force);
+                let secant = self.slack.secant(*stiffness, self.pull.force);
                 secant * norm * self.strain
             }
             Law::Orthotropic { stiffnesses, modes } => {
@@ -167,11 +169,11 @@ impl At<'_> {
     pub(super) fn curvature(&self) -> Matrix3<f64> {
         match self.law {
             Law::Isotropic { stiffness, norm } => {
-                let secant = self.slack.secant(*stiffness, self.force);
+                let secant = self.slack.secant(*stiffness, self.pull.force);
                 let mut law = secant * norm;
-                if self.size > 0.0 {
-                    let along = norm * self.strain / self.size;
-                    let slope = self.slack.slope(*stiffness, self.force);
+                if self.pull.size > 0.0 {
+                    let along = norm * self.strain / self.pull.size;
+                    let slope = self.slack.slope(*stiffness, self.pull.force);
                     law += (slope - secant) * along * along.transpose();
                 }
                 law
@@ -179,11 +181,11 @@ impl At<'_> {
             Law::Orthotropic { stiffnesses, modes } => {
                 let secants = self.secants(stiffnesses);
                 let mut law = Matrix3::from_diagonal(&secants);
-                if self.force > 0.0 {
+                if self.pull.force > 0.0 {
                     // With `d / ds` of `r / (s_0 + s)` the derivative of the equation for `s`.
-                    let forces = secants.component_mul(&(modes * self.strain)) / self.force;
+                    let forces = secants.component_mul(&(modes * self.strain)) / self.pull.force;
                     let along = secants.component_mul(&forces);
-                    let yields = self.slack.yields(self.force);
+                    let yields = self.slack.yields(self.pull.force);
                     law += yields / (1.0 - yields * forces.dot(&along)) * along * along.transpose();
                 }
                 modes.transpose() * law * modes
@@ -192,7 +194,7 @@ impl At<'_> {
     }
 
     fn secants(&self, stiffnesses: &Vector3<f64>) -> Vector3<f64> {
-        stiffnesses.map(|c| self.slack.secant(c, self.force))
+        stiffnesses.map(|c| self.slack.secant(c, self.pull.force))
     }
 }
 
@@ -235,6 +237,17 @@ fn force(stiffnesses: &Vector3<f64>, components: &Vector3<f64>, size: f64, slack
 mod tests {
     use super::*;
     use crate::material::orthotropy::turn;
+
+    impl Law {
+        fn at<'a>(&'a self, strain: &'a Vector3<f64>, slack: &'a Slack) -> At<'a> {
+            At {
+                law: self,
+                strain,
+                slack,
+                pull: self.pull(strain, slack),
+            }
+        }
+    }
 
     /// A spring that is stiff along one direction and soft in shear.
     const CLOTH: PrincipalLaw = PrincipalLaw {

@@ -158,7 +158,7 @@ impl Stencils {
     /// curvatures `R k` that are left, 1/m.
     pub(super) fn straighten(&mut self, sheet: &Sheet, roots: &Roots) -> Vec<Vector3<f64>> {
         let mut curvatures = Vec::new();
-        for point in 0..self.starts.len() - 1 {
+        for point in 0..self.count() {
             let corners = sheet.topology().faces()[face_of(point)];
             let [along_b, along_c, bent] = self.parts(point, &corners, sheet.positions());
             for entry in self.starts[point]..self.starts[point + 1] {
@@ -178,7 +178,7 @@ impl Stencils {
 
     /// The curvatures `R k` of the points of `sheet` at positions `x`, 1/m.
     pub(super) fn curvatures(&self, sheet: &Sheet, roots: &Roots, x: &[f64]) -> Vec<Vector3<f64>> {
-        let bent = (0..self.starts.len() - 1).map(|point| {
+        let bent = (0..self.count()).map(|point| {
             let corners = &sheet.topology().faces()[face_of(point)];
             let [_, _, bent] = self.parts(point, corners, x);
             bent / scale(sheet, roots, point)
@@ -202,10 +202,15 @@ impl Stencils {
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = Stencil<'_>> {
-        (0..self.starts.len() - 1).map(|point| self.of(point))
+        (0..self.count()).map(|point| self.of(point))
     }
 
-    fn of(&self, point: usize) -> Stencil<'_> {
+    /// Number of points.
+    pub(super) fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    pub(super) fn of(&self, point: usize) -> Stencil<'_> {
         let range = self.starts[point]..self.starts[point + 1];
         // (An empty map is looked up at no cost.)
         let directors = self.directors.get(&(point as u32));

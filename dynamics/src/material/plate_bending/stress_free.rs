@@ -2,7 +2,9 @@
 
 use super::law::Roots;
 use super::natural::NaturalCurvature;
+use super::points::work;
 use super::stencil::{POINTS, Stencil, Stencils, face_of};
+use crate::material::evaluation::Evaluation;
 use crate::material::plasticity::{Flow, Yield};
 use crate::potential::At;
 use crate::vectors::point as position;
@@ -23,6 +25,8 @@ pub(super) struct StressFreeCurvature {
     /// Of each face, or of all; nothing of a plate that does not yield. All have the same number of layers.
     yields: Vec<Yield>,
     points: Vec<PointOfPlate>,
+    /// Where they were evaluated last.
+    evaluated: Evaluation<BentPoint>,
     /// Of each pair of vertices of each stencil, the second one being before the first, where its block of
     /// the Hessian is.
     slots: Vec<Slot>,
@@ -99,6 +103,7 @@ impl Blocks {
 
 /// A point at positions, `B` being the second derivatives of the positions, `n` the unit normal and `p` the
 /// curvature without stress at the end of the step, both times the root of the law.
+#[derive(Debug)]
 pub(super) struct BentPoint {
     corners: [VertexId; 3],
     normal: Vector3<f64>,
@@ -172,6 +177,7 @@ impl StressFreeCurvature {
             natural: None,
             yields: Vec::new(),
             points,
+            evaluated: Evaluation::default(),
             slots,
             blocks: Mutex::new(Blocks {
                 at_vertices,
@@ -183,6 +189,7 @@ impl StressFreeCurvature {
     }
 
     pub(super) fn set_yields(&mut self, yields: Vec<Yield>) {
+        self.evaluated = Evaluation::default();
         self.yields = yields;
     }
 
@@ -192,6 +199,7 @@ impl StressFreeCurvature {
     }
 
     pub(super) fn set_natural(&mut self, natural: NaturalCurvature) {
+        self.evaluated = Evaluation::default();
         self.natural = Some(natural);
     }
 
@@ -265,6 +273,17 @@ impl StressFreeCurvature {
         }
     }
 
+    /// Hands all points at positions to `take`.
+    pub(super) fn evaluate<R>(
+        &self,
+        stencils: &Stencils,
+        at: At<'_>,
+        take: impl FnOnce(&[BentPoint]) -> R,
+    ) -> R {
+        let bent = |point| self.bent(point, &stencils.of(point), at);
+        self.evaluated.at(at, work(stencils), bent, take)
+    }
+
     /// The energy of a point, joules: of what is bent elastically, of hardening, of the stresses between
     /// layers, and what is dissipated in the step.
     pub(super) fn energy(&self, point: usize, bent: &BentPoint) -> f64 {
@@ -301,20 +320,19 @@ impl StressFreeCurvature {
     /// the second derivatives by terms that vanish where the sheet is isometric and no face is bent against
     /// the one that it has without stress.
     pub(super) fn blocks(&self, stencils: &Stencils, at: At<'_>) -> Option<MutexGuard<'_, Blocks>> {
-        let mut blocks = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut is_flat = true;
-        for (point, stencil) in stencils.iter().enumerate() {
-            let bent = self.bent(point, &stencil, at);
-            if bent.is_flat() {
-                continue;
+        self.evaluate(stencils, at, |points| {
+            if points.iter().all(BentPoint::is_flat) {
+                return None;
             }
-            if is_flat {
-                blocks.zero();
-                is_flat = false;
+            let mut blocks = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
+            blocks.zero();
+            for (point, (bent, stencil)) in points.iter().zip(stencils.iter()).enumerate() {
+                if !bent.is_flat() {
+                    self.add_blocks(bent, point, stencil, &mut blocks);
+                }
             }
-            self.add_blocks(&bent, point, stencil, &mut blocks);
-        }
-        (!is_flat).then_some(blocks)
+            Some(blocks)
+        })
     }
 
     fn add_blocks(
