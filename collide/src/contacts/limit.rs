@@ -3,7 +3,7 @@
 use isosheet_coords::linalg::parallel::{Work, in_order};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Nanoseconds for a pair that may come near, on one core at 2.4 GHz.
+/// Nanoseconds for a pair that may come near, estimated: it decides what is shared among threads, and no result.
 const PAIR_TIME: f64 = 40.0;
 
 /// The part of a motion, from 0 to 1, that all pairs looked at so far allow: the smallest of what each of them allows,

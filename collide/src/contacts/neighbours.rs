@@ -16,7 +16,7 @@ const SKIN: f64 = 0.12;
 /// Lists of a motion that is so many times as long as the motion at hand, or as the skin, are made anew,
 /// because they hold too many pairs.
 const LONGEST: f64 = 16.0;
-/// Nanoseconds for the distance of a pair, on one core at 2.4 GHz.
+/// Nanoseconds for the distance of a pair, estimated: it decides what is shared among threads, and no result.
 const DISTANCE_TIME: f64 = 60.0;
 /// Part of the skin that motions may use. The rest covers the round-off of the boxes, as long as
 /// coordinates are below a million edge lengths.

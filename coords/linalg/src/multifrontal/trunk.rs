@@ -5,7 +5,7 @@ use crate::parallel::{Work, both};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
-/// Nanoseconds for a multiplication, on one core at 2.4 GHz.
+/// Nanoseconds for a multiplication, estimated: it decides what is shared among threads, and no result.
 const MULTIPLICATION_TIME: f64 = 0.1;
 
 /// Columns of an update.

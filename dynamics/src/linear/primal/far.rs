@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 /// Part of the square of a block's norm by which the block may differ from one of rank one: round-off.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
-/// Nanoseconds for the product with a pair, in drapes of 2437 and 9919 vertices on one core at 2.4 GHz.
+/// Nanoseconds for the product with a pair, by a profile of a drape of 2437 vertices on one core at 2.4 GHz.
 const PAIR_TIME: f64 = 1.6;
 
 /// The blocks `B_ij` of a symmetric matrix for the pairs of free vertices that potentials couple and that
