@@ -436,7 +436,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             let longer = 2.0 * length;
             let reached = self.work.lagrangian.go_to(self.problem, longer);
             let value = self.work.lagrangian.merit(self.problem).value;
-            if reached != Some(longer) || !(value < best) {
+            let is_lower = reached == Some(longer) && value < best;
+            if !is_lower {
                 break;
             }
             (best, length) = (value, longer);
