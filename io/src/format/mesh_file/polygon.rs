@@ -9,7 +9,7 @@ type Point = [f64; 3];
 /// coordinates of seven digits. A panel has the same cuts in every position then, flat and folded.
 const EQUAL_CUTS: f64 = 1e-6;
 
-/// Height of a triangle beside the cut at its foot below which others are cut off first, which points of a curve
+/// Height of a triangle beside its longest side below which others are cut off first, which points of a curve
 /// that hardly bends leave: slopes across such a triangle are so much greater than lengths along it, and the
 /// numbers of a matrix differ by the square, a million.
 const SLIVER: f64 = 1e-3;
@@ -80,12 +80,16 @@ fn next_ear(left: &[usize], corners: &[u32], places: &[Point], near: f64) -> Opt
         let [a, _, c] = around(left, k).map(|k| places[k]);
         (a[0] - c[0]).hypot(a[1] - c[1])
     };
-    let is_sliver = |k: usize| height(around(left, k), places) <= SLIVER * length(k);
+    let leaves_sliver = |k: usize| {
+        // Of a quad, the other half.
+        let other = (left.len() == 4).then(|| around(left, (k + 2) % 4));
+        is_sliver(around(left, k), places) || other.is_some_and(|t| is_sliver(t, places))
+    };
     let ears: Vec<(usize, f64)> = (0..left.len())
         .filter(is_ear)
         .map(|k| (k, length(k)))
         .collect();
-    let (good, slivers): (Vec<_>, Vec<_>) = ears.into_iter().partition(|ear| !is_sliver(ear.0));
+    let (good, slivers): (Vec<_>, Vec<_>) = ears.into_iter().partition(|ear| !leaves_sliver(ear.0));
     let ears = if good.is_empty() { slivers } else { good };
     let shortest = ears.iter().map(|ear| ear.1).min_by(f64::total_cmp)?;
     let equal = ears
@@ -108,6 +112,18 @@ fn around(left: &[usize], k: usize) -> [usize; 3] {
 fn height(corner: [usize; 3], places: &[Point]) -> f64 {
     let [a, b, c] = corner.map(|k| places[k]);
     twice_area([a, b, c].iter()) / (a[0] - c[0]).hypot(a[1] - c[1])
+}
+
+/// Whether a triangle is a sliver.
+fn is_sliver(corners: [usize; 3], places: &[Point]) -> bool {
+    let corners = corners.map(|k| places[k]);
+    let [a, b, c] = corners;
+    let squared = |[a, b]: [Point; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
+    let longest = [[a, b], [b, c], [c, a]]
+        .map(squared)
+        .into_iter()
+        .fold(0.0, f64::max);
+    twice_area(corners.iter()) <= SLIVER * longest
 }
 
 /// Whether a point is farther than `near` from a counter-clockwise triangle.
@@ -239,6 +255,25 @@ mod tests {
             let places = t.map(|c| points[c as usize]);
             assert!(twice_area(places.iter()) > 0.9, "{t:?}");
         }
+    }
+
+    /// A strip with a corner inside of its short side, but for a hundred thousandth: the last two triangles are none of
+    /// them flat.
+    #[test]
+    fn the_last_triangle_is_no_sliver() {
+        let points = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 0.02, 0.0],
+            [0.0, 0.02, 0.0],
+            [1e-5, 0.005, 0.0],
+        ];
+        let triangles = cut(&points).unwrap();
+        let areas = triangles.iter().map(|t| {
+            let places = t.map(|c| points[c as usize]);
+            twice_area(places.iter())
+        });
+        assert!(areas.clone().all(|area| area > 4e-3), "{triangles:?}");
     }
 
     /// A square from whose corner 0 a square hole reaches inwards: the outline comes to the corner twice.
