@@ -11,16 +11,7 @@
 //! let sheet = generate::isotropic_square(1, 0.2)?;
 //! let points = sheet.positions().as_chunks::<3>().0.iter().copied();
 //! let camera = Camera::new([0.0; 3], -60.0, 25.0, 1.0, 1.5).framing(points, 1.0, 0.05);
-//! let picture = SheetPicture {
-//!     topology: sheet.topology(),
-//!     positions: sheet.positions(),
-//!     pins: &[],
-//!     immobile: &[],
-//!     solids: &[],
-//!     parts: &[],
-//!     colours: None,
-//!     ground: None,
-//! };
+//! let picture = SheetPicture::of(sheet.topology(), sheet.positions());
 //! let image = render(&picture, &camera, &Look { size: [80, 80], ..Look::default() })?;
 //! assert!(image.to_png()?.starts_with(b"\x89PNG"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

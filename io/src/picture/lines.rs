@@ -179,16 +179,7 @@ mod tests {
             .filter(|e| t.edges()[e.index()].iter().all(middle))
             .collect();
         assert_eq!(creases.len(), 40);
-        let picture = SheetPicture {
-            topology: t,
-            positions: sheet.positions(),
-            pins: &[],
-            immobile: &[],
-            solids: &[],
-            parts: &[],
-            colours: None,
-            ground: None,
-        };
+        let picture = SheetPicture::of(t, sheet.positions());
         let camera = Camera::new([0.5, 0.5, 0.0], -90.0, 90.0, 1.25, 100.0);
         let look = Look {
             size: [125, 125],

@@ -60,6 +60,23 @@ pub struct SheetPicture<'a> {
     pub ground: Option<f64>,
 }
 
+impl<'a> SheetPicture<'a> {
+    /// One sheet at positions (3V, metres) by itself, in the colours of its sides, without ground.
+    #[must_use]
+    pub fn of(topology: &'a Topology, positions: &'a [f64]) -> Self {
+        Self {
+            topology,
+            positions,
+            pins: &[],
+            immobile: &[],
+            solids: &[],
+            parts: &[],
+            colours: None,
+            ground: None,
+        }
+    }
+}
+
 impl SheetPicture<'_> {
     /// The vertices that are marked with dots, and their colours; pins come last, on top of the others.
     pub(super) fn dots(&self) -> impl Iterator<Item = (VertexId, [u8; 3])> {
@@ -390,14 +407,8 @@ mod tests {
         };
         let colours = |parts: &[Part]| {
             let picture = SheetPicture {
-                topology: union.topology(),
-                positions: union.positions(),
-                pins: &[],
-                immobile: &[],
-                solids: &[],
                 parts,
-                colours: None,
-                ground: None,
+                ..SheetPicture::of(union.topology(), union.positions())
             };
             let camera = Camera::new([1.25, 0.5, 0.0], -90.0, 90.0, 1.5, 100.0);
             let image = render(&picture, &camera, &look).unwrap();
@@ -420,16 +431,7 @@ mod tests {
             size: [64, 64],
             ..Look::default()
         };
-        let picture = SheetPicture {
-            topology: sheet.topology(),
-            positions: sheet.positions(),
-            pins: &[],
-            immobile: &[],
-            solids: &[],
-            parts: &[],
-            colours: None,
-            ground: None,
-        };
+        let picture = SheetPicture::of(sheet.topology(), sheet.positions());
         let middle = |elevation: f64| {
             let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
             let image = render(&picture, &camera, &look).unwrap();
@@ -455,14 +457,8 @@ mod tests {
                 ..Look::default()
             };
             let picture = SheetPicture {
-                topology: sheet.topology(),
-                positions: sheet.positions(),
-                pins: &[],
-                immobile: &[],
                 solids: std::slice::from_ref(&floor),
-                parts: &[],
-                colours: None,
-                ground: None,
+                ..SheetPicture::of(sheet.topology(), sheet.positions())
             };
             let camera = Camera::new([0.0; 3], -60.0, 30.0, 1.0, 6.0);
             let image = render(&picture, &camera, &look).unwrap();
@@ -491,14 +487,8 @@ mod tests {
         };
         let seen = |colours: &Colours, elevation: f64| {
             let picture = SheetPicture {
-                topology: t,
-                positions: sheet.positions(),
-                pins: &[],
-                immobile: &[],
-                solids: &[],
-                parts: &[],
                 colours: Some(colours),
-                ground: None,
+                ..SheetPicture::of(t, sheet.positions())
             };
             let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
             render(&picture, &camera, &look).unwrap()
@@ -540,14 +530,8 @@ mod tests {
         };
         let seen = |elevation: f64, ground: Option<f64>| {
             let picture = SheetPicture {
-                topology: sheet.topology(),
-                positions: sheet.positions(),
-                pins: &[],
-                immobile: &[],
-                solids: &[],
-                parts: &[],
-                colours: None,
                 ground,
+                ..SheetPicture::of(sheet.topology(), sheet.positions())
             };
             let camera = Camera::new([0.05, 0.05, 0.0], -90.0, elevation, 0.4, 6.0);
             render(&picture, &camera, &look).unwrap().pixels
@@ -578,14 +562,8 @@ mod tests {
         let camera = Camera::new([0.0; 3], 0.0, 45.0, 1.0, 3.0);
         let with = |positions: &[f64], pins: &[VertexId], look: Look| {
             let picture = SheetPicture {
-                topology: sheet.topology(),
-                positions,
                 pins,
-                immobile: &[],
-                solids: &[],
-                parts: &[],
-                colours: None,
-                ground: None,
+                ..SheetPicture::of(sheet.topology(), positions)
             };
             render(&picture, &camera, &look).map(|image| image.size())
         };

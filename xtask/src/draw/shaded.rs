@@ -57,14 +57,9 @@ impl Viewpoint {
         };
         let picture = |shot: &Shot<'_>| {
             let picture = SheetPicture {
-                topology: shot.sheet.topology(),
-                positions: shot.x,
                 pins: shot.pins,
-                immobile: &[],
                 solids: &shot.solids,
-                parts: &[],
-                colours: None,
-                ground: None,
+                ..SheetPicture::of(shot.sheet.topology(), shot.x)
             };
             Ok(render(&picture, &camera, &look)?)
         };
