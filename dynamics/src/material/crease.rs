@@ -20,7 +20,7 @@ use super::plasticity::Yield;
 use crate::motion::profile::ProfileError;
 use crate::options::OptionsError;
 use crate::{HessianSink, Potential};
-use fold::{Fold, SecondDerivatives};
+use fold::Fold;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Sheet, Topology, VertexId};
 use nalgebra::{Matrix3, Vector1};
@@ -512,10 +512,10 @@ impl Potential for CreaseSprings {
             let Response {
                 elastic, tangent, ..
             } = h.respond(at.t, fold.angle(), p);
-            let (g, second) = (fold.gradient(), SecondDerivatives::of(&fold));
+            let (g, second) = (fold.gradient(), fold.hessian());
             let moment = h.stiffness * elastic;
             h.add_blocks(hessian, |i, j| {
-                tangent * g[i] * g[j].transpose() + moment * second.block(i, j)
+                tangent * g[i] * g[j].transpose() + moment * second[i][j]
             });
         }
     }

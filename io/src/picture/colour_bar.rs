@@ -153,8 +153,7 @@ impl Bar<'_> {
                 (left - x) / below.max(1e-9),
                 (x - left - length) / above.max(1e-9),
             );
-            (beyond + aside.max(0.0) <= 1.0 || (0.0..=1.0).contains(&part))
-                .then(|| scale.map.colour(part))
+            (beyond + aside <= 1.0 || (0.0..=1.0).contains(&part)).then(|| scale.map.colour(part))
         };
         image.fill(
             [left - below, left + length + above],

@@ -1,6 +1,7 @@
 //! How far a scene folds, found without a folder.
 
 use super::passing::Passing;
+use super::steps::step_count;
 use crate::scene::{FoldResidual, FollowedFolds, SceneError, SceneFile};
 use isosheet_dynamics::StepProgress;
 use std::ops::ControlFlow;
@@ -56,8 +57,7 @@ impl SceneFile {
         let mut passing = Passing::begin(topology, &simulation.state().x);
         let scene = self.scene();
         let vertices = simulation.model().topology().vertex_count();
-        let steps = (scene.stop.time / scene.method.step).ceil() as usize;
-        let mut left = (MOST_WORK / vertices.max(1)).max(AT_LEAST * steps);
+        let mut left = (MOST_WORK / vertices.max(1)).max(AT_LEAST * step_count(scene) as usize);
         while simulation.state().t < scene.stop.time {
             let done = simulation.state().t / scene.stop.time;
             let mut within = |progress: &StepProgress| match progress.factorisations > left {

@@ -63,27 +63,21 @@ impl Fold {
             g_r,
         ]
     }
-}
 
-/// The second derivatives of a fold angle, 3 x 3 blocks by the two ends and the two opposite vertices.
-///
-/// With the edge `e` from the first end and the vertex at `p` from there, the gradient of the angle by that
-/// vertex is `g = |e| n / |n|^2`, `n` the normal of the face, and by the ends `(s - 1) g` and `-s g`, `s = p .
-/// e / |e|^2`, for each of the two faces: the blocks are the derivatives of these, and that of the two opposite
-/// vertices is zero. (Tamstorf and Grinspun, "Discrete bending forces and their Jacobians", Graphical Models 75,
-/// 2013.)
-pub(super) struct SecondDerivatives {
-    blocks: [[Matrix3<f64>; 4]; 4],
-}
-
-impl SecondDerivatives {
-    pub(super) fn of(fold: &Fold) -> Self {
+    /// The second derivatives of the fold angle, 3 x 3 blocks by the two ends and the two opposite vertices.
+    ///
+    /// With the edge `e` from the first end and the vertex at `p` from there, the gradient of the angle by that
+    /// vertex is `g = |e| n / |n|^2`, `n` the normal of the face, and by the ends `(s - 1) g` and `-s g`, `s = p .
+    /// e / |e|^2`, for each of the two faces: the blocks are the derivatives of these, and that of the two
+    /// opposite vertices is zero. (Tamstorf and Grinspun, "Discrete bending forces and their Jacobians",
+    /// Graphical Models 75, 2013.)
+    pub(super) fn hessian(&self) -> [[Matrix3<f64>; 4]; 4] {
         let mut blocks = [[Matrix3::zeros(); 4]; 4];
         let sides = [
-            (2, fold.to_left, fold.left, 1.0),
-            (3, fold.to_right, fold.right, -1.0),
+            (2, self.to_left, self.left, 1.0),
+            (3, self.to_right, self.right, -1.0),
         ];
-        let e = fold.along;
+        let e = self.along;
         let squared = e.norm_squared();
         let length = squared.sqrt();
         for (corner, p, normal, sign) in sides {
@@ -110,11 +104,6 @@ impl SecondDerivatives {
                 blocks[row][column] = blocks[column][row].transpose();
             }
         }
-        Self { blocks }
-    }
-
-    /// The block of two of the four vertices, rows at the first.
-    pub(super) fn block(&self, i: usize, j: usize) -> Matrix3<f64> {
-        self.blocks[i][j]
+        blocks
     }
 }

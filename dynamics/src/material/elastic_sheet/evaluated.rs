@@ -7,10 +7,9 @@ use crate::material::evaluation::{Evaluation, Room};
 use crate::potential::At;
 use isosheet_coords::linalg::parallel::{Work, in_order};
 
-/// Nanoseconds for the state of a face with its energy, and for its part of a Hessian, by a profile of a drape of 2437
-/// vertices on one core at 2.4 GHz. They decide what is shared among threads, and no result.
-const STATE_TIME: f64 = 90.0;
-const BLOCKS_TIME: f64 = 110.0;
+/// Nanoseconds for the state of a face with its energy, as for its part of a Hessian, by a profile of a drape of 2437
+/// vertices on one core at 2.4 GHz. It decides what is shared among threads, and no result.
+const FACE_TIME: f64 = 100.0;
 /// The same for what a face does along a displacement.
 const COURSE_TIME: f64 = 40.0;
 
@@ -54,7 +53,7 @@ impl EvaluatedFaces {
             let energy = face.energy(&strained, barrier);
             (strained, energy)
         };
-        let work = work(faces, STATE_TIME);
+        let work = work(faces, FACE_TIME);
         self.states.at(at, work, state, take)
     }
 
@@ -85,7 +84,7 @@ impl EvaluatedFaces {
         self.evaluate(faces, at, |states| {
             let blocks = |k: usize| faces[k].blocks(&states[k].0, barrier, part);
             let add = |k: usize, blocks: &Blocks| faces[k].add_hessian(blocks, hessian);
-            let work = work(faces, BLOCKS_TIME);
+            let work = work(faces, FACE_TIME);
             let room = &self.blocks;
             room.with(|room| in_order(room, work, blocks, add));
         });

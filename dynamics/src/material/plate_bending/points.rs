@@ -7,10 +7,9 @@ use isosheet_coords::linalg::parallel::{Work, pieces};
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, Vector3};
 
-/// Nanoseconds for the second derivatives at a point, and for its forces, by a profile of a drape of 2437 vertices on
-/// one core at 2.4 GHz. They decide what is shared among threads, and no result.
+/// Nanoseconds for the second derivatives at a point, as for its forces, by a profile of a drape of 2437 vertices on
+/// one core at 2.4 GHz. It decides what is shared among threads, and no result.
 const POINT_TIME: f64 = 35.0;
-const FORCE_TIME: f64 = 30.0;
 
 /// The points of a plate that is flat without stress, where it was evaluated last: the second derivatives of positions
 /// as their stencils have them, and the energy, joules.
@@ -50,7 +49,7 @@ pub(super) fn add_forces<'a, const N: usize>(
     gradient: &mut [f64],
 ) {
     let rows = gradient.as_chunks_mut().0;
-    let each = FORCE_TIME * stencils.count() as f64 / rows.len().max(1) as f64;
+    let each = POINT_TIME * stencils.count() as f64 / rows.len().max(1) as f64;
     pieces(rows, each, |first, rows| {
         let mut add = |v: usize, force: &dyn Fn() -> Vector3<f64>| {
             let row: Option<&mut [f64; 3]> = rows.get_mut(v.wrapping_sub(first));
