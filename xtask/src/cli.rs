@@ -83,7 +83,7 @@ pub(crate) enum Command {
     /// Each report writes DIR/measured.md, unless it is quick. This command puts the parts of these files into
     /// those of docs/measured and fills the marked blocks of README.md and of the pages of the book.
     Measured(MeasuredArgs),
-    /// Make the pictures of the README: sixteen scenes that anybody can run, and a film of one of them
+    /// Make the pictures of the README: eighteen scenes that anybody can run, and a film of one of them
     ///
     /// Writes DIR/gallery.png and DIR/film.png (an animated PNG) and keeps the runs in DIR/runs. The scenes
     /// are those of `isosheet new` and of `xtask/scenes`.
