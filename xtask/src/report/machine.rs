@@ -15,5 +15,6 @@ pub(crate) fn machine() -> String {
         .and_then(|mhz| mhz.parse::<f64>().ok())
         .map(|mhz| format!(", {mhz:.0} MHz"))
         .unwrap_or_default();
-    format!("{name}{clock}, {cores} cores")
+    let noun = if cores == 1 { "core" } else { "cores" };
+    format!("{name}{clock}, {cores} {noun}")
 }
