@@ -107,6 +107,7 @@ mod switches;
 mod targets;
 mod toml_problem;
 mod too_fast;
+mod turning_back;
 mod under_way;
 mod unit;
 mod up_axis;
@@ -390,6 +391,7 @@ impl Scene {
         measure::check_names(&self.measure, &root, &mut checks);
         Crease::check_names(&self.crease, &mut checks);
         self.check_periods(&mut checks);
+        self.check_steps_resolve(&mut checks);
         self.method.check(&root.name("method"), &mut checks);
         self.check_method_fits(&mut checks);
         let step = self.method.step;

@@ -48,6 +48,8 @@ pub(crate) struct RunWriter {
     checkpoint: PathBuf,
     /// Since when the wall time in the progress counts.
     pub(super) clock: Instant,
+    /// Until when functions of time change, seconds.
+    last_change: f64,
 }
 
 /// What is recorded.
@@ -138,6 +140,7 @@ impl RunWriter {
             }),
             checkpoint: folder.path(RunFolder::CHECKPOINT),
             clock,
+            last_change: scene.last_change(),
         };
         if is_new {
             writer.record_start(under_way)?;
@@ -387,8 +390,8 @@ impl RunWriter {
             return Some(EndReason::SupportForce);
         }
         if let Some(rest) = &scene.stop.rest {
-            // A sheet at rest that a support is about to release is not at its end.
-            let is_due = under_way.switches.are_due(scene);
+            // A sheet at rest is not at its end while a support is about to release it, or a function of time to move it.
+            let is_due = under_way.switches.are_due(scene) || report.t < self.last_change;
             if is_due || largest_speed(under_way) > rest.speed {
                 self.progress.slow_since = None;
             } else {

@@ -23,7 +23,7 @@ const MOST_STEPS: f64 = 1e9;
 pub struct Stop {
     /// Simulated time, seconds.
     pub time: f64,
-    /// Rest of the sheet.
+    /// Rest of the sheet, after all functions of time but sines have come to their ends.
     pub rest: Option<Rest>,
     /// Size of the force at a support that ends the run, newtons: the sum over the vertices that a support
     /// holds.

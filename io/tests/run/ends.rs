@@ -61,6 +61,80 @@ fn conditions_to_stop_end_a_run() {
     );
 }
 
+/// A sheet that rests until its support begins to move is not at its end.
+#[test]
+fn rest_before_a_motion_does_not_end_a_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = "version = 1
+        [sheet]
+        mesh = { rectangle = { width = 0.1, height = 0.1, columns = 1, rows = 1 } }
+        damping = 40
+        [[support]]
+        at = { all = true }
+        hold = { moving_pin = { z = { smooth_step = { to = 0.1, begin = 1, end = 1.5 } } } }
+        [stop]
+        time = 10
+        rest = { speed = 1e-3, duration = 0.2 }";
+    fs::write(dir.join("scene.toml"), scene).unwrap();
+    let done = run(dir, &["simulate", "scene.toml", "--out", "run"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let ending = summary(&dir.join("run")).ending;
+    assert_eq!(ending.reason, EndReason::Rest);
+    assert!((1.7..1.8).contains(&ending.t), "{}", ending.t);
+}
+
+/// Motions that turn back within a step are refused, and seen with the step that the message asks for.
+#[test]
+fn motions_within_a_step_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = |motion: &str| {
+        format!(
+            "version = 1
+            [sheet]
+            mesh = {{ rectangle = {{ width = 0.1, height = 0.1, columns = 1, rows = 1 }} }}
+            [[obstacle]]
+            shape = {{ box = {{ size = [1, 1, 1] }} }}
+            pose = {{ position = [0, 0, -2] }}
+            motion = {motion}"
+        )
+    };
+    for (motion, key, step) in [
+        (
+            "{ z = { sine = { amplitude = 0.005, frequency = 60 } } }",
+            "obstacle[0].motion.z",
+            "0.00417",
+        ),
+        (
+            "{ x = { keyframes = { keys = [[0.102, 0], [0.108, 0.3], [0.114, 0]] } } }",
+            "obstacle[0].motion.x",
+            "0.00833",
+        ),
+        (
+            "{ rotation = { centre = [0, 0, 0], axis = [1, 0, 0], angle = { ramp = { to = 21600, end = 1 } } } }",
+            "obstacle[0].motion.rotation.angle",
+            "0.00417",
+        ),
+        (
+            "{ poses = { keys = [{ position = [0, 0, 0] }, { time = 0.008, position = [0, 1, 0] }, \
+             { time = 0.016, position = [0, 0, 0] }] } }",
+            "obstacle[0].motion.poses.keys",
+            "0.00833",
+        ),
+    ] {
+        fs::write(dir.join("scene.toml"), scene(motion)).unwrap();
+        let refused = run(dir, &["check", "scene.toml"]);
+        let said = stderr(&refused);
+        assert_ne!(code(&refused), Some(0), "{said}");
+        let help = format!("take a `method.step` of {step} s or less");
+        assert!(said.contains(key) && said.contains(&help), "{said}");
+        let set = format!("method.step={step}");
+        let done = run(dir, &["check", "scene.toml", "--set", &set]);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    }
+}
+
 #[test]
 fn steps_that_fail_are_told_at_the_scene() {
     let dir = with_scene(StartingPoint::Fold);
