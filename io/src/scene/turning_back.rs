@@ -73,8 +73,8 @@ impl Scene {
 
 /// A shorter step that fits, of those that halving makes.
 fn remedy(h: f64, fits: impl Fn(f64) -> bool) -> String {
-    let shorter = (1..=f64::MANTISSA_DIGITS as i32).map(|k| h * 0.5_f64.powi(k));
-    match shorter.into_iter().find(|h| fits(*h)) {
+    let mut shorter = (1..=f64::MANTISSA_DIGITS as i32).map(|k| h * 0.5_f64.powi(k));
+    match shorter.find(|h| fits(*h)) {
         Some(step) => format!(
             "take a `method.step` of {} s or less, or let it change more slowly",
             brief(step)
