@@ -365,6 +365,77 @@ fn films_are_numbered_pictures() {
     );
 }
 
+/// The names in a folder, sorted.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+/// The numbered files of an earlier export would be taken for frames of this one by whatever reads the folder.
+#[test]
+fn numbered_files_of_an_earlier_export_are_removed() {
+    let dir = with_short_run(StartingPoint::Drape);
+    let dir = dir.path();
+    let count = Recording::read(&dir.join("run")).unwrap().trajectory.len();
+    assert!(count > 3, "{count} frames");
+    let some =
+        |output: &str, more: &[&str]| done(dir, &[&["convert", "run", output][..], more].concat());
+    let pictures = ["--size", "48x32", "--every"];
+    let said = some("film.png", &[&pictures[..], &["1"]].concat());
+    assert!(!said.contains("removed"), "{said}");
+    assert_eq!(names(&dir.join("film")).len(), count);
+    for own in ["frame_1.png", "frame_00000.jpg", "frame_00001.obj"] {
+        fs::write(dir.join("film").join(own), "mine").unwrap();
+    }
+    let few = count.div_ceil(3);
+    let said = some("film.png", &[&pictures[..], &["3"]].concat());
+    let removed = format!("({} files of an earlier export removed)", count - few);
+    assert!(said.contains(&removed), "{said}");
+    let left = names(&dir.join("film"));
+    assert_eq!(left.len(), few + 3, "{left:?}");
+
+    // Files of frames keep the numbers of the run; those of bodies go with the bodies.
+    for extension in ["obj", "pvd"] {
+        let output = format!("f.{extension}");
+        let inner = if extension == "pvd" { "vtp" } else { "obj" };
+        let of = |name: &str, numbers: &[usize]| -> Vec<String> {
+            let numbers = numbers.iter();
+            numbers.map(|k| format!("{name}_{k:05}.{inner}")).collect()
+        };
+        let found = || -> Vec<String> {
+            let names = names(&dir.join("f")).into_iter();
+            names.filter(|name| name.ends_with(inner)).collect()
+        };
+        some(&output, &[]);
+        let all: Vec<usize> = (0..count).collect();
+        assert_eq!(found(), [of("bodies", &[0]), of("frame", &all)].concat());
+        let said = some(&output, &["--frames", "1..2"]);
+        assert_eq!(found(), [of("bodies", &[1]), of("frame", &[1, 2])].concat());
+        let removed = format!("({} files of an earlier", count - 2 + 1);
+        assert!(said.contains(&removed), "{said}");
+        let said = some(&output, &["--frames", "1..2", "--no-bodies"]);
+        assert_eq!(found(), of("frame", &[1, 2]));
+        let lists = usize::from(extension == "pvd");
+        let removed = format!("{} of an earlier", ["1 file", "2 files"][lists]);
+        assert!(said.contains(&removed), "{said}");
+        assert!(!dir.join("f-bodies.pvd").exists());
+    }
+
+    // What is refused removes nothing.
+    refused(
+        dir,
+        &["convert", "run", "film.png", "--frames", "90000.."],
+        2,
+    );
+    assert_eq!(names(&dir.join("film")), left);
+    fs::create_dir(dir.join("run/obj")).unwrap();
+    let said = refused(dir, &["convert", "run", "run/obj.obj", "--every", "2"], 2);
+    assert!(said.contains("those of the run itself"), "{said}");
+}
+
 /// A program in place of ffmpeg keeps what it is told and what it is given.
 #[cfg(unix)]
 #[test]
