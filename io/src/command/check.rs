@@ -106,9 +106,9 @@ impl Check {
             0 => String::new(),
             n => format!("{} cut into triangles, ", counted(n, "polygon", "polygons")),
         };
-        let polygons = match given.changes.is_nothing() {
-            true => polygons,
-            false => format!("{polygons}{}, ", given.changes),
+        let polygons = match given.what_reading_did() {
+            None => polygons,
+            Some(did) => format!("{polygons}{did}, "),
         };
         let repaired = repair.and_then(|repair| match mesh.clone().into_sheet() {
             Ok(sheet) => Ok((mesh, sheet, repair.to_string())),

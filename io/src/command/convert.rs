@@ -439,10 +439,8 @@ impl Convert {
             0 => String::new(),
             n => format!(", {} cut into triangles", counted(n, "polygon", "polygons")),
         };
-        let changes = match mesh.changes.is_nothing() {
-            true => String::new(),
-            false => format!(", {}", mesh.changes),
-        };
+        let did = mesh.what_reading_did();
+        let changes = did.map_or(String::new(), |did| format!(", {did}"));
         to_stdout(&format!(
             "{}: {} and {}{polygons}{changes}\n",
             self.output().display(),

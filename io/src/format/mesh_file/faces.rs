@@ -4,6 +4,7 @@ use super::error::{COPY, Located, Location, MeshFileProblem, no_such_vertex};
 use super::{DrawnLines, FaceGroups, MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
 use crate::format::DataError;
 use isosheet_mesh::wording::given;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -124,6 +125,7 @@ impl Polyhedron {
             groups: FaceGroups::default(),
             texture: Vec::new(),
             changes: ReadingChanges::default(),
+            left_out: BTreeMap::new(),
             path: PathBuf::new(),
             time: None,
             positions: Vec::new(),

@@ -241,34 +241,42 @@ impl Reader<'_, '_> {
         paths: Vec<Vec<isosheet_mesh::plane::PlaneCurve>>,
         state: &State,
     ) {
-        // What bounds a coloured area is a line too.
-        let ink = match state.style.stroke {
-            Ink::Colour(colour) => Some(colour),
-            Ink::Nothing => match state.style.fill {
-                Ink::Colour(colour) if node.tag_name().name() != "line" => Some(colour),
-                _ => None,
-            },
+        let style = &state.style;
+        let (ink, opacity) = match (&style.stroke, &style.fill) {
+            // What bounds a coloured area is a line too.
+            (Ink::Nothing, fill) if node.tag_name().name() != "line" => (fill, style.fill_opacity),
+            (stroke, _) => (stroke, style.stroke_opacity),
         };
-        let Some(colour) = ink.filter(|_| state.style.visible && state.style.opacity() > 0.0)
-        else {
-            self.drawing.leave_out("invisible shape");
-            return;
+        let opacity = opacity * style.group_opacity;
+        let pen = match ink {
+            Ink::Unknown(text) if style.visible => {
+                let what = format!("shape of the colour {text:?}, which is not understood");
+                self.drawing.leave_out(what);
+                return;
+            }
+            Ink::Paint { colour, alpha } if style.visible && alpha * opacity > 0.0 => {
+                pen(*colour, alpha * opacity, state)
+            }
+            _ => {
+                self.drawing.leave_out("invisible shape");
+                return;
+            }
         };
         if node.attribute("clip-path").is_some() {
             self.drawing.leave_out("clipping of a shape");
         }
         for path in paths {
             let curves = path.iter().map(|c| c.transformed(state.matrix));
-            self.drawing.push(pen(colour, state), curves);
+            self.drawing.push(pen.clone(), curves);
         }
     }
 }
 
-fn pen(colour: Colour, state: &State) -> Pen {
+fn pen(colour: Colour, opacity: f64, state: &State) -> Pen {
     Pen {
         colour,
         dashed: state.style.dashed,
-        opacity: state.style.opacity(),
+        opacity,
         layers: state.layers.iter().rev().cloned().collect(),
     }
 }

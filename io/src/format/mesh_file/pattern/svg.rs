@@ -44,7 +44,7 @@ pub(in crate::format) fn parse(bytes: &[u8]) -> Result<PatternLines, DataError> 
         segments,
         drawn,
         of_other_colours,
-        other_elements: drawing.left_out.values().sum(),
+        left_out: drawing.left_out,
     })
 }
 
