@@ -27,10 +27,20 @@ const MOST_ELEMENTS: usize = 1_000_000;
 
 const EXPORT: &str = "export it again as plain SVG";
 
+/// What becomes of shapes that have no stroke, whether they are filled or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::format) enum Areas {
+    /// What bounds a filled area is a line of its colour.
+    Outlined,
+    /// They are left out.
+    LeftOut,
+}
+
 /// Reads the shapes of a drawing, `scale` times as large, by the unit of the file unless another is given. Its y axis
 /// points upwards, from the lower edge of the page.
 pub(in crate::format) fn parse(
     bytes: &[u8],
+    areas: Areas,
     unit: Option<DrawingUnit>,
     scale: f64,
 ) -> Result<Drawing, DataError> {
@@ -79,6 +89,7 @@ pub(in crate::format) fn parse(
         document: &document,
         sheet,
         drawing,
+        areas,
         elements: 0,
     };
     let state = State {
@@ -105,6 +116,7 @@ struct Reader<'a, 'input> {
     document: &'a Document<'input>,
     sheet: StyleSheet<'a>,
     drawing: Drawing,
+    areas: Areas,
     elements: usize,
 }
 
@@ -242,9 +254,13 @@ impl Reader<'_, '_> {
         state: &State,
     ) {
         let style = &state.style;
-        let (ink, opacity) = match (&style.stroke, &style.fill) {
-            // What bounds a coloured area is a line too.
-            (Ink::Nothing, fill) if node.tag_name().name() != "line" => (fill, style.fill_opacity),
+        let is_area = node.tag_name().name() != "line";
+        let (ink, opacity) = match (&style.stroke, self.areas) {
+            (Ink::Nothing, Areas::LeftOut) => {
+                self.drawing.leave_out("shape without a stroke");
+                return;
+            }
+            (Ink::Nothing, Areas::Outlined) if is_area => (&style.fill, style.fill_opacity),
             (stroke, _) => (stroke, style.stroke_opacity),
         };
         let opacity = opacity * style.group_opacity;

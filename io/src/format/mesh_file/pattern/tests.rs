@@ -223,6 +223,37 @@ fn a_colour_that_lets_light_through_folds_by_a_part() {
     }
 }
 
+/// What is filled and has no stroke, as shapes of SVG are that say nothing, is no line of a pattern.
+#[test]
+fn shapes_without_a_stroke_are_no_lines() {
+    let crease = "<path d='M0 0 L1 1' fill='none' stroke='blue'/>";
+    let folded = of_square(crease);
+    let printed = [
+        "<path d='M0.25 0V1'/>",
+        "<rect width='1' height='1'/>",
+        "<rect width='1' height='1' fill='white'/>",
+        "<path d='M0.1 0.7 L0.3 0.7 L0.2 0.9 Z' fill='red'/>",
+        "<circle cx='0.5' cy='0.5' r='0.2' stroke='none' fill='#0000ff80'/>",
+        "<line x1='0' y1='0.5' x2='1' y2='0.5'/>",
+        "<path d='M0.25 0V1' fill='none'/>",
+    ];
+    for shape in printed {
+        for with in [format!("{shape}{crease}"), format!("{crease}{shape}")] {
+            let mesh = of_square(&with);
+            assert_eq!(
+                (&mesh.positions, &mesh.faces, &mesh.creases),
+                (&folded.positions, &folded.faces, &folded.creases),
+                "{shape}"
+            );
+            let told = mesh.what_reading_did().unwrap();
+            assert_eq!(told, "left out: shape without a stroke (1)", "{shape}");
+        }
+    }
+    let told = of_square(&printed.concat()).what_reading_did().unwrap();
+    let count = printed.len();
+    assert_eq!(told, format!("left out: shape without a stroke ({count})"));
+}
+
 #[test]
 fn colours_that_are_not_understood_are_named() {
     for colour in ["rebeccapurple", "color(srgb 1 0 0)"] {

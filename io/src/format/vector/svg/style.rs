@@ -117,8 +117,6 @@ impl Style {
             None => {}
         }
         match Paint::from_str(value) {
-            // One for printers follows the colour of screens.
-            Ok(Paint::Color(c)) => Ink::of(parts(c)),
             // A gradient or a pattern has no colour of its own.
             Ok(_) => Ink::of((Colour([128; 3]), 1.0)),
             Err(_) => Ink::Unknown(value.to_owned()),
@@ -128,6 +126,9 @@ impl Style {
 
 /// A colour, and how opaque it is, from 0 to 1; none of what is no colour, or one of a kind that is not known.
 fn colour(value: &str) -> Option<(Colour, f64)> {
+    // The colour of a printer follows that of screens.
+    let screen = value.split_once("icc-color(");
+    let value = screen.map_or(value, |(screen, _)| screen.trim_end());
     // The library knows no alpha in percent, and rounds others to a byte.
     if let Some((opaque, alpha)) = without_alpha(value) {
         let (colour, _) = parts(opaque.parse().ok()?);
