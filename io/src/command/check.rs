@@ -26,7 +26,7 @@ Examples:
 #[derive(Debug, Args)]
 #[command(before_help = EXAMPLES)]
 pub(crate) struct Check {
-    /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF) or a crease pattern (SVG, CP, OPX)
+    /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF, VTK) or a crease pattern (SVG, CP, OPX)
     file: PathBuf,
     /// Of a scene, change a key before, as `isosheet simulate` does
     #[arg(long = "set", value_name = "KEY=VALUE")]

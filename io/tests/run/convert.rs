@@ -260,7 +260,10 @@ fn runs_are_converted() {
         2,
     );
     refused(dir, &["convert", "r", "x.csv", "--weld", "1"], 2);
-    refused(dir, &["convert", ".", "x.csv"], 3);
+    for command in [&["convert", ".", "x.csv"][..], &["info", "."]] {
+        let said = refused(dir, command, 3);
+        assert!(said.contains("is not the folder of a run"), "{said}");
+    }
     fs::write(dir.join("no.npz"), "nothing").unwrap();
     refused(dir, &["convert", "no.npz", "x.csv"], 3);
 }
@@ -268,6 +271,10 @@ fn runs_are_converted() {
 #[test]
 fn the_help_lists_all_formats() {
     let dir = tempfile::tempdir().unwrap();
+    for command in ["check", "info"] {
+        let help = done(dir.path(), &[command, "--help"]);
+        assert!(help.contains("FOLD, glTF, VTK)"), "{help}");
+    }
     let help = done(dir.path(), &["convert", "--help"]);
     let parts: Vec<&str> = help.split("Files that are written of a run:").collect();
     let (read, written) = parts[0].split_once("Mesh files that are written").unwrap();
@@ -563,6 +570,26 @@ fn a_frame_is_found_by_its_time_and_a_mesh_is_made_thicker_and_larger() {
     let recording = Recording::read(&dir.join("run")).unwrap();
     let times = recording.trajectory.times();
     let between = (0.4 * times[1] + 0.6 * times[2]).to_string();
+    // A frame lasts 1/60 s or more: beyond the ends by more there is none.
+    for (time, written) in [
+        ("-5", false),
+        ("1e9", false),
+        ("-0.01", true),
+        ("0.21", true),
+    ] {
+        let option = format!("--time={time}");
+        let command = ["convert", "run", "end.obj", &option];
+        match written {
+            true => drop(done(dir, &command)),
+            false => {
+                let said = refused(dir, &command, 2);
+                assert!(
+                    said.contains("the run has frames from 0 to 0.2 s"),
+                    "{said}"
+                );
+            }
+        }
+    }
     for format in ["png", "obj"] {
         let [by_time, by_number] = ["time", "frame"].map(|name| format!("{name}.{format}"));
         done(
@@ -769,6 +796,10 @@ fn pictures_show_a_quantity_with_its_scale() {
     );
     for wrong in [
         &["y.png", "--colour", "gap", "--range", "2..1"][..],
+        &["y.png", "--colour", "gap", "--range", "0..0"],
+        &["y.png", "--colour", "height", "--range", "1e-320..3e-320"],
+        &["y.png", "--colour", "gap", "--range=-inf..1"],
+        &["y.png", "--colour", "gap", "--range", "0..nan"],
         &["y.png", "--colour", "gap", "--range", "1"],
         &["y.png", "--range", "0..1"],
         &["y.png", "--colour", "gap", "--size", "30"],

@@ -84,7 +84,11 @@ impl fmt::Display for ReadingChanges {
             ),
             (self.vertices_at_cuts, VERTICES, "added at cuts"),
             (self.divided_lines, LINES, "divided where others meet"),
-            (self.loose_lines, LINES, "that lead nowhere left out"),
+            (
+                self.loose_lines,
+                ["line that leads nowhere", "lines that lead nowhere"],
+                "left out",
+            ),
             (
                 self.loose_cuts,
                 [
@@ -93,11 +97,15 @@ impl fmt::Display for ReadingChanges {
                 ],
                 "(`isosheet mesh` cuts slits)",
             ),
-            (self.double_lines, LINES, "that lie on others left out"),
+            (
+                self.double_lines,
+                ["line that lies on another", "lines that lie on others"],
+                "left out",
+            ),
             (
                 self.contradicting_lines,
-                ["edge", "edges"],
-                "with a mountain on a valley or with two angles, which fold freely",
+                ["edge folds", "edges fold"],
+                "freely, with a mountain on a valley or with two angles",
             ),
             (
                 self.other_lines,
@@ -106,8 +114,8 @@ impl fmt::Display for ReadingChanges {
             ),
             (
                 self.inner_boundaries,
-                ["edge", "edges"],
-                "named boundary inside the sheet, which stay joined (cuts are named C)",
+                ["edge stays", "edges stay"],
+                "joined that are named boundary inside the sheet (cuts are named C)",
             ),
         ];
         let made = changes.iter().filter(|(count, ..)| *count > 0);

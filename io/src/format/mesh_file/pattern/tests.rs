@@ -148,7 +148,7 @@ fn creases_that_contradict_each_other_fold_freely() {
         assert_eq!(free.len(), 1, "{:?}", mesh.creases);
         let crease = mesh.creases.iter().find(|c| c.angle.is_some());
         assert_eq!(crease, None);
-        assert!(mesh.changes.to_string().contains("which fold freely"));
+        assert!(mesh.changes.to_string().contains("1 edge folds freely"));
     }
     // A cut on both is a cut.
     let text = format!("{square}\n{mountain}\n{valley}\n1 0 0 1 -1\n");
@@ -323,6 +323,11 @@ fn lines_are_divided_where_they_cross_and_united_where_they_coincide() {
     let loose = format!("{SQUARE}2 0 0 0.5 -0.2\n");
     let mesh = read(MeshFormat::Cp, &loose).unwrap();
     assert_eq!((mesh.changes.loose_lines, mesh.vertex_count()), (1, 4));
+    let told = mesh.what_reading_did().unwrap();
+    assert!(
+        told.contains("1 line that leads nowhere left out"),
+        "{told}"
+    );
 }
 
 #[test]
