@@ -18,6 +18,7 @@ pub(crate) mod memory;
 mod mesh_file;
 #[cfg(feature = "scene")]
 mod motion_file;
+mod numbered;
 mod trajectory;
 mod vector;
 
@@ -31,8 +32,6 @@ pub use data_error::DataError;
 pub(crate) use finite::check_finite;
 
 pub use events::{EventChange, EventKind, EventRow, EventWriter, read_events};
-#[cfg(feature = "run")]
-pub(crate) use export::frame_number;
 pub use export::{
     BodyPose, ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series,
     SeriesBody, SeriesField, SeriesFormat, SeriesOptions, frame_path, thickened, write_frame,
@@ -52,6 +51,8 @@ pub use mesh_file::{
 pub(crate) use motion_file::sources;
 #[cfg(feature = "scene")]
 pub(crate) use motion_file::{motion_archive, says_up};
+#[cfg(feature = "run")]
+pub(crate) use numbered::NumberedFiles;
 #[cfg(feature = "scene")]
 pub(crate) use trajectory::{Clock, MovingMesh};
 pub use trajectory::{FrameData, Trajectory};

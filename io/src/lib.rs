@@ -9,7 +9,7 @@
 //!
 //! | file | read | written |
 //! |---|---|---|
-//! | meshes: OBJ, OFF, STL, PLY, FOLD, glTF | [`read_mesh`], [`read_sheet`] | [`write_mesh`], [`write_obj`] |
+//! | meshes: OBJ, OFF, STL, PLY, FOLD, glTF, VTK | [`read_mesh`], [`read_sheet`] | [`write_mesh`], [`write_obj`] |
 //! | series: FOLD, glTF, USD, PC2, VTK, OBJ, CSV | | [`write_series`] |
 //! | history CSV, see [`HistoryRow`] | [`read_history`] | [`HistoryWriter`], row by row |
 //! | trajectory npz, see [`Trajectory`] | [`Trajectory::read`] | [`Trajectory::write`] |

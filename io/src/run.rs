@@ -257,7 +257,8 @@ fn simulate_in(
     let material = RunInputs::read(file, &mut kept.files)?;
     let hash = material.hash;
     if existing == Existing::Continue && RunFolder::is_complete(folder, &material)? {
-        return Ok(already_complete(folder, hash)?.into());
+        let summary = complete_summary(folder, hash)?;
+        return Ok(Outcome::AlreadyComplete(Box::new(summary)).into());
     }
     let setup = file.build_with(&mut kept)?;
     let estimate = Estimate::of(file.scene(), &setup);
@@ -283,11 +284,12 @@ fn simulate_in(
     };
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
         FolderState::Complete(open) => {
+            let summary = complete_summary(folder, hash)?;
             let lost = !open.path(RunFolder::TRAJECTORY).is_file();
             if file.scene().output.trajectory && lost {
-                write_trajectory(&open, &plan)?;
+                write_trajectory(&open, &plan, summary.frames)?;
             }
-            return Ok(already_complete(folder, hash)?.into());
+            return Ok(Outcome::AlreadyComplete(Box::new(summary)).into());
         }
         FolderState::Empty(open) => (open, None),
         FolderState::Partial(open) => {
@@ -320,7 +322,7 @@ fn simulate_in(
     let interval = file.scene().output.checkpoint_interval;
     let advanced = advance(&mut stepping, interval, watch);
     if file.scene().output.trajectory {
-        let written = write_trajectory(&open, &plan);
+        let written = write_trajectory(&open, &plan, 0);
         // The failure of the run is what has to be said.
         advanced.and(written)?;
     } else {
@@ -363,11 +365,15 @@ fn advance(
     Ok(())
 }
 
-/// Writes the frames of a run as a trajectory.
-fn write_trajectory(folder: &RunFolder, plan: &Plan<'_>) -> Result<(), RunError> {
+/// Writes the frames of a run as a trajectory; as many as its summary says at `least`, if it is complete.
+fn write_trajectory(folder: &RunFolder, plan: &Plan<'_>, least: u64) -> Result<(), RunError> {
     let trajectory = Trajectory::new(&plan.facts.sheet);
     let path = folder.path(RunFolder::TRAJECTORY);
-    let written = trajectory.write_motion(&path, &stored_frames(folder, plan));
+    let frames = StoredFrames {
+        least,
+        ..stored_frames(folder, plan)
+    };
+    let written = trajectory.write_motion(&path, &frames);
     written.map_err(|error| match error {
         MotionError::Frame(error) => error,
         MotionError::Trajectory(error) => error.into(),
@@ -378,6 +384,7 @@ fn stored_frames(folder: &RunFolder, plan: &Plan<'_>) -> StoredFrames {
     StoredFrames {
         path: folder.path(RunFolder::FRAMES),
         shape: plan.shape,
+        least: 0,
     }
 }
 
@@ -389,14 +396,15 @@ pub fn resume_folder(folder: &Path, watch: &mut dyn Watch) -> Result<Outcome, Ru
     simulate(&stored_scene(folder)?, folder, watch)
 }
 
-fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError> {
+/// The summary of a complete run.
+fn complete_summary(folder: &Path, hash: SceneHash) -> Result<Summary, RunError> {
     let summary: Summary = read_json(&folder.join(RunFolder::SUMMARY))?;
     if summary.scene != hash.to_string() {
         return Err(RunError::OtherScene {
             folder: folder.to_owned(),
         });
     }
-    Ok(Outcome::AlreadyComplete(Box::new(summary)))
+    Ok(summary)
 }
 
 /// The simulation at the start, whose energies can be written.

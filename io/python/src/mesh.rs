@@ -151,7 +151,7 @@ impl Mesh {
         Self::of(py, &mesh)
     }
 
-    /// A mesh of a file: OBJ, OFF, STL, PLY, FOLD or glTF. `scale` is the length of one unit of the file in
+    /// A mesh of a file: OBJ, OFF, STL, PLY, FOLD, glTF or VTK. `scale` is the length of one unit of the file in
     /// metres.
     #[staticmethod]
     #[pyo3(signature = (path, scale = 1.0))]

@@ -26,7 +26,7 @@ Examples:
 #[derive(Debug, Args)]
 #[command(before_help = EXAMPLES)]
 pub(crate) struct Check {
-    /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF) or a crease pattern (SVG, CP, OPX)
+    /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF, VTK) or a crease pattern (SVG, CP, OPX)
     file: PathBuf,
     /// Of a scene, change a key before, as `isosheet simulate` does
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -106,9 +106,9 @@ impl Check {
             0 => String::new(),
             n => format!("{} cut into triangles, ", counted(n, "polygon", "polygons")),
         };
-        let polygons = match given.changes.is_nothing() {
-            true => polygons,
-            false => format!("{polygons}{}, ", given.changes),
+        let polygons = match given.what_reading_did() {
+            None => polygons,
+            Some(did) => format!("{polygons}{did}, "),
         };
         let repaired = repair.and_then(|repair| match mesh.clone().into_sheet() {
             Ok(sheet) => Ok((mesh, sheet, repair.to_string())),

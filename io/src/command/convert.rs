@@ -240,20 +240,22 @@ impl Convert {
     /// are replaced.
     fn check_output(&self) -> Result<(), Failure> {
         let (input, output) = (&self.input, self.output());
-        let is_run = input.is_dir();
+        let (is_run, name) = (input.is_dir(), output.display());
+        let is_own = |file: &str| is_run && is_same_file(&input.join(file), output);
+        let folder = output.with_extension("");
+        let gets_frames =
+            |own: &Path| is_run && self.is_folder_written() && is_same_file(own, &folder);
         let message = if is_same_file(input, output) {
             let what = if is_run { "folder" } else { "file" };
-            format!("{} is the {what} that is read", output.display())
-        } else if is_run && is_same_file(&input.join("history.csv"), output) {
-            format!("{} is the history of the run", output.display())
-        } else if is_run && is_same_file(&input.join("trajectory.npz"), output) {
-            format!("{} is the trajectory of the run", output.display())
-        } else if is_run
-            && self.is_folder_written()
-            && is_same_file(input, &output.with_extension(""))
-        {
-            let message = "the files of single frames would be written into the folder of the run";
-            message.to_owned()
+            format!("{name} is the {what} that is read")
+        } else if is_own("history.csv") {
+            format!("{name} is the history of the run")
+        } else if is_own("trajectory.npz") {
+            format!("{name} is the trajectory of the run")
+        } else if gets_frames(input) {
+            "the files of single frames would be written into the folder of the run".to_owned()
+        } else if gets_frames(&input.join("obj")) {
+            "the files of single frames would replace those of the run itself".to_owned()
         } else {
             return Ok(());
         };
@@ -367,7 +369,11 @@ impl Convert {
             );
             return Err(wrong(&message, ONE_FRAME));
         }
-        let Exported { files, frames } = write_series(self.output(), series).map_err(|error| {
+        let Exported {
+            files,
+            frames,
+            removed,
+        } = write_series(self.output(), series).map_err(|error| {
             let failure = failed(&error, Code::Output);
             match error {
                 ExportError::Extension { .. } if is_unknown(&error) => failure.remedy(
@@ -388,7 +394,8 @@ impl Convert {
         };
         let name = last(&files).display();
         let count = counted(frames.len(), "frame", "frames");
-        to_stdout(&format!("{name}{more}: {count}{chosen}\n"))
+        let removed = pictures::removed_in_words(removed);
+        to_stdout(&format!("{name}{more}: {count}{chosen}{removed}\n"))
     }
 
     /// Whether a mesh is to be made larger or thicker.
@@ -432,10 +439,8 @@ impl Convert {
             0 => String::new(),
             n => format!(", {} cut into triangles", counted(n, "polygon", "polygons")),
         };
-        let changes = match mesh.changes.is_nothing() {
-            true => String::new(),
-            false => format!(", {}", mesh.changes),
-        };
+        let did = mesh.what_reading_did();
+        let changes = did.map_or(String::new(), |did| format!(", {did}"));
         to_stdout(&format!(
             "{}: {} and {}{polygons}{changes}\n",
             self.output().display(),

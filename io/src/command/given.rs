@@ -44,8 +44,8 @@ impl Given {
             ..MeshOptions::default()
         };
         let mesh = read_mesh_with(file, &options).map_err(|e| Failure::of(Code::Input, &e))?;
-        if !mesh.changes.is_nothing() {
-            print_progress(format_args!("note: {}: {}", file.display(), mesh.changes));
+        if let Some(did) = mesh.what_reading_did() {
+            print_progress(format_args!("note: {}: {did}", file.display()));
         }
         let up = match MeshFormat::of(file) {
             Some(format) if format.says_up() => UpAxis::Z,

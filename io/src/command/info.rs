@@ -23,7 +23,7 @@ Examples:
 #[derive(Debug, Args)]
 #[command(before_help = EXAMPLES)]
 pub(crate) struct Info {
-    /// A scene (.toml), a mesh (OBJ, OFF, STL, PLY, FOLD, glTF), a crease pattern (SVG, CP, OPX) or the folder of a run
+    /// A scene (.toml), a mesh (OBJ, OFF, STL, PLY, FOLD, glTF, VTK), a crease pattern (SVG, CP, OPX) or the folder of a run
     file: PathBuf,
     /// Of a scene, change a key before, as `isosheet simulate` does
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -62,10 +62,10 @@ impl Info {
             return Ok(());
         }
         refuse_edits(&self.edits)?;
-        if self.file.join("scene.toml").is_file() {
+        // Of a folder that is none of a run this says so.
+        if self.file.is_dir() {
             return describe_run(&self.file);
         }
-        refuse_folder(&self.file)?;
         let options = MeshOptions {
             polygons: Polygons::Refuse,
             ..MeshOptions::default()

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use crate::Trajectory;
-use crate::mesh::wording::given;
+use crate::mesh::wording::{brief, given};
 use crate::scene::Folding;
 use clap::Args;
 
@@ -12,7 +12,7 @@ pub(super) struct OneFrame {
     /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0)
     #[arg(long, value_name = "K", conflicts_with_all = ["frames", "every", "fps"])]
     pub(super) frame: Option<usize>,
-    /// Of a run, write the frame that is nearest to time T alone, seconds
+    /// Of a run, write the frame that is nearest to time T alone, seconds; T is a time of the run
     #[arg(long, value_name = "T", conflicts_with_all = ["frame", "frames", "every", "fps"])]
     time: Option<f64>,
     /// Of a run that folds a pattern, write the frame alone that is nearest to the part P of the angles, from
@@ -42,9 +42,13 @@ impl OneFrame {
         let wrong = |message: String, remedy: &str| Err(Failure::misuse(message).remedy(remedy));
         match (self.time, self.part, folding) {
             (Some(time), ..) => match trajectory.nearest(time) {
-                Some(frame) => Ok(Some(frame)),
-                None => wrong(
-                    format!("there is no frame near {} s", given(time)),
+                Some(frame) if is_within(trajectory.times(), time) => Ok(Some(frame)),
+                _ => wrong(
+                    format!(
+                        "there is no frame near {} s{}",
+                        given(time),
+                        in_words(trajectory.times())
+                    ),
                     "give a time of the run, seconds",
                 ),
             },
@@ -63,4 +67,25 @@ impl OneFrame {
             _ => Ok(self.frame),
         }
     }
+}
+
+/// Whether a time is within those of the frames of a run, or beyond them by no more than a frame lasts.
+fn is_within(times: &[f64], time: f64) -> bool {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else {
+        return false;
+    };
+    let frame = (last - first) / (times.len().max(2) - 1) as f64;
+    (first - frame..=last + frame).contains(&time)
+}
+
+/// From when to when a run has frames.
+fn in_words(times: &[f64]) -> String {
+    let ends = times.first().zip(times.last());
+    ends.map_or(String::new(), |(first, last)| {
+        format!(
+            ": the run has frames from {} to {} s",
+            brief(*first),
+            brief(*last)
+        )
+    })
 }

@@ -106,8 +106,8 @@ impl Pattern<'_> {
             let remedy = "give a crease pattern: a FOLD, SVG, CP or OPX file";
             return Err(Failure::new(Code::Input, message).remedy(remedy));
         }
-        if !mesh.changes.is_nothing() {
-            print_progress(format_args!("note: {}", mesh.changes));
+        if let Some(did) = mesh.what_reading_did() {
+            print_progress(format_args!("note: {did}"));
         }
         let side = extent(mesh.positions.as_chunks::<3>().0);
         if side <= 0.0 {

@@ -5,12 +5,13 @@ use super::message::counted;
 use super::progress::DrawingProgress;
 use super::write::to_stdout;
 use crate::Advice;
+use crate::format::NumberedFiles;
 use crate::picture::PictureError;
 use crate::run::{Film, FilmOptions, Recording};
 use crate::write_atomically;
 use rayon::prelude::*;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Files of pictures.
@@ -89,6 +90,7 @@ pub(crate) fn write(
         let written = write_atomically(path, |w| w.write_all(&bytes));
         written.map_err(|e| Failure::of(Code::Output, &e))
     };
+    let numbered = numbered(path);
     let saved = match (format, choice) {
         (PictureFormat::Film, _) => {
             let encoded = film.encode(path, |k| progress.drawn(k));
@@ -99,7 +101,7 @@ pub(crate) fn write(
         (_, FrameChoice::Many { .. }) => {
             let drawn = AtomicUsize::new(0);
             let one = |place: usize| {
-                let saved = save(&numbered(path, place), picture(place));
+                let saved = save(&numbered.path(place), picture(place));
                 progress.drawn(drawn.fetch_add(1, Ordering::Relaxed) + 1);
                 saved
             };
@@ -108,24 +110,39 @@ pub(crate) fn write(
     };
     progress.end();
     saved?;
+    let mut removed = 0;
     let name = match (format, choice) {
         (PictureFormat::Png, FrameChoice::Many { .. }) => {
-            let last = numbered(path, film.len() - 1);
-            format!("{} to {}", numbered(path, 0).display(), last.display())
+            let places: Vec<usize> = (0..film.len()).collect();
+            let kept = numbered.keep_only(&places);
+            removed = kept.map_err(|e| Failure::of(Code::Output, &e))?;
+            let [first, last] = [0, film.len() - 1].map(|place| numbered.path(place));
+            format!("{} to {}", first.display(), last.display())
         }
         _ => path.display().to_string(),
     };
     to_stdout(&format!(
-        "{name}: {}\n",
-        counted(film.len(), "frame", "frames")
+        "{name}: {}{}\n",
+        counted(film.len(), "frame", "frames"),
+        removed_in_words(removed)
     ))
 }
 
-/// The file of one of many pictures, counted from 0 without gaps, as programs for films expect.
-fn numbered(path: &Path, place: usize) -> PathBuf {
+/// What an export removed of an earlier one, in words; nothing if it removed nothing.
+pub(crate) fn removed_in_words(files: usize) -> String {
+    match files {
+        0 => String::new(),
+        n => format!(
+            " ({} of an earlier export removed)",
+            counted(n, "file", "files")
+        ),
+    }
+}
+
+/// The files of many pictures, counted from 0 without gaps, as programs for films expect.
+fn numbered(path: &Path) -> NumberedFiles {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    path.with_extension("")
-        .join(format!("frame_{place:05}.{extension}"))
+    NumberedFiles::new(&path.with_extension(""), "frame", &extension)
 }
 
 fn wrong(message: &str, remedy: &str) -> Failure {

@@ -23,8 +23,6 @@ mod vtk;
 pub use body::{BodyPose, SeriesBody};
 pub use error::ExportError;
 pub use gltf::MOST_KEY_FRAMES;
-#[cfg(feature = "run")]
-pub(crate) use obj::frame_number;
 pub use obj::{frame_path, write_obj};
 pub use series::{FieldSupport, Series, SeriesField, SeriesOptions};
 pub use solid::thickened;
@@ -142,6 +140,9 @@ pub struct Exported {
     pub files: Vec<PathBuf>,
     /// The frames of the trajectory that they have.
     pub frames: Vec<usize>,
+    /// How many files of an earlier export were removed: numbered files by the same names, of frames that this
+    /// one has not.
+    pub removed: usize,
 }
 
 /// Writes one mesh, atomically, in the format that the extension names ([`ExportMeshFormat`]).
@@ -187,14 +188,19 @@ pub fn write_frame(path: &Path, series: &Series<'_>, frame: usize) -> Result<(),
 }
 
 /// Writes the frames of a moving sheet in the format that the extension names ([`SeriesFormat`]). Each
-/// file is written atomically, the one of that name last.
+/// file is written atomically, the one of that name last. Of numbered files those that an earlier export by
+/// the same name has left are removed when all new ones are complete, and no others.
 ///
 /// # Errors
 /// [`ExportError`]; other files of a format with several files may have been written then.
 pub fn write_series(path: &Path, series: &Series<'_>) -> Result<Exported, ExportError> {
-    let mut frames = series.frames().to_vec();
+    let (mut frames, mut removed) = (series.frames().to_vec(), 0);
     let files = match by_extension(path, &SeriesFormat::ALL, SeriesFormat::extension)? {
-        SeriesFormat::Obj => obj::write_series(path, series)?,
+        SeriesFormat::Obj => {
+            let files;
+            (files, removed) = obj::write_series(path, series)?;
+            files
+        }
         SeriesFormat::Fold => fold::write_series(path, series)?,
         SeriesFormat::Glb => {
             frames = gltf::key_frames(series);
@@ -206,14 +212,22 @@ pub fn write_series(path: &Path, series: &Series<'_>) -> Result<Exported, Export
             vec![path.to_owned()]
         }
         SeriesFormat::Pc2 => pc2::write_series(path, series)?,
-        SeriesFormat::Pvd => vtk::write_series(path, series)?,
+        SeriesFormat::Pvd => {
+            let files;
+            (files, removed) = vtk::write_series(path, series)?;
+            files
+        }
         SeriesFormat::Csv => csv::write_series(path, series)?,
         SeriesFormat::Npz => {
             series.chosen()?.write(path)?;
             vec![path.to_owned()]
         }
     };
-    Ok(Exported { files, frames })
+    Ok(Exported {
+        files,
+        frames,
+        removed,
+    })
 }
 
 /// The format that the extension of a file names, in capital or small letters.

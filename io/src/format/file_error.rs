@@ -24,7 +24,8 @@ impl Advice for ReadError {
     }
 }
 
-/// A file could not be written; nothing is left under its name that was not there before.
+/// A file could not be written; nothing is left under its name that was not there before. Or one that is to be
+/// replaced could not be removed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum WriteError {
@@ -72,6 +73,14 @@ pub enum WriteError {
         /// What the system said.
         source: io::Error,
     },
+    /// A file of an earlier export could not be removed.
+    #[error("cannot remove {}, which an earlier export has left: {source}", path.display())]
+    Remove {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
 }
 
 impl Advice for WriteError {
@@ -83,6 +92,7 @@ impl Advice for WriteError {
             Self::CreateFile { .. } => Some("check the permissions and the free space"),
             Self::Write { .. } => Some("check the free space"),
             Self::Persist { .. } => Some("check that no other program holds it"),
+            Self::Remove { .. } => Some("remove it, and check the permissions of the folder"),
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::format::atomic::write_atomically;
 use crate::format::{DataError, FileError};
 use archive::{ArchiveReader, ArchiveWriter, wrong_array};
 use data::not_finite;
-use isosheet_mesh::wording::given;
+use isosheet_mesh::wording::{counted, given};
 use isosheet_mesh::{Sheet, VertexId};
 use std::convert::Infallible;
 use std::io;
@@ -147,9 +147,9 @@ impl Trajectory {
         } = frame;
         if x.len() != 3 * self.vertex_count {
             let message = format!(
-                "frame {number} has {} coordinates, but the mesh has {} vertices, three coordinates each",
+                "frame {number} has {} coordinates, but the mesh has {}, three coordinates each",
                 x.len(),
-                self.vertex_count
+                counted(self.vertex_count, "vertex", "vertices")
             );
             return Err(DataError::plain(message).at(number));
         }

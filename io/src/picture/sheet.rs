@@ -10,7 +10,7 @@ use super::raster::{Corner, Drawing, Facet};
 use super::solid::{Skin, Solid, Triangles};
 use super::vector::dot;
 use crate::DataError;
-use isosheet_mesh::wording::{brief, given};
+use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{EdgeId, Part, Topology, VertexId};
 
 /// How far faces darken each other, as part of what the picture shows.
@@ -87,7 +87,8 @@ impl SheetPicture<'_> {
     pub(super) fn validate(&self) -> Result<(), PictureError> {
         let (count, vertices) = (self.positions.len(), self.topology.vertex_count());
         if count != 3 * vertices {
-            let message = format!("there are {count} coordinates for {vertices} vertices");
+            let vertices = counted(vertices, "vertex", "vertices");
+            let message = format!("there are {count} coordinates for {vertices}");
             let error = DataError::new(message, "give three for each vertex");
             return Err(PictureError::Data(error));
         }
@@ -107,8 +108,9 @@ impl SheetPicture<'_> {
             .find(|v| v.index() >= vertices)
         {
             Some(&vertex) => {
+                let vertices = counted(vertices, "vertex", "vertices");
                 let message =
-                    format!("the pin {vertex} is none of the {vertices} vertices of the sheet");
+                    format!("the pin {vertex} is no vertex of the sheet, which has {vertices}");
                 let error = DataError::new(message, "name one of them").at(vertex.index());
                 Err(PictureError::Data(error))
             }

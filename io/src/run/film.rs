@@ -62,8 +62,8 @@ impl FilmOptions {
     /// Whether the values make sense.
     ///
     /// # Errors
-    /// [`PictureError::Options`] for no pixels or more than 16 384 each way, and for angles that are not
-    /// finite or an elevation beyond 90 degrees.
+    /// [`PictureError::Options`] for no pixels or more than 16 384 each way, for angles that are not finite or
+    /// an elevation beyond 90 degrees, and for a range whose width is 0 or too small for a normal number.
     pub fn validate(&self) -> Result<(), PictureError> {
         let (width, height) = (self.width.unwrap_or(self.height), self.height);
         if !(1..=LARGEST).contains(&width) || !(1..=LARGEST).contains(&height) {
@@ -79,6 +79,18 @@ impl FilmOptions {
             let remedy = "name a quantity, or leave the range out";
             return Err(PictureError::Options(DataError::new(message, remedy)));
         }
+        if let Some([low, high]) = self.range.filter(|[low, high]| is_void(high - low)) {
+            let message = format!(
+                "the range of colours is {}..{}, which has no width",
+                given(low),
+                given(high)
+            );
+            let remedy =
+                "give two values that are further apart (by a normal floating-point number)";
+            return Err(PictureError::Options(
+                DataError::new(message, remedy).value(high),
+            ));
+        }
         let wrong = match (azimuth.is_finite(), (-90.0..=90.0).contains(&elevation)) {
             (true, true) => return Ok(()),
             (false, _) => ("azimuth", azimuth),
@@ -89,6 +101,11 @@ impl FilmOptions {
         let error = DataError::new(message, remedy).value(wrong.1);
         Err(PictureError::Options(error))
     }
+}
+
+/// Whether the ends of a range of colours are equal, or so near that no values fit between them.
+fn is_void(width: f64) -> bool {
+    (0.0..f64::MIN_POSITIVE).contains(&width)
 }
 
 /// Some frames of a run, seen by one camera that has the sheet in view in all of them.

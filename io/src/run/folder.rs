@@ -3,7 +3,7 @@
 use super::error::BEGIN_ANEW;
 use super::{RunError, Summary};
 use crate::format::atomic::is_unfinished;
-use crate::format::{FileError, frame_number, input, read_json, sources, write_atomically};
+use crate::format::{FileError, NumberedFiles, input, read_json, sources, write_atomically};
 use crate::scene::{FileKind, Files, Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use std::ffi::OsString;
@@ -295,8 +295,9 @@ impl RunFolder {
             // Nothing is known of them then.
             Err(_) => Vec::new(),
         };
+        let of_frames = NumberedFiles::new(&self.path(Self::OBJ), "frame", "obj");
         let frames = names_in(&self.path(Self::OBJ))?.into_iter();
-        let frames = frames.filter(|name| frame_number(Path::new(name)).is_some());
+        let frames = frames.filter(|name| of_frames.number(name).is_some());
         let own = Self::FILES.map(PathBuf::from).into_iter();
         let own = own.chain(frames.map(|name| Path::new(Self::OBJ).join(name)));
         for name in own.chain(meshes) {

@@ -6,6 +6,7 @@ use crate::format::input;
 use crate::format::{FileError, FrameData, FrameQuantity, MeshCounts, Motion, MotionFrame};
 use crate::scene::Setup;
 use crc::{CRC_64_XZ, Crc};
+use isosheet_mesh::wording::counted;
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::ops::ControlFlow;
@@ -265,6 +266,8 @@ fn read_whole(file: &mut impl Read, buffer: &mut [u8]) -> io::Result<bool> {
 pub(crate) struct StoredFrames {
     pub(crate) path: PathBuf,
     pub(crate) shape: FrameShape,
+    /// As many there are at least: of a complete run those of its summary, and 0 of one in progress.
+    pub(crate) least: u64,
 }
 
 impl Motion for StoredFrames {
@@ -286,12 +289,33 @@ impl Motion for StoredFrames {
                 fields: &[],
             });
             if shown.is_break() {
-                break;
+                return Ok(());
             }
             number += 1;
         }
-        Ok(())
+        Ok(check_whole(&self.path, "frame", number as u64, self.least)?)
     }
+}
+
+/// Refuses a file of a complete run that has fewer frames or rows than the summary of the run says.
+///
+/// # Errors
+/// [`FileError`] with both numbers.
+pub(super) fn check_whole(
+    path: &Path,
+    what: &str,
+    found: u64,
+    least: u64,
+) -> Result<(), FileError> {
+    if found >= least {
+        return Ok(());
+    }
+    let problem = format!(
+        "it ends after {}, and the complete run has {least} by its summary",
+        counted(found as usize, what, &format!("{what}s"))
+    );
+    let remedy = "copy the file again from where it is whole, or run the scene again with --force, which replaces the                   run; of frames.bin and trajectory.npz the one that is cut off may be deleted if the other is whole";
+    Err(FileError::content(path, problem, remedy))
 }
 
 #[cfg(test)]
@@ -302,7 +326,12 @@ mod tests {
     fn read_frames(path: &Path, shape: FrameShape) -> Result<Vec<Frame>, RunError> {
         let path = path.to_owned();
         let mut all = Vec::new();
-        StoredFrames { path, shape }.each(&mut |frame| {
+        StoredFrames {
+            path,
+            shape,
+            least: 0,
+        }
+        .each(&mut |frame| {
             all.push(Frame {
                 t: frame.t,
                 x: frame.x.to_vec(),

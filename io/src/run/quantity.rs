@@ -159,7 +159,13 @@ fn scale(
     values: impl Iterator<Item = f64> + Clone,
     range: Option<[f64; 2]>,
 ) -> ColourScale {
-    let sizes = || values.clone().map(f64::abs).filter(|size| *size > 0.0);
+    // Values below the normal numbers are as good as zero, and leave no room for a scale.
+    let sizes = || {
+        values
+            .clone()
+            .map(f64::abs)
+            .filter(|size| *size >= f64::MIN_POSITIVE)
+    };
     let smallest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min).unwrap_or(0.0);
     let largest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max).unwrap_or(0.0);
     let usual = || {
@@ -175,7 +181,10 @@ fn scale(
         Scale::Signed => [-usual(), usual()],
         Scale::Magnitude => [0.0, usual()],
     };
-    let [low, high] = range.unwrap_or(own);
+    let [low, high] = range.unwrap_or_else(|| match own[1] - own[0] >= f64::MIN_POSITIVE {
+        true => own,
+        false => own.map(|_| if own[1].is_normal() { own[1] } else { 0.0 }),
+    });
     // A zero of a logarithmic scale is at its low end.
     let is_logarithmic = field.scale == Scale::Logarithmic;
     let below = |value: f64| value < low && !(is_logarithmic && value == 0.0);

@@ -410,7 +410,7 @@ impl Recorder {
             rows: Rows::InMemory,
         };
         if file.scene().output.trajectory {
-            write_trajectory(&self.folder, &plan)?;
+            write_trajectory(&self.folder, &plan, 0)?;
         }
         let RunWriter {
             progress, tables, ..

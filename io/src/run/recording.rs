@@ -1,7 +1,7 @@
 //! What a run recorded, complete or not.
 
 use super::folder::{RunFolder, stored_scene};
-use super::frames::{FrameShape, StoredFrames};
+use super::frames::{FrameShape, StoredFrames, check_whole};
 use super::{RunError, Summary};
 use crate::format::{
     EventRow, ExportError, FileError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion,
@@ -67,7 +67,8 @@ impl Recording {
     /// up to now.
     ///
     /// # Errors
-    /// [`RunError::NoRun`] if the folder is not that of a run, [`RunError`] if a file cannot be read.
+    /// [`RunError::NoRun`] if the folder is not that of a run, [`RunError`] if a file cannot be read, or has fewer frames
+    /// or rows than the summary of a complete run says.
     pub fn read(folder: &Path) -> Result<Self, RunError> {
         let (mut recording, frames) = Self::open(folder)?;
         recording.load(frames, folder)?;
@@ -79,10 +80,10 @@ impl Recording {
         self.trajectory = match frames {
             RunFrames::Whole(trajectory) => trajectory,
             // The trajectory of a run that goes on is that of its last stop.
-            RunFrames::Stored(_) if self.summary.is_some() && is_whole(folder) => {
-                Trajectory::read(&folder.join(RunFolder::TRAJECTORY))?
-            }
-            RunFrames::Stored(frames) => frames.trajectory(&self.sheet)?,
+            RunFrames::Stored(frames) => match &self.summary {
+                Some(summary) if is_whole(folder) => whole_trajectory(folder, summary)?,
+                _ => frames.trajectory(&self.sheet)?,
+            },
         };
         Ok(())
     }
@@ -95,10 +96,14 @@ impl Recording {
         let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
         let (mut recording, mut frames) = Self::of(folder, scene, setup, Tables::read(folder)?);
         recording.summary = summary;
-        let has_frames = folder.join(RunFolder::FRAMES).is_file();
-        if recording.summary.is_some() && is_whole(folder) && !has_frames {
-            let trajectory = Trajectory::read(&folder.join(RunFolder::TRAJECTORY))?;
-            frames = RunFrames::Whole(trajectory);
+        if let (Some(summary), RunFrames::Stored(stored)) = (&recording.summary, &mut frames) {
+            let history = folder.join(RunFolder::HISTORY);
+            let rows = recording.history.len() as u64;
+            check_whole(&history, "row", rows, summary.steps + 1)?;
+            stored.least = summary.frames;
+            if is_whole(folder) && !stored.path.is_file() {
+                frames = RunFrames::Whole(whole_trajectory(folder, summary)?);
+            }
         }
         Ok((recording, frames))
     }
@@ -117,7 +122,11 @@ impl Recording {
             vertices
         };
         let path = folder.join(RunFolder::FRAMES);
-        let frames = RunFrames::Stored(StoredFrames { path, shape });
+        let frames = RunFrames::Stored(StoredFrames {
+            path,
+            shape,
+            least: 0,
+        });
         let recording = Self {
             name: name_of(folder),
             creases: setup.creases(),
@@ -246,6 +255,14 @@ fn name_of(folder: &Path) -> String {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let name = whole.file_name().unwrap_or_default().to_string_lossy();
     name.strip_suffix("-run").unwrap_or(&name).to_owned()
+}
+
+/// The trajectory of a complete run.
+fn whole_trajectory(folder: &Path, summary: &Summary) -> Result<Trajectory, RunError> {
+    let path = folder.join(RunFolder::TRAJECTORY);
+    let trajectory = Trajectory::read(&path)?;
+    check_whole(&path, "frame", trajectory.len() as u64, summary.frames)?;
+    Ok(trajectory)
 }
 
 /// Whether a folder has the trajectory of a run.

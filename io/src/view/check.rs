@@ -1,7 +1,7 @@
 //! Checks of lists. The name of a list is only made up when it is needed for an error.
 
 use crate::format::DataError;
-use isosheet_mesh::wording::given;
+use isosheet_mesh::wording::{counted, given};
 use isosheet_mesh::{Advice, Topology};
 
 /// The largest number that a list may have. Box sizes and second differences of such numbers are finite.
@@ -82,7 +82,8 @@ pub(super) fn vertices(what: &str, list: &[u32], vertices: usize) -> Result<(), 
         Some(index) => {
             let vertex = list[index];
             let message = format!(
-                "{what}: entry {index} is the vertex {vertex}, but there are {vertices} vertices, counted from 0"
+                "{what}: entry {index} is the vertex {vertex}, but the mesh has {}, counted from 0",
+                counted(vertices, "vertex", "vertices")
             );
             Err(DataError::plain(message).at(index))
         }

@@ -260,7 +260,10 @@ fn runs_are_converted() {
         2,
     );
     refused(dir, &["convert", "r", "x.csv", "--weld", "1"], 2);
-    refused(dir, &["convert", ".", "x.csv"], 3);
+    for command in [&["convert", ".", "x.csv"][..], &["info", "."]] {
+        let said = refused(dir, command, 3);
+        assert!(said.contains("is not the folder of a run"), "{said}");
+    }
     fs::write(dir.join("no.npz"), "nothing").unwrap();
     refused(dir, &["convert", "no.npz", "x.csv"], 3);
 }
@@ -268,6 +271,10 @@ fn runs_are_converted() {
 #[test]
 fn the_help_lists_all_formats() {
     let dir = tempfile::tempdir().unwrap();
+    for command in ["check", "info"] {
+        let help = done(dir.path(), &[command, "--help"]);
+        assert!(help.contains("FOLD, glTF, VTK)"), "{help}");
+    }
     let help = done(dir.path(), &["convert", "--help"]);
     let parts: Vec<&str> = help.split("Files that are written of a run:").collect();
     let (read, written) = parts[0].split_once("Mesh files that are written").unwrap();
@@ -363,6 +370,77 @@ fn films_are_numbered_pictures() {
         &["convert", "run", "x.usda", "--fps", "10", "--every", "2"],
         2,
     );
+}
+
+/// The names in a folder, sorted.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+/// The numbered files of an earlier export would be taken for frames of this one by whatever reads the folder.
+#[test]
+fn numbered_files_of_an_earlier_export_are_removed() {
+    let dir = with_short_run(StartingPoint::Drape);
+    let dir = dir.path();
+    let count = Recording::read(&dir.join("run")).unwrap().trajectory.len();
+    assert!(count > 3, "{count} frames");
+    let some =
+        |output: &str, more: &[&str]| done(dir, &[&["convert", "run", output][..], more].concat());
+    let pictures = ["--size", "48x32", "--every"];
+    let said = some("film.png", &[&pictures[..], &["1"]].concat());
+    assert!(!said.contains("removed"), "{said}");
+    assert_eq!(names(&dir.join("film")).len(), count);
+    for own in ["frame_1.png", "frame_00000.jpg", "frame_00001.obj"] {
+        fs::write(dir.join("film").join(own), "mine").unwrap();
+    }
+    let few = count.div_ceil(3);
+    let said = some("film.png", &[&pictures[..], &["3"]].concat());
+    let removed = format!("({} files of an earlier export removed)", count - few);
+    assert!(said.contains(&removed), "{said}");
+    let left = names(&dir.join("film"));
+    assert_eq!(left.len(), few + 3, "{left:?}");
+
+    // Files of frames keep the numbers of the run; those of bodies go with the bodies.
+    for extension in ["obj", "pvd"] {
+        let output = format!("f.{extension}");
+        let inner = if extension == "pvd" { "vtp" } else { "obj" };
+        let of = |name: &str, numbers: &[usize]| -> Vec<String> {
+            let numbers = numbers.iter();
+            numbers.map(|k| format!("{name}_{k:05}.{inner}")).collect()
+        };
+        let found = || -> Vec<String> {
+            let names = names(&dir.join("f")).into_iter();
+            names.filter(|name| name.ends_with(inner)).collect()
+        };
+        some(&output, &[]);
+        let all: Vec<usize> = (0..count).collect();
+        assert_eq!(found(), [of("bodies", &[0]), of("frame", &all)].concat());
+        let said = some(&output, &["--frames", "1..2"]);
+        assert_eq!(found(), [of("bodies", &[1]), of("frame", &[1, 2])].concat());
+        let removed = format!("({} files of an earlier", count - 2 + 1);
+        assert!(said.contains(&removed), "{said}");
+        let said = some(&output, &["--frames", "1..2", "--no-bodies"]);
+        assert_eq!(found(), of("frame", &[1, 2]));
+        let lists = usize::from(extension == "pvd");
+        let removed = format!("{} of an earlier", ["1 file", "2 files"][lists]);
+        assert!(said.contains(&removed), "{said}");
+        assert!(!dir.join("f-bodies.pvd").exists());
+    }
+
+    // What is refused removes nothing.
+    refused(
+        dir,
+        &["convert", "run", "film.png", "--frames", "90000.."],
+        2,
+    );
+    assert_eq!(names(&dir.join("film")), left);
+    fs::create_dir(dir.join("run/obj")).unwrap();
+    let said = refused(dir, &["convert", "run", "run/obj.obj", "--every", "2"], 2);
+    assert!(said.contains("those of the run itself"), "{said}");
 }
 
 /// A program in place of ffmpeg keeps what it is told and what it is given.
@@ -492,6 +570,26 @@ fn a_frame_is_found_by_its_time_and_a_mesh_is_made_thicker_and_larger() {
     let recording = Recording::read(&dir.join("run")).unwrap();
     let times = recording.trajectory.times();
     let between = (0.4 * times[1] + 0.6 * times[2]).to_string();
+    // A frame lasts 1/60 s or more: beyond the ends by more there is none.
+    for (time, written) in [
+        ("-5", false),
+        ("1e9", false),
+        ("-0.01", true),
+        ("0.21", true),
+    ] {
+        let option = format!("--time={time}");
+        let command = ["convert", "run", "end.obj", &option];
+        match written {
+            true => drop(done(dir, &command)),
+            false => {
+                let said = refused(dir, &command, 2);
+                assert!(
+                    said.contains("the run has frames from 0 to 0.2 s"),
+                    "{said}"
+                );
+            }
+        }
+    }
     for format in ["png", "obj"] {
         let [by_time, by_number] = ["time", "frame"].map(|name| format!("{name}.{format}"));
         done(
@@ -698,6 +796,10 @@ fn pictures_show_a_quantity_with_its_scale() {
     );
     for wrong in [
         &["y.png", "--colour", "gap", "--range", "2..1"][..],
+        &["y.png", "--colour", "gap", "--range", "0..0"],
+        &["y.png", "--colour", "height", "--range", "1e-320..3e-320"],
+        &["y.png", "--colour", "gap", "--range=-inf..1"],
+        &["y.png", "--colour", "gap", "--range", "0..nan"],
         &["y.png", "--colour", "gap", "--range", "1"],
         &["y.png", "--range", "0..1"],
         &["y.png", "--colour", "gap", "--size", "30"],

@@ -1,6 +1,6 @@
 //! The trajectory of a run: written however the run ends, and again when it is lost; damage is noticed.
 
-use crate::{code, killed, run, stderr, with_scene};
+use crate::{code, killed, run, stderr, summary, with_scene, with_short_run};
 use isosheet_io::Trajectory;
 use isosheet_io::run::Recording;
 use isosheet_io::scene::StartingPoint;
@@ -129,4 +129,80 @@ fn damaged_frames_are_told() {
     fs::write(&path, whole).unwrap();
     let done = run(dir, &[&simulate[..], &["--set", "stop.time=1.0"]].concat());
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+}
+
+/// What is missing at the end of a file of a complete run is told, and nothing is made of what is left.
+#[test]
+fn files_that_are_cut_off_are_no_shorter_run() {
+    let dir = with_short_run(StartingPoint::Drape);
+    let dir = dir.path();
+    let file = |name: &str| dir.join("run").join(name);
+    let [frames, trajectory, history, page] =
+        ["frames.bin", "trajectory.npz", "history.csv", "index.html"].map(file);
+    let [whole, archive, rows, shown] =
+        [&frames, &trajectory, &history, &page].map(|path| fs::read(path).unwrap());
+    let count = summary(&dir.join("run")).frames;
+    assert!(count > 3);
+    let told = |command: &[&str], says: &str| {
+        let refused = run(dir, command);
+        let said = stderr(&refused);
+        assert_eq!(code(&refused), Some(3), "{command:?}: {said}");
+        assert!(said.contains(says), "{command:?}: {said}");
+        assert!(said.contains("= help: copy the file again"), "{said}");
+    };
+    let record = (whole.len() - 8) / count as usize;
+    fs::write(&frames, &whole[..8 + 2 * record + 5]).unwrap();
+    let says = format!("frames.bin: it ends after 2 frames, and the complete run has {count} by");
+    told(&["page", "run"], &says);
+    assert!(
+        fs::read(&page).unwrap() == shown,
+        "the page is not replaced"
+    );
+    // The trajectory is whole, and then it is lost, too.
+    let done = run(dir, &["convert", "run", "x.csv"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    fs::remove_file(&trajectory).unwrap();
+    for command in [
+        &["convert", "run", "y.csv"][..],
+        &["info", "run"],
+        &[
+            "simulate",
+            "scene.toml",
+            "--out",
+            "run",
+            "--set",
+            "stop.time=0.2",
+        ],
+        &["resume", "run"],
+    ] {
+        told(command, &says);
+    }
+    assert!(!dir.join("y.csv").exists() && !trajectory.exists());
+
+    fs::write(&frames, &whole).unwrap();
+    let short = run(dir, &["convert", "run", "short.npz", "--frames", "..1"]);
+    assert_eq!(code(&short), Some(0), "{}", stderr(&short));
+    fs::rename(dir.join("short.npz"), &trajectory).unwrap();
+    let says =
+        format!("trajectory.npz: it ends after 2 frames, and the complete run has {count} by");
+    told(&["convert", "run", "y.csv"], &says);
+    fs::remove_file(&frames).unwrap();
+    told(&["page", "run"], &says);
+    fs::write(&trajectory, archive).unwrap();
+    let done = run(dir, &["page", "run"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+
+    let text = String::from_utf8(rows).unwrap();
+    let head: String = text.split_inclusive('\n').take(4).collect();
+    fs::write(&history, head).unwrap();
+    told(&["page", "run"], "history.csv: it ends after 3 rows, and");
+
+    // A run that is not complete has what it has.
+    fs::write(&history, text).unwrap();
+    fs::write(&frames, &whole[..8 + 2 * record + 5]).unwrap();
+    fs::remove_file(file("summary.json")).unwrap();
+    let done = run(dir, &["convert", "run", "y.csv"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let said = String::from_utf8_lossy(&done.stdout).into_owned();
+    assert!(said.contains(": 2 frames"), "{said}");
 }

@@ -47,7 +47,9 @@ pub fn parse_drawing(
 ) -> Result<Drawing, FileError> {
     let bytes = input::without_mark(bytes);
     let drawing = match DrawingFormat::of(path) {
-        Some(DrawingFormat::Svg) => svg::parse(bytes, options.unit, options.scale),
+        Some(DrawingFormat::Svg) => {
+            svg::parse(bytes, svg::Areas::Outlined, options.unit, options.scale)
+        }
         Some(DrawingFormat::Dxf) => dxf::parse(bytes, options.unit, options.scale),
         None => {
             let message = "it is no drawing by its name";

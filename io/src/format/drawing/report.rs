@@ -49,8 +49,8 @@ pub struct DrawingReport {
     pub beyond: Option<Places>,
     /// Lines that are shorter than the tolerance for snapping.
     pub too_short: usize,
-    /// What is no line, with its number.
-    pub left_out: BTreeMap<&'static str, usize>,
+    /// What is no line, or is drawn in a colour that is not understood, with its number.
+    pub left_out: BTreeMap<String, usize>,
     /// What a unit was taken for, where the file does not say it.
     pub assumed_unit: Option<&'static str>,
     /// How many times as large the sheet is by the unit of the file, where another one was given.

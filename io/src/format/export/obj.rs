@@ -4,6 +4,7 @@ use super::error::{check_count, check_mesh};
 use super::{ExportError, Series};
 use crate::format::FaceGroups;
 use crate::format::atomic::{FileWriter, write_atomically};
+use crate::format::numbered::NumberedFiles;
 use isosheet_mesh::Topology;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -25,15 +26,7 @@ pub fn write_obj(path: &Path, topology: &Topology, x: &[f64]) -> Result<(), Expo
 
 /// The file of frame `frame` in `folder`: `frame_00000.obj` and so on, so that names sort as frames do.
 pub fn frame_path(folder: &Path, frame: usize) -> PathBuf {
-    folder.join(format!("frame_{frame:05}.obj"))
-}
-
-/// The frame whose file has a name, of names that [`frame_path`] gives.
-#[cfg(feature = "run")]
-pub(crate) fn frame_number(name: &Path) -> Option<usize> {
-    let digits = name.to_str()?.strip_prefix("frame_")?;
-    let frame = digits.strip_suffix(".obj")?.parse().ok()?;
-    (frame_path(Path::new(""), frame) == name).then_some(frame)
+    NumberedFiles::new(folder, "frame", "obj").path(frame)
 }
 
 /// Writes one mesh.
@@ -60,26 +53,28 @@ pub(super) fn extras<'a>(series: &'a Series<'_>) -> Extras<'a> {
 }
 
 /// Writes one file for each frame in a folder, and beside it one with the bodies in their places, one object
-/// each; of bodies that rest a single one.
-pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
+/// each; of bodies that rest a single one. Returns the files, and how many of an earlier export were removed.
+pub(super) fn write_series(
+    path: &Path,
+    series: &Series<'_>,
+) -> Result<(Vec<PathBuf>, usize), ExportError> {
     let folder = path.with_extension("");
+    let [bodies, frames] = ["bodies", "frame"].map(|n| NumberedFiles::new(&folder, n, "obj"));
     let mut files = Vec::new();
-    let bodies = series.bodies();
-    let rest = bodies.iter().all(|body| body.rests());
-    for (k, &frame) in series.frames().iter().enumerate() {
-        if !bodies.is_empty() && (k == 0 || !rest) {
-            let file = folder.join(format!("bodies_{frame:05}.obj"));
-            write_bodies(&file, series, frame)?;
-            files.push(file);
-        }
+    let placed = series.frames_of_bodies();
+    for &frame in placed {
+        let file = bodies.path(frame);
+        write_bodies(&file, series, frame)?;
+        files.push(file);
     }
     let extras = extras(series);
     for &frame in series.frames() {
-        let file = frame_path(&folder, frame);
+        let file = frames.path(frame);
         write(&file, series.faces(), series.state(frame).1, &extras)?;
         files.push(file);
     }
-    Ok(files)
+    let removed = frames.keep_only(series.frames())? + bodies.keep_only(placed)?;
+    Ok((files, removed))
 }
 
 /// Writes the bodies in their places in one frame.

@@ -214,6 +214,17 @@ impl<'a> Series<'a> {
         &self.bodies
     }
 
+    /// The frames of those that are written in which bodies are placed anew: the first alone where all rest,
+    /// none without bodies.
+    pub(super) fn frames_of_bodies(&self) -> &[usize] {
+        let count = match &self.bodies[..] {
+            [] => 0,
+            bodies if bodies.iter().all(SeriesBody::rests) => 1,
+            _ => self.frames.len(),
+        };
+        &self.frames[..count.min(self.frames.len())]
+    }
+
     /// Places of the vertices in a picture that is printed on the sheet, from 0 to 1 rightwards and upwards:
     /// the flat rest shape, scaled alike in both directions so that its larger side is 1, and turned as the
     /// sheet lies in the first frame of the trajectory. `None` if the rest lengths are not those of a flat

@@ -2,47 +2,60 @@
 
 use super::{ExportError, FieldSupport, Series};
 use crate::format::atomic::write_atomically;
+use crate::format::numbered::NumberedFiles;
+use crate::format::{FileError, WriteError};
 use isosheet_mesh::{EdgeId, Part};
 use std::fmt::Write as _;
+use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Writes the bodies and the list of their files, if there are any, then the frames and, last, their list.
-pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
+/// Writes the bodies and the list of their files, if there are any, then the frames and, last, their list. Returns
+/// the files, and how many of an earlier export were removed.
+pub(super) fn write_series(
+    path: &Path,
+    series: &Series<'_>,
+) -> Result<(Vec<PathBuf>, usize), ExportError> {
     let folder = path.with_extension("");
     let folder_name = folder
         .file_name()
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned();
+    let [bodies, frames] = ["bodies", "frame"].map(|n| NumberedFiles::new(&folder, n, "vtp"));
+    let list = folder.with_file_name(format!("{folder_name}-bodies.pvd"));
     let mut files = Vec::new();
-    let mut listed = Vec::new();
-    if !series.bodies().is_empty() {
-        let rest = series.bodies().iter().all(|body| body.rests());
-        for (k, &frame) in series.frames().iter().enumerate() {
-            if k == 0 || !rest {
-                let name = format!("bodies_{frame:05}.vtp");
-                let bytes = bodies_file(series, frame);
-                write_atomically(&folder.join(&name), |w| w.write_all(&bytes))?;
-                files.push(folder.join(&name));
-                listed.push((series.state(frame).0, name));
-            }
-        }
-        let list = folder.with_file_name(format!("{folder_name}-bodies.pvd"));
-        write_list(&list, &folder_name, &listed)?;
-        files.push(list);
-        listed.clear();
+    let placed = series.frames_of_bodies();
+    for &frame in placed {
+        let bytes = bodies_file(series, frame);
+        write_atomically(&bodies.path(frame), |w| w.write_all(&bytes))?;
+        files.push(bodies.path(frame));
+    }
+    let listed = |files: &NumberedFiles, chosen: &[usize]| -> Vec<(f64, String)> {
+        let chosen = chosen.iter();
+        let entry = |&frame: &usize| (series.state(frame).0, files.name(frame));
+        chosen.map(entry).collect()
+    };
+    if !placed.is_empty() {
+        write_list(&list, &folder_name, &listed(&bodies, placed))?;
+        files.push(list.clone());
     }
     for &frame in series.frames() {
-        let name = format!("frame_{frame:05}.vtp");
         let bytes = frame_file(series, frame);
-        write_atomically(&folder.join(&name), |w| w.write_all(&bytes))?;
-        files.push(folder.join(&name));
-        listed.push((series.state(frame).0, name));
+        write_atomically(&frames.path(frame), |w| w.write_all(&bytes))?;
+        files.push(frames.path(frame));
     }
-    write_list(path, &folder_name, &listed)?;
+    write_list(path, &folder_name, &listed(&frames, series.frames()))?;
     files.push(path.to_owned());
-    Ok(files)
+    let removed_bodies = bodies.keep_only(placed)?;
+    // The list of bodies of which none is left.
+    let is_void = placed.is_empty() && removed_bodies > 0 && list.is_file();
+    if is_void {
+        fs::remove_file(&list)
+            .map_err(|source| FileError::from(WriteError::Remove { path: list, source }))?;
+    }
+    let removed = frames.keep_only(series.frames())? + removed_bodies + usize::from(is_void);
+    Ok((files, removed))
 }
 
 /// Writes the list of the files in a folder, each with its time.

@@ -30,7 +30,7 @@ pub(super) fn parse(
     mesh.take_edges(planar);
     mesh.drawn = lines.drawn;
     mesh.changes.other_lines = lines.of_other_colours;
-    mesh.changes.other_elements = lines.other_elements;
+    mesh.left_out = lines.left_out;
     mesh.cut_along_outlines_inside();
     mesh.drop_unreferenced();
     mesh.separate_cuts();

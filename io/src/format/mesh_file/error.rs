@@ -1,6 +1,7 @@
 //! What can be wrong with a mesh file.
 
 use crate::format::DataError;
+use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, MeshError};
 use std::fmt;
 use std::path::PathBuf;
@@ -123,7 +124,8 @@ pub(super) fn announced(what: &str, count: u64, needed: u64, available: u64) -> 
 /// A face refers to one of so many vertices that does not exist; `first` is the number of the first one.
 pub(super) fn no_such_vertex(index: i64, count: usize, first: i64) -> DataError {
     let message = format!(
-        "a face refers to vertex {index}, but there are {count} vertices, counted from {first}"
+        "a face refers to vertex {index}, but the file has {}, counted from {first}",
+        counted(count, "vertex", "vertices")
     );
     let remedy = "the file is damaged or incomplete: copy or export it again";
     DataError::new(message, remedy).value(index as f64)

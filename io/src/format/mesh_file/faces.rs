@@ -3,7 +3,8 @@
 use super::error::{COPY, Located, Location, MeshFileProblem, no_such_vertex};
 use super::{DrawnLines, FaceGroups, MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
 use crate::format::DataError;
-use isosheet_mesh::wording::given;
+use isosheet_mesh::wording::{counted, given};
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -100,13 +101,16 @@ impl Polyhedron {
         let missing = match (vertices, self.ends.len()) {
             (0, 0) => Some(empty()),
             (0, faces) => {
-                let message = format!("the file has {faces} faces but no vertices");
+                let faces = counted(faces, "face", "faces");
+                let message = format!("the file has {faces} but no vertices");
                 Some(DataError::new(message, "export it with its vertices"))
             }
             (vertices, 0) => {
-                let (lines, points) = (self.lines, self.points);
                 let message = format!(
-                    "the file has {vertices} vertices, {lines} line elements and {points} point elements, but no faces"
+                    "the file has {}, {} and {}, but no faces",
+                    counted(vertices, "vertex", "vertices"),
+                    counted(self.lines, "line element", "line elements"),
+                    counted(self.points, "point element", "point elements")
                 );
                 Some(DataError::new(message, "export it with its faces"))
             }
@@ -124,6 +128,7 @@ impl Polyhedron {
             groups: FaceGroups::default(),
             texture: Vec::new(),
             changes: ReadingChanges::default(),
+            left_out: BTreeMap::new(),
             path: PathBuf::new(),
             time: None,
             positions: Vec::new(),

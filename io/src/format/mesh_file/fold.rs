@@ -15,7 +15,7 @@ use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
 use crate::format::DataError;
 use crate::format::mesh_file::pattern::{self, FileUnit, Planar, planar};
 use frames::FrameRecord;
-use isosheet_mesh::wording::brief;
+use isosheet_mesh::wording::{brief, counted};
 pub(in crate::format) use lines::LineRecord;
 use std::collections::HashMap;
 
@@ -194,7 +194,8 @@ fn read_edges(frame: &FrameRecord, vertices: usize) -> Result<Vec<FileCrease>, D
     let crease = |(edge, &ends): (usize, &[u32; 2])| {
         if let Some(&vertex) = ends.iter().find(|&&v| v as usize >= vertices) {
             let message = format!(
-                "edge {edge} refers to vertex {vertex}, but there are {vertices} vertices, counted from 0"
+                "edge {edge} refers to vertex {vertex}, but the file has {}, counted from 0",
+                counted(vertices, "vertex", "vertices")
             );
             return Err(DataError::new(message, "correct `edges_vertices`").at(edge));
         }

@@ -7,8 +7,8 @@ use super::face_groups::FaceGroups;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Sheet, Topology, VertexId};
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -52,8 +52,6 @@ pub struct ReadingChanges {
     pub contradicting_lines: usize,
     /// Lines of drawings that were left out because their colours mean nothing in a crease pattern.
     pub other_lines: usize,
-    /// Elements of drawings that were left out because they are no lines: texts, images, what is hidden.
-    pub other_elements: usize,
     /// Edges of FOLD files that are named boundary and have faces on both sides, which stay joined.
     pub inner_boundaries: usize,
 }
@@ -86,7 +84,11 @@ impl fmt::Display for ReadingChanges {
             ),
             (self.vertices_at_cuts, VERTICES, "added at cuts"),
             (self.divided_lines, LINES, "divided where others meet"),
-            (self.loose_lines, LINES, "that lead nowhere left out"),
+            (
+                self.loose_lines,
+                ["line that leads nowhere", "lines that lead nowhere"],
+                "left out",
+            ),
             (
                 self.loose_cuts,
                 [
@@ -95,11 +97,15 @@ impl fmt::Display for ReadingChanges {
                 ],
                 "(`isosheet mesh` cuts slits)",
             ),
-            (self.double_lines, LINES, "that lie on others left out"),
+            (
+                self.double_lines,
+                ["line that lies on another", "lines that lie on others"],
+                "left out",
+            ),
             (
                 self.contradicting_lines,
-                ["edge", "edges"],
-                "with a mountain on a valley or with two angles, which fold freely",
+                ["edge folds", "edges fold"],
+                "freely, with a mountain on a valley or with two angles",
             ),
             (
                 self.other_lines,
@@ -107,14 +113,9 @@ impl fmt::Display for ReadingChanges {
                 "left out, of colours that mean nothing in a crease pattern",
             ),
             (
-                self.other_elements,
-                ["element", "elements"],
-                "left out that are no lines",
-            ),
-            (
                 self.inner_boundaries,
-                ["edge", "edges"],
-                "named boundary inside the sheet, which stay joined (cuts are named C)",
+                ["edge stays", "edges stay"],
+                "joined that are named boundary inside the sheet (cuts are named C)",
             ),
         ];
         let made = changes.iter().filter(|(count, ..)| *count > 0);
@@ -149,6 +150,9 @@ pub struct MeshFile {
     pub texture: Vec<Option<[[f64; 2]; 3]>>,
     /// What reading changed.
     pub changes: ReadingChanges,
+    /// What of a drawing was left out because it is no line that is understood, with its number: texts, images, what
+    /// is hidden, and shapes of colours that are not known.
+    pub left_out: BTreeMap<String, usize>,
     pub(super) path: PathBuf,
     /// The time that a VTK file gives its polygons, in its unit.
     pub(super) time: Option<f64>,
@@ -171,9 +175,19 @@ impl MeshFile {
             groups: FaceGroups::default(),
             texture: Vec::new(),
             changes: ReadingChanges::default(),
+            left_out: BTreeMap::new(),
             path: PathBuf::new(),
             time: None,
         }
+    }
+
+    /// What reading changed and left out, in words; `None` if nothing.
+    pub fn what_reading_did(&self) -> Option<String> {
+        let changes = (!self.changes.is_nothing()).then(|| self.changes.to_string());
+        let left_out = self.left_out.iter();
+        let left_out = left_out.map(|(what, count)| format!("left out: {what} ({count})"));
+        let told: Vec<String> = changes.into_iter().chain(left_out).collect();
+        (!told.is_empty()).then(|| told.join(", "))
     }
 
     /// Makes the diagonals of polygons edges that stay flat.

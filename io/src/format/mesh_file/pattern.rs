@@ -17,6 +17,7 @@ use super::{DrawnLines, EdgeAssignment, FileCrease, polygon};
 use crate::format::DataError;
 pub(super) use faces::faces;
 pub(super) use planar::{FileUnit, Planar, planar};
+use std::collections::BTreeMap;
 
 /// A straight line of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +39,8 @@ pub(super) struct PatternLines {
     pub(super) drawn: DrawnLines,
     /// Visible lines of colours that mean nothing.
     pub(super) of_other_colours: usize,
-    /// Elements that are no lines: texts, images, what is hidden.
-    pub(super) other_elements: usize,
+    /// What is left out besides, with its number: texts, images, what is hidden, colours that are not understood.
+    pub(super) left_out: BTreeMap<String, usize>,
 }
 
 /// Ends of lines that are so near each other become one point, as a part of the longer side of the drawing, unless

@@ -217,7 +217,7 @@ fn defects_of_off_files_name_their_line() {
     let nan = "OFF 2 1\n0 0 0\n0 inf 0\n3 0 0 0\n";
     off(nan, Some(3), "coordinate y of vertex 1 is inf");
     let index = "OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n";
-    let says = "vertex 3, but there are 3 vertices, counted from 0";
+    let says = "vertex 3, but the file has 3 vertices, counted from 0";
     off(index, Some(5), says);
     let huge = "OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n99999999999 0 1 2\n";
     off(huge, Some(5), "expected the index of a vertex");
@@ -258,7 +258,11 @@ fn defects_of_ply_files_name_their_place() {
     let word = TEXT_PLY.replace("2 1 0.5", "2 one 0.5");
     ply(&word, Some(Location::Line(13)), "one");
     let index = TEXT_PLY.replace("3 0 2 3", "3 0 2 4");
-    ply(&index, Some(Location::Face(1)), "vertex 4, but there are 4");
+    ply(
+        &index,
+        Some(Location::Face(1)),
+        "vertex 4, but the file has 4",
+    );
     let flat = TEXT_PLY.replace("float z", "float w");
     ply(&flat, None, "the vertices have no property \"z\"");
     // Triangles that would be lost beside those of the faces.

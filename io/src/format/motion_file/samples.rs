@@ -4,6 +4,7 @@ use crate::format::{
     Clock, FileError, MeshFile, MeshFileError, MeshFileProblem, MovingMesh, read_mesh,
 };
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::counted;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -89,9 +90,11 @@ fn check(
     let ([vertices, faces], [vertices_before, faces_before]) = (counts(mesh), counts(first));
     let first_name = first_file.file_name().unwrap_or_default().to_string_lossy();
     let problem = if vertices != vertices_before {
-        format!("sample {number} has {vertices} vertices, and {first_name} has {vertices_before}")
+        let vertices = counted(vertices, "vertex", "vertices");
+        format!("sample {number} has {vertices}, and {first_name} has {vertices_before}")
     } else if faces != faces_before {
-        format!("sample {number} has {faces} faces, and {first_name} has {faces_before}")
+        let faces = counted(faces, "face", "faces");
+        format!("sample {number} has {faces}, and {first_name} has {faces_before}")
     } else if mesh.faces != first.faces && outline(mesh) != outline(first) {
         format!("sample {number} has faces between other vertices than {first_name}")
     } else {

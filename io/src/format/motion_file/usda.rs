@@ -7,6 +7,7 @@ mod transform;
 use crate::format::mesh_file::polygon_mesh;
 use crate::format::{Clock, FileError, MovingMesh, input};
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::counted;
 use layer::{Attribute, Layer, Prim};
 use std::path::Path;
 use transform::Placing;
@@ -125,9 +126,9 @@ impl Mesh<'_> {
     fn points_at(&self, code: f64) -> Result<Vec<[f64; 3]>, String> {
         let wrong = |found: usize| {
             format!(
-                "the mesh {} has {} vertices, and {} in the sample at the time code {code}",
+                "the mesh {} has {}, and {} in the sample at the time code {code}",
                 self.name,
-                self.vertex_count,
+                counted(self.vertex_count, "vertex", "vertices"),
                 found / 3
             )
         };

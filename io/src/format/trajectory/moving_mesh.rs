@@ -2,7 +2,7 @@
 
 use super::archive::{ArchiveReader, ArchiveWriter};
 use crate::format::FileError;
-use isosheet_mesh::wording::given;
+use isosheet_mesh::wording::{counted, given};
 use std::io::{self, Cursor};
 use std::path::Path;
 
@@ -101,7 +101,11 @@ impl MovingMesh {
         let frames = times.len();
         let vertices = x.len() / 3 / frames.max(1);
         if frames == 0 || vertices == 0 {
-            let problem = format!("it has {frames} frames of {vertices} vertices");
+            let problem = format!(
+                "it has {} of {}",
+                counted(frames, "frame", "frames"),
+                counted(vertices, "vertex", "vertices")
+            );
             return Err(FileError::content(path, problem, "give frames of a mesh"));
         }
         if let Some(k) = times.iter().position(|t| !t.is_finite()) {

@@ -11,7 +11,7 @@ pub struct Pen {
     pub colour: Colour,
     /// Whether it is dashed.
     pub dashed: bool,
-    /// How opaque it is, from 0 to 1.
+    /// How opaque it is, from 0 to 1: its colour, the line, and the groups that it is in, multiplied.
     pub opacity: f64,
     /// The names of the layer and of the groups that it is in, and its own, the innermost first.
     pub layers: Vec<String>,
@@ -35,8 +35,9 @@ pub struct Drawing {
     pub lines: Vec<DrawnLine>,
     /// How they are drawn.
     pub pens: Vec<Pen>,
-    /// What is no line, such as texts and images, and was left out, with its number.
-    pub left_out: BTreeMap<&'static str, usize>,
+    /// What is no line, such as texts and images, or is drawn in a colour that is not understood, and was left
+    /// out, with its number.
+    pub left_out: BTreeMap<String, usize>,
     /// What a unit of the file was taken for, where the file does not say it.
     pub assumed_unit: Option<&'static str>,
     /// How many times as large the drawing is by the unit of the file as by another one that was given.
@@ -61,7 +62,7 @@ impl Drawing {
     }
 
     /// Counts something that is left out.
-    pub(super) fn leave_out(&mut self, what: &'static str) {
-        *self.left_out.entry(what).or_default() += 1;
+    pub(super) fn leave_out(&mut self, what: impl Into<String>) {
+        *self.left_out.entry(what.into()).or_default() += 1;
     }
 }

@@ -27,10 +27,20 @@ const MOST_ELEMENTS: usize = 1_000_000;
 
 const EXPORT: &str = "export it again as plain SVG";
 
+/// What becomes of shapes that have no stroke, whether they are filled or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::format) enum Areas {
+    /// What bounds a filled area is a line of its colour.
+    Outlined,
+    /// They are left out.
+    LeftOut,
+}
+
 /// Reads the shapes of a drawing, `scale` times as large, by the unit of the file unless another is given. Its y axis
 /// points upwards, from the lower edge of the page.
 pub(in crate::format) fn parse(
     bytes: &[u8],
+    areas: Areas,
     unit: Option<DrawingUnit>,
     scale: f64,
 ) -> Result<Drawing, DataError> {
@@ -79,6 +89,7 @@ pub(in crate::format) fn parse(
         document: &document,
         sheet,
         drawing,
+        areas,
         elements: 0,
     };
     let state = State {
@@ -105,6 +116,7 @@ struct Reader<'a, 'input> {
     document: &'a Document<'input>,
     sheet: StyleSheet<'a>,
     drawing: Drawing,
+    areas: Areas,
     elements: usize,
 }
 
@@ -241,34 +253,46 @@ impl Reader<'_, '_> {
         paths: Vec<Vec<isosheet_mesh::plane::PlaneCurve>>,
         state: &State,
     ) {
-        // What bounds a coloured area is a line too.
-        let ink = match state.style.stroke {
-            Ink::Colour(colour) => Some(colour),
-            Ink::Nothing => match state.style.fill {
-                Ink::Colour(colour) if node.tag_name().name() != "line" => Some(colour),
-                _ => None,
-            },
+        let style = &state.style;
+        let is_area = node.tag_name().name() != "line";
+        let (ink, opacity) = match (&style.stroke, self.areas) {
+            (Ink::Nothing, Areas::LeftOut) => {
+                self.drawing.leave_out("shape without a stroke");
+                return;
+            }
+            (Ink::Nothing, Areas::Outlined) if is_area => (&style.fill, style.fill_opacity),
+            (stroke, _) => (stroke, style.stroke_opacity),
         };
-        let Some(colour) = ink.filter(|_| state.style.visible && state.style.opacity() > 0.0)
-        else {
-            self.drawing.leave_out("invisible shape");
-            return;
+        let opacity = opacity * style.group_opacity;
+        let pen = match ink {
+            Ink::Unknown(text) if style.visible => {
+                let what = format!("shape of the colour {text:?}, which is not understood");
+                self.drawing.leave_out(what);
+                return;
+            }
+            Ink::Paint { colour, alpha } if style.visible && alpha * opacity > 0.0 => {
+                pen(*colour, alpha * opacity, state)
+            }
+            _ => {
+                self.drawing.leave_out("invisible shape");
+                return;
+            }
         };
         if node.attribute("clip-path").is_some() {
             self.drawing.leave_out("clipping of a shape");
         }
         for path in paths {
             let curves = path.iter().map(|c| c.transformed(state.matrix));
-            self.drawing.push(pen(colour, state), curves);
+            self.drawing.push(pen.clone(), curves);
         }
     }
 }
 
-fn pen(colour: Colour, state: &State) -> Pen {
+fn pen(colour: Colour, opacity: f64, state: &State) -> Pen {
     Pen {
         colour,
         dashed: state.style.dashed,
-        opacity: state.style.opacity(),
+        opacity,
         layers: state.layers.iter().rev().cloned().collect(),
     }
 }

@@ -97,13 +97,13 @@ fn every_defect_names_its_line() {
     };
     face(
         "1 2 5",
-        "vertex 5, but there are 4 vertices, counted from 1",
+        "vertex 5, but the file has 4 vertices, counted from 1",
     );
     face(
         "1 2 -5",
-        "vertex -5, but there are 4 vertices, counted from 1",
+        "vertex -5, but the file has 4 vertices, counted from 1",
     );
-    face("0 1 2", "vertex 0, but there are 4 vertices");
+    face("0 1 2", "vertex 0, but the file has 4 vertices");
     face("1 2 9999999999", "vertex 9999999999, but");
     face(
         "1 2 -9223372036854775808",

@@ -242,8 +242,12 @@ impl Planar {
                 false => String::new(),
             };
             let message = format!(
-                "the outline is not closed: {} of its lines lead nowhere, one at ({x}, {y}){name}{next}",
-                counted(self.open.len(), "end", "ends"),
+                "the outline is not closed: {} nowhere, one at ({x}, {y}){name}{next}",
+                counted(
+                    self.open.len(),
+                    "end of its lines leads",
+                    "ends of its lines lead"
+                ),
             );
             let remedy = "close it there, or join the ends by `isosheet convert PATTERN OUT.fold --weld LENGTH`";
             return Err(DataError::new(message, remedy));

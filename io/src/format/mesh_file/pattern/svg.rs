@@ -12,9 +12,9 @@ const TURN: f64 = PI / 18.0;
 
 /// The lines of the drawing: black the outline, red a mountain, blue a valley, green a cut, yellow what stays flat,
 /// magenta what folds freely. The opacity of mountains and valleys is their fold angle as a part of 180 degrees. Lines of
-/// other colours are none of the pattern, and counted.
+/// other colours and shapes without a stroke are none of the pattern, and counted.
 pub(in crate::format) fn parse(bytes: &[u8]) -> Result<PatternLines, DataError> {
-    let drawing = svg::parse(bytes, None, 1.0)?;
+    let drawing = svg::parse(bytes, svg::Areas::LeftOut, None, 1.0)?;
     let (mut drawn, numbers) = DrawnLines::of_pens(&drawing.pens);
     let mut segments = Vec::new();
     let mut of_other_colours = 0;
@@ -44,7 +44,7 @@ pub(in crate::format) fn parse(bytes: &[u8]) -> Result<PatternLines, DataError> 
         segments,
         drawn,
         of_other_colours,
-        other_elements: drawing.left_out.values().sum(),
+        left_out: drawing.left_out,
     })
 }
 

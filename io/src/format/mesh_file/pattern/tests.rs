@@ -1,6 +1,6 @@
 //! Drawings of crease patterns: what they become, and what is refused.
 
-use crate::format::mesh_file::EdgeAssignment;
+use crate::format::mesh_file::{EdgeAssignment, FileCrease};
 use crate::format::{MeshFile, MeshFileError, MeshFormat, MeshOptions, parse_mesh};
 use isosheet_mesh::generate::FoldAssignment;
 use std::f64::consts::PI;
@@ -148,7 +148,7 @@ fn creases_that_contradict_each_other_fold_freely() {
         assert_eq!(free.len(), 1, "{:?}", mesh.creases);
         let crease = mesh.creases.iter().find(|c| c.angle.is_some());
         assert_eq!(crease, None);
-        assert!(mesh.changes.to_string().contains("which fold freely"));
+        assert!(mesh.changes.to_string().contains("1 edge folds freely"));
     }
     // A cut on both is a cut.
     let text = format!("{square}\n{mountain}\n{valley}\n1 0 0 1 -1\n");
@@ -180,14 +180,90 @@ fn lines_of_other_colours_are_counted() {
                <path d='M0 0 L1 1' stroke='blue'/><path d='M0 1 L1 0' stroke='#00ffff'/><text>a</text></svg>";
     let mesh = read(MeshFormat::Svg, svg).unwrap();
     assert_eq!(
-        (mesh.changes.other_lines, mesh.changes.other_elements),
-        (1, 1)
+        mesh.what_reading_did().unwrap(),
+        "1 line left out, of colours that mean nothing in a crease pattern, left out: text (1)"
     );
-    assert!(
-        mesh.changes
-            .to_string()
-            .contains("1 line left out, of colours that mean nothing")
-    );
+}
+
+/// The mesh of a unit square with some more elements.
+fn of_square(more: &str) -> MeshFile {
+    let square = "<rect width='1' height='1' stroke='black' fill='none'/>";
+    let head = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 1 1'>";
+    read(MeshFormat::Svg, &format!("{head}{square}{more}</svg>")).unwrap()
+}
+
+/// The opacities of a line, of its colour and of its groups are multiplied.
+#[test]
+fn a_colour_that_lets_light_through_folds_by_a_part() {
+    for (style, part) in [
+        ("stroke='red'", 1.0),
+        ("stroke='red' stroke-opacity='0.5'", 0.5),
+        ("stroke='red' opacity='50%'", 0.5),
+        ("stroke='rgba(255,0,0,0.5)'", 0.5),
+        ("stroke='#ff000080'", 128.0 / 255.0),
+        ("stroke='hsla(0,100%,50%,.5)'", 0.5),
+        ("stroke='rgb(255 0 0 / 0.5)'", 0.5),
+        ("style='stroke: rgb(255 0 0 / 50%)'", 0.5),
+        (
+            "stroke='rgb(255 0 0 / 50%)' stroke-opacity='0.5' opacity='0.5'",
+            0.125,
+        ),
+        ("color='rgb(255 0 0 / 50%)' stroke='currentColor'", 0.5),
+        ("stroke='red' fill-opacity='0.5'", 1.0),
+    ] {
+        let mesh = of_square(&format!("<path d='M0 0 L1 1' fill='none' {style}/>"));
+        let folds = mesh.creases.iter();
+        let folds: Vec<&FileCrease> = folds
+            .filter(|crease| crease.assignment == EdgeAssignment::Mountain)
+            .collect();
+        assert_eq!(folds.len(), 1, "{style}");
+        let angle = folds[0].angle.unwrap();
+        assert!((angle + part * PI).abs() < 1e-12, "{style}: {angle}");
+        assert_eq!(mesh.what_reading_did(), None, "{style}");
+    }
+}
+
+/// What is filled and has no stroke, as shapes of SVG are that say nothing, is no line of a pattern.
+#[test]
+fn shapes_without_a_stroke_are_no_lines() {
+    let crease = "<path d='M0 0 L1 1' fill='none' stroke='blue'/>";
+    let folded = of_square(crease);
+    let printed = [
+        "<path d='M0.25 0V1'/>",
+        "<rect width='1' height='1'/>",
+        "<rect width='1' height='1' fill='white'/>",
+        "<path d='M0.1 0.7 L0.3 0.7 L0.2 0.9 Z' fill='red'/>",
+        "<circle cx='0.5' cy='0.5' r='0.2' stroke='none' fill='#0000ff80'/>",
+        "<line x1='0' y1='0.5' x2='1' y2='0.5'/>",
+        "<path d='M0.25 0V1' fill='none'/>",
+    ];
+    for shape in printed {
+        for with in [format!("{shape}{crease}"), format!("{crease}{shape}")] {
+            let mesh = of_square(&with);
+            assert_eq!(
+                (&mesh.positions, &mesh.faces, &mesh.creases),
+                (&folded.positions, &folded.faces, &folded.creases),
+                "{shape}"
+            );
+            let told = mesh.what_reading_did().unwrap();
+            assert_eq!(told, "left out: shape without a stroke (1)", "{shape}");
+        }
+    }
+    let told = of_square(&printed.concat()).what_reading_did().unwrap();
+    let count = printed.len();
+    assert_eq!(told, format!("left out: shape without a stroke ({count})"));
+}
+
+#[test]
+fn colours_that_are_not_understood_are_named() {
+    for colour in ["rebeccapurple", "color(srgb 1 0 0)"] {
+        let crease = format!("<path d='M0 0 L1 1' fill='none' stroke='{colour}'/>");
+        let mesh = of_square(&crease);
+        assert_eq!(
+            mesh.what_reading_did().unwrap(),
+            format!("left out: shape of the colour {colour:?}, which is not understood (1)")
+        );
+    }
 }
 
 #[test]
@@ -247,6 +323,11 @@ fn lines_are_divided_where_they_cross_and_united_where_they_coincide() {
     let loose = format!("{SQUARE}2 0 0 0.5 -0.2\n");
     let mesh = read(MeshFormat::Cp, &loose).unwrap();
     assert_eq!((mesh.changes.loose_lines, mesh.vertex_count()), (1, 4));
+    let told = mesh.what_reading_did().unwrap();
+    assert!(
+        told.contains("1 line that leads nowhere left out"),
+        "{told}"
+    );
 }
 
 #[test]

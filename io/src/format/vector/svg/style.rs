@@ -3,13 +3,27 @@
 use super::super::colour::Colour;
 use roxmltree::Node;
 use simplecss::{AttributeOperator, DeclarationTokenizer, Element, PseudoClass, StyleSheet};
-use svgtypes::Paint;
+use svgtypes::{Color, Paint};
 
 /// How lines or areas are painted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Ink {
     Nothing,
-    Colour(Colour),
+    Paint {
+        colour: Colour,
+        /// How opaque the colour itself is, from 0 to 1.
+        alpha: f64,
+    },
+    /// A colour that is not understood, as it is written.
+    Unknown(String),
+}
+
+impl Ink {
+    const BLACK: Self = Self::of((Colour::BLACK, 1.0));
+
+    const fn of((colour, alpha): (Colour, f64)) -> Self {
+        Self::Paint { colour, alpha }
+    }
 }
 
 /// What an element passes on to those in it.
@@ -19,31 +33,30 @@ pub(super) struct Style {
     pub(super) fill: Ink,
     pub(super) dashed: bool,
     /// That of lines alone.
-    stroke_opacity: f64,
+    pub(super) stroke_opacity: f64,
+    /// That of areas alone.
+    pub(super) fill_opacity: f64,
     /// The product of those of all groups.
-    group_opacity: f64,
+    pub(super) group_opacity: f64,
     pub(super) visible: bool,
     /// Whether it is shown at all, with all that is in it.
     pub(super) shown: bool,
-    current: Colour,
+    current: Ink,
 }
 
 impl Style {
     pub(super) fn initial() -> Self {
         Self {
             stroke: Ink::Nothing,
-            fill: Ink::Colour(Colour::BLACK),
+            fill: Ink::BLACK,
             dashed: false,
             stroke_opacity: 1.0,
+            fill_opacity: 1.0,
             group_opacity: 1.0,
             visible: true,
             shown: true,
-            current: Colour::BLACK,
+            current: Ink::BLACK,
         }
-    }
-
-    pub(super) fn opacity(&self) -> f64 {
-        self.stroke_opacity * self.group_opacity
     }
 
     /// The style of an element in one of this style.
@@ -68,17 +81,13 @@ impl Style {
     /// Takes over a property; what cannot be read changes nothing.
     fn set(&mut self, name: &str, value: &str) {
         let value = value.trim();
-        if value == "inherit" {
+        if ["inherit", "unset", "revert", "revert-layer"].contains(&value) {
             return;
         }
         match name {
-            "stroke" => self.stroke = self.ink(value).unwrap_or(self.stroke),
-            "fill" => self.fill = self.ink(value).unwrap_or(self.fill),
-            "color" => {
-                if let Ok(Paint::Color(c)) = Paint::from_str(value) {
-                    self.current = Colour([c.red, c.green, c.blue]);
-                }
-            }
+            "stroke" => self.stroke = self.ink(value),
+            "fill" => self.fill = self.ink(value),
+            "color" => self.current = self.ink(value),
             "stroke-dasharray" => {
                 let digits = value.split(|c: char| c == ',' || c.is_whitespace());
                 let gap = |part: &str| {
@@ -90,6 +99,7 @@ impl Style {
                 self.dashed = value != "none" && digits.into_iter().any(gap);
             }
             "stroke-opacity" => self.stroke_opacity = part(value).unwrap_or(self.stroke_opacity),
+            "fill-opacity" => self.fill_opacity = part(value).unwrap_or(self.fill_opacity),
             "opacity" => self.group_opacity *= part(value).unwrap_or(1.0),
             "visibility" => self.visible = value == "visible",
             "display" => self.shown &= value != "none",
@@ -97,17 +107,48 @@ impl Style {
         }
     }
 
-    fn ink(&self, value: &str) -> Option<Ink> {
-        Some(match Paint::from_str(value).ok()? {
-            Paint::None => Ink::Nothing,
-            Paint::Inherit => return None,
-            Paint::CurrentColor => Ink::Colour(self.current),
-            Paint::Color(c) if c.alpha == 0 => Ink::Nothing,
-            Paint::Color(c) => Ink::Colour(Colour([c.red, c.green, c.blue])),
+    /// What a value paints with.
+    fn ink(&self, value: &str) -> Ink {
+        match colour(value) {
+            Some((_, 0.0)) => return Ink::Nothing,
+            Some(painted) => return Ink::of(painted),
+            None if value.eq_ignore_ascii_case("none") => return Ink::Nothing,
+            None if value.eq_ignore_ascii_case("currentcolor") => return self.current.clone(),
+            None => {}
+        }
+        match Paint::from_str(value) {
             // A gradient or a pattern has no colour of its own.
-            _ => Ink::Colour(Colour([128; 3])),
-        })
+            Ok(_) => Ink::of((Colour([128; 3]), 1.0)),
+            Err(_) => Ink::Unknown(value.to_owned()),
+        }
     }
+}
+
+/// A colour, and how opaque it is, from 0 to 1; none of what is no colour, or one of a kind that is not known.
+fn colour(value: &str) -> Option<(Colour, f64)> {
+    // The colour of a printer follows that of screens.
+    let screen = value.split_once("icc-color(");
+    let value = screen.map_or(value, |(screen, _)| screen.trim_end());
+    // The library knows no alpha in percent, and rounds others to a byte.
+    if let Some((opaque, alpha)) = without_alpha(value) {
+        let (colour, _) = parts(opaque.parse().ok()?);
+        return Some((colour, alpha));
+    }
+    value.parse().ok().map(parts)
+}
+
+fn parts(c: Color) -> (Colour, f64) {
+    (Colour([c.red, c.green, c.blue]), f64::from(c.alpha) / 255.0)
+}
+
+/// A function for a colour without its alpha, and this: that after a slash, or the fourth of its values.
+fn without_alpha(value: &str) -> Option<(String, f64)> {
+    let function = value.strip_suffix(')')?;
+    let (opaque, alpha) = match function.matches(',').count() {
+        3 => function.rsplit_once(',')?,
+        _ => function.rsplit_once('/')?,
+    };
+    Some((format!("{})", opaque.trim_end()), part(alpha.trim())?))
 }
 
 /// A number from 0 to 1, or a percentage.
@@ -143,5 +184,59 @@ impl Element for Styled<'_, '_> {
 
     fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
         matches!(class, PseudoClass::FirstChild) && self.0.prev_sibling_element().is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_have_an_alpha() {
+        let red = Colour([255, 0, 0]);
+        for (value, alpha) in [
+            ("red", 1.0),
+            ("#f00", 1.0),
+            ("#f008", 136.0 / 255.0),
+            ("#ff000080", 128.0 / 255.0),
+            ("rgb(255,0,0)", 1.0),
+            ("rgba(255,0,0,0.5)", 0.5),
+            ("rgba(100%, 0%, 0%, 50%)", 0.5),
+            ("rgb(255, 0, 0, .5)", 0.5),
+            ("rgb(255 0 0)", 1.0),
+            ("rgb(255 0 0 / 0.5)", 0.5),
+            ("rgb(255 0 0 / 50%)", 0.5),
+            ("rgb(255 0 0/50%)", 0.5),
+            ("rgb(100% 0% 0% / 25%)", 0.25),
+            ("hsla(0,100%,50%,.5)", 0.5),
+            ("hsl(0 100% 50% / 50%)", 0.5),
+            ("hwb(0 0% 0% / 0.25)", 0.25),
+        ] {
+            assert_eq!(colour(value), Some((red, alpha)), "{value}");
+        }
+        let style = Style::initial();
+        for nothing in [
+            "none",
+            "transparent",
+            "rgba(0,0,0,0)",
+            "#0000",
+            "rgb(1 2 3 / 0%)",
+        ] {
+            assert_eq!(style.ink(nothing), Ink::Nothing, "{nothing}");
+        }
+        for unknown in [
+            "rebeccapurple",
+            "color(srgb 1 0 0)",
+            "rgb(255 0 0 / x)",
+            "lab(50% 40 59)",
+        ] {
+            assert_eq!(style.ink(unknown), Ink::Unknown(unknown.to_owned()));
+        }
+        assert_eq!(style.ink("currentColor"), Ink::BLACK);
+        assert_eq!(style.ink("currentcolor"), Ink::BLACK);
+        let grey = Ink::of((Colour([128; 3]), 1.0));
+        assert_eq!(style.ink("url(#gradient)"), grey);
+        let printed = style.ink("#ff0000 icc-color(acmecmyk, 0, 1, 1, 0)");
+        assert_eq!(printed, Ink::of((red, 1.0)));
     }
 }
