@@ -314,7 +314,8 @@ pub(super) fn check_whole(
         "it ends after {}, and the complete run has {least} by its summary",
         counted(found as usize, what, &format!("{what}s"))
     );
-    let remedy = "copy the file again from where it is whole, or run the scene again with --force, which replaces the                   run; of frames.bin and trajectory.npz the one that is cut off may be deleted if the other is whole";
+    let remedy = "copy the file again from where it is whole, or run the scene again with --force, which replaces the \
+                  run; of frames.bin and trajectory.npz the one that is cut off may be deleted if the other is whole";
     Err(FileError::content(path, problem, remedy))
 }
 

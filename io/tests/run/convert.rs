@@ -570,7 +570,7 @@ fn a_frame_is_found_by_its_time_and_a_mesh_is_made_thicker_and_larger() {
     let recording = Recording::read(&dir.join("run")).unwrap();
     let times = recording.trajectory.times();
     let between = (0.4 * times[1] + 0.6 * times[2]).to_string();
-    // A frame lasts 1/60 s or more: beyond the ends by more there is none.
+    // A frame lasts 1/30 s: beyond the ends by more there is none.
     for (time, written) in [
         ("-5", false),
         ("1e9", false),
