@@ -209,7 +209,7 @@ fn defects_of_off_files_name_their_line() {
     };
     off("", None, "the file ends before the keyword OFF");
     off("OFF 0 0 0", None, "it is empty");
-    off("OFF 1 0 0\n0 0 0", None, "the file has 1 vertices, 0 line");
+    off("OFF 1 0 0\n0 0 0", None, "the file has 1 vertex, 0 line");
     off("COFF\nx", Some(2), "or the number of vertices, found \"x\"");
     off("OFF 2 0\n0 0 0\n0 0\n", Some(3), "expected a coordinate");
     let many = "OFF 99999999999 1\n0 0 0\n";

@@ -192,7 +192,7 @@ fn samples_that_do_not_fit_are_named() {
     );
     write("more/a_2.obj", &obj(&four, "f 1 2 3\n"));
     assert!(
-        says("more").contains("sample 1 has 1 faces, and a_1.obj has 2"),
+        says("more").contains("sample 1 has 1 face, and a_1.obj has 2"),
         "{}",
         says("more")
     );

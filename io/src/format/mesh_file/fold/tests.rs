@@ -126,7 +126,7 @@ fn frames_inherit_from_their_parents() {
         let problem = refused(n).to_string();
         assert!(problem.starts_with(text), "{problem}");
     };
-    says(0, "the file has 1 faces but no vertices");
+    says(0, "the file has 1 face but no vertices");
     says(3, "frame 3 inherits from frame ");
     let missing = "there is no frame 5; the frames of the file are 0, 1, 2 (foldedForm), 3, 4";
     says(5, missing);

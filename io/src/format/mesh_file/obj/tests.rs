@@ -82,7 +82,7 @@ fn every_defect_names_its_line() {
     says("# only\n\n", None, "it is empty");
     let solid = "\nsolid thing\nfacet\n";
     says(solid, Some(2), "its first unknown word is \"solid\"");
-    says("f 1 2 3\n", None, "has 1 faces but no vertices");
+    says("f 1 2 3\n", None, "has 1 face but no vertices");
     let points = format!("{SQUARE}p 1 2\nl 1 2\nl 2 3\n");
     let lines = "4 vertices, 2 line elements and 1 point elements, but no faces";
     says(&points, None, lines);
