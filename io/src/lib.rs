@@ -32,6 +32,9 @@ pub use isosheet_mesh::Advice;
 mod body_mesh;
 
 #[cfg(feature = "scene")]
+mod turning_back;
+
+#[cfg(feature = "scene")]
 pub mod scene;
 
 #[cfg(feature = "scene")]

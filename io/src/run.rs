@@ -57,6 +57,7 @@ mod ground;
 mod held_open;
 mod incidence;
 mod intervention;
+mod last_change;
 mod page;
 mod passing;
 #[cfg(feature = "picture")]

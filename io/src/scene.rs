@@ -107,7 +107,6 @@ mod switches;
 mod targets;
 mod toml_problem;
 mod too_fast;
-mod turning_back;
 mod under_way;
 mod unit;
 mod up_axis;
@@ -164,6 +163,7 @@ pub use pattern::{
 };
 pub use pose::{Motion, Pose, Rotation, Turn};
 pub use poses::{FramePose, Poses, TimedPose};
+pub(crate) use problem::Checks;
 pub use problem::Problem;
 pub use profile::{Change, Course, Interpolation, Profile};
 pub use schema::{as_written, documented_schema, schema};
@@ -189,7 +189,6 @@ pub use yields::{CreaseYield, SheetYield};
 pub(crate) use build::Kept;
 #[cfg(feature = "run")]
 pub(crate) use bytes::bytes_in_words;
-#[cfg(feature = "run")]
 pub(crate) use functions::Moved;
 #[cfg(feature = "run")]
 pub(crate) use mesh_file::Files;
@@ -209,7 +208,6 @@ pub(crate) use supports::frame_motion;
 #[cfg(feature = "run")]
 pub(crate) use under_way::UnderWay;
 
-use problem::Checks;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;

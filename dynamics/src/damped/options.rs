@@ -13,8 +13,7 @@ pub struct ImplicitOptions {
     /// Default 1e4.
     pub stiffness: f64,
     /// Newton's method stops when the decrease predicted by its quadratic model is below this fraction of the
-    /// inertia term of the incremental potential, without the motion that a connected part has in common: a sheet
-    /// that falls freely is as exact as one at rest. Default: [`ImplicitOptions::tolerance_of`] the model. Lengths
+    /// inertia term of the incremental potential. Default: [`ImplicitOptions::tolerance_of`] the model. Lengths
     /// have a tolerance of their own.
     pub tolerance: Option<f64>,
     /// Largest relative error of an edge length after a step, above the round-off of the coordinates. Default

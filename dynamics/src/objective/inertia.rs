@@ -3,9 +3,8 @@
 use crate::SheetModel;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::term::{Exchange, Iterate, Refusal, StepStart, Term, Value};
-use crate::vectors::dot;
 use isosheet_mesh::{EdgeId, VertexId};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use std::sync::Arc;
 
 /// `|x - x^|_M^2 / 2`, with the prediction `x^`; joules times squared seconds.
@@ -14,46 +13,17 @@ pub(super) struct Inertia {
     prediction: Vec<f64>,
     difference: Vec<f64>,
     product: Vec<f64>,
-    /// Masses of the connected parts, kilograms.
-    masses: Vec<f64>,
-    /// Sums of `M d` over them.
-    momenta: Vec<Vector3<f64>>,
 }
 
 impl Inertia {
     pub(super) fn new(model: &Arc<SheetModel>) -> Self {
         let n = model.coordinate_count();
-        let t = model.topology();
-        let mut product = vec![0.0; n];
-        model.mass().apply(t, &vec![1.0; n], &mut product);
-        let mut masses = vec![0.0; t.components().len()];
-        for v in t.vertex_ids() {
-            masses[t.vertex_component(v)] += product[3 * v.index()];
-        }
         Self {
             model: Arc::clone(model),
             prediction: vec![0.0; n],
             difference: vec![0.0; n],
-            product,
-            momenta: vec![Vector3::zeros(); masses.len()],
-            masses,
+            product: vec![0.0; n],
         }
-    }
-
-    /// `sum_k |d - c_k|_M^2 / 2` over the connected parts `k`, with the differences `d = x - x^` of the last value
-    /// and their mean `c_k` in each part: the inertia term without the motion that a part has in common, as it is in
-    /// a frame that falls freely with it.
-    pub(super) fn relative(&mut self) -> f64 {
-        let t = self.model.topology();
-        let mass = self.model.mass();
-        mass.apply(t, &self.difference, &mut self.product);
-        self.momenta.fill(Vector3::zeros());
-        for (v, p) in self.product.as_chunks::<3>().0.iter().enumerate() {
-            self.momenta[t.vertex_component(VertexId::from_index(v))] += Vector3::from(*p);
-        }
-        let parts = self.momenta.iter().zip(&self.masses);
-        let common: f64 = parts.map(|(p, m)| p.norm_squared() / m).sum();
-        (0.5 * (dot(&self.difference, &self.product) - common)).max(0.0)
     }
 
     fn set_difference(&mut self, x: &[f64]) {

@@ -7,6 +7,7 @@ use super::energy::EnergySummary;
 use super::folder::{RunFolder, SceneHash};
 use super::frames::{FrameFile, FrameShape};
 use super::incidence::Incidence;
+use super::last_change::last_change;
 use super::recording::Tables;
 use super::row::dissipated;
 use super::steps::step_count;
@@ -140,7 +141,7 @@ impl RunWriter {
             }),
             checkpoint: folder.path(RunFolder::CHECKPOINT),
             clock,
-            last_change: scene.last_change(),
+            last_change: last_change(scene),
         };
         if is_new {
             writer.record_start(under_way)?;

@@ -14,21 +14,6 @@ impl Scene {
         moved(&mut self.support, &mut self.obstacle)
     }
 
-    /// Until when functions of time and poses change, seconds, or zero. Sines, which have no end, do not count.
-    #[cfg(feature = "run")]
-    pub(crate) fn last_change(&self) -> f64 {
-        let mut scene = self.clone();
-        let functions = scene.functions_mut();
-        let functions = functions.iter().filter_map(|(_, f)| f.last_time());
-        let folded = self.folding.iter().map(|folding| folding.time);
-        let mut last = functions.chain(folded).fold(0.0, f64::max);
-        for Moved { motion, .. } in scene.motions_mut() {
-            let poses = motion.poses.iter().flat_map(|poses| &poses.keys);
-            last = poses.map(|key| key.time).fold(last, f64::max);
-        }
-        last
-    }
-
     /// All functions of time with their keys.
     pub(crate) fn functions_mut(&mut self) -> Vec<(Key, &mut Profile)> {
         let (root, mut all) = (Key::root(), Vec::new());

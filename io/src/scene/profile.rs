@@ -16,7 +16,7 @@ use std::fmt;
 /// what it drives: metres for a displacement, degrees for an angle, newtons for a load.
 ///
 /// It is taken at the ends of steps. A function that turns back within a step by more than a quarter of its range, which
-/// is that of a sine with three steps in a period, and an angle of a motion that changes by more than 120 degrees in a
+/// is that of a sine with three steps in a period, and an angle of a motion that changes by more than half a turn in a
 /// step are refused.
 ///
 /// ```toml
@@ -158,12 +158,6 @@ impl Profile {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         let widen = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
         values.into_iter().fold(none, widen)
-    }
-
-    /// The last of the times at which a change begins or ends, seconds, if there is one.
-    #[cfg(feature = "run")]
-    pub(super) fn last_time(&self) -> Option<f64> {
-        self.numbers().0.into_iter().reduce(f64::max)
     }
 
     /// The profile as the engine has it, values multiplied by `scale`.

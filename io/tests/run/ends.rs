@@ -114,7 +114,7 @@ fn motions_within_a_step_are_refused() {
         (
             "{ rotation = { centre = [0, 0, 0], axis = [1, 0, 0], angle = { ramp = { to = 21600, end = 1 } } } }",
             "obstacle[0].motion.rotation.angle",
-            "0.00417",
+            "0.00833",
         ),
         (
             "{ poses = { keys = [{ position = [0, 0, 0] }, { time = 0.008, position = [0, 1, 0] }, \

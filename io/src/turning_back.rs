@@ -1,29 +1,25 @@
 //! Functions of time that change faster than the steps of a run, at whose ends alone they are taken.
 
-use super::Scene;
-use super::functions::Moved;
-use super::key::{Key, KeyPart};
-use super::pose::Motion;
-use super::poses::Poses;
-use super::problem::Checks;
-use super::profile::{Course, Interpolation, Profile};
+use crate::scene::{
+    Checks, Course, Interpolation, Key, KeyPart, Motion, Moved, Poses, Profile, Scene,
+};
 use isosheet_mesh::wording::brief;
-use nalgebra::Isometry3;
+use nalgebra::{Quaternion, UnitQuaternion};
 use std::f64::consts::PI;
 
 /// Part of its range that a function may turn back by within a step: that of a sine with three steps in a period. With
 /// two it may look as if it did not move at all (Shannon 1949, *Communication in the presence of noise*).
 const TURNED_BACK: f64 = 0.25;
 
-/// Angle by which something may turn in a step, degrees: three steps in a turn, for the same reason.
-const TURNED: f64 = 360.0 / 3.0;
+/// Angle by which something may turn in a step, degrees: with more than half a turn it may have turned the other way.
+const TURNED: f64 = 180.0;
 
 /// Functions that are the components of one vector, or one function.
 type Group = Vec<(Key, Profile)>;
 
 impl Scene {
     /// Functions of time do not turn back within a step, and nothing turns too far in one.
-    pub(super) fn check_steps_resolve(&self, checks: &mut Checks) {
+    pub(crate) fn check_steps_resolve(&self, checks: &mut Checks) {
         let h = self.method.step;
         if !(h.is_finite() && h > 0.0) {
             return;
@@ -60,7 +56,7 @@ impl Scene {
             let by = largest_change(angle, h);
             if by > TURNED {
                 let message = format!(
-                    "`{key}` changes by {} degrees in a step of {} s, more than a third of a turn",
+                    "`{key}` changes by {} degrees in a step of {} s, more than half a turn",
                     brief(by),
                     brief(h)
                 );
@@ -109,11 +105,11 @@ fn angle(key: &Key, motion: &Motion) -> Option<(Key, Profile)> {
         let angle = motion.rotation.as_ref()?.angle.clone();
         return Some((key.name("rotation.angle"), angle));
     };
-    let body = poses.of_body(Isometry3::identity());
     let turns = poses.keys.iter().scan(None, |before, pose| {
-        let here = body.kinematics(pose.time).pose.rotation;
-        let [last, sum] = [before.map_or(here, |(last, _)| last), here];
-        let total = before.map_or(0.0, |(_, total)| total) + last.angle_to(&sum).to_degrees();
+        let [w, x, y, z] = pose.orientation;
+        let here = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+        let (last, total) = before.unwrap_or((here, 0.0));
+        let total = total + last.angle_to(&here).to_degrees();
         *before = Some((here, total));
         Some([pose.time, total])
     });
@@ -254,7 +250,7 @@ mod tests {
     /// The largest change in a step is that of all intervals of its length.
     #[test]
     fn largest_changes_are_those_of_sampled_functions() {
-        let change = super::super::profile::Change {
+        let change = crate::scene::Change {
             from: 10.0,
             to: 50.0,
             begin: 0.1,
