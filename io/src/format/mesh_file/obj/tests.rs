@@ -84,7 +84,7 @@ fn every_defect_names_its_line() {
     says(solid, Some(2), "its first unknown word is \"solid\"");
     says("f 1 2 3\n", None, "has 1 face but no vertices");
     let points = format!("{SQUARE}p 1 2\nl 1 2\nl 2 3\n");
-    let lines = "4 vertices, 2 line elements and 1 point elements, but no faces";
+    let lines = "4 vertices, 2 line elements and 1 point element, but no faces";
     says(&points, None, lines);
     says("v 0 0\n", Some(1), "a vertex needs three numbers");
     says("v 0 0 x\n", Some(1), "a vertex needs three numbers");
