@@ -71,7 +71,7 @@ fn rest_before_a_motion_does_not_end_a_run() {
         mesh = { rectangle = { width = 0.1, height = 0.1, columns = 1, rows = 1 } }
         damping = 40
         [[support]]
-        at = "all"
+        at = 'all'
         hold = { moving_pin = { z = { smooth_step = { to = 0.1, begin = 1, end = 1.5 } } } }
         [stop]
         time = 10
