@@ -194,33 +194,26 @@ pub fn write_frame(path: &Path, series: &Series<'_>, frame: usize) -> Result<(),
 /// # Errors
 /// [`ExportError`]; other files of a format with several files may have been written then.
 pub fn write_series(path: &Path, series: &Series<'_>) -> Result<Exported, ExportError> {
-    let (mut frames, mut removed) = (series.frames().to_vec(), 0);
-    let files = match by_extension(path, &SeriesFormat::ALL, SeriesFormat::extension)? {
-        SeriesFormat::Obj => {
-            let files;
-            (files, removed) = obj::write_series(path, series)?;
-            files
-        }
-        SeriesFormat::Fold => fold::write_series(path, series)?,
+    let mut frames = series.frames().to_vec();
+    let one = || vec![path.to_owned()];
+    let (files, removed) = match by_extension(path, &SeriesFormat::ALL, SeriesFormat::extension)? {
+        SeriesFormat::Obj => obj::write_series(path, series)?,
+        SeriesFormat::Pvd => vtk::write_series(path, series)?,
+        SeriesFormat::Fold => (fold::write_series(path, series)?, 0),
+        SeriesFormat::Pc2 => (pc2::write_series(path, series)?, 0),
+        SeriesFormat::Csv => (csv::write_series(path, series)?, 0),
         SeriesFormat::Glb => {
             frames = gltf::key_frames(series);
             gltf::write(path, &series.moving(&frames))?;
-            vec![path.to_owned()]
+            (one(), 0)
         }
         SeriesFormat::Usda => {
             usda::write(path, &series.moving(&frames))?;
-            vec![path.to_owned()]
+            (one(), 0)
         }
-        SeriesFormat::Pc2 => pc2::write_series(path, series)?,
-        SeriesFormat::Pvd => {
-            let files;
-            (files, removed) = vtk::write_series(path, series)?;
-            files
-        }
-        SeriesFormat::Csv => csv::write_series(path, series)?,
         SeriesFormat::Npz => {
             series.chosen()?.write(path)?;
-            vec![path.to_owned()]
+            (one(), 0)
         }
     };
     Ok(Exported {
