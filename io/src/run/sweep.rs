@@ -28,7 +28,7 @@ pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
 use crate::format::{DataError, FileError, input, write_atomically};
-use crate::scene::{KeyPart, SceneFile, SceneFileError};
+use crate::scene::{Key, KeyPart, SceneFile, SceneFileError};
 use shell::shell_word;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -55,8 +55,9 @@ impl Sweep {
     /// made in every run before. Nothing is read or written yet.
     ///
     /// # Errors
-    /// [`SweepError`] without keys, for a key that is given twice or contains another one, for more than
-    /// [`Sweep::MOST_RUNS`] runs, and for paths that a line of text cannot hold.
+    /// [`SweepError`] without keys, for a key that is given twice or contains another one, for an edit that every
+    /// run would overwrite, for more than [`Sweep::MOST_RUNS`] runs, and for paths that a line of text cannot
+    /// hold.
     pub fn new(
         scene: &Path,
         folder: &Path,
@@ -69,6 +70,17 @@ impl Sweep {
             return Err(SweepError::Keys(error));
         }
         let places: Vec<_> = variations.iter().map(|v| v.place().parts()).collect();
+        for edit in &edits {
+            // An edit without a key is refused where the scene is read.
+            let Some(Ok(place)) = edit.split_once('=').map(|(key, _)| key.trim().parse::<Key>()) else {
+                continue;
+            };
+            if let Some(i) = places.iter().position(|over| place.parts().starts_with(over)) {
+                let message = format!("the values of `{}` overwrite `{edit}`", variations[i].key());
+                let error = DataError::new(message, "take the edit out");
+                return Err(SweepError::Keys(error));
+            }
+        }
         for (j, second) in places.iter().enumerate() {
             let contained = |first: &&[KeyPart]| {
                 let common = first.len().min(second.len());

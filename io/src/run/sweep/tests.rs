@@ -55,6 +55,10 @@ fn keys_that_meet_and_too_many_runs_are_refused() {
     assert!(same(&["a.b=1", "a=2"]) && same(&["a=1", "a.b=2"]));
     assert!(!same(&["a.b=1", "a.bc=2"]));
     assert!(says(&[], "needs a key with values"));
+    // Every run has the edit `stop.time=2`, made before that of the sweep.
+    let overwritten = "overwrite `stop.time=2`";
+    assert!(says(&["stop.time=1,2"], overwritten) && says(&["stop={ time = 1 }"], overwritten));
+    assert!(sweep(&["stop.rest=0.1,0.2"]).is_ok());
     let many: Vec<String> = (0..1000).map(|k| k.to_string()).collect();
     let many = ["a", "b"].map(|key| format!("{key}={}", many.join(",")));
     assert!(says(
