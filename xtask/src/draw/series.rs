@@ -18,13 +18,14 @@ pub(crate) struct Series {
 }
 
 /// Colours and symbols of the series of a plot, in order.
-const STYLES: [(Colour, Marker); 6] = [
+const STYLES: [(Colour, Marker); 7] = [
     (palette::BLUE, Marker::Disc),
     (palette::VERMILION, Marker::Square),
     (palette::GREEN, Marker::Triangle),
     (palette::ORANGE, Marker::Diamond),
     (palette::PURPLE, Marker::Disc),
     (palette::SKY, Marker::Square),
+    (palette::INK, Marker::Triangle),
 ];
 
 impl Series {
