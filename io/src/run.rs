@@ -102,7 +102,7 @@ pub use fold_order::{FoldOrder, GroupFold};
 pub use fold_verdict::{FoldVerdict, FoldedCrease};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 #[cfg(feature = "cli")]
-pub(crate) use folder::{check_folder, check_run};
+pub(crate) use folder::{check_folder, check_run, run_of_file};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use held_open::TouchingFaces;

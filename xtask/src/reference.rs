@@ -178,7 +178,7 @@ The exit codes:
 | 4 | the folder holds the run of another scene or version, another sweep, or other files |
 | 5 | another process is writing to the folder |
 | 6 | a file or a folder cannot be written |
-| 130 | stopped by Ctrl-C, or a run of a sweep was killed; the same command continues |
+| 130 | stopped by Ctrl-C, or a run of a sweep was killed; the same command without `--force` continues |
 
 This page and `scene.schema.json`, the JSON schema for editors, are made of the structs that read scenes.
 ";

@@ -3,7 +3,7 @@
 use super::failure::{Code, Done, Failure};
 use super::message::{counted, print_message, print_result};
 use super::write::{bytes_to_stdout, is_same_file};
-use crate::run::Collection;
+use crate::run::{Collection, run_of_file};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -58,17 +58,12 @@ impl Collect {
     /// Refuses to replace what is read, or the history of a run. Other files are replaced.
     fn check_out(&self) -> Result<(), Failure> {
         let Some(out) = &self.out else { return Ok(()) };
-        let own = ["runs.csv", "summary.json", "history.csv"];
-        let mut files = self
-            .folders
-            .iter()
-            .flat_map(|f| own.map(|name| f.join(name)));
-        match files.find(|file| is_same_file(file, out)) {
-            None => Ok(()),
-            Some(file) => {
-                let message = format!("{} belongs to the sweep or the run", file.display());
-                Err(Failure::misuse(message).remedy("choose another name"))
-            }
+        let mut tables = self.folders.iter().map(|folder| folder.join("runs.csv"));
+        let is_read = tables.any(|table| is_same_file(&table, out));
+        if is_read || run_of_file(out).is_some() {
+            let message = format!("{} belongs to the sweep or the run", out.display());
+            return Err(Failure::misuse(message).remedy("choose another name"));
         }
+        Ok(())
     }
 }

@@ -3,10 +3,10 @@
 use super::failure::{Code, Done, Failure, Format, Message};
 use super::message::print_result;
 use super::progress::event;
-use super::simulate::{How, default_folder};
+use super::simulate::{How, default_folder, existing};
 use crate::dynamics::Material;
 use crate::format::FileError;
-use crate::run::{Existing, Recording, check_folder, check_run, simulate, simulate_anew};
+use crate::run::{Recording, check_folder, check_run};
 use crate::scene::SceneFile;
 use crate::{Advice, write_atomically};
 use clap::Args;
@@ -131,11 +131,7 @@ impl Composing {
             .iter()
             .map(|text| parsed(&self.scene_path(of), text.clone()));
         let scenes: Vec<SceneFile> = scenes.collect::<Result<_, _>>()?;
-        let existing = match self.force {
-            true => Existing::Delete,
-            false => Existing::Continue,
-        };
-        Ok(check_run(&self.folder(of), &scenes, existing)?)
+        Ok(check_run(&self.folder(of), &scenes, existing(self.force))?)
     }
 
     /// Refuses to replace a scene by one of these texts unless it is one of them, or that was asked for.
@@ -177,10 +173,7 @@ impl Composing {
                 .map_err(|e| Failure::of(Code::Output, &e))?;
         }
         let folder = self.folder(of);
-        let run = if self.force { simulate_anew } else { simulate };
-        let ran = self
-            .how
-            .show(&folder, |progress| run(&file, &folder, progress));
+        let ran = self.how.show_scene(&file, &folder, existing(self.force));
         ran.map_err(|failure| self.naming_scene(failure))?;
         let words = verdict(&Recording::read(&folder)?);
         if self.format() == Format::Json {

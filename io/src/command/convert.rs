@@ -5,11 +5,11 @@ use super::frames::{ColourRange, FrameRange, Size, View};
 use super::info::is_scene;
 use super::message::counted;
 use super::one_frame::OneFrame;
-use super::pictures::{self, FrameChoice, PictureFormat};
+use super::pictures::{self, FrameChoice, PictureFormat, input, wrong};
 use super::write::{is_same_file, to_stdout};
 use crate::format::drawing::Length;
 use crate::mesh::wording::given;
-use crate::run::{FilmOptions, Marks, Recording};
+use crate::run::{FilmOptions, Marks, Recording, run_of_file};
 use crate::scene::Folding;
 use crate::{
     Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem,
@@ -43,7 +43,8 @@ Files that are written of a run:
           numbered pictures in a folder of that name
   .apng   shaded pictures of all frames as an animation in real time (browsers)
   .mp4 .webm .mov .mkv .avi .gif   the same as a film, encoded by ffmpeg where it is installed
-A file that exists is replaced, unless it is the one that is read. docs/formats.md says more.";
+A file that exists is replaced, unless it is the one that is read, or one that a run has written.
+docs/formats.md says more.";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -141,7 +142,11 @@ impl Convert {
         {
             if PictureFormat::of(self.output()).is_some() {
                 let message = "pictures need the bodies and supports of the run";
-                return Err(wrong(message, "name the folder of the run"));
+                return Err(wrong(message, FOLDER));
+            }
+            if self.no_bodies {
+                let message = "which vertices are those of bodies is not in the file";
+                return Err(wrong(message, FOLDER));
             }
             let trajectory = Trajectory::read(&self.input).map_err(|e| input(&e))?;
             let trajectory = self.at_rate(trajectory)?;
@@ -241,21 +246,20 @@ impl Convert {
     fn check_output(&self) -> Result<(), Failure> {
         let (input, output) = (&self.input, self.output());
         let (is_run, name) = (input.is_dir(), output.display());
-        let is_own = |file: &str| is_run && is_same_file(&input.join(file), output);
         let folder = output.with_extension("");
         let gets_frames =
             |own: &Path| is_run && self.is_folder_written() && is_same_file(own, &folder);
         let message = if is_same_file(input, output) {
             let what = if is_run { "folder" } else { "file" };
             format!("{name} is the {what} that is read")
-        } else if is_own("history.csv") {
-            format!("{name} is the history of the run")
-        } else if is_own("trajectory.npz") {
-            format!("{name} is the trajectory of the run")
+        } else if let Some(run) = run_of_file(output) {
+            format!("{name} is a file of the run in {}", run.display())
         } else if gets_frames(input) {
             "the files of single frames would be written into the folder of the run".to_owned()
         } else if gets_frames(&input.join("obj")) {
             "the files of single frames would replace those of the run itself".to_owned()
+        } else if let Some(mesh) = mesh_beside(output) {
+            format!("{}, which is there, would be replaced too", mesh.display())
         } else {
             return Ok(());
         };
@@ -309,6 +313,10 @@ impl Convert {
     fn write_pictures(&self, recording: &Recording, format: PictureFormat) -> Done {
         if self.weld.is_some() {
             return Err(weld_of_run());
+        }
+        if self.is_changed() {
+            let message = "--scale and --thickness are for meshes, and a picture is none";
+            return Err(wrong(message, "leave them out"));
         }
         let is_many = self.frames.is_some() || self.every.is_some() || self.fps.is_some();
         let count = recording.trajectory.len();
@@ -450,8 +458,19 @@ impl Convert {
     }
 }
 
+/// What to do where a trajectory alone is not enough.
+const FOLDER: &str = "name the folder of the run";
+
 /// What to do where one frame is needed.
 const ONE_FRAME: &str = "choose one, with `--frame K`, `--time T` or `--part P`";
+
+/// The mesh that is written beside a point cache, where there is a file of this name and no point cache yet.
+fn mesh_beside(output: &Path) -> Option<PathBuf> {
+    let extension = output.extension().unwrap_or_default();
+    let mesh = output.with_extension("obj");
+    let is_new = extension.eq_ignore_ascii_case("pc2") && !output.exists();
+    (is_new && mesh.exists()).then_some(mesh)
+}
 
 /// The file that was asked for.
 fn last(files: &[PathBuf]) -> &Path {
@@ -477,14 +496,6 @@ fn no_mesh(error: &ExportError) -> Failure {
         ),
         _ => failure,
     }
-}
-
-fn wrong(message: &str, remedy: &str) -> Failure {
-    Failure::misuse(message).remedy(remedy)
-}
-
-fn input(error: &impl Advice) -> Failure {
-    Failure::of(Code::Input, error)
 }
 
 /// The failure of an export: of what the command line asks for, or else with the given code.

@@ -17,7 +17,7 @@ Exit codes:
   4    the folder holds the run of another scene or version, another sweep, or other files
   5    another process is writing to the folder
   6    a file or a folder cannot be written
-  130  stopped by Ctrl-C, or a run of a sweep was killed; the same command continues";
+  130  stopped by Ctrl-C, or a run of a sweep was killed; the same command without `--force` continues";
 
 /// Writes the message of a failure to stderr, or as JSON to stdout, and returns the exit code.
 pub(crate) fn report(failure: &Failure) -> u8 {

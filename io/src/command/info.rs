@@ -32,7 +32,8 @@ pub(crate) struct Info {
 
 /// Whether a file is a scene by its name; everything else is read as a mesh.
 pub(crate) fn is_scene(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e == "toml")
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
 /// Refuses a folder where a file is needed.

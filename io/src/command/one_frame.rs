@@ -61,8 +61,8 @@ impl OneFrame {
                 "give a number from 0 to 1",
             ),
             (_, Some(_), None) => wrong(
-                "--part chooses a frame of a run that folds a crease pattern, and this one folds none".to_owned(),
-                "choose a frame with `--frame K` or `--time T`",
+                "--part chooses a frame of a run that folds a crease pattern, and this one folds none that is known".to_owned(),
+                "name the folder of the run, or choose a frame with `--frame K` or `--time T`",
             ),
             _ => Ok(self.frame),
         }

@@ -68,11 +68,13 @@ pub(crate) fn write(
             ));
         }
         (_, FrameChoice::One(frame)) => vec![frame],
-        (_, FrameChoice::Many { first, last, every }) => [first, last]
-            .into_iter()
-            .filter(|f| *f >= count)
-            .chain((first..=last).step_by(every))
-            .collect(),
+        // (A range far beyond the end is not written down frame by frame.)
+        (_, FrameChoice::Many { first, last, every }) => {
+            match [first, last].into_iter().find(|frame| *frame >= count) {
+                Some(beyond) => vec![beyond],
+                None => (first..=last).step_by(every).collect(),
+            }
+        }
     };
     if let Some(frame) = frames.iter().find(|frame| **frame >= count) {
         let count = counted(count, "frame", "frames");
@@ -145,10 +147,10 @@ fn numbered(path: &Path) -> NumberedFiles {
     NumberedFiles::new(&path.with_extension(""), "frame", &extension)
 }
 
-fn wrong(message: &str, remedy: &str) -> Failure {
+pub(super) fn wrong(message: &str, remedy: &str) -> Failure {
     Failure::misuse(message).remedy(remedy)
 }
 
-fn input(error: &impl Advice) -> Failure {
+pub(super) fn input(error: &impl Advice) -> Failure {
     Failure::of(Code::Input, error)
 }

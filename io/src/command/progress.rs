@@ -71,6 +71,9 @@ impl Watch for Progress {
         self.begun = Instant::now();
         (self.last, self.stepped) = (self.begun, self.begun);
         self.before = beginning.steps;
+        if let Some(trace) = &self.trace {
+            trace.begin(beginning.steps);
+        }
         let modelled = beginning.modelled.join(", ");
         let Beginning {
             steps,

@@ -7,7 +7,7 @@ use super::open::open_page;
 use super::progress::{Progress, event};
 use super::trace::TraceFile;
 use crate::run::{
-    Outcome, RunError, Summary, extend_folder, resume_folder, simulate, simulate_anew,
+    Existing, Outcome, RunError, Summary, extend_folder, resume_folder, simulate, simulate_anew,
 };
 use crate::scene::SceneFile;
 use clap::Args;
@@ -114,10 +114,20 @@ impl How {
         use_threads(self.threads)
     }
 
-    /// Runs, shows the progress and says how it ended.
+    /// Runs a scene in a folder, as [`How::show`] shows it.
+    pub(super) fn show_scene(&self, scene: &SceneFile, folder: &Path, existing: Existing) -> Done {
+        let run = match existing {
+            Existing::Continue => simulate,
+            Existing::Delete => simulate_anew,
+        };
+        self.show(folder, existing, |progress| run(scene, folder, progress))
+    }
+
+    /// Runs, shows the progress and says how it ended. An `existing` run of the folder was deleted before, or continued.
     pub(super) fn show(
         &self,
         folder: &Path,
+        existing: Existing,
         run: impl FnOnce(&mut Progress) -> Result<Outcome, RunError>,
     ) -> Done {
         let format = self.format();
@@ -134,7 +144,10 @@ impl How {
             Outcome::Complete(summary) => ("complete", summary),
             Outcome::Interrupted => {
                 let failure = Failure::new(Code::Interrupted, "stopped by Ctrl-C");
-                return Err(failure.remedy("the same command continues"));
+                return Err(failure.remedy(match existing {
+                    Existing::Continue => "the same command continues",
+                    Existing::Delete => "the same command without --force continues",
+                }));
             }
         };
         let page = page(folder);
@@ -154,11 +167,20 @@ impl How {
         match page {
             Some(page) if self.open => open_page(&page),
             None if self.open => print_message(format_args!(
-                "warning: the run has no page to open\n  = help: leave `output.page` of the scene at true"
+                "warning: the run has no page to open\n  = help: `isosheet page {}` makes one, or says why there is none",
+                folder.display()
             )),
             _ => {}
         }
         Ok(())
+    }
+}
+
+/// What becomes of a run that is there, by `--force`.
+pub(super) fn existing(is_forced: bool) -> Existing {
+    match is_forced {
+        true => Existing::Delete,
+        false => Existing::Continue,
     }
 }
 
@@ -203,9 +225,7 @@ impl Simulate {
             .clone()
             .unwrap_or_else(|| default_folder(&self.scene));
         self.how.prepare()?;
-        let run = if self.force { simulate_anew } else { simulate };
-        self.how
-            .show(&folder, |progress| run(&scene, &folder, progress))
+        self.how.show_scene(&scene, &folder, existing(self.force))
     }
 }
 
@@ -223,9 +243,11 @@ impl Resume {
 
     fn resume(&self) -> Done {
         self.how.prepare()?;
-        self.how.show(&self.dir, |progress| match self.until {
-            Some(until) => extend_folder(&self.dir, until, progress),
-            None => resume_folder(&self.dir, progress),
-        })
+        let existing = Existing::Continue;
+        self.how
+            .show(&self.dir, existing, |progress| match self.until {
+                Some(until) => extend_folder(&self.dir, until, progress),
+                None => resume_folder(&self.dir, progress),
+            })
     }
 }

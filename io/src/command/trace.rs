@@ -18,7 +18,7 @@ pub(crate) struct TraceFile {
 }
 
 impl TraceFile {
-    /// A new file, which replaces a trace of this name. Its first line has the constants of the solver.
+    /// The file, in which a trace of this name stays until the run begins.
     ///
     /// # Errors
     /// [`Failure`] if the file cannot be written, or if there is another file of this name, such as the scene.
@@ -29,20 +29,25 @@ impl TraceFile {
                 Failure::misuse(message).remedy("give the trace another name, or remove the file")
             );
         }
-        let mut file = File::create(path).map(BufWriter::new);
-        if let Ok(open) = &mut file {
-            let head = json!({
-                "event": "tuning", "version": env!("CARGO_PKG_VERSION"), "constants": Tuning::default(),
-            });
-            if let Err(error) = writeln!(open, "{head}") {
-                file = Err(error);
-            }
-        }
+        let file = File::options().append(true).create(true).open(path);
+        let file = file.map(BufWriter::new);
         let trace = Self {
             path: path.to_owned(),
             file: Arc::new(Mutex::new(file)),
         };
         trace.check().map(|()| trace)
+    }
+
+    /// The run begins after so many steps of earlier processes. Of one that is at its start the file has no steps yet:
+    /// its first line gets the constants of the solver, and an earlier trace is replaced. That of a run which goes on
+    /// is continued.
+    pub(crate) fn begin(&self, steps: u64) {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Ok(open) = &mut *file
+            && let Err(error) = begin(open, steps)
+        {
+            *file = Err(error);
+        }
     }
 
     /// What a run tells its events.
@@ -89,6 +94,19 @@ fn is_another_file(path: &Path) -> bool {
         head.is_some_and(|head| head["event"] == "tuning")
     };
     is_file && !first().is_ok_and(|line| is_trace(&line))
+}
+
+fn begin(file: &mut BufWriter<File>, steps: u64) -> io::Result<()> {
+    if steps == 0 {
+        file.get_ref().set_len(0)?;
+    }
+    if file.get_ref().metadata()?.len() > 0 {
+        return Ok(());
+    }
+    let head = json!({
+        "event": "tuning", "version": env!("CARGO_PKG_VERSION"), "constants": Tuning::default(),
+    });
+    writeln!(file, "{head}")
 }
 
 /// Writes an event. What was decided is on the disk at once: a run that is killed leaves its trace.

@@ -150,9 +150,9 @@ impl Advice for RunError {
             Self::Scene(error) => error.advice(),
             Self::Step(error) => error.advice(),
             Self::SceneFile(error) => error.advice(),
-            Self::OtherScene { .. } => {
-                Some("replace it with --force, or choose another folder for the run")
-            }
+            Self::OtherScene { .. } => Some(
+                "run the scene with --force, which replaces it, or choose another folder for the run",
+            ),
             Self::NoFolder => Some("name a folder; `.` is the current one"),
             Self::Foreign { .. } => Some("choose an empty or a new folder for the run"),
             Self::NotOwn { .. } => Some(
@@ -164,7 +164,7 @@ impl Advice for RunError {
             ),
             Self::NoRun { .. } => Some("name the folder that `isosheet simulate` wrote"),
             Self::OtherVersion { .. } => Some(
-                "continue it with that version, replace it with --force, or choose another folder for the run",
+                "continue it with that version, run the scene with --force, which replaces it, or choose another folder for the run",
             ),
             Self::Taken { .. } => {
                 Some("choose another folder, or have the run replaced: `replace=True` in Python")

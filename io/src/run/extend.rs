@@ -13,7 +13,8 @@ use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 /// Continues the run in a folder until time `until` (seconds), later than the `stop.time` of its scene, with the same
-/// bits as a run of a scene with that `stop.time`; the scene in the folder is changed to it.
+/// bits as a run of a scene with that `stop.time`; the scene in the folder is changed to it. The same call continues a
+/// run that was stopped on that way.
 ///
 /// # Errors
 /// As [`simulate`]; [`RunError::NoRun`] if the folder is not that of a run, [`RunError::Extension`] if the run cannot
@@ -38,9 +39,14 @@ pub fn extend_folder(
     let mut files = Files::in_folder(folder);
     let inputs = RunInputs::read(&stored, &mut files)?;
     let hash = RunInputs::read(&longer, &mut files)?.hash.to_string();
-    let open = match RunFolder::open(folder, &inputs, Existing::Continue)? {
-        FolderState::Complete(open) | FolderState::Partial(open) | FolderState::Empty(open) => open,
+    let (open, is_complete) = match RunFolder::open(folder, &inputs, Existing::Continue)? {
+        FolderState::Complete(open) => (open, true),
+        FolderState::Partial(open) | FolderState::Empty(open) => (open, false),
     };
+    if !is_complete && until == stored.scene().stop.time {
+        drop(open);
+        return simulate(&stored, folder, watch);
+    }
     let checkpoint = open.path(RunFolder::CHECKPOINT);
     let saved = match checkpoint.is_file() {
         true => Some(checkpoint::read(&checkpoint)?),
@@ -52,6 +58,15 @@ pub fn extend_folder(
     if !is_known {
         may_go_on(&stored, saved.as_ref().map(|(progress, _)| progress), until).map_err(refuse)?;
     }
+    // What the longer run needs, before anything of the run changes.
+    let needed = match (is_complete, &saved) {
+        (false, None) => &[][..],
+        _ => &[RunFolder::CHECKPOINT, RunFolder::FRAMES],
+    };
+    if let Some(&file) = needed.iter().find(|file| !open.path(file).is_file()) {
+        return Err(refuse(ExtensionError::Deleted { file }));
+    }
+    longer.build()?;
     if let Some((mut progress, simulation)) = saved {
         let expected = match is_known {
             true => &hash,

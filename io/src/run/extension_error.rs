@@ -30,6 +30,12 @@ pub enum ExtensionError {
         /// The time in its scene, seconds.
         time: f64,
     },
+    /// A file that it needs to go on is not there any more.
+    #[error("its {file} was deleted")]
+    Deleted {
+        /// The name of the file.
+        file: &'static str,
+    },
 }
 
 fn in_words(reason: EndReason) -> &'static str {
@@ -50,7 +56,7 @@ impl Advice for ExtensionError {
             Self::Ended { .. } => {
                 "run the scene without that condition, in a folder of its own: `isosheet simulate SCENE --out DIR`"
             }
-            Self::ShortStep { .. } => {
+            Self::ShortStep { .. } | Self::Deleted { .. } => {
                 "run the scene with the later `stop.time`, in a folder of its own: `isosheet simulate SCENE --out DIR`"
             }
         })

@@ -329,6 +329,21 @@ impl RunFolder {
     }
 }
 
+/// The folder of the run that has written a file, by whatever links; none of other files.
+#[cfg(feature = "cli")]
+pub(crate) fn run_of_file(path: &Path) -> Option<PathBuf> {
+    let path = path.canonicalize().ok()?;
+    let folder = path.parent()?;
+    let name = path.file_name()?;
+    let is_own = name == LOCK || RunFolder::FILES.iter().any(|own| name == *own);
+    if is_own && RunFolder::holds_run(folder) {
+        return Some(folder.to_owned());
+    }
+    let is_beneath = [MESHES, RunFolder::OBJ].map(|own| folder.ends_with(own));
+    let root = folder.parent().filter(|_| is_beneath.contains(&true))?;
+    RunFolder::holds_run(root).then(|| root.to_owned())
+}
+
 /// Refuses a folder that no run can be written to: one that has other files, or in which another process works. One that
 /// does not exist is not made.
 ///

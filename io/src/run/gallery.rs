@@ -97,7 +97,10 @@ impl Gallery {
         let page = page::page(&gallery.entries, &gallery.left_out);
         write_atomically(&out.join(Self::INDEX), |w| w.write_all(page.as_bytes()))?;
         write_json(&out.join(Self::DATA), &gallery.entries)?;
-        for old in before.iter().filter(|old| !names.contains(&old.name)) {
+        for old in before
+            .iter()
+            .filter(|old| !names.contains(&old.name.to_lowercase()))
+        {
             for file in files(&old.name) {
                 // What is left of an earlier gallery is in nobody's way.
                 let _ = fs::remove_file(out.join(file));

@@ -72,10 +72,16 @@ impl Sweep {
         let places: Vec<_> = variations.iter().map(|v| v.place().parts()).collect();
         for edit in &edits {
             // An edit without a key is refused where the scene is read.
-            let Some(Ok(place)) = edit.split_once('=').map(|(key, _)| key.trim().parse::<Key>()) else {
+            let Some(Ok(place)) = edit
+                .split_once('=')
+                .map(|(key, _)| key.trim().parse::<Key>())
+            else {
                 continue;
             };
-            if let Some(i) = places.iter().position(|over| place.parts().starts_with(over)) {
+            if let Some(i) = places
+                .iter()
+                .position(|over| place.parts().starts_with(over))
+            {
                 let message = format!("the values of `{}` overwrite `{edit}`", variations[i].key());
                 let error = DataError::new(message, "take the edit out");
                 return Err(SweepError::Keys(error));

@@ -113,8 +113,28 @@ fn what_is_read_is_not_replaced() {
     }
     let said = refused(dir, &["convert", "run", "run"], 2);
     assert!(said.contains("run is the folder that is read"), "{said}");
-    let said = refused(dir, &["convert", "run", "run/history.csv"], 2);
-    assert!(said.contains("is the history of the run"), "{said}");
+    for (input, file) in [
+        ("run", "run/history.csv"),
+        ("run/trajectory.npz", "run/history.csv"),
+        ("run", "run/loads.csv"),
+    ] {
+        let said = refused(dir, &["convert", input, file], 2);
+        assert!(said.contains("is a file of the run in"), "{said}");
+    }
+    // A point cache has a mesh beside it.
+    let said = refused(dir, &["convert", "run", "a.pc2"], 2);
+    assert!(said.contains("a.obj, which is there"), "{said}");
+    assert_eq!(read("a.obj"), square);
+    done(dir, &["convert", "run", "cache.pc2"]);
+    done(dir, &["convert", "run", "cache.pc2"]);
+    for (input, option) in [("run", "--scale=2"), ("run/trajectory.npz", "--no-bodies")] {
+        refused(dir, &["convert", input, "x.png", option], 2);
+    }
+    refused(
+        dir,
+        &["convert", "run/trajectory.npz", "x.csv", "--no-bodies"],
+        2,
+    );
     assert_eq!(read("run/history.csv"), history);
     let count = || fs::read_dir(dir.join("run")).unwrap().count();
     let before = count();

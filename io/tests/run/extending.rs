@@ -3,7 +3,10 @@
 use crate::events::{LETS_GO, with_text};
 use crate::{assert_same, code, run, stderr, stdout, summary};
 use isosheet_io::read_events;
+use isosheet_io::run::{Outcome, Tick, extend_folder, simulate};
+use isosheet_io::scene::SceneFile;
 use std::fs;
+use std::ops::ControlFlow;
 
 /// A run ends at the moment at which a support is released, and goes on in two parts.
 #[test]
@@ -41,6 +44,51 @@ fn a_run_that_goes_on_beyond_its_end_has_the_bits_of_a_longer_one() {
         "{}",
         stdout(&done)
     );
+}
+
+/// A run that is stopped on its way to a later end goes on by the same call.
+#[test]
+fn a_longer_run_that_is_stopped_goes_on() {
+    let dir = with_text(LETS_GO);
+    let dir = dir.path();
+    for (out, end) in [("whole", "stop.time=0.4"), ("part", "stop.time=0.2")] {
+        let scene = SceneFile::read(&dir.join("scene.toml"), &[end.to_owned()]).unwrap();
+        let run = simulate(&scene, &dir.join(out), &mut |_: &Tick| {
+            ControlFlow::Continue(())
+        });
+        assert!(matches!(run.unwrap(), Outcome::Complete(_)));
+    }
+    let part = dir.join("part");
+    let stopped = extend_folder(&part, 0.4, &mut |_: &Tick| ControlFlow::Break(()));
+    assert_eq!(stopped.unwrap(), Outcome::Interrupted);
+    let ended = extend_folder(&part, 0.4, &mut |_: &Tick| ControlFlow::Continue(()));
+    assert!(matches!(ended.unwrap(), Outcome::Complete(_)));
+    assert_same(&dir.join("whole"), &part);
+}
+
+/// Files of a complete run that may be deleted to save space are needed to go on.
+#[test]
+fn a_run_without_its_frames_does_not_go_on_and_stays_whole() {
+    let dir = with_text(LETS_GO);
+    let dir = dir.path();
+    let arguments = [
+        "simulate",
+        "scene.toml",
+        "--out",
+        "run",
+        "--set",
+        "stop.time=0.1",
+    ];
+    assert_eq!(code(&run(dir, &arguments)), Some(0));
+    for file in ["frames.bin", "checkpoint.bin"] {
+        fs::remove_file(dir.join("run").join(file)).unwrap();
+        let refused = run(dir, &["resume", "run", "--until", "0.2"]);
+        let said = stderr(&refused);
+        assert_eq!(code(&refused), Some(2), "{said}");
+        assert!(said.contains(&format!("its {file} was deleted")), "{said}");
+        let info = run(dir, &["info", "run"]);
+        assert_eq!(code(&info), Some(0), "{}", stderr(&info));
+    }
 }
 
 #[test]

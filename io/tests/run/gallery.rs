@@ -177,7 +177,7 @@ fn huge_bodies_are_drawn() {
 fn a_gallery_is_replaced_and_other_folders_are_not() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
-    for name in ["one", "two"] {
+    for name in ["One", "two"] {
         write_scene(dir, StartingPoint::Fold);
         let out = format!("runs/{name}");
         let done = run(dir, &["simulate", "scene.toml", "--out", &out]);
@@ -194,7 +194,8 @@ fn a_gallery_is_replaced_and_other_folders_are_not() {
         names.sort();
         names
     };
-    assert_eq!(files(), ["one.html", "one.png", "two.html", "two.png"]);
+    let both = ["One.html", "One.png", "two.html", "two.png"];
+    assert_eq!(files(), both);
     let index = fs::read(dir.join("gallery/index.html")).unwrap();
     assert_eq!(code(&gallery(&["runs"])), Some(0));
     assert_eq!(
@@ -202,6 +203,7 @@ fn a_gallery_is_replaced_and_other_folders_are_not() {
         index,
         "the same again"
     );
+    assert_eq!(files(), both);
     assert_eq!(code(&gallery(&["runs/two"])), Some(0));
     assert_eq!(files(), ["two.html", "two.png"]);
 

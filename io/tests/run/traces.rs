@@ -43,6 +43,23 @@ fn a_trace_tells_the_steps_and_changes_nothing() {
     assert_eq!(of("accepted").count(), steps, "{text}");
     assert!(of("phase").count() >= steps);
     assert!(of("iteration").any(|e| e["contacts"].as_u64() > Some(0)));
+    // The same line again leaves it as it is, and a run that goes on adds to it.
+    let read = || fs::read_to_string(dir.path().join("trace.jsonl")).unwrap();
+    simulate("traced", &["--trace", "trace.jsonl"]);
+    assert_eq!(read(), text);
+    let longer = [
+        "resume",
+        "traced",
+        "--until",
+        "0.2",
+        "--trace",
+        "trace.jsonl",
+    ];
+    let done = run(dir.path(), &longer);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let longer = read();
+    assert!(longer.starts_with(&text) && longer.len() > text.len());
+    assert_eq!(longer.matches("\"tuning\"").count(), 1);
 }
 
 /// A trace that cannot be written is refused before the run.

@@ -36,7 +36,7 @@ impl Status {
 
 /// What all answers say: nothing is kept, passed on, guessed or shown inside of another page.
 const COMMON: &str = "Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\n\
-                      X-LiveFrame-Options: DENY\r\nConnection: close\r\n";
+                      X-Frame-Options: DENY\r\nConnection: close\r\n";
 
 /// The content security policy of the page: it runs its own scripts, which have the nonce, and speaks to the
 /// server that it came from alone.

@@ -216,7 +216,7 @@ fn read_buffers(
                 }
                 None => {
                     let folder = path.parent().unwrap_or(Path::new(""));
-                    let name = uri.replace("%20", " ");
+                    let name = decoded(uri);
                     read_separate(folder, &name, length)
                         .map_err(|e| problem(k, format!("cannot read the file {name:?}: {e}")))?
                 }
@@ -231,6 +231,28 @@ fn read_buffers(
         buffers.push(bytes);
     }
     Ok(buffers)
+}
+
+/// A URI with `%XX` as the bytes that they stand for (RFC 3986, Sec. 2.1).
+fn decoded(uri: &str) -> String {
+    let mut parts = uri.split('%');
+    let mut bytes = parts.next().unwrap_or_default().as_bytes().to_vec();
+    for part in parts {
+        let code = part
+            .get(..2)
+            .and_then(|code| u8::from_str_radix(code, 16).ok());
+        match code {
+            Some(byte) => {
+                bytes.push(byte);
+                bytes.extend(&part.as_bytes()[2..]);
+            }
+            None => {
+                bytes.push(b'%');
+                bytes.extend(part.as_bytes());
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// The first bytes of a file in a folder or beneath it, as many as there are up to `length`.

@@ -28,7 +28,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
         if joined.is_empty() {
             first = k + 1;
         }
-        if let Some(part) = line.trim_end().strip_suffix('\\') {
+        let is_comment = joined.is_empty() && line.trim_start().starts_with('#');
+        if let Some(part) = line.trim_end().strip_suffix('\\').filter(|_| !is_comment) {
             joined.push_str(part);
             joined.push(' ');
             continue;

@@ -325,16 +325,16 @@ fn defects_of_gltf_are_typed() {
     let (data, tail) = rest.split_once('"').unwrap();
     let engine = base64::engine::general_purpose::STANDARD;
     let data = base64::Engine::decode(&engine, data).unwrap();
-    std::fs::write(folder.path().join("my data.bin"), data).unwrap();
+    std::fs::write(folder.path().join("my d\u{e4}t#a.bin"), data).unwrap();
     let path = folder.path().join("a.gltf");
-    std::fs::write(&path, format!("{head}my%20data.bin\"{tail}")).unwrap();
+    std::fs::write(&path, format!("{head}my%20d%C3%A4t%23a.bin\"{tail}")).unwrap();
     is_the_square(&read_mesh(&path).unwrap());
     let refuse = MeshOptions {
         buffers: SeparateBuffers::Refuse,
         ..MeshOptions::default()
     };
     let error = read_mesh_with(&path, &refuse).unwrap_err();
-    let separate = "buffer 0 is the file \"my%20data.bin\"";
+    let separate = "buffer 0 is the file \"my%20d%C3%A4t%23a.bin\"";
     assert!(error.to_string().contains(separate), "{error}");
     for length in 0..12 {
         let bytes = [&b"glTF\x02\0\0\0\x05\0\0\0"[..length], b""].concat();

@@ -161,7 +161,11 @@ impl Reader<'_, '_> {
         state.layers.extend(names(node));
         match name {
             "g" | "a" => self.children(node, &state),
-            "switch" => match node.children().find(Node::is_element) {
+            // The first that asks for no extension. (Illustrator has its own data before the drawing.)
+            "switch" => match node
+                .children()
+                .find(|child| child.is_element() && child.attribute("requiredExtensions").is_none())
+            {
                 Some(first) => self.element(first, &state),
                 None => Ok(()),
             },

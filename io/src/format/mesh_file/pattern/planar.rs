@@ -238,7 +238,11 @@ impl Planar {
             let [x, y] = [0, 1].map(|k| brief(unit.along[k] * p[k]));
             let name = unit.name;
             let next = match width.is_finite() {
-                true => format!(", {}{name} from the next", brief(unit.along[0] * width)),
+                true => format!(
+                    ", {}{name} from the next (T = {})",
+                    brief(unit.along[0] * width),
+                    brief(1.1 * width)
+                ),
                 false => String::new(),
             };
             let message = format!(
@@ -249,7 +253,8 @@ impl Planar {
                     "ends of its lines lead"
                 ),
             );
-            let remedy = "close it there, or join the ends by `isosheet convert PATTERN OUT.fold --weld LENGTH`";
+            let remedy =
+                "close it there, or join the ends by `isosheet convert PATTERN OUT.fold --weld T`";
             return Err(DataError::new(message, remedy));
         }
         match self.edges.is_empty() {

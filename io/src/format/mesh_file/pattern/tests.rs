@@ -97,7 +97,7 @@ fn an_open_outline_is_told_with_its_place() {
         )
     };
     let said = refusal(MeshFormat::Svg, &svg("M60 100 H100 V0 H0 V100 H40"));
-    assert!(said.contains("20 mm from the next"), "{said}");
+    assert!(said.contains("20 mm from the next (T = 0.022)"), "{said}");
     // The tolerance closes it.
     let closed = parse_mesh(
         svg("M60 100 H100 V0 H0 V100 H40").as_bytes(),
@@ -113,6 +113,18 @@ fn an_open_outline_is_told_with_its_place() {
     let slit = read(MeshFormat::Cp, &format!("{SQUARE}1 0.6 -0.2 0.8 -0.2\n")).unwrap();
     assert_eq!((slit.changes.loose_lines, slit.changes.loose_cuts), (1, 1));
     assert_eq!(area(&slit), 1.0);
+}
+
+/// Illustrator writes the data that it edits before the drawing, in a switch.
+#[test]
+fn of_a_switch_what_needs_no_extension_is_read() {
+    let head = "<svg xmlns='http://www.w3.org/2000/svg'>";
+    let path = "<path d='M0 0 H9 V9 Z' stroke='black' fill='none'/>";
+    let own = "<foreignObject requiredExtensions='x'/>";
+    let plain = read(MeshFormat::Svg, &format!("{head}{path}</svg>")).unwrap();
+    let text = format!("{head}<switch>{own}<g>{path}</g></switch></svg>");
+    let switched = read(MeshFormat::Svg, &text).unwrap();
+    assert_eq!(switched.positions, plain.positions);
 }
 
 /// A line of the outline that is drawn too far encloses nothing, as does a stray one: they are left out, as creases are that
