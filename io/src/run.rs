@@ -100,9 +100,9 @@ pub use film_encoder::FilmError;
 pub use flat_vertex::{FlatFoldingLaw, UnfoldableVertex};
 pub use fold_order::{FoldOrder, GroupFold};
 pub use fold_verdict::{FoldVerdict, FoldedCrease};
-pub use folder::{SceneHash, holds_other_files, remove_unfinished};
+pub use folder::{SceneHash, holds_other_files, remove_unfinished, run_of_file};
 #[cfg(feature = "cli")]
-pub(crate) use folder::{check_folder, check_run, run_of_file};
+pub(crate) use folder::{check_folder, check_run};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use held_open::TouchingFaces;

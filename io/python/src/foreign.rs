@@ -26,6 +26,14 @@ pub(crate) fn arrays<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<[Bound<
         return Ok(None);
     };
     if let Some(cells) = object.getattr_opt(intern!(py, "cells_dict"))? {
+        for kind in cells.try_iter()? {
+            let kind: String = kind?.extract()?;
+            if !["triangle", "line", "vertex"].contains(&kind.as_str()) {
+                let message =
+                    format!("the mesh has cells of the kind \"{kind}\" ; cut them into triangles");
+                return Err(PyValueError::new_err(message));
+            }
+        }
         let Ok(triangles) = cells.get_item("triangle") else {
             return Err(PyValueError::new_err(
                 "the mesh has no cells of the kind \"triangle\"",

@@ -5,8 +5,8 @@ use crate::error::{of_scene, plain};
 use crate::foreign;
 use crate::value::table;
 use isosheet_io::mesh::Sheet;
-use isosheet_io::scene;
-use isosheet_io::write_obj;
+use isosheet_io::scene::{self, Key, Problem};
+use isosheet_io::{Series, SeriesOptions, Trajectory, write_frame};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -134,7 +134,8 @@ impl Mesh {
 
     /// A mesh of a generator of scenes: ``Mesh.generate("square", side=0.2, level=3)``.
     ///
-    /// Names and parameters are those of ``sheet.mesh`` in scenes. Raises `SceneError` for wrong ones.
+    /// Names and parameters are those of ``sheet.mesh`` in scenes. Raises
+    /// `SceneError` for wrong ones.
     #[staticmethod]
     #[pyo3(signature = (name, **parameters))]
     fn generate(
@@ -146,8 +147,10 @@ impl Mesh {
             parameters.map_or_else(|| Ok(Table::new()), |given| table(given, |_| Ok(None)))?;
         let value = Table::from_iter([(name.to_owned(), Value::Table(parameters))]);
         let mesh = value.try_into();
-        let mesh: scene::Mesh =
-            mesh.map_err(|e: toml::de::Error| PyValueError::new_err(e.to_string()))?;
+        let mesh: scene::Mesh = mesh.map_err(|e: toml::de::Error| {
+            let remedy = "names and parameters are those of `sheet.mesh` in scenes";
+            of_scene(py, &Problem::new(Key::root(), e.message(), remedy).into())
+        })?;
         Self::of(py, &mesh)
     }
 
@@ -161,9 +164,14 @@ impl Mesh {
         Self::of(py, &scene::Mesh::File(file))
     }
 
-    /// Writes the mesh as an OBJ file, whose numbers have all digits.
+    /// Writes the mesh to a file, whose format the extension says: .obj, .off, .ply or .fold with all digits, .stl,
+    /// .glb or .usda.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let written = py.detach(|| write_obj(&path, self.sheet.topology(), self.sheet.positions()));
+        let written = py.detach(|| {
+            let mut still = Trajectory::new(&self.sheet);
+            still.push(0.0, self.sheet.positions())?;
+            write_frame(&path, &Series::new(&still, &SeriesOptions::default())?, 0)
+        });
         written.map_err(|e| plain(py, &e))
     }
 

@@ -412,6 +412,13 @@ impl Run {
         every: usize,
         fps: Option<f64>,
     ) -> PyResult<Vec<PathBuf>> {
+        if let Some(folder) = run::run_of_file(&path) {
+            return Err(PyValueError::new_err(format!(
+                "{} is a file of the run in {}; choose another name",
+                path.display(),
+                folder.display()
+            )));
+        }
         if let Some(number) = self.frame_at(frame, time)? {
             if every != 1 || fps.is_some() {
                 return Err(PyValueError::new_err(

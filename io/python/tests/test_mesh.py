@@ -40,8 +40,12 @@ def test_the_libraries_themselves(library):
 
 
 def test_what_is_no_mesh_of_triangles_is_refused():
+    quads = [[0, 1, 2, 3]]
+    for cells in ({"quad": quads}, {"triangle": FACES, "quad": quads}):
+        with pytest.raises(ValueError, match='"quad"'):
+            isosheet.Mesh(SimpleNamespace(points=VERTICES, cells_dict=cells))
     with pytest.raises(ValueError, match='"triangle"'):
-        isosheet.Mesh(SimpleNamespace(points=VERTICES, cells_dict={"quad": [[0, 1, 2, 3]]}))
+        isosheet.Mesh(SimpleNamespace(points=VERTICES, cells_dict={}))
     with pytest.raises(ValueError, match="triangulate"):
         isosheet.Mesh(SimpleNamespace(points=VERTICES, faces=[4, 0, 1, 2, 3], is_all_triangles=False))
     with pytest.raises(TypeError, match="give vertices and faces"):

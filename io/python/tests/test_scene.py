@@ -91,10 +91,12 @@ def test_meshes_are_arrays():
 def test_a_mesh_of_a_program_moves_as_the_generated_one(tmp_path):
     square = isosheet.Mesh.generate("square", side=0.2, level=1)
     square.write(tmp_path / "square.obj")
+    square.write(tmp_path / "square.ply")
     meshes = [
         {"square": {"side": 0.2, "level": 1}},
         isosheet.Mesh(square.vertices, square.faces),
         isosheet.Mesh.read(tmp_path / "square.obj"),
+        isosheet.Mesh.read(tmp_path / "square.ply"),
         {"file": {"path": tmp_path / "square.obj"}},
     ]
     ends = []
@@ -107,7 +109,7 @@ def test_a_mesh_of_a_program_moves_as_the_generated_one(tmp_path):
         assert np.array_equal(end, ends[0])
     with pytest.raises(isosheet.SceneError):
         isosheet.Mesh.generate("square", side=-1.0, level=1)
-    with pytest.raises(ValueError, match="sides"):
+    with pytest.raises(isosheet.SceneError, match="sides"):
         isosheet.Mesh.generate("square", sides=0.2, level=1)
 
 

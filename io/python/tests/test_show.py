@@ -38,6 +38,10 @@ def test_every_second_frame_is_saved(run, tmp_path):
     run.save(tmp_path / "half.npz", every=2)
     half = np.load(tmp_path / "half.npz")
     assert np.array_equal(half["t"], run.time[::2]) and np.array_equal(half["x"], run.x[::2])
+    with pytest.raises(ValueError, match="is a file of the run"):
+        run.save(run.folder / "history.csv")
+    with pytest.raises(ValueError, match="no frame near"):
+        run.save(tmp_path / "late.obj", time=100)
     with pytest.raises(isosheet.Error, match="no format"):
         run.save(tmp_path / "run.xyz")
     with pytest.raises(isosheet.Error):

@@ -258,8 +258,6 @@ impl Convert {
             "the files of single frames would be written into the folder of the run".to_owned()
         } else if gets_frames(&input.join("obj")) {
             "the files of single frames would replace those of the run itself".to_owned()
-        } else if let Some(mesh) = mesh_beside(output) {
-            format!("{}, which is there, would be replaced too", mesh.display())
         } else {
             return Ok(());
         };
@@ -463,14 +461,6 @@ const FOLDER: &str = "name the folder of the run";
 
 /// What to do where one frame is needed.
 const ONE_FRAME: &str = "choose one, with `--frame K`, `--time T` or `--part P`";
-
-/// The mesh that is written beside a point cache, where there is a file of this name and no point cache yet.
-fn mesh_beside(output: &Path) -> Option<PathBuf> {
-    let extension = output.extension().unwrap_or_default();
-    let mesh = output.with_extension("obj");
-    let is_new = extension.eq_ignore_ascii_case("pc2") && !output.exists();
-    (is_new && mesh.exists()).then_some(mesh)
-}
 
 /// The file that was asked for.
 fn last(files: &[PathBuf]) -> &Path {

@@ -146,9 +146,16 @@ impl GivenSheet {
                 }
             })
         };
-        let coarse = read(&DrawingOptions::with_spacing(COARSE))?.report.size;
-        let own = coarse[0].max(coarse[1]);
-        let size = size.unwrap_or(own);
+        let longest = |spacing| -> Result<f64, Failure> {
+            let size = read(&DrawingOptions::with_spacing(spacing))?.report.size;
+            Ok(size[0].max(size[1]))
+        };
+        let coarse = longest(COARSE)?;
+        let [own, size] = match size {
+            None => [coarse; 2],
+            // With the points on its curves that the sheet has.
+            Some(size) => [longest(SPACING * coarse)?, size],
+        };
         let options = DrawingOptions {
             scale: size / own,
             ..DrawingOptions::with_spacing(SPACING * size)

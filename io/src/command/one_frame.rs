@@ -42,8 +42,8 @@ impl OneFrame {
         let wrong = |message: String, remedy: &str| Err(Failure::misuse(message).remedy(remedy));
         match (self.time, self.part, folding) {
             (Some(time), ..) => match trajectory.nearest(time) {
-                Some(frame) if is_within(trajectory.times(), time) => Ok(Some(frame)),
-                _ => wrong(
+                Some(frame) => Ok(Some(frame)),
+                None => wrong(
                     format!(
                         "there is no frame near {} s{}",
                         given(time),
@@ -67,15 +67,6 @@ impl OneFrame {
             _ => Ok(self.frame),
         }
     }
-}
-
-/// Whether a time is within those of the frames of a run, or beyond them by no more than a frame lasts.
-fn is_within(times: &[f64], time: f64) -> bool {
-    let (Some(first), Some(last)) = (times.first(), times.last()) else {
-        return false;
-    };
-    let frame = (last - first) / (times.len().max(2) - 1) as f64;
-    (first - frame..=last + frame).contains(&time)
 }
 
 /// From when to when a run has frames.

@@ -81,14 +81,15 @@ pub(crate) fn write(
         let message = format!("the run has {count}, counted from 0, and no frame {frame}");
         return Err(wrong(&message, "choose one of them"));
     }
-    let film = Film::new(recording, frames, options).map_err(|e| match e {
+    let failed = |e: PictureError| match e {
         PictureError::Options(_) => Failure::of(Code::CommandLine, &e),
         _ => input(&e),
-    })?;
+    };
+    let film = Film::new(recording, frames, options).map_err(failed)?;
     let progress = DrawingProgress::new(film.len());
     let picture = |place: usize| film.picture(place).and_then(|image| image.to_png());
     let save = |path: &Path, bytes: Result<Vec<u8>, PictureError>| {
-        let bytes = bytes.map_err(|e| input(&e))?;
+        let bytes = bytes.map_err(failed)?;
         let written = write_atomically(path, |w| w.write_all(&bytes));
         written.map_err(|e| Failure::of(Code::Output, &e))
     };

@@ -275,10 +275,12 @@ impl Trajectory {
     }
 
     /// The frame that is nearest to a time, seconds; of several that are as near the last. `None` without
-    /// frames, and of a time that is not finite.
+    /// frames, and of a time that is beyond those of the frames by more than a frame lasts.
     pub fn nearest(&self, time: f64) -> Option<usize> {
+        let (first, last) = (self.t.first()?, self.t.last()?);
+        let frame = (last - first) / (self.t.len().max(2) - 1) as f64;
         let nearest = self.with_least(|t| (t - time).abs());
-        nearest.filter(|_| time.is_finite())
+        nearest.filter(|_| (first - frame..=last + frame).contains(&time))
     }
 
     /// The last frame of those whose time makes a value the smallest.

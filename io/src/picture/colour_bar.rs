@@ -6,6 +6,7 @@ use super::error::PictureError;
 use super::sheet::INK;
 use super::text::Line;
 use super::ticks::Ticks;
+use crate::DataError;
 
 /// Size of the letters, as part of the height of the whole picture, and the smallest, pixels.
 const LETTERS: f64 = 1.0 / 28.0;
@@ -54,7 +55,10 @@ pub(crate) fn strip(
     let letters = (LETTERS * height as f64).max(SMALLEST);
     let needed = (letters * (TITLE + GAP + BAR + TICK + VALUES + BELOW)).ceil() as usize;
     if 2 * needed > height {
-        return Err(PictureError::size(width, height));
+        let message =
+            format!("a scale of colours takes {needed} pixels of the height, which is {height}");
+        let remedy = "give at least twice as much height, or leave the colour out";
+        return Err(PictureError::Options(DataError::new(message, remedy)));
     }
     let mut image = Image::white(width, needed);
     let middle = 0.5 * width as f64;

@@ -66,7 +66,11 @@ impl ActionVerdict {
                 spreads.fold(f64::INFINITY, f64::min),
                 spread(end),
             ],
-            is_borne: ending.obstacles.iter().any(|force| *force != [0.0; 3]),
+            // The body; a floor is the second obstacle.
+            is_borne: ending
+                .obstacles
+                .first()
+                .is_some_and(|force| *force != [0.0; 3]),
             can_yield: ending.plastic.is_some(),
             held: held.reduce(f64::max),
             touching: [end.len(), touching.count()],

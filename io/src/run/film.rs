@@ -58,6 +58,9 @@ impl Default for FilmOptions {
 /// 3 GB.
 const LARGEST: usize = 16_384;
 
+/// Milliseconds for which browsers show no picture of an animation: they take 100 instead.
+const TOO_SHORT: u16 = 10;
+
 impl FilmOptions {
     /// Whether the values make sense.
     ///
@@ -216,6 +219,9 @@ impl<'a> Film<'a> {
                 .max(1.0) as usize
         };
         let width = width.unwrap_or_else(natural);
+        if width > LARGEST {
+            return Err(PictureError::size(width, height));
+        }
         let strip = quantity.as_ref().map(|q| strip(&q.scale, [width, height]));
         let strip = strip.transpose()?;
         let height = height - strip.as_ref().map_or(0, |strip| strip.size()[1]);
@@ -307,11 +313,16 @@ impl<'a> Film<'a> {
     /// drawn, from whatever thread.
     ///
     /// # Errors
-    /// [`PictureError`] if a frame cannot be drawn.
+    /// [`PictureError`] if a frame cannot be drawn, and of more pictures a second than browsers show.
     pub fn animation(&self, drawn: impl Fn(usize) + Sync) -> Result<Vec<u8>, PictureError> {
         let delay = 1000.0 / self.rate();
         // Conversion from floats saturates: the longest time of a picture is a minute.
         let delay = delay.round().max(1.0) as u16;
+        if delay <= TOO_SHORT {
+            let message = format!("the animation has {} pictures a second", given(self.rate()));
+            let remedy = "take 50 at most, for example `--fps 50` (`fps=50` in Python): browsers show them in slow motion";
+            return Err(PictureError::Options(DataError::new(message, remedy)));
+        }
         let count = AtomicUsize::new(0);
         animated_png(self.size(), delay, self.frames.len(), |k| {
             let picture = self.picture(k);

@@ -330,8 +330,9 @@ impl RunFolder {
 }
 
 /// The folder of the run that has written a file, by whatever links; none of other files.
-#[cfg(feature = "cli")]
-pub(crate) fn run_of_file(path: &Path) -> Option<PathBuf> {
+///
+/// What is exported of a run must not be written there: the run could not be read any more.
+pub fn run_of_file(path: &Path) -> Option<PathBuf> {
     let path = path.canonicalize().ok()?;
     let folder = path.parent()?;
     let name = path.file_name()?;

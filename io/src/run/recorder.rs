@@ -383,7 +383,7 @@ impl Recorder {
         }
         let by_scene = last.as_ref().is_none_or(|last| last.ending.is_some());
         let stop = match by_scene || is_end(self.begun.scene(), self.reached) {
-            true => self.begun.scene().stop.time,
+            true => self.begun.scene().stop.time.max(self.reached),
             false => self.reached,
         };
         let file = self.store_scene(stop)?;

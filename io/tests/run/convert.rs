@@ -122,7 +122,7 @@ fn what_is_read_is_not_replaced() {
         assert!(said.contains("is a file of the run in"), "{said}");
     }
     // A point cache has a mesh beside it.
-    let said = refused(dir, &["convert", "run", "a.pc2"], 2);
+    let said = refused(dir, &["convert", "run", "a.pc2"], 6);
     assert!(said.contains("a.obj, which is there"), "{said}");
     assert_eq!(read("a.obj"), square);
     done(dir, &["convert", "run", "cache.pc2"]);
@@ -570,6 +570,14 @@ fn frames_of_runs_become_pictures() {
     let said = refused(dir, &["convert", "run", "x.png", "--frame", &none], 2);
     assert!(said.contains(&format!("{count} frames")), "{said}");
     refused(dir, &["convert", "run", "x.apng", "--frame", "0"], 2);
+    let said = refused(dir, &["convert", "run", "x.apng", "--fps", "120"], 2);
+    assert!(said.contains("120 pictures a second"), "{said}");
+    let low = [
+        "convert", "run", "x.png", "--size", "60", "--colour", "strain",
+    ];
+    let said = refused(dir, &low, 2);
+    assert!(said.contains("a scale of colours takes"), "{said}");
+    refused(dir, &["convert", "run", "x.png", "--time", "9"], 2);
     let beyond = format!("1..{none}");
     refused(dir, &["convert", "run", "x.png", "--frames", &beyond], 2);
     refused(dir, &["convert", "run", "x.png", "--frames", "2..1"], 2);

@@ -183,6 +183,23 @@ fn one_drawing_in_many_units_is_one_mesh() {
     }
 }
 
+/// Where lines lie on each other, the one that says what they are says by how much they fold.
+#[test]
+fn a_line_on_another_folds_by_its_own_angle() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let line = |look: &str| format!("<line {look} x1='70' x2='70' y1='10' y2='70'/>");
+    let half = line("stroke='red' opacity='0.5'");
+    let angles = |shapes: &str| {
+        fs::write(dir.join("a.svg"), svg(&format!("{FRAME}{shapes}"))).unwrap();
+        let (mesh, _) = meshed(dir, "a.svg", &["--spacing", "20mm"]);
+        let angles: Vec<_> = mesh.creases.iter().filter_map(|c| c.angle).collect();
+        assert!(!angles.is_empty());
+        angles
+    };
+    assert_eq!(angles(&(line("stroke='yellow'") + &half)), angles(&half));
+}
+
 /// Lines by colour, dash, layer, class and style; what is said of them, and the assignments that edges get.
 #[test]
 fn lines_are_what_colours_layers_and_options_say() {

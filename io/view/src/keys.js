@@ -2,7 +2,7 @@
 
 /** What takes the space bar and the arrows for itself while it has the focus. */
 const TAKES_SPACE = "select, button, summary, input[type=checkbox]";
-const TAKES_ARROWS = "select";
+const TAKES_ARROWS = "select, #sliders input";
 
 /**
  * Gives the keys back to the page after a control was used by the pointer: it loses the focus. A control that

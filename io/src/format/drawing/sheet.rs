@@ -101,7 +101,9 @@ pub fn mesh_drawing(
         error => error.into(),
     })?;
     let angle = |piece: usize| {
-        let opacity = drawing.pens[lines[graph.pieces[piece].sources[0]].pen].opacity;
+        let sources = graph.pieces[piece].sources.iter().map(|s| lines[*s]);
+        let mut own = sources.filter(|line| of_line(line) == classes[piece]);
+        let opacity = drawing.pens[own.next()?.pen].opacity;
         let sign = match classes[piece] {
             LineClass::Mountain => -1.0,
             LineClass::Valley => 1.0,

@@ -2,11 +2,13 @@
 
 use super::error::{fits, single};
 use super::{ExportError, Series, obj};
+use crate::format::DataError;
 use crate::format::atomic::write_atomically;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Writes the point cache and, beside it, the mesh of the first frame as OBJ.
+/// Writes the point cache and, beside it, the mesh of the first frame as OBJ. A mesh that is there without a point cache
+/// is not replaced: it may be the one that the run was made of.
 ///
 /// The header has the name of the format, its version 1, the number of points, the first frame 0, one frame a
 /// sample, and the number of samples; little-endian `f32` coordinates of all points follow, sample after
@@ -19,6 +21,10 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
         single(series.state(frame).1)?;
     }
     let mesh = path.with_extension("obj");
+    if mesh.exists() && !path.exists() {
+        let message = format!("{}, which is there, would be replaced too", mesh.display());
+        return Err(DataError::new(message, "choose another name").into());
+    }
     obj::write(
         &mesh,
         series.faces(),
