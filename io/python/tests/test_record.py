@@ -63,6 +63,15 @@ def without_wall_time(folder):
     return summary
 
 
+def test_a_recording_goes_beyond_the_end_of_its_scene(tmp_path):
+    one = simulation(stop__rest={"speed": 100.0, "duration": 0.02})
+    with one.record(tmp_path / "long") as recorder:
+        for _ in range(30):
+            one.step()
+    assert recorder.run.time[-1] == pytest.approx(0.3)
+    assert recorder.run.scene["stop.time"] == pytest.approx(0.3)
+
+
 def test_a_loop_leaves_the_files_of_the_command_bit_for_bit(commanded, tmp_path):
     one = simulation()
     with one.record(tmp_path / "loop") as recorder:

@@ -382,8 +382,10 @@ impl Recorder {
             self.writer.record_frame(under_way)?;
         }
         let by_scene = last.as_ref().is_none_or(|last| last.ending.is_some());
-        let stop = match by_scene || is_end(self.begun.scene(), self.reached) {
-            true => self.begun.scene().stop.time.max(self.reached),
+        let end_of_scene = self.begun.scene().stop.time;
+        let is_within = by_scene && self.reached < end_of_scene;
+        let stop = match is_within || is_end(self.begun.scene(), self.reached) {
+            true => end_of_scene,
             false => self.reached,
         };
         let file = self.store_scene(stop)?;
