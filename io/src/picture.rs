@@ -20,6 +20,7 @@
 mod animation;
 mod camera;
 mod canvas;
+#[cfg(feature = "run")]
 mod colour_bar;
 mod colour_scale;
 mod colours;
@@ -32,6 +33,7 @@ mod raster;
 mod sheet;
 mod solid;
 mod text;
+#[cfg(feature = "run")]
 mod ticks;
 mod vector;
 #[cfg(feature = "labels")]
