@@ -41,7 +41,7 @@ Files that are written of a run:
   .npz    a numpy archive of all frames, as trajectory.npz of the run
   .png    a shaded picture of one frame (--frame K, the last one without it); with --frames, --every or --fps
           numbered pictures in a folder of that name
-  .apng   shaded pictures of all frames as an animation in real time (browsers)
+  .apng   shaded pictures of all frames as an animation in real time, at most 50 a second (browsers)
   .mp4 .webm .mov .mkv .avi .gif   the same as a film, encoded by ffmpeg where it is installed
 A file that exists is replaced, unless it is the one that is read, or one that a run has written.
 docs/formats.md says more.";
@@ -323,11 +323,14 @@ impl Convert {
             Some(frame) => FrameChoice::One(frame),
             None if is_many || format != PictureFormat::Png => {
                 let [first, last] = self.range().of(count);
-                FrameChoice::Many {
-                    first,
-                    last,
-                    every: self.every(),
-                }
+                let is_free = self.every.is_none() && self.fps.is_none();
+                let every = match format {
+                    PictureFormat::AnimatedPng if is_free => {
+                        pictures::shown_by_browsers(recording.trajectory.times())
+                    }
+                    _ => self.every(),
+                };
+                FrameChoice::Many { first, last, every }
             }
             None => FrameChoice::One(count.saturating_sub(1)),
         };

@@ -50,6 +50,17 @@ pub(crate) enum FrameChoice {
     },
 }
 
+/// Every how many frames, whose times are these (seconds), browsers show one in real time: fifty a second at most.
+pub(super) fn shown_by_browsers(times: &[f64]) -> usize {
+    const MOST: f64 = 50.0;
+    let rate = match times {
+        [first, .., last] => (times.len() - 1) as f64 / (last - first),
+        _ => MOST,
+    };
+    // Conversion from floats saturates.
+    (rate / MOST - 1e-6).ceil().max(1.0) as usize
+}
+
 /// Draws frames of a run.
 pub(crate) fn write(
     recording: &Recording,
