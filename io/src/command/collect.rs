@@ -64,6 +64,13 @@ impl Collect {
             let message = format!("{} belongs to the sweep or the run", out.display());
             return Err(Failure::misuse(message).remedy("choose another name"));
         }
+        let is_table = out
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+        if out.is_file() && !is_table {
+            let message = format!("{} is a file that is no table", out.display());
+            return Err(Failure::misuse(message).remedy("choose another name, such as results.csv"));
+        }
         Ok(())
     }
 }

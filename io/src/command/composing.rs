@@ -24,7 +24,7 @@ pub(super) struct Composing {
     #[arg(long, value_name = "NAME", value_parser = material)]
     material: Option<String>,
     /// The longest side of the sheet, metres [default: see below]
-    #[arg(long, value_name = "METRES", value_parser = length)]
+    #[arg(long, value_name = "METRES", value_parser = length, allow_negative_numbers = true)]
     size: Option<f64>,
     /// Write the scene to a file, which `isosheet simulate` runs again
     #[arg(short = 'o', long = "scene", value_name = "FILE")]

@@ -119,7 +119,7 @@ pub(crate) struct Convert {
     no_bodies: bool,
     /// Of a mesh file, make vertices one that are at most T apart, in the unit of the file [default: 0 for
     /// STL and glTF, no welding for others]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     weld: Option<f64>,
 }
 

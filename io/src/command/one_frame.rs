@@ -13,11 +13,11 @@ pub(super) struct OneFrame {
     #[arg(long, value_name = "K", conflicts_with_all = ["frames", "every", "fps"])]
     pub(super) frame: Option<usize>,
     /// Of a run, write the frame that is nearest to time T alone, seconds; T is a time of the run
-    #[arg(long, value_name = "T", conflicts_with_all = ["frame", "frames", "every", "fps"])]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, conflicts_with_all = ["frame", "frames", "every", "fps"])]
     time: Option<f64>,
     /// Of a run that folds a pattern, write the frame alone that is nearest to the part P of the angles, from
     /// 0 to 1
-    #[arg(long, value_name = "P", conflicts_with_all = ["frame", "time", "frames", "every", "fps"])]
+    #[arg(long, value_name = "P", allow_negative_numbers = true, conflicts_with_all = ["frame", "time", "frames", "every", "fps"])]
     part: Option<f64>,
 }
 

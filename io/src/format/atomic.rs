@@ -21,7 +21,7 @@ pub(crate) fn is_unfinished(name: &std::ffi::OsStr) -> bool {
     name.starts_with(PREFIX) && name.ends_with(SUFFIX)
 }
 
-/// Creates the missing parent folders of `path` and returns the folder.
+/// Creates the missing parent folders of `path` and returns the folder; refuses a path of something else than a file.
 pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, FileError> {
     if path.file_name().is_none() {
         let path = path.to_owned();
@@ -30,6 +30,11 @@ pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, FileError> {
     if path.is_dir() {
         let path = path.to_owned();
         return Err(WriteError::IsFolder { path }.into());
+    }
+    // A device or a pipe would lose its place to the file.
+    if path.exists() && !path.is_file() {
+        let source = io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file");
+        return Err(FileError::unwritable(path, source));
     }
     let folder = match path.parent() {
         Some(p) if !p.as_os_str().is_empty() => p.to_owned(),

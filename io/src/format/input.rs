@@ -173,5 +173,10 @@ mod tests {
         assert_eq!(fs::read_to_string(&target).unwrap(), "mine");
         assert_eq!(fs::read_to_string(&link).unwrap(), "");
         assert!(replace(Path::new("/dev/null")).is_err());
+        // As a device, what is no file keeps its place.
+        let socket = dir.path().join("socket");
+        let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+        assert!(crate::write_atomically(&socket, |_| Ok(())).is_err());
+        assert!(fs::symlink_metadata(&socket).is_ok_and(|found| !found.is_file()));
     }
 }

@@ -151,7 +151,7 @@ impl Advice for RunError {
             Self::Step(error) => error.advice(),
             Self::SceneFile(error) => error.advice(),
             Self::OtherScene { .. } => Some(
-                "run the scene with --force, which replaces it, or choose another folder for the run",
+                "continue that run by `isosheet resume DIR`, run the scene with --force, which replaces it, or choose another folder for the run",
             ),
             Self::NoFolder => Some("name a folder; `.` is the current one"),
             Self::Foreign { .. } => Some("choose an empty or a new folder for the run"),

@@ -99,6 +99,15 @@ fn a_scene_can_do_without_a_page() {
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
     assert!(!dir.join("scene-run/index.html").exists());
     assert!(!stdout(&done).contains("page:"), "{}", stdout(&done));
+    fs::write(dir.join("mine.txt"), "dear").unwrap();
+    for (file, part) in [
+        ("mine.txt", "is a file that is no page"),
+        ("scene-run/history.csv", "is a file of the run in"),
+    ] {
+        let refused = run(dir, &["page", "scene-run", "--out", file]);
+        assert_eq!(code(&refused), Some(2), "{}", stderr(&refused));
+        assert!(stderr(&refused).contains(part), "{}", stderr(&refused));
+    }
     let made = run(dir, &["page", "scene-run", "--out", "mine.html"]);
     assert_eq!(code(&made), Some(0), "{}", stderr(&made));
     assert_eq!(data(&dir.join("mine.html"))["frames"], 46);

@@ -348,6 +348,8 @@ fn folders_keep_their_sweep() {
         &["collect", "scene-sweep", "--out", "scene-sweep/runs.csv"],
     );
     assert_eq!(code(&onto), Some(2), "{}", stderr(&onto));
+    let scene = run(dir, &["collect", "scene-sweep", "--out", "scene.toml"]);
+    assert_eq!(code(&scene), Some(2), "{}", stderr(&scene));
     let again = fs::read_to_string(dir.join("scene-sweep/runs.csv")).unwrap();
     assert_eq!(again, table);
     let other = sweep("sheet.damping=2,1", &[]);
