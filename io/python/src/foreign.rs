@@ -30,7 +30,7 @@ pub(crate) fn arrays<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<[Bound<
             let kind: String = kind?.extract()?;
             if !["triangle", "line", "vertex"].contains(&kind.as_str()) {
                 let message =
-                    format!("the mesh has cells of the kind \"{kind}\" ; cut them into triangles");
+                    format!("the mesh has cells of the kind \"{kind}\"; cut them into triangles");
                 return Err(PyValueError::new_err(message));
             }
         }

@@ -2,8 +2,8 @@
 
 use super::failure::{Code, Done, Failure};
 use super::message::{counted, print_message, print_result};
-use super::write::{bytes_to_stdout, is_same_file};
-use crate::run::{Collection, run_of_file};
+use super::write::{bytes_to_stdout, is_same_file, refuse_file_of_run, refuse_other_kind};
+use crate::run::Collection;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -55,22 +55,15 @@ impl Collect {
             None => bytes_to_stdout(&collection.to_csv()),
         }
     }
-    /// Refuses to replace what is read, or the history of a run. Other files are replaced.
-    fn check_out(&self) -> Result<(), Failure> {
+    /// Refuses to replace what is read, a file of a run, or one that is no table.
+    fn check_out(&self) -> Done {
         let Some(out) = &self.out else { return Ok(()) };
         let mut tables = self.folders.iter().map(|folder| folder.join("runs.csv"));
-        let is_read = tables.any(|table| is_same_file(&table, out));
-        if is_read || run_of_file(out).is_some() {
-            let message = format!("{} belongs to the sweep or the run", out.display());
+        if tables.any(|table| is_same_file(&table, out)) {
+            let message = format!("{} belongs to the sweep", out.display());
             return Err(Failure::misuse(message).remedy("choose another name"));
         }
-        let is_table = out
-            .extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-        if out.is_file() && !is_table {
-            let message = format!("{} is a file that is no table", out.display());
-            return Err(Failure::misuse(message).remedy("choose another name, such as results.csv"));
-        }
-        Ok(())
+        refuse_file_of_run(out)?;
+        refuse_other_kind(out, &["csv"], "table")
     }
 }

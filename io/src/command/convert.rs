@@ -6,10 +6,10 @@ use super::info::is_scene;
 use super::message::counted;
 use super::one_frame::OneFrame;
 use super::pictures::{self, FrameChoice, PictureFormat, input, wrong};
-use super::write::{is_same_file, to_stdout};
+use super::write::{is_same_file, refuse_file_of_run, to_stdout};
 use crate::format::drawing::Length;
 use crate::mesh::wording::given;
-use crate::run::{FilmOptions, Marks, Recording, run_of_file};
+use crate::run::{FilmOptions, Marks, Recording};
 use crate::scene::Folding;
 use crate::{
     Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem,
@@ -252,14 +252,12 @@ impl Convert {
         let message = if is_same_file(input, output) {
             let what = if is_run { "folder" } else { "file" };
             format!("{name} is the {what} that is read")
-        } else if let Some(run) = run_of_file(output) {
-            format!("{name} is a file of the run in {}", run.display())
         } else if gets_frames(input) {
             "the files of single frames would be written into the folder of the run".to_owned()
         } else if gets_frames(&input.join("obj")) {
             "the files of single frames would replace those of the run itself".to_owned()
         } else {
-            return Ok(());
+            return refuse_file_of_run(output);
         };
         Err(wrong(&message, "choose another name"))
     }

@@ -3,7 +3,8 @@
 use super::failure::{Done, Failure};
 use super::message::print_result;
 use super::open::open_page;
-use crate::run::{run_of_file, write_page};
+use super::write::refuse_other_kind;
+use crate::run::write_page;
 use crate::view::PageOptions;
 use clap::Args;
 use std::path::PathBuf;
@@ -38,7 +39,9 @@ impl Page {
             .out
             .clone()
             .unwrap_or_else(|| self.dir.join("index.html"));
-        self.check_out()?;
+        if let Some(out) = &self.out {
+            refuse_other_kind(out, &["html", "htm"], "page")?;
+        }
         let options = PageOptions {
             budget: self.budget,
         };
@@ -52,25 +55,5 @@ impl Page {
             open_page(&file);
         }
         Ok(())
-    }
-
-    /// Refuses to replace a file of a run, or one that is no page.
-    fn check_out(&self) -> Done {
-        let Some(out) = &self.out else { return Ok(()) };
-        let is_page = out.extension().is_some_and(|e| {
-            ["html", "htm"]
-                .iter()
-                .any(|page| e.eq_ignore_ascii_case(page))
-        });
-        let message = match run_of_file(out) {
-            _ if is_page || !out.is_file() => return Ok(()),
-            Some(run) => format!(
-                "{} is a file of the run in {}",
-                out.display(),
-                run.display()
-            ),
-            None => format!("{} is a file that is no page", out.display()),
-        };
-        Err(Failure::misuse(message).remedy("choose another name, such as cloth.html"))
     }
 }

@@ -28,7 +28,7 @@ pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
 use crate::format::{DataError, FileError, input, write_atomically};
-use crate::scene::{Key, KeyPart, SceneFile, SceneFileError};
+use crate::scene::{Edit, KeyPart, SceneFile, SceneFileError};
 use shell::shell_word;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -71,11 +71,8 @@ impl Sweep {
         }
         let places: Vec<_> = variations.iter().map(|v| v.place().parts()).collect();
         for edit in &edits {
-            // An edit without a key is refused where the scene is read.
-            let Some(Ok(place)) = edit
-                .split_once('=')
-                .map(|(key, _)| key.trim().parse::<Key>())
-            else {
+            // One that is none is refused where the scene is read.
+            let Ok(Edit { key: place, .. }) = edit.parse() else {
                 continue;
             };
             if let Some(i) = places
