@@ -30,6 +30,15 @@ pub(crate) struct VertexRows {
     pub(crate) equality: Vec<bool>,
 }
 
+/// Which load of an equation its curvature enters a Hessian with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RowLoad {
+    /// That of the multipliers: for steps of sequential quadratic programming.
+    Multipliers,
+    /// That of the multiplier estimates `L + r c`: for Newton's method on the augmented Lagrangian.
+    Estimates,
+}
+
 impl VertexRows {
     /// With penalties of `kappa` times the mass of the vertex: like the rods, `kappa` times as stiff as
     /// inertia.
@@ -54,6 +63,16 @@ impl VertexRows {
     pub(crate) fn set_stiffness(&mut self, kappa: f64) {
         for (p, v) in self.penalties.iter_mut().zip(&self.vertices) {
             *p = kappa * v.mass;
+        }
+    }
+
+    /// Raises the penalties to `kappa` times the stiffness of what a linear system has at the vertex, the largest
+    /// diagonal entry of its block (kilograms): equations that are solved for are kept to `1 / kappa` by it alone.
+    pub(crate) fn stiffen(&mut self, kappa: f64, stiffness: impl Fn(VertexId) -> f64) {
+        for (p, v) in self.penalties.iter_mut().zip(&self.vertices) {
+            if *p > 0.0 {
+                *p = p.max(kappa * stiffness(v.vertex));
+            }
         }
     }
 
@@ -168,14 +187,23 @@ impl VertexRows {
         }
     }
 
-    /// Adds the Hessian of [`VertexRows::value`], or a positive semidefinite part of it.
-    pub(crate) fn add_hessian(&self, part: HessianPart, hessian: &mut dyn HessianSink) {
+    /// Adds the Hessian of [`VertexRows::value`], or a positive semidefinite part of it, with the curvature of the
+    /// equations under their multipliers, or under the estimates of these.
+    pub(crate) fn add_hessian(
+        &self,
+        part: HessianPart,
+        load: RowLoad,
+        hessian: &mut dyn HessianSink,
+    ) {
         for (i, v) in self.indexed_vertices() {
             if !self.is_active(i) {
                 continue;
             }
             let local = &self.local[i];
-            let mut curvature = local.hessian(&self.multiplier_estimate(i));
+            let mut curvature = local.hessian(&match load {
+                RowLoad::Multipliers => self.multipliers[i],
+                RowLoad::Estimates => self.multiplier_estimate(i),
+            });
             if part != HessianPart::Full {
                 curvature = positive_semidefinite(&curvature);
             }

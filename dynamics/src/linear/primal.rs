@@ -318,6 +318,14 @@ impl PrimalMatrix {
         }
     }
 
+    /// Largest diagonal entry of the block of a vertex; zero at pinned ones.
+    pub(crate) fn largest_diagonal(&self, v: VertexId) -> f64 {
+        let values = self.near.values();
+        let slots = self.vertex_slots[v.index()].iter();
+        let diagonal = slots.flat_map(|slots| [0, 2, 5].map(|k| values[slots[k] as usize]));
+        diagonal.fold(0.0, f64::max)
+    }
+
     /// Receives blocks that are added as they are.
     pub(crate) fn sink<'a>(&'a mut self, model: &'a SheetModel) -> impl BlockSink + 'a {
         self.scaled_sink(model, 1.0)

@@ -2,7 +2,7 @@
 
 use super::problem::StepProblem;
 use crate::SheetModel;
-use crate::constraint::rows::VertexRows;
+use crate::constraint::rows::{RowLoad, VertexRows};
 use crate::hessian::HessianPart;
 use crate::linear::constrained::{
     ConstrainedSolver, ConstrainedSystem, MultiplierGoal, RowValues, SupportRows,
@@ -16,6 +16,7 @@ use crate::report::trace::Cut;
 use crate::step::tuning::Tuning;
 use crate::vectors::dot;
 use isosheet_coords::linalg::{LinalgError, norm_inf};
+use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -24,6 +25,11 @@ use rand_chacha::ChaCha8Rng;
 /// square for the squares of length errors that are themselves round-off of the positions. A minimum may be
 /// above the start of its step by so many times the round-off of both.
 pub(super) const OPERATIONS: f64 = 8.0;
+
+/// Penalty of vertex constraints that are solved for, relative to the stiffness of the linear system at their
+/// vertices: the root of the round-off that the penalty makes and of the error that it leaves, whose product is that
+/// of the numbers.
+const SUPPORT_STIFFNESS: f64 = 1e8;
 
 /// The augmented Lagrangian at an iterate,
 ///
@@ -93,15 +99,6 @@ pub(super) enum Definiteness {
     Definite,
     /// It was not, and a positive definite part of it was factorised.
     Modified,
-}
-
-/// Which curvature of the rods under load enters a Hessian.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum RodLoad {
-    /// That of the multipliers: for steps of sequential quadratic programming.
-    Multipliers,
-    /// That of the multiplier estimates `L + r c`: for Newton's method on the augmented Lagrangian.
-    Estimates,
 }
 
 impl Lagrangian {
@@ -259,7 +256,7 @@ impl Lagrangian {
     pub(super) fn factorize(
         &mut self,
         problem: &mut StepProblem<'_>,
-        load: RodLoad,
+        load: RowLoad,
         part: HessianPart,
         effort: &mut SolverEffort<'_>,
     ) -> Result<Definiteness, StepError> {
@@ -275,22 +272,22 @@ impl Lagrangian {
             self.axial[e] = self.penalty(e);
         }
         match load {
-            RodLoad::Multipliers => self.transverse.copy_from_slice(&self.multipliers),
-            RodLoad::Estimates => self.transverse.copy_from_slice(&self.estimates),
+            RowLoad::Multipliers => self.transverse.copy_from_slice(&self.multipliers),
+            RowLoad::Estimates => self.transverse.copy_from_slice(&self.estimates),
         }
         if part == HessianPart::Full {
             count()?;
-            self.assemble(problem, HessianPart::Full);
+            self.assemble(problem, HessianPart::Full, load);
             if self.matrix.factorize().is_ok() {
                 return Ok(Definiteness::Definite);
             }
         }
         self.project_rods(problem.model, load);
         count()?;
-        self.assemble(problem, HessianPart::PositiveSemidefinite);
+        self.assemble(problem, HessianPart::PositiveSemidefinite, load);
         if self.matrix.factorize().is_err() {
             count()?;
-            self.assemble(problem, HessianPart::Certain);
+            self.assemble(problem, HessianPart::Certain, load);
             self.matrix.factorize().map_err(failed)?;
         }
         Ok(Definiteness::Modified)
@@ -299,8 +296,8 @@ impl Lagrangian {
     /// Replaces each rod's own Hessian, with eigenvalues `p` across and `p + r |d|^2` along the rod, by its
     /// positive semidefinite part. (With multipliers far from the estimates the part along the rod stays as
     /// it is.)
-    fn project_rods(&mut self, model: &SheetModel, load: RodLoad) {
-        let along = load == RodLoad::Estimates;
+    fn project_rods(&mut self, model: &SheetModel, load: RowLoad) {
+        let along = load == RowLoad::Estimates;
         for e in 0..self.transverse.len() {
             if self.transverse[e] < 0.0 {
                 if along {
@@ -314,15 +311,20 @@ impl Lagrangian {
     }
 
     /// Sets the matrix: the terms of the objective, rods and vertex constraints.
-    fn assemble(&mut self, problem: &mut StepProblem<'_>, part: HessianPart) {
+    fn assemble(&mut self, problem: &mut StepProblem<'_>, part: HessianPart, load: RowLoad) {
         let (model, h) = (problem.model, problem.h());
         self.matrix.clear();
         let (objective, at) = problem.objective_at(&self.x);
         objective.add_hessian(at, h, part, &mut self.matrix);
         self.matrix
             .add_rods(model, &self.x, &self.axial, &self.transverse);
+        if load == RowLoad::Multipliers {
+            let matrix = &self.matrix;
+            let stiffness = |v: VertexId| matrix.largest_diagonal(v);
+            self.vertex_rows.stiffen(SUPPORT_STIFFNESS, stiffness);
+        }
         self.vertex_rows
-            .add_hessian(part, &mut self.matrix.sink(model));
+            .add_hessian(part, load, &mut self.matrix.sink(model));
     }
 
     /// Solves for minus the search direction; the slope of the value along the search direction.

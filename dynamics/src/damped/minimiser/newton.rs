@@ -1,9 +1,10 @@
 //! Newton's method on the incremental potential of a step, in a phase.
 
-use super::lagrangian::{Definiteness, Merit, RodLoad};
+use super::lagrangian::{Definiteness, Merit};
 use super::phase::{MultiplierUpdate, Phase, Saddle, StartingPoint};
 use super::problem::StepProblem;
 use super::workspace::{LengthGoal, Workspace};
+use crate::constraint::rows::RowLoad;
 use crate::damped::ARMIJO;
 use crate::damped::restoration::FirstMatrix;
 use crate::hessian::HessianPart;
@@ -262,7 +263,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             lagrangian.set_stiffness(self.penalty, stiffness);
             lagrangian.set_gradient(self.problem);
             let hessian = lagrangian
-                .factorize(self.problem, RodLoad::Estimates, self.hessian, self.effort)
+                .factorize(self.problem, RowLoad::Estimates, self.hessian, self.effort)
                 .map_err(|_| self.effort.failed(Reason::LinearAlgebra))?;
             match lagrangian.solve(self.problem.model, self.effort) {
                 Ok(_) => {
@@ -293,13 +294,11 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             ..
         } = &mut *self.work;
         loop {
-            // Vertex constraints stay as soft as in the merit function: their curvature goes by the
-            // multiplier estimates, which a large penalty would make those of length errors.
             lagrangian.set_stiffness(*rod_stiffness, options.stiffness);
             let hessian = lagrangian
                 .factorize(
                     self.problem,
-                    RodLoad::Multipliers,
+                    RowLoad::Multipliers,
                     self.hessian,
                     self.effort,
                 )
@@ -593,7 +592,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         let lagrangian = &mut self.work.lagrangian;
         lagrangian.set_gradient(self.problem);
         let part = HessianPart::Full;
-        let hessian = lagrangian.factorize(self.problem, RodLoad::Estimates, part, self.effort);
+        let hessian = lagrangian.factorize(self.problem, RowLoad::Estimates, part, self.effort);
         matches!(hessian, Ok(Definiteness::Definite))
             && lagrangian.solve(self.problem.model, self.effort).is_ok()
     }

@@ -124,7 +124,20 @@ impl Phase {
         let has_contact = problem.has_contact();
         let sqp = Self::sqp(problem, options, tuning);
         let rounds = Self::rounds(problem, options, tuning);
-        if model.rods().is_empty() || problem.is_bounded() && model.has_drives() {
+        if model.rods().is_empty() {
+            // What remains are the forces of supports, which each iteration solves for.
+            let multipliers = match model.constraints().is_empty() {
+                true => MultiplierUpdate::Rounds,
+                false => MultiplierUpdate::Solved,
+            };
+            [
+                None,
+                Some(Self {
+                    multipliers,
+                    ..rounds
+                }),
+            ]
+        } else if problem.is_bounded() && model.has_drives() {
             [None, Some(rounds)]
         } else if faces == Faces::Slivers && !has_contact {
             // The multipliers of rounds are a start for rounds; the phase that comes first looks for saddles.

@@ -1,7 +1,8 @@
 //! The pieces of the minimiser, each against something independent of it.
 
 use super::Minimiser;
-use super::lagrangian::{Definiteness, Lagrangian, RodLoad};
+use super::lagrangian::{Definiteness, Lagrangian};
+use crate::constraint::rows::RowLoad;
 use super::problem::StepProblem;
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::hessian::HessianPart;
@@ -36,6 +37,8 @@ fn step<'a>(state: &'a State, memories: &'a Memories, prediction: &'a [f64]) -> 
         span: H,
         h: H,
         formula: Formula::OneStep,
+        back: 0.0,
+        before: None,
         rest: &state.x,
         prediction,
         ahead: &state.x,
@@ -147,7 +150,7 @@ fn the_hessian_is_the_derivative_of_the_gradient() {
     lagrangian.set_gradient(problem);
     let mut effort = SolverEffort::default();
     let definite = lagrangian
-        .factorize(problem, RodLoad::Estimates, HessianPart::Full, &mut effort)
+        .factorize(problem, RowLoad::Estimates, HessianPart::Full, &mut effort)
         .unwrap();
     assert_eq!(
         (definite, effort.factorisations),
@@ -194,7 +197,7 @@ fn a_saddle_is_left_downwards_and_a_minimum_is_not() {
         let hessian = lagrangian
             .factorize(
                 problem,
-                RodLoad::Multipliers,
+                RowLoad::Multipliers,
                 HessianPart::Full,
                 &mut effort,
             )

@@ -2,7 +2,7 @@
 
 use super::driver::Drive;
 use super::gaps::Gaps;
-use crate::constraint::rows::VertexRows;
+use crate::constraint::rows::{RowLoad, VertexRows};
 use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;
 use crate::material::elastic_sheet::{ElasticSheet, StrainOfFace};
@@ -273,7 +273,7 @@ impl<'a> Fit<'a> {
         }
         self.gaps.add_hessian(&self.x, &mut sink);
         self.rows
-            .add_hessian(HessianPart::PositiveSemidefinite, &mut sink);
+            .add_hessian(HessianPart::PositiveSemidefinite, RowLoad::Estimates, &mut sink);
         drop(sink);
         self.matrix.factorize().ok()?;
         self.matrix.solve(self.model, &self.gradient, &mut self.dx);
