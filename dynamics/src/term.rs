@@ -124,11 +124,15 @@ pub(crate) struct StepStart<'a> {
     pub(crate) state: &'a State,
     /// What the potentials remember.
     pub(crate) memories: &'a Memories,
+    /// The state before, to which the formula reaches back.
+    pub(crate) before: Option<&'a State>,
     /// Length of the step, seconds.
     pub(crate) span: f64,
     /// Effective step `h`, the root of the factor of the forces, seconds.
     pub(crate) h: f64,
     pub(crate) formula: Formula,
+    /// `b` of `y = x0 + b (x0 - x_)` with the positions `x_` of the state before.
+    pub(crate) back: f64,
     /// `y`, `3V`, metres.
     pub(crate) rest: &'a [f64],
     /// `x^`, `3V`, metres.
@@ -139,15 +143,14 @@ pub(crate) struct StepStart<'a> {
 }
 
 impl StepStart<'_> {
-    /// `b` of `y = x0 + b (x0 - x_)` with the positions `x_` of the state before.
-    pub(crate) fn back(&self) -> f64 {
-        match self.formula {
-            Formula::OneStep => 0.0,
-            Formula::TwoStep => {
-                let part = self.h / self.span;
-                let ratio = (1.0 - part) / (2.0 * part - 1.0);
-                ratio * ratio / (1.0 + 2.0 * ratio)
-            }
+    /// Adds the velocities that the step is expected to end with (`3V`, metres per second): those at its start, and
+    /// of a two-step formula the extrapolation of the last two, whose error is of second order.
+    pub(crate) fn add_velocity_ahead(&self, out: &mut [f64]) {
+        let now = self.state;
+        let ratio = self.before.map_or(0.0, |b| self.span / (now.t - b.t));
+        let before = self.before.unwrap_or(now);
+        for (o, (v, w)) in out.iter_mut().zip(now.v.iter().zip(&before.v)) {
+            *o += v + ratio * (v - w);
         }
     }
 

@@ -210,7 +210,15 @@ impl Integrator for EnergyMomentum {
         proposal: &mut Proposal,
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
-        let (model, state, h) = (scene.model, attempt.state, attempt.h);
+        let (model, h) = (scene.model, attempt.h);
+        let mut damped = model.damping_loss(&attempt.state.v, 0.5 * h);
+        let start = (damped != 0.0).then(|| {
+            let mut start = attempt.state.clone();
+            model.damp(&mut start.v, 0.5 * h);
+            start
+        });
+        let state = start.as_ref().unwrap_or(attempt.state);
+        let attempt = attempt.from(state);
         self.memories.copy_from(attempt.memories);
         self.begin(model, &attempt);
         let (residual, outcome) = self.solve(model, state, h, effort)?;
@@ -234,8 +242,13 @@ impl Integrator for EnergyMomentum {
         model.set_pin_velocities(state.t + h, h, &mut motion.state.v);
         motion.state.x.copy_from_slice(&self.newton.x1);
         motion.state.t = state.t + h;
+        damped += model.damping_loss(&motion.state.v, 0.5 * h);
+        model.damp(&mut motion.state.v, 0.5 * h);
         let work = h * dot(&self.applied, &self.newton.u);
-        proposal.account = StepAccount::of_forces(residual, work, outcome);
+        proposal.account = StepAccount {
+            damped,
+            ..StepAccount::of_forces(residual, work, outcome)
+        };
         Ok(())
     }
 }

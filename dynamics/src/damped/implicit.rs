@@ -6,12 +6,14 @@ use crate::damped::minimiser::problem::StepProblem;
 use crate::damped::restitution::FormulaStep;
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
+use crate::step::history::History;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::local_error::LocalError;
 use crate::step::tuning::Tuning;
 use crate::term::{Formula, StepStart};
 use crate::{ImplicitOptions, SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Largest growth of the step that the two-step formula is used over: variable-step BDF2 is
 /// unstable from 1 + sqrt 2 on.
@@ -45,6 +47,10 @@ impl Integrator for Implicit {
         MethodTraits::minimising()
     }
 
+    fn depends_on_memory(&self, _: &History) -> bool {
+        self.formula == Formula::TwoStep
+    }
+
     fn propose(
         &mut self,
         scene: Scene<'_>,
@@ -55,7 +61,7 @@ impl Integrator for Implicit {
         let (state, h, minimiser) = (attempt.state, attempt.h, &mut self.minimiser);
         if self.formula == Formula::OneStep {
             proposal.motion.history.previous = None;
-            return two_step(minimiser, scene, attempt, None, proposal, effort);
+            return minimised(minimiser, scene, attempt, Reach::NONE, proposal, effort);
         }
         let previous = attempt
             .previous()
@@ -65,14 +71,21 @@ impl Integrator for Implicit {
             model,
             objective: &mut *objective,
         };
-        two_step(minimiser, inner, attempt, previous, proposal, effort)?;
+        let bodies = inner.objective.contact.as_ref().and_then(ContactTerm::points);
+        if previous.is_none() && bodies.is_none() && attempt.starts_itself() {
+            begin(minimiser, inner, attempt, proposal, effort)?;
+            proposal.motion.history.set_previous(Some(state));
+            return Ok(());
+        }
+        let reach = previous.map_or(Reach::NONE, |before| Reach::of_steps(before, state, h));
+        minimised(minimiser, inner, attempt, reach, proposal, effort)?;
         let points = objective.contact.as_ref().and_then(ContactTerm::points);
         let corrections = match (points, attempt.contacts, &proposal.motion.contacts) {
             (Some(points), Some(before), Some(after)) => FormulaStep {
                 model,
                 points,
                 span: h,
-                formula: coefficients(previous, state, h),
+                formula: [reach.b, reach.k],
                 before: previous.unwrap_or(state),
                 start: state,
                 end: &proposal.motion.state,
@@ -90,35 +103,112 @@ impl Integrator for Implicit {
                 }
             }
         }
-        // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
-        // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
-        if let Some(before) = &mut history.previous {
-            model.damp(&mut before.v, h);
-        }
         Ok(())
     }
 }
 
-/// `b` and `k` of the formula of a step of `h` seconds; those of implicit Euler without a state before the
-/// present one.
-fn coefficients(previous: Option<&State>, state: &State, h: f64) -> [f64; 2] {
-    let w = previous.map_or(0.0, |before| h / (state.t - before.t));
-    [w * w, 1.0 + w].map(|c| c / (1.0 + 2.0 * w))
+/// How a step makes positions and velocities of those before: with the state `_` before its start `0`,
+///
+/// ```text
+/// x1 = x0 + b (x0 - x_) + k h v1,   v1 = v0 + b (v0 - v_) + k h a1.
+/// ```
+#[derive(Debug, Clone, Copy)]
+struct Reach<'a> {
+    before: Option<&'a State>,
+    b: f64,
+    k: f64,
 }
 
-/// Proposes the step of the two-step formula, or of implicit Euler where there is no state before the present
-/// one.
-fn two_step(
+impl<'a> Reach<'a> {
+    /// Implicit Euler.
+    const NONE: Self = Self {
+        before: None,
+        b: 0.0,
+        k: 1.0,
+    };
+
+    /// The backward differentiation formula of second order, with steps of any lengths.
+    fn of_steps(before: &'a State, start: &State, h: f64) -> Self {
+        let w = h / (start.t - before.t);
+        let [b, k] = [w * w, 1.0 + w].map(|c| c / (1.0 + 2.0 * w));
+        let before = Some(before);
+        Self { before, b, k }
+    }
+}
+
+/// The part of a step that its first stage takes, `1 - 1 / sqrt 2`.
+const STAGE: f64 = 1.0 - FRAC_1_SQRT_2;
+
+/// Proposes a step of second order without a state before: the diagonally implicit Runge-Kutta method of two stages
+/// (R. Alexander, SIAM J. Numer. Anal. 14, 1977), which is L-stable. With `g = 1 - 1 / sqrt 2` its first stage is a
+/// step of implicit Euler of the length `g h`, and its second one, from there to the end,
+///
+/// ```text
+/// x1 = x0 + (1 - g) h va + g h v1 = xa + (1/g - 2) (xa - x0) + g h v1.
+/// ```
+///
+/// (A step of implicit Euler errs by `h^2 a' / 2` in the velocities, which never goes away. Scenes with rigid bodies
+/// that respond begin with it all the same: the account of their impacts is that of one stage.)
+fn begin(
     minimiser: &mut Minimiser,
     scene: Scene<'_>,
     attempt: Attempt<'_>,
-    previous: Option<&State>,
+    proposal: &mut Proposal,
+    effort: &mut SolverEffort<'_>,
+) -> Result<(), StepError> {
+    let (start, h) = (attempt.state, attempt.h);
+    let Scene { model, objective } = scene;
+    let inner = Scene {
+        model,
+        objective: &mut *objective,
+    };
+    let first = attempt.of_length(STAGE * h);
+    minimised(minimiser, inner, first, Reach::NONE, proposal, effort)?;
+    let StepAccount {
+        residual,
+        outcome,
+        mut exchange,
+        ..
+    } = proposal.account;
+    let middle = proposal.motion.clone();
+    let second = attempt.going_on(&middle).of_length((1.0 - STAGE) * h);
+    let reach = Reach {
+        before: Some(start),
+        b: 1.0 / STAGE - 2.0,
+        k: STAGE / (1.0 - STAGE),
+    };
+    let inner = Scene { model, objective };
+    minimised(minimiser, inner, second, reach, proposal, effort)?;
+    let end = &mut proposal.motion.state;
+    end.t = start.t + h;
+    exchange.add(proposal.account.exchange);
+    let error = LocalError::of_start(model, [start, &middle.state, end], STAGE);
+    proposal.account = StepAccount {
+        residual: residual.max(proposal.account.residual),
+        outcome: outcome.max(proposal.account.outcome),
+        exchange,
+        damped: model.damping_loss(&start.v, h),
+        error: Some(error),
+    };
+    Ok(())
+}
+
+/// Proposes the step of a formula.
+fn minimised(
+    minimiser: &mut Minimiser,
+    scene: Scene<'_>,
+    attempt: Attempt<'_>,
+    reach: Reach<'_>,
     proposal: &mut Proposal,
     effort: &mut SolverEffort<'_>,
 ) -> Result<(), StepError> {
     let (state, h) = (attempt.state, attempt.h);
     // a = 1 + b: differences keep pinned vertices where they are to the last bit.
-    let [b, k] = coefficients(previous, state, h);
+    let Reach {
+        before: previous,
+        b,
+        k,
+    } = reach;
     let before = previous.unwrap_or(state);
     let formula = previous.map_or(Formula::OneStep, |_| Formula::TwoStep);
     let model = scene.model;
@@ -127,19 +217,29 @@ fn two_step(
         .map_err(|source| StepError::Linalg { t: state.t, source })?;
     // The minimiser lends its arrays to the problem.
     let [mut rest, mut prediction, mut ahead] = std::mem::take(&mut minimiser.start);
+    // Of v_ the damping leaves by now what it does in the step before, and of both what it does in this one.
+    prediction.copy_from_slice(&before.v);
+    model.damp(&mut prediction, state.t - before.t);
     for i in 0..state.x.len() {
-        let (x, v) = (state.x[i], state.v[i]);
+        let v = state.v[i];
+        prediction[i] = v + b * (v - prediction[i]);
+    }
+    model.damp(&mut prediction, h);
+    for i in 0..state.x.len() {
+        let x = state.x[i];
         rest[i] = x + b * (x - before.x[i]);
-        prediction[i] = rest[i] + k * h * (v + b * (v - before.v[i]));
-        ahead[i] = x + h * v;
+        prediction[i] = rest[i] + k * h * prediction[i];
+        ahead[i] = x + h * state.v[i];
     }
     model.place_pins(state.t + h, &mut ahead);
     let start = StepStart {
         state,
         memories: attempt.memories,
+        before: previous,
         span: h,
         h: k * h,
         formula,
+        back: b,
         rest: &rest,
         prediction: &prediction,
         ahead: &ahead,
@@ -168,6 +268,7 @@ fn two_step(
         residual: minimum.residual,
         outcome: minimum.outcome,
         exchange,
+        damped: model.damping_loss(&state.v, h),
         error: Some(LocalError::of(model, previous, state, &motion.state)),
     };
     Ok(())

@@ -490,6 +490,10 @@ impl Substeps<'_, '_> {
                 let potential =
                     [before, after].map(|s| model.energy_with(&motion.memories, after.t, &s.x));
                 let force = || force_sum(model, &motion.memories, after);
+                let exchange = Exchange {
+                    work: exchange.work - proposal.account.damped,
+                    ..exchange
+                };
                 motion
                     .account
                     .after(model, [before, after], potential, force, &exchange)?
@@ -513,7 +517,11 @@ impl Substeps<'_, '_> {
     ///
     /// Where the step is not to be halved any more, the fallback takes it if there is one.
     fn follow(&mut self, refusal: StepError) -> Decision<Stop> {
-        let looks_back = self.memory > Memory::Restart && self.engine.motion.history.looks_back();
+        let Engine {
+            integrator, motion, ..
+        } = &*self.engine;
+        let looks_back =
+            self.memory > Memory::Restart && integrator.depends_on_memory(&motion.history);
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         if self.proposer == Proposer::Fallback {
             Decision::Stop(self.stop(refusal))
@@ -631,10 +639,8 @@ impl Stepping for Substeps<'_, '_> {
         }
         totals.work += exchange.work + exchange.driven;
         totals.friction += exchange.friction;
-        let dissipated = model.damping_loss(&motion.state.v, h);
-        model.damp(&mut motion.state.v, h);
-        totals.dissipated += dissipated;
-        motion.account.spend(dissipated);
+        totals.dissipated += step.damped;
+        motion.account.spend(step.damped);
         let settled = model.settle(&motion.state, &mut motion.memories);
         totals.plastic += settled.dissipated;
         totals.work += settled.work;

@@ -1,22 +1,30 @@
-//! Potentials and constant forces in a step.
+//! Potentials and explicit forces in a step.
 
 use crate::SheetModel;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::model::PINNED;
-use crate::term::{Barrier, Exchange, Iterate, Refusal, StepStart, Term, Value};
+use crate::term::{Barrier, Exchange, Formula, Iterate, Refusal, StepStart, Term, Value};
 use isosheet_coords::linalg::norm_inf;
+use isosheet_mesh::VertexId;
 use std::sync::Arc;
 
-/// `V(x, t) - f . (x - x^)`: the potentials of a model at the end of a step, and its non-conservative forces
-/// `f`, constant over the step as they are at its start; `x^` is the prediction.
+/// `V(x, t) - f . (x - x^)`: the potentials of a model at the end of a step, and its explicit forces `f`; `x^` is
+/// the prediction.
+///
+/// The explicit forces are those at the time of the end, which is exact where they depend on time alone, and at the
+/// positions and velocities that the step is expected to end with ([`StepStart::ahead`],
+/// [`StepStart::add_velocity_ahead`]): a two-step formula keeps its order (U. M. Ascher, S. J. Ruuth and B. T. R.
+/// Wetton, SIAM J. Numer. Anal. 32, 1995).
 pub(super) struct Acting {
     model: Arc<SheetModel>,
     has_limit: bool,
     prediction: Vec<f64>,
     /// `f`, `3V`, newtons.
     applied: Vec<f64>,
-    /// The same, zero at pinned vertices.
+    /// `f` at free vertices and zero at pinned ones.
     applied_free: Vec<f64>,
+    /// Work arrays, `3V`; empty without explicit forces.
+    scratch: Vec<f64>,
     /// Energy of the potentials where it was evaluated last, and its round-off, joules.
     energy: f64,
     round_off: f64,
@@ -57,7 +65,9 @@ impl Evaluated {
 impl Acting {
     pub(super) fn new(model: &Arc<SheetModel>) -> Self {
         let n = model.coordinate_count();
+        let scratch = if model.forces().is_empty() { 0 } else { n };
         Self {
+            scratch: vec![0.0; scratch],
             has_limit: model.potentials().any(|p| p.has_limit()),
             model: Arc::clone(model),
             prediction: vec![0.0; n],
@@ -80,7 +90,7 @@ impl Acting {
         free.flat_map(|(row, _)| row).map(|f| f.abs()).sum()
     }
 
-    /// Work of the constant forces at the free vertices over displacements, joules.
+    /// Work of the explicit forces at the free vertices over displacements, joules.
     fn work(&self, moved: impl Iterator<Item = f64>) -> f64 {
         self.applied_free
             .iter()
@@ -92,12 +102,21 @@ impl Acting {
 
 impl Term for Acting {
     fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
-        let (model, state) = (&self.model, step.state);
+        let model = &self.model;
         self.prediction.copy_from_slice(step.prediction);
-        self.applied.fill(0.0);
-        model.add_explicit_force(state.t, &state.x, &state.v, &mut self.applied);
-        self.applied_free.copy_from_slice(&self.applied);
-        model.clear_pinned(&mut self.applied_free);
+        if !model.forces().is_empty() {
+            self.scratch.fill(0.0);
+            step.add_velocity_ahead(&mut self.scratch);
+            self.applied.fill(0.0);
+            model.add_explicit_force(step.t(), step.ahead, &self.scratch, &mut self.applied);
+            if let Some(i) = self.applied.iter().position(|f| !f.is_finite()) {
+                let (vertex, value) = (VertexId::from_index(i / 3), self.applied[i]);
+                let t = step.t();
+                return Err(Refusal::NonFiniteForce { vertex, value, t });
+            }
+            self.applied_free.copy_from_slice(&self.applied);
+            model.clear_pinned(&mut self.applied_free);
+        }
         self.energy_at.forget();
         self.force_at.forget();
         Ok(())
@@ -173,11 +192,28 @@ impl Term for Acting {
         any
     }
 
+    /// The work of the explicit forces: of implicit Euler that of the forces at the end, and of a two-step formula
+    /// that of their mean at both ends, which may err by the difference of the two.
     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
-        let moved = at.x.iter().zip(&step.state.x).map(|(x, x0)| x - x0);
-        let work = self.work(moved);
+        let start = step.state;
+        if self.model.forces().is_empty() {
+            return Ok(Exchange::default());
+        }
+        let moved = || at.x.iter().zip(&start.x).map(|(x, x0)| x - x0);
+        let end = self.work(moved());
+        let mut difference = 0.0;
+        if step.formula == Formula::TwoStep {
+            self.scratch.fill(0.0);
+            self.model
+                .add_explicit_force(start.t, &start.x, &start.v, &mut self.scratch);
+            self.model.clear_pinned(&mut self.scratch);
+            let changes = self.applied_free.iter().zip(&self.scratch);
+            let parts = changes.zip(moved()).map(|((end, begin), d)| (end - begin) * d);
+            difference = parts.sum();
+        }
         Ok(Exchange {
-            work,
+            work: end - 0.5 * difference,
+            driven_size: difference.abs(),
             ..Exchange::default()
         })
     }

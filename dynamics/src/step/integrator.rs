@@ -37,6 +37,8 @@ pub(crate) struct StepAccount {
     pub(crate) outcome: StepOutcome,
     /// Energy exchanged at the free vertices.
     pub(crate) exchange: Exchange,
+    /// Energy that the velocity damping has taken, joules.
+    pub(crate) damped: f64,
     /// The estimated error of the positions, by methods that have an estimate.
     pub(crate) error: Option<LocalError>,
 }
@@ -62,6 +64,7 @@ impl StepAccount {
                 work,
                 ..Exchange::default()
             },
+            damped: 0.0,
             error: None,
         }
     }
@@ -123,6 +126,33 @@ impl<'a> Attempt<'a> {
             history: &start.history,
             memory,
         }
+    }
+
+    /// From another state.
+    pub(crate) fn from(self, state: &'a State) -> Self {
+        Self { state, ..self }
+    }
+
+    /// Of another length, seconds.
+    pub(crate) fn of_length(self, h: f64) -> Self {
+        Self { h, ..self }
+    }
+
+    /// From a motion within the sub-step; what potentials remember is that of its start.
+    pub(crate) fn going_on(self, middle: &'a Motion) -> Self {
+        Self {
+            state: &middle.state,
+            contacts: middle.contacts.as_ref(),
+            history: &middle.history,
+            memory: Memory::All,
+            ..self
+        }
+    }
+
+    /// Whether a method that looks back may begin with a step of its own where there is no state before. (One that
+    /// would have created energy is that of a one-step method.)
+    pub(crate) fn starts_itself(&self) -> bool {
+        self.memory > Memory::Restart
     }
 
     /// With these phases of a minimisation alone.
@@ -190,6 +220,11 @@ pub(crate) trait Integrator: Send {
 
     /// What the method asks of a scene and what it can take.
     fn traits(&self) -> MethodTraits;
+
+    /// Whether a sub-step from a motion with this history is another one without memory ([`Memory::Restart`]).
+    fn depends_on_memory(&self, history: &History) -> bool {
+        history.looks_back()
+    }
 }
 
 /// What a method asks of a scene, and what it can take.

@@ -440,6 +440,7 @@ fn propose(engine: &mut Engine, start: &Motion, h: f64) -> Result<Vec<u8>, StepE
         residual,
         outcome,
         exchange,
+        damped,
         error,
     } = proposal.account;
     let exchange = [
@@ -448,6 +449,7 @@ fn propose(engine: &mut Engine, start: &Motion, h: f64) -> Result<Vec<u8>, StepE
         exchange.stored,
         exchange.friction,
         exchange.length_slack,
+        damped,
     ];
     let account = (residual, outcome, exchange, error.map(|error| error.size));
     Ok(bits(&(&proposal.motion.compact(), account)))

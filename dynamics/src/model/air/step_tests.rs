@@ -94,6 +94,8 @@ impl Scene {
             span: SPAN,
             h: H,
             formula: Formula::TwoStep,
+            back: 0.0,
+            before: None,
             rest: &rest,
             prediction: &self.ahead,
             ahead: &self.ahead,

@@ -295,7 +295,7 @@ impl Term for FlowStep {
         let attached = self.attached.clone();
         let past = attached.past(step.memories);
         let (last, before) = (&past.circulations[0], &past.circulations[1]);
-        let back = step.back();
+        let back = step.back;
         let circulation = last.iter().zip(before);
         let state = step.state;
         let shape = attached.air.lattice.shape(&state.x);

@@ -75,6 +75,8 @@ fn the_term_follows_the_load() {
         span: 0.02,
         h: 0.02,
         formula: Formula::OneStep,
+        back: 0.0,
+        before: None,
         rest: x,
         prediction: &ahead,
         ahead: &ahead,
