@@ -141,7 +141,7 @@ pub use run::fold_start::start_of_folding;
 pub use run::observe::{Frames, History, Observer, RunEnd};
 pub use run::simulation::Simulation;
 pub use state::State;
-pub use step::reaction::Reaction;
+pub use step::reaction::{Imbalance, Reaction};
 #[doc(hidden)]
 pub use step::tuning::{Constant, Tuning};
 

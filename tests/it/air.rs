@@ -166,8 +166,8 @@ fn friction_alone_brakes_a_sliding_card() {
     let state = State::moving(sheet.positions().to_vec(), v);
     let model = model(&sheet).with_air(air).expect("valid");
     let mut run = start(model, state, Method::default());
-    for _ in 0..200 {
-        run.step(2e-3).expect("accepted");
+    for _ in 0..400 {
+        run.step(1e-3).expect("accepted");
     }
     let speed = 5.0 / (1.0 + k * 5.0 * 0.4);
     let want = Vector3::new(0.6, -0.8, 0.0) * speed;

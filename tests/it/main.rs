@@ -22,6 +22,7 @@ mod forces;
 mod hard;
 mod impacts;
 mod invariance;
+mod load_orders;
 mod loads;
 mod locking;
 mod materials;

@@ -146,7 +146,7 @@ fn changing_steps_do_not_feed_energy() {
     // keeps it, and that of symplectic methods of the order p does not grow beyond (omega h)^p.
     let squared = problem.gravity / problem.length * 1e-4;
     let bounds = [
-        ("BDF2", [-1.0, 1e-12]),
+        ("BDF2", [-1.0, squared.powi(2)]),
         ("implicit Euler", [-1.0, 1e-12]),
         ("energy-momentum", [-1e-11, 1e-11]),
         ("RATTLE", [-squared, squared]),
@@ -163,8 +163,10 @@ fn changing_steps_do_not_feed_energy() {
                 let report = run.step(h).expect("accepted");
                 let before = std::mem::replace(&mut drift, report.energy_drift / scale);
                 let is_damped = ["implicit Euler", "BDF2"].contains(&name);
+                // A step without history, which follows one that is shorter by more than half, errs by its order.
+                let start = if name == "BDF2" { squared.powi(2) } else { 0.0 };
                 assert!(
-                    !is_damped || drift < before + 1e-12,
+                    !is_damped || drift < before + 1e-12 + start,
                     "{name}, {short:e} s, step {k}: from {before:e} to {drift:e}"
                 );
                 assert!(
@@ -254,16 +256,14 @@ fn no_report_holds_a_nan() {
 
         let model = pinned(1, 0.05).with_force(BreaksLater);
         let mut run = Simulation::new(model, start(), method).expect("valid");
-        // The damped methods ask for the force at the start of a step, the others within it.
         let damped = ["implicit Euler", "BDF2"].contains(&name);
-        for _ in 0..if damped { 2 } else { 1 } {
-            let report = run.step(1e-2).unwrap_or_else(|e| panic!("{name}: {e}"));
-            assert_eq!(report.work, 0.0, "{name}");
-        }
+        // Steps are halved until the smallest one asks for the force where it is not a number.
+        let report = run.step(1e-2).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_eq!(report.work, 0.0, "{name}");
         match run.step(1e-2).expect_err("the force is not a number") {
             StepError::NonFiniteForce { vertex, t, .. } if damped => {
                 assert!(
-                    vertex == VertexId(1) && t == 0.02,
+                    vertex == VertexId(1) && (0.01..0.015).contains(&t),
                     "{name}: {vertex}, {t} s"
                 );
             }

@@ -270,7 +270,8 @@ impl Rattle {
             .apply(&self.newton.x1, &self.difference, &mut self.newton.rods);
     }
 
-    /// Mean forces of the supports over the step, up to the velocity `u`.
+    /// Mean forces of the supports over the step, up to the velocity `u`; the velocities at the end, as they are
+    /// foretold, are in `difference`.
     fn begin_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
         let (u, v) = (&self.newton.u, &state.v);
         if !self.balance.begin(model, |i| (u[i] - v[i]) / h) {
@@ -281,7 +282,7 @@ impl Rattle {
         balance.add_potentials(model, &self.memories, (t, &state.x), 0.5);
         balance.add_potentials(model, &self.memories, (end, &self.newton.x1), 0.5);
         balance.add_applied(model, t, &state.x, &state.v, 0.5);
-        balance.add_applied(model, end, &self.newton.x1, &self.newton.u, 0.5);
+        balance.add_applied(model, end, &self.newton.x1, &self.difference, 0.5);
         balance.add_rods(model, &state.x, &self.newton.impulse, -1.0 / h);
         balance.add_loads(
             self.newton
@@ -327,10 +328,18 @@ impl Rattle {
             &self.newton.x1,
             &mut self.force,
         );
+        // Forces of velocities ask for that at the end, which the first half of the step foretells to second order.
+        for (d, (u, v)) in self
+            .difference
+            .iter_mut()
+            .zip(self.newton.u.iter().zip(&state.v))
+        {
+            *d = 2.0 * u - v;
+        }
         model.applied_force(
             state.t + h,
             &self.newton.x1,
-            &self.newton.u,
+            &self.difference,
             &mut self.applied,
         );
         // Solved for the change of velocity, so that round-off is relative to it.

@@ -1,5 +1,6 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
+use crate::constraint::VertexConstraint;
 use crate::contact::ContactTerm;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
@@ -72,7 +73,12 @@ impl Integrator for Implicit {
             objective: &mut *objective,
         };
         let bodies = inner.objective.contact.as_ref().and_then(ContactTerm::points);
-        if previous.is_none() && bodies.is_none() && attempt.starts_itself() {
+        let may_jump = match model.rods().is_empty() {
+            true => model.constraints().iter().any(VertexConstraint::moves),
+            false => model.has_drives(),
+        };
+        let is_smooth = bodies.is_none() && !attempt.touches() && !may_jump;
+        if previous.is_none() && is_smooth && attempt.starts_itself() {
             begin(minimiser, inner, attempt, proposal, effort)?;
             proposal.motion.history.set_previous(Some(state));
             return Ok(());
@@ -147,8 +153,11 @@ const STAGE: f64 = 1.0 - FRAC_1_SQRT_2;
 /// x1 = x0 + (1 - g) h va + g h v1 = xa + (1/g - 2) (xa - x0) + g h v1.
 /// ```
 ///
-/// (A step of implicit Euler errs by `h^2 a' / 2` in the velocities, which never goes away. Scenes with rigid bodies
-/// that respond begin with it all the same: the account of their impacts is that of one stage.)
+/// (A step of implicit Euler errs by `h^2 a' / 2` in the velocities, which never goes away. It is the first one all the
+/// same where a force is not smooth: in contact, where its velocities go to their ends monotonically, so that nothing
+/// slips that sticks; in scenes with rigid bodies that respond, whose impacts are accounted for by one stage; and where
+/// rods, curves or surfaces take vertices along with supports that may begin to move abruptly, since the second stage
+/// takes back a part of the impulse of the first one.)
 fn begin(
     minimiser: &mut Minimiser,
     scene: Scene<'_>,

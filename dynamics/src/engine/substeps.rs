@@ -11,6 +11,7 @@ use crate::diagnosis::pressing::pressing;
 use crate::diagnosis::rank::rod_rank;
 use crate::engine::rod_forces::rod_forces;
 use crate::engine::subdivision::Subdivision;
+use crate::model::breaks::Start;
 use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
 use crate::potential::{At, Memories};
@@ -252,7 +253,48 @@ impl Engine {
     }
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
+    ///
+    /// A step that something prescribed breaks ends a sub-step there ([`SheetModel::with_breaks`]).
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
+        let end = self.state().t + h;
+        let mut left = h;
+        loop {
+            let t = self.state().t;
+            let (start, next) = self.model.breaks_in([t, end], h);
+            if start == Start::AtBreak {
+                totals.work += self.begin_anew(h);
+            }
+            let Some(next) = next else {
+                return self.advance_between(left, totals);
+            };
+            self.advance_between(next - t, totals)?;
+            if totals.taut.is_some() {
+                return Ok(());
+            }
+            left = end - self.state().t;
+        }
+    }
+
+    /// Forgets the state before, and gives moving pins the velocities with which they go on (of functions by
+    /// differences over a part of `h` seconds); what that does to the kinetic energy, joules.
+    fn begin_anew(&mut self, h: f64) -> f64 {
+        let (model, motion) = (&self.model, &mut self.motion);
+        motion.history.previous = None;
+        if model.moving_pins().next().is_none() {
+            return 0.0;
+        }
+        let State { t, v, .. } = &mut motion.state;
+        let before = model.kinetic_energy(v);
+        model.set_pin_velocities(*t, h, v);
+        model.kinetic_energy(v) - before
+    }
+
+    /// Advances by `h` seconds in which nothing breaks.
+    fn advance_between(
+        &mut self,
+        h: f64,
+        totals: &mut StepTotals<'_>,
+    ) -> Result<(), StepError> {
         let mut lengths = Subdivision::new(self.state().t, h, PATIENCE);
         if let (Some(_), Some(longest)) = (self.control.accuracy, self.motion.history.longest) {
             lengths.limit(longest.max(lengths.part(self.control.min_fraction)));
@@ -372,6 +414,9 @@ impl Substeps<'_, '_> {
     /// Why no sub-step was found: supports or bodies that ask for too much, rods that lock or depend on each other, or
     /// as the integrator said.
     fn stop(&mut self, cause: StepError) -> Stop {
+        if matches!(cause, StepError::NonFiniteForce { .. }) {
+            return Stop::Error(cause);
+        }
         let t = self.engine.state().t;
         let ends = [self.lengths.end(), t + self.lengths.length()];
         let mut infeasible = ends

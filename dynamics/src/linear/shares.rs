@@ -5,7 +5,7 @@ use crate::constraint::rows::VertexRows;
 use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRows};
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
-use crate::vectors::point;
+use crate::vectors::{add, point};
 use isosheet_coords::linalg::norm_inf;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
@@ -51,6 +51,31 @@ impl Shares {
     }
 }
 
+/// Where there are no rods: of the force at each vertex the part along the normals of its constraints.
+fn local(model: &SheetModel, (t, x): (f64, &[f64]), left: &[f64], active: &[bool]) -> Shares {
+    let mut sum = Shares::none(model);
+    let constraints = model.constraints();
+    // Constraints of one vertex take what those before them have left; of normals at right angles that is all.
+    let mut rest = left.to_vec();
+    for (i, c) in constraints.iter().enumerate() {
+        let v = c.vertex();
+        if active[i] && !model.is_pinned(v) {
+            let j = c.at(t, &point(x, v)).jacobian;
+            let f = point(&rest, v);
+            let pseudo = j.pseudo_inverse(f64::EPSILON).unwrap_or_default();
+            let taken = pseudo * (j * f);
+            sum.constraints[i] += taken;
+            add(&mut rest, v, &-taken);
+        }
+    }
+    for v in model.pins() {
+        for k in 3 * v.index()..3 * v.index() + 3 {
+            sum.pins[k] += left[k];
+        }
+    }
+    sum
+}
+
 /// Forces of the supports that, with tensions of the rods, balance the forces `left` (`3V`, newtons) at time
 /// `t` and positions `x`: `left = -G(x)^T m - J(x, t)^T n` at free vertices, in the sense of least squares in
 /// the inverse of the mass matrix, with the vertex constraints that are `active`, and what is missing at
@@ -65,6 +90,9 @@ pub(crate) fn shares(
 ) -> Option<Shares> {
     if left.iter().all(|f| *f == 0.0) {
         return None;
+    }
+    if model.rods().is_empty() && model.mass().edge.is_none() {
+        return Some(local(model, (t, x), left, active));
     }
     let mut matrix = PrimalMatrix::of_rods(model).ok()?;
     let mut rows = VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0);

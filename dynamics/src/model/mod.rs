@@ -3,6 +3,7 @@
 pub(crate) mod air;
 pub(crate) mod attached;
 pub(crate) mod clamps;
+pub(crate) mod breaks;
 mod damped_range;
 mod damping;
 #[cfg(test)]
@@ -75,6 +76,8 @@ pub struct SheetModel {
     /// Forces that damped steps take as terms of their objective.
     implicit: Vec<Box<dyn ImplicitForce>>,
     damping: Vec<Damping>,
+    /// When what is prescribed changes abruptly, seconds, in order.
+    breaks: Vec<f64>,
     /// The vertices of sheets; those after them belong to rigid bodies and to surfaces in prescribed motion.
     sheet_vertices: usize,
     /// The first vertex of surfaces in prescribed motion.
@@ -144,6 +147,7 @@ impl SheetModel {
             forces: Vec::new(),
             implicit: Vec::new(),
             damping: Vec::new(),
+            breaks: Vec::new(),
             sheet_vertices: n,
             driven_from: n,
             free_index: (0..n as u32).collect(),

@@ -253,6 +253,17 @@ impl Profile {
         }
     }
 
+    /// The times at which the rate or the acceleration jumps, in order (seconds), see
+    /// [`SheetModel::with_breaks`](crate::SheetModel::with_breaks): ends of ramps and of run-ups, and keyframes.
+    pub fn breaks(&self) -> Vec<f64> {
+        match self {
+            _ if self.is_constant() => Vec::new(),
+            Self::Constant(_) | Self::SmoothStep { .. } | Self::Sine { .. } => Vec::new(),
+            Self::Ramp { begin, end, .. } | Self::RunUp { begin, end, .. } => vec![*begin, *end],
+            Self::Keyframes { keys, .. } => keys.iter().map(|[t, _]| *t).collect(),
+        }
+    }
+
     /// Value, rate and acceleration at time `t`.
     pub(crate) fn derivatives(&self, t: f64) -> [f64; 3] {
         match self {

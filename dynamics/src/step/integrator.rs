@@ -149,6 +149,11 @@ impl<'a> Attempt<'a> {
         }
     }
 
+    /// Whether anything touches at its beginning.
+    pub(crate) fn touches(&self) -> bool {
+        self.contacts.is_some_and(|contacts| !contacts.active.list().is_empty())
+    }
+
     /// Whether a method that looks back may begin with a step of its own where there is no state before. (One that
     /// would have created energy is that of a one-step method.)
     pub(crate) fn starts_itself(&self) -> bool {

@@ -1,12 +1,13 @@
 //! Forces of supports on the sheet.
 
-use crate::SheetModel;
+use crate::{SheetModel, State};
 use crate::constraint::rows::VertexRows;
 use crate::model::support::Support;
 use crate::potential::Memories;
 use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::vectors::{add, point};
+use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +18,20 @@ pub struct Reaction {
     pub support: Support,
     /// Force on the sheet, newtons.
     pub force: Vector3<f64>,
+}
+
+/// What the forces of supports leave of the balance of forces and torques of a sub-step: reactions, contact, weight and
+/// all other forces, less the rate of the momentum ([`Simulation::reactions`](crate::Simulation::reactions)).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Imbalance {
+    /// Sum of all forces, newtons; zero where they balance.
+    pub force: Vector3<f64>,
+    /// Sum of their torques about the mean of the vertices, newton metres.
+    pub torque: Vector3<f64>,
+    /// Sum of the magnitudes of the forces of the supports, newtons, to compare the force with.
+    pub forces: f64,
+    /// Sum of the magnitudes of their torques about the mean of the vertices, newton metres.
+    pub torques: f64,
 }
 
 /// The supports of a model in the order of their reactions: pins, then vertex constraints.
@@ -302,6 +317,39 @@ impl Balance {
             force: own + share,
         });
         pins.chain(constraints).collect()
+    }
+
+    /// What the [reactions](Self::reactions) leave of the balance at the end of a step: the forces at free vertices, less
+    /// the part of them that rods and supports take. Known for forces at the end of a step alone.
+    pub(crate) fn imbalance(&self, model: &SheetModel, state: &State) -> Option<Imbalance> {
+        if self.time != ForceTime::End || self.pins.is_empty() {
+            return None;
+        }
+        let rows = state.x.as_chunks::<3>().0;
+        let mean = rows.iter().map(|p| Vector3::from(*p)).sum::<Vector3<f64>>() / rows.len() as f64;
+        let shares = self.residual_momentum.shares(model, state.t);
+        let [mut force, mut torque] = self.residual_momentum.sums(&mean);
+        let (mut forces, mut torques) = (0.0, 0.0);
+        let mut add = |v: VertexId, own: Vector3<f64>, share: Vector3<f64>| {
+            let arm = point(&state.x, v) - mean;
+            force -= share;
+            torque -= arm.cross(&share);
+            forces += (own + share).norm();
+            torques += arm.cross(&(own + share)).norm();
+        };
+        for v in model.pins() {
+            add(v, point(&self.pins, v), shares.pin(v));
+        }
+        let own = self.constraints.iter().zip(&shares.constraints);
+        for (c, (own, share)) in model.constraints().iter().zip(own) {
+            add(c.vertex(), *own, *share);
+        }
+        Some(Imbalance {
+            force,
+            torque,
+            forces,
+            torques,
+        })
     }
 
     /// Work of moving pins and vertex constraints in a step from `x0` at `t0` to `x1` at `t1`, joules: with

@@ -3,6 +3,7 @@
 use crate::SheetModel;
 use crate::linear::shares::{Shares, shares};
 use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Largest number of entries, one for each iteration of a projection; projections need three to six. The
@@ -105,6 +106,20 @@ impl ResidualMomentum {
             check_finite("positions of these", &entry.x)?;
         }
         Ok(())
+    }
+
+    /// Sum of the momenta, and of their moments about a point, over all vertices.
+    pub(crate) fn sums(&self, about: &Vector3<f64>) -> [Vector3<f64>; 2] {
+        let mut sums = [Vector3::zeros(); 2];
+        for Entry { x, momentum, .. } in &self.entries[..self.len] {
+            let places = x.as_chunks::<3>().0.iter();
+            for (x, m) in places.zip(momentum.as_chunks::<3>().0) {
+                let (arm, m) = (Vector3::from(*x) - about, Vector3::from(*m));
+                sums[0] += m;
+                sums[1] += arm.cross(&m);
+            }
+        }
+        sums
     }
 
     /// Adds a multiple of another one.

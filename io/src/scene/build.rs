@@ -116,7 +116,9 @@ impl Builder<'_> {
             sheet,
             points,
             bodies: self.bodies.carried(),
-            model: model.expect("a change that fails ends the building"),
+            model: model
+                .expect("a change that fails ends the building")
+                .with_breaks(self.scene.breaks()),
             contacts,
             obstacles,
             integration: self.scene.method.build(),

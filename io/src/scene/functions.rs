@@ -78,6 +78,23 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// When functions of time and motions by poses change abruptly, seconds, see
+    /// [`SheetModel::with_breaks`](isosheet_dynamics::SheetModel::with_breaks).
+    pub(crate) fn breaks(&self) -> Vec<f64> {
+        let mut scene = self.clone();
+        let functions = scene.functions_mut().into_iter();
+        let mut all: Vec<f64> = functions
+            .flat_map(|(_, function)| function.as_given().breaks())
+            .collect();
+        for Moved { motion, .. } in scene.motions_mut() {
+            let poses = motion.poses.iter().flat_map(|poses| &poses.keys);
+            all.extend(poses.map(|key| key.time));
+        }
+        all
+    }
+}
+
 /// A rigid motion of a scene.
 pub(crate) struct Moved<'a> {
     pub(crate) key: Key,

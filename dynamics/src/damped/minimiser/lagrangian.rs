@@ -26,10 +26,10 @@ use rand_chacha::ChaCha8Rng;
 /// above the start of its step by so many times the round-off of both.
 pub(super) const OPERATIONS: f64 = 8.0;
 
-/// Penalty of vertex constraints that are solved for, relative to the stiffness of the linear system at their
-/// vertices: the root of the round-off that the penalty makes and of the error that it leaves, whose product is that
-/// of the numbers.
-const SUPPORT_STIFFNESS: f64 = 1e8;
+/// Penalty of vertex constraints that are solved for, relative to the stiffness of masses and potentials at their
+/// vertices: a solution of the linear system leaves a millionth of an error, and round-off that is as far below the
+/// stiffness along the surface.
+const SUPPORT_STIFFNESS: f64 = 1e6;
 
 /// The augmented Lagrangian at an iterate,
 ///
@@ -316,13 +316,13 @@ impl Lagrangian {
         self.matrix.clear();
         let (objective, at) = problem.objective_at(&self.x);
         objective.add_hessian(at, h, part, &mut self.matrix);
-        self.matrix
-            .add_rods(model, &self.x, &self.axial, &self.transverse);
         if load == RowLoad::Multipliers {
             let matrix = &self.matrix;
             let stiffness = |v: VertexId| matrix.largest_diagonal(v);
             self.vertex_rows.stiffen(SUPPORT_STIFFNESS, stiffness);
         }
+        self.matrix
+            .add_rods(model, &self.x, &self.axial, &self.transverse);
         self.vertex_rows
             .add_hessian(part, load, &mut self.matrix.sink(model));
     }
