@@ -17,6 +17,7 @@ mod curl;
 mod directions;
 mod effort;
 mod elastic;
+mod elastic_balance;
 mod flat;
 mod forces;
 mod hard;
