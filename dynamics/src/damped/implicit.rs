@@ -3,7 +3,7 @@
 use crate::contact::ContactTerm;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
-use crate::damped::restitution::FormulaStep;
+use crate::damped::restitution::{FormulaStep, Outcome, handed_on};
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
@@ -55,6 +55,7 @@ impl Integrator for Implicit {
         let (state, h, minimiser) = (attempt.state, attempt.h, &mut self.minimiser);
         if self.formula == Formula::OneStep {
             proposal.motion.history.previous = None;
+            proposal.motion.history.body_changes.clear();
             return two_step(minimiser, scene, attempt, None, proposal, effort);
         }
         let previous = attempt
@@ -65,31 +66,40 @@ impl Integrator for Implicit {
             model,
             objective: &mut *objective,
         };
-        two_step(minimiser, inner, attempt, previous, proposal, effort)?;
+        let formula = coefficients(previous, state, h);
+        let ends = previous.map(|before| [before, state]);
+        let repeated = handed_on(model, ends, attempt.body_changes(), formula[0]);
+        let eased = repeated.before.as_ref().or(previous);
+        two_step(minimiser, inner, attempt, eased, proposal, effort)?;
+        if repeated.before.is_some() {
+            let error = LocalError::of(model, previous, state, &proposal.motion.state);
+            proposal.account.error = Some(error);
+        }
         let points = objective.contact.as_ref().and_then(ContactTerm::points);
-        let corrections = match (points, attempt.contacts, &proposal.motion.contacts) {
+        let outcome = match (points, attempt.contacts, &proposal.motion.contacts) {
             (Some(points), Some(before), Some(after)) => FormulaStep {
                 model,
                 points,
                 span: h,
-                formula: coefficients(previous, state, h),
-                before: previous.unwrap_or(state),
+                formula,
+                before: eased.unwrap_or(state),
                 start: state,
                 end: &proposal.motion.state,
                 contacts: [before, after],
             }
-            .corrections(),
-            _ => Vec::new(),
+            .outcome(repeated.changes),
+            _ => Outcome::default(),
         };
         let history = &mut proposal.motion.history;
         history.set_previous(Some(state));
         if let Some(before) = &mut history.previous {
-            for (v, change) in corrections {
+            for (v, change) in outcome.corrections {
                 for k in 0..3 {
                     before.v[3 * v + k] += change[k];
                 }
             }
         }
+        history.body_changes = outcome.changes;
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
         // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
         if let Some(before) = &mut history.previous {
