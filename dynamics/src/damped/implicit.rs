@@ -4,6 +4,7 @@ use crate::contact::ContactTerm;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
 use crate::damped::restitution::{FormulaStep, Outcome, handed_on};
+use crate::damped::turning::{Predictions, Turning};
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
@@ -22,6 +23,7 @@ const MAX_STEP_RATIO: f64 = 2.0 + 1e-9;
 pub(crate) struct Implicit {
     formula: Formula,
     minimiser: Minimiser,
+    turning: Turning,
 }
 
 impl Implicit {
@@ -36,7 +38,11 @@ impl Implicit {
         tuning: &Tuning,
     ) -> Result<Self, LinalgError> {
         let minimiser = Minimiser::new(model, options, tuning)?;
-        Ok(Self { formula, minimiser })
+        Ok(Self {
+            formula,
+            minimiser,
+            turning: Turning::new(model),
+        })
     }
 }
 
@@ -52,7 +58,8 @@ impl Integrator for Implicit {
         proposal: &mut Proposal,
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
-        let (state, h, minimiser) = (attempt.state, attempt.h, &mut self.minimiser);
+        let (state, h) = (attempt.state, attempt.h);
+        let minimiser = (&mut self.minimiser, &self.turning);
         if self.formula == Formula::OneStep {
             proposal.motion.history.previous = None;
             proposal.motion.history.body_changes.clear();
@@ -119,7 +126,7 @@ fn coefficients(previous: Option<&State>, state: &State, h: f64) -> [f64; 2] {
 /// Proposes the step of the two-step formula, or of implicit Euler where there is no state before the present
 /// one.
 fn two_step(
-    minimiser: &mut Minimiser,
+    (minimiser, turning): (&mut Minimiser, &Turning),
     scene: Scene<'_>,
     attempt: Attempt<'_>,
     previous: Option<&State>,
@@ -144,6 +151,11 @@ fn two_step(
         ahead[i] = x + h * v;
     }
     model.place_pins(state.t + h, &mut ahead);
+    let mut predictions = Predictions {
+        rest: &mut rest,
+        inertial: &mut prediction,
+    };
+    turning.correct(state, [state.t - before.t, h], [b, k], &mut predictions);
     let start = StepStart {
         state,
         memories: attempt.memories,
@@ -168,6 +180,9 @@ fn two_step(
     for i in 0..state.x.len() {
         let dx = minimiser.x()[i] - state.x[i];
         motion.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
+    }
+    for i in turning.coordinates() {
+        motion.state.v[i] = (minimiser.x()[i] - minimiser.start[0][i]) / (k * h);
     }
     motion.state.x.copy_from_slice(minimiser.x());
     motion.state.t = state.t + h;
