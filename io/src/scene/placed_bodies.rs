@@ -416,7 +416,7 @@ impl Body {
             Shape::File(_) => key.name("file.path"),
             _ => key.name(self.shape.name()),
         };
-        let mesh = BodyMesh::of(&shape, self.sides);
+        let mesh = BodyMesh::of(&shape, self.sides());
         let mesh = mesh.map_err(|e| Problem::from_error(at.clone(), &e))?;
         let mesh = mesh.ok_or_else(|| {
             let message = "the shape encloses no volume";

@@ -36,6 +36,8 @@ fn bodies_part_no_faster_than_they_met() {
         for (speed, boost) in [(0.03, 0.0), (0.3, 0.0), (0.3, 5.0), (3.0, -1.0)] {
             let (live, restitution) = hit(mass, speed, boost, "");
             let case = format!("mass {mass}, speed {speed}, boost {boost}");
+            let [b, o] = [0, 1].map(|body| velocity(&live, body).x - boost);
+            println!("{case}: {restitution} {:e}", (mass * b + o) / speed - 1.0);
             assert!((0.0..=1.0).contains(&restitution), "{case}: {restitution}");
             let [ball, other] = [0, 1].map(|body| velocity(&live, body).x - boost);
             let momentum = mass * ball + other;

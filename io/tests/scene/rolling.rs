@@ -293,3 +293,63 @@ fn a_ball_and_a_sheet_keep_their_momentum() {
     // The root of the tolerance of a step with bodies, of the change of momentum.
     assert!(lost < 1e-2, "{lost}");
 }
+
+/// Cylinders are prisms with 128 sides, unless another number is given.
+#[test]
+fn cylinders_roll() {
+    for sides in ["", "sides = 32\n", "sides = 64\n", "sides = 256\n"] {
+        for (radius, activation) in [(0.03, 1e-4), (0.2, 1e-4), (0.2, 1e-3)] {
+            for tangent in [0.05_f64, 0.3] {
+                for step in [1.0 / 60.0, 1.0 / 240.0] {
+                    let body = format!(
+                        "shape = {{ cylinder = {{ radius = {radius}, height = 0.5 }} }}\n{sides}\
+                         pose = {{ position = [0, 0, HEIGHT], turn = {{ axis = [1, 0, 0], angle = 90 }} }}"
+                    );
+                    let text = format!(
+                        "{ASIDE}[contact]\nactivation = {activation}\nfriction = 0.8\n{}[[body]]\n{body}\ndensity = 500\n{FLOOR}",
+                        gravity(tangent),
+                    );
+                    let mut live =
+                        live(&text.replace("HEIGHT", &format!("{}", radius + 0.5 * activation)));
+                    let begun = std::time::Instant::now();
+                    let duration = if radius < 0.1 { 0.1 } else { 0.4 };
+                    let found = acceleration(&mut live, step, duration);
+                    let wanted = 2.0 / 3.0 * G * tangent.atan().sin();
+                    println!(
+                        "{sides:?} {radius} {activation} {tangent} {step}: {} ({:?})",
+                        found / wanted - 1.0,
+                        begun.elapsed()
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// What is left of the energy of a body that turns, after a second.
+#[test]
+fn bodies_that_turn_keep_their_energy() {
+    for (name, shape) in [
+        ("ball", "sphere = { radius = 0.03 }"),
+        ("box", "box = { size = [0.03, 0.07, 0.1] }"),
+    ] {
+        for turns in [1.0, 5.0] {
+            for step in [1.0 / 60.0, 1.0 / 240.0] {
+                let mut live = live(&format!(
+                    "{ASIDE}[[body]]\nshape = {{ {shape} }}\nmass = 1\nspin = {{ axis = [0.1, 1, 0.2], rate = {} }}\n",
+                    360.0 * turns
+                ));
+                let start = live.simulation().energy();
+                for _ in 0..(1.0 / step).round() as usize {
+                    live.step(step).unwrap();
+                }
+                let left = live.simulation().energy() / start;
+                println!("{name} {turns} {step}: {left}");
+                assert!(
+                    (0.98..1.0 + 1e-9).contains(&left),
+                    "{name}, {turns}, {step}: {left}"
+                );
+            }
+        }
+    }
+}
