@@ -78,7 +78,7 @@ fn pieces(
         b.iter(|| active.update(&contacts, &set, 1.0, black_box(x)));
     });
     group.bench_function(id("lag friction"), |b| {
-        b.iter(|| friction.lag(contacts.laws(), &barrier, black_box(&active), x));
+        b.iter(|| friction.lag(contacts.laws(), &barrier, black_box(&active), [x; 2]));
     });
     let terms = ContactTerms {
         x,

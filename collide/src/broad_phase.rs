@@ -135,7 +135,7 @@ impl BroadPhase {
     }
 
     /// Refits the tree to the motion from `x0` to `x1` (`3V`, metres), every box enlarged by
-    /// `inflation` (metres) on all sides. For pairs within a distance `d` give both meshes `d / 2`,
+    /// `inflation` (metres) on all sides, and those of round bodies by their radius. For pairs within a distance `d` give both meshes `d / 2`,
     /// or one of them `d`.
     ///
     /// # Panics
@@ -162,7 +162,9 @@ impl BroadPhase {
             x1.len()
         );
         let chunks = x0.as_chunks::<3>().0.iter().zip(x1.as_chunks::<3>().0);
-        for (bounds, (p, q)) in self.vertices.iter_mut().zip(chunks) {
+        let (mesh, vertices) = (&self.mesh, &mut self.vertices);
+        for (v, (bounds, (p, q))) in (0..).zip(vertices.iter_mut().zip(chunks)) {
+            let inflation = inflation + mesh.radius(v);
             // Sums are rounded by at most half of EPSILON, relative; the box is enlarged by twice that.
             *bounds = Bounds {
                 min: std::array::from_fn(|k| {

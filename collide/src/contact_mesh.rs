@@ -3,11 +3,14 @@
 mod glued;
 mod parts;
 mod passing;
+mod round;
 
 use glued::Glued;
+use isosheet_dynamics::contact::Round;
 use isosheet_mesh::{Advice, Topology};
 use parts::Parts;
 use passing::Passing;
+use round::Rounds;
 use std::collections::HashMap;
 use std::ops::Range;
 use thiserror::Error;
@@ -16,7 +19,7 @@ use thiserror::Error;
 ///
 /// Unlike [`Topology`] it needs no manifold: the surface of an obstacle may be any set of triangles,
 /// also a single segment or point (the axis of a capsule, the centre of a ball).
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ContactMesh {
     vertex_count: usize,
     edges: Vec<[u32; 2]>,
@@ -25,8 +28,9 @@ pub struct ContactMesh {
     glued: Option<Glued>,
     parts: Option<Parts>,
     passing: Passing,
-    /// The first vertex of those that do not meet bodies.
-    driven_from: u32,
+    /// The vertices that do not meet bodies.
+    driven: Range<u32>,
+    rounds: Rounds,
 }
 
 /// A face, a free edge or a free vertex together with the vertices and edges that it represents.
@@ -166,6 +170,13 @@ impl ContactMesh {
         Self::with_elements(2, vec![[0, 1]], Vec::new(), &[])
     }
 
+    /// The same vertices without faces, and with an edge at each of them besides, both ends of which it is.
+    pub(crate) fn with_points_as_edges(mut self) -> Self {
+        self.edges
+            .extend((0..index(self.vertex_count)).map(|v| [v, v]));
+        Self::with_elements(self.vertex_count, self.edges, Vec::new(), &[])
+    }
+
     /// The same vertices without the faces, and with the edges that are to be kept.
     pub(crate) fn without_faces(mut self, keep: impl FnMut(&[u32; 2]) -> bool) -> Self {
         self.edges.retain(keep);
@@ -223,7 +234,8 @@ impl ContactMesh {
             glued: None,
             parts: None,
             passing: Passing::default(),
-            driven_from: u32::MAX,
+            driven: 0..0,
+            rounds: Rounds::default(),
         }
     }
 
@@ -266,13 +278,103 @@ impl ContactMesh {
     /// which do so too.
     #[must_use]
     pub fn with_driven_from(mut self, first: u32) -> Self {
-        self.driven_from = first;
+        self.driven = first..index(self.vertex_count);
         self
+    }
+
+    /// Puts a round body in the place of vertices with all that they are corners of, which take no part any more.
+    /// It has new vertices, of which those that are named take part as they are, and new edges, by their numbers
+    /// among the new vertices; an edge may have both ends in one place. It belongs to a part, by its number, if there is
+    /// one. The frame of `round` is given by numbers among the new vertices.
+    #[must_use]
+    pub(crate) fn with_round(
+        mut self,
+        replaced: Range<usize>,
+        part: usize,
+        vertices: &[bool],
+        edges: &[[u32; 2]],
+        round: Round,
+    ) -> Self {
+        let first = index(self.vertex_count);
+        let is_replaced = |v: &u32| replaced.contains(&(*v as usize));
+        let (mesh_edges, mesh_faces) = (&self.edges, &self.faces);
+        self.elements.retain(|element| {
+            let of_face = element.face.map(|f| mesh_faces[f as usize][0]);
+            let of_edge = || {
+                element
+                    .edges
+                    .iter()
+                    .next()
+                    .map(|e| mesh_edges[e as usize][0])
+            };
+            let of_vertex = || element.vertices.iter().next();
+            !of_face
+                .or_else(of_edge)
+                .or_else(of_vertex)
+                .is_some_and(|v| is_replaced(&v))
+        });
+        self.vertex_count += vertices.len();
+        let _ = index(self.vertex_count);
+        for (own, v) in vertices.iter().zip(first..) {
+            let mut element = Element {
+                face: None,
+                edges: Owned::default(),
+                vertices: Owned::default(),
+            };
+            if *own {
+                element.vertices.push(v);
+                self.elements.push(element);
+            }
+        }
+        for edge in edges {
+            let mut element = Element {
+                face: None,
+                edges: Owned::default(),
+                vertices: Owned::default(),
+            };
+            element.edges.push(index(self.edges.len()));
+            self.edges.push(edge.map(|v| first + v));
+            self.elements.push(element);
+        }
+        let round = Round {
+            frame: round.frame.map(|v| first + v),
+            ..round
+        };
+        self.rounds.add(first, replaced, vertices, round);
+        if let Some(glued) = &mut self.glued {
+            glued.extend(self.vertex_count);
+        }
+        if let Some(parts) = &mut self.parts {
+            parts.extend(vertices.len(), part);
+        }
+        self
+    }
+
+    /// What is round about a vertex.
+    pub(crate) fn round(&self, vertex: u32) -> Option<&Round> {
+        self.rounds.of(vertex)
+    }
+
+    /// Whether an edge is a point of a round body.
+    pub(crate) fn is_point(&self, edge: u32) -> bool {
+        let [a, b] = self.edges[edge as usize];
+        self.rounds.is_point([a, b])
+    }
+
+    /// Whether an edge is the axis of a round body.
+    pub(crate) fn is_axis(&self, edge: u32) -> bool {
+        let [a, _] = self.edges[edge as usize];
+        self.round(a).is_some() && !self.is_point(edge)
+    }
+
+    /// How far the surface is from a vertex, metres.
+    pub(crate) fn radius(&self, vertex: u32) -> f64 {
+        self.round(vertex).map_or(0.0, |round| round.radius)
     }
 
     /// Whether a primitive meets bodies, by one of its vertices.
     pub(crate) fn meets_bodies(&self, vertex: u32) -> bool {
-        vertex < self.driven_from
+        !self.driven.contains(&vertex) && self.rounds.takes_part(vertex)
     }
 
     /// Whether two primitives have a vertex in common, are glued to each other, belong together or pass through

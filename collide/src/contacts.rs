@@ -11,6 +11,7 @@ mod neighbours;
 mod options;
 mod path;
 mod rolling;
+mod round;
 mod sheet;
 mod start;
 #[cfg(test)]
@@ -18,13 +19,16 @@ mod tests;
 mod thickness;
 
 pub use options::{ContactOptions, ContactsError};
+pub use round::RoundBody;
+use round::Rounds;
 
 use crate::{CcdOptions, ContactMesh, Obstacle};
 use body::Body;
 use evaluate::{Placed, Sheet};
 use isosheet_dynamics::contact::{
-    ActiveContact, ActiveContacts, BodyMotion, BodyPlace, Coefficients, Contact, ContactError,
-    ContactKey, ContactLaws, JointMotion, ObstaclePair, SheetPair, StepSpan, SurfacePoints,
+    ActiveContact, ActiveContacts, BodyMotion, BodyPlace, CarriedPoint, Coefficients, Contact,
+    ContactError, ContactKey, ContactLaws, JointMotion, ObstaclePair, SheetPair, StepSpan,
+    SurfacePoints,
 };
 use isosheet_dynamics::{SheetModel, State};
 use isosheet_mesh::{Topology, VertexId};
@@ -145,6 +149,8 @@ pub struct Contacts {
     heights: Vec<f64>,
     bodies: Vec<Body>,
     has_self_contact: bool,
+    /// Round bodies in the place of polyhedra.
+    rounds: Rounds,
     /// Made at the first positions, in scenes that need them.
     neighbours: Option<Neighbours>,
     /// Working memory: the motions of the bodies, displacements of a part of a long motion, and which candidates are near.
@@ -205,6 +211,7 @@ impl Contacts {
             heights: smallest_heights(topology, lengths, own).collect(),
             bodies: Vec::new(),
             has_self_contact: false,
+            rounds: Rounds::default(),
             mean_length: lengths.iter().sum::<f64>() / lengths.len() as f64,
             neighbours: None,
             parts: Vec::new(),
@@ -245,7 +252,8 @@ impl Contacts {
         coefficients.validate()?;
         let number = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         let segments = self.options.segments;
-        self.bodies.push(Body::new(obstacle, number, segments)?);
+        self.bodies
+            .push(Body::new(obstacle, number, segments, self.rounds.ends())?);
         self.laws.bodies.push(coefficients);
         self.neighbours = None;
         Ok(self)
@@ -326,6 +334,55 @@ impl Contacts {
         self
     }
 
+    /// Puts a round body in the place of a polyhedron: the points of a range, with all that they are corners of,
+    /// take part in contact no more, and the round body does, by its true surface. It belongs to the
+    /// [part](Contacts::with_parts) of this number. `carried` says how the model carries a point of it, as
+    /// [`RigidBody::carried`](isosheet_dynamics::RigidBody::carried) does.
+    ///
+    /// Its points come after all others. Whatever is said of the range that it replaces afterwards, such as friction,
+    /// is said of it. Comes after [`Contacts::with_parts`] and [`Contacts::with_driven_from`].
+    ///
+    /// # Errors
+    /// [`ContactsError::Radius`], and [`ContactsError::Points`] if the points cannot be carried.
+    ///
+    /// # Panics
+    /// If contact is not [on a surface](Contacts::on_surface).
+    pub fn with_round_body(
+        mut self,
+        part: usize,
+        replaced: Range<usize>,
+        body: RoundBody,
+        carried: impl Fn([f64; 3]) -> CarriedPoint,
+    ) -> Result<Self, ContactsError> {
+        body.validate()?;
+        let places = body.points();
+        let points = self.points.take().expect("contact on a surface");
+        let first = points.count();
+        self.points = Some(points.with_carried(places.iter().map(|p| carried(*p)))?);
+        let (vertices, edges, round) = body.primitives();
+        let place = |v: u32| Vector3::from(places[v as usize]);
+        let squares = edges
+            .iter()
+            .map(|&[a, b]| (place(b) - place(a)).norm_squared());
+        self.lengths2.extend(squares);
+        self.rounds.add(&body, replaced.clone(), first);
+        self.mesh = self.mesh.with_round(replaced, part, vertices, edges, round);
+        let flat = self.mesh.edges().iter().zip(&self.lengths2);
+        let flat = flat.filter(|([v, _], _)| {
+            self.mesh.round(*v).is_none() && !self.rounds.replace(*v as usize)
+        });
+        let lengths: Vec<f64> = flat.map(|(_, squared)| squared.sqrt()).collect();
+        if !lengths.is_empty() {
+            self.mean_length = lengths.iter().sum::<f64>() / lengths.len() as f64;
+        }
+        for (number, other) in (0..).zip(&mut self.bodies) {
+            let obstacle = other.obstacle().clone();
+            *other = Body::new(obstacle, number, self.options.segments, self.rounds.ends())?;
+        }
+        self.neighbours = None;
+        Ok(self)
+    }
+
     /// Gives one of several sheets, whose vertices these are, its own thickness in place of that of the options,
     /// metres. Two sheets of thickness `a` and `b` keep the distance `(a + b) / 2` of their middle surfaces, and each
     /// keeps its own thickness from bodies, as from itself. Comes before [`Contacts::with_self_contact`].
@@ -361,17 +418,29 @@ impl Contacts {
         coefficients: Coefficients,
     ) -> Result<Self, ContactsError> {
         coefficients.validate()?;
-        self.laws.pairs.push(SheetPair {
-            vertices,
-            coefficients,
-        });
+        let [first, second] = vertices
+            .each_ref()
+            .map(|range| self.rounds.with_those_in(range));
+        for a in &first {
+            self.laws.pairs.extend(second.iter().map(|b| SheetPair {
+                vertices: [a.clone(), b.clone()],
+                coefficients,
+            }));
+        }
         Ok(self)
     }
 
     /// Lets two of several sheets, whose vertices these are, or one of them and itself, pass through each other.
     #[must_use]
     pub fn without_contact_between(mut self, vertices: [Range<usize>; 2]) -> Self {
-        self.mesh = self.mesh.with_passing(vertices);
+        let [first, second] = vertices
+            .each_ref()
+            .map(|range| self.rounds.with_those_in(range));
+        for a in &first {
+            for b in &second {
+                self.mesh = self.mesh.with_passing([a.clone(), b.clone()]);
+            }
+        }
         self.neighbours = None;
         self
     }
@@ -388,11 +457,14 @@ impl Contacts {
         coefficients: Coefficients,
     ) -> Result<Self, ContactsError> {
         coefficients.validate()?;
-        self.laws.obstacle_pairs.push(ObstaclePair {
-            obstacle,
-            vertices,
-            coefficients,
-        });
+        let ranges = self.rounds.with_those_in(&vertices).into_iter();
+        self.laws
+            .obstacle_pairs
+            .extend(ranges.map(|vertices| ObstaclePair {
+                obstacle,
+                vertices,
+                coefficients,
+            }));
         Ok(self)
     }
 

@@ -54,7 +54,7 @@ mod vectors;
 pub use broad_phase::{BroadPhase, Candidates, CrossCandidates};
 pub use ccd::{CcdOptions, CcdOptionsError};
 pub use contact_mesh::{ContactMesh, ContactMeshError};
-pub use contacts::{ContactOptions, Contacts, ContactsError};
+pub use contacts::{ContactOptions, Contacts, ContactsError, RoundBody};
 pub use crossings::{crossings, crossings_between};
 pub use distance::{Closest, Feature, Jet};
 pub use isosheet_dynamics::contact::{Coefficients, FrictionError, Stiffness};

@@ -87,6 +87,7 @@ mod problem;
 mod profile;
 mod refined;
 mod resolution;
+mod round_bodies;
 mod schema;
 mod selection;
 mod sequence;

@@ -350,7 +350,7 @@ fn barrier_and_lagged_friction_survive_a_file() {
     let set = ContactSet::of(&mut contacts, motion);
     let active = ActiveContacts::at(&contacts, &set, 1.0, &start.x);
     let mut friction = LaggedFriction::none();
-    friction.lag(contacts.laws(), &barrier, &active, &start.x);
+    friction.lag(contacts.laws(), &barrier, &active, [&start.x; 2]);
     assert_eq!(friction.contacts().len(), 25);
     let text = serde_json::to_string(&(barrier, &friction)).expect("finite");
     let back: (BarrierPotential, LaggedFriction) = serde_json::from_str(&text).expect("readable");

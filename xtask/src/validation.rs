@@ -10,6 +10,7 @@ mod outcome;
 mod plastic;
 mod plates;
 mod rest;
+mod rolling;
 mod shells;
 mod specimen;
 mod squeezed;
@@ -30,7 +31,7 @@ use outcome::{Outcome, SIZES};
 use rayon::prelude::*;
 
 /// All of them.
-static EXPERIMENTS: [&Experiment; 25] = [
+static EXPERIMENTS: [&Experiment; 26] = [
     &cantilevers::END_SHEAR,
     &cantilevers::END_MOMENT,
     &shells::ANNULUS,
@@ -56,6 +57,7 @@ static EXPERIMENTS: [&Experiment; 25] = [
     &tension::PULLED,
     &tension::SAGGING,
     &tension::TWISTED,
+    &rolling::ROLLING,
 ];
 
 fn named() -> Vec<(&'static str, &'static Experiment)> {

@@ -38,6 +38,12 @@ impl Glued {
         Self { lowest, shared }
     }
 
+    /// Adds vertices that are glued to nothing, up to so many in all.
+    pub(super) fn extend(&mut self, vertex_count: usize) {
+        let count = self.lowest.len();
+        self.lowest.extend((0..).take(vertex_count).skip(count));
+    }
+
     /// Whether two primitives have vertices that are the same or glued to each other, or are the two
     /// diagonals of one quadrangle of glued vertices: where two sides of a seam overlap, one side may have
     /// the one and the other side the other diagonal.

@@ -29,6 +29,12 @@ impl Parts {
         }
     }
 
+    /// Adds so many vertices to a part.
+    pub(super) fn extend(&mut self, count: usize, part: usize) {
+        self.of
+            .extend(std::iter::repeat_n(Some(part as u32), count));
+    }
+
     /// Whether two primitives are of one part, or one is attached to that of the other.
     pub(super) fn are_joined(&self, first: &[u32], second: &[u32]) -> bool {
         let of = |vertices: &[u32]| vertices.first().and_then(|v| self.of[*v as usize]);

@@ -1,6 +1,6 @@
 //! The bodies of a scene.
 
-use super::features::Features;
+use super::features::{Ends, Features};
 use crate::{Obstacle, ObstacleError, Shape};
 use isosheet_dynamics::contact::{BodyMotion, ContactKey, ContactKind, StepMotion, StepSpan};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
@@ -21,9 +21,10 @@ impl Body {
         obstacle: Obstacle,
         number: u32,
         segments: usize,
+        ends: Ends,
     ) -> Result<Self, ObstacleError> {
         Ok(Self {
-            features: Features::new(obstacle.shape(), segments)?,
+            features: Features::new(obstacle.shape(), segments, ends)?,
             obstacle,
             number,
         })

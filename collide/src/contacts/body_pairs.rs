@@ -46,7 +46,7 @@ impl Body {
         let places = sheet.x.as_chunks::<3>().0.iter();
         let steps = sheet.dx.as_chunks::<3>().0.iter();
         let vertices = (0..).zip(places.zip(steps));
-        for (v, (x, dx)) in vertices.take_while(|(v, _)| sheet.mesh.meets_bodies(*v)) {
+        for (v, (x, dx)) in vertices.filter(|(v, _)| sheet.mesh.meets_bodies(*v)) {
             let course = part.course(&Vector3::from(*x), &Vector3::from(*dx));
             let clearance = sheet.of_obstacle(v);
             let distance = shape.signed_distance(&part.now(&course)).value;
@@ -118,6 +118,8 @@ impl Body {
         let is_near = |[e, g]: [u32; 2]| {
             let own_ends = sheet.mesh.edges()[e as usize];
             if features.is_flat_edge(g)
+                || sheet.mesh.is_point(e)
+                || features.is_point(g) && !sheet.mesh.is_axis(e)
                 || !sheet.mesh.meets_bodies(own_ends[0])
                 || !own.edge_meets_edge(others, [e, g])
             {

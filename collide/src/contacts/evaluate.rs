@@ -9,7 +9,7 @@ use crate::ContactMesh;
 use crate::distance::{Closest, edge_edge, point_triangle};
 use crate::vectors::gather;
 use isosheet_dynamics::contact::{
-    ActiveContact, BodyPlace, ContactKey, ContactKind, ParallelEdges, Rolling,
+    ActiveContact, BodyPlace, ContactKey, ContactKind, ParallelEdges, Rolling, Round,
 };
 use nalgebra::Vector3;
 
@@ -39,6 +39,9 @@ impl Sheet<'_> {
             let vertices = two_edges(self.mesh, key.pair);
             let places = gather(self.x, vertices);
             let contact = self.own_contact(key, vertices, &edge_edge(&places))?;
+            if key.pair.iter().any(|e| self.mesh.is_point(*e)) {
+                return Some(contact);
+            }
             let lengths2 = key.pair.map(|e| self.lengths2[e as usize]);
             let [a, b, c, d] = places;
             let parallel = ParallelEdges::new(b - a, d - c, lengths2);
@@ -48,8 +51,19 @@ impl Sheet<'_> {
             })
         } else {
             let vertices = vertex_face(self.mesh, key.pair);
-            let closest = point_triangle(&gather(self.x, vertices));
-            self.own_contact(key, vertices, &closest)
+            let places = gather(self.x, vertices);
+            let closest = point_triangle(&places);
+            let contact = self.own_contact(key, vertices, &closest)?;
+            let rolling = contact.round[0].map(|_| {
+                let [_, corners @ ..] = places;
+                let [_, weights @ ..] = closest.weights;
+                let [a, b, c] = face_gradients(corners, weights.map(|w| -w));
+                Rolling {
+                    gradients: [Vector3::zeros(), a, b, c],
+                    distance: closest.distance(),
+                }
+            });
+            Some(ActiveContact { rolling, ..contact })
         }
     }
 
@@ -61,7 +75,8 @@ impl Sheet<'_> {
     ) -> Option<ActiveContact> {
         let distance = closest.distance();
         let [first, .., last] = vertices;
-        let clearance = Clearance::new(self.thickness.between(first, last), self.activation);
+        let ends = [first, last];
+        let clearance = self.thickness.clearance(self.mesh, ends, self.activation);
         if distance >= clearance.reach {
             return None;
         }
@@ -74,6 +89,7 @@ impl Sheet<'_> {
             closest: Vector3::zeros(),
             parallel: None,
             rolling: None,
+            round: ends.map(|v| self.mesh.round(v).copied()),
         })
     }
 
@@ -97,11 +113,18 @@ impl Sheet<'_> {
         place.to_local(&p)
     }
 
+    /// What is round where a primitive with this vertex meets an obstacle.
+    fn against(&self, vertex: u32) -> [Option<Round>; 2] {
+        [self.mesh.round(vertex).copied(), None]
+    }
+
     /// The gap for a distance of a primitive with this vertex from an obstacle; `None` out of reach, but not if it is
     /// not a number.
     fn gap(&self, vertex: u32, distance: f64) -> Option<f64> {
-        let thickness = self.thickness.against_obstacles(vertex);
-        let Clearance { thickness, reach } = Clearance::new(thickness, self.activation);
+        let clearance = self
+            .thickness
+            .obstacle_clearance(self.mesh, vertex, self.activation);
+        let Clearance { thickness, reach } = clearance;
         let gap = distance - thickness;
         (gap < reach - thickness || gap.is_nan()).then_some(gap)
     }
@@ -120,6 +143,7 @@ impl Sheet<'_> {
             closest: place.to_space(&d.closest(&p)),
             parallel: None,
             rolling: None,
+            round: self.against(v),
         })
     }
 
@@ -146,6 +170,7 @@ impl Sheet<'_> {
             closest: place.to_space(&(point + features.radius * n)),
             parallel: None,
             rolling: None,
+            round: self.against(v),
         })
     }
 
@@ -179,6 +204,7 @@ impl Sheet<'_> {
                     distance,
                 }
             }),
+            round: [None; 2],
         })
     }
 
@@ -216,6 +242,7 @@ impl Sheet<'_> {
             closest: place.to_space(&(point + features.radius * n)),
             parallel,
             rolling,
+            round: self.against(edge[0]),
         })
     }
 }

@@ -39,11 +39,28 @@ pub(super) struct Features {
     displacements: Displacements,
 }
 
+/// Whether the centre of a ball and the ends of the axis of a capsule are edges without length besides: what meets the
+/// axes of capsules that respond, which have neither faces nor other edges beside them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ends {
+    /// They are points alone.
+    Points,
+    /// They are.
+    Edges,
+}
+
 impl Features {
-    pub(super) fn new(shape: &Shape, segments: usize) -> Result<Option<Self>, ObstacleError> {
-        let Some(geometry) = shape.contact_geometry(segments)? else {
+    pub(super) fn new(
+        shape: &Shape,
+        segments: usize,
+        ends: Ends,
+    ) -> Result<Option<Self>, ObstacleError> {
+        let Some(mut geometry) = shape.contact_geometry(segments)? else {
             return Ok(None);
         };
+        if ends == Ends::Edges && matches!(shape, Shape::Sphere { .. } | Shape::Capsule { .. }) {
+            geometry.mesh = geometry.mesh.with_points_as_edges();
+        }
         let ContactGeometry {
             mesh,
             positions,
@@ -157,6 +174,12 @@ impl Features {
     /// Whether a vertex is inside a flat facet.
     pub(super) fn is_flat_vertex(&self, v: u32) -> bool {
         self.flat_vertices[v as usize]
+    }
+
+    /// Whether an edge is a point.
+    pub(super) fn is_point(&self, e: u32) -> bool {
+        let [a, b] = self.phase.mesh().edges()[e as usize];
+        a == b
     }
 
     /// Whether an edge is inside a flat facet.

@@ -21,12 +21,14 @@ impl SheetMotion<'_> {
     /// Of the pair of two primitives, the first one of which has the first and the second one the last of these
     /// vertices.
     pub(super) fn of_pair(&self, [first, .., last]: [u32; 4]) -> Clearance {
-        Clearance::new(self.thickness.between(first, last), self.activation)
+        self.thickness
+            .clearance(self.mesh, [first, last], self.activation)
     }
 
     /// Of a primitive with this vertex and an obstacle.
     pub(super) fn of_obstacle(&self, vertex: u32) -> Clearance {
-        Clearance::new(self.thickness.against_obstacles(vertex), self.activation)
+        self.thickness
+            .obstacle_clearance(self.mesh, vertex, self.activation)
     }
 }
 

@@ -6,7 +6,7 @@ use super::motion::{self, SheetMotion};
 use super::path::PartOfStep;
 use crate::distance::{edge_edge, point_triangle};
 use crate::vectors::{gather, larger};
-use crate::{BroadPhase, Candidates, CrossCandidates};
+use crate::{BroadPhase, Candidates, ContactMesh, CrossCandidates};
 use isosheet_coords::linalg::parallel::{Work, fill};
 
 /// Skin of the lists, in mean edge lengths. With 0.06 and 0.25 a draping disk of 688 vertices takes 12 % and
@@ -191,10 +191,12 @@ impl Neighbours {
             } = &self.candidates;
             let [.., at] = &self.listed;
             self.vertex_face.set(vertex_face, |pair| {
-                point_triangle(&gather(at, motion::vertex_face(mesh, pair))).distance()
+                let vertices = motion::vertex_face(mesh, pair);
+                point_triangle(&gather(at, vertices)).distance() - radii(mesh, vertices)
             });
             self.edge_edge.set(two_edges, |pair| {
-                edge_edge(&gather(at, motion::two_edges(mesh, pair))).distance()
+                let vertices = motion::two_edges(mesh, pair);
+                edge_edge(&gather(at, vertices)).distance() - radii(mesh, vertices)
             });
         }
         for (body, pairs) in bodies.iter_mut().zip(&mut self.cross) {
@@ -205,7 +207,12 @@ impl Neighbours {
     }
 }
 
-/// Pairs in the order of their distances in the middle of the listed motion, metres.
+/// The radii of two primitives, the first of which has the first and the second one the last of these vertices, metres.
+fn radii(mesh: &ContactMesh, [first, .., last]: [u32; 4]) -> f64 {
+    mesh.radius(first) + mesh.radius(last)
+}
+
+/// Pairs in the order of their distances, less the radii of what is round, in the middle of the listed motion, metres.
 #[derive(Debug, Default)]
 struct ByDistance(Vec<(f64, [u32; 2])>);
 

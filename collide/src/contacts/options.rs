@@ -4,10 +4,11 @@ use crate::{CcdOptions, CcdOptionsError, ObstacleError};
 use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::contact::internals::BarrierPotential;
 use isosheet_dynamics::contact::{
-    BarrierError, ContactLaws, FrictionError, Stiffness, SurfacePoints,
+    BarrierError, ContactLaws, FrictionError, Stiffness, SurfacePoints, SurfacePointsError,
 };
 use isosheet_mesh::wording::{brief, given};
-use isosheet_mesh::{Advice, FaceId, Sheet, Topology, area_from_lengths};
+use isosheet_mesh::{Advice, FaceId, Sheet, Topology, VertexId, area_from_lengths};
+use std::ops::Range;
 use thiserror::Error;
 
 /// Options of [`super::Contacts`]. Start from [`ContactOptions::for_sheet`].
@@ -72,6 +73,12 @@ pub enum ContactsError {
     /// The coefficients of friction make no sense.
     #[error(transparent)]
     Friction(#[from] FrictionError),
+    /// The radius of a round body is not positive.
+    #[error("the radius of a round body is {0} m")]
+    Radius(f64),
+    /// Points of a round body cannot be carried.
+    #[error(transparent)]
+    Points(#[from] SurfacePointsError),
     /// Neighbouring parts of a flat sheet would repel each other.
     #[error(
         "face {face} is only {height} m high, and the sheet repels itself up to {reach} m \
@@ -100,6 +107,8 @@ impl Advice for ContactsError {
             Self::Ccd(error) => error.advice(),
             Self::Obstacle(error) => error.advice(),
             Self::Friction(error) => error.advice(),
+            Self::Radius(..) => Some("give a positive length"),
+            Self::Points(error) => error.advice(),
             Self::Reach { .. } => Some("choose them below that height, or merge the short edges"),
         }
     }
@@ -129,12 +138,34 @@ impl ContactOptions {
     /// [`Contacts::on_surface`](crate::Contacts::on_surface). The faces of bodies may be as narrow as they are:
     /// a body does not touch itself.
     pub fn for_surface(surface: &Sheet, points: &SurfacePoints) -> Self {
-        Self::between(surface.topology(), surface.lengths(), points.own())
+        Self::for_surface_without(surface, points, &[])
+    }
+
+    /// The defaults for a surface of which some ranges of points do not count, such as those in the place of which
+    /// there are [round bodies](crate::Contacts::with_round_body).
+    pub fn for_surface_without(
+        surface: &Sheet,
+        points: &SurfacePoints,
+        replaced: &[Range<usize>],
+    ) -> Self {
+        let counts = |v: VertexId| !replaced.iter().any(|range| range.contains(&v.index()));
+        let edges = surface.topology().edges().iter().zip(surface.lengths());
+        let lengths: Vec<f64> = edges
+            .filter(|([v, _], _)| counts(*v))
+            .map(|(_, l)| *l)
+            .collect();
+        let heights = smallest_heights(surface.topology(), surface.lengths(), points.own());
+        Self::of(&lengths, heights)
     }
 
     fn between(topology: &Topology, lengths: &[f64], own: usize) -> Self {
+        Self::of(lengths, smallest_heights(topology, lengths, own))
+    }
+
+    /// For edges of these lengths and faces of these heights.
+    fn of(lengths: &[f64], heights: impl Iterator<Item = f64>) -> Self {
         let length = lengths.iter().sum::<f64>() / lengths.len() as f64;
-        let height = smallest_heights(topology, lengths, own).fold(f64::INFINITY, f64::min);
+        let height = heights.fold(f64::INFINITY, f64::min);
         Self {
             activation: (RELATIVE_ACTIVATION * length).min(0.5 * height),
             thickness: 0.0,

@@ -79,7 +79,7 @@ pub(super) fn check_body(
         && surface.is_closed()
     {
         let vertices = (0..).zip(x.as_chunks::<3>().0);
-        for (v, p) in vertices.take_while(|(v, _)| boxes.mesh().meets_bodies(*v)) {
+        for (v, p) in vertices.filter(|(v, _)| boxes.mesh().meets_bodies(*v)) {
             let local = place.to_local(&Vector3::from(*p));
             let gap = surface.signed_distance(&local).value;
             if gap <= 0.0 {

@@ -1,6 +1,7 @@
 //! Tests of the whole contact potential and of its guarantee.
 
 mod derivatives;
+mod round;
 mod safety;
 mod start;
 
@@ -201,7 +202,7 @@ impl Step {
         };
         let active = step.active(x);
         step.friction
-            .lag(step.contacts.laws(), &barrier, &active, x);
+            .lag(step.contacts.laws(), &barrier, &active, [x; 2]);
         step
     }
 

@@ -1,6 +1,6 @@
 //! How far what touches stays apart.
 
-use crate::CcdOptions;
+use crate::{CcdOptions, ContactMesh};
 use std::ops::Range;
 
 /// The thickness of sheets, by their vertices.
@@ -55,6 +55,30 @@ impl Thickness {
     /// The distance, metres, that the sheet or body of a vertex keeps from obstacles.
     pub(super) fn against_obstacles(&self, v: u32) -> f64 {
         self.of(v).unwrap_or(0.0)
+    }
+
+    /// Which distances count between the sheets or bodies of two vertices of a mesh, with the radii of what is round.
+    pub(super) fn clearance(
+        &self,
+        mesh: &ContactMesh,
+        [first, last]: [u32; 2],
+        activation: f64,
+    ) -> Clearance {
+        let radii = mesh.radius(first) + mesh.radius(last);
+        Clearance::new(self.between(first, last) + radii, activation)
+    }
+
+    /// Which distances of a vertex of a mesh from obstacles count.
+    pub(super) fn obstacle_clearance(
+        &self,
+        mesh: &ContactMesh,
+        vertex: u32,
+        activation: f64,
+    ) -> Clearance {
+        Clearance::new(
+            self.against_obstacles(vertex) + mesh.radius(vertex),
+            activation,
+        )
     }
 }
 

@@ -30,6 +30,17 @@ pub struct ActiveContact {
     pub parallel: Option<ParallelEdges>,
     /// For a face or an edge of the sheet that touches a rounded body between its corners.
     pub rolling: Option<Rolling>,
+    /// The radii of the first and the second primitive, where they belong to round bodies that respond.
+    pub round: [Option<Round>; 2],
+}
+
+/// A point or an edge in a round body, whose surface is around it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Round {
+    /// How far, metres.
+    pub radius: f64,
+    /// Four points that the body carries and that lie in no plane.
+    pub frame: [u32; 4],
 }
 
 /// How the distance of a face or an edge of the sheet from the centre or axis of a rounded body changes to

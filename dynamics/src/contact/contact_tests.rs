@@ -92,6 +92,7 @@ impl Contact for Floor {
                     closest: Vector3::new(x[i], x[i + 1], bodies[0].origin().z),
                     parallel: None,
                     rolling: None,
+                    round: [None; 2],
                 });
             }
         }

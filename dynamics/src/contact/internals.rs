@@ -4,5 +4,6 @@
 pub use super::barrier::BarrierPotential;
 pub use super::lagged::{FrictionContact, LaggedFriction};
 pub use super::set::ContactSet;
+pub use super::stencil::Stencil;
 pub use super::terms::{ContactState, ContactTerms};
 pub use crate::hessian::CouplingSink;

@@ -1,5 +1,6 @@
 //! Friction of a step: contacts with constant normals and normal forces.
 
+use super::stencil::Stencil;
 use super::{
     ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, ContactKey, ContactLaws,
     CouplingSink, Friction, add_weighted,
@@ -11,16 +12,16 @@ use serde::{Deserialize, Serialize};
 /// at which it was lagged (Li et al. 2020, Incremental potential contact, Sec. 5).
 ///
 /// For displacements `dx_i` since the start of the step, and `d` of the body's material point, the contact
-/// slides by `u = (I - n n^T) (sum_i w_i dx_i - d)`; its potential is `N F(|u|)` with the normal force `N`
+/// slides by `u = (I - n n^T) (sum_i w_i dx_i - d)`, where the surfaces touch; its potential is `N F(|u|)` with the normal force `N`
 /// and the integral `F` of the friction law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrictionContact {
     /// Which two primitives.
     pub key: ContactKey,
-    /// Vertices of the sheet; unused places have weight zero.
-    pub vertices: [u32; 4],
-    /// Their weights in the relative motion.
-    pub weights: [f64; 4],
+    /// The first and the last vertex of the two primitives.
+    pub ends: [u32; 2],
+    /// The points with their weights in the relative motion of the surfaces.
+    pub stencil: Stencil,
     /// Unit normal.
     pub normal: Vector3<f64>,
     /// Normal force, newtons.
@@ -37,6 +38,7 @@ impl FrictionContact {
         contact: &ActiveContact,
         barrier: &BarrierPotential,
         law: Friction,
+        x: &[f64],
         bodies: &[BodyPlace],
     ) -> Self {
         let [point, point_start] = match contact.key.body {
@@ -49,8 +51,8 @@ impl FrictionContact {
         };
         Self {
             key: contact.key,
-            vertices: contact.vertices,
-            weights: contact.weights,
+            ends: [contact.vertices[0], contact.vertices[3]],
+            stencil: Stencil::of(contact, x),
             normal: contact.normal,
             force: contact.force(barrier),
             point,
@@ -62,8 +64,8 @@ impl FrictionContact {
     /// How far the sheet has slid since the start of the step, relative to the body, metres.
     fn slip(&self, x0: &[f64], x: &[f64], bodies: &[BodyPlace]) -> Vector3<f64> {
         let mut u = Vector3::zeros();
-        for (v, w) in self.vertices.iter().zip(self.weights) {
-            let i = 3 * *v as usize;
+        for (v, w) in self.stencil.iter() {
+            let i = 3 * v as usize;
             u += w * Vector3::new(x[i] - x0[i], x[i + 1] - x0[i + 1], x[i + 2] - x0[i + 2]);
         }
         if let Some(b) = self.key.body {
@@ -103,7 +105,8 @@ impl FrictionContact {
             let slope = self.force * self.law.force_slope(y).max(0.0);
             block += (slope - ratio) * t * t.transpose();
         }
-        add_weighted(&self.vertices, &self.weights, &block, sink);
+        let (points, weights) = (self.stencil.points(), self.stencil.weights());
+        add_weighted(points, weights, &block, sink);
     }
 }
 
@@ -124,13 +127,13 @@ impl LaggedFriction {
         Self::default()
     }
 
-    /// Lags friction at active contacts of a step that started at positions `x0`; reuses memory.
+    /// Lags friction at active contacts at positions `x` of a step that started at positions `x0`; reuses memory.
     pub fn lag(
         &mut self,
         laws: &ContactLaws,
         barrier: &BarrierPotential,
         active: &ActiveContacts,
-        x0: &[f64],
+        [x0, x]: [&[f64]; 2],
     ) {
         self.contacts.clear();
         self.x0.clear();
@@ -139,7 +142,7 @@ impl LaggedFriction {
         }
         for contact in active.list() {
             if let Some(law) = laws.friction(contact.key.body, contact.vertices, active.span().h) {
-                let lagged = FrictionContact::new(contact, barrier, law, active.bodies());
+                let lagged = FrictionContact::new(contact, barrier, law, x, active.bodies());
                 if lagged.force > 0.0 {
                     self.contacts.push(lagged);
                 }
@@ -215,9 +218,22 @@ impl LaggedFriction {
     pub fn add_gradient(&self, x: &[f64], bodies: &[BodyPlace], scale: f64, out: &mut [f64]) {
         for c in &self.contacts {
             let force = scale * c.traction(&self.x0, x, bodies);
-            for (v, w) in c.vertices.into_iter().zip(c.weights) {
+            for (v, w) in c.stencil.iter() {
                 super::add_at(out, v, w * force);
             }
+        }
+    }
+
+    /// Calls `add` with each contact and its force on the first primitive, which the weights spread over the
+    /// vertices; newtons.
+    pub(crate) fn forces(
+        &self,
+        x: &[f64],
+        bodies: &[BodyPlace],
+        mut add: impl FnMut(&FrictionContact, Vector3<f64>),
+    ) {
+        for c in &self.contacts {
+            add(c, -c.traction(&self.x0, x, bodies));
         }
     }
 

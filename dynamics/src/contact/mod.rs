@@ -40,12 +40,13 @@ mod lagged;
 mod laws;
 mod parallel;
 mod set;
+mod stencil;
 mod surface_points;
 mod term;
 mod terms;
 mod vertex_data;
 
-pub use active::{ActiveContact, ActiveContacts, Rolling};
+pub use active::{ActiveContact, ActiveContacts, Rolling, Round};
 pub use barrier::BarrierError;
 pub(crate) use barrier::BarrierPotential;
 pub(crate) use body::advanced;
@@ -139,12 +140,12 @@ fn add_block(a: u32, b: u32, block: Matrix3<f64>, sink: &mut dyn CouplingSink) {
 }
 
 /// Appends the pairs of vertices, lower number first, that a contact of the sheet with itself couples.
-fn couple(key: ContactKey, vertices: &[u32; 4], out: &mut Vec<[u32; 2]>) {
+fn couple(key: ContactKey, vertices: &[u32], out: &mut Vec<[u32; 2]>) {
     if key.body.is_some() {
         return;
     }
-    for i in 0..4 {
-        for j in i + 1..4 {
+    for i in 0..vertices.len() {
+        for j in i + 1..vertices.len() {
             let (a, b) = (vertices[i], vertices[j]);
             out.push([a.min(b), a.max(b)]);
         }

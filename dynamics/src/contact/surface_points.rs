@@ -102,6 +102,18 @@ impl SurfacePoints {
         })
     }
 
+    /// These points, and more that are carried after them.
+    ///
+    /// # Errors
+    /// [`SurfacePointsError`].
+    pub fn with_carried(
+        mut self,
+        more: impl IntoIterator<Item = CarriedPoint>,
+    ) -> Result<Self, SurfacePointsError> {
+        self.carried.extend(more);
+        Self::new(self.model_vertices, self.own, self.carried)
+    }
+
     /// Number of points.
     pub fn count(&self) -> usize {
         self.own + self.carried.len()

@@ -248,7 +248,7 @@ impl InStep {
             active,
             friction,
         } = &mut self.state;
-        friction.lag(geometry.laws(), barrier, active, &self.start);
+        friction.lag(geometry.laws(), barrier, active, [&self.start; 2]);
         self.start_energy = active.barrier_energy(barrier);
         self.start_work = match self.bodies.any_moves() {
             true => active.barrier_work(barrier),
@@ -401,7 +401,11 @@ impl Term for ContactTerm {
             friction,
         } = &mut step.state;
         std::mem::swap(friction, &mut step.friction_before);
-        friction.lag(self.geometry.laws(), barrier, active, &step.start);
+        let x = match step.points {
+            None => &step.x,
+            Some(_) => &step.surface,
+        };
+        friction.lag(self.geometry.laws(), barrier, active, [&step.start, x]);
         let has_changed = friction.change_since(&step.friction_before) > settled;
         if !has_changed {
             std::mem::swap(friction, &mut step.friction_before);
@@ -428,7 +432,7 @@ impl Term for ContactTerm {
             self.geometry.laws(),
             terms.barrier,
             terms.active,
-            &step.start,
+            [&step.start, terms.x],
         );
         let settled_friction = settled.loss(terms.x, terms.active.bodies());
         step.friction_before = settled;

@@ -95,7 +95,7 @@ impl<'a> ContactTerms<'a> {
     pub fn append_couplings(&self, out: &mut Vec<[u32; 2]>) {
         self.active.append_couplings(out);
         for c in self.friction.contacts() {
-            couple(c.key, &c.vertices, out);
+            couple(c.key, c.stencil.points(), out);
         }
     }
 

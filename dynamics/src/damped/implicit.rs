@@ -4,7 +4,8 @@ use crate::constraint::VertexConstraint;
 use crate::contact::ContactTerm;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
-use crate::damped::restitution::FormulaStep;
+use crate::damped::restitution::{FormulaStep, Outcome, handed_on};
+use crate::damped::turning::{Predictions, Turning};
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
 use crate::step::history::History;
@@ -25,6 +26,7 @@ const MAX_STEP_RATIO: f64 = 2.0 + 1e-9;
 pub(crate) struct Implicit {
     formula: Formula,
     minimiser: Minimiser,
+    turning: Turning,
 }
 
 impl Implicit {
@@ -39,7 +41,11 @@ impl Implicit {
         tuning: &Tuning,
     ) -> Result<Self, LinalgError> {
         let minimiser = Minimiser::new(model, options, tuning)?;
-        Ok(Self { formula, minimiser })
+        Ok(Self {
+            formula,
+            minimiser,
+            turning: Turning::new(model),
+        })
     }
 }
 
@@ -59,9 +65,11 @@ impl Integrator for Implicit {
         proposal: &mut Proposal,
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
-        let (state, h, minimiser) = (attempt.state, attempt.h, &mut self.minimiser);
+        let (state, h) = (attempt.state, attempt.h);
+        let minimiser = (&mut self.minimiser, &self.turning);
         if self.formula == Formula::OneStep {
             proposal.motion.history.previous = None;
+            proposal.motion.history.body_changes.clear();
             return minimised(minimiser, scene, attempt, Reach::NONE, proposal, effort);
         }
         let previous = attempt
@@ -81,34 +89,48 @@ impl Integrator for Implicit {
         if previous.is_none() && is_smooth && attempt.starts_itself() {
             begin(minimiser, inner, attempt, proposal, effort)?;
             proposal.motion.history.set_previous(Some(state));
+            proposal.motion.history.body_changes.clear();
             return Ok(());
         }
         let reach = previous.map_or(Reach::NONE, |before| Reach::of_steps(before, state, h));
+        let formula = [reach.b, reach.k];
+        let ends = previous.map(|before| [before, state]);
+        let repeated = handed_on(model, ends, attempt.body_changes(), reach.b);
+        let eased = repeated.before.as_ref().or(previous);
+        let reach = Reach {
+            before: eased,
+            ..reach
+        };
         minimised(minimiser, inner, attempt, reach, proposal, effort)?;
+        if repeated.before.is_some() {
+            let error = LocalError::of(model, previous, state, &proposal.motion.state);
+            proposal.account.error = Some(error);
+        }
         let points = objective.contact.as_ref().and_then(ContactTerm::points);
-        let corrections = match (points, attempt.contacts, &proposal.motion.contacts) {
+        let outcome = match (points, attempt.contacts, &proposal.motion.contacts) {
             (Some(points), Some(before), Some(after)) => FormulaStep {
                 model,
                 points,
                 span: h,
-                formula: [reach.b, reach.k],
-                before: previous.unwrap_or(state),
+                formula,
+                before: eased.unwrap_or(state),
                 start: state,
                 end: &proposal.motion.state,
                 contacts: [before, after],
             }
-            .corrections(),
-            _ => Vec::new(),
+            .outcome(repeated.changes),
+            _ => Outcome::default(),
         };
         let history = &mut proposal.motion.history;
         history.set_previous(Some(state));
         if let Some(before) = &mut history.previous {
-            for (v, change) in corrections {
+            for (v, change) in outcome.corrections {
                 for k in 0..3 {
                     before.v[3 * v + k] += change[k];
                 }
             }
         }
+        history.body_changes = outcome.changes;
         Ok(())
     }
 }
@@ -159,7 +181,7 @@ const STAGE: f64 = 1.0 - FRAC_1_SQRT_2;
 /// rods, curves or surfaces take vertices along with supports that may begin to move abruptly, since the second stage
 /// takes back a part of the impulse of the first one.)
 fn begin(
-    minimiser: &mut Minimiser,
+    (minimiser, turning): (&mut Minimiser, &Turning),
     scene: Scene<'_>,
     attempt: Attempt<'_>,
     proposal: &mut Proposal,
@@ -172,7 +194,8 @@ fn begin(
         objective: &mut *objective,
     };
     let first = attempt.of_length(STAGE * h);
-    minimised(minimiser, inner, first, Reach::NONE, proposal, effort)?;
+    let first_of = (&mut *minimiser, turning);
+    minimised(first_of, inner, first, Reach::NONE, proposal, effort)?;
     let StepAccount {
         residual,
         outcome,
@@ -187,7 +210,7 @@ fn begin(
         k: STAGE / (1.0 - STAGE),
     };
     let inner = Scene { model, objective };
-    minimised(minimiser, inner, second, reach, proposal, effort)?;
+    minimised((minimiser, turning), inner, second, reach, proposal, effort)?;
     let end = &mut proposal.motion.state;
     end.t = start.t + h;
     exchange.add(proposal.account.exchange);
@@ -204,7 +227,7 @@ fn begin(
 
 /// Proposes the step of a formula.
 fn minimised(
-    minimiser: &mut Minimiser,
+    (minimiser, turning): (&mut Minimiser, &Turning),
     scene: Scene<'_>,
     attempt: Attempt<'_>,
     reach: Reach<'_>,
@@ -241,6 +264,11 @@ fn minimised(
         ahead[i] = x + h * state.v[i];
     }
     model.place_pins(state.t + h, &mut ahead);
+    let mut predictions = Predictions {
+        rest: &mut rest,
+        inertial: &mut prediction,
+    };
+    turning.correct(state, [state.t - before.t, h], [b, k], &mut predictions);
     let start = StepStart {
         state,
         memories: attempt.memories,
@@ -267,6 +295,9 @@ fn minimised(
     for i in 0..state.x.len() {
         let dx = minimiser.x()[i] - state.x[i];
         motion.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
+    }
+    for i in turning.coordinates() {
+        motion.state.v[i] = (minimiser.x()[i] - minimiser.start[0][i]) / (k * h);
     }
     motion.state.x.copy_from_slice(minimiser.x());
     motion.state.t = state.t + h;

@@ -5,6 +5,7 @@ pub(crate) mod options;
 pub(crate) mod restitution;
 pub(crate) mod restoration;
 pub(crate) mod start;
+mod turning;
 
 /// Part of a promised decrease that has to come true in a line search, the usual value of Armijo's condition
 /// (Nocedal and Wright, "Numerical Optimization", 2006, Sec. 3.1).

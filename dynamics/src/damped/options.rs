@@ -13,8 +13,9 @@ pub struct ImplicitOptions {
     /// Default 1e4.
     pub stiffness: f64,
     /// Newton's method stops when the decrease predicted by its quadratic model is below this fraction of the
-    /// inertia term of the incremental potential. Default: [`ImplicitOptions::tolerance_of`] the model. Lengths
-    /// have a tolerance of their own.
+    /// inertia term of the incremental potential; of what nothing holds that is the one in the frame that falls
+    /// freely, where it is less there. Default: [`ImplicitOptions::tolerance_of`] the model. Lengths have a
+    /// tolerance of their own.
     pub tolerance: Option<f64>,
     /// Largest relative error of an edge length after a step, above the round-off of the coordinates. Default
     /// 1e-12.

@@ -20,11 +20,23 @@
 //!
 //! where `A` is the change of the velocities of a body by an impulse. What has been given, `s = 2/3`,
 //! remains.
+//!
+//! A step of another length has another `b`, and would give `b / (1/3)` times as much of what is on its way.
+//! What more that is than equal steps give is taken back before the step, see [`handed_on`].
 
-use crate::contact::{ActiveContact, ContactState, SurfacePoints};
+mod body;
+mod repeated;
+
+pub(super) use repeated::handed_on;
+
+use crate::contact::{ActiveContact, ContactKey, ContactState, SurfacePoints};
+use crate::step::history::BodyChange;
 use crate::{SheetModel, State};
+use body::Body;
+pub(super) use body::mass_matrix;
 use isosheet_mesh::VertexId;
-use nalgebra::{DMatrix, DVector, Matrix4, Vector3};
+use nalgebra::{DVector, Vector3};
+use repeated::Changes;
 use std::collections::BTreeMap;
 
 /// The part of an impulse that has been given at the end of its step.
@@ -32,6 +44,16 @@ const GIVEN: f64 = 2.0 / 3.0;
 
 /// The whole impulse of a force, over that which it gives in its step.
 const WHOLE: f64 = 1.5;
+
+/// What follows from the contact of bodies in a step.
+#[derive(Default)]
+pub(super) struct Outcome {
+    /// What the velocities before the end are to be changed by (vertex, metres per second), so that contact
+    /// between bodies makes no energy.
+    pub(super) corrections: Vec<(usize, Vector3<f64>)>,
+    /// The part of the change of velocities in the step that contact made, after the corrections.
+    pub(super) changes: Vec<BodyChange>,
+}
 
 /// A step of the formula.
 pub(super) struct FormulaStep<'a> {
@@ -64,6 +86,8 @@ enum Part {
 struct Meeting {
     /// `J` at the vertices, newton seconds.
     impulses: BTreeMap<usize, Vector3<f64>>,
+    /// What friction has given at the vertices in the step, newton seconds.
+    friction: BTreeMap<usize, Vector3<f64>>,
     /// Work of an obstacle by its motion, joules.
     driven: f64,
     /// `B0` and `B1`, joules.
@@ -71,31 +95,45 @@ struct Meeting {
 }
 
 impl FormulaStep<'_> {
-    /// What the velocities before the end are to be changed by (vertex, metres per second), so that contact
-    /// between bodies makes no energy.
-    pub(super) fn corrections(&self) -> Vec<(usize, Vector3<f64>)> {
-        let mut changes = Vec::new();
+    /// What follows from the contact of bodies, where the step repeats changes of their velocities.
+    pub(super) fn outcome(&self, repeated: Vec<BodyChange>) -> Outcome {
+        let mut corrections = Vec::new();
+        let mut changes = Changes::of(repeated);
         for meeting in self.meetings().values() {
             let [before, after] = meeting.stored;
             let power =
                 |(v, impulse): (&usize, &Vector3<f64>)| impulse.dot(&self.mean_velocity(*v));
             let work = meeting.impulses.iter().map(power).sum::<f64>() - meeting.driven;
             let stored = after - before;
-            if work + stored <= 0.0 {
-                continue;
-            }
-            let bodies: Vec<_> = self.bodies_of(meeting).collect();
-            let q: f64 = bodies.iter().map(|(body, j)| body.response(j)).sum();
-            let kept = kept(work, stored, q);
-            for (body, impulses) in bodies {
+            let pushed: Vec<_> = self.pushed(meeting).collect();
+            let kept = match work + stored > 0.0 {
+                true => {
+                    let responses = pushed.iter().map(|(body, [j, _])| body.response(j));
+                    kept(work, stored, responses.sum())
+                }
+                false => 1.0,
+            };
+            let firsts = pushed.iter().map(|(body, _)| body.first as u32);
+            changes.join(&firsts.collect::<Vec<_>>());
+            for (body, [normal, tangential]) in pushed {
+                let made = body.velocities(&(normal.clone() / WHOLE + tangential));
                 // Half of what is taken from the last change of the velocity would have followed.
-                let velocities = body.velocities(&impulses);
-                let first = body.first;
-                let change = |(k, v): (usize, Vector3<f64>)| (first + k, 2.0 * (1.0 - kept) * v);
-                changes.extend(velocities.into_iter().enumerate().map(change));
+                let taken = body.velocities(&normal).map(|v| 2.0 * (1.0 - kept) * v);
+                changes.add(body.first, &std::array::from_fn(|k| made[k] - taken[k]));
+                if kept < 1.0 {
+                    corrections.extend(
+                        taken
+                            .into_iter()
+                            .enumerate()
+                            .map(|(k, v)| (body.first + k, v)),
+                    );
+                }
             }
         }
-        changes
+        Outcome {
+            corrections,
+            changes: changes.into_list(),
+        }
     }
 
     /// The contacts of bodies by who touches.
@@ -104,7 +142,7 @@ impl FormulaStep<'_> {
         let [start, end] = self.contacts;
         let impulse = WHOLE * self.formula[1] * self.span;
         for contact in end.active.list() {
-            let Some(parts) = self.parts(contact) else {
+            let Some(parts) = self.parts(&contact.key, ends(contact)) else {
                 continue;
             };
             let meeting = meetings.entry(parts).or_default();
@@ -123,9 +161,12 @@ impl FormulaStep<'_> {
                 meeting.driven += sum.dot(&body.step_velocity(&contact.closest)) / self.span;
             }
         }
+        if !end.friction.contacts().is_empty() {
+            self.add_friction(&mut meetings);
+        }
         for contact in start.active.list() {
             if let Some(meeting) = self
-                .parts(contact)
+                .parts(&contact.key, ends(contact))
                 .and_then(|parts| meetings.get_mut(&parts))
             {
                 meeting.stored[0] += contact.energy(&start.barrier);
@@ -134,18 +175,38 @@ impl FormulaStep<'_> {
         meetings
     }
 
+    /// Adds the impulses of friction, where there is contact at all.
+    fn add_friction(&self, meetings: &mut BTreeMap<[Part; 2], Meeting>) {
+        let [_, end] = self.contacts;
+        let mut x = Vec::new();
+        self.points.place(&self.end.x, &mut x);
+        let impulse = self.formula[1] * self.span;
+        end.friction
+            .forces(&x, end.active.bodies(), |contact, force| {
+                let parts = self.parts(&contact.key, contact.ends);
+                let Some(meeting) = parts.and_then(|parts| meetings.get_mut(&parts)) else {
+                    return;
+                };
+                for (point, w) in contact.stencil.iter() {
+                    for (v, weight) in self.points.carriers(point) {
+                        let of_vertex = meeting.friction.entry(v as usize);
+                        *of_vertex.or_insert_with(Vector3::zeros) += impulse * w * weight * force;
+                    }
+                }
+            });
+    }
+
     /// The two that touch, if one of them is a body that responds and none is a sheet.
-    fn parts(&self, contact: &ActiveContact) -> Option<[Part; 2]> {
-        let of = |point: &u32| {
-            let vertex = self.points.heaviest_carrier(*point);
+    fn parts(&self, key: &ContactKey, [first, last]: [u32; 2]) -> Option<[Part; 2]> {
+        let of = |point: u32| {
+            let vertex = self.points.heaviest_carrier(point);
             self.part_of(vertex)
         };
-        let points = contact.corners();
-        let first = of(points.first()?)?;
-        let second = match contact.key.body {
+        let first = of(first)?;
+        let second = match key.body {
             Some(number) => Part::Obstacle(number),
             // Those of the other one come last.
-            None => of(points.last()?)?,
+            None => of(last)?,
         };
         let is_body = |part: &Part| matches!(part, Part::Body(_));
         let parts = [first.min(second), first.max(second)];
@@ -173,23 +234,34 @@ impl FormulaStep<'_> {
         v0 + 0.5 * (before + after)
     }
 
-    /// The bodies that a meeting pushes, with the impulses on them.
-    fn bodies_of<'a>(
+    /// The bodies that a meeting pushes, with the impulses on them (12 each): the whole ones of the barrier, and
+    /// those that friction has given.
+    fn pushed<'a>(
         &'a self,
         meeting: &'a Meeting,
-    ) -> impl Iterator<Item = (Body, DVector<f64>)> + 'a {
+    ) -> impl Iterator<Item = (Body, [DVector<f64>; 2])> + 'a {
         let [bodies, driven] = self.model.sheets_end();
         let vertices = meeting.impulses.keys().filter(move |v| **v < driven);
         let mut firsts: Vec<usize> = vertices.map(|v| bodies + (v - bodies) / 4 * 4).collect();
         firsts.dedup();
-        firsts.into_iter().map(|first| {
-            let mut impulses = DVector::zeros(12);
-            for (v, j) in meeting.impulses.range(first..first + 4) {
-                impulses.fixed_rows_mut::<3>(3 * (v - first)).copy_from(j);
-            }
+        firsts.into_iter().map(move |first| {
+            let gathered = |all: &BTreeMap<usize, Vector3<f64>>| {
+                let mut impulses = DVector::zeros(12);
+                for (v, j) in all.range(first..first + 4) {
+                    impulses.fixed_rows_mut::<3>(3 * (v - first)).copy_from(j);
+                }
+                impulses
+            };
+            let impulses = [&meeting.impulses, &meeting.friction].map(gathered);
             (Body::new(self.model, self.end, first), impulses)
         })
     }
+}
+
+/// The first and the last vertex of a contact.
+fn ends(contact: &ActiveContact) -> [u32; 2] {
+    let [first, .., last] = contact.vertices;
+    [first, last]
 }
 
 /// The part of an impulse that is kept, at least what has been given: the largest with which the contact
@@ -202,115 +274,6 @@ fn kept(work: f64, stored: f64, q: f64) -> f64 {
         kept.clamp(GIVEN, 1.0)
     } else {
         GIVEN
-    }
-}
-
-/// The four vertices of a rigid body.
-struct Body {
-    first: usize,
-    mass: Matrix4<f64>,
-    /// Velocities of the vertices (12) in the motions that guides leave to the body, by columns.
-    motions: DMatrix<f64>,
-}
-
-impl Body {
-    fn new(model: &SheetModel, state: &State, first: usize) -> Self {
-        let topology = model.topology();
-        let place = |k: usize| {
-            let v = 3 * (first + k);
-            Vector3::from_column_slice(&state.x[v..v + 3])
-        };
-        let vertex = |k: usize| VertexId::from_index(first + k);
-        let mass = Matrix4::from_fn(|i, j| match (i == j, &model.mass().edge) {
-            (true, _) => model.mass().vertex[first + i],
-            (false, None) => 0.0,
-            (false, Some(edges)) => {
-                let edge = topology.find_edge(vertex(i), vertex(j));
-                edge.map_or(0.0, |e| edges[e.index()])
-            }
-        });
-        let centre = (0..4).map(place).sum::<Vector3<f64>>() / 4.0;
-        let size = (0..4)
-            .map(|k| (place(k) - centre).norm())
-            .fold(0.0, f64::max);
-        let mut fields = DMatrix::zeros(12, 6);
-        for k in 0..4 {
-            for axis in 0..3 {
-                let unit = Vector3::ith(axis, 1.0);
-                let turned = unit.cross(&(place(k) - centre)) / size;
-                fields.fixed_view_mut::<3, 1>(3 * k, axis).copy_from(&unit);
-                fields
-                    .fixed_view_mut::<3, 1>(3 * k, 3 + axis)
-                    .copy_from(&turned);
-            }
-        }
-        let mut fixed: Vec<[f64; 6]> = Vec::new();
-        let mut fix = |k: usize, direction: &Vector3<f64>| {
-            let row = fields.rows(3 * k, 3).tr_mul(direction);
-            fixed.push(std::array::from_fn(|i| row[i]));
-        };
-        for k in (0..4).filter(|k| model.is_pinned(vertex(*k))) {
-            for axis in 0..3 {
-                fix(k, &Vector3::ith(axis, 1.0));
-            }
-        }
-        for constraint in model.constraints() {
-            let v = constraint.vertex().index();
-            if (first..first + 4).contains(&v) {
-                let equations = constraint.at(state.t, &place(v - first));
-                let rows = equations.independent() * equations.jacobian;
-                for row in rows.row_iter() {
-                    fix(v - first, &row.transpose());
-                }
-            }
-        }
-        Self {
-            first,
-            mass,
-            motions: &fields * allowed(&fixed),
-        }
-    }
-
-    /// `A J`: the velocities that impulses (12, newton seconds) give the body as it is guided.
-    fn response_velocities(&self, impulses: &DVector<f64>) -> DVector<f64> {
-        let weighted = DMatrix::from_fn(12, self.motions.ncols(), |row, column| {
-            let (k, axis) = (row / 3, row % 3);
-            (0..4)
-                .map(|j| self.mass[(k, j)] * self.motions[(3 * j + axis, column)])
-                .sum()
-        });
-        let inertia = self.motions.tr_mul(&weighted);
-        let driving = self.motions.tr_mul(impulses);
-        match inertia.cholesky() {
-            Some(inertia) => &self.motions * inertia.solve(&driving),
-            None => DVector::zeros(12),
-        }
-    }
-
-    /// `J . A J`, joules.
-    fn response(&self, impulses: &DVector<f64>) -> f64 {
-        impulses.dot(&self.response_velocities(impulses))
-    }
-
-    /// `A J` at each vertex.
-    fn velocities(&self, impulses: &DVector<f64>) -> [Vector3<f64>; 4] {
-        let all = self.response_velocities(impulses);
-        std::array::from_fn(|k| all.fixed_rows::<3>(3 * k).into_owned())
-    }
-}
-
-/// The combinations of six motions, by columns, in which nothing moves along these rows.
-fn allowed(rows: &[[f64; 6]]) -> DMatrix<f64> {
-    let square = DMatrix::from_fn(6, 6, |i, j| rows.iter().map(|row| row[i] * row[j]).sum());
-    let eigen = nalgebra::SymmetricEigen::new(square);
-    let largest = eigen.eigenvalues.max();
-    let free = (0..6).filter(|i| eigen.eigenvalues[*i] <= f64::EPSILON.sqrt() * largest);
-    let columns: Vec<_> = free
-        .map(|i| eigen.eigenvectors.column(i).into_owned())
-        .collect();
-    match columns.is_empty() {
-        true => DMatrix::zeros(6, 0),
-        false => DMatrix::from_columns(&columns),
     }
 }
 
@@ -332,19 +295,6 @@ mod tests {
             } else {
                 assert_eq!(kept, GIVEN);
             }
-        }
-    }
-
-    #[test]
-    fn what_guides_forbid_is_no_motion() {
-        assert_eq!(allowed(&[]).ncols(), 6);
-        let left = allowed(&[
-            [1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
-            [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-        ]);
-        assert_eq!(left.ncols(), 4);
-        for column in left.column_iter() {
-            assert!((column[0] + column[5]).abs() < 1e-14 && column[1].abs() < 1e-14);
         }
     }
 }

@@ -426,6 +426,11 @@ impl SheetModel {
         0.5 * sum / RATE_PART
     }
 
+    /// Kinetic energy `v^T M v / 2` (Eq. 2), joules.
+    pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
+        self.mass.kinetic_energy(&self.topology, v)
+    }
+
     /// Conservative force `f = -dV/dx` where a simulation starts at rest, overwriting `f`; zero at pinned
     /// vertices.
     pub fn potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {

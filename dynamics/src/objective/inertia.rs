@@ -1,10 +1,13 @@
 //! The inertia of a step.
 
+use crate::PotentialShape;
 use crate::SheetModel;
 use crate::hessian::{BlockSink, HessianPart};
+use crate::model::PINNED;
+use crate::potential::At;
 use crate::term::{Exchange, Iterate, Refusal, StepStart, Term, Value};
 use isosheet_mesh::{EdgeId, VertexId};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
 /// `|x - x^|_M^2 / 2`, with the prediction `x^`; joules times squared seconds.
@@ -13,6 +16,64 @@ pub(super) struct Inertia {
     prediction: Vec<f64>,
     difference: Vec<f64>,
     product: Vec<f64>,
+    falling: Falling,
+}
+
+/// The connected parts of a model that nothing holds.
+struct Falling {
+    /// Of each connected part its mass, kilograms; nothing of those that a support holds.
+    masses: Vec<Option<f64>>,
+    /// The way that its weight alone takes it in the step, metres.
+    ways: Vec<Vector3<f64>>,
+    /// Whether there is such a way.
+    any: bool,
+}
+
+impl Falling {
+    fn new(model: &SheetModel) -> Self {
+        let t = model.topology();
+        let all = model.mass().row_sums(t);
+        let mut masses = vec![Some(0.0); t.components().len()];
+        for (v, m) in t.vertex_ids().zip(all) {
+            let of_part = &mut masses[t.vertex_component(v)];
+            *of_part = match model.free_index()[v.index()] {
+                PINNED => None,
+                _ => of_part.map(|sum| sum + m),
+            };
+        }
+        for constraint in model.constraints() {
+            masses[t.vertex_component(constraint.vertex())] = None;
+        }
+        Self {
+            ways: vec![Vector3::zeros(); masses.len()],
+            masses,
+            any: false,
+        }
+    }
+
+    /// Sets the ways of a step; `force` is room.
+    fn begin(&mut self, model: &SheetModel, step: &StepStart<'_>, force: &mut [f64]) {
+        self.any = false;
+        self.ways.fill(Vector3::zeros());
+        let mut weights = model
+            .potentials()
+            .filter(|p| p.shape() == PotentialShape::Linear)
+            .peekable();
+        if weights.peek().is_none() || self.masses.iter().all(Option::is_none) {
+            return;
+        }
+        force.fill(0.0);
+        let end = At::new(step.state.t + step.span, &step.state.x);
+        weights.for_each(|p| p.add_gradient(end, force));
+        let t = model.topology();
+        for (v, gradient) in t.vertex_ids().zip(force.as_chunks::<3>().0) {
+            self.ways[t.vertex_component(v)] -= Vector3::from(*gradient);
+        }
+        for (way, mass) in self.ways.iter_mut().zip(&self.masses) {
+            *way *= mass.map_or(0.0, |m| step.h * step.h / m);
+            self.any |= *way != Vector3::zeros();
+        }
+    }
 }
 
 impl Inertia {
@@ -23,7 +84,41 @@ impl Inertia {
             prediction: vec![0.0; n],
             difference: vec![0.0; n],
             product: vec![0.0; n],
+            falling: Falling::new(model),
         }
+    }
+
+    /// How much less than the inertia term it is in the frames of the parts that fall, at the last value:
+    ///
+    /// ```text
+    /// sum_k max(0, |d|_M^2 / 2 - |d - c_k|_M^2 / 2),     d = x - x^,
+    /// ```
+    ///
+    /// over the connected parts `k` that nothing holds, with the way `c_k = h^2 F_k / m_k` that the weight `F_k`
+    /// of the part alone takes it.
+    pub(super) fn of_fall(&mut self) -> f64 {
+        if !self.falling.any {
+            return 0.0;
+        }
+        let t = self.model.topology();
+        self.model
+            .mass()
+            .apply(t, &self.difference, &mut self.product);
+        let mut sums = vec![Vector3::zeros(); self.falling.ways.len()];
+        for (v, p) in t.vertex_ids().zip(self.product.as_chunks::<3>().0) {
+            sums[t.vertex_component(v)] += Vector3::from(*p);
+        }
+        let parts = self
+            .falling
+            .ways
+            .iter()
+            .zip(&self.falling.masses)
+            .zip(&sums);
+        let less = parts.filter_map(|((way, mass), sum)| {
+            let of_part = sum.dot(way) - 0.5 * (*mass)? * way.norm_squared();
+            Some(of_part.max(0.0))
+        });
+        less.sum()
     }
 
     fn set_difference(&mut self, x: &[f64]) {
@@ -40,6 +135,7 @@ impl Inertia {
 impl Term for Inertia {
     fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
         self.prediction.copy_from_slice(step.prediction);
+        self.falling.begin(&self.model, step, &mut self.product);
         Ok(())
     }
 

@@ -43,8 +43,9 @@ pub(crate) struct Objective {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct IncrementalPotential {
     pub(crate) value: f64,
-    /// Its inertia term.
-    pub(crate) inertia: f64,
+    /// Its inertia term in the frames of the parts that fall, where that is less: what a decrease is compared
+    /// with, so that a sheet that falls freely is as exact as one at rest.
+    pub(crate) relative_inertia: f64,
     /// Size of what was summed.
     pub(crate) size: f64,
     /// What the round-off of positions makes besides.
@@ -121,7 +122,7 @@ impl Objective {
         }
         IncrementalPotential {
             value: inertia + h * h * sum.energy,
-            inertia,
+            relative_inertia: (inertia - self.inertia.of_fall()).max(0.0),
             size: inertia + h * h * sum.size,
             round_off: h * h * sum.round_off,
         }

@@ -23,6 +23,20 @@ pub(crate) struct History {
     /// The longest sub-step that the accuracy asked for allows by the last one, seconds; none before, and where none is
     /// asked for.
     pub(crate) longest: Option<f64>,
+    /// The part of the last change of velocities that the contact of rigid bodies made, in their order; empty where
+    /// nothing touched them.
+    pub(crate) body_changes: Vec<BodyChange>,
+}
+
+/// A change of the velocities of a rigid body by contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct BodyChange {
+    /// The first of its four vertices.
+    pub(crate) first: u32,
+    /// The lowest such number among all bodies that have pushed one another.
+    pub(crate) group: u32,
+    /// Of its vertices, metres per second.
+    pub(crate) velocities: [Vector3<f64>; 4],
 }
 
 impl History {
@@ -37,6 +51,7 @@ impl History {
         self.couplings.clear();
         self.rod_stiffness = 0.0;
         self.longest = None;
+        self.body_changes.clear();
     }
 
     /// Takes over another history, in place.
@@ -46,6 +61,7 @@ impl History {
         self.couplings.clone_from(&other.couplings);
         self.rod_stiffness = other.rod_stiffness;
         self.longest = other.longest;
+        self.body_changes.clone_from(&other.body_changes);
     }
 
     /// Sets the state before the present one, in place.

@@ -5,7 +5,7 @@ use crate::objective::Objective;
 use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::{StepError, StepOutcome};
-use crate::step::history::{History, Multipliers};
+use crate::step::history::{BodyChange, History, Multipliers};
 use crate::step::local_error::LocalError;
 use crate::step::motion::Motion;
 use crate::step::reaction::{Balance, ForceTime};
@@ -171,6 +171,11 @@ impl<'a> Attempt<'a> {
             Memory::Restart => None,
             Memory::State | Memory::All => self.history.previous.as_ref(),
         }
+    }
+
+    /// What contact made of the last change of the velocities of rigid bodies.
+    pub(crate) fn body_changes(&self) -> &'a [BodyChange] {
+        &self.history.body_changes
     }
 
     /// Multipliers of the step before, as a first guess.

@@ -108,8 +108,13 @@ impl Motion {
         ] {
             check_length(what, found, expected)?;
         }
+        let of_bodies = history
+            .body_changes
+            .iter()
+            .map(|body| body.first.saturating_add(3));
+        let largest = largest.copied().into_iter().chain(of_bodies).max();
         match largest {
-            Some(&v) if v as usize >= vertices => Err(CheckpointError::NoSuchVertex {
+            Some(v) if v as usize >= vertices => Err(CheckpointError::NoSuchVertex {
                 vertex: v,
                 vertices,
             }),
@@ -129,6 +134,13 @@ impl Motion {
         check_finite("multipliers of the isometry", &multipliers.rods)?;
         check_finite("stiffnesses of the rods", &[history.rod_stiffness])?;
         check_finite("lengths of sub-steps", history.longest.as_slice())?;
+        for change in history
+            .body_changes
+            .iter()
+            .flat_map(|body| &body.velocities)
+        {
+            check_finite("changes of the velocities of bodies", change.as_slice())?;
+        }
         for memory in self.memories.lists() {
             check_finite("memories of potentials", memory)?;
         }

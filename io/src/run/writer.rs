@@ -214,8 +214,12 @@ impl RunWriter {
         let state = simulation.state();
         let facts = &under_way.facts;
         let rod_forces = facts.of_edges(simulation.rod_forces().unwrap_or_default());
-        let contact_forces = simulation.surface_forces().unwrap_or_default();
-        let gaps = simulation.vertex_gaps().unwrap_or_default();
+        let mut contact_forces = simulation.surface_forces().unwrap_or_default();
+        let mut gaps = simulation.vertex_gaps().unwrap_or_default();
+        // Points of round bodies, which come after all others, are not seen.
+        let seen = facts.sheet.topology().vertex_count();
+        contact_forces.truncate(3 * seen);
+        gaps.truncate(seen);
         let plastic_angles = facts.of_edges(simulation.plastic_angles().unwrap_or_default());
         let curvatures = simulation.plastic_curvatures().unwrap_or_default();
         let plastic_curvatures = facts.of_faces(curvatures.into_flattened());

@@ -32,10 +32,11 @@ pub struct Body {
     /// Its form: one that encloses a volume. Of a file the triangles have to be closed, with counter-clockwise
     /// corners as seen from outside; it may have cavities.
     pub shape: Shape,
-    /// Sides of the circles of round shapes, from 4 to 256: bodies are polyhedra with corners on the shape, and
-    /// mass, centre and inertia are those of the polyhedron.
-    #[serde(default = "sides")]
-    pub sides: usize,
+    /// Sides of the circles of round shapes, from 4 to 256, by which they are drawn and measured; if left out 32,
+    /// and of cylinders 128. Spheres and capsules touch by their true surface, cylinders as a prism with so many
+    /// sides, whose corners are on the shape. Mass, centre and inertia are those of the true shape.
+    #[serde(default)]
+    pub sides: Option<usize>,
     /// Density, kg/m3. Either this or `mass` has to be given.
     #[serde(default)]
     pub density: Option<f64>,
@@ -63,9 +64,12 @@ pub struct Body {
     pub torque: Vec<BodyTorque>,
 }
 
-fn sides() -> usize {
-    32
-}
+/// Sides of circles where a body is drawn with them.
+const DRAWN: usize = 32;
+
+/// Sides of circles where a body touches with them: it rolls down at the acceleration of a true cylinder to half a
+/// per cent then.
+const TOUCHING: usize = 128;
 
 /// Least and largest number of sides of a circle.
 const SIDES: [f64; 2] = [4.0, 256.0];
@@ -76,7 +80,7 @@ impl Body {
         Self {
             name: None,
             shape,
-            sides: sides(),
+            sides: None,
             density: Some(density),
             mass: None,
             pose: Pose::default(),
@@ -106,7 +110,7 @@ impl Body {
             ),
             _ => self.shape.check(&shape, checks),
         }
-        checks.within(key.name("sides"), self.sides as f64, SIDES);
+        checks.within(key.name("sides"), self.sides() as f64, SIDES);
         match (self.density, self.mass) {
             (None, None) => checks.report(
                 key.clone(),
@@ -140,6 +144,14 @@ impl Body {
         for (key, torque) in key.name("torque").entries(&self.torque) {
             torque.check(&key, checks);
         }
+    }
+
+    /// Sides of its circles.
+    pub(super) fn sides(&self) -> usize {
+        self.sides.unwrap_or(match self.shape {
+            Shape::Cylinder { .. } => TOUCHING,
+            _ => DRAWN,
+        })
     }
 
     /// Its functions of time.

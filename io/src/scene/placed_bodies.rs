@@ -10,12 +10,13 @@ use super::obstacles::Shape;
 use super::placed::PlacedSheets;
 use super::problem::Problem;
 use super::resolution::check_shape;
+use super::round_bodies::RoundShape;
 use super::selection::{InPlace, Selection};
 use super::start::velocities;
 use crate::body_mesh::BodyMesh;
 use crate::format::FaceGroups;
 use isosheet_collide as collide;
-use isosheet_collide::{BroadPhase, ContactMesh};
+use isosheet_collide::{BroadPhase, ContactMesh, RoundBody};
 use isosheet_dynamics::contact::SurfacePoints;
 use isosheet_dynamics::{
     BodyForce, BodyTorque, JointCoordinate, Profile, RigidBody, Solid, SolidError,
@@ -62,11 +63,14 @@ impl<'a> PlacedBodies<'a> {
         let mut list = Vec::new();
         for (k, (key, of)) in Key::root().name("body").entries(bodies).enumerate() {
             let solid = of.solid(&key, files)?;
-            let mass = of
-                .mass
-                .unwrap_or(of.density.unwrap_or_default() * solid.volume());
-            let body = RigidBody::of_solid(&solid, mass)
-                .map_err(|e| Problem::from_error(key.clone(), &e))?;
+            let round = RoundShape::of(&of.shape);
+            let volume = round.map_or_else(|| solid.volume(), |round| round.volume());
+            let mass = of.mass.unwrap_or(of.density.unwrap_or_default() * volume);
+            let body = match round {
+                Some(round) => round.body(mass, &of.pose),
+                None => RigidBody::of_solid(&solid, mass),
+            };
+            let body = body.map_err(|e| Problem::from_error(key.clone(), &e))?;
             let body = of.guided(body, &key)?;
             let own = solid.surface().topology();
             let counts = [own.vertex_count(), own.edge_count(), own.face_count()];
@@ -354,6 +358,11 @@ impl PlacedBody<'_> {
         }
     }
 
+    /// The surface by which it touches, if that is round.
+    pub(super) fn round(&self) -> Option<RoundBody> {
+        RoundShape::of(&self.of.shape)?.surface(&self.of.pose)
+    }
+
     /// The vertices of the model that carry it.
     pub(super) fn vertices(&self) -> [VertexId; 4] {
         [0, 1, 2, 3].map(|k| VertexId::from_index(self.first.index() + k))
@@ -407,7 +416,7 @@ impl Body {
             Shape::File(_) => key.name("file.path"),
             _ => key.name(self.shape.name()),
         };
-        let mesh = BodyMesh::of(&shape, self.sides);
+        let mesh = BodyMesh::of(&shape, self.sides());
         let mesh = mesh.map_err(|e| Problem::from_error(at.clone(), &e))?;
         let mesh = mesh.ok_or_else(|| {
             let message = "the shape encloses no volume";

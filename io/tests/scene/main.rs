@@ -25,6 +25,7 @@ mod peel;
 mod poses;
 mod random_bodies;
 mod restitution;
+mod rolling;
 mod seams;
 mod sequences;
 mod several_materials;

@@ -2,22 +2,28 @@
 
 use crate::bodies::{ASIDE, centre, live, velocity};
 use isosheet_io::scene::LiveScene;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
-/// A ball at `boost` is hit by a box that comes with `speed` more, in steps of 1/60 s, until they have
-/// parted.
-fn hit(mass: f64, speed: f64, boost: f64, guide: &str) -> (LiveScene, f64) {
-    let scene = format!(
+const H: f64 = 1.0 / 60.0;
+
+/// A ball at `boost`, 3 cm from a box that comes with `speed` more.
+fn apart(mass: f64, speed: f64, boost: f64, guide: &str) -> LiveScene {
+    live(&format!(
         "{ASIDE}[[body]]\nshape = {{ sphere = {{ radius = 0.02 }} }}\nsides = 24\nmass = {mass}\n\
          velocity = [{boost}, 0, 0]\n{guide}\n\
          [[body]]\nshape = {{ box = {{ size = [0.1, 0.1, 0.1] }} }}\nmass = 1\n\
          pose = {{ position = [-0.1, 0, 0] }}\nvelocity = [{}, 0, 0]\n",
         speed + boost
-    );
-    let mut live = live(&scene);
-    // They are 3 cm apart.
+    ))
+}
+
+/// They hit one another in steps of 1/60 s, until they have parted.
+fn hit(mass: f64, speed: f64, boost: f64, guide: &str) -> (LiveScene, f64) {
+    let mut live = apart(mass, speed, boost, guide);
     let steps = (0.06 / speed * 60.0).ceil() as usize + 20;
     for _ in 0..steps {
-        live.step(1.0 / 60.0).unwrap();
+        live.step(H).unwrap();
     }
     let [ball, other] = [0, 1].map(|body| velocity(&live, body).x);
     (live, (ball - other) / speed)
@@ -30,6 +36,8 @@ fn bodies_part_no_faster_than_they_met() {
         for (speed, boost) in [(0.03, 0.0), (0.3, 0.0), (0.3, 5.0), (3.0, -1.0)] {
             let (live, restitution) = hit(mass, speed, boost, "");
             let case = format!("mass {mass}, speed {speed}, boost {boost}");
+            let [b, o] = [0, 1].map(|body| velocity(&live, body).x - boost);
+            println!("{case}: {restitution} {:e}", (mass * b + o) / speed - 1.0);
             assert!((0.0..=1.0).contains(&restitution), "{case}: {restitution}");
             let [ball, other] = [0, 1].map(|body| velocity(&live, body).x - boost);
             let momentum = mass * ball + other;
@@ -72,4 +80,74 @@ fn guided_bodies_part_no_faster_than_they_met() {
             "{speed}: {fastest}"
         );
     }
+}
+
+/// The speed at which the ball and the box part after these steps, and more of the last one, over that at which they
+/// met.
+fn parted(mut live: LiveScene, speed: f64, steps: impl IntoIterator<Item = f64>) -> f64 {
+    let mut gone = false;
+    let mut last = H;
+    for h in steps {
+        live.step(h).unwrap();
+        last = h;
+    }
+    for _ in 0..60 {
+        live.step(last).unwrap();
+        let apart = centre(&live, 0).x - centre(&live, 1).x;
+        gone |= apart > 0.1;
+        if gone {
+            break;
+        }
+    }
+    (velocity(&live, 0).x - velocity(&live, 1).x) / speed
+}
+
+/// Steps that become longer give no more of an impulse than equal ones.
+#[test]
+fn bodies_part_no_faster_than_they_met_in_steps_that_grow() {
+    let divided = [1.0 / 8.0; 8].into_iter().chain([0.25; 4]).chain([0.5]);
+    let rows: [(&str, Vec<f64>); 4] = [
+        ("equal", vec![1.0; 8]),
+        ("halves", vec![0.5, 0.5, 1.0, 1.0]),
+        ("thirds", vec![2.0 / 3.0, 2.0 / 3.0, 1.0, 1.0]),
+        ("doubled", divided.collect()),
+    ];
+    for (name, row) in rows {
+        let mut line = format!("{name}:");
+        for mass in [1e-3, 0.1, 1.0, 10.0] {
+            let steps = row.iter().map(|part| part * H).chain([H; 20]);
+            let restitution = parted(apart(mass, 3.0, 0.0, ""), 3.0, steps);
+            line += &format!(" {restitution:.4}");
+            assert!(
+                (0.0..=1.0).contains(&restitution),
+                "{name}, mass {mass}: {restitution}"
+            );
+        }
+        println!("{line}");
+    }
+}
+
+/// In any divisions of steps, for any masses.
+#[test]
+fn bodies_part_no_faster_than_they_met_in_random_steps() {
+    let mut rng = ChaCha8Rng::seed_from_u64(isosheet_random::seed());
+    let mut largest = 0.0_f64;
+    for case in 0..400 * isosheet_random::times() {
+        let mass = 10.0_f64.powf(rng.random_range(-3.0..1.0));
+        let mut step = H * 0.5_f64.powi(rng.random_range(0..4));
+        let steps: Vec<f64> = (0..60)
+            .map(|_| {
+                // Any length up to twice the one before, at most 1/60 s.
+                step = (step * rng.random_range(0.4..2.0)).clamp(H / 32.0, H);
+                step
+            })
+            .collect();
+        let restitution = parted(apart(mass, 3.0, 0.0, ""), 3.0, steps.clone());
+        largest = largest.max(restitution);
+        assert!(
+            (0.0..=1.0).contains(&restitution),
+            "case {case}, mass {mass}: {restitution} in the steps {steps:?}"
+        );
+    }
+    println!("{largest}");
 }

@@ -27,6 +27,7 @@ fn vertex(normal: Vector3<f64>, gap: f64) -> ActiveContact {
         closest: Vector3::zeros(),
         parallel: None,
         rolling: None,
+        round: [None; 2],
     }
 }
 

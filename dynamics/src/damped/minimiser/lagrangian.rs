@@ -80,8 +80,8 @@ pub(crate) struct Lagrangian {
 /// The augmented Lagrangian at an iterate, and what its parts say about round-off.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Merit {
-    /// Its inertia term.
-    pub(super) inertia: f64,
+    /// Its inertia term in the frames of the parts that fall.
+    pub(super) relative_inertia: f64,
     /// The incremental potential `Phi`.
     pub(super) potential: f64,
     /// Size of the multipliers' terms, `sum |L| l^2`.
@@ -191,7 +191,7 @@ impl Lagrangian {
         squares += vertex_squares + potential.round_off;
         let sizes = potential.size + rods.abs() + rod_scale;
         Merit {
-            inertia: potential.inertia,
+            relative_inertia: potential.relative_inertia,
             value: potential.value + rods,
             potential: potential.value,
             rod_scale,

@@ -248,8 +248,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             self.residual = 0.0;
             return Quality::RoundOff;
         }
-        self.residual = (slope.abs() / before.inertia).sqrt();
-        match slope.abs() <= tolerance * before.inertia {
+        self.residual = (slope.abs() / before.relative_inertia).sqrt();
+        match slope.abs() <= tolerance * before.relative_inertia {
             true => Quality::Converged,
             false => Quality::Descends,
         }
@@ -575,7 +575,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         match self.phase.saddle {
             Saddle::Ignored => false,
             Saddle::Curvature => {
-                let least = *tolerance * direction.before.inertia;
+                let least = *tolerance * direction.before.relative_inertia;
                 lagrangian.leave_saddle(self.problem, options.seed, least, self.effort)
             }
             Saddle::Perturbation => {

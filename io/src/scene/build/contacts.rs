@@ -54,7 +54,15 @@ impl Builder<'_> {
         }
         let automatic = match &self.surface {
             None => ContactOptions::for_sheet(self.model()),
-            Some(surface) => ContactOptions::for_surface(&surface.sheet, &surface.points),
+            Some(surface) => {
+                let round = self
+                    .bodies
+                    .list
+                    .iter()
+                    .filter(|body| body.round().is_some());
+                let replaced: Vec<_> = round.map(|body| body.part.vertices.clone()).collect();
+                ContactOptions::for_surface_without(&surface.sheet, &surface.points, &replaced)
+            }
         };
         let thickest = scene.largest_thickness();
         let options = scene.contact.options(automatic, thickest);
@@ -85,6 +93,14 @@ impl Builder<'_> {
                 contacts = contacts.with_driven_from(VertexId::from_index(first));
             }
             contacts = contacts.with_parts(&parts, self.glued_to_bodies.iter().copied());
+            for (number, body) in self.bodies.list.iter().enumerate() {
+                if let Some(round) = body.round() {
+                    let carried = |p| body.body.carried(p, body.first);
+                    contacts = contacts
+                        .with_round_body(number, body.part.vertices.clone(), round, carried)
+                        .map_err(at(&body.key))?;
+                }
+            }
         }
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
