@@ -104,7 +104,7 @@ pub use model::attached::{AttachedFlow, AttachedFlowError};
 pub use model::clamps::ClampAcrossMesh;
 pub use model::edge_moment::EdgeMoment;
 pub use model::elastic_deformation::ElasticDeformation;
-pub use model::gas::{Gas, GasError};
+pub use model::gas::{EnclosedGas, Gas, GasError, GasState};
 pub use model::hand::{Hand, HandError};
 pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};

@@ -45,6 +45,7 @@ mod direction;
 mod drawing;
 mod driven;
 mod driven_surface;
+mod enclosed;
 mod edit;
 mod engine_problem;
 mod error;
@@ -63,6 +64,7 @@ mod in_words;
 mod integration;
 mod jump;
 mod key;
+mod kinks;
 mod led;
 mod live;
 mod material;
@@ -141,6 +143,7 @@ pub use fold_scene::{FoldScene, Panels, Touch};
 pub(crate) use folding::FollowedFolds;
 #[cfg(feature = "run")]
 pub(crate) use folding::off_target;
+pub use kinks::Kinks;
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use follower_loads::{Gas, Moment, Pressure};
 pub use forces::{Acceleration, Forces, Frame, Load};
@@ -382,11 +385,12 @@ impl Scene {
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
-            measure.check(&key, (&self.crease, self.folding.as_ref()), &mut checks);
+            measure.check(&key, self, &mut checks);
             let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
             bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }
         measure::check_names(&self.measure, &root, &mut checks);
+        self.forces.check_names(&root.name("forces"), &mut checks);
         Crease::check_names(&self.crease, &mut checks);
         self.check_periods(&mut checks);
         self.check_steps_resolve(&mut checks);

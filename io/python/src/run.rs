@@ -223,6 +223,14 @@ impl Run {
         self.numbers(py, |k| self.recording.trajectory.plastic_angles(k))
     }
 
+    /// Bends of the faces beside creases in the frames, radians, positive for valleys, of shape (T, E), 0 at other
+    /// edges: the angle between the faces at a crease is its fold angle and this bend. None where no crease is in a
+    /// sheet that bends.
+    #[getter]
+    fn crease_bends<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.numbers(py, |k| self.recording.trajectory.crease_bends(k))
+    }
+
     /// Principal values of the plastic curvature of the faces in the frames, 1/m, the larger one in size
     /// first, positive for valleys, of shape (T, F, 2); None where no face can yield.
     #[getter]
@@ -271,7 +279,8 @@ impl Run {
         Ok(columns)
     }
 
-    /// What each `[[measure]]` of the scene shows by its name, in the unit of its quantity, at the start and
+    /// What each `[[measure]]` of the scene shows by its name, and of each gas "gas[0].pressure" (pascals above
+    /// vacuum), "gas[0].gauge_pressure" and "gas[0].volume" (or with the name of the gas), in the unit of its quantity, at the start and
     /// at the end of every step: at the times of `history["time"]`. Of a run that is not complete the last
     /// one may be missing.
     #[getter]
@@ -279,7 +288,7 @@ impl Run {
         let columns = PyDict::new(py);
         for series in TimeSeries::of_measures(
             &self.recording.measures,
-            &self.recording.scene.scene().measure,
+            &self.recording.gauges,
         ) {
             columns.set_item(series.name, array(py, &series.values))?;
         }
@@ -344,8 +353,8 @@ impl Run {
             };
             units.set_item(name, unit)?;
         }
-        for measure in &self.recording.scene.scene().measure {
-            units.set_item(&measure.name, measure.quantity.unit())?;
+        for gauge in &self.recording.gauges {
+            units.set_item(&gauge.name, gauge.unit())?;
         }
         Ok(units)
     }

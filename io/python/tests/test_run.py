@@ -77,7 +77,7 @@ def test_a_run_is_what_its_files_say(folder):
     for name, column in (("time", "t"), ("total", "H"), ("iterations", "iterations"), ("strain", "strain")):
         assert np.array_equal(run.history[name], table[column]), name
     assert np.isnan(run.history["plastic"]).all()  # nothing can yield
-    assert run.plastic_angles is None and run.plastic_curvatures is None
+    assert run.plastic_angles is None and run.plastic_curvatures is None and run.crease_bends is None
     summary = json.loads((folder / "summary.json").read_text())
     assert run.summary["ending"] == summary["ending"] and run.summary["steps"] == summary["steps"] == 20
     assert run.scene["stop.time"] == 0.2 and "gravity" in run.modelled

@@ -39,6 +39,7 @@ use std::path::Path;
 /// | `gaps` | f64 | T x V | gap of each vertex, in metres; of runs with contact |
 /// | `plastic_angles` | f64 | T x E | plastic angle of each edge, in radians; of runs with edges that yield |
 /// | `plastic_curvatures` | f64 | T x F x 2 | principal values of the plastic curvature of each face, in 1/m; of runs with a plate that yields |
+/// | `crease_bends` | f64 | T x E | bend of the faces beside each crease, in radians; of runs with creases in sheets that bend |
 ///
 /// In Python: `data = numpy.load("trajectory.npz"); data["x"][-1]` are the last positions.
 #[derive(Clone, Debug, PartialEq)]
@@ -344,6 +345,14 @@ impl Trajectory {
     /// yield, or there is no such frame.
     pub fn plastic_curvatures(&self, k: usize) -> Option<&[f64]> {
         self.values(FrameQuantity::PlasticCurvatures, k)
+    }
+
+    /// The bend of the faces beside each crease in a frame (length E, radians, positive for valleys, 0 at other
+    /// edges): the angle between the two faces at a crease ([`fold_angle`](isosheet_mesh::fold_angle)) is the
+    /// kink of the crease and this bend. `None` when no crease is in a sheet that bends, or there is no such
+    /// frame.
+    pub fn crease_bends(&self, k: usize) -> Option<&[f64]> {
+        self.values(FrameQuantity::CreaseBends, k)
     }
 
     /// Writes the `.npz` file, atomically. Equal trajectories give equal bytes.

@@ -1,7 +1,7 @@
 //! Fields of a page, frame by frame.
 
 use crate::format::{DataError, FrameQuantity, MotionFrame};
-use crate::scene::{FoldTargets, Origins, off_target};
+use crate::scene::{FoldTargets, Kinks, Origins, off_target};
 use crate::view::{Centering, Field, Scale, strains};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{ElasticDeformation, SheetModel};
@@ -15,6 +15,9 @@ pub(super) struct FrameField<'a> {
     pub(super) head: Field,
     values: Box<Values<'a>>,
 }
+
+/// The name of the field of the bends beside creases.
+const CREASE_BEND: &str = "bend beside creases (valley +)";
 
 /// The values in a frame.
 type Values<'a> = dyn Fn(&MotionFrame<'_>) -> Vec<f64> + 'a;
@@ -58,6 +61,7 @@ impl<'a> FrameField<'a> {
             (FrameQuantity::Gaps, Self::gap()),
             (FrameQuantity::PlasticCurvatures, Self::plastic_curvature()),
             (FrameQuantity::PlasticAngles, Self::plastic_angle()),
+            (FrameQuantity::CreaseBends, Self::crease_bend()),
         ];
         let shown = shown.into_iter().filter(|(quantity, _)| has(*quantity));
         fields.extend(shown.map(|(_, field)| field));
@@ -159,6 +163,27 @@ impl<'a> FrameField<'a> {
         })
     }
 
+    /// The bend of the faces beside each crease, degrees.
+    fn crease_bend() -> Self {
+        let head = Field {
+            name: CREASE_BEND.into(),
+            unit: "°".into(),
+            place: Centering::Crease,
+            scale: Scale::Signed,
+            note: "The angle between the faces at a crease is its fold angle and this bend of the faces.".into(),
+            values: Vec::new(),
+        };
+        Self::new(head, |frame| {
+            let bends = frame.data.crease_bends.iter();
+            bends.map(|bend| bend.to_degrees()).collect()
+        })
+    }
+
+    /// The number of the field that has the bends beside creases.
+    pub(super) fn of_bends(fields: &[Self]) -> Option<usize> {
+        fields.iter().position(|field| field.head.name == CREASE_BEND)
+    }
+
     /// The difference of each crease from the angle that a scene folds it to, degrees; none of other edges.
     pub(super) fn open(sheet: &'a Sheet, targets: &'a FoldTargets) -> Self {
         let head = Field {
@@ -171,9 +196,10 @@ impl<'a> FrameField<'a> {
         };
         let topology = sheet.topology();
         Self::new(head, move |frame| {
+            let kinks = Kinks::new(topology, frame.x, frame.data.crease_bends);
             let mut values = vec![0.0; topology.edge_count()];
             for &(e, target) in &targets.creases {
-                values[e.index()] = off_target(topology, frame.x, e, target);
+                values[e.index()] = off_target(kinks, e, target);
             }
             values
         })

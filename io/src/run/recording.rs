@@ -8,7 +8,7 @@ use crate::format::{
     MotionFrame, Series, SeriesBody, SeriesOptions, Trajectory, read_events, read_history,
     read_json, read_loads, read_measures,
 };
-use crate::scene::{FoldTargets, Origins, SceneFile, Setup};
+use crate::scene::{FoldTargets, Gauge, Origins, SceneFile, Setup};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
 use isosheet_mesh::generate::FoldAssignment;
@@ -54,6 +54,8 @@ pub struct Recording {
     pub history: Vec<HistoryRow>,
     /// The loads of supports and obstacles at the end of each step.
     pub loads: Vec<LoadRow>,
+    /// What is read off the sheets at each step.
+    pub gauges: Vec<Gauge>,
     /// What the measures of the scene show at the start and at the end of each step.
     pub measures: Vec<MeasureRow>,
     /// What was taken up and released.
@@ -115,13 +117,13 @@ impl Recording {
         setup: Setup,
         tables: Tables,
     ) -> (Self, RunFrames) {
-        let shape = FrameShape::of(&setup);
+        let path = folder.join(RunFolder::FRAMES);
+        let shape = FrameShape::of(&setup).in_file(&path);
         let bodies: Vec<VertexId> = setup.bodies.iter().flat_map(|body| body.vertices).collect();
         let of_sheets = |mut vertices: Vec<VertexId>| {
             vertices.retain(|v| !bodies.contains(v) && !setup.origins.is_driven(*v));
             vertices
         };
-        let path = folder.join(RunFolder::FRAMES);
         let frames = RunFrames::Stored(StoredFrames {
             path,
             shape,
@@ -144,6 +146,7 @@ impl Recording {
             origins: setup.origins,
             history: tables.history,
             loads: tables.loads,
+            gauges: setup.measures,
             measures: tables.measures,
             events: tables.events,
             scene,

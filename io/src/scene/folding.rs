@@ -3,6 +3,7 @@
 use super::Mesh;
 use super::fold_group::{FoldGroup, PatternCrease};
 use super::key::Key;
+use super::kinks::Kinks;
 use super::mesh_file::{Files, MeshFile};
 use super::problem::{Checks, Problem};
 use super::profile::{Change, Course, Profile};
@@ -137,12 +138,9 @@ impl FoldTargets {
         self.drawn.name(self.of_pattern[crease].drawn)
     }
 
-    /// The differences at positions `x` (`3V`, metres), taken the short way round as the springs do.
-    ///
-    /// # Panics
-    /// If `x` is not of length `3V`.
-    pub fn residual(&self, t: &Topology, x: &[f64]) -> FoldResidual {
-        let difference = |e: EdgeId, target: f64| off_target(t, x, e, target);
+    /// The differences of the kinks at a state, taken the short way round as the springs do.
+    pub fn residual(&self, kinks: Kinks<'_>) -> FoldResidual {
+        let difference = |e: EdgeId, target: f64| off_target(kinks, e, target);
         let mut residual = FoldResidual {
             creases: self.creases.len(),
             ..FoldResidual::default()
@@ -152,7 +150,7 @@ impl FoldTargets {
             let d = difference(e, target);
             residual.largest = residual.largest.max(d);
             squares += d * d;
-            let angle = fold_angle(t, x, e).unwrap_or(0.0);
+            let angle = kinks.angle(e);
             // A crease that is folded by nearly 180 degrees may have passed them.
             let is_other = angle.sin() * target < -FLAT * target.abs();
             residual.wrong_side += usize::from(is_other && d > target.abs().to_degrees());
@@ -176,19 +174,19 @@ pub(crate) struct FollowedFolds {
 
 #[cfg(feature = "run")]
 impl FollowedFolds {
-    /// Where the motion begins, at positions `x` (`3V`, metres).
-    pub(crate) fn begin(targets: &FoldTargets, t: &Topology, x: &[f64]) -> Self {
+    /// Where the motion begins.
+    pub(crate) fn begin(targets: &FoldTargets, kinks: Kinks<'_>) -> Self {
         let creases = targets.creases.iter();
-        let angles = creases.map(|&(e, _)| fold_angle(t, x, e).unwrap_or(0.0));
+        let angles = creases.map(|&(e, _)| kinks.angle(e));
         Self {
             angles: angles.collect(),
         }
     }
 
-    /// At the next positions, where no angle has changed by more than 180 degrees.
-    pub(crate) fn follow(&mut self, targets: &FoldTargets, t: &Topology, x: &[f64]) {
+    /// At the next state, where no angle has changed by more than 180 degrees.
+    pub(crate) fn follow(&mut self, targets: &FoldTargets, kinks: Kinks<'_>) {
         for (angle, &(e, _)) in self.angles.iter_mut().zip(&targets.creases) {
-            *angle = angle_near(fold_angle(t, x, e).unwrap_or(0.0), *angle);
+            *angle = angle_near(kinks.angle(e), *angle);
         }
     }
 
@@ -199,8 +197,8 @@ impl FollowedFolds {
         self.angles.iter().zip(targets).map(off).collect()
     }
 
-    /// The differences at positions `x`, those of creases as they were followed.
-    pub(crate) fn residual(&self, targets: &FoldTargets, t: &Topology, x: &[f64]) -> FoldResidual {
+    /// The differences at a state, those of creases as they were followed.
+    pub(crate) fn residual(&self, targets: &FoldTargets, kinks: Kinks<'_>) -> FoldResidual {
         let off = self.off(targets);
         let squares: f64 = off.iter().map(|d| d * d).sum();
         let creases = self.angles.iter().zip(&targets.creases).zip(&off);
@@ -212,7 +210,7 @@ impl FollowedFolds {
             largest: off.iter().copied().fold(0.0, f64::max),
             rms: (squares / off.len().max(1) as f64).sqrt(),
             wrong_side: others.count(),
-            ..targets.residual(t, x)
+            ..targets.residual(kinks)
         }
     }
 }
@@ -387,6 +385,7 @@ impl Folding {
                 stiffness: stiffness * sheet.lengths()[edge.index()],
                 rest: course(start, target, within),
                 yields: None,
+                in_series: None,
             }
         };
         let flat_stiffness = self.flat_stiffness.or(match of.isometry() {
@@ -449,11 +448,10 @@ fn course(start: f64, target: f64, [begin, end]: [f64; 2]) -> RestAngle {
         .into()
 }
 
-/// The difference of a fold angle (degrees, not negative) from a target (radians), taken the short way round
-/// as the springs do.
-pub(crate) fn off_target(topology: &Topology, x: &[f64], edge: EdgeId, target: f64) -> f64 {
-    let angle = fold_angle(topology, x, edge).unwrap_or(0.0) - target;
-    angle_near(angle, 0.0).abs().to_degrees()
+/// The difference of the kink of an edge (degrees, not negative) from a target (radians), taken the short way
+/// round as the springs do.
+pub(crate) fn off_target(kinks: Kinks<'_>, edge: EdgeId, target: f64) -> f64 {
+    angle_near(kinks.angle(edge) - target, 0.0).abs().to_degrees()
 }
 
 /// Whether the sheet is in a plane at positions `x`: every edge is flat or folded shut.

@@ -246,6 +246,14 @@ impl Setup {
         matches!(self.integration, Integration::Free { .. }) && self.model.has_rods_in_sheets()
     }
 
+    /// Whether the fold angles of some creases include a bend of the sheet
+    /// ([`SheetModel::bends_at_creases`]).
+    pub fn has_creases_in_sheets(&self) -> bool {
+        let (t, x) = (self.start.t, &self.start.x);
+        let memories = self.model.memories();
+        self.model.bends_at_creases(t, x, &memories).is_some()
+    }
+
     /// The simulation at the start.
     ///
     /// # Errors

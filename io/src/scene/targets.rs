@@ -2,8 +2,9 @@
 
 use super::creases::Crease;
 use super::folding::{FoldResidual, FoldTargets, off_target};
-use isosheet_dynamics::{CreaseSpring, Glue, RestAngle};
-use isosheet_mesh::{EdgeId, Topology, VertexId};
+use super::kinks::Kinks;
+use isosheet_dynamics::{CreaseSpring, Glue, RestAngle, Simulation, State};
+use isosheet_mesh::{EdgeId, VertexId};
 use serde::{Deserialize, Serialize};
 
 /// What a scene asks its sheets to reach.
@@ -74,10 +75,10 @@ impl DrivenCrease {
         })
     }
 
-    fn residual(&self, topology: &Topology, t: f64, x: &[f64]) -> CreaseResidual {
+    fn residual(&self, t: f64, kinks: Kinks<'_>) -> CreaseResidual {
         let (mut largest, mut squares) = (0.0_f64, 0.0);
         for (edge, rest) in &self.edges {
-            let off = off_target(topology, x, *edge, rest.at(t));
+            let off = off_target(kinks, *edge, rest.at(t));
             largest = largest.max(off);
             squares += off * off;
         }
@@ -97,17 +98,17 @@ impl Targets {
         pairs.copied().collect()
     }
 
-    /// How far the sheets are from what is asked for at time `t` (seconds), at positions `x` (`3V`, metres).
-    ///
-    /// # Panics
-    /// If `x` is not of length `3V`.
-    pub fn residuals(&self, topology: &Topology, t: f64, x: &[f64]) -> Residuals {
+    /// How far the sheets are from what is asked for where a simulation is.
+    pub fn residuals(&self, simulation: &Simulation) -> Residuals {
+        let State { t, ref x, .. } = *simulation.state();
+        let bends = simulation.bends_at_creases().unwrap_or_default();
+        let kinks = Kinks::new(simulation.model().topology(), x, &bends);
         let folding = self.folding.as_ref();
         let creases = self.creases.iter();
         Residuals {
-            folding: folding.map(|targets| targets.residual(topology, x)),
+            folding: folding.map(|targets| targets.residual(kinks)),
             creases: creases
-                .map(|crease| crease.residual(topology, t, x))
+                .map(|crease| crease.residual(t, kinks))
                 .collect(),
             seams: self.seams.iter().map(|seam| seam.opening(t, x)).collect(),
         }

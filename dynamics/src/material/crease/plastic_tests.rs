@@ -32,6 +32,7 @@ fn spring(edge: EdgeId) -> CreaseSpring {
         stiffness: STIFFNESS,
         rest: 0.0.into(),
         yields: Some(YIELD),
+        in_series: None,
     }
 }
 

@@ -31,6 +31,7 @@ fn springs(t: &Topology, rest: impl Fn(EdgeId) -> f64) -> CreaseSprings {
                 RestAngle::from(move |t| angle * t)
             },
             yields: None,
+            in_series: None,
         }
     });
     CreaseSprings::new(t, springs.collect()).expect("interior edges")
@@ -52,6 +53,7 @@ fn angles_are_those_of_the_mesh_in_sign_and_size() {
             stiffness: 1.0,
             rest: 0.0.into(),
             yields: None,
+            in_series: None,
         };
         let own = CreaseSprings::new(t, vec![spring]).expect("interior");
         let moment = own.moments(At::new(0.0, &x))[0];
@@ -132,6 +134,7 @@ fn a_fold_that_passes_shut_goes_on() {
         stiffness: 2.0,
         rest: 3.0.into(),
         yields: None,
+        in_series: None,
     };
     let p = CreaseSprings::new(t, vec![spring]).expect("interior");
     let hinge = &p.hinges[0];
@@ -150,6 +153,7 @@ fn what_makes_no_sense_is_named() {
             stiffness,
             rest,
             yields: None,
+            in_series: None,
         };
         CreaseSprings::new(t, vec![spring]).map(|_| ())
     };
@@ -235,6 +239,7 @@ fn driven(method: Method) -> [f64; 3] {
         stiffness: 1e-2,
         rest,
         yields: None,
+        in_series: None,
     });
     let springs = CreaseSprings::new(t, springs.into()).expect("interior");
     let model = SheetModel::new(&sheet, 1e-3, MassKind::Lumped)

@@ -112,6 +112,8 @@ pub struct Series<'a> {
     /// The fold angles of each frame, radians, once they are asked for.
     followed: OnceLock<Vec<Vec<f64>>>,
     fields: Vec<SeriesField>,
+    /// The bends beside creases in each frame, radians, in the order of the edges; empty where there are none.
+    crease_bends: Vec<f64>,
     rate: f64,
     /// Places of the vertices in a picture printed on the flat sheet, if it can be flat.
     uv: Option<Vec<[f64; 2]>>,
@@ -161,6 +163,11 @@ impl<'a> Series<'a> {
         let mut frames: Vec<usize> = (options.first..=last).step_by(options.every).collect();
         frames.dedup_by(|later, first| times[*later] == times[*first]);
         let fields = recorded_fields(trajectory, &topology);
+        let bends = trajectory.all(FrameQuantity::CreaseBends);
+        let crease_bends = match bends.is_empty() {
+            true => Vec::new(),
+            false => on_edges(trajectory, &topology, bends),
+        };
         let start = trajectory.frame(0).unwrap_or_default();
         Ok(Self {
             uv: flat_coordinates(&topology, &rest_lengths, start),
@@ -171,6 +178,7 @@ impl<'a> Series<'a> {
             assignments: None,
             followed: OnceLock::new(),
             fields,
+            crease_bends,
             rate: options.rate,
             bodies: Vec::new(),
             sheets: Vec::new(),
@@ -340,7 +348,8 @@ impl<'a> Series<'a> {
     }
 
     /// The fold angle of each edge in a frame of the trajectory, in radians within [-pi, pi]
-    /// ([`fold_angle`]); 0 on the boundary and where an edge has no length.
+    /// ([`fold_angle`]); 0 on the boundary and where an edge has no length. At creases in sheets that bend it is
+    /// the kink, without the bend of the faces beside them ([`Trajectory::crease_bends`]).
     ///
     /// A fold is followed from frame to frame, where it turns by less than half a turn: one that is pressed
     /// through itself stays a mountain or a valley of half a turn. A mountain that is shut in the first frame
@@ -361,9 +370,11 @@ impl<'a> Series<'a> {
         let mut all = Vec::with_capacity(self.trajectory.len());
         for frame in 0..self.trajectory.len() {
             let (_, x) = self.state(frame);
+            let bends = self.crease_bends.get(frame * t.edge_count()..);
+            let bend = |e: EdgeId| bends.and_then(|all| all.get(e.index())).copied();
             for (e, angle) in t.edge_ids().zip(&mut before) {
                 let now = fold_angle(t, x, e).filter(|a| a.is_finite()).unwrap_or(0.0);
-                *angle = angle_near(now, *angle);
+                *angle = angle_near(now - bend(e).unwrap_or(0.0), *angle);
             }
             all.push(before.clone());
         }
@@ -485,6 +496,8 @@ fn recorded_fields(trajectory: &Trajectory, topology: &Topology) -> Vec<SeriesFi
                     .for_each(|angle| *angle = angle.to_degrees());
                 vec![field("plastic_angle", FieldSupport::Edges, values)]
             }
+            // Of these the fold angles are made.
+            FrameQuantity::CreaseBends => Vec::new(),
             FrameQuantity::PlasticCurvatures => {
                 let of = |k: usize| values.iter().copied().skip(k).step_by(2).collect();
                 let support = FieldSupport::Faces;

@@ -14,6 +14,9 @@ pub struct FrameData<'a> {
     pub gaps: &'a [f64],
     /// Plastic angle of each edge (length E, radians, positive for valleys).
     pub plastic_angles: &'a [f64],
+    /// Bend of the faces beside each crease, which the angle between them includes (length E, radians, positive
+    /// for valleys, 0 at other edges).
+    pub crease_bends: &'a [f64],
     /// Principal values of the plastic curvature of each face (length 2F, 1/m, the larger one in size first,
     /// positive for valleys).
     pub plastic_curvatures: &'a [f64],
@@ -28,6 +31,7 @@ impl<'a> FrameData<'a> {
             gaps: of(FrameQuantity::Gaps),
             plastic_angles: of(FrameQuantity::PlasticAngles),
             plastic_curvatures: of(FrameQuantity::PlasticCurvatures),
+            crease_bends: of(FrameQuantity::CreaseBends),
         }
     }
 }
@@ -48,11 +52,12 @@ pub(crate) enum FrameQuantity {
     Gaps,
     PlasticAngles,
     PlasticCurvatures,
+    CreaseBends,
 }
 
 impl FrameQuantity {
     /// How many there are.
-    pub(crate) const COUNT: usize = 5;
+    pub(crate) const COUNT: usize = 6;
 
     /// All, in the order of the enumeration.
     pub(crate) const ALL: [Self; Self::COUNT] = [
@@ -61,6 +66,7 @@ impl FrameQuantity {
         Self::Gaps,
         Self::PlasticAngles,
         Self::PlasticCurvatures,
+        Self::CreaseBends,
     ];
 
     /// The name of its array in a file.
@@ -71,13 +77,14 @@ impl FrameQuantity {
             Self::Gaps => "gaps",
             Self::PlasticAngles => "plastic_angles",
             Self::PlasticCurvatures => "plastic_curvatures",
+            Self::CreaseBends => "crease_bends",
         }
     }
 
     /// The shape of one frame of it on a mesh.
     pub(super) fn shape(self, mesh: MeshCounts) -> Vec<u64> {
         match self {
-            Self::RodForces | Self::PlasticAngles => vec![mesh.edges as u64],
+            Self::RodForces | Self::PlasticAngles | Self::CreaseBends => vec![mesh.edges as u64],
             Self::ContactForces => vec![mesh.vertices as u64, 3],
             Self::Gaps => vec![mesh.vertices as u64],
             Self::PlasticCurvatures => vec![mesh.faces as u64, 2],
@@ -98,6 +105,7 @@ impl FrameQuantity {
             Self::Gaps => data.gaps,
             Self::PlasticAngles => data.plastic_angles,
             Self::PlasticCurvatures => data.plastic_curvatures,
+            Self::CreaseBends => data.crease_bends,
         }
     }
 

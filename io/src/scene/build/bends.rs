@@ -267,6 +267,7 @@ impl Builder<'_> {
             Some((Key::root().name("crease").entry(k), crease.name.clone()?))
         });
         let named: Vec<(Key, String)> = named.collect();
+        let mut all = Vec::new();
         for (key, springs) in springs.into_groups() {
             let PlacedSheet { form, part, .. } = &self.sheets.list[number];
             let lengths = springs
@@ -280,6 +281,7 @@ impl Builder<'_> {
                 measured,
                 part: part.clone(),
                 potential: self.model().potentials().count(),
+                others: Vec::new(),
             };
             if let Some((_, name)) = named.iter().find(|(known, _)| *known == key) {
                 self.creases.named.insert(name.clone(), gauge);
@@ -288,7 +290,12 @@ impl Builder<'_> {
                 let targets = self.targets.folding.clone();
                 self.creases.folded = targets.map(|targets| (gauge, targets));
             }
+            all.push((Arc::clone(&springs), self.model().potentials().count()));
             self.add_potential_of(number, springs);
+        }
+        let folded = self.creases.folded.iter_mut().map(|(gauge, _)| gauge);
+        for gauge in self.creases.named.values_mut().chain(folded) {
+            gauge.find_others(&all);
         }
         Ok(())
     }
