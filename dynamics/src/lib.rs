@@ -94,8 +94,8 @@ pub use material::glue::{Glue, GlueError};
 pub use material::patched::{NoFace, Patched};
 pub use material::plasticity::Yield;
 pub use material::plate_bending::{
-    Curl, CurlError, Curvature, LineClamp, NaturalTensor, OrthotropicPlate, PlateBending,
-    PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
+    Curl, CurlError, Curvature, FaceCurvature, LineClamp, NaturalTensor, OrthotropicPlate,
+    PlateBending, PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
 };
 pub use material::stiffening::Stiffening;
 pub use material::{Directions, Isotropic, Material, NamedMaterial, Orthotropic, UnknownMaterial};

@@ -45,8 +45,8 @@ mod direction;
 mod drawing;
 mod driven;
 mod driven_surface;
-mod enclosed;
 mod edit;
+mod enclosed;
 mod engine_problem;
 mod error;
 #[cfg(feature = "cli")]
@@ -143,7 +143,6 @@ pub use fold_scene::{FoldScene, Panels, Touch};
 pub(crate) use folding::FollowedFolds;
 #[cfg(feature = "run")]
 pub(crate) use folding::off_target;
-pub use kinks::Kinks;
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use follower_loads::{Gas, Moment, Pressure};
 pub use forces::{Acceleration, Forces, Frame, Load};

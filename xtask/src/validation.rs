@@ -1,15 +1,18 @@
 //! `validation`: published experiments and closed forms with the elastic sheet, on several meshes and sizes.
 
 mod cantilevers;
+mod creases;
 mod curls;
 mod elasticas;
 mod experiment;
+mod gases;
 mod limitations;
 mod linear;
 mod outcome;
 mod plastic;
 mod plates;
 mod rest;
+mod rulings;
 mod shells;
 mod specimen;
 mod squeezed;
@@ -30,7 +33,7 @@ use outcome::{Outcome, SIZES};
 use rayon::prelude::*;
 
 /// All of them.
-static EXPERIMENTS: [&Experiment; 25] = [
+static EXPERIMENTS: [&Experiment; 28] = [
     &cantilevers::END_SHEAR,
     &cantilevers::END_MOMENT,
     &shells::ANNULUS,
@@ -48,6 +51,9 @@ static EXPERIMENTS: [&Experiment; 25] = [
     &curls::CURLED,
     &curls::RING,
     &plastic::YIELDING,
+    &creases::CREASED,
+    &gases::ENCLOSED,
+    &rulings::RULED,
     &shells::FREE_CYLINDER,
     &shells::CYLINDER,
     &shells::HEMISPHERE,

@@ -2,7 +2,7 @@
 
 use crate::potential::{At, Memories, Potential, Reached, Settled};
 use crate::{SheetModel, State};
-use isosheet_mesh::{EdgeId, FaceId};
+use isosheet_mesh::{EdgeId, FaceId, principal_values};
 use nalgebra::Matrix2;
 
 impl SheetModel {
@@ -118,14 +118,7 @@ fn reached(state: &State) -> Reached<'_> {
 
 /// The principal values of a symmetric matrix, the larger one in size first.
 fn principal(m: &Matrix2<f64>) -> [f64; 2] {
-    let mean = 0.5 * (m[(0, 0)] + m[(1, 1)]);
-    let radius = (0.5 * (m[(0, 0)] - m[(1, 1)])).hypot(m[(0, 1)]);
-    let first = if mean < 0.0 {
-        mean - radius
-    } else {
-        mean + radius
-    };
-    [first, 2.0 * mean - first]
+    principal_values([m[(0, 0)], m[(0, 1)], m[(1, 1)]])
 }
 
 #[cfg(test)]

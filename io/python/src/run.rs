@@ -127,6 +127,11 @@ impl Run {
     }
 }
 
+/// Values of all frames, frame by frame.
+fn frames_of(values: &[f64], count: usize) -> Vec<&[f64]> {
+    values.chunks((values.len() / count.max(1)).max(1)).collect()
+}
+
 #[pymethods]
 impl Run {
     #[new]
@@ -239,6 +244,46 @@ impl Run {
         py: Python<'py>,
     ) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
         self.tuples(py, 2, |k| self.recording.trajectory.plastic_curvatures(k))
+    }
+
+    /// Unit vectors along the rulings of the faces in the frames, of shape (T, F, 3): the straight lines of a bent
+    /// sheet, the direction of the principal curvature that is smaller in size, with the component of largest size
+    /// positive. Zero where a face has none: where it is not bent beyond noise, or alike in all directions. They are
+    /// made of the positions whenever they are asked for.
+    #[getter]
+    fn rulings<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+        let Some(all) = py.detach(|| self.recording.rulings()) else {
+            return Ok(None);
+        };
+        let frames = frames_of(&all.directions, self.recording.trajectory.len());
+        self.tuples(py, 3, |k| frames.get(k).copied())
+    }
+
+    /// Principal curvatures across the rulings, 1/m, positive for valleys, of shape (T, F); 0 where a face has none.
+    #[getter]
+    fn ruling_curvatures<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let Some(all) = py.detach(|| self.recording.rulings()) else {
+            return Ok(None);
+        };
+        let frames = frames_of(&all.curvatures, self.recording.trajectory.len());
+        self.numbers(py, |k| frames.get(k).copied())
+    }
+
+    /// Gauss curvatures at the vertices besides those of the rest shape, 1/m2, of shape (T, V): how far the sheet is
+    /// from developable.
+    #[getter]
+    fn gauss_curvatures<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let Some(all) = py.detach(|| self.recording.rulings()) else {
+            return Ok(None);
+        };
+        let frames = frames_of(&all.gauss_curvatures, self.recording.trajectory.len());
+        self.numbers(py, |k| frames.get(k).copied())
     }
 
     /// One array for each column of `history.csv`, with a row for the start and for every step: "time", "h",

@@ -193,6 +193,14 @@ impl Convert {
         if let Some(format) = PictureFormat::of(self.output()) {
             return self.write_pictures(&recording, format);
         }
+        let has_data = |extension: &std::ffi::OsStr| {
+            ["pvd", "npz"]
+                .iter()
+                .any(|e| extension.eq_ignore_ascii_case(e))
+        };
+        if self.output().extension().is_some_and(has_data) {
+            recording.add_rulings();
+        }
         let series = recording.series(&self.series_options()?);
         let series = series.map_err(|e| failed(&e, Code::Input))?;
         let folding = recording.scene.scene().folding.as_ref();

@@ -3,7 +3,7 @@
 use super::fold_order::OPEN;
 use super::passing::Passing;
 use super::{FoldOrder, Recording, TouchingFaces, UnfoldableVertex};
-use crate::scene::{FoldResidual, FoldTargets, FollowedFolds, Isometry, Kinks};
+use crate::scene::{FoldResidual, FoldTargets, FollowedFolds, Isometry};
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{EdgeId, Topology, fold_angle};
 use std::fmt;
@@ -68,7 +68,7 @@ impl FoldVerdict {
     pub fn of(recording: &Recording) -> Option<Self> {
         let last = recording.trajectory.len().checked_sub(1);
         let x = last.and_then(|k| recording.trajectory.frame(k));
-        let (Some(targets), Some(last), Some(x)) = (recording.folding.as_ref(), last, x) else {
+        let (Some(targets), Some(x)) = (recording.folding.as_ref(), x) else {
             return None;
         };
         let topology = recording.sheet.topology();
@@ -76,17 +76,13 @@ impl FoldVerdict {
         let strains = frames.map(|x| recording.model.max_strain(x));
         let strain = [recording.model.max_strain(x), strains.fold(0.0, f64::max)];
         let frame = |k: usize| recording.trajectory.frame(k).unwrap_or_default();
-        let kinks = |k: usize| {
-            let bends = recording.trajectory.crease_bends(k).unwrap_or_default();
-            Kinks::new(topology, frame(k), bends)
-        };
-        let mut folds = FollowedFolds::begin(targets, kinks(0));
+        let mut folds = FollowedFolds::begin(targets, topology, frame(0));
         let mut passing = Passing::begin(topology, frame(0));
         let scene = recording.scene.scene();
         let mut order = FoldOrder::begin(scene.folding.as_ref());
         let times = recording.trajectory.times();
         for (k, t) in times.iter().enumerate().skip(1) {
-            folds.follow(targets, kinks(k));
+            folds.follow(targets, topology, frame(k));
             passing.follow(*t, frame(k));
             order.follow(targets, *t, &folds.off(targets));
         }
@@ -126,7 +122,7 @@ impl FoldVerdict {
         }
         let count = (0..panel.len()).filter(|&f| panel[f] == f).count();
         Some(Self {
-            residual: folds.residual(targets, kinks(last)),
+            residual: folds.residual(targets, topology, x),
             open: creases.iter().filter(|(off, _)| *off > Self::OPEN).count(),
             furthest,
             held_open,

@@ -1,7 +1,7 @@
 //! Fields of a page, frame by frame.
 
 use crate::format::{DataError, FrameQuantity, MotionFrame};
-use crate::scene::{FoldTargets, Kinks, Origins, off_target};
+use crate::scene::{FoldTargets, Origins, off_target};
 use crate::view::{Centering, Field, Scale, strains};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{ElasticDeformation, SheetModel};
@@ -181,7 +181,9 @@ impl<'a> FrameField<'a> {
 
     /// The number of the field that has the bends beside creases.
     pub(super) fn of_bends(fields: &[Self]) -> Option<usize> {
-        fields.iter().position(|field| field.head.name == CREASE_BEND)
+        fields
+            .iter()
+            .position(|field| field.head.name == CREASE_BEND)
     }
 
     /// The difference of each crease from the angle that a scene folds it to, degrees; none of other edges.
@@ -196,10 +198,9 @@ impl<'a> FrameField<'a> {
         };
         let topology = sheet.topology();
         Self::new(head, move |frame| {
-            let kinks = Kinks::new(topology, frame.x, frame.data.crease_bends);
             let mut values = vec![0.0; topology.edge_count()];
             for &(e, target) in &targets.creases {
-                values[e.index()] = off_target(kinks, e, target);
+                values[e.index()] = off_target(topology, frame.x, e, target);
             }
             values
         })

@@ -88,6 +88,10 @@ impl FrameShape {
                 model.plastic_curvatures(&model.memories()).is_some()
             }
             FrameQuantity::CreaseBends => setup.has_creases_in_sheets(),
+            // They are made of positions when they are asked for.
+            FrameQuantity::Rulings
+            | FrameQuantity::RulingCurvatures
+            | FrameQuantity::GaussCurvatures => false,
         };
         let size = |q: FrameQuantity| if is_there(q) { q.size(counts) } else { 0 };
         Self {
@@ -364,7 +368,7 @@ mod tests {
         let path = dir.path().join("frames.bin");
         let shape = FrameShape {
             coordinates: 6,
-            data: [1, 6, 2, 1, 2, 1],
+            data: [1, 6, 2, 1, 2, 1, 0, 0, 0],
         };
         let frame = |k: usize| Frame {
             t: k as f64 / 3.0,
@@ -376,6 +380,9 @@ mod tests {
                 vec![k as f64 + 0.1],
                 vec![k as f64 + 30.0, -0.2],
                 vec![k as f64 - 0.3],
+                Vec::new(),
+                Vec::new(),
+                Vec::new(),
             ],
         };
         let add =

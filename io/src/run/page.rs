@@ -46,6 +46,9 @@ impl Recording {
             &self.model,
             self.sheet.topology().face_count(),
         ));
+        if self.scene.scene().output.curvature {
+            fields.extend(self.curvature_fields());
+        }
         fields
     }
 
@@ -63,10 +66,9 @@ impl Recording {
         }
         let held = constraints::bodies(self.scene.scene(), &replay.times, corners);
         replay.bodies.extend(held);
-        replay.series.extend(TimeSeries::of_measures(
-            &self.measures,
-            &self.gauges,
-        ));
+        replay
+            .series
+            .extend(TimeSeries::of_measures(&self.measures, &self.gauges));
         Replay {
             // How far creases are from their angles, unless they have reached them.
             colour: self

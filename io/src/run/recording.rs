@@ -34,6 +34,8 @@ pub struct Recording {
     pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
     /// Where the sheet folds: mountains and valleys of a pattern, and creases whose angles change.
     pub creases: Vec<EdgeId>,
+    /// The edges of the sheets that have creases.
+    pub(crate) creased: Vec<EdgeId>,
     /// Vertices that are pinned, at rest or in motion.
     pub pins: Vec<VertexId>,
     /// Vertices that rods to pins keep in place ([`immobile_vertices`]).
@@ -132,6 +134,7 @@ impl Recording {
         let recording = Self {
             name: name_of(folder),
             creases: setup.creases(),
+            creased: setup.creased.clone(),
             immobile: of_sheets(immobile_vertices(&setup.model, &setup.start.x)),
             pins: of_sheets(setup.model.pins()),
             model: setup.model,

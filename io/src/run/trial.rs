@@ -2,8 +2,8 @@
 
 use super::passing::Passing;
 use super::steps::step_count;
-use crate::scene::{FoldResidual, FollowedFolds, Kinks, SceneError, SceneFile};
-use isosheet_dynamics::{Simulation, StepProgress};
+use crate::scene::{FoldResidual, FollowedFolds, SceneError, SceneFile};
+use isosheet_dynamics::StepProgress;
 use std::ops::ControlFlow;
 
 /// Most factorisations of a trial times vertices: about a second for each hundred thousand. (Of 40 patterns of
@@ -52,12 +52,8 @@ impl SceneFile {
         let Some(targets) = targets else {
             return Ok(None);
         };
-        let bends = |simulation: &Simulation| simulation.bends_at_creases().unwrap_or_default();
         let topology = simulation.model().topology();
-        let mut folds = {
-            let bends = bends(&simulation);
-            FollowedFolds::begin(&targets, Kinks::new(topology, &simulation.state().x, &bends))
-        };
+        let mut folds = FollowedFolds::begin(&targets, topology, &simulation.state().x);
         let mut passing = Passing::begin(topology, &simulation.state().x);
         let scene = self.scene();
         let vertices = simulation.model().topology().vertex_count();
@@ -74,15 +70,14 @@ impl SceneFile {
             }
             let topology = simulation.model().topology();
             let state = simulation.state();
-            let bends = bends(&simulation);
-            folds.follow(&targets, Kinks::new(topology, &state.x, &bends));
+            folds.follow(&targets, topology, &state.x);
             passing.follow(state.t, &state.x);
         }
         let topology = simulation.model().topology();
         let x = &simulation.state().x;
         let strain = simulation.model().max_strain(x);
         Ok(Some(FoldTrial {
-            residual: folds.residual(&targets, Kinks::new(topology, x, &bends(&simulation))),
+            residual: folds.residual(&targets, topology, x),
             strain,
             passing: passing.part_of(scene.folding.as_ref()),
         }))

@@ -227,6 +227,7 @@ impl RunWriter {
             plastic_angles: &plastic_angles,
             plastic_curvatures: &plastic_curvatures,
             crease_bends: &crease_bends,
+            ..FrameData::default()
         };
         let (t, x) = (state.t, under_way.facts.shown(&state.x));
         Ok(self.frames.append(t, &x, &data)?)

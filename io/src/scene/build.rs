@@ -130,6 +130,7 @@ impl Builder<'_> {
             modelled: self.modelled,
             targets: self.targets,
             measures: Vec::new(),
+            creased: self.creased,
             bonds: self.bonds,
             switches: self.switches.clone(),
             led: self.led.into_list(),

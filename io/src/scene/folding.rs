@@ -3,7 +3,6 @@
 use super::Mesh;
 use super::fold_group::{FoldGroup, PatternCrease};
 use super::key::Key;
-use super::kinks::Kinks;
 use super::mesh_file::{Files, MeshFile};
 use super::problem::{Checks, Problem};
 use super::profile::{Change, Course, Profile};
@@ -138,9 +137,12 @@ impl FoldTargets {
         self.drawn.name(self.of_pattern[crease].drawn)
     }
 
-    /// The differences of the kinks at a state, taken the short way round as the springs do.
-    pub fn residual(&self, kinks: Kinks<'_>) -> FoldResidual {
-        let difference = |e: EdgeId, target: f64| off_target(kinks, e, target);
+    /// The differences at positions `x` (`3V`, metres), taken the short way round as the springs do.
+    ///
+    /// # Panics
+    /// If `x` is not of length `3V`.
+    pub fn residual(&self, t: &Topology, x: &[f64]) -> FoldResidual {
+        let difference = |e: EdgeId, target: f64| off_target(t, x, e, target);
         let mut residual = FoldResidual {
             creases: self.creases.len(),
             ..FoldResidual::default()
@@ -150,7 +152,7 @@ impl FoldTargets {
             let d = difference(e, target);
             residual.largest = residual.largest.max(d);
             squares += d * d;
-            let angle = kinks.angle(e);
+            let angle = fold_angle(t, x, e).unwrap_or(0.0);
             // A crease that is folded by nearly 180 degrees may have passed them.
             let is_other = angle.sin() * target < -FLAT * target.abs();
             residual.wrong_side += usize::from(is_other && d > target.abs().to_degrees());
@@ -174,19 +176,19 @@ pub(crate) struct FollowedFolds {
 
 #[cfg(feature = "run")]
 impl FollowedFolds {
-    /// Where the motion begins.
-    pub(crate) fn begin(targets: &FoldTargets, kinks: Kinks<'_>) -> Self {
+    /// Where the motion begins, at positions `x` (`3V`, metres).
+    pub(crate) fn begin(targets: &FoldTargets, t: &Topology, x: &[f64]) -> Self {
         let creases = targets.creases.iter();
-        let angles = creases.map(|&(e, _)| kinks.angle(e));
+        let angles = creases.map(|&(e, _)| fold_angle(t, x, e).unwrap_or(0.0));
         Self {
             angles: angles.collect(),
         }
     }
 
-    /// At the next state, where no angle has changed by more than 180 degrees.
-    pub(crate) fn follow(&mut self, targets: &FoldTargets, kinks: Kinks<'_>) {
+    /// At the next positions, where no angle has changed by more than 180 degrees.
+    pub(crate) fn follow(&mut self, targets: &FoldTargets, t: &Topology, x: &[f64]) {
         for (angle, &(e, _)) in self.angles.iter_mut().zip(&targets.creases) {
-            *angle = angle_near(kinks.angle(e), *angle);
+            *angle = angle_near(fold_angle(t, x, e).unwrap_or(0.0), *angle);
         }
     }
 
@@ -197,8 +199,8 @@ impl FollowedFolds {
         self.angles.iter().zip(targets).map(off).collect()
     }
 
-    /// The differences at a state, those of creases as they were followed.
-    pub(crate) fn residual(&self, targets: &FoldTargets, kinks: Kinks<'_>) -> FoldResidual {
+    /// The differences at positions `x`, those of creases as they were followed.
+    pub(crate) fn residual(&self, targets: &FoldTargets, t: &Topology, x: &[f64]) -> FoldResidual {
         let off = self.off(targets);
         let squares: f64 = off.iter().map(|d| d * d).sum();
         let creases = self.angles.iter().zip(&targets.creases).zip(&off);
@@ -210,7 +212,7 @@ impl FollowedFolds {
             largest: off.iter().copied().fold(0.0, f64::max),
             rms: (squares / off.len().max(1) as f64).sqrt(),
             wrong_side: others.count(),
-            ..targets.residual(kinks)
+            ..targets.residual(t, x)
         }
     }
 }
@@ -448,10 +450,11 @@ fn course(start: f64, target: f64, [begin, end]: [f64; 2]) -> RestAngle {
         .into()
 }
 
-/// The difference of the kink of an edge (degrees, not negative) from a target (radians), taken the short way
-/// round as the springs do.
-pub(crate) fn off_target(kinks: Kinks<'_>, edge: EdgeId, target: f64) -> f64 {
-    angle_near(kinks.angle(edge) - target, 0.0).abs().to_degrees()
+/// The difference of a fold angle (degrees, not negative) from a target (radians), taken the short way round
+/// as the springs do.
+pub(crate) fn off_target(topology: &Topology, x: &[f64], edge: EdgeId, target: f64) -> f64 {
+    let angle = fold_angle(topology, x, edge).unwrap_or(0.0) - target;
+    angle_near(angle, 0.0).abs().to_degrees()
 }
 
 /// Whether the sheet is in a plane at positions `x`: every edge is flat or folded shut.

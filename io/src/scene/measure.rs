@@ -1,8 +1,9 @@
 //! Numbers that are read off the sheet at each step.
 
+use super::Scene;
+use super::enclosed::{EnclosedGauge, OfEnclosed};
 use super::fold_group::FoldGroup;
 use super::folding::FoldTargets;
-use super::enclosed::{EnclosedGauge, OfEnclosed};
 use super::forces::Forces;
 use super::key::Key;
 use super::placed::PlacedSheets;
@@ -10,7 +11,6 @@ use super::placed_bodies::PlacedBodies;
 use super::problem::{Checks, Problem};
 use super::selection::Selection;
 use super::unit::Unit;
-use super::Scene;
 use isosheet_dynamics::{At, CreaseSprings, Memories};
 use isosheet_mesh::{EdgeId, Part, VertexId};
 use nalgebra::Vector3;
@@ -131,12 +131,7 @@ impl Measure {
     }
 
     /// Checks that it is of vertices or of a crease, as its quantity wants it.
-    fn check_of(
-        &self,
-        key: &Key,
-        scene: &Scene,
-        checks: &mut Checks,
-    ) {
+    fn check_of(&self, key: &Key, scene: &Scene, checks: &mut Checks) {
         let (creases, folding) = (&scene.crease[..], scene.folding.as_ref());
         let enclosed = &scene.forces;
         let of_crease = self.quantity.of_crease().is_some();
@@ -149,7 +144,8 @@ impl Measure {
         }
         if self.enclosed.is_some() {
             let message = "this quantity is none of what a surface encloses";
-            let remedy = "measure `pressure`, `gauge_pressure` or `volume`, or leave out `enclosed`";
+            let remedy =
+                "measure `pressure`, `gauge_pressure` or `volume`, or leave out `enclosed`";
             checks.report(key.name("quantity"), message, remedy);
         }
         match (&self.at, &self.crease, &self.fold) {
@@ -209,14 +205,18 @@ impl Measure {
         let pressures = || forces.pressure.iter().filter_map(|p| p.name.as_ref());
         let known: Vec<String> = match self.quantity {
             Quantity::Pressure => gases().map(|name| format!("`{name}`")).collect(),
-            _ => gases().chain(pressures()).map(|name| format!("`{name}`")).collect(),
+            _ => gases()
+                .chain(pressures())
+                .map(|name| format!("`{name}`"))
+                .collect(),
         };
         let is_known = |name: &String| known.contains(&format!("`{name}`"));
         if self.enclosed.as_ref().is_some_and(is_known) {
             return;
         }
         let remedy = match known.is_empty() {
-            true => "give the `[[forces.gas]]` that is meant a name, and write it as `enclosed`".to_owned(),
+            true => "give the `[[forces.gas]]` that is meant a name, and write it as `enclosed`"
+                .to_owned(),
             false => format!("give one of these: {}", known.join(", ")),
         };
         match &self.enclosed {

@@ -28,6 +28,9 @@ pub struct Output {
     pub obj: bool,
     /// Whether the 3D page of the run is written as `index.html`.
     pub page: bool,
+    /// Whether the page can show the curvature of the sheet across its rulings, and its Gauss curvature, as colours.
+    /// They are made of the positions: pictures and files of other programs can have them of every run.
+    pub curvature: bool,
 }
 
 impl Default for Output {
@@ -38,6 +41,7 @@ impl Default for Output {
             trajectory: true,
             obj: false,
             page: true,
+            curvature: false,
         }
     }
 }

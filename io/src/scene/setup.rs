@@ -15,10 +15,8 @@ use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
 use isosheet_dynamics::contact::{Contact, SurfacePoints};
 use isosheet_dynamics::{Checkpoint, SheetModel, Simulation, SimulationError, State};
-#[cfg(feature = "run")]
-use isosheet_mesh::EdgeId;
 use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{Part, Sheet, VertexId};
+use isosheet_mesh::{EdgeId, Part, Sheet, VertexId};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 #[cfg(feature = "run")]
@@ -171,6 +169,8 @@ pub struct Setup {
     pub targets: Targets,
     /// What is read off the sheet at each step.
     pub measures: Vec<Gauge>,
+    /// The edges of the sheets that have creases.
+    pub(crate) creased: Vec<EdgeId>,
     /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a crease
     /// pattern among the meshes; `None` for an edge of which the pattern does not say it.
     pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,

@@ -18,6 +18,7 @@ mod fold;
 mod folders;
 mod folding;
 mod gallery;
+mod gases;
 #[path = "../shared/headless.rs"]
 mod headless;
 mod live;

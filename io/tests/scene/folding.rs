@@ -2,8 +2,7 @@
 
 use isosheet_io::mesh::generate::{FoldAssignment, FoldPattern, miura, miura_zigzags};
 use isosheet_io::mesh::{VertexId, fold_angle, origami};
-use isosheet_io::dynamics::Simulation;
-use isosheet_io::scene::{FoldResidual, FoldTargets, Kinks, SceneFile, Setup};
+use isosheet_io::scene::{FoldResidual, SceneFile, Setup};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -89,14 +88,7 @@ fn folded_in_steps(
     for _ in 0..(3.0 / step).round() as usize {
         simulation.step(step).unwrap();
     }
-    residual_of(&targets, &simulation)
-}
-
-/// How far the creases of a simulation are from their targets.
-fn residual_of(targets: &FoldTargets, simulation: &Simulation) -> FoldResidual {
-    let bends = simulation.bends_at_creases().unwrap_or_default();
-    let (topology, x) = (simulation.model().topology(), &simulation.state().x);
-    targets.residual(Kinks::new(topology, x, &bends))
+    targets.residual(simulation.model().topology(), &simulation.state().x)
 }
 
 fn refused(folder: &Path, fold: &Value, keys: &str) -> String {
@@ -303,7 +295,8 @@ fn springs_begin_at_the_angles_of_the_start() {
         assert!(speed < 1e-10, "{speed} m/s");
     }
     let (targets, mut moving) = started("frame = 2");
-    let before = residual_of(&targets, &moving).largest;
+    let t = moving.model().topology().clone();
+    let before = targets.residual(&t, &moving.state().x).largest;
     assert!(before > 10.0, "{before}");
     moving.step(1.0 / 60.0).unwrap();
     // The rest angles have changed by 1e-5 of the way, and nothing has snapped.
@@ -312,7 +305,7 @@ fn springs_begin_at_the_angles_of_the_start() {
     for _ in 1..180 {
         moving.step(1.0 / 60.0).unwrap();
     }
-    let after = residual_of(&targets, &moving).largest;
+    let after = targets.residual(&t, &moving.state().x).largest;
     assert!(after < 1e-3, "{after}");
 }
 
@@ -637,7 +630,8 @@ fn a_drawing_is_folded() {
     );
     let mut simulation = setup.start().unwrap();
     simulation.run(2.0, 0.03, &mut []).unwrap();
-    let residual = residual_of(&targets, &simulation);
+    let (topology, x) = (simulation.model().topology(), &simulation.state().x);
+    let residual = targets.residual(topology, x);
     assert!(residual.largest < 2.0, "{residual:?}");
     let error = parse(scene("frame = 1\n")).unwrap_err().to_string();
     assert!(error.contains("a drawing has none"), "{error}");

@@ -48,7 +48,10 @@ pub(super) struct LiveFrame<'a> {
     #[serde(serialize_with = "as_base64")]
     pub(super) x: Cow<'a, [f64]>,
     /// The bends beside creases, of each edge (radians), in the same way; nothing where there are none.
-    #[serde(serialize_with = "as_base64", skip_serializing_if = "<[f64]>::is_empty")]
+    #[serde(
+        serialize_with = "as_base64",
+        skip_serializing_if = "<[f64]>::is_empty"
+    )]
     pub(super) bends: Vec<f64>,
     /// Quaternion and translation of each body.
     pub(super) poses: Vec<[f64; 7]>,

@@ -77,6 +77,8 @@ pub enum FieldSupport {
     Edges,
     /// Faces.
     Faces,
+    /// Faces, with a vector of three values for each.
+    FaceVectors,
 }
 
 /// Numbers on vertices, edges or faces, such as energies or gaps, for formats with data.
@@ -97,9 +99,10 @@ pub struct SeriesField {
 /// - `rod_force`, the forces of the rods (newtons, tension positive),
 /// - `contact_force`, the forces of contact on the vertices (vectors, newtons),
 /// - `gap`, the gaps of the vertices (metres, see [`Trajectory::gaps`]),
-/// - `plastic_angle`, the plastic angles of the edges (degrees, positive for valleys), and
+/// - `plastic_angle`, the plastic angles of the edges (degrees, positive for valleys),
 /// - `plastic_curvature_1` and `plastic_curvature_2`, the principal values of the plastic curvature of the faces (1/m, see
-///   [`Trajectory::plastic_curvatures`]).
+///   [`Trajectory::plastic_curvatures`]), and
+/// - `ruling` (unit vectors), `ruling_curvature` (1/m) and `gauss_curvature` (1/m2), see [`Trajectory::rulings`].
 ///
 /// Of frames at the same time only the first is written: most formats cannot hold two.
 #[derive(Clone, Debug)]
@@ -304,7 +307,8 @@ impl<'a> Series<'a> {
         if reserved || self.fields.iter().any(|f| f.name == *name) {
             let message = format!("there are two fields with the name {name:?}");
             let remedy = "rename one (strain, fold_angle, sheet, rod_force, contact_force, gap, plastic_angle, \
-                          plastic_curvature_1 and _2, uv and TimeValue are taken)";
+                          plastic_curvature_1 and _2, ruling, ruling_curvature, gauss_curvature, uv and TimeValue are \
+                          taken)";
             return Err(DataError::new(message, remedy).into());
         }
         self.fields.push(field);
@@ -457,6 +461,7 @@ impl<'a> Series<'a> {
             FieldSupport::VertexVectors => 3 * self.topology.vertex_count(),
             FieldSupport::Edges => self.topology.edge_count(),
             FieldSupport::Faces => self.topology.face_count(),
+            FieldSupport::FaceVectors => 3 * self.topology.face_count(),
         }
     }
 }
@@ -498,6 +503,23 @@ fn recorded_fields(trajectory: &Trajectory, topology: &Topology) -> Vec<SeriesFi
             }
             // Of these the fold angles are made.
             FrameQuantity::CreaseBends => Vec::new(),
+            FrameQuantity::Rulings => {
+                vec![field("ruling", FieldSupport::FaceVectors, values.to_vec())]
+            }
+            FrameQuantity::RulingCurvatures => {
+                vec![field(
+                    "ruling_curvature",
+                    FieldSupport::Faces,
+                    values.to_vec(),
+                )]
+            }
+            FrameQuantity::GaussCurvatures => {
+                vec![field(
+                    "gauss_curvature",
+                    FieldSupport::Vertices,
+                    values.to_vec(),
+                )]
+            }
             FrameQuantity::PlasticCurvatures => {
                 let of = |k: usize| values.iter().copied().skip(k).step_by(2).collect();
                 let support = FieldSupport::Faces;

@@ -42,7 +42,10 @@ impl Builder<'_> {
         let mut modelled = BTreeSet::new();
         for number in 0..self.sheets.list.len() {
             let springs = self.fold_springs(number)?;
-            modelled.extend(self.add_bending(number, &springs.creases())?);
+            let creases = springs.creases();
+            let part = self.sheets.list[number].part.clone();
+            self.creased.extend(creases.iter().map(|e| part.edge(*e)));
+            modelled.extend(self.add_bending(number, &creases)?);
             self.add_springs(number, springs)?;
         }
         self.modelled

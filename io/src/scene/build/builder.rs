@@ -94,6 +94,8 @@ pub(super) struct Builder<'a> {
     pub(super) targets: Targets,
     /// The creases of the scene that measures may be of.
     pub(super) creases: CreaseGauges,
+    /// The edges at which sheets fold.
+    pub(super) creased: Vec<EdgeId>,
     /// Gases and pressures that measures may be of, by their names.
     pub(super) enclosed: BTreeMap<String, EnclosedGauge>,
     /// The gases, with what they are called.
@@ -188,6 +190,7 @@ impl<'a> Builder<'a> {
             modelled,
             targets: Targets::default(),
             creases: CreaseGauges::default(),
+            creased: Vec::new(),
             enclosed: BTreeMap::new(),
             gases: Vec::new(),
             plates: BTreeMap::new(),

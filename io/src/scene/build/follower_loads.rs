@@ -2,8 +2,8 @@
 
 use super::builder::{Builder, at};
 use crate::scene::Selection;
-use crate::scene::error::SceneError;
 use crate::scene::enclosed::EnclosedGauge;
+use crate::scene::error::SceneError;
 use crate::scene::key::Key;
 use crate::scene::problem::Problem;
 use isosheet_dynamics::{EdgeMoment, EnclosedGas, LoadedFaces, SimulationError};
@@ -32,8 +32,12 @@ impl Builder<'_> {
             let filled = Arc::new(filled.map_err(at(&key))?);
             let gauge = EnclosedGauge::Gas(Arc::clone(&filled));
             self.gases.push((gas.called(number), gauge.clone()));
-            self.enclosed.extend(gas.name.clone().map(|name| (name, gauge)));
-            self.change(|m| Ok(m.with_potential(filled)), at::<SimulationError>(&key))?;
+            self.enclosed
+                .extend(gas.name.clone().map(|name| (name, gauge)));
+            self.change(
+                |m| Ok(m.with_potential(filled)),
+                at::<SimulationError>(&key),
+            )?;
             let [least, _] = gas.added.range(self.scene.stop.time);
             if -least >= volume {
                 let message = format!(
