@@ -83,6 +83,7 @@ mod pattern;
 mod periods;
 mod placed;
 mod placed_bodies;
+mod plain_name;
 mod pose;
 mod poses;
 mod problem;
@@ -384,7 +385,8 @@ impl Scene {
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
-            measure.check(&key, self, &mut checks);
+            let of = (&self.crease[..], self.folding.as_ref(), &self.forces);
+            measure.check(&key, of, &mut checks);
             let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
             bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }

@@ -2,7 +2,7 @@
 
 use super::follower_loads::{Gas, Moment, Pressure};
 use super::key::Key;
-use super::measure::check_name;
+use super::plain_name::check_name;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::selection::Selection;

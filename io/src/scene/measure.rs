@@ -1,13 +1,14 @@
 //! Numbers that are read off the sheet at each step.
 
-use super::Scene;
+use super::creases::Crease;
 use super::enclosed::{EnclosedGauge, OfEnclosed};
 use super::fold_group::FoldGroup;
-use super::folding::FoldTargets;
+use super::folding::{FoldTargets, Folding};
 use super::forces::Forces;
 use super::key::Key;
 use super::placed::PlacedSheets;
 use super::placed_bodies::PlacedBodies;
+use super::plain_name::check_name;
 use super::problem::{Checks, Problem};
 use super::selection::Selection;
 use super::unit::Unit;
@@ -115,9 +116,12 @@ pub enum Quantity {
     Volume,
 }
 
+/// What a scene has that measures are of: creases, a folding and forces.
+type OfScene<'a> = (&'a [Crease], Option<&'a Folding>, &'a Forces);
+
 impl Measure {
-    /// Checks it as one of a scene.
-    pub(crate) fn check(&self, key: &Key, of: &Scene, checks: &mut Checks) {
+    /// Checks it as one of a scene with these creases, folding and forces.
+    pub(crate) fn check(&self, key: &Key, of: OfScene<'_>, checks: &mut Checks) {
         check_name(&self.name, key.name("name"), "a measure", checks);
         self.check_of(key, of, checks);
         let key = key.name("quantity");
@@ -131,16 +135,14 @@ impl Measure {
     }
 
     /// Checks that it is of vertices or of a crease, as its quantity wants it.
-    fn check_of(&self, key: &Key, scene: &Scene, checks: &mut Checks) {
-        let (creases, folding) = (&scene.crease[..], scene.folding.as_ref());
-        let enclosed = &scene.forces;
+    fn check_of(&self, key: &Key, (creases, folding, forces): OfScene<'_>, checks: &mut Checks) {
         let of_crease = self.quantity.of_crease().is_some();
         if self.sheet.is_some() && of_crease {
             let message = "a crease is of one sheet";
             checks.report(key.name("sheet"), message, "leave it out");
         }
         if self.quantity.of_enclosed().is_some() {
-            return self.check_enclosed(key, enclosed, checks);
+            return self.check_enclosed(key, forces, checks);
         }
         if self.enclosed.is_some() {
             let message = "this quantity is none of what a surface encloses";
@@ -317,20 +319,6 @@ impl Quantity {
             Self::Volume => "m3",
             _ => "m",
         }
-    }
-}
-
-/// Refuses a name that tables cannot have.
-pub(super) fn check_name(name: &str, key: Key, of: &str, checks: &mut Checks) {
-    let is_usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    // Spreadsheets take a name that begins with a minus for a formula.
-    let is_text = name.starts_with(|c| is_usual(c) && c != '-');
-    if !is_text || !name.chars().all(is_usual) {
-        checks.report(
-            key,
-            format!("`{name}` cannot be the name of {of}"),
-            "use letters, digits, `_` and `-`, which is not the first",
-        );
     }
 }
 

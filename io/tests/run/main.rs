@@ -27,6 +27,7 @@ mod measures;
 mod pages;
 mod recording;
 mod rod_forces;
+mod rulings;
 mod sequences;
 mod sizes;
 #[path = "../shared/skip.rs"]

@@ -31,6 +31,10 @@ fn sample() -> (Sheet, Trajectory) {
             gaps: &gaps,
             plastic_angles: &forces,
             plastic_curvatures: &curvatures,
+            crease_bends: &forces,
+            rulings: &[&curvatures[..], &curvatures[..count / 2]].concat(),
+            ruling_curvatures: &curvatures[..count / 2],
+            gauss_curvatures: &gaps,
         };
         run.push_with(0.1 * k as f64, &x, &data).unwrap();
     }
@@ -69,6 +73,15 @@ fn comes_back_bit_for_bit() {
         (back.plastic_angles(4), back.plastic_angles(5)),
         (Some(last), None)
     );
+    assert_eq!(
+        (back.crease_bends(4), back.crease_bends(5)),
+        (Some(last), None)
+    );
+    let faces = sheet.topology().face_count();
+    let rulings = back.rulings(4).unwrap();
+    assert_eq!((rulings.len(), &rulings[..2 * faces]), (3 * faces, curvatures));
+    assert_eq!(back.ruling_curvatures(4), Some(&curvatures[..faces]));
+    assert_eq!(back.gauss_curvatures(4), back.gaps(4));
     // Without forces, and without frames: still a file.
     let mut run = Trajectory::new(&sheet);
     run.push(0.0, sheet.positions()).unwrap();
@@ -122,13 +135,17 @@ fn arrays_have_the_documented_names_types_and_shapes() {
         names,
         [
             "contact_forces",
+            "crease_bends",
             "edges",
             "faces",
             "gaps",
+            "gauss_curvatures",
             "plastic_angles",
             "plastic_curvatures",
             "rest_lengths",
             "rod_forces",
+            "ruling_curvatures",
+            "rulings",
             "t",
             "x"
         ]
@@ -139,6 +156,10 @@ fn arrays_have_the_documented_names_types_and_shapes() {
         ("gaps", &[5, 21]),
         ("plastic_angles", &[5, edges]),
         ("plastic_curvatures", &[5, 28, 2]),
+        ("crease_bends", &[5, edges]),
+        ("rulings", &[5, 28, 3]),
+        ("ruling_curvatures", &[5, 28]),
+        ("gauss_curvatures", &[5, 21]),
     ] {
         let array = array_in(&mut npz, name);
         assert_eq!(
@@ -203,6 +224,10 @@ fn bad_frames_are_refused() {
         gaps: &gaps,
         plastic_angles: &rods,
         plastic_curvatures: &curvatures,
+        crease_bends: &rods,
+        rulings: &[&curvatures[..], &curvatures[..curvatures.len() / 2]].concat(),
+        ruling_curvatures: &curvatures[..curvatures.len() / 2],
+        gauss_curvatures: &gaps,
     };
     let mut without = Trajectory::new(&sheet);
     without.push(0.0, &x).unwrap();
