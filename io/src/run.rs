@@ -135,6 +135,7 @@ use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use page::write_page_of;
 use recording::RunFrames;
+use rulings::RuledFrames;
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -376,7 +377,15 @@ fn write_trajectory(folder: &RunFolder, plan: &Plan<'_>, least: u64) -> Result<(
         least,
         ..stored_frames(folder, plan)
     };
-    let written = trajectory.write_motion(&path, &frames);
+    let scene = plan.file.scene();
+    let ruled = match scene.output.curvature {
+        true => RuledFrames::new(&frames, &plan.facts, scene.sheet.len()),
+        false => None,
+    };
+    let written = match ruled {
+        Some(ruled) => trajectory.write_motion(&path, &ruled),
+        None => trajectory.write_motion(&path, &frames),
+    };
     written.map_err(|error| match error {
         MotionError::Frame(error) => error,
         MotionError::Trajectory(error) => error.into(),

@@ -40,7 +40,7 @@ use std::path::Path;
 /// | `plastic_angles` | f64 | T x E | plastic angle of each edge, in radians; of runs with edges that yield |
 /// | `plastic_curvatures` | f64 | T x F x 2 | principal values of the plastic curvature of each face, in 1/m; of runs with a plate that yields |
 /// | `crease_bends` | f64 | T x E | bend of the faces beside each crease, in radians; of runs with creases in sheets that bend |
-/// | `rulings` | f64 | T x F x 3 | unit vector along the ruling of each face, zero where there is none; where they were asked for |
+/// | `rulings` | f64 | T x F x 3 | unit vector along the ruling of each face, zero where there is none; of scenes that ask for curvature |
 /// | `ruling_curvatures` | f64 | T x F | curvature across the ruling of each face, in 1/m; with `rulings` |
 /// | `gauss_curvatures` | f64 | T x V | Gauss curvature besides that of the rest shape, in 1/m2; with `rulings` |
 ///

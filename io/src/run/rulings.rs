@@ -2,11 +2,13 @@
 
 use super::Recording;
 use super::frame_field::FrameField;
-use crate::format::FrameQuantity;
+use crate::format::{FrameData, FrameQuantity, Motion, MotionFrame};
+use crate::scene::Facts;
 use crate::view::{Centering, Field, Scale};
 use isosheet_dynamics::FaceCurvature;
-use isosheet_mesh::Topology;
+use isosheet_mesh::{EdgeId, Part, Sheet, Topology, VertexId};
 use std::cell::OnceCell;
+use std::ops::ControlFlow;
 use std::rc::Rc;
 
 /// The rulings of the frames of a run, one frame after the other.
@@ -31,16 +33,38 @@ struct Curvatures<'a> {
 }
 
 impl<'a> Curvatures<'a> {
-    /// Of the sheets of a run; nothing if their fits cannot be made, which a recording never asks for.
+    /// Of the sheets of a run.
     fn of(recording: &'a Recording) -> Option<Self> {
-        let topology = recording.sheet.topology();
         let count = recording.scene.scene().sheet.len();
-        let last = recording.parts.get(count.wrapping_sub(1));
-        let sheets = match last {
+        let held = (&recording.pins[..], &recording.creased[..]);
+        Self::new(&recording.sheet, &recording.parts, count, held)
+    }
+
+    /// Of the sheets of a run on its way.
+    fn of_facts(facts: &'a Facts, count: usize) -> Option<Self> {
+        let held = (&facts.pins[..], &facts.creased[..]);
+        Self::new(&facts.sheet, &facts.parts, count, held)
+    }
+
+    /// Of the first parts, so many, of the union of sheets and bodies, with pinned vertices and creases; nothing if
+    /// their fits cannot be made, which no run asks for.
+    fn new(
+        sheet: &'a Sheet,
+        parts: &[(String, Part)],
+        count: usize,
+        (pins, creases): (&[VertexId], &[EdgeId]),
+    ) -> Option<Self> {
+        let topology = sheet.topology();
+        let sheets = match parts.get(count.wrapping_sub(1)) {
             Some((_, part)) => [part.faces.end, part.vertices.end],
             None => [topology.face_count(), topology.vertex_count()],
         };
-        let of_faces = FaceCurvature::new(&recording.sheet, &recording.pins, &recording.creased);
+        let pins: Vec<VertexId> = pins
+            .iter()
+            .copied()
+            .filter(|v| v.index() < sheets[1])
+            .collect();
+        let of_faces = FaceCurvature::new(sheet, &pins, creases);
         Some(Self {
             topology,
             of_faces: of_faces.ok()?,
@@ -64,6 +88,42 @@ impl<'a> Curvatures<'a> {
         let mut values = self.of_faces.gauss().at(self.topology, x);
         values[self.sheets[1]..].fill(0.0);
         values
+    }
+}
+
+/// The frames of a run with their rulings, which are made when a frame is shown.
+pub(super) struct RuledFrames<'a, M> {
+    frames: &'a M,
+    curvatures: Curvatures<'a>,
+}
+
+impl<'a, M> RuledFrames<'a, M> {
+    /// Of the frames of a run with so many sheets.
+    pub(super) fn new(frames: &'a M, facts: &'a Facts, sheets: usize) -> Option<Self> {
+        let curvatures = Curvatures::of_facts(facts, sheets)?;
+        Some(Self { frames, curvatures })
+    }
+}
+
+impl<M: Motion> Motion for RuledFrames<'_, M> {
+    type Error = M::Error;
+
+    fn each(
+        &self,
+        show: &mut dyn FnMut(&MotionFrame<'_>) -> ControlFlow<()>,
+    ) -> Result<(), M::Error> {
+        self.frames.each(&mut |frame| {
+            let [rulings, ruling_curvatures] = self.curvatures.rulings(frame.x);
+            show(&MotionFrame {
+                data: FrameData {
+                    rulings: &rulings,
+                    ruling_curvatures: &ruling_curvatures,
+                    gauss_curvatures: &self.curvatures.gauss(frame.x),
+                    ..frame.data
+                },
+                ..*frame
+            })
+        })
     }
 }
 

@@ -51,6 +51,10 @@ pub(crate) struct Facts {
     pub(crate) bonds: Vec<Option<Bond>>,
     /// The motions that a program leads.
     pub(crate) led: Vec<LedMotion>,
+    /// Vertices of the model that are pinned.
+    pub(crate) pins: Vec<VertexId>,
+    /// The edges of the sheets that have creases.
+    pub(crate) creased: Vec<EdgeId>,
 }
 
 impl Facts {
@@ -225,6 +229,8 @@ impl Setup {
             origins: self.origins.clone(),
             bonds: self.bonds.clone(),
             led: self.led.clone(),
+            pins: self.model.pins(),
+            creased: self.creased.clone(),
         }
     }
 

@@ -42,6 +42,8 @@ fn a_strip_under_a_moment_is_ruled_along_the_axis_of_the_moment() {
         assert_eq!(code(&done), Some(0), "{words:?}: {}", stderr(&done));
     }
     let frames = Trajectory::read(&dir.join("all.npz")).unwrap();
+    let own = Trajectory::read(&dir.join("run/trajectory.npz")).unwrap();
+    assert_eq!(own, frames);
     let last = frames.len() - 1;
     assert!(frames.rulings(0).unwrap().iter().all(|c| *c == 0.0));
     assert!(

@@ -3,8 +3,7 @@
 use super::experiment::{Experiment, Job, Measured, Quantity};
 use anyhow::Result;
 use isosheet_dynamics::{EnclosedGas, Gas, LoadedFaces};
-use isosheet_mesh::{Sheet, VertexId};
-use std::collections::BTreeMap;
+use isosheet_mesh::{FaceId, Sheet, VertexId};
 use std::f64::consts::PI;
 
 /// Length and width, metres, and height of the middle over the rim.
@@ -30,32 +29,20 @@ pub(super) const ENCLOSED: Experiment = Experiment {
 
 const EXPONENTS: [f64; 2] = [1.0, 1.4];
 
-/// Two sheets with a common rim, and which vertices are below.
-fn pillow(flat: &Sheet) -> Result<(Sheet, Vec<bool>)> {
+/// Two sheets whose rims are joined, which vertices are below, and the pairs of the rim.
+fn pillow(flat: &Sheet) -> Result<(Sheet, Vec<bool>, Vec<[VertexId; 2]>)> {
     let t = flat.topology();
-    let mut x = flat.positions().to_vec();
-    let mut below = vec![false; t.vertex_count()];
-    let mut under = BTreeMap::new();
-    for v in t.vertex_ids() {
-        let own = match t.is_boundary_vertex(v) {
-            true => v,
-            false => {
-                x.extend(flat.position(v));
-                below.push(true);
-                VertexId::from_index(below.len() - 1)
-            }
-        };
-        under.insert(v, own);
-    }
-    let mut faces = flat.face_indices();
-    let lower = t
-        .faces()
-        .iter()
-        .map(|[a, b, c]| [a, c, b].map(|v| under[v].0));
-    faces.extend(lower.collect::<Vec<_>>());
-    // Before it is arched both sides are in a plane, where edges may coincide: the form gives the rest shape.
-    let arched = arched(&x, &below, HEIGHT);
-    Ok((Sheet::new(arched, &faces)?, below))
+    let count = t.vertex_count();
+    let below: Vec<bool> = (0..2 * count).map(|v| v >= count).collect();
+    let both = Sheet::union(&[flat, flat])?;
+    let arched = arched(both.positions(), &below, HEIGHT);
+    let rim = t.vertex_ids().filter(|v| t.is_boundary_vertex(*v));
+    let pairs = rim.map(|v| [v, VertexId::from_index(count + v.index())]);
+    Ok((
+        Sheet::new(arched, &both.face_indices())?,
+        below,
+        pairs.collect(),
+    ))
 }
 
 /// The positions with another height.
@@ -71,9 +58,10 @@ fn arched(x: &[f64], below: &[bool], height: f64) -> Vec<f64> {
 
 fn enclosed(job: Job) -> Result<Measured> {
     let [length, width] = SIZE;
-    let (sheet, below) = pillow(&job.rectangle(SIZE)?)?;
+    let (sheet, below, pairs) = pillow(&job.rectangle(SIZE)?)?;
     let x = sheet.positions();
-    let faces = LoadedFaces::all(sheet.topology())?;
+    let all: Vec<FaceId> = sheet.topology().face_ids().collect();
+    let faces = LoadedFaces::new(sheet.topology(), &all, &pairs)?;
     let mut values = Vec::new();
     for exponent in EXPONENTS {
         let gas = Gas {

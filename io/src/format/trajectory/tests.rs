@@ -79,7 +79,10 @@ fn comes_back_bit_for_bit() {
     );
     let faces = sheet.topology().face_count();
     let rulings = back.rulings(4).unwrap();
-    assert_eq!((rulings.len(), &rulings[..2 * faces]), (3 * faces, curvatures));
+    assert_eq!(
+        (rulings.len(), &rulings[..2 * faces]),
+        (3 * faces, curvatures)
+    );
     assert_eq!(back.ruling_curvatures(4), Some(&curvatures[..faces]));
     assert_eq!(back.gauss_curvatures(4), back.gaps(4));
     // Without forces, and without frames: still a file.
