@@ -107,7 +107,7 @@ fn equal_trajectories_are_equal_files() {
     let entries: Vec<usize> = (0..bytes.len() - 46)
         .filter(|k| bytes[*k..].starts_with(b"PK\x01\x02"))
         .collect();
-    assert_eq!(entries.len(), 10);
+    assert_eq!(entries.len(), 14);
     for k in entries {
         assert_eq!(bytes[k + 12..k + 16], [0, 0, 0x21, 0]);
     }
