@@ -94,8 +94,8 @@ pub use material::glue::{Glue, GlueError};
 pub use material::patched::{NoFace, Patched};
 pub use material::plasticity::Yield;
 pub use material::plate_bending::{
-    Curl, CurlError, Curvature, LineClamp, NaturalTensor, OrthotropicPlate, PlateBending,
-    PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
+    Curl, CurlError, Curvature, FaceCurvature, LineClamp, NaturalTensor, OrthotropicPlate,
+    PlateBending, PlateBendingError, PlateEdges, PlateLaw, PlateStiffness,
 };
 pub use material::stiffening::Stiffening;
 pub use material::{Directions, Isotropic, Material, NamedMaterial, Orthotropic, UnknownMaterial};
@@ -104,7 +104,7 @@ pub use model::attached::{AttachedFlow, AttachedFlowError};
 pub use model::clamps::ClampAcrossMesh;
 pub use model::edge_moment::EdgeMoment;
 pub use model::elastic_deformation::ElasticDeformation;
-pub use model::gas::{Gas, GasError};
+pub use model::gas::{EnclosedGas, Gas, GasError, GasState};
 pub use model::hand::{Hand, HandError};
 pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};

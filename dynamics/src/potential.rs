@@ -124,6 +124,12 @@ pub trait Potential: Debug + Send + Sync {
         Vec::new()
     }
 
+    /// The edges that are creases in a sheet that bends, with the bend of the faces beside each, which its fold
+    /// angle includes, radians, positive for valleys. The default has none.
+    fn bends_at_creases(&self, _at: At<'_>) -> Vec<(EdgeId, f64)> {
+        Vec::new()
+    }
+
     /// The faces on which it can yield, with the plastic curvature that stays there by a memory, 1/m, the first
     /// axis along the first edge of the face, positive where the sheet is a valley as seen from the side from
     /// which faces are counter-clockwise. The default has none.
@@ -311,6 +317,10 @@ impl<P: Potential + ?Sized> Potential for Arc<P> {
 
     fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
         (**self).plastic_angles(memory)
+    }
+
+    fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
+        (**self).bends_at_creases(at)
     }
 
     fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {

@@ -66,6 +66,7 @@ mod recorder;
 mod recording;
 mod replay;
 mod row;
+mod rulings;
 mod spool;
 mod stepping;
 mod steps;
@@ -111,6 +112,7 @@ pub use intervention::Intervention;
 pub use page::write_page;
 pub use recorder::{ExistingRun, RecordedStepError, Recorder, RecorderOptions, RecordingEnd};
 pub use recording::Recording;
+pub use rulings::RecordedRulings;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
 pub use time_error::TimeError;
@@ -133,6 +135,7 @@ use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use page::write_page_of;
 use recording::RunFrames;
+use rulings::RuledFrames;
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -374,7 +377,15 @@ fn write_trajectory(folder: &RunFolder, plan: &Plan<'_>, least: u64) -> Result<(
         least,
         ..stored_frames(folder, plan)
     };
-    let written = trajectory.write_motion(&path, &frames);
+    let scene = plan.file.scene();
+    let ruled = match scene.output.curvature {
+        true => RuledFrames::new(&frames, &plan.facts, scene.sheet.len()),
+        false => None,
+    };
+    let written = match ruled {
+        Some(ruled) => trajectory.write_motion(&path, &ruled),
+        None => trajectory.write_motion(&path, &frames),
+    };
     written.map_err(|error| match error {
         MotionError::Frame(error) => error,
         MotionError::Trajectory(error) => error.into(),

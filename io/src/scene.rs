@@ -46,6 +46,7 @@ mod drawing;
 mod driven;
 mod driven_surface;
 mod edit;
+mod enclosed;
 mod engine_problem;
 mod error;
 #[cfg(feature = "cli")]
@@ -63,6 +64,7 @@ mod in_words;
 mod integration;
 mod jump;
 mod key;
+mod kinks;
 mod led;
 mod live;
 mod material;
@@ -81,6 +83,7 @@ mod pattern;
 mod periods;
 mod placed;
 mod placed_bodies;
+mod plain_name;
 mod pose;
 mod poses;
 mod problem;
@@ -383,11 +386,13 @@ impl Scene {
             }
         }
         for (key, measure) in root.name("measure").entries(&self.measure) {
-            measure.check(&key, (&self.crease, self.folding.as_ref()), &mut checks);
+            let of = (&self.crease[..], self.folding.as_ref(), &self.forces);
+            measure.check(&key, of, &mut checks);
             let (key, name) = (key.name("sheet"), measure.sheet.as_deref());
             bodies::check_reference(&self.sheet, &self.body, name, &key, &mut checks);
         }
         measure::check_names(&self.measure, &root, &mut checks);
+        self.forces.check_names(&root.name("forces"), &mut checks);
         Crease::check_names(&self.crease, &mut checks);
         self.check_periods(&mut checks);
         self.check_steps_resolve(&mut checks);

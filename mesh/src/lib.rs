@@ -7,6 +7,8 @@
 //! * [`Dof`]: degrees of freedom by counting, with the two lemmas.
 //! * [`EdgeAngles`], [`check_compatibility`], [`fold_angle`]: angles of any state; [`CreasePattern`]: where
 //!   the sheet folds straight.
+//! * [`Ruling`], [`angle_deficits`], [`GaussCurvature`]: straight lines of a bent sheet, and how far it is from
+//!   developable.
 //! * [`angle_from_lengths`], [`area_from_lengths`]: triangles from the lengths of their sides.
 //! * [`Part`]: one of several sheets in their union.
 //! * [`orient_consistently`]: repair on request.
@@ -19,6 +21,7 @@
 //! Hamilton principle", Computer-Aided Design 39 (2007) 719-731.
 
 mod advice;
+mod angle_deficit;
 mod angles;
 mod area;
 mod build;
@@ -36,6 +39,7 @@ pub mod origami;
 mod part;
 pub mod plane;
 mod repair;
+mod rulings;
 mod sheet;
 #[cfg(test)]
 mod tests;
@@ -44,6 +48,7 @@ mod vec3;
 pub mod wording;
 
 pub use advice::Advice;
+pub use angle_deficit::{GaussCurvature, angle_deficits};
 pub use angles::{
     AngleError, AngleTriple, COMPATIBILITY_TOLERANCE, EdgeAngles, angle_from_lengths, angle_near,
     check_compatibility, fold_angle,
@@ -58,6 +63,7 @@ pub use lengths::LengthConstraints;
 pub use mass::{MassKind, MassMatrix};
 pub use part::Part;
 pub use repair::orient_consistently;
+pub use rulings::{Ruling, principal_values};
 pub use sheet::Sheet;
 pub use topology::Topology;
 

@@ -147,6 +147,7 @@ fn folding(number: u64) -> (Simulation, f64, usize) {
             stiffness: if sign == 0.0 { 1e-3 } else { 1e-4 },
             rest: folded.into(),
             yields: None,
+            in_series: None,
         }
     });
     let springs = CreaseSprings::new(sheet.topology(), springs.collect()).expect("interior");

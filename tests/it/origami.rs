@@ -23,6 +23,7 @@ fn spring(edge: EdgeId, stiffness: f64, full: f64) -> CreaseSpring {
         stiffness,
         rest: folded_by(full).into(),
         yields: None,
+        in_series: None,
     }
 }
 

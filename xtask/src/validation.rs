@@ -1,9 +1,11 @@
 //! `validation`: published experiments and closed forms with the elastic sheet, on several meshes and sizes.
 
 mod cantilevers;
+mod creases;
 mod curls;
 mod elasticas;
 mod experiment;
+mod gases;
 mod limitations;
 mod linear;
 mod outcome;
@@ -11,6 +13,7 @@ mod plastic;
 mod plates;
 mod rest;
 mod rolling;
+mod rulings;
 mod shells;
 mod specimen;
 mod squeezed;
@@ -31,7 +34,7 @@ use outcome::{Outcome, SIZES};
 use rayon::prelude::*;
 
 /// All of them.
-static EXPERIMENTS: [&Experiment; 26] = [
+static EXPERIMENTS: [&Experiment; 29] = [
     &cantilevers::END_SHEAR,
     &cantilevers::END_MOMENT,
     &shells::ANNULUS,
@@ -49,6 +52,9 @@ static EXPERIMENTS: [&Experiment; 26] = [
     &curls::CURLED,
     &curls::RING,
     &plastic::YIELDING,
+    &creases::CREASED,
+    &gases::ENCLOSED,
+    &rulings::RULED,
     &shells::FREE_CYLINDER,
     &shells::CYLINDER,
     &shells::HEMISPHERE,

@@ -38,6 +38,10 @@ pub struct CreaseSpring {
     pub rest: RestAngle,
     /// When it yields, moments in newton metres; nothing for a spring that always comes back.
     pub yields: Option<Yield>,
+    /// Stiffness of what else bends between the middles of the two faces, newton metres per radian, of which
+    /// the stiffness of the spring takes account ([`CreaseSpring::put_in_sheet`]). Nothing where the fold angle
+    /// is the spring's alone.
+    pub in_series: Option<f64>,
 }
 
 impl CreaseSpring {
@@ -52,7 +56,8 @@ impl CreaseSpring {
     /// that is much stiffer than the sheet bends like the sheet. The sheet itself is made without stiffness
     /// at these edges ([`CreaseSprings::bending_beside`],
     /// [`PlateBending::creased`](crate::PlateBending::creased)). Both carry the same moment, so that a crease
-    /// yields at the moment at which it yields by itself.
+    /// yields at the moment at which it yields by itself. The spring keeps `k_s` ([`CreaseSpring::in_series`]),
+    /// by which [`CreaseSprings::bends_beside`] tells fold and bend apart.
     ///
     /// `rigidity` is the flexural rigidity `D` in newton metres; with zero the springs stay as they are.
     pub fn put_in_sheet<'a>(
@@ -74,6 +79,7 @@ impl CreaseSpring {
             let sum = sums.get(spring.edge.index());
             if let Some((sum, own)) = sum.zip(sheet_stiffness(sheet, rigidity, spring.edge)) {
                 spring.stiffness *= own / (own + sum);
+                spring.in_series = Some(own);
             }
         }
     }
@@ -197,6 +203,7 @@ struct Hinge {
     stiffness: f64,
     rest: RestAngle,
     yields: Option<Yield>,
+    in_series: Option<f64>,
 }
 
 /// What is between two vertices of a hinge.
@@ -332,6 +339,7 @@ impl CreaseSprings {
                 stiffness: sheet_stiffness(sheet, rigidity, edge)?,
                 rest: 0.0.into(),
                 yields: None,
+                in_series: None,
             })
         });
         Self::new(t, springs.collect())
@@ -368,6 +376,28 @@ impl CreaseSprings {
         self.with_plastic(at.memory).map(angle).collect()
     }
 
+    /// The bend of the sheet that the fold angles include, at the edges of springs that are in series with a
+    /// sheet ([`CreaseSpring::put_in_sheet`]), radians, positive for a valley: `M / k_s` with the moment `M`
+    /// that folds the spring further and the stiffness `k_s` of the sheet across the edge. An edge that has
+    /// several springs stands there for each, and the sum is the bend.
+    ///
+    /// The angle of the crease itself, its kink, is the fold angle without this bend: `theta - M / k_s`. With
+    /// the stiffness `k` of the crease as it was given, `M = k (kink - rest)`.
+    pub fn bends_beside(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
+        let bend = |(h, p): (&Hinge, &[f64])| {
+            let sheet = h.in_series?;
+            let angle = Fold::at(at.x, &h.vertices).angle();
+            let moment = h.stiffness * h.respond(at.t, angle, p).elastic;
+            Some((h.edge, moment / sheet))
+        };
+        self.with_plastic(at.memory).filter_map(bend).collect()
+    }
+
+    /// The edges of the springs, in the order given.
+    pub fn edges(&self) -> impl Iterator<Item = EdgeId> {
+        self.hinges.iter().map(|h| h.edge)
+    }
+
     /// The hinges with the plastic angles of their layers, radians, of a memory.
     fn with_plastic<'a>(
         &'a self,
@@ -394,6 +424,7 @@ impl Hinge {
             stiffness,
             rest,
             yields,
+            in_series,
         } = spring;
         if !(stiffness.is_finite() && stiffness >= 0.0) {
             return Err(CreaseError::Stiffness { edge, stiffness });
@@ -421,6 +452,7 @@ impl Hinge {
             stiffness,
             rest,
             yields,
+            in_series,
         })
     }
 
@@ -551,6 +583,10 @@ impl Potential for CreaseSprings {
             .with_plastic(memory)
             .filter(|(h, _)| h.yields.is_some());
         yielding.map(|(h, p)| (h.edge, h.plastic(p))).collect()
+    }
+
+    fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
+        self.bends_beside(at)
     }
 
     fn memory(&self) -> Vec<f64> {

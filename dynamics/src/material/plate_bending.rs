@@ -1,6 +1,7 @@
 //! Bending stiffness of a thin plate that does not depend on how the mesh runs.
 
 mod error;
+mod face_curvature;
 mod fit;
 mod law;
 mod line_clamp;
@@ -29,6 +30,7 @@ use crate::potential::Reached;
 use crate::potential::Settled;
 use crate::{HessianSink, Potential};
 pub use error::{CurlError, PlateBendingError};
+pub use face_curvature::FaceCurvature;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use law::Roots;
 pub use law::{OrthotropicPlate, PlateLaw};

@@ -107,6 +107,10 @@ impl<P: Potential> Potential for Stiffening<P> {
         self.potential.plastic_angles(memory)
     }
 
+    fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
+        self.potential.bends_at_creases(at)
+    }
+
     fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
         self.potential.plastic_curvatures(memory)
     }

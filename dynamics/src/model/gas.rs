@@ -120,6 +120,40 @@ impl SheetModel {
     /// # Panics
     /// If `x` is not of length `3V` or the faces are those of another mesh.
     pub fn with_gas(self, faces: LoadedFaces, gas: Gas, x: &[f64]) -> Result<Self, GasError> {
+        Ok(self.with_potential(EnclosedGas::new(&faces, gas, x)?))
+    }
+}
+
+/// Gas that fills closed faces, as a potential of the model ([`SheetModel::with_gas`]).
+#[derive(Debug)]
+pub struct EnclosedGas {
+    volume: Volume,
+    gas: Gas,
+    /// `V_0`, cubic metres.
+    first: f64,
+}
+
+/// What a gauge at a gas shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GasState {
+    /// Volume that the surface encloses, cubic metres.
+    pub volume: f64,
+    /// Pressure of the gas, pascals above vacuum.
+    pub pressure: f64,
+    /// Pressure of the gas less that outside, pascals: what the surface feels.
+    pub gauge_pressure: f64,
+}
+
+impl EnclosedGas {
+    /// Gas in closed faces. Their front has to be outside, or inside for all of them; `x` are the positions at
+    /// the start, `3V`, metres.
+    ///
+    /// # Errors
+    /// [`GasError`].
+    ///
+    /// # Panics
+    /// If `x` is not of length `3V` or the faces are those of another mesh.
+    pub fn new(faces: &LoadedFaces, gas: Gas, x: &[f64]) -> Result<Self, GasError> {
         for (name, value) in [
             ("ambient pressure", gas.ambient),
             ("pressure", gas.pressure),
@@ -133,24 +167,32 @@ impl SheetModel {
         if let Some(&[from, to]) = faces.rim.first() {
             return Err(GasError::Open { from, to });
         }
-        let inwards = faces.volume(x) < 0.0;
-        let faces = if inwards { faces.turned_over() } else { faces };
-        let volume = Volume::new(&faces);
+        let volume = match faces.volume(x) < 0.0 {
+            true => Volume::new(&faces.clone().turned_over()),
+            false => Volume::new(faces),
+        };
         let first = volume.value(x);
         if !(first.is_finite() && first > 0.0) {
             return Err(GasError::Empty { volume: first });
         }
-        Ok(self.with_potential(EnclosedGas { volume, gas, first }))
+        Ok(Self { volume, gas, first })
     }
-}
 
-/// The energy of a gas in a volume.
-#[derive(Debug)]
-struct EnclosedGas {
-    volume: Volume,
-    gas: Gas,
-    /// `V_0`, cubic metres.
-    first: f64,
+    /// Volume and pressure at time `t` (seconds) and positions `x` (`3V`, metres): `p = p_1 (V_1 / V)^n`, as
+    /// the energy has it, which goes on along a straight line where the volume is less than a thousandth of
+    /// `V_1` ([`Gas`]).
+    ///
+    /// # Panics
+    /// If `x` is shorter than the mesh that the faces are of.
+    pub fn state(&self, t: f64, x: &[f64]) -> GasState {
+        let volume = self.volume.value(x);
+        let gauge_pressure = -self.at_volume(t, volume).slope;
+        GasState {
+            volume,
+            pressure: self.gas.ambient + gauge_pressure,
+            gauge_pressure,
+        }
+    }
 }
 
 /// The energy of a gas with its derivatives by the volume.

@@ -2,7 +2,7 @@
 
 use crate::potential::{At, Memories, Potential, Reached, Settled};
 use crate::{SheetModel, State};
-use isosheet_mesh::{EdgeId, FaceId};
+use isosheet_mesh::{EdgeId, FaceId, principal_values};
 use nalgebra::Matrix2;
 
 impl SheetModel {
@@ -72,6 +72,23 @@ impl SheetModel {
         Some(angles)
     }
 
+    /// The bend of the faces beside each crease (length E, radians, positive for valleys), 0 at other edges, at
+    /// time `t` (seconds) and positions `x` (`3V`, metres); `None` where no crease is in a sheet that bends.
+    /// The fold angle of the two faces at a crease ([`isosheet_mesh::fold_angle`]) is the kink of the crease
+    /// and this bend ([`CreaseSprings::bends_beside`](crate::CreaseSprings::bends_beside)).
+    pub fn bends_at_creases(&self, t: f64, x: &[f64], memories: &Memories) -> Option<Vec<f64>> {
+        let all = self.potentials_at(t, x, memories);
+        let known: Vec<(EdgeId, f64)> = all.flat_map(|(p, at)| p.bends_at_creases(at)).collect();
+        if known.is_empty() {
+            return None;
+        }
+        let mut bends = vec![0.0; self.topology().edge_count()];
+        for (e, bend) in &known {
+            bends[e.index()] += bend;
+        }
+        Some(bends)
+    }
+
     /// The principal values of the plastic curvature of each face (length F, 1/m), the larger one in size
     /// first, positive where the sheet is a valley as seen from the side from which faces are
     /// counter-clockwise; `None` where no face can yield. They are what stays of the curvature where the
@@ -101,14 +118,7 @@ fn reached(state: &State) -> Reached<'_> {
 
 /// The principal values of a symmetric matrix, the larger one in size first.
 fn principal(m: &Matrix2<f64>) -> [f64; 2] {
-    let mean = 0.5 * (m[(0, 0)] + m[(1, 1)]);
-    let radius = (0.5 * (m[(0, 0)] - m[(1, 1)])).hypot(m[(0, 1)]);
-    let first = if mean < 0.0 {
-        mean - radius
-    } else {
-        mean + radius
-    };
-    [first, 2.0 * mean - first]
+    principal_values([m[(0, 0)], m[(0, 1)], m[(1, 1)]])
 }
 
 #[cfg(test)]
@@ -159,6 +169,7 @@ mod tests {
             stiffness: 3.0,
             rest: 0.0.into(),
             yields: Some(Yield::perfect(0.06)),
+            in_series: None,
         };
         let springs = CreaseSprings::new(t, vec![spring]).expect("a spring");
         let plain = SheetModel::new(&both, 0.1, MassKind::Lumped).expect("mass");

@@ -118,6 +118,11 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
         own.map(|(e, angle)| (self.part.edge(e), angle)).collect()
     }
 
+    fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
+        let own = self.potential.bends_at_creases(self.own(at)).into_iter();
+        own.map(|(e, bend)| (self.part.edge(e), bend)).collect()
+    }
+
     fn clamp_moments(&self, at: At<'_>) -> Vec<[f64; 3]> {
         self.potential.clamp_moments(self.own(at))
     }

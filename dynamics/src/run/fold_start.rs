@@ -49,6 +49,7 @@ pub fn start_of_folding(
             stiffness: stiffness(edge, weight),
             rest: (PART * target).into(),
             yields: None,
+            in_series: None,
         });
         let springs = CreaseSprings::new(topology, springs.collect()).ok()?;
         let model = SheetModel::with_mass(sheet, mass.clone()).ok()?;

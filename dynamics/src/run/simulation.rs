@@ -502,6 +502,12 @@ impl Simulation {
         self.model().plastic_angles(self.memories())
     }
 
+    /// The bend of the faces beside each crease now, see [`SheetModel::bends_at_creases`].
+    pub fn bends_at_creases(&self) -> Option<Vec<f64>> {
+        let State { t, x, .. } = self.state();
+        self.model().bends_at_creases(*t, x, self.memories())
+    }
+
     /// The principal values of the plastic curvature of each face now, see
     /// [`SheetModel::plastic_curvatures`].
     pub fn plastic_curvatures(&self) -> Option<Vec<[f64; 2]>> {

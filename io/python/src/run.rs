@@ -127,6 +127,11 @@ impl Run {
     }
 }
 
+/// Values of all frames, frame by frame.
+fn frames_of(values: &[f64], count: usize) -> Vec<&[f64]> {
+    values.chunks((values.len() / count.max(1)).max(1)).collect()
+}
+
 #[pymethods]
 impl Run {
     #[new]
@@ -223,6 +228,14 @@ impl Run {
         self.numbers(py, |k| self.recording.trajectory.plastic_angles(k))
     }
 
+    /// Bends of the faces beside creases in the frames, radians, positive for valleys, of shape (T, E), 0 at other
+    /// edges: the angle between the faces at a crease is its fold angle and this bend. None where no crease is in a
+    /// sheet that bends.
+    #[getter]
+    fn crease_bends<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.numbers(py, |k| self.recording.trajectory.crease_bends(k))
+    }
+
     /// Principal values of the plastic curvature of the faces in the frames, 1/m, the larger one in size
     /// first, positive for valleys, of shape (T, F, 2); None where no face can yield.
     #[getter]
@@ -231,6 +244,46 @@ impl Run {
         py: Python<'py>,
     ) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
         self.tuples(py, 2, |k| self.recording.trajectory.plastic_curvatures(k))
+    }
+
+    /// Unit vectors along the rulings of the faces in the frames, of shape (T, F, 3): the straight lines of a bent
+    /// sheet, the direction of the principal curvature that is smaller in size, with the component of largest size
+    /// positive. Zero where a face has none: where it is not bent beyond noise, or alike in all directions. They are
+    /// made of the positions whenever they are asked for.
+    #[getter]
+    fn rulings<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+        let Some(all) = py.detach(|| self.recording.rulings()) else {
+            return Ok(None);
+        };
+        let frames = frames_of(&all.directions, self.recording.trajectory.len());
+        self.tuples(py, 3, |k| frames.get(k).copied())
+    }
+
+    /// Principal curvatures across the rulings, 1/m, positive for valleys, of shape (T, F); 0 where a face has none.
+    #[getter]
+    fn ruling_curvatures<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let Some(all) = py.detach(|| self.recording.rulings()) else {
+            return Ok(None);
+        };
+        let frames = frames_of(&all.curvatures, self.recording.trajectory.len());
+        self.numbers(py, |k| frames.get(k).copied())
+    }
+
+    /// Gauss curvatures at the vertices besides those of the rest shape, 1/m2, of shape (T, V): how far the sheet is
+    /// from developable.
+    #[getter]
+    fn gauss_curvatures<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let Some(all) = py.detach(|| self.recording.rulings()) else {
+            return Ok(None);
+        };
+        let frames = frames_of(&all.gauss_curvatures, self.recording.trajectory.len());
+        self.numbers(py, |k| frames.get(k).copied())
     }
 
     /// One array for each column of `history.csv`, with a row for the start and for every step: "time", "h",
@@ -271,7 +324,8 @@ impl Run {
         Ok(columns)
     }
 
-    /// What each `[[measure]]` of the scene shows by its name, in the unit of its quantity, at the start and
+    /// What each `[[measure]]` of the scene shows by its name, and of each gas "gas[0].pressure" (pascals above
+    /// vacuum), "gas[0].gauge_pressure" and "gas[0].volume" (or with the name of the gas), in the unit of its quantity, at the start and
     /// at the end of every step: at the times of `history["time"]`. Of a run that is not complete the last
     /// one may be missing.
     #[getter]
@@ -279,7 +333,7 @@ impl Run {
         let columns = PyDict::new(py);
         for series in TimeSeries::of_measures(
             &self.recording.measures,
-            &self.recording.scene.scene().measure,
+            &self.recording.gauges,
         ) {
             columns.set_item(series.name, array(py, &series.values))?;
         }
@@ -344,8 +398,8 @@ impl Run {
             };
             units.set_item(name, unit)?;
         }
-        for measure in &self.recording.scene.scene().measure {
-            units.set_item(&measure.name, measure.quantity.unit())?;
+        for gauge in &self.recording.gauges {
+            units.set_item(&gauge.name, gauge.unit())?;
         }
         Ok(units)
     }

@@ -77,10 +77,36 @@ def test_a_run_is_what_its_files_say(folder):
     for name, column in (("time", "t"), ("total", "H"), ("iterations", "iterations"), ("strain", "strain")):
         assert np.array_equal(run.history[name], table[column]), name
     assert np.isnan(run.history["plastic"]).all()  # nothing can yield
-    assert run.plastic_angles is None and run.plastic_curvatures is None
+    assert run.plastic_angles is None and run.plastic_curvatures is None and run.crease_bends is None
     summary = json.loads((folder / "summary.json").read_text())
     assert run.summary["ending"] == summary["ending"] and run.summary["steps"] == summary["steps"] == 20
     assert run.scene["stop.time"] == 0.2 and "gravity" in run.modelled
+
+
+def test_a_rolled_strip_is_ruled(tmp_path):
+    """A moment of 2e-4 N m bends 0.05 m of a plate of 5e-4 N m to the curvature of 8 / m."""
+    held = {"point": [1e-6, 0, 0], "normal": [-1, 0, 0]}
+    mesh = {"rectangle": {"width": 0.1, "height": 0.05, "columns": 12, "rows": 6, "diagonals": "rising"}}
+    plate = {"plate": {"rigidity": 5e-4, "poisson": 0}}
+    moment = {
+        "at": {"half_space": {"point": [0.0999, 0, 0], "normal": [1, 0, 0]}},
+        "axis": [0, -1, 0],
+        "size": {"smooth_step": {"to": 2e-4, "end": 1}},
+    }
+    scene = isosheet.Scene(
+        sheet={"mesh": mesh, "material": "office paper", "bending": plate, "damping": 10},
+        support=[{"at": {"half_space": held}, "hold": "clamp"}],
+        forces={"moment": [moment]},
+        stop={"time": 2},
+    )
+    run = scene.simulate(tmp_path / "run")
+    count = len(run.time)
+    assert run.rulings.shape == (count, len(run.faces), 3)
+    assert run.gauss_curvatures.shape == run.x.shape[:2]
+    curvature, along = run.ruling_curvatures[-1], np.abs(run.rulings[-1, :, 1])
+    assert np.median(curvature) == pytest.approx(8, rel=0.02) and np.median(along) > 0.999
+    assert not run.rulings[0].any() and not run.ruling_curvatures[0].any()  # flat
+    assert np.isfinite(run.gauss_curvatures).all()
 
 
 def test_a_run_shows_its_page(folder, tmp_path):

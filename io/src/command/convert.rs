@@ -17,6 +17,7 @@ use crate::{
     write_frame, write_mesh, write_series,
 };
 use clap::Args;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// What is read and written, as `--help` shows it.
@@ -34,8 +35,8 @@ Files that are written of a run:
   .glb    morph targets, at most 120 frames, evenly chosen, and bodies (all glTF viewers)
   .usda   time samples, and bodies (Blender: the best choice)
   .pc2    point cache, with the mesh as .obj beside it (Blender: Mesh Cache modifier)
-  .pvd    VTK, one .vtp for each frame in a folder, with strain, fold angle, forces and gaps (ParaView);
-          bodies in a .pvd of their own
+  .pvd    VTK, one .vtp for each frame in a folder, with strain, fold angle, rulings, forces and gaps
+          (ParaView); bodies in a .pvd of their own
   .obj    one file for each frame in a folder of that name, and files with the bodies
   .csv    a line for each vertex of each frame, with force of contact and gap
   .npz    a numpy archive of all frames, as trajectory.npz of the run
@@ -192,6 +193,15 @@ impl Convert {
         }
         if let Some(format) = PictureFormat::of(self.output()) {
             return self.write_pictures(&recording, format);
+        }
+        // An archive is that of the run, which has them where its scene asks for them.
+        let is_asked = recording.scene.scene().output.curvature;
+        let has_rulings = |extension: &OsStr| {
+            let is = |e: &str| extension.eq_ignore_ascii_case(e);
+            is("pvd") || is("npz") && is_asked
+        };
+        if self.output().extension().is_some_and(has_rulings) {
+            recording.add_rulings();
         }
         let series = recording.series(&self.series_options()?);
         let series = series.map_err(|e| failed(&e, Code::Input))?;

@@ -39,6 +39,10 @@ use std::path::Path;
 /// | `gaps` | f64 | T x V | gap of each vertex, in metres; of runs with contact |
 /// | `plastic_angles` | f64 | T x E | plastic angle of each edge, in radians; of runs with edges that yield |
 /// | `plastic_curvatures` | f64 | T x F x 2 | principal values of the plastic curvature of each face, in 1/m; of runs with a plate that yields |
+/// | `crease_bends` | f64 | T x E | bend of the faces beside each crease, in radians; of runs with creases in sheets that bend |
+/// | `rulings` | f64 | T x F x 3 | unit vector along the ruling of each face, zero where there is none; of scenes that ask for curvature |
+/// | `ruling_curvatures` | f64 | T x F | curvature across the ruling of each face, in 1/m; with `rulings` |
+/// | `gauss_curvatures` | f64 | T x V | Gauss curvature besides that of the rest shape, in 1/m2; with `rulings` |
 ///
 /// In Python: `data = numpy.load("trajectory.npz"); data["x"][-1]` are the last positions.
 #[derive(Clone, Debug, PartialEq)]
@@ -344,6 +348,47 @@ impl Trajectory {
     /// yield, or there is no such frame.
     pub fn plastic_curvatures(&self, k: usize) -> Option<&[f64]> {
         self.values(FrameQuantity::PlasticCurvatures, k)
+    }
+
+    /// The bend of the faces beside each crease in a frame (length E, radians, positive for valleys, 0 at other
+    /// edges): the angle between the two faces at a crease ([`fold_angle`](isosheet_mesh::fold_angle)) is the
+    /// kink of the crease and this bend. `None` when no crease is in a sheet that bends, or there is no such
+    /// frame.
+    pub fn crease_bends(&self, k: usize) -> Option<&[f64]> {
+        self.values(FrameQuantity::CreaseBends, k)
+    }
+
+    /// The unit vector along the ruling of each face in a frame (length 3F), zero where a face has none; `None` where
+    /// they were not asked for, or there is no such frame.
+    pub fn rulings(&self, k: usize) -> Option<&[f64]> {
+        self.values(FrameQuantity::Rulings, k)
+    }
+
+    /// The principal curvature across the ruling of each face in a frame (length F, 1/m, positive for valleys), 0
+    /// where a face has none; `None` as of [`Trajectory::rulings`].
+    pub fn ruling_curvatures(&self, k: usize) -> Option<&[f64]> {
+        self.values(FrameQuantity::RulingCurvatures, k)
+    }
+
+    /// The Gauss curvature at each vertex in a frame besides that of the rest shape (length V, 1/m2); `None` as of
+    /// [`Trajectory::rulings`].
+    pub fn gauss_curvatures(&self, k: usize) -> Option<&[f64]> {
+        self.values(FrameQuantity::GaussCurvatures, k)
+    }
+
+    /// Gives all frames a quantity, in place of the one that they have.
+    ///
+    /// # Panics
+    /// If there are not as many numbers as the frames have, or one is not finite.
+    #[cfg(feature = "run")]
+    pub(crate) fn set_all(&mut self, quantity: FrameQuantity, values: Vec<f64>) {
+        assert_eq!(
+            values.len(),
+            self.len() * self.size(quantity),
+            "numbers of all frames"
+        );
+        assert!(values.iter().all(|v| v.is_finite()), "finite numbers");
+        self.data[quantity as usize] = values;
     }
 
     /// Writes the `.npz` file, atomically. Equal trajectories give equal bytes.

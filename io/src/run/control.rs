@@ -30,6 +30,11 @@ struct NewCourse {
     profile: Profile,
 }
 
+/// The gases of a scene by their names, of which each is measured.
+fn gases(scene: &Scene) -> impl Iterator<Item = Option<&String>> {
+    scene.forces.gas.iter().map(|gas| gas.name.as_ref())
+}
+
 impl Control {
     /// Takes in that a scene is another one from a time on, and notes what has changed.
     ///
@@ -48,6 +53,7 @@ impl Control {
             ("obstacle", before.obstacle.len() == after.obstacle.len()),
             ("body", before.body.len() == after.body.len()),
             ("measure", before.measure == after.measure),
+            ("forces.gas", gases(before).eq(gases(after))),
         ];
         if let Some((key, _)) = changed.into_iter().find(|(_, same)| !same) {
             return Err(RunError::NotRecordable { key: key.into() });

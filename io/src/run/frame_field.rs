@@ -16,6 +16,9 @@ pub(super) struct FrameField<'a> {
     values: Box<Values<'a>>,
 }
 
+/// The name of the field of the bends beside creases.
+const CREASE_BEND: &str = "bend beside creases (valley +)";
+
 /// The values in a frame.
 type Values<'a> = dyn Fn(&MotionFrame<'_>) -> Vec<f64> + 'a;
 
@@ -58,6 +61,7 @@ impl<'a> FrameField<'a> {
             (FrameQuantity::Gaps, Self::gap()),
             (FrameQuantity::PlasticCurvatures, Self::plastic_curvature()),
             (FrameQuantity::PlasticAngles, Self::plastic_angle()),
+            (FrameQuantity::CreaseBends, Self::crease_bend()),
         ];
         let shown = shown.into_iter().filter(|(quantity, _)| has(*quantity));
         fields.extend(shown.map(|(_, field)| field));
@@ -157,6 +161,29 @@ impl<'a> FrameField<'a> {
             let angles = frame.data.plastic_angles.iter();
             angles.map(|a| a.to_degrees()).collect()
         })
+    }
+
+    /// The bend of the faces beside each crease, degrees.
+    fn crease_bend() -> Self {
+        let head = Field {
+            name: CREASE_BEND.into(),
+            unit: "°".into(),
+            place: Centering::Crease,
+            scale: Scale::Signed,
+            note: "The angle between the faces at a crease is its fold angle and this bend of the faces.".into(),
+            values: Vec::new(),
+        };
+        Self::new(head, |frame| {
+            let bends = frame.data.crease_bends.iter();
+            bends.map(|bend| bend.to_degrees()).collect()
+        })
+    }
+
+    /// The number of the field that has the bends beside creases.
+    pub(super) fn of_bends(fields: &[Self]) -> Option<usize> {
+        fields
+            .iter()
+            .position(|field| field.head.name == CREASE_BEND)
     }
 
     /// The difference of each crease from the angle that a scene folds it to, degrees; none of other edges.

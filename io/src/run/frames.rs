@@ -13,16 +13,18 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// First bytes of the file; the last two are the version of the format.
-const MAGIC: &[u8; 8] = b"isofrm01";
+const MAGIC: &[u8; 8] = b"isofrm02";
+/// Those of files without bends beside creases.
+const WITHOUT_BENDS: &[u8; 8] = b"isofrm01";
 
 /// Sum over a frame.
 const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
 
-/// A file of frames of equal length: after the eight bytes `isofrm01`, for each frame time (seconds),
+/// A file of frames of equal length: after the eight bytes `isofrm02`, for each frame time (seconds),
 /// positions (`3V`, metres) and, of runs that have them, the forces of the rods (newtons, tension positive),
 /// the forces of contact (`3V`, newtons), the gaps of the vertices (metres), the plastic angles of the edges
-/// (radians) and the plastic curvatures of the faces (`2F`, 1/m), as little-endian `f64`, and the CRC-64 of
-/// these bytes.
+/// (radians), the plastic curvatures of the faces (`2F`, 1/m) and the bends beside creases (radians for each
+/// edge), as little-endian `f64`, and the CRC-64 of these bytes.
 #[derive(Debug)]
 pub(crate) struct FrameFile {
     path: PathBuf,
@@ -85,12 +87,28 @@ impl FrameShape {
             FrameQuantity::PlasticCurvatures => {
                 model.plastic_curvatures(&model.memories()).is_some()
             }
+            FrameQuantity::CreaseBends => setup.has_creases_in_sheets(),
+            // They are made of positions when they are asked for.
+            FrameQuantity::Rulings
+            | FrameQuantity::RulingCurvatures
+            | FrameQuantity::GaussCurvatures => false,
         };
         let size = |q: FrameQuantity| if is_there(q) { q.size(counts) } else { 0 };
         Self {
             coordinates: 3 * counts.vertices,
             data: FrameQuantity::ALL.map(size),
         }
+    }
+
+    /// That of the frames in a file, which may be of a version that had no bends beside creases. A file that
+    /// cannot be read has the present ones.
+    pub(crate) fn in_file(mut self, path: &Path) -> Self {
+        let mut magic = [0; MAGIC.len()];
+        let begun = input::open(path).and_then(|mut file| read_whole(&mut file, &mut magic));
+        if begun.is_ok() && magic == *WITHOUT_BENDS {
+            self.data[FrameQuantity::CreaseBends as usize] = 0;
+        }
+        self
     }
 
     /// Whether frames have a quantity.
@@ -217,7 +235,8 @@ impl<'a> Frames<'a> {
         let mut file = BufReader::new(input::open(path).map_err(read)?);
         let mut magic = [0; MAGIC.len()];
         let found = read_whole(&mut file, &mut magic).map_err(read)?;
-        if !found || magic != *MAGIC {
+        let is_older = magic == *WITHOUT_BENDS && !shape.has(FrameQuantity::CreaseBends);
+        if !found || !(magic == *MAGIC || is_older) {
             let problem = "it is not a file of frames of this version";
             return Err(FileError::content(path, problem, BEGIN_ANEW));
         }
@@ -349,7 +368,7 @@ mod tests {
         let path = dir.path().join("frames.bin");
         let shape = FrameShape {
             coordinates: 6,
-            data: [1, 6, 2, 1, 2],
+            data: [1, 6, 2, 1, 2, 1, 0, 0, 0],
         };
         let frame = |k: usize| Frame {
             t: k as f64 / 3.0,
@@ -360,6 +379,10 @@ mod tests {
                 vec![1e-3, k as f64 * 1e-4],
                 vec![k as f64 + 0.1],
                 vec![k as f64 + 30.0, -0.2],
+                vec![k as f64 - 0.3],
+                Vec::new(),
+                Vec::new(),
+                Vec::new(),
             ],
         };
         let add =

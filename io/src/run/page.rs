@@ -7,7 +7,7 @@ use super::spool::Spool;
 use super::{EndReason, FoldVerdict, RunError, SheetPlace, Summary, constraints};
 use crate::format::atomic::prepare_folder;
 use crate::format::{DataError, FrameQuantity, write_atomically};
-use crate::scene::{Scene, bounds};
+use crate::scene::{Gauge, Scene, bounds};
 use crate::view::{PageOptions, Replay, TimeSeries, no_frames};
 use isosheet_mesh::wording::brief;
 use std::io::Write;
@@ -46,6 +46,9 @@ impl Recording {
             &self.model,
             self.sheet.topology().face_count(),
         ));
+        if self.scene.scene().output.curvature {
+            fields.extend(self.curvature_fields());
+        }
         fields
     }
 
@@ -63,10 +66,9 @@ impl Recording {
         }
         let held = constraints::bodies(self.scene.scene(), &replay.times, corners);
         replay.bodies.extend(held);
-        replay.series.extend(TimeSeries::of_measures(
-            &self.measures,
-            &self.scene.scene().measure,
-        ));
+        replay
+            .series
+            .extend(TimeSeries::of_measures(&self.measures, &self.gauges));
         Replay {
             // How far creases are from their angles, unless they have reached them.
             colour: self
@@ -105,7 +107,10 @@ impl Recording {
         let mut rows = Rows(Vec::new());
         rows.add("modelled", self.modelled.join(", "));
         match &self.summary {
-            Some(summary) => rows.of_summary(summary, self.scene.scene()),
+            Some(summary) => {
+                rows.of_summary(summary, self.scene.scene());
+                rows.of_gauges(summary, &self.gauges);
+            }
             None => {
                 let t = self.history.last().map_or(0.0, |row| row.t);
                 rows.add("state", format!("not complete: up to {t:.4} s"));
@@ -172,6 +177,20 @@ impl Rows {
         );
         if let Some(bend) = elastic.sharpest {
             self.add("sharpest bend over a face", bend.to_string());
+        }
+    }
+
+    /// What gauges show at the end.
+    fn of_gauges(&mut self, summary: &Summary, gauges: &[Gauge]) {
+        for gauge in gauges {
+            let Some(measured) = summary.measures.get(&gauge.name) else {
+                continue;
+            };
+            let [last, least, largest] =
+                [measured.last, measured.least, measured.largest].map(brief);
+            let unit = gauge.unit();
+            let value = format!("{last} {unit} at the end, from {least} to {largest} {unit}");
+            self.add(&gauge.name, value);
         }
     }
 
@@ -304,6 +323,7 @@ pub(super) fn page_of(
     }
     let still = recording.still(spool.times.clone(), spool.corners);
     let still = Replay {
+        bends: FrameField::of_bends(&fields),
         fields: fields.into_iter().map(|field| field.head).collect(),
         ..still
     };

@@ -42,6 +42,9 @@ impl Recording {
         let mut fields: Vec<_> = series.map(fold_angle).into_iter().collect();
         fields.push(height());
         fields.extend(self.fields());
+        if !self.scene.scene().output.curvature {
+            fields.extend(self.curvature_fields());
+        }
         fields
     }
 }

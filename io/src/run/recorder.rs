@@ -265,6 +265,11 @@ impl Recorder {
                     simulation.plastic_angles().is_some(),
                 ),
                 ("sheet", FrameQuantity::PlasticCurvatures, bends),
+                (
+                    "crease",
+                    FrameQuantity::CreaseBends,
+                    simulation.bends_at_creases().is_some(),
+                ),
             ];
             let mut columns = columns.into_iter();
             if let Some((key, ..)) = columns.find(|(_, of, has)| *has != self.shape.has(*of)) {

@@ -8,7 +8,7 @@ use crate::format::{
     MotionFrame, Series, SeriesBody, SeriesOptions, Trajectory, read_events, read_history,
     read_json, read_loads, read_measures,
 };
-use crate::scene::{FoldTargets, Origins, SceneFile, Setup};
+use crate::scene::{FoldTargets, Gauge, Origins, SceneFile, Setup};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
 use isosheet_mesh::generate::FoldAssignment;
@@ -34,6 +34,8 @@ pub struct Recording {
     pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
     /// Where the sheet folds: mountains and valleys of a pattern, and creases whose angles change.
     pub creases: Vec<EdgeId>,
+    /// The edges of the sheets that have creases.
+    pub(crate) creased: Vec<EdgeId>,
     /// Vertices that are pinned, at rest or in motion.
     pub pins: Vec<VertexId>,
     /// Vertices that rods to pins keep in place ([`immobile_vertices`]).
@@ -54,6 +56,8 @@ pub struct Recording {
     pub history: Vec<HistoryRow>,
     /// The loads of supports and obstacles at the end of each step.
     pub loads: Vec<LoadRow>,
+    /// What is read off the sheets at each step.
+    pub gauges: Vec<Gauge>,
     /// What the measures of the scene show at the start and at the end of each step.
     pub measures: Vec<MeasureRow>,
     /// What was taken up and released.
@@ -115,13 +119,13 @@ impl Recording {
         setup: Setup,
         tables: Tables,
     ) -> (Self, RunFrames) {
-        let shape = FrameShape::of(&setup);
+        let path = folder.join(RunFolder::FRAMES);
+        let shape = FrameShape::of(&setup).in_file(&path);
         let bodies: Vec<VertexId> = setup.bodies.iter().flat_map(|body| body.vertices).collect();
         let of_sheets = |mut vertices: Vec<VertexId>| {
             vertices.retain(|v| !bodies.contains(v) && !setup.origins.is_driven(*v));
             vertices
         };
-        let path = folder.join(RunFolder::FRAMES);
         let frames = RunFrames::Stored(StoredFrames {
             path,
             shape,
@@ -130,6 +134,7 @@ impl Recording {
         let recording = Self {
             name: name_of(folder),
             creases: setup.creases(),
+            creased: setup.creased.clone(),
             immobile: of_sheets(immobile_vertices(&setup.model, &setup.start.x)),
             pins: of_sheets(setup.model.pins()),
             model: setup.model,
@@ -144,6 +149,7 @@ impl Recording {
             origins: setup.origins,
             history: tables.history,
             loads: tables.loads,
+            gauges: setup.measures,
             measures: tables.measures,
             events: tables.events,
             scene,

@@ -4,7 +4,7 @@ use super::frame_field::{FrameField, check_frame};
 use crate::format::{
     BodyPose, DataError, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory,
 };
-use crate::scene::{Measure, Origins};
+use crate::scene::{Gauge, Origins};
 use crate::view::{Body, BodyShape, Replay, Scale, TimeSeries};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_mesh::Sheet;
@@ -66,6 +66,7 @@ impl Replay {
         fields: &[FrameField<'_>],
     ) -> Result<Self, DataError> {
         self.fields = fields.iter().map(|field| field.head.clone()).collect();
+        self.bends = FrameField::of_bends(fields);
         let mut done = Ok(());
         let Ok(()) = trajectory.each(&mut |frame| {
             done = check_frame(frame, sheet);
@@ -202,11 +203,11 @@ impl TimeSeries {
         series
     }
 
-    /// What each of the measures of a scene shows over time.
-    pub fn of_measures(rows: &[MeasureRow], measures: &[Measure]) -> Vec<Self> {
+    /// What each of the gauges of a scene shows over time.
+    pub fn of_measures(rows: &[MeasureRow], gauges: &[Gauge]) -> Vec<Self> {
         let unit = |name: &str| {
-            let measure = measures.iter().find(|measure| measure.name == name);
-            measure.map_or("m", |measure| measure.quantity.unit())
+            let gauge = gauges.iter().find(|gauge| gauge.name == name);
+            gauge.map_or("m", Gauge::unit)
         };
         let mut series: Vec<Self> = Vec::new();
         for row in rows {

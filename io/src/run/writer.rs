@@ -18,7 +18,7 @@ use crate::format::{
     MeasureRow, MeasureWriter,
 };
 use crate::scene::{CarriedBody, Facts, Integrator, Scene, UnderWay};
-use isosheet_dynamics::{Checkpoint, State, StepReport};
+use isosheet_dynamics::{Checkpoint, StepReport};
 use nalgebra::Vector3;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -223,12 +223,15 @@ impl RunWriter {
         let plastic_angles = facts.of_edges(simulation.plastic_angles().unwrap_or_default());
         let curvatures = simulation.plastic_curvatures().unwrap_or_default();
         let plastic_curvatures = facts.of_faces(curvatures.into_flattened());
+        let crease_bends = facts.of_edges(simulation.bends_at_creases().unwrap_or_default());
         let data = FrameData {
             rod_forces: &rod_forces,
             contact_forces: &contact_forces,
             gaps: &gaps,
             plastic_angles: &plastic_angles,
             plastic_curvatures: &plastic_curvatures,
+            crease_bends: &crease_bends,
+            ..FrameData::default()
         };
         let (t, x) = (state.t, under_way.facts.shown(&state.x));
         Ok(self.frames.append(t, &x, &data)?)
@@ -493,12 +496,6 @@ pub(super) fn ending_at_start(under_way: &UnderWay, reason: EndReason) -> Ending
             .collect(),
         taut: None,
         failed: None,
-        residuals: {
-            let State { t, x, .. } = under_way.simulation.state();
-            under_way
-                .facts
-                .targets
-                .residuals(under_way.simulation.model().topology(), *t, x)
-        },
+        residuals: under_way.facts.targets.residuals(&under_way.simulation),
     }
 }

@@ -14,11 +14,12 @@ mod supports;
 use super::error::SceneError;
 use super::in_words::materials_in_words;
 use super::key::Key;
+use super::measure::Measurable;
 use super::placed::PlacedSheet;
 use super::placed_bodies::Surface;
 use super::step_path::check_step;
 use super::switches::Switches;
-use super::{Measure, Scene, Setup};
+use super::{Gauge, Measure, Scene, Setup};
 use builder::Builder;
 pub(crate) use builder::Kept;
 use isosheet_collide::{Contacts, Obstacle};
@@ -68,10 +69,16 @@ impl Scene {
         let (contacts, obstacles) = builder.contacts()?;
         let gauge = |(k, measure): (usize, &Measure)| {
             let key = Key::root().name("measure").entry(k);
-            measure.gauge(&key, &builder.sheets, &builder.bodies, &builder.creases)
+            let things = Measurable {
+                creases: &builder.creases,
+                enclosed: &builder.enclosed,
+            };
+            measure.gauge(&key, &builder.sheets, &builder.bodies, things)
         };
         let measures = self.measure.iter().enumerate().map(gauge);
-        let measures = measures.collect::<Result<_, _>>()?;
+        let mut measures: Vec<Gauge> = measures.collect::<Result<_, _>>()?;
+        let of_gas = |(name, gas): &(String, _)| Gauge::of_gas(name, gas);
+        measures.extend(builder.gases.iter().flat_map(of_gas));
         let setup = builder.finish(contacts, obstacles);
         check_step(self, &setup.model, setup.sheet.area(), &setup.start.v)?;
         Ok(Setup { measures, ..setup })
@@ -125,6 +132,7 @@ impl Builder<'_> {
             modelled: self.modelled,
             targets: self.targets,
             measures: Vec::new(),
+            creased: self.creased,
             bonds: self.bonds,
             switches: self.switches.clone(),
             led: self.led.into_list(),

@@ -229,6 +229,7 @@ impl Crease {
             yields: self
                 .yields
                 .map(|y| y.of_edge(sheet.lengths()[edge.index()])),
+            in_series: None,
         };
         Ok(edges.into_iter().map(spring).collect())
     }

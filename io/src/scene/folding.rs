@@ -387,6 +387,7 @@ impl Folding {
                 stiffness: stiffness * sheet.lengths()[edge.index()],
                 rest: course(start, target, within),
                 yields: None,
+                in_series: None,
             }
         };
         let flat_stiffness = self.flat_stiffness.or(match of.isometry() {

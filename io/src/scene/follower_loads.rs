@@ -25,6 +25,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pressure {
+    /// A name, by which measures find it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// The names of the sheets. If left out, all of them.
     #[serde(default)]
     pub sheets: Option<Vec<String>>,
@@ -43,6 +46,10 @@ fn everywhere() -> Selection {
 /// pressure is `p = p1 (V1 / V)^n` in the volume `V`, with the pressure `p1` and the volume `V1` at the
 /// start. Weight and inertia of the gas are left out.
 ///
+/// Pressure and volume are recorded without being asked for: as the measures `gas[0].pressure` (pascals above
+/// vacuum), `gas[0].gauge_pressure` (less the pressure outside) and `gas[0].volume` (cubic metres), with the
+/// number of the gas, or as `NAME.pressure` and so on of one with a name.
+///
 /// ```toml
 /// [[forces.gas]]
 /// added = { smooth_step = { to = 5e-4, end = 0.5 } }
@@ -50,6 +57,9 @@ fn everywhere() -> Selection {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gas {
+    /// A name, by which measures find it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// The names of the sheets. If left out, all of them.
     #[serde(default)]
     pub sheets: Option<Vec<String>>,
@@ -115,6 +125,12 @@ impl Gas {
         checks.positive(key.name("exponent"), self.exponent, Unit::Factor);
         self.added
             .check(key.name("added"), Unit::CubicMetre, checks);
+    }
+
+    /// What it is called, by its number.
+    pub(super) fn called(&self, number: usize) -> String {
+        let name = self.name.clone();
+        name.unwrap_or_else(|| format!("gas[{number}]"))
     }
 
     /// As the engine has it.

@@ -2,6 +2,7 @@
 
 use super::follower_loads::{Gas, Moment, Pressure};
 use super::key::Key;
+use super::plain_name::check_name;
 use super::problem::Checks;
 use super::profile::Profile;
 use super::selection::Selection;
@@ -9,6 +10,7 @@ use super::sheet::Sheet;
 use super::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Gravity on earth, the example of the schema. (Without features that other crates bring, `schemars` reads
 /// names and no arrays.)
@@ -96,6 +98,25 @@ pub struct Acceleration {
 }
 
 impl Forces {
+    /// Refuses names of gases and pressures that stand twice or that tables cannot have.
+    pub(super) fn check_names(&self, key: &Key, checks: &mut Checks) {
+        let [gas_key, pressure_key] = ["gas", "pressure"].map(|name| key.name(name));
+        let gases = gas_key.entries(&self.gas);
+        let gases = gases.map(|(key, gas)| (key, gas.name.as_ref(), "a gas"));
+        let pressures = pressure_key.entries(&self.pressure);
+        let pressures = pressures.map(|(key, p)| (key, p.name.as_ref(), "a pressure"));
+        let mut names = BTreeSet::new();
+        for (key, name, of) in gases.chain(pressures) {
+            let Some(name) = name else { continue };
+            check_name(name, key.name("name"), of, checks);
+            if !names.insert(name) {
+                let message = format!("another gas or pressure has the name `{name}`");
+                let remedy = "give each gas and pressure a name of its own";
+                checks.report(key.name("name"), message, remedy);
+            }
+        }
+    }
+
     pub(crate) fn check(&self, sheets: &[Sheet], key: &Key, checks: &mut Checks) {
         if let Some(gravity) = &self.gravity {
             checks.finite(key.name("gravity"), gravity, Unit::MetrePerSquareSecond);

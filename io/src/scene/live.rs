@@ -183,6 +183,13 @@ impl LiveScene {
             .shown(&self.under_way.simulation.state().x)
     }
 
+    /// The bend of the faces beside each crease of [`LiveScene::sheet`], radians, 0 at other edges
+    /// ([`Simulation::bends_at_creases`]); empty where no crease is in a sheet that bends.
+    pub fn crease_bends(&self) -> Vec<f64> {
+        let bends = self.under_way.simulation.bends_at_creases();
+        self.under_way.facts.of_edges(bends.unwrap_or_default())
+    }
+
     /// Their velocities, m/s.
     pub fn velocities(&self) -> Cow<'_, [f64]> {
         self.under_way

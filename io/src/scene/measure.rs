@@ -1,20 +1,23 @@
 //! Numbers that are read off the sheet at each step.
 
 use super::creases::Crease;
+use super::enclosed::{EnclosedGauge, OfEnclosed};
 use super::fold_group::FoldGroup;
 use super::folding::{FoldTargets, Folding};
+use super::forces::Forces;
 use super::key::Key;
 use super::placed::PlacedSheets;
 use super::placed_bodies::PlacedBodies;
+use super::plain_name::check_name;
 use super::problem::{Checks, Problem};
 use super::selection::Selection;
 use super::unit::Unit;
 use isosheet_dynamics::{At, CreaseSprings, Memories};
-use isosheet_mesh::{Part, VertexId};
+use isosheet_mesh::{EdgeId, Part, VertexId};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::sync::Arc;
 
 /// A number that is read off the sheet at the start and after each step: how deep a tip hangs, how far a
@@ -63,11 +66,15 @@ pub struct Measure {
     /// Creases of the pattern that `[folding]` folds, of which an angle or a moment is measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fold: Option<FoldGroup>,
+    /// The name of a `[[forces.gas]]`, or of a `[[forces.pressure]]`, of which a pressure or the volume is
+    /// measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub enclosed: Option<String>,
     /// What is measured of it.
     pub quantity: Quantity,
 }
 
-/// What is measured: of the mean place of some vertices, metres, or of a crease.
+/// What is measured: of the mean place of some vertices, metres, of a crease, or of what a surface encloses.
 ///
 /// ```toml
 /// [[measure]]
@@ -90,8 +97,10 @@ pub enum Quantity {
     DistanceToPoint([f64; 3]),
     /// Its distance from the mean place of other vertices.
     DistanceTo(Selection),
-    /// The fold angle of a crease, degrees: the mean over its length. It is 0 for flat, positive for a valley
-    /// and negative for a mountain, and goes on beyond 180 degrees where a crease is pressed through itself.
+    /// The fold angle of a crease, degrees: the mean over its length. It is the kink of the crease: the bend of
+    /// a sheet over the faces beside it, which the angle between these faces includes, is taken out. It is 0 for
+    /// flat, positive for a valley and negative for a mountain, and goes on beyond 180 degrees where a crease is
+    /// pressed through itself.
     FoldAngle,
     /// The moment that it takes to hold a crease at its angle, newton metres: its stiffness times its length
     /// times the angle from where it rests, in radians. It is positive where the crease is folded further to
@@ -99,21 +108,21 @@ pub enum Quantity {
     Moment,
     /// The same divided by the length of the crease, N.
     MomentPerLength,
+    /// The pressure of a gas, pascals above vacuum.
+    Pressure,
+    /// The pressure of a gas less that outside, or a pressure that is prescribed, pascals.
+    GaugePressure,
+    /// The volume that a surface encloses around a gas, or on whose faces a pressure is prescribed, cubic metres.
+    Volume,
 }
 
+/// What a scene has that measures are of: creases, a folding and forces.
+type OfScene<'a> = (&'a [Crease], Option<&'a Folding>, &'a Forces);
+
 impl Measure {
-    /// Checks it, with the creases of the scene and its folding.
-    pub(crate) fn check(&self, key: &Key, of: (&[Crease], Option<&Folding>), checks: &mut Checks) {
-        let is_usual = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        // Spreadsheets take a name that begins with a minus for a formula.
-        let is_text = self.name.starts_with(|c| is_usual(c) && c != '-');
-        if !is_text || !self.name.chars().all(is_usual) {
-            checks.report(
-                key.name("name"),
-                format!("`{}` cannot be the name of a measure", self.name),
-                "use letters, digits, `_` and `-`, which is not the first",
-            );
-        }
+    /// Checks it as one of a scene with these creases, folding and forces.
+    pub(crate) fn check(&self, key: &Key, of: OfScene<'_>, checks: &mut Checks) {
+        check_name(&self.name, key.name("name"), "a measure", checks);
         self.check_of(key, of, checks);
         let key = key.name("quantity");
         match &self.quantity {
@@ -126,16 +135,20 @@ impl Measure {
     }
 
     /// Checks that it is of vertices or of a crease, as its quantity wants it.
-    fn check_of(
-        &self,
-        key: &Key,
-        (creases, folding): (&[Crease], Option<&Folding>),
-        checks: &mut Checks,
-    ) {
+    fn check_of(&self, key: &Key, (creases, folding, forces): OfScene<'_>, checks: &mut Checks) {
         let of_crease = self.quantity.of_crease().is_some();
         if self.sheet.is_some() && of_crease {
             let message = "a crease is of one sheet";
             checks.report(key.name("sheet"), message, "leave it out");
+        }
+        if self.quantity.of_enclosed().is_some() {
+            return self.check_enclosed(key, forces, checks);
+        }
+        if self.enclosed.is_some() {
+            let message = "this quantity is none of what a surface encloses";
+            let remedy =
+                "measure `pressure`, `gauge_pressure` or `volume`, or leave out `enclosed`";
+            checks.report(key.name("quantity"), message, remedy);
         }
         match (&self.at, &self.crease, &self.fold) {
             (Some(at), None, None) if !of_crease => at.check(&key.name("at"), checks),
@@ -178,15 +191,68 @@ impl Measure {
         }
     }
 
+    /// Checks that it is of a gas or of a pressure that has its quantity.
+    fn check_enclosed(&self, key: &Key, forces: &Forces, checks: &mut Checks) {
+        let others = [
+            ("sheet", self.sheet.is_some()),
+            ("at", self.at.is_some()),
+            ("crease", self.crease.is_some()),
+            ("fold", self.fold.is_some()),
+        ];
+        for (name, _) in others.iter().filter(|(_, is_given)| *is_given) {
+            let message = "this quantity is one of what a surface encloses";
+            checks.report(key.name(name), message, "leave it out");
+        }
+        let gases = || forces.gas.iter().filter_map(|gas| gas.name.as_ref());
+        let pressures = || forces.pressure.iter().filter_map(|p| p.name.as_ref());
+        let known: Vec<String> = match self.quantity {
+            Quantity::Pressure => gases().map(|name| format!("`{name}`")).collect(),
+            _ => gases()
+                .chain(pressures())
+                .map(|name| format!("`{name}`"))
+                .collect(),
+        };
+        let is_known = |name: &String| known.contains(&format!("`{name}`"));
+        if self.enclosed.as_ref().is_some_and(is_known) {
+            return;
+        }
+        let remedy = match known.is_empty() {
+            true => "give the `[[forces.gas]]` that is meant a name, and write it as `enclosed`"
+                .to_owned(),
+            false => format!("give one of these: {}", known.join(", ")),
+        };
+        match &self.enclosed {
+            None => {
+                let message = "this quantity is one of what a surface encloses, and none is named";
+                checks.report(key.name("quantity"), message, remedy);
+            }
+            Some(name) => {
+                let message = format!("nothing that has this quantity has the name `{name}`");
+                checks.report(key.name("enclosed"), message, remedy);
+            }
+        }
+    }
+
     /// With the vertices or the creases that it is of.
     pub(super) fn gauge(
         &self,
         key: &Key,
         sheets: &PlacedSheets<'_>,
         bodies: &PlacedBodies<'_>,
-        creases: &CreaseGauges,
+        things: Measurable<'_>,
     ) -> Result<Gauge, Problem> {
         let name = self.name.clone();
+        let creases = things.creases;
+        if let Some((enclosed, of)) = self.enclosed.as_ref().zip(self.quantity.of_enclosed()) {
+            let gauge = things.enclosed[enclosed].clone();
+            if of == OfEnclosed::Volume && !gauge.is_closed() {
+                let message = format!("the faces of the pressure `{enclosed}` enclose no volume");
+                let remedy = "measure `gauge_pressure`, or close the surface";
+                return Err(Problem::new(key.name("quantity"), message, remedy));
+            }
+            let of = Reading::Enclosed(gauge, of);
+            return Ok(Gauge { name, of });
+        }
         if let Some((group, of)) = self.fold.as_ref().zip(self.quantity.of_crease()) {
             let crease = creases.of_group(group, &key.name("fold"))?;
             let of = Reading::Crease(crease, of);
@@ -233,12 +299,24 @@ impl Quantity {
         }
     }
 
+    /// What it is of what a surface encloses, if it is of that.
+    fn of_enclosed(&self) -> Option<OfEnclosed> {
+        match self {
+            Self::Pressure => Some(OfEnclosed::Pressure),
+            Self::GaugePressure => Some(OfEnclosed::GaugePressure),
+            Self::Volume => Some(OfEnclosed::Volume),
+            _ => None,
+        }
+    }
+
     /// The unit of its values.
     pub fn unit(&self) -> &'static str {
         match self {
             Self::FoldAngle => "degrees",
             Self::Moment => "N m",
             Self::MomentPerLength => "N",
+            Self::Pressure | Self::GaugePressure => "Pa",
+            Self::Volume => "m3",
             _ => "m",
         }
     }
@@ -271,6 +349,14 @@ enum Reading {
     /// Of the mean place of these vertices.
     Place(Vec<VertexId>, Place),
     Crease(CreaseGauge, OfCrease),
+    Enclosed(EnclosedGauge, OfEnclosed),
+}
+
+/// What measures may be of besides vertices.
+#[derive(Clone, Copy)]
+pub(super) struct Measurable<'a> {
+    pub(super) creases: &'a CreaseGauges,
+    pub(super) enclosed: &'a BTreeMap<String, EnclosedGauge>,
 }
 
 #[derive(Clone, Debug)]
@@ -343,12 +429,28 @@ pub(super) struct CreaseGauge {
     pub(super) part: Part,
     /// The number of the springs among the potentials of the model.
     pub(super) potential: usize,
+    /// Other springs at some of its edges, with their numbers.
+    pub(super) others: Vec<(Arc<CreaseSprings>, usize)>,
 }
 
 impl CreaseGauge {
+    /// Finds which springs of its sheet, with their numbers among the potentials, share edges with it. (Those of
+    /// other sheets have other numbers.)
+    pub(super) fn find_others(&mut self, of_sheet: &[(Arc<CreaseSprings>, usize)]) {
+        if !of_sheet.iter().any(|(_, k)| *k == self.potential) {
+            return;
+        }
+        let own: BTreeSet<EdgeId> = self.springs.edges().collect();
+        let others = of_sheet.iter().filter(|(springs, k)| {
+            *k != self.potential && springs.edges().any(|e| own.contains(&e))
+        });
+        self.others = others.cloned().collect();
+    }
+
     fn value(&self, of: OfCrease, t: f64, x: &[f64], memories: &Memories) -> f64 {
         let own = At::new(t, &x[self.part.coordinates()]);
-        let at = own.with_memory(&memories.lists()[self.potential]);
+        let remembering = |potential: usize| own.with_memory(&memories.lists()[potential]);
+        let at = remembering(self.potential);
         let length: f64 = self.measured.iter().map(|(_, length)| length).sum();
         let moment = || {
             let moments = self.springs.moments(at);
@@ -357,7 +459,19 @@ impl CreaseGauge {
         match of {
             OfCrease::Angle => {
                 let angles = self.springs.angles(at);
-                let weighted = self.measured.iter().map(|(k, length)| angles[*k] * length);
+                let edges: Vec<EdgeId> = self.springs.edges().collect();
+                let mut bends = BTreeMap::<EdgeId, f64>::new();
+                let of_others = self.others.iter().map(|(springs, k)| (&**springs, *k));
+                for (springs, k) in of_others.chain([(&*self.springs, self.potential)]) {
+                    for (e, bend) in springs.bends_beside(remembering(k)) {
+                        *bends.entry(e).or_default() += bend;
+                    }
+                }
+                let kink = |k: usize| match bends.get(&edges[k]) {
+                    Some(bend) => angles[k] - bend,
+                    None => angles[k],
+                };
+                let weighted = self.measured.iter().map(|(k, length)| kink(*k) * length);
                 (weighted.sum::<f64>() / length).to_degrees()
             }
             OfCrease::Moment => moment(),
@@ -367,11 +481,31 @@ impl CreaseGauge {
 }
 
 impl Gauge {
+    /// Those that every gas has.
+    pub(super) fn of_gas(called: &str, gas: &EnclosedGauge) -> [Self; 3] {
+        OfEnclosed::ALL.map(|of| Self {
+            name: format!("{called}.{}", of.name()),
+            of: Reading::Enclosed(gas.clone(), of),
+        })
+    }
+
+    /// The unit of what it shows.
+    pub fn unit(&self) -> &'static str {
+        match &self.of {
+            Reading::Crease(_, OfCrease::Angle) => "degrees",
+            Reading::Crease(_, OfCrease::Moment) => "N m",
+            Reading::Crease(_, OfCrease::MomentPerLength) => "N",
+            Reading::Enclosed(_, of) => of.unit(),
+            Reading::Place(..) => "m",
+        }
+    }
+
     /// What it shows at time `t` (seconds), at positions `x` (`3V`, metres) of the sheets and of the surfaces
     /// of bodies, where the potentials of the model remember this.
     pub fn value(&self, t: f64, x: &[f64], memories: &Memories) -> f64 {
         match &self.of {
             Reading::Crease(crease, of) => crease.value(*of, t, x, memories),
+            Reading::Enclosed(enclosed, of) => enclosed.value(*of, t, x),
             Reading::Place(vertices, of) => {
                 let place = mean(vertices, x);
                 match of {

@@ -28,6 +28,10 @@ pub struct Output {
     pub obj: bool,
     /// Whether the 3D page of the run is written as `index.html`.
     pub page: bool,
+    /// Whether the page can show the curvature of the sheet across its rulings, and its Gauss curvature, as colours,
+    /// and `trajectory.npz` has them. They are made of the positions: pictures and VTK files can have them of every
+    /// run.
+    pub curvature: bool,
 }
 
 impl Default for Output {
@@ -38,6 +42,7 @@ impl Default for Output {
             trajectory: true,
             obj: false,
             page: true,
+            curvature: false,
         }
     }
 }

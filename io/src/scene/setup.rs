@@ -15,10 +15,8 @@ use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
 use isosheet_dynamics::contact::{Contact, SurfacePoints};
 use isosheet_dynamics::{Checkpoint, SheetModel, Simulation, SimulationError, State};
-#[cfg(feature = "run")]
-use isosheet_mesh::EdgeId;
 use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{Part, Sheet, VertexId};
+use isosheet_mesh::{EdgeId, Part, Sheet, VertexId};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 #[cfg(feature = "run")]
@@ -53,6 +51,10 @@ pub(crate) struct Facts {
     pub(crate) bonds: Vec<Option<Bond>>,
     /// The motions that a program leads.
     pub(crate) led: Vec<LedMotion>,
+    /// Vertices of the model that are pinned.
+    pub(crate) pins: Vec<VertexId>,
+    /// The edges of the sheets that have creases.
+    pub(crate) creased: Vec<EdgeId>,
 }
 
 impl Facts {
@@ -171,6 +173,8 @@ pub struct Setup {
     pub targets: Targets,
     /// What is read off the sheet at each step.
     pub measures: Vec<Gauge>,
+    /// The edges of the sheets that have creases.
+    pub(crate) creased: Vec<EdgeId>,
     /// What each edge of the sheet, or of all sheets one after the other, is meant to do, if there is a crease
     /// pattern among the meshes; `None` for an edge of which the pattern does not say it.
     pub fold_assignments: Option<Vec<Option<FoldAssignment>>>,
@@ -225,6 +229,8 @@ impl Setup {
             origins: self.origins.clone(),
             bonds: self.bonds.clone(),
             led: self.led.clone(),
+            pins: self.model.pins(),
+            creased: self.creased.clone(),
         }
     }
 
@@ -244,6 +250,14 @@ impl Setup {
     /// Whether the simulation gives the forces of the rods ([`Simulation::rod_forces`]).
     pub fn has_rod_forces(&self) -> bool {
         matches!(self.integration, Integration::Free { .. }) && self.model.has_rods_in_sheets()
+    }
+
+    /// Whether the fold angles of some creases include a bend of the sheet
+    /// ([`SheetModel::bends_at_creases`]).
+    pub fn has_creases_in_sheets(&self) -> bool {
+        let (t, x) = (self.start.t, &self.start.x);
+        let memories = self.model.memories();
+        self.model.bends_at_creases(t, x, &memories).is_some()
     }
 
     /// The simulation at the start.

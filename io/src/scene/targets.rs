@@ -1,9 +1,10 @@
 //! What a scene asks its sheets to reach, and how far they are from it.
 
 use super::creases::Crease;
-use super::folding::{FoldResidual, FoldTargets, off_target};
-use isosheet_dynamics::{CreaseSpring, Glue, RestAngle};
-use isosheet_mesh::{EdgeId, Topology, VertexId};
+use super::folding::{FoldResidual, FoldTargets};
+use super::kinks::Kinks;
+use isosheet_dynamics::{CreaseSpring, Glue, RestAngle, Simulation, State};
+use isosheet_mesh::{EdgeId, VertexId, angle_near};
 use serde::{Deserialize, Serialize};
 
 /// What a scene asks its sheets to reach.
@@ -45,10 +46,10 @@ pub struct CreaseResidual {
 /// How far the sheets are from what the scene asks for.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
-    /// Differences of the fold angles from those of a FOLD file, if the scene folds to them.
+    /// Differences of the angles between panels from those of a FOLD file, if the scene folds to them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub folding: Option<FoldResidual>,
-    /// Differences of the fold angles of the driven creases from their own.
+    /// Differences of the kinks of the driven creases from their own angles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub creases: Vec<CreaseResidual>,
     /// By how much the vertices of each seam are further from each other than they are meant to be, at most,
@@ -74,10 +75,11 @@ impl DrivenCrease {
         })
     }
 
-    fn residual(&self, topology: &Topology, t: f64, x: &[f64]) -> CreaseResidual {
+    fn residual(&self, t: f64, kinks: Kinks<'_>) -> CreaseResidual {
         let (mut largest, mut squares) = (0.0_f64, 0.0);
         for (edge, rest) in &self.edges {
-            let off = off_target(topology, x, *edge, rest.at(t));
+            let off = angle_near(kinks.angle(*edge) - rest.at(t), 0.0);
+            let off = off.abs().to_degrees();
             largest = largest.max(off);
             squares += off * off;
         }
@@ -97,18 +99,17 @@ impl Targets {
         pairs.copied().collect()
     }
 
-    /// How far the sheets are from what is asked for at time `t` (seconds), at positions `x` (`3V`, metres).
-    ///
-    /// # Panics
-    /// If `x` is not of length `3V`.
-    pub fn residuals(&self, topology: &Topology, t: f64, x: &[f64]) -> Residuals {
+    /// How far the sheets are from what is asked for where a simulation is.
+    pub fn residuals(&self, simulation: &Simulation) -> Residuals {
+        let State { t, ref x, .. } = *simulation.state();
+        let bends = simulation.bends_at_creases().unwrap_or_default();
+        let topology = simulation.model().topology();
+        let kinks = Kinks::new(topology, x, &bends);
         let folding = self.folding.as_ref();
         let creases = self.creases.iter();
         Residuals {
             folding: folding.map(|targets| targets.residual(topology, x)),
-            creases: creases
-                .map(|crease| crease.residual(topology, t, x))
-                .collect(),
+            creases: creases.map(|crease| crease.residual(t, kinks)).collect(),
             seams: self.seams.iter().map(|seam| seam.opening(t, x)).collect(),
         }
     }

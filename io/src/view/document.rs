@@ -41,6 +41,8 @@ pub(super) struct Document<'a> {
     fields: Vec<FieldData<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     colour: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bends: Option<usize>,
     series: Vec<SeriesData<'a>>,
     summary: &'a [(String, String)],
     scene: &'a str,
@@ -133,6 +135,7 @@ impl<'a> Document<'a> {
             bodies: replay.bodies.iter().map(|b| body_data(b, kept)).collect(),
             fields: fields.collect(),
             colour: replay.colour,
+            bends: replay.bends,
             series: replay.series.iter().map(series_data).collect(),
             summary: &replay.summary,
             scene: &replay.scene,

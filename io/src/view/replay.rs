@@ -58,6 +58,11 @@ pub struct Replay {
     pub fields: Vec<Field>,
     /// The number of the field that the sheet is coloured by at first; none leaves it plain.
     pub colour: Option<usize>,
+    /// The number of the field that has the bends beside creases (at creases, degrees, [`Scale::Signed`]), which
+    /// the page takes out of the fold angles that it shows; none where nothing bends beside creases.
+    ///
+    /// [`Scale::Signed`]: super::Scale::Signed
+    pub bends: Option<usize>,
     /// Quantities over time, to plot.
     pub series: Vec<TimeSeries>,
     /// Rows of a table: name and value.

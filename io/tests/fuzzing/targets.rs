@@ -300,6 +300,10 @@ fn trajectory(data: &[u8]) {
             (run.gaps(k), vertices),
             (run.plastic_angles(k), run.edges().len()),
             (run.plastic_curvatures(k), 2 * run.faces().len()),
+            (run.crease_bends(k), run.edges().len()),
+            (run.rulings(k), 3 * run.faces().len()),
+            (run.ruling_curvatures(k), run.faces().len()),
+            (run.gauss_curvatures(k), vertices),
         ];
         for (kept, count) in kept {
             let Some(kept) = kept else { continue };
@@ -338,6 +342,10 @@ pub(crate) fn trajectories() -> [Vec<u8>; 1] {
             gaps: &vec![1e-3; n / 3],
             plastic_angles: &vec![0.1; rods],
             plastic_curvatures: &vec![20.0; 2 * sheet.topology().face_count()],
+            crease_bends: &vec![0.1; rods],
+            rulings: &vec![0.0; 3 * sheet.topology().face_count()],
+            ruling_curvatures: &vec![2.0; sheet.topology().face_count()],
+            gauss_curvatures: &vec![-1.0; n / 3],
         };
         run.push_with(0.1 * f64::from(k), sheet.positions(), &data)
             .expect("it fits");

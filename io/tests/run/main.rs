@@ -18,6 +18,7 @@ mod fold;
 mod folders;
 mod folding;
 mod gallery;
+mod gases;
 #[path = "../shared/headless.rs"]
 mod headless;
 mod live;
@@ -26,6 +27,7 @@ mod measures;
 mod pages;
 mod recording;
 mod rod_forces;
+mod rulings;
 mod sequences;
 mod sizes;
 #[path = "../shared/skip.rs"]

@@ -35,11 +35,13 @@ export class LiveReplay extends Replay {
   }
 
   /** Takes over a state. Says whether a range of colours has changed. */
-  take({ t, x, poses }) {
+  take({ t, x, bends, poses }) {
     this.now = t;
-    const bytes = Uint8Array.from(atob(x), (c) => c.charCodeAt(0));
-    this.x.set(new Float64Array(bytes.buffer));
-    this.mesh.followFolds(this.x, this.folds);
+    this.x.set(doubles(x));
+    const folds = this.mesh.foldAngles(this.x, new Float64Array(this.mesh.edgeCount));
+    // Of creases in sheets that bend the kinks are shown.
+    if (bends) doubles(bends).forEach((bend, e) => (folds[e] -= bend));
+    this.mesh.followFolds(folds, this.folds);
     this.data.bodies.forEach((body, k) => body.poses.set(poses[k]));
     return this.look();
   }
@@ -58,6 +60,11 @@ export class LiveReplay extends Replay {
     }
     return ranges() !== before;
   }
+}
+
+/** The numbers of a text. */
+function doubles(base64) {
+  return new Float64Array(Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer);
 }
 
 /** The longest side of the box around some positions. */

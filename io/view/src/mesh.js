@@ -59,13 +59,11 @@ export class Mesh {
   }
 
   /**
-   * The fold angle of each edge as in `foldAngles`, but for whole turns: at most half a turn from the one
-   * before, which `out` has. A fold that is pressed through itself keeps its side.
+   * Fold angles `now`, but for whole turns: at most half a turn from the one before, which `out` has. A fold
+   * that is pressed through itself keeps its side.
    */
-  followFolds(x, out) {
-    const before = Float64Array.from(out);
-    this.foldAngles(x, out);
-    for (let e = 0; e < this.edgeCount; e++) out[e] += TURN * Math.round(((before[e] || 0) - out[e]) / TURN);
+  followFolds(now, out) {
+    for (let e = 0; e < this.edgeCount; e++) out[e] = now[e] + TURN * Math.round(((out[e] || 0) - now[e]) / TURN);
     return out;
   }
 

@@ -36,7 +36,21 @@ export class Replay {
   seek(frame) {
     this.frame = frame;
     this.positionsOf(frame, this.x);
-    this.mesh.foldAngles(this.x, this.folds);
+    this.foldsOf(frame, this.x, this.folds);
+  }
+
+  /**
+   * The fold angle of each edge in a frame with positions `x`, in radians, into `out`: of creases in sheets that
+   * bend the kink, without the bend of the faces beside it.
+   */
+  foldsOf(frame, x, out) {
+    this.mesh.foldAngles(x, out);
+    const bends = this.data.fields[this.data.bends];
+    if (!bends) return out;
+    const decode = signedDecoder(bends),
+      from = frame * this.mesh.edgeCount;
+    for (let e = 0; e < this.mesh.edgeCount; e++) out[e] -= decode(bends.values[from + e]) / DEGREES;
+    return out;
   }
 
   /**
@@ -169,8 +183,8 @@ function foldTurns(replay) {
     followed = new Float64Array(replay.folds.length);
   const turns = new Int8Array(replay.frames * folds.length);
   for (let frame = 0; frame < replay.frames; frame++) {
-    replay.mesh.foldAngles(replay.positionsOf(frame, x), folds);
-    replay.mesh.followFolds(x, followed);
+    replay.foldsOf(frame, replay.positionsOf(frame, x), folds);
+    replay.mesh.followFolds(folds, followed);
     for (let e = 0; e < folds.length; e++)
       turns[frame * folds.length + e] = Math.round((followed[e] - folds[e]) / (2 * Math.PI));
   }
@@ -193,7 +207,7 @@ function foldRange(replay) {
   let count = 0,
     largest = 0;
   for (let frame = 0; frame < replay.frames; frame++) {
-    replay.mesh.foldAngles(replay.positionsOf(frame, x), folds);
+    replay.foldsOf(frame, replay.positionsOf(frame, x), folds);
     for (const fold of folds) {
       const size = Math.abs(fold) * DEGREES;
       if (!(size > 1)) continue;
@@ -256,12 +270,23 @@ const FORCES_IN_RANGE = 0.98;
 /** Integers from here on stand for negative values. */
 const NEGATIVE = 32768;
 
+/** What makes sizes of the integers of a field that has signs or magnitudes. */
+function sizeDecoder({ low, step }) {
+  return (q) => (q === 0 ? 0 : 10 ** (low + step * (q - 1)));
+}
+
+/** The same for values of either sign. */
+function signedDecoder(field) {
+  const size = sizeDecoder(field);
+  return (q) => (q < NEGATIVE ? size(q) : -size(q - NEGATIVE));
+}
+
 /** A field whose values differ by orders of magnitude, such as forces: of either sign, or magnitudes. */
 function forceQuantity(replay, field, k) {
-  const { low, step, values } = field;
+  const { values } = field;
   const width = values.length / replay.frames;
-  const size = (q) => (q === 0 ? 0 : 10 ** (low + step * (q - 1)));
-  const decode = (q) => (q < NEGATIVE ? size(q) : -size(q - NEGATIVE));
+  const size = sizeDecoder(field);
+  const decode = signedDecoder(field);
   const hasSigns = field.scale === "signed";
   let found = null;
   const end = () => (found ??= usualSize(values, size));

@@ -82,6 +82,7 @@ impl CurvedJob {
             stiffness: self.stiffness * sheet.lengths()[edge.index()],
             rest: rest.clone().into(),
             yields: None,
+            in_series: None,
         };
         let mut springs: Vec<CreaseSpring> = crease.iter().map(spring).collect();
         CreaseSpring::put_in_sheet(&mut springs, sheet, PAPER.rigidity);

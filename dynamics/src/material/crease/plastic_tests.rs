@@ -32,6 +32,7 @@ fn spring(edge: EdgeId) -> CreaseSpring {
         stiffness: STIFFNESS,
         rest: 0.0.into(),
         yields: Some(YIELD),
+        in_series: None,
     }
 }
 
@@ -262,4 +263,28 @@ fn methods_that_do_not_minimise_are_refused() {
         let refused = Simulation::new(model.with_potential(springs), start, method);
         assert_eq!(refused.err(), Some(SimulationError::Plastic));
     }
+}
+
+/// A crease that yields in a sheet that bends turns by what its moment makes of it besides the angle that stays: `M
+/// = k (kink - rest - plastic)`.
+#[test]
+fn the_kink_of_a_crease_that_yields_has_its_plastic_angle() {
+    let (sheet, edge) = hinge();
+    let mut springs = vec![spring(edge)];
+    CreaseSpring::put_in_sheet(&mut springs, &sheet, 2e-2);
+    let springs = CreaseSprings::new(sheet.topology(), springs).expect("interior");
+    let mut memory = springs.memory();
+    for angle in [0.1, 0.5, 1.2, 0.3, -0.8] {
+        let x = folded(angle);
+        springs.settle(at_rest(&x), &mut memory);
+        let at = At::new(0.0, &x).with_memory(&memory);
+        let kink = angle - springs.bends_beside(at)[0].1;
+        let plastic = springs.plastic_angles(&memory)[0].1;
+        let moment = -springs.moments(at)[0];
+        assert!(
+            (moment - STIFFNESS * (kink - plastic)).abs() < 1e-15,
+            "{angle}"
+        );
+    }
+    assert!(memory[0].abs() > 0.1, "nothing has yielded");
 }

@@ -31,6 +31,7 @@ fn springs(t: &Topology, rest: impl Fn(EdgeId) -> f64) -> CreaseSprings {
                 RestAngle::from(move |t| angle * t)
             },
             yields: None,
+            in_series: None,
         }
     });
     CreaseSprings::new(t, springs.collect()).expect("interior edges")
@@ -52,6 +53,7 @@ fn angles_are_those_of_the_mesh_in_sign_and_size() {
             stiffness: 1.0,
             rest: 0.0.into(),
             yields: None,
+            in_series: None,
         };
         let own = CreaseSprings::new(t, vec![spring]).expect("interior");
         let moment = own.moments(At::new(0.0, &x))[0];
@@ -132,6 +134,7 @@ fn a_fold_that_passes_shut_goes_on() {
         stiffness: 2.0,
         rest: 3.0.into(),
         yields: None,
+        in_series: None,
     };
     let p = CreaseSprings::new(t, vec![spring]).expect("interior");
     let hinge = &p.hinges[0];
@@ -150,6 +153,7 @@ fn what_makes_no_sense_is_named() {
             stiffness,
             rest,
             yields: None,
+            in_series: None,
         };
         CreaseSprings::new(t, vec![spring]).map(|_| ())
     };
@@ -235,6 +239,7 @@ fn driven(method: Method) -> [f64; 3] {
         stiffness: 1e-2,
         rest,
         yields: None,
+        in_series: None,
     });
     let springs = CreaseSprings::new(t, springs.into()).expect("interior");
     let model = SheetModel::new(&sheet, 1e-3, MassKind::Lumped)
@@ -268,4 +273,57 @@ fn the_work_of_the_drive_closes_the_energy_balance() {
             "{method:?}: {drift:e} J of {work:e} J"
         );
     }
+}
+
+/// What is left of the fold angle without the bend of the sheet is the angle by which the springs turn as they were
+/// given: all of them at an edge, of the stiffness `k_i`, carry `sum k_i (kink - rest_i)` together.
+#[test]
+fn the_kink_is_the_fold_angle_without_the_bend_of_the_sheet() {
+    let (sheet, x) = crumpled();
+    let t = sheet.topology();
+    let rigidity = 0.3;
+    let given = |scale: f64, rest: f64| -> Vec<CreaseSpring> {
+        let spring = |edge: EdgeId| CreaseSpring {
+            edge,
+            stiffness: scale * (0.5 + 0.01 * edge.index() as f64),
+            rest: rest.into(),
+            yields: None,
+            in_series: None,
+        };
+        interior(t).into_iter().map(spring).collect()
+    };
+    let given = [given(1.0, 0.4), given(0.2, -1.0)];
+    let mut put = given.iter().map(|springs| {
+        let copy = |s: &CreaseSpring| CreaseSpring {
+            rest: s.rest.clone(),
+            ..*s
+        };
+        springs.iter().map(copy).collect::<Vec<_>>()
+    });
+    let mut put: [Vec<CreaseSpring>; 2] = [0, 1].map(|_| put.next().expect("two groups"));
+    CreaseSpring::put_in_sheet(put.iter_mut().flatten(), &sheet, rigidity);
+    let put = put.map(|springs| CreaseSprings::new(t, springs).expect("interior edges"));
+    let at = At::new(0.0, &x);
+    let moments = put.each_ref().map(|springs| springs.moments(at));
+    let bends = put.each_ref().map(|springs| springs.bends_beside(at));
+    for (k, e) in interior(t).into_iter().enumerate() {
+        let bend: f64 = bends.iter().map(|b| b[k].1).sum();
+        assert_eq!(bends.each_ref().map(|b| b[k].0), [e, e]);
+        let kink = fold_angle(t, &x, e).expect("interior") - bend;
+        let carried: f64 = moments.iter().map(|m| m[k]).sum();
+        let wanted: f64 = [0.4, -1.0]
+            .iter()
+            .zip(&given)
+            .map(|(rest, springs)| springs[k].stiffness * (rest - kink))
+            .sum();
+        assert!((carried - wanted).abs() < 1e-13, "{e}: {carried} {wanted}");
+        // The sheet carries the same moment over the two faces.
+        let [a, b] = t
+            .edge_faces(e)
+            .map(|f| sheet.face_areas()[f.expect("interior").index()]);
+        let own = rigidity * sheet.lengths()[e.index()].powi(2) / (a + b) * bend;
+        assert!((carried + own).abs() < 1e-13, "{e}: {carried} {own}");
+    }
+    let limp = CreaseSprings::new(t, given.into_iter().next().expect("two groups"));
+    assert!(limp.expect("interior").bends_beside(at).is_empty());
 }

@@ -189,6 +189,7 @@ fn cantilever(cells: usize, diagonals: Diagonals, jitter: f64, crease: Option<f6
             stiffness: crease.filter(|_| is_inside)? * sheet.lengths()[edge.index()],
             rest: 0.0.into(),
             yields: None,
+            in_series: None,
         })
     };
     let mut springs: Vec<_> = t.edge_ids().filter_map(spring).collect();
@@ -267,6 +268,7 @@ fn a_sheet_rests_at_the_rest_angle_of_its_crease() {
                 stiffness: k * sheet.lengths()[edge.index()],
                 rest: found.into(),
                 yields: None,
+                in_series: None,
             };
             let mut springs: Vec<_> = creases.iter().map(spring).collect();
             CreaseSpring::put_in_sheet(&mut springs, &sheet, 1.0);

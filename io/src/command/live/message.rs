@@ -47,6 +47,12 @@ pub(super) struct LiveFrame<'a> {
     /// Positions, `3V`: doubles in little-endian order, as base64.
     #[serde(serialize_with = "as_base64")]
     pub(super) x: Cow<'a, [f64]>,
+    /// The bends beside creases, of each edge (radians), in the same way; nothing where there are none.
+    #[serde(
+        serialize_with = "as_base64",
+        skip_serializing_if = "<[f64]>::is_empty"
+    )]
+    pub(super) bends: Vec<f64>,
     /// Quaternion and translation of each body.
     pub(super) poses: Vec<[f64; 7]>,
     /// A value for each of the plotted series.

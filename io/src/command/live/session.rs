@@ -270,6 +270,7 @@ impl Session {
             playing: self.is_playing,
             pace: pace.filter(|_| self.is_playing),
             x: self.live.positions(),
+            bends: self.live.crease_bends(),
             poses: bodies.chain(holding).map(|p| numbers(p.into())).collect(),
             series: self.series.iter().map(value).collect(),
             hand: self.live.hand().map(|(vertex, at)| HandFrame {

@@ -39,7 +39,7 @@ fn columns(support: FieldSupport) -> Option<usize> {
     match support {
         FieldSupport::Vertices => Some(1),
         FieldSupport::VertexVectors => Some(3),
-        FieldSupport::Edges | FieldSupport::Faces => None,
+        FieldSupport::Edges | FieldSupport::Faces | FieldSupport::FaceVectors => None,
     }
 }
 

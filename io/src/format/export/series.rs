@@ -77,6 +77,8 @@ pub enum FieldSupport {
     Edges,
     /// Faces.
     Faces,
+    /// Faces, with a vector of three values for each.
+    FaceVectors,
 }
 
 /// Numbers on vertices, edges or faces, such as energies or gaps, for formats with data.
@@ -97,9 +99,10 @@ pub struct SeriesField {
 /// - `rod_force`, the forces of the rods (newtons, tension positive),
 /// - `contact_force`, the forces of contact on the vertices (vectors, newtons),
 /// - `gap`, the gaps of the vertices (metres, see [`Trajectory::gaps`]),
-/// - `plastic_angle`, the plastic angles of the edges (degrees, positive for valleys), and
+/// - `plastic_angle`, the plastic angles of the edges (degrees, positive for valleys),
 /// - `plastic_curvature_1` and `plastic_curvature_2`, the principal values of the plastic curvature of the faces (1/m, see
-///   [`Trajectory::plastic_curvatures`]).
+///   [`Trajectory::plastic_curvatures`]), and
+/// - `ruling` (unit vectors), `ruling_curvature` (1/m) and `gauss_curvature` (1/m2), see [`Trajectory::rulings`].
 ///
 /// Of frames at the same time only the first is written: most formats cannot hold two.
 #[derive(Clone, Debug)]
@@ -112,6 +115,8 @@ pub struct Series<'a> {
     /// The fold angles of each frame, radians, once they are asked for.
     followed: OnceLock<Vec<Vec<f64>>>,
     fields: Vec<SeriesField>,
+    /// The bends beside creases in each frame, radians, in the order of the edges; empty where there are none.
+    crease_bends: Vec<f64>,
     rate: f64,
     /// Places of the vertices in a picture printed on the flat sheet, if it can be flat.
     uv: Option<Vec<[f64; 2]>>,
@@ -161,6 +166,11 @@ impl<'a> Series<'a> {
         let mut frames: Vec<usize> = (options.first..=last).step_by(options.every).collect();
         frames.dedup_by(|later, first| times[*later] == times[*first]);
         let fields = recorded_fields(trajectory, &topology);
+        let bends = trajectory.all(FrameQuantity::CreaseBends);
+        let crease_bends = match bends.is_empty() {
+            true => Vec::new(),
+            false => on_edges(trajectory, &topology, bends),
+        };
         let start = trajectory.frame(0).unwrap_or_default();
         Ok(Self {
             uv: flat_coordinates(&topology, &rest_lengths, start),
@@ -171,6 +181,7 @@ impl<'a> Series<'a> {
             assignments: None,
             followed: OnceLock::new(),
             fields,
+            crease_bends,
             rate: options.rate,
             bodies: Vec::new(),
             sheets: Vec::new(),
@@ -296,7 +307,8 @@ impl<'a> Series<'a> {
         if reserved || self.fields.iter().any(|f| f.name == *name) {
             let message = format!("there are two fields with the name {name:?}");
             let remedy = "rename one (strain, fold_angle, sheet, rod_force, contact_force, gap, plastic_angle, \
-                          plastic_curvature_1 and _2, uv and TimeValue are taken)";
+                          plastic_curvature_1 and _2, ruling, ruling_curvature, gauss_curvature, uv and TimeValue are \
+                          taken)";
             return Err(DataError::new(message, remedy).into());
         }
         self.fields.push(field);
@@ -340,7 +352,8 @@ impl<'a> Series<'a> {
     }
 
     /// The fold angle of each edge in a frame of the trajectory, in radians within [-pi, pi]
-    /// ([`fold_angle`]); 0 on the boundary and where an edge has no length.
+    /// ([`fold_angle`]); 0 on the boundary and where an edge has no length. At creases in sheets that bend it is
+    /// the kink, without the bend of the faces beside them ([`Trajectory::crease_bends`]).
     ///
     /// A fold is followed from frame to frame, where it turns by less than half a turn: one that is pressed
     /// through itself stays a mountain or a valley of half a turn. A mountain that is shut in the first frame
@@ -361,9 +374,11 @@ impl<'a> Series<'a> {
         let mut all = Vec::with_capacity(self.trajectory.len());
         for frame in 0..self.trajectory.len() {
             let (_, x) = self.state(frame);
+            let bends = self.crease_bends.get(frame * t.edge_count()..);
+            let bend = |e: EdgeId| bends.and_then(|all| all.get(e.index())).copied();
             for (e, angle) in t.edge_ids().zip(&mut before) {
                 let now = fold_angle(t, x, e).filter(|a| a.is_finite()).unwrap_or(0.0);
-                *angle = angle_near(now, *angle);
+                *angle = angle_near(now - bend(e).unwrap_or(0.0), *angle);
             }
             all.push(before.clone());
         }
@@ -446,6 +461,7 @@ impl<'a> Series<'a> {
             FieldSupport::VertexVectors => 3 * self.topology.vertex_count(),
             FieldSupport::Edges => self.topology.edge_count(),
             FieldSupport::Faces => self.topology.face_count(),
+            FieldSupport::FaceVectors => 3 * self.topology.face_count(),
         }
     }
 }
@@ -484,6 +500,25 @@ fn recorded_fields(trajectory: &Trajectory, topology: &Topology) -> Vec<SeriesFi
                     .iter_mut()
                     .for_each(|angle| *angle = angle.to_degrees());
                 vec![field("plastic_angle", FieldSupport::Edges, values)]
+            }
+            // Of these the fold angles are made.
+            FrameQuantity::CreaseBends => Vec::new(),
+            FrameQuantity::Rulings => {
+                vec![field("ruling", FieldSupport::FaceVectors, values.to_vec())]
+            }
+            FrameQuantity::RulingCurvatures => {
+                vec![field(
+                    "ruling_curvature",
+                    FieldSupport::Faces,
+                    values.to_vec(),
+                )]
+            }
+            FrameQuantity::GaussCurvatures => {
+                vec![field(
+                    "gauss_curvature",
+                    FieldSupport::Vertices,
+                    values.to_vec(),
+                )]
             }
             FrameQuantity::PlasticCurvatures => {
                 let of = |k: usize| values.iter().copied().skip(k).step_by(2).collect();

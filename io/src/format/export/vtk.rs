@@ -119,7 +119,7 @@ fn frame_file(series: &Series<'_>, frame: usize) -> Vec<u8> {
         match field.support {
             FieldSupport::Vertices => file.floats(&field.name, "", values),
             FieldSupport::VertexVectors => file.floats(&field.name, VECTORS, values),
-            FieldSupport::Edges | FieldSupport::Faces => {}
+            FieldSupport::Edges | FieldSupport::Faces | FieldSupport::FaceVectors => {}
         }
     }
     file.line("</PointData>\n<CellData>");
@@ -145,6 +145,11 @@ fn frame_file(series: &Series<'_>, frame: usize) -> Vec<u8> {
             FieldSupport::Vertices | FieldSupport::VertexVectors => {}
             FieldSupport::Edges => file.floats(&field.name, "", &of_edges(series, values)),
             FieldSupport::Faces => file.floats(&field.name, "", &of_faces(series, values)),
+            FieldSupport::FaceVectors => {
+                // Lines have none.
+                let lines = vec![0.0; 3 * t.edge_count()];
+                file.floats(&field.name, VECTORS, &[&lines, values].concat());
+            }
         }
     }
     file.line("</CellData>\n<Points>");

@@ -14,6 +14,16 @@ pub struct FrameData<'a> {
     pub gaps: &'a [f64],
     /// Plastic angle of each edge (length E, radians, positive for valleys).
     pub plastic_angles: &'a [f64],
+    /// Bend of the faces beside each crease, which the angle between them includes (length E, radians, positive
+    /// for valleys, 0 at other edges).
+    pub crease_bends: &'a [f64],
+    /// Unit vector along the ruling of each face (length 3F), zero where there is none.
+    pub rulings: &'a [f64],
+    /// Principal curvature across the ruling of each face (length F, 1/m, positive for valleys), 0 where there is
+    /// none.
+    pub ruling_curvatures: &'a [f64],
+    /// Gauss curvature at each vertex besides that of the rest shape (length V, 1/m2).
+    pub gauss_curvatures: &'a [f64],
     /// Principal values of the plastic curvature of each face (length 2F, 1/m, the larger one in size first,
     /// positive for valleys).
     pub plastic_curvatures: &'a [f64],
@@ -28,6 +38,10 @@ impl<'a> FrameData<'a> {
             gaps: of(FrameQuantity::Gaps),
             plastic_angles: of(FrameQuantity::PlasticAngles),
             plastic_curvatures: of(FrameQuantity::PlasticCurvatures),
+            crease_bends: of(FrameQuantity::CreaseBends),
+            rulings: of(FrameQuantity::Rulings),
+            ruling_curvatures: of(FrameQuantity::RulingCurvatures),
+            gauss_curvatures: of(FrameQuantity::GaussCurvatures),
         }
     }
 }
@@ -48,11 +62,15 @@ pub(crate) enum FrameQuantity {
     Gaps,
     PlasticAngles,
     PlasticCurvatures,
+    CreaseBends,
+    Rulings,
+    RulingCurvatures,
+    GaussCurvatures,
 }
 
 impl FrameQuantity {
     /// How many there are.
-    pub(crate) const COUNT: usize = 5;
+    pub(crate) const COUNT: usize = 9;
 
     /// All, in the order of the enumeration.
     pub(crate) const ALL: [Self; Self::COUNT] = [
@@ -61,6 +79,10 @@ impl FrameQuantity {
         Self::Gaps,
         Self::PlasticAngles,
         Self::PlasticCurvatures,
+        Self::CreaseBends,
+        Self::Rulings,
+        Self::RulingCurvatures,
+        Self::GaussCurvatures,
     ];
 
     /// The name of its array in a file.
@@ -71,15 +93,21 @@ impl FrameQuantity {
             Self::Gaps => "gaps",
             Self::PlasticAngles => "plastic_angles",
             Self::PlasticCurvatures => "plastic_curvatures",
+            Self::CreaseBends => "crease_bends",
+            Self::Rulings => "rulings",
+            Self::RulingCurvatures => "ruling_curvatures",
+            Self::GaussCurvatures => "gauss_curvatures",
         }
     }
 
     /// The shape of one frame of it on a mesh.
     pub(super) fn shape(self, mesh: MeshCounts) -> Vec<u64> {
         match self {
-            Self::RodForces | Self::PlasticAngles => vec![mesh.edges as u64],
+            Self::RodForces | Self::PlasticAngles | Self::CreaseBends => vec![mesh.edges as u64],
             Self::ContactForces => vec![mesh.vertices as u64, 3],
-            Self::Gaps => vec![mesh.vertices as u64],
+            Self::Gaps | Self::GaussCurvatures => vec![mesh.vertices as u64],
+            Self::Rulings => vec![mesh.faces as u64, 3],
+            Self::RulingCurvatures => vec![mesh.faces as u64],
             Self::PlasticCurvatures => vec![mesh.faces as u64, 2],
         }
     }
@@ -98,6 +126,10 @@ impl FrameQuantity {
             Self::Gaps => data.gaps,
             Self::PlasticAngles => data.plastic_angles,
             Self::PlasticCurvatures => data.plastic_curvatures,
+            Self::CreaseBends => data.crease_bends,
+            Self::Rulings => data.rulings,
+            Self::RulingCurvatures => data.ruling_curvatures,
+            Self::GaussCurvatures => data.gauss_curvatures,
         }
     }
 

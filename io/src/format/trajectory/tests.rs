@@ -31,6 +31,10 @@ fn sample() -> (Sheet, Trajectory) {
             gaps: &gaps,
             plastic_angles: &forces,
             plastic_curvatures: &curvatures,
+            crease_bends: &forces,
+            rulings: &[&curvatures[..], &curvatures[..count / 2]].concat(),
+            ruling_curvatures: &curvatures[..count / 2],
+            gauss_curvatures: &gaps,
         };
         run.push_with(0.1 * k as f64, &x, &data).unwrap();
     }
@@ -69,6 +73,18 @@ fn comes_back_bit_for_bit() {
         (back.plastic_angles(4), back.plastic_angles(5)),
         (Some(last), None)
     );
+    assert_eq!(
+        (back.crease_bends(4), back.crease_bends(5)),
+        (Some(last), None)
+    );
+    let faces = sheet.topology().face_count();
+    let rulings = back.rulings(4).unwrap();
+    assert_eq!(
+        (rulings.len(), &rulings[..2 * faces]),
+        (3 * faces, curvatures)
+    );
+    assert_eq!(back.ruling_curvatures(4), Some(&curvatures[..faces]));
+    assert_eq!(back.gauss_curvatures(4), back.gaps(4));
     // Without forces, and without frames: still a file.
     let mut run = Trajectory::new(&sheet);
     run.push(0.0, sheet.positions()).unwrap();
@@ -91,7 +107,7 @@ fn equal_trajectories_are_equal_files() {
     let entries: Vec<usize> = (0..bytes.len() - 46)
         .filter(|k| bytes[*k..].starts_with(b"PK\x01\x02"))
         .collect();
-    assert_eq!(entries.len(), 10);
+    assert_eq!(entries.len(), 14);
     for k in entries {
         assert_eq!(bytes[k + 12..k + 16], [0, 0, 0x21, 0]);
     }
@@ -122,13 +138,17 @@ fn arrays_have_the_documented_names_types_and_shapes() {
         names,
         [
             "contact_forces",
+            "crease_bends",
             "edges",
             "faces",
             "gaps",
+            "gauss_curvatures",
             "plastic_angles",
             "plastic_curvatures",
             "rest_lengths",
             "rod_forces",
+            "ruling_curvatures",
+            "rulings",
             "t",
             "x"
         ]
@@ -139,6 +159,10 @@ fn arrays_have_the_documented_names_types_and_shapes() {
         ("gaps", &[5, 21]),
         ("plastic_angles", &[5, edges]),
         ("plastic_curvatures", &[5, 28, 2]),
+        ("crease_bends", &[5, edges]),
+        ("rulings", &[5, 28, 3]),
+        ("ruling_curvatures", &[5, 28]),
+        ("gauss_curvatures", &[5, 21]),
     ] {
         let array = array_in(&mut npz, name);
         assert_eq!(
@@ -203,6 +227,10 @@ fn bad_frames_are_refused() {
         gaps: &gaps,
         plastic_angles: &rods,
         plastic_curvatures: &curvatures,
+        crease_bends: &rods,
+        rulings: &[&curvatures[..], &curvatures[..curvatures.len() / 2]].concat(),
+        ruling_curvatures: &curvatures[..curvatures.len() / 2],
+        gauss_curvatures: &gaps,
     };
     let mut without = Trajectory::new(&sheet);
     without.push(0.0, &x).unwrap();

@@ -42,7 +42,10 @@ impl Builder<'_> {
         let mut modelled = BTreeSet::new();
         for number in 0..self.sheets.list.len() {
             let springs = self.fold_springs(number)?;
-            modelled.extend(self.add_bending(number, &springs.creases())?);
+            let creases = springs.creases();
+            let part = self.sheets.list[number].part.clone();
+            self.creased.extend(creases.iter().map(|e| part.edge(*e)));
+            modelled.extend(self.add_bending(number, &creases)?);
             self.add_springs(number, springs)?;
         }
         self.modelled
@@ -267,6 +270,7 @@ impl Builder<'_> {
             Some((Key::root().name("crease").entry(k), crease.name.clone()?))
         });
         let named: Vec<(Key, String)> = named.collect();
+        let mut all = Vec::new();
         for (key, springs) in springs.into_groups() {
             let PlacedSheet { form, part, .. } = &self.sheets.list[number];
             let lengths = springs
@@ -280,6 +284,7 @@ impl Builder<'_> {
                 measured,
                 part: part.clone(),
                 potential: self.model().potentials().count(),
+                others: Vec::new(),
             };
             if let Some((_, name)) = named.iter().find(|(known, _)| *known == key) {
                 self.creases.named.insert(name.clone(), gauge);
@@ -288,7 +293,12 @@ impl Builder<'_> {
                 let targets = self.targets.folding.clone();
                 self.creases.folded = targets.map(|targets| (gauge, targets));
             }
+            all.push((Arc::clone(&springs), self.model().potentials().count()));
             self.add_potential_of(number, springs);
+        }
+        let folded = self.creases.folded.iter_mut().map(|(gauge, _)| gauge);
+        for gauge in self.creases.named.values_mut().chain(folded) {
+            gauge.find_others(&all);
         }
         Ok(())
     }

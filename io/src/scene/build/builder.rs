@@ -2,6 +2,7 @@
 
 use crate::scene::bond::Bond;
 use crate::scene::driven::DrivenObstacles;
+use crate::scene::enclosed::EnclosedGauge;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
 use crate::scene::led::LedMotions;
@@ -93,6 +94,12 @@ pub(super) struct Builder<'a> {
     pub(super) targets: Targets,
     /// The creases of the scene that measures may be of.
     pub(super) creases: CreaseGauges,
+    /// The edges at which sheets fold.
+    pub(super) creased: Vec<EdgeId>,
+    /// Gases and pressures that measures may be of, by their names.
+    pub(super) enclosed: BTreeMap<String, EnclosedGauge>,
+    /// The gases, with what they are called.
+    pub(super) gases: Vec<(String, EnclosedGauge)>,
     /// As what sheets bend, by their numbers.
     pub(super) plates: BTreeMap<usize, Arc<PlateBending>>,
 }
@@ -183,6 +190,9 @@ impl<'a> Builder<'a> {
             modelled,
             targets: Targets::default(),
             creases: CreaseGauges::default(),
+            creased: Vec::new(),
+            enclosed: BTreeMap::new(),
+            gases: Vec::new(),
             plates: BTreeMap::new(),
         })
     }

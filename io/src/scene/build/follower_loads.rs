@@ -2,12 +2,14 @@
 
 use super::builder::{Builder, at};
 use crate::scene::Selection;
+use crate::scene::enclosed::EnclosedGauge;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
 use crate::scene::problem::Problem;
-use isosheet_dynamics::{EdgeMoment, LoadedFaces, SimulationError};
+use isosheet_dynamics::{EdgeMoment, EnclosedGas, LoadedFaces, SimulationError};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
+use std::sync::Arc;
 
 impl Builder<'_> {
     /// Adds what acts on faces and edges; seams that close surfaces have to be known.
@@ -17,14 +19,25 @@ impl Builder<'_> {
         for (key, pressure) in key.name("pressure").entries(&forces.pressure) {
             let faces = self.loaded(&pressure.sheets, &pressure.at, &key)?;
             let size = pressure.size.as_given();
+            if let Some(name) = &pressure.name {
+                let gauge = EnclosedGauge::Pressure(faces.clone(), size.clone());
+                self.enclosed.insert(name.clone(), gauge);
+            }
             self.change(|m| m.with_pressure(faces, size), at(&key.name("size")))?;
         }
-        for (key, gas) in key.name("gas").entries(&forces.gas) {
+        for (number, (key, gas)) in key.name("gas").entries(&forces.gas).enumerate() {
             let faces = self.loaded(&gas.sheets, &Selection::All, &key)?;
             let volume = faces.volume(&self.x).abs();
-            let model = self.model.take();
-            let filled = model.map(|m| m.with_gas(faces, gas.as_engine(), &self.x));
-            self.model = filled.transpose().map_err(at(&key))?;
+            let filled = EnclosedGas::new(&faces, gas.as_engine(), &self.x);
+            let filled = Arc::new(filled.map_err(at(&key))?);
+            let gauge = EnclosedGauge::Gas(Arc::clone(&filled));
+            self.gases.push((gas.called(number), gauge.clone()));
+            self.enclosed
+                .extend(gas.name.clone().map(|name| (name, gauge)));
+            self.change(
+                |m| Ok(m.with_potential(filled)),
+                at::<SimulationError>(&key),
+            )?;
             let [least, _] = gas.added.range(self.scene.stop.time);
             if -least >= volume {
                 let message = format!(

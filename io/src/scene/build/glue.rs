@@ -151,6 +151,7 @@ impl Builder<'_> {
                 stiffness: stiffness * union.lengths()[edge.index()],
                 rest: bend.angle.to_radians().into(),
                 yields: None,
+                in_series: None,
             };
             Some((spring, opposite))
         };
