@@ -427,6 +427,11 @@ impl Potential for Gravity {
 ///
 /// The force is given on the vertices; its generalised components follow by virtual work,
 /// `Q_k = f . dx/dq_k`. The work it does enters the energy balance.
+///
+/// BDF2 and implicit Euler ask for it once in a step: at the time of its end, which is exact for forces of time alone,
+/// and at positions and velocities extrapolated to it, at the order of the method. A force of velocities that takes more
+/// than about `4/3` of the momentum in a step is too stiff for that, and the steps explode. Energy-momentum asks for it
+/// at the middle of a step, RATTLE at both ends, charts at their stages.
 pub trait Force: Debug + Send + Sync {
     /// Adds the force (`3V`, newtons) at time `t`, positions `x` and velocities `v` to `force`.
     fn add_force(&self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]);

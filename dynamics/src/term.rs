@@ -254,7 +254,7 @@ pub(crate) enum Refusal {
 /// Energy exchanged in a step, joules.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Exchange {
-    /// Work of forces that are constant over the step.
+    /// Work of explicit forces.
     pub(crate) work: f64,
     /// Work of all that is known to the accuracy of the trapezoidal rule only: bodies, supports, air.
     pub(crate) driven: f64,

@@ -7,6 +7,7 @@ mod elasticas;
 mod experiment;
 mod gases;
 mod limitations;
+mod loads;
 mod linear;
 mod outcome;
 mod plastic;
@@ -34,7 +35,7 @@ use outcome::{Outcome, SIZES};
 use rayon::prelude::*;
 
 /// All of them.
-static EXPERIMENTS: [&Experiment; 29] = [
+static EXPERIMENTS: [&Experiment; 31] = [
     &cantilevers::END_SHEAR,
     &cantilevers::END_MOMENT,
     &shells::ANNULUS,
@@ -64,6 +65,8 @@ static EXPERIMENTS: [&Experiment; 29] = [
     &tension::SAGGING,
     &tension::TWISTED,
     &rolling::ROLLING,
+    &loads::IN_TIME,
+    &loads::BALANCED,
 ];
 
 fn named() -> Vec<(&'static str, &'static Experiment)> {

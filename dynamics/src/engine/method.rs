@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// Notation: positions `x0`, `x1` and velocities `v0`, `v1` at the start and the end of a step of `h`
 /// seconds, mass matrix `M`, force `f` (newtons), length constraints `c(x) = 0` with Jacobian `G`, rod
-/// impulses `L`. Velocity damping ([`SheetModel::with_damping`]) acts after the step.
+/// impulses `L`. Velocity damping ([`SheetModel::with_damping`]) leaves each method its order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Method {
     /// Implicit Euler method: first order, strongly dissipative.
@@ -26,7 +26,8 @@ pub enum Method {
     ///
     /// `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)` subject to `c(x) = 0`.
     /// It is found by Newton's method with a line search, in sequential quadratic programming or an augmented
-    /// Lagrangian, and projected onto the lengths. Non-conservative forces are explicit.
+    /// Lagrangian, and projected onto the lengths. Non-conservative forces `f(t, x, v)` are those at the end of the
+    /// step, `f(t1, x0 + h v0, v0)`.
     ImplicitEuler(ImplicitOptions),
     /// Second-order backward differentiation formula (BDF2), lightly dissipative, the default. With the ratio
     /// `w = h / h_` of the step to the one before:
@@ -37,8 +38,19 @@ pub enum Method {
     /// ```
     ///
     /// `x_` and `v_` belong to the start of the step before. Solved as [`Method::ImplicitEuler`] with the
-    /// step `k h`. The first step, the first after a change of the state from outside, and steps with `w > 2`
-    /// are implicit Euler (`w = 0`). Non-conservative forces are explicit, of first order.
+    /// step `k h`. Non-conservative forces are those at the end of the step, with velocities extrapolated to it,
+    /// `f(t1, x0 + h v0, v0 + w (v0 - v_))`: of second order.
+    ///
+    /// The first step, the first after a change of the state from outside or at a
+    /// [break](SheetModel::with_breaks), and steps with `w > 2` have no use for a step before. They are two stages of
+    /// second order with `g = 1 - 1 / sqrt 2` (Alexander 1977), an implicit Euler step of `g h` to `xa` and
+    ///
+    /// ```text
+    /// x1 = xa + (1/g - 2) (xa - x0) + g h v1,   M v1 = M (va + (1/g - 2) (va - v0)) + g h f(x1) + G(x1)^T L,
+    /// ```
+    ///
+    /// or one of implicit Euler (`w = 0`): where something touches, with rigid bodies that respond, where rods, curves
+    /// or surfaces hold vertices to what moves, and where a step with history would create energy.
     Bdf2(ImplicitOptions),
     /// Energy-momentum method (after Simo and Gonzalez): second order, symmetric. With `w = (v0 + v1) / 2`,
     /// `x1 = x0 + h w` and `xm = (x0 + x1) / 2`:

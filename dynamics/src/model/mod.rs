@@ -468,7 +468,8 @@ impl SheetModel {
         }
     }
 
-    /// Adds the non-conservative forces that are constant over a damped step, at pinned vertices too.
+    /// Adds the non-conservative forces that damped steps take as they are expected at their end, at pinned vertices
+    /// too.
     pub(crate) fn add_explicit_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         for force in &self.forces {
             force.add_force(t, x, v, f);

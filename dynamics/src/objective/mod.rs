@@ -29,7 +29,7 @@ pub(crate) use crate::hessian::HessianPart;
 /// model.
 pub(crate) struct Objective {
     inertia: Inertia,
-    /// Potentials and constant forces.
+    /// Potentials and explicit forces.
     acting: Acting,
     /// Contact, in scenes that name it.
     pub(crate) contact: Option<ContactTerm>,

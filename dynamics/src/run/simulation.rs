@@ -379,12 +379,12 @@ impl Simulation {
     ///
     /// At a pin `R = M a - f + G^T lambda` with the discrete acceleration `a` and the multipliers `lambda`
     /// (tension positive), at a vertex constraint with Jacobian `J` and multipliers `mu` `R = -J^T mu`.
-    /// Reactions, contact forces, weight and other forces add up to a rate of the momentum `p = sum M v`
-    /// before velocity damping, for a sub-step of `h` seconds:
+    /// Reactions, contact forces, weight and other forces add up to a rate of the momentum `p = sum M v`, for a
+    /// sub-step of `h` seconds without velocity damping ([`Simulation::imbalance`] says what is left of it):
     ///
     /// | method | rate of `p` | weight and other forces |
     /// |---|---|---|
-    /// | BDF2 | `(p1 - (1 + b) p0 + b p_) / (k h)`, see [`Method::Bdf2`] | at the end |
+    /// | BDF2 | `(p1 - (1 + b) p0 + b p_) / (k h)`, see [`Method::Bdf2`]; in a first step that of its second stage | at the end |
     /// | implicit Euler | `(p1 - p0) / h` | at the end |
     /// | energy-momentum, RATTLE | `(p1 - p0) / h` | over the step |
     ///

@@ -88,7 +88,8 @@ pub struct Sheet {
     /// Parts that are of other materials.
     #[serde(default)]
     pub patch: Vec<Patch>,
-    /// Rate of the velocity damping `v <- v exp(-damping h)` after each step of `h` seconds, 1/s.
+    /// Rate of the velocity damping, 1/s: a force `-damping m v` on each vertex, under which a free sheet has
+    /// `v exp(-damping t)` left after `t` seconds, in steps of any length.
     #[serde(default)]
     pub damping: f64,
     /// Where the sheet is placed in space.
