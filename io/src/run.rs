@@ -55,6 +55,7 @@ mod frames;
 mod gallery;
 mod ground;
 mod held_open;
+mod balance;
 mod incidence;
 mod intervention;
 mod last_change;
@@ -107,6 +108,7 @@ pub(crate) use folder::{check_folder, check_run};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use held_open::TouchingFaces;
+pub use balance::ForceBalance;
 pub use incidence::Incidence;
 pub use intervention::Intervention;
 pub use page::write_page;
@@ -481,6 +483,7 @@ fn finish(
         largest_strain: progress.strain,
         largest_displacement: progress.displacement,
         energy: progress.energy,
+        balance: progress.balance,
         incidence: progress.incidence,
         time_error: progress.time_error,
         vibration: progress

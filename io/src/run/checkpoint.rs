@@ -4,6 +4,7 @@ use super::RunError;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::error::BEGIN_ANEW;
+use super::balance::ForceBalance;
 use super::incidence::Incidence;
 use super::intervention::Intervention;
 use super::summary::{Ending, Measured};
@@ -67,6 +68,9 @@ pub(crate) struct RunProgress {
     /// The largest estimated error of a step so far.
     #[serde(default)]
     pub(crate) time_error: Option<TimeError>,
+    /// What supports left of the balance of forces so far.
+    #[serde(default)]
+    pub(crate) balance: Option<ForceBalance>,
     /// The largest angle of attached flow so far.
     #[serde(default)]
     pub(crate) incidence: Option<Incidence>,

@@ -1,5 +1,6 @@
 //! The steps of a run and what is recorded of them.
 
+use super::balance::ForceBalance;
 use super::checkpoint::RunProgress;
 use super::folder::{RunFolder, SceneHash};
 use super::frames::FrameShape;
@@ -111,6 +112,8 @@ impl<'a> Stepping<'a> {
             writer.record_frame(under_way)?;
         }
         if let Some(reason) = reason {
+            let balance = writer.progress.balance;
+            writer.progress.balance = ForceBalance::at_end(balance, &under_way.simulation);
             writer.progress.ending = Some(ending(under_way, reason, &report));
         }
         Ok(Some(Tick {

@@ -2,6 +2,7 @@
 
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
+use super::balance::ForceBalance;
 use super::incidence::Incidence;
 use super::intervention::Intervention;
 use super::time_error::TimeError;
@@ -51,6 +52,9 @@ pub struct Summary {
     /// The largest estimated error that a part of a step added to the positions, with BDF2 and implicit Euler.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_error: Option<TimeError>,
+    /// What the forces of supports left of the balance of forces and torques, with BDF2 and implicit Euler.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub balance: Option<ForceBalance>,
     /// The largest angle between sheet and relative wind after any step, where the flow is attached.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub incidence: Option<Incidence>,

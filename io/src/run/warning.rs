@@ -12,6 +12,9 @@ impl Summary {
     /// Part of the largest energy exchanged that errors of the balance may give to a run: second-order methods
     /// err by about that at the longest steps that resolve a motion.
     pub const ENERGY_GAIN: f64 = 0.02;
+    /// Part of the forces of the supports that their balance may leave: three times what the tolerance of the steps
+    /// leaves of the forces on a sheet at most.
+    pub const UNBALANCED: f64 = 0.1;
 
     /// Part by which the mesh may change the forces of bends.
     pub const FORCE_ERROR: f64 = 0.03;
@@ -70,6 +73,11 @@ impl Summary {
             );
             let remedy = "take a smaller `method.step`: forces that change within a step do work that is known roughly; \
                           the history says when energy is gained";
+            warnings.push(Warning::new(message, remedy));
+        }
+        if let Some(balance) = self.balance.filter(|b| b.part() > Self::UNBALANCED) {
+            let message = format!("the forces of the supports do not balance what acts on the sheet: {balance} are left");
+            let remedy = "take a smaller `method.step`, or a smaller tolerance, before you trust `loads.csv`";
             warnings.push(Warning::new(message, remedy));
         }
         if let Some((error, asked)) = self.time_error.and_then(|e| Some((e, e.unmet()?))) {

@@ -6,6 +6,7 @@ use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::folder::{RunFolder, SceneHash};
 use super::frames::{FrameFile, FrameShape};
+use super::balance::ForceBalance;
 use super::incidence::Incidence;
 use super::last_change::last_change;
 use super::recording::Tables;
@@ -350,6 +351,7 @@ impl RunWriter {
             let (t, h) = (report.t, report.h);
             progress.vibrations.observe(t, h, report.kinetic);
         }
+        progress.balance = ForceBalance::after(progress.balance, &under_way.simulation);
         if let Some(incidence) = Incidence::after(scene, under_way) {
             progress.incidence = Some(incidence.larger(progress.incidence));
         }
