@@ -325,9 +325,9 @@ impl Run {
     }
 
     /// What each `[[measure]]` of the scene shows by its name, and of each gas "gas[0].pressure" (pascals above
-    /// vacuum), "gas[0].gauge_pressure" and "gas[0].volume" (or with the name of the gas), in the unit of its quantity, at the start and
-    /// at the end of every step: at the times of `history["time"]`. Of a run that is not complete the last
-    /// one may be missing.
+    /// vacuum), "gas[0].gauge_pressure" and "gas[0].volume" (or with the name of the gas), in the unit of its
+    /// quantity, at the start and at the end of every step: at the times of `history["time"]`. Of a run that is not
+    /// complete the last one may be missing.
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);

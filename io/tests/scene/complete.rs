@@ -176,7 +176,8 @@ const ALL_KEYS: [&str; 17] = [
     checkpoint_interval = 1
     trajectory = false
     obj = true
-    page = false"#,
+    page = false
+    curvature = true"#,
     r#"version = 1
     [sheet]
     mesh = { rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = "union_jack" } }
@@ -397,15 +398,29 @@ const ALL_KEYS: [&str; 17] = [
     material = "PET film"
     placement = { position = [0, 0, 0.01] }
     [[forces.pressure]]
+    name = "lift"
     sheets = ["lower", "upper"]
     at = "all"
     size = 10
     [[forces.gas]]
+    name = "bag"
     sheets = ["lower", "upper"]
     ambient = 1e5
     pressure = 1.1e5
     exponent = 1.4
     added = { smooth_step = { to = 1e-3, end = 1 } }
+    [[measure]]
+    name = "bag-pressure"
+    enclosed = "bag"
+    quantity = "pressure"
+    [[measure]]
+    name = "bag-gauge"
+    enclosed = "bag"
+    quantity = "gauge_pressure"
+    [[measure]]
+    name = "bag-volume"
+    enclosed = "bag"
+    quantity = "volume"
     [[forces.moment]]
     sheet = "upper"
     at = { half_space = { point = [0.1999, 0, 0], normal = [1, 0, 0] } }

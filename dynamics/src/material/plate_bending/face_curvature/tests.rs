@@ -41,9 +41,9 @@ fn errors(
     sums.map(|s: f64| (s / count).sqrt())
 }
 
-/// Errors of the meshes of 8, 16 and 32 cells go down in proportion to the cells at least. Of the finest one the error
-/// of the curvature is less than `(k h)^2` with the curvature `k` and the longest edges `h`, and the angle of the rulings,
-/// which lie in planes of faces that are tilted against the surface, less than `k h / 2`.
+/// Errors of the meshes of 8, 16 and 32 cells go down in proportion to the cells at least. Of the finest one the
+/// error of the curvature is less than `(k h)^2` with the curvature `k` and the longest edges `h`, and the angle of the
+/// rulings, which lie in planes of faces that are tilted against the surface, less than `k h / 2`.
 fn check(
     what: &str,
     curvature: f64,
