@@ -284,8 +284,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 19,
-            supported: 18
+            found: 18,
+            supported: 19
         }
     ));
     // Every other byte is under the checksum, the checksum included.
@@ -304,7 +304,7 @@ fn other_sheets_versions_and_damage_are_refused() {
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
             found: 9,
-            supported: 18
+            supported: 19
         })
     );
     assert!(matches!(

@@ -38,15 +38,28 @@ impl Sheet<'_> {
         if key.kind == ContactKind::EdgeEdge {
             let vertices = two_edges(self.mesh, key.pair);
             let places = gather(self.x, vertices);
-            let contact = self.own_contact(key, vertices, &edge_edge(&places))?;
-            if key.pair.iter().any(|e| self.mesh.is_point(*e)) {
-                return Some(contact);
-            }
+            let closest = edge_edge(&places);
+            let contact = self.own_contact(key, vertices, &closest)?;
+            let has_point = key.pair.iter().any(|e| self.mesh.is_point(*e));
             let lengths2 = key.pair.map(|e| self.lengths2[e as usize]);
             let [a, b, c, d] = places;
-            let parallel = ParallelEdges::new(b - a, d - c, lengths2);
+            let parallel = match has_point {
+                true => None,
+                false => ParallelEdges::new(b - a, d - c, lengths2),
+            };
+            let is_round = contact.round.iter().any(Option::is_some);
+            let rolling = (is_round && parallel.is_none()).then(|| {
+                let [wa, wb, wc, wd] = closest.weights;
+                let first = edge_gradient([a, b], [c, d], closest.weights);
+                let second = edge_gradient([c, d], [a, b], [-wc, -wd, -wa, -wb]);
+                Rolling {
+                    gradients: [-first, first, -second, second],
+                    distance: closest.distance(),
+                }
+            });
             Some(ActiveContact {
                 parallel,
+                rolling,
                 ..contact
             })
         } else {
@@ -225,7 +238,9 @@ impl Sheet<'_> {
         let point = -wc * c - wd * d;
         let (u, v) = (place.frame() * (q - p), place.frame() * (d - c));
         let parallel = ParallelEdges::new(u, v, [self.lengths2[e as usize], v.norm_squared()]);
-        let rolling = (features.radius > 0.0 && parallel.is_none()).then(|| {
+        let round = self.against(edge[0]);
+        let is_round = features.radius > 0.0 || round[0].is_some();
+        let rolling = (is_round && parallel.is_none()).then(|| {
             let gradient = edge_gradient([p, q], [c, d], closest.weights);
             let gradient = place.frame() * gradient;
             Rolling {
@@ -242,7 +257,7 @@ impl Sheet<'_> {
             closest: place.to_space(&(point + features.radius * n)),
             parallel,
             rolling,
-            round: self.against(edge[0]),
+            round,
         })
     }
 }

@@ -268,7 +268,8 @@ fn minimised(
         rest: &mut rest,
         inertial: &mut prediction,
     };
-    turning.correct(state, [state.t - before.t, h], [b, k], &mut predictions);
+    let spans = [state.t - before.t, h];
+    let turned = turning.correct(state, spans, [b, k], &mut predictions);
     let start = StepStart {
         state,
         memories: attempt.memories,
@@ -296,8 +297,8 @@ fn minimised(
         let dx = minimiser.x()[i] - state.x[i];
         motion.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
     }
-    for i in turning.coordinates() {
-        motion.state.v[i] = (minimiser.x()[i] - minimiser.start[0][i]) / (k * h);
+    for (i, change) in turned {
+        motion.state.v[i] -= change / (k * h);
     }
     motion.state.x.copy_from_slice(minimiser.x());
     motion.state.t = state.t + h;

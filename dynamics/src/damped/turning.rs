@@ -66,14 +66,15 @@ impl Turning {
     }
 
     /// Corrects the predictions of a step of `h` seconds with the coefficients `b` and `k` by what they miss of
-    /// rotations; the step before took `before` seconds.
+    /// rotations; the step before took `before` seconds. Returns the changes of `rest`, by coordinates.
     pub(super) fn correct(
         &self,
         state: &State,
         [before, h]: [f64; 2],
         [b, k]: [f64; 2],
         predictions: &mut Predictions<'_>,
-    ) {
+    ) -> Vec<(usize, f64)> {
+        let mut changes = Vec::with_capacity(12 * self.bodies.len());
         for body in &self.bodies {
             let motion = FreeMotion::of(body, state);
             let (start, end) = (motion.at(0.0), motion.at(h));
@@ -89,18 +90,14 @@ impl Turning {
                 let of_place = x - (x0 + b * (x0 - x_) + k * h * predicted);
                 let place = 3 * (body.first + i);
                 for axis in 0..3 {
+                    let change = of_place[axis] - k * h * of_velocity[axis];
                     predictions.inertial[place + axis] += of_place[axis];
-                    predictions.rest[place + axis] += of_place[axis] - k * h * of_velocity[axis];
+                    predictions.rest[place + axis] += change;
+                    changes.push((place + axis, change));
                 }
             }
         }
-    }
-
-    /// The coordinates of the vertices that are corrected.
-    pub(super) fn coordinates(&self) -> impl Iterator<Item = usize> {
-        self.bodies
-            .iter()
-            .flat_map(|body| 3 * body.first..3 * body.first + 12)
+        changes
     }
 }
 
@@ -311,7 +308,8 @@ mod tests {
             rest: &mut rest,
             inertial: &mut inertial,
         };
-        turning.correct(&state, [before, h], [b, k], &mut predictions);
+        let changes = turning.correct(&state, [before, h], [b, k], &mut predictions);
+        assert_eq!(changes.len(), 12);
         for i in 0..4 {
             for axis in 0..3 {
                 let n = 3 * i + axis;

@@ -25,6 +25,8 @@ struct Falling {
     masses: Vec<Option<f64>>,
     /// The way that its weight alone takes it in the step, metres.
     ways: Vec<Vector3<f64>>,
+    /// Room for the sums of `M d` over them.
+    sums: Vec<Vector3<f64>>,
     /// Whether there is such a way.
     any: bool,
 }
@@ -46,6 +48,7 @@ impl Falling {
         }
         Self {
             ways: vec![Vector3::zeros(); masses.len()],
+            sums: vec![Vector3::zeros(); masses.len()],
             masses,
             any: false,
         }
@@ -97,23 +100,23 @@ impl Inertia {
     /// over the connected parts `k` that nothing holds, with the way `c_k = h^2 F_k / m_k` that the weight `F_k`
     /// of the part alone takes it.
     pub(super) fn of_fall(&mut self) -> f64 {
-        if !self.falling.any {
+        let Falling {
+            masses,
+            ways,
+            sums,
+            any,
+        } = &mut self.falling;
+        if !*any {
             return 0.0;
         }
         let t = self.model.topology();
-        self.model
-            .mass()
-            .apply(t, &self.difference, &mut self.product);
-        let mut sums = vec![Vector3::zeros(); self.falling.ways.len()];
+        let mass = self.model.mass();
+        mass.apply(t, &self.difference, &mut self.product);
+        sums.fill(Vector3::zeros());
         for (v, p) in t.vertex_ids().zip(self.product.as_chunks::<3>().0) {
             sums[t.vertex_component(v)] += Vector3::from(*p);
         }
-        let parts = self
-            .falling
-            .ways
-            .iter()
-            .zip(&self.falling.masses)
-            .zip(&sums);
+        let parts = ways.iter().zip(masses).zip(sums);
         let less = parts.filter_map(|((way, mass), sum)| {
             let of_part = sum.dot(way) - 0.5 * (*mass)? * way.norm_squared();
             Some(of_part.max(0.0))

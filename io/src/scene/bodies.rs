@@ -33,7 +33,7 @@ pub struct Body {
     /// corners as seen from outside; it may have cavities.
     pub shape: Shape,
     /// Sides of the circles of round shapes, from 4 to 256, by which they are drawn and measured; if left out 32,
-    /// and of cylinders 128. Spheres and capsules touch by their true surface, cylinders as a prism with so many
+    /// and of cylinders 256. Spheres and capsules touch by their true surface, cylinders as a prism with so many
     /// sides, whose corners are on the shape. Mass, centre and inertia are those of the true shape.
     #[serde(default)]
     pub sides: Option<usize>,
@@ -69,7 +69,7 @@ const DRAWN: usize = 32;
 
 /// Sides of circles where a body touches with them: it rolls down at the acceleration of a true cylinder to half a
 /// per cent then.
-const TOUCHING: usize = 128;
+const TOUCHING: usize = 256;
 
 /// Least and largest number of sides of a circle.
 const SIDES: [f64; 2] = [4.0, 256.0];

@@ -91,9 +91,7 @@ fn a_torque_turns_a_wheel_about_its_centre() {
             step = 2e-3"
         ))
     };
-    // A polygon of 64 sides: second moments over the area.
-    let angle = TAU / 64.0;
-    let inertia = 0.5 * mass * radius * radius * (2.0 + angle.cos()) / 3.0;
+    let inertia = 0.5 * mass * radius * radius;
     let mut live = wheel(
         "",
         &format!("torque = [{{ axis = [0, 0, 1], size = {torque} }}]"),
@@ -181,8 +179,7 @@ fn a_top_on_a_ball_joint_precesses() {
     let (mass, radius, height, above) = (0.1, 0.05, 0.01, 0.04);
     let lean = 30.0_f64;
     let (sin, cos) = lean.to_radians().sin_cos();
-    let angle = TAU / 64.0;
-    let along = 0.5 * mass * radius * radius * (2.0 + angle.cos()) / 3.0;
+    let along = 0.5 * mass * radius * radius;
     let across = 0.5 * along + mass * (height * height / 12.0 + above * above);
     let precession = 8.0_f64;
     let spin = (mass * G * above + across * precession * precession * cos) / (along * precession);

@@ -47,7 +47,6 @@ fn balls_roll_down_at_five_sevenths() {
             let mut live = on(tangent, 0.3, body, FLOOR);
             let found = acceleration(&mut live, step, 0.5);
             let wanted = 5.0 / 7.0 * G * tangent.atan().sin();
-            println!("{tangent} {step}: {}", found / wanted - 1.0);
             assert!(
                 (found / wanted - 1.0).abs() < 5e-3,
                 "{tangent}, {step}: {found} {wanted}"
@@ -68,7 +67,6 @@ fn balls_roll_on_boxes() {
         let mut live = on(0.1, 0.3, body, below);
         let found = acceleration(&mut live, 1.0 / 120.0, 0.5);
         let wanted = 5.0 / 7.0 * G * 0.1_f64.atan().sin();
-        println!("{name}: {}", found / wanted - 1.0);
         assert!(
             (found / wanted - 1.0).abs() < 5e-3,
             "{name}: {found} {wanted}"
@@ -90,7 +88,6 @@ fn capsules_roll() {
             let mut live = on(tangent, 0.2, body, FLOOR);
             let found = acceleration(&mut live, step, 0.4);
             let wanted = G * tangent.atan().sin() / (1.0 + part);
-            println!("{tangent} {step}: {}", found / wanted - 1.0);
             assert!(
                 (found / wanted - 1.0).abs() < 5e-3,
                 "{tangent}, {step}: {found} {wanted}"
@@ -289,38 +286,34 @@ fn a_ball_and_a_sheet_keep_their_momentum() {
     }
     assert!((velocity(&live, 0) - Vector3::new(0.3, 0.0, -1.0)).norm() > 0.02);
     let lost = (momentum(&live) - before).norm() / before.norm();
-    println!("{lost:e}");
     // The root of the tolerance of a step with bodies, of the change of momentum.
     assert!(lost < 1e-2, "{lost}");
 }
 
-/// Cylinders are prisms with 128 sides, unless another number is given.
+/// Cylinders are prisms with 256 sides.
 #[test]
-fn cylinders_roll() {
-    for sides in ["", "sides = 32\n", "sides = 64\n", "sides = 256\n"] {
-        for (radius, activation) in [(0.03, 1e-4), (0.2, 1e-4), (0.2, 1e-3)] {
-            for tangent in [0.05_f64, 0.3] {
-                for step in [1.0 / 60.0, 1.0 / 240.0] {
-                    let body = format!(
-                        "shape = {{ cylinder = {{ radius = {radius}, height = 0.5 }} }}\n{sides}\
-                         pose = {{ position = [0, 0, HEIGHT], turn = {{ axis = [1, 0, 0], angle = 90 }} }}"
-                    );
-                    let text = format!(
-                        "{ASIDE}[contact]\nactivation = {activation}\nfriction = 0.8\n{}[[body]]\n{body}\ndensity = 500\n{FLOOR}",
-                        gravity(tangent),
-                    );
-                    let mut live =
-                        live(&text.replace("HEIGHT", &format!("{}", radius + 0.5 * activation)));
-                    let begun = std::time::Instant::now();
-                    let duration = if radius < 0.1 { 0.1 } else { 0.4 };
-                    let found = acceleration(&mut live, step, duration);
-                    let wanted = 2.0 / 3.0 * G * tangent.atan().sin();
-                    println!(
-                        "{sides:?} {radius} {activation} {tangent} {step}: {} ({:?})",
-                        found / wanted - 1.0,
-                        begun.elapsed()
-                    );
-                }
+fn cylinders_roll_down_at_two_thirds() {
+    for (radius, activation) in [(0.03, 1e-4), (0.2, 1e-4), (0.2, 1e-3)] {
+        for tangent in [0.05_f64, 0.3] {
+            for step in [1.0 / 60.0, 1.0 / 240.0] {
+                let scene = format!(
+                    "{ASIDE}[contact]\nactivation = {activation}\nfriction = 0.8\n{}[[body]]\n\
+                     shape = {{ cylinder = {{ radius = {radius}, height = 0.5 }} }}\n\
+                     pose = {{ position = [0, 0, {}], turn = {{ axis = [1, 0, 0], angle = 90 }} }}\n\
+                     density = 500\n{FLOOR}",
+                    gravity(tangent),
+                    radius + 0.5 * activation,
+                );
+                let mut live = live(&scene);
+                // It turns by a few degrees in a step.
+                let duration = if radius < 0.1 { 0.1 } else { 0.4 };
+                let found = acceleration(&mut live, step, duration);
+                let wanted = 2.0 / 3.0 * G * tangent.atan().sin();
+                let case = format!("{radius}, {activation}, {tangent}, {step}");
+                assert!(
+                    (found / wanted - 1.0).abs() < 5e-3,
+                    "{case}: {found} {wanted}"
+                );
             }
         }
     }
@@ -340,11 +333,10 @@ fn bodies_that_turn_keep_their_energy() {
                     360.0 * turns
                 ));
                 let start = live.simulation().energy();
-                for _ in 0..(1.0 / step).round() as usize {
+                for _ in 0..(1.0_f64 / step).round() as usize {
                     live.step(step).unwrap();
                 }
                 let left = live.simulation().energy() / start;
-                println!("{name} {turns} {step}: {left}");
                 assert!(
                     (0.98..1.0 + 1e-9).contains(&left),
                     "{name}, {turns}, {step}: {left}"
