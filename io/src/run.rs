@@ -30,6 +30,7 @@
 
 #[cfg(feature = "cli")]
 mod action_verdict;
+mod balance;
 mod checkpoint;
 mod collect;
 mod commit;
@@ -55,7 +56,6 @@ mod frames;
 mod gallery;
 mod ground;
 mod held_open;
-mod balance;
 mod incidence;
 mod intervention;
 mod last_change;
@@ -85,6 +85,7 @@ mod writer;
 
 #[cfg(feature = "cli")]
 pub(crate) use action_verdict::ActionVerdict;
+pub use balance::ForceBalance;
 pub use collect::Collection;
 pub use commit::note_commit;
 #[cfg(feature = "cli")]
@@ -108,7 +109,6 @@ pub(crate) use folder::{check_folder, check_run};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use held_open::TouchingFaces;
-pub use balance::ForceBalance;
 pub use incidence::Incidence;
 pub use intervention::Intervention;
 pub use page::write_page;

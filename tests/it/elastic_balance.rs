@@ -12,7 +12,11 @@ fn inertia(method: &Method, masses: &[f64], [new, old, older]: [&[f64]; 3]) -> V
         Method::Bdf2(_) => 1.5 * at(new, i) - 2.0 * at(old, i) + 0.5 * at(older, i),
         _ => at(new, i) - at(old, i),
     };
-    masses.iter().enumerate().map(|(i, m)| of(i) * (*m / STEP)).collect()
+    masses
+        .iter()
+        .enumerate()
+        .map(|(i, m)| of(i) * (*m / STEP))
+        .collect()
 }
 
 /// Largest sums of forces and of torques in a run over the largest sums of their magnitudes; with what the simulation
@@ -75,7 +79,10 @@ fn damped(tolerance: f64) -> [Method; 2] {
         tolerance: Some(tolerance),
         ..ImplicitOptions::default()
     };
-    [Method::Bdf2(options.clone()), Method::ImplicitEuler(options)]
+    [
+        Method::Bdf2(options.clone()),
+        Method::ImplicitEuler(options),
+    ]
 }
 
 /// The tolerance is one of an energy, which is quadratic in the forces that are left; what a strip of this stiffness
@@ -88,7 +95,10 @@ fn all_supports_balance() {
                 for stiffness in [1e3, 1e5] {
                     let found = left(held, &method, stiffness);
                     let bound = tolerance.sqrt();
-                    assert!(found.iter().all(|f| *f < bound), "{held:?} {stiffness:e} {method:?}: {found:?} {bound:e}");
+                    assert!(
+                        found.iter().all(|f| *f < bound),
+                        "{held:?} {stiffness:e} {method:?}: {found:?} {bound:e}"
+                    );
                 }
             }
         }

@@ -63,11 +63,16 @@ fn loads_of_time_keep_the_order_of_each_method() {
 #[test]
 fn loads_of_time_keep_the_order_in_a_chart() {
     for (load, depends, model) in loads() {
-        let order = if depends == DependsOn::Damping { 1.0 } else { 4.0 };
+        let order = if depends == DependsOn::Damping {
+            1.0
+        } else {
+            4.0
+        };
         check(&format!("Runge-Kutta under {load}"), order, |h| {
             let sheet = triangle();
             let system = RodSystem::new(&sheet, &[]).expect("rods");
-            let chart = CartesianChart::new(system, Choice::Auto, sheet.positions()).expect("a chart");
+            let chart =
+                CartesianChart::new(system, Choice::Auto, sheet.positions()).expect("a chart");
             let options = ChartOptions {
                 method: ChartMethod::RungeKutta4,
                 control: ChartStepControl::Fixed(h),
@@ -96,9 +101,15 @@ fn breaks_keep_the_order_of_bdf2() {
             .iter()
             .map(|steps| {
                 let profile = jump(SIZE);
-                let times = if with_breaks { profile.breaks() } else { Vec::new() };
+                let times = if with_breaks {
+                    profile.breaks()
+                } else {
+                    Vec::new()
+                };
                 let field = AccelerationField::new(vec![MASS; 3], [0.0, 0.0, 1.0], profile);
-                let model = bare().with_force(field.expect("a field")).with_breaks(times);
+                let model = bare()
+                    .with_force(field.expect("a field"))
+                    .with_breaks(times);
                 let method = Method::Bdf2(Default::default());
                 let start = State::at_rest(triangle().positions().to_vec());
                 let mut run = Simulation::new(model, start, method).expect("a simulation");

@@ -2,8 +2,8 @@
 
 use isosheet_dynamics::constraint::{Line, Plane, Side, Sphere};
 use isosheet_dynamics::{
-    ElasticSheet, PlateBending, PlateStiffness, PointProfile, Profile, RigidDisplacement, SheetModel, VertexConstraint,
-    VertexLoad,
+    ElasticSheet, PlateBending, PlateStiffness, PointProfile, Profile, RigidDisplacement,
+    SheetModel, VertexConstraint, VertexLoad,
 };
 use isosheet_mesh::generate::{Diagonals, grid};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
@@ -88,8 +88,15 @@ pub fn held_strip(held: Held, stiffness: f64) -> SheetModel {
         poisson: 0.3,
     };
     let plate = PlateBending::clamped(&sheet, law, &clamp).expect("a plate");
-    let elastic = ElasticSheet::new(&sheet, stiffness, 0.3).expect("a sheet").beside(&sheet, &plate);
-    let load = VertexLoad::new(sheet.topology(), &[VertexId(COLUMNS as u32 / 2)], [0.3, 0.2, 1.0], rise(1e-3));
+    let elastic = ElasticSheet::new(&sheet, stiffness, 0.3)
+        .expect("a sheet")
+        .beside(&sheet, &plate);
+    let load = VertexLoad::new(
+        sheet.topology(),
+        &[VertexId(COLUMNS as u32 / 2)],
+        [0.3, 0.2, 1.0],
+        rise(1e-3),
+    );
     let mut model = SheetModel::new(&sheet, MASS, MassKind::Lumped)
         .expect("a model")
         .with_acceleration([0.0, 0.0, -G])
@@ -124,10 +131,13 @@ pub fn held_strip(held: Held, stiffness: f64) -> SheetModel {
         let constraint = match held {
             Held::Clamped | Held::MovingPins => continue,
             Held::OnPlane => VertexConstraint::on_surface(v, plane(up), Side::On),
-            Held::OnMovingPlane => moving(VertexConstraint::on_surface(v, plane(up), Side::On), 0.03),
-            Held::OnTiltedMovingPlane => {
-                moving(VertexConstraint::on_surface(v, plane([0.5, 0.1, 1.0]), Side::On), 0.03)
+            Held::OnMovingPlane => {
+                moving(VertexConstraint::on_surface(v, plane(up), Side::On), 0.03)
             }
+            Held::OnTiltedMovingPlane => moving(
+                VertexConstraint::on_surface(v, plane([0.5, 0.1, 1.0]), Side::On),
+                0.03,
+            ),
             Held::OnSphere => {
                 let centre = [x - 0.03, y, z - 0.04];
                 let sphere = Sphere::new(centre, 0.05).expect("a sphere");
@@ -138,7 +148,10 @@ pub fn held_strip(held: Held, stiffness: f64) -> SheetModel {
                 VertexConstraint::on_curve(v, line)
             }
             Held::OverPlane => VertexConstraint::on_surface(v, plane(up), Side::Outside),
-            Held::OverRisingPlane => moving(VertexConstraint::on_surface(v, plane(up), Side::Outside), 0.03),
+            Held::OverRisingPlane => moving(
+                VertexConstraint::on_surface(v, plane(up), Side::Outside),
+                0.03,
+            ),
         };
         model = model.with_constraint(constraint).expect("a vertex");
     }

@@ -4,7 +4,8 @@
 //! and forces of positions and velocities pull it back to the exact motion.
 
 use isosheet_dynamics::{
-    AccelerationField, Air, At, Force, LoadedFaces, Potential, Profile, SheetModel, State, VertexLoad, Wind,
+    AccelerationField, Air, At, Force, LoadedFaces, Potential, Profile, SheetModel, State,
+    VertexLoad, Wind,
 };
 use isosheet_mesh::{MassMatrix, Sheet, VertexId};
 use std::f64::consts::TAU;
@@ -131,7 +132,9 @@ pub fn loads() -> [Load; 7] {
             let sheet = triangle();
             let faces: Vec<_> = sheet.topology().face_ids().collect();
             let faces = LoadedFaces::new(sheet.topology(), &faces, &[]).expect("a face");
-            bare().with_pressure(faces, course(3.0 * MASS / AREA)).expect("a pressure")
+            bare()
+                .with_pressure(faces, course(3.0 * MASS / AREA))
+                .expect("a pressure")
         }),
         ("potential", DependsOn::Time, || bare().with_potential(Lift)),
         ("wind", DependsOn::Motion, || {
@@ -147,12 +150,16 @@ pub fn loads() -> [Load; 7] {
             let wind = Wind::Custom(Arc::new(wind));
             bare().with_air(Air { wind, ..air }).expect("air")
         }),
-        ("force of positions and velocities", DependsOn::Motion, || {
-            bare().with_force(Along(|t, z, v| {
-                let [z0, v0, a] = exact(t);
-                MASS * (a + RATE * (v0 - v) + SPRING * (z0 - z))
-            }))
-        }),
+        (
+            "force of positions and velocities",
+            DependsOn::Motion,
+            || {
+                bare().with_force(Along(|t, z, v| {
+                    let [z0, v0, a] = exact(t);
+                    MASS * (a + RATE * (v0 - v) + SPRING * (z0 - z))
+                }))
+            },
+        ),
         ("damping", DependsOn::Damping, || {
             let force = Along(|t, _, _| {
                 let [_, v, a] = exact(t);

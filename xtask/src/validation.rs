@@ -5,10 +5,11 @@ mod creases;
 mod curls;
 mod elasticas;
 mod experiment;
+mod forming;
 mod gases;
 mod limitations;
-mod loads;
 mod linear;
+mod loads;
 mod outcome;
 mod plastic;
 mod plates;
@@ -35,7 +36,7 @@ use outcome::{Outcome, SIZES};
 use rayon::prelude::*;
 
 /// All of them.
-static EXPERIMENTS: [&Experiment; 31] = [
+static EXPERIMENTS: [&Experiment; 32] = [
     &cantilevers::END_SHEAR,
     &cantilevers::END_MOMENT,
     &shells::ANNULUS,
@@ -67,6 +68,7 @@ static EXPERIMENTS: [&Experiment; 31] = [
     &rolling::ROLLING,
     &loads::IN_TIME,
     &loads::BALANCED,
+    &forming::FORMED,
 ];
 
 fn named() -> Vec<(&'static str, &'static Experiment)> {

@@ -80,7 +80,11 @@ impl Integrator for Implicit {
             model,
             objective: &mut *objective,
         };
-        let bodies = inner.objective.contact.as_ref().and_then(ContactTerm::points);
+        let bodies = inner
+            .objective
+            .contact
+            .as_ref()
+            .and_then(ContactTerm::points);
         let may_jump = match model.rods().is_empty() {
             true => model.constraints().iter().any(VertexConstraint::moves),
             false => model.has_drives(),

@@ -290,11 +290,7 @@ impl Engine {
     }
 
     /// Advances by `h` seconds in which nothing breaks.
-    fn advance_between(
-        &mut self,
-        h: f64,
-        totals: &mut StepTotals<'_>,
-    ) -> Result<(), StepError> {
+    fn advance_between(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
         let mut lengths = Subdivision::new(self.state().t, h, PATIENCE);
         if let (Some(_), Some(longest)) = (self.control.accuracy, self.motion.history.longest) {
             lengths.limit(longest.max(lengths.part(self.control.min_fraction)));

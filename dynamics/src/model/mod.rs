@@ -2,8 +2,8 @@
 
 pub(crate) mod air;
 pub(crate) mod attached;
-pub(crate) mod clamps;
 pub(crate) mod breaks;
+pub(crate) mod clamps;
 mod damped_range;
 mod damping;
 #[cfg(test)]
@@ -420,7 +420,9 @@ impl SheetModel {
         let change = |[from, to]: [f64; 2], x: &[f64]| -> f64 {
             let driven = self.potentials_at(from, x, memories);
             let driven = driven.filter(|(p, _)| p.is_driven());
-            driven.map(|(p, at)| p.energy(At { t: to, ..at }) - p.energy(at)).sum()
+            driven
+                .map(|(p, at)| p.energy(At { t: to, ..at }) - p.energy(at))
+                .sum()
         };
         let sum = change([t0, t0 + part], x0) + change([t1 - part, t1], x1);
         0.5 * sum / RATE_PART

@@ -208,7 +208,9 @@ impl Term for Acting {
                 .add_explicit_force(start.t, &start.x, &start.v, &mut self.scratch);
             self.model.clear_pinned(&mut self.scratch);
             let changes = self.applied_free.iter().zip(&self.scratch);
-            let parts = changes.zip(moved()).map(|((end, begin), d)| (end - begin) * d);
+            let parts = changes
+                .zip(moved())
+                .map(|((end, begin), d)| (end - begin) * d);
             difference = parts.sum();
         }
         Ok(Exchange {

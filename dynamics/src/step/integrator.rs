@@ -151,7 +151,8 @@ impl<'a> Attempt<'a> {
 
     /// Whether anything touches at its beginning.
     pub(crate) fn touches(&self) -> bool {
-        self.contacts.is_some_and(|contacts| !contacts.active.list().is_empty())
+        self.contacts
+            .is_some_and(|contacts| !contacts.active.list().is_empty())
     }
 
     /// Whether a method that looks back may begin with a step of its own where there is no state before. (One that

@@ -1,12 +1,12 @@
 //! Forces of supports on the sheet.
 
-use crate::{SheetModel, State};
 use crate::constraint::rows::VertexRows;
 use crate::model::support::Support;
 use crate::potential::Memories;
 use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::vectors::{add, point};
+use crate::{SheetModel, State};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

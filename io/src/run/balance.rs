@@ -54,6 +54,10 @@ impl ForceBalance {
 
     /// Part of the forces of the supports that is not balanced.
     pub fn part(&self) -> f64 {
-        if self.force > 0.0 { self.force / self.forces } else { 0.0 }
+        if self.force > 0.0 {
+            self.force / self.forces
+        } else {
+            0.0
+        }
     }
 }

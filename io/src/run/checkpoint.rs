@@ -1,10 +1,10 @@
 //! The checkpoint of a run: how far it has come, with the checkpoint of its simulation.
 
 use super::RunError;
+use super::balance::ForceBalance;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::error::BEGIN_ANEW;
-use super::balance::ForceBalance;
 use super::incidence::Incidence;
 use super::intervention::Intervention;
 use super::summary::{Ending, Measured};

@@ -1,8 +1,8 @@
 //! What a complete run says of itself.
 
+use super::balance::ForceBalance;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
-use super::balance::ForceBalance;
 use super::incidence::Incidence;
 use super::intervention::Intervention;
 use super::time_error::TimeError;

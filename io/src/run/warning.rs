@@ -76,7 +76,9 @@ impl Summary {
             warnings.push(Warning::new(message, remedy));
         }
         if let Some(balance) = self.balance.filter(|b| b.part() > Self::UNBALANCED) {
-            let message = format!("the forces of the supports do not balance what acts on the sheet: {balance} are left");
+            let message = format!(
+                "the forces of the supports do not balance what acts on the sheet: {balance} are left"
+            );
             let remedy = "take a smaller `method.step`, or a smaller tolerance, before you trust `loads.csv`";
             warnings.push(Warning::new(message, remedy));
         }

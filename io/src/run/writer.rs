@@ -1,12 +1,12 @@
 //! The files of a run that grow with its steps.
 
 use super::RunError;
+use super::balance::ForceBalance;
 use super::checkpoint::{self, RunProgress};
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::folder::{RunFolder, SceneHash};
 use super::frames::{FrameFile, FrameShape};
-use super::balance::ForceBalance;
 use super::incidence::Incidence;
 use super::last_change::last_change;
 use super::recording::Tables;

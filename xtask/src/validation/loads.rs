@@ -19,7 +19,8 @@ pub(super) const IN_TIME: Experiment = Experiment {
             it should be. Meshes make no difference.",
     quantities: || {
         let of = |(name, _): (&'static str, Method)| {
-            let loads = pushed::loads().map(|(load, ..)| Quantity::new(format!("{name}, {load}"), 1.0));
+            let loads =
+                pushed::loads().map(|(load, ..)| Quantity::new(format!("{name}, {load}"), 1.0));
             loads.into_iter()
         };
         methods().flat_map(of).collect()
@@ -56,7 +57,8 @@ pub(super) const BALANCED: Experiment = Experiment {
             tolerance that a run has. Stiffnesses of 1e3 N/m (4), 1e4 N/m (8) and 1e5 N/m (16). Meshes make no difference.",
     quantities: || {
         let of = |(name, _): (&'static str, Method)| {
-            HELD.map(|held| Quantity::new(format!("{name}, {held:?}"), 1.0)).into_iter()
+            HELD.map(|held| Quantity::new(format!("{name}, {held:?}"), 1.0))
+                .into_iter()
         };
         damped().into_iter().flat_map(of).collect()
     },
@@ -94,7 +96,12 @@ fn balanced(job: Job) -> Result<Measured> {
                 }
                 let mut loads = vec![0.0; x.len()];
                 model.applied_force(*t, x, v, &mut loads);
-                let loads: Vector3<f64> = loads.as_chunks::<3>().0.iter().map(|f| Vector3::from(*f)).sum();
+                let loads: Vector3<f64> = loads
+                    .as_chunks::<3>()
+                    .0
+                    .iter()
+                    .map(|f| Vector3::from(*f))
+                    .sum();
                 let weight = Vector3::new(0.0, 0.0, -model.mass().total() * G);
                 let held: Vector3<f64> = run.reactions().iter().map(|r| r.force).sum();
                 left = left.max((held + loads + weight - rate).norm());

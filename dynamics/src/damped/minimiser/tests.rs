@@ -2,8 +2,8 @@
 
 use super::Minimiser;
 use super::lagrangian::{Definiteness, Lagrangian};
-use crate::constraint::rows::RowLoad;
 use super::problem::StepProblem;
+use crate::constraint::rows::RowLoad;
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;

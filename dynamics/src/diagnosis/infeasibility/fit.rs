@@ -272,8 +272,11 @@ impl<'a> Fit<'a> {
             excess.add_semidefinite_hessian(At::new(self.t, &self.x), &mut sink);
         }
         self.gaps.add_hessian(&self.x, &mut sink);
-        self.rows
-            .add_hessian(HessianPart::PositiveSemidefinite, RowLoad::Estimates, &mut sink);
+        self.rows.add_hessian(
+            HessianPart::PositiveSemidefinite,
+            RowLoad::Estimates,
+            &mut sink,
+        );
         drop(sink);
         self.matrix.factorize().ok()?;
         self.matrix.solve(self.model, &self.gradient, &mut self.dx);
