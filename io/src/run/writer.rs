@@ -215,11 +215,13 @@ impl RunWriter {
         let state = simulation.state();
         let facts = &under_way.facts;
         let rod_forces = facts.of_edges(simulation.rod_forces().unwrap_or_default());
-        let mut contact_forces = simulation.surface_forces().unwrap_or_default();
-        let mut gaps = simulation.vertex_gaps().unwrap_or_default();
         // Points of round bodies, which come after all others, are not seen.
         let seen = facts.sheet.topology().vertex_count();
+        let mut contact_forces = simulation.surface_forces().unwrap_or_default();
         contact_forces.truncate(3 * seen);
+        let shown = facts.shown(&state.x);
+        CarriedBody::add_round_forces(&facts.bodies, simulation, &shown, &mut contact_forces);
+        let mut gaps = simulation.vertex_gaps().unwrap_or_default();
         gaps.truncate(seen);
         let plastic_angles = facts.of_edges(simulation.plastic_angles().unwrap_or_default());
         let curvatures = simulation.plastic_curvatures().unwrap_or_default();
@@ -234,8 +236,7 @@ impl RunWriter {
             crease_bends: &crease_bends,
             ..FrameData::default()
         };
-        let (t, x) = (state.t, under_way.facts.shown(&state.x));
-        Ok(self.frames.append(t, &x, &data)?)
+        Ok(self.frames.append(state.t, &shown, &data)?)
     }
 
     /// Takes back the last frame.

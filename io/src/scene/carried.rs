@@ -17,6 +17,8 @@ pub struct CarriedBody {
     pub(crate) pivot: Option<CarriedPoint>,
     /// Where its surface is among the sheets and the surfaces of all bodies.
     pub(crate) part: Part,
+    /// Whether it touches by its true surface and not by the one that is seen.
+    pub(crate) is_round: bool,
 }
 
 /// What acts on a body.
@@ -75,6 +77,32 @@ impl CarriedBody {
     /// The vertices of its surface, by their numbers among those of the sheets and of all surfaces.
     pub fn surface(&self) -> Range<usize> {
         self.part.vertices.clone()
+    }
+
+    /// Adds to the forces on the surfaces that are seen (`3V`, newtons), at positions `x`, those on bodies that touch by
+    /// others: the whole of each where its surface reaches farthest against it, which is where a round body is
+    /// touched.
+    #[cfg(feature = "run")]
+    pub(crate) fn add_round_forces(
+        bodies: &[Self],
+        simulation: &Simulation,
+        x: &[f64],
+        forces: &mut [f64],
+    ) {
+        let round = bodies.iter().any(|body| body.is_round);
+        if !round || forces.is_empty() {
+            return;
+        }
+        let loads = Self::contact_loads(bodies, simulation);
+        for (body, load) in bodies.iter().zip(loads).filter(|(body, _)| body.is_round) {
+            let force = Vector3::from(load.force);
+            let along = |v: &usize| force.dot(&of_vertex(x, VertexId::from_index(*v)));
+            let touched = body.surface().min_by(|a, b| along(a).total_cmp(&along(b)));
+            let place = touched.map_or(0..0, |v| 3 * v..3 * v + 3);
+            for (sum, f) in forces[place].iter_mut().zip(&force) {
+                *sum += f;
+            }
+        }
     }
 
     /// What its guide does to it, if it has one: the torque about the point of a hinge or a ball joint, or about

@@ -211,6 +211,7 @@ impl<'a> PlacedBodies<'a> {
                     .carried(guide.point().unwrap_or(centre), body.first)
             }),
             part: body.part.clone(),
+            is_round: body.round().is_some(),
         });
         bodies.collect()
     }
