@@ -44,7 +44,7 @@ fn loads_of_time_keep_the_order_of_each_method() {
                 _ => 2.0,
             };
             let tight = ImplicitOptions {
-                tolerance: Some(1e-12),
+                tolerance: Some(1e-14),
                 ..Default::default()
             };
             let method = match method {

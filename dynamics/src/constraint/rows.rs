@@ -28,6 +28,8 @@ pub(crate) struct VertexRows {
     pub(crate) active: Vec<bool>,
     /// Whether the constraint is treated as an equality: always, unless it is one-sided.
     pub(crate) equality: Vec<bool>,
+    /// Whether a one-sided constraint is an equality of the present linear system.
+    held: Vec<bool>,
 }
 
 /// Which load of an equation its curvature enters a Hessian with.
@@ -56,6 +58,7 @@ impl VertexRows {
             corrected: vec![false; m],
             active: vec![false; m],
             equality: constraints.iter().map(|c| !c.is_one_sided()).collect(),
+            held: vec![false; m],
         }
     }
 
@@ -64,26 +67,36 @@ impl VertexRows {
         for (p, v) in self.penalties.iter_mut().zip(&self.vertices) {
             *p = kappa * v.mass;
         }
+        self.held.fill(false);
     }
 
-    /// Raises the penalties to `kappa` times the stiffness of what a linear system has at the vertex, the largest
-    /// diagonal entry of its block (kilograms): equations that are solved for are kept to `1 / kappa` by it alone.
+    /// Raises the penalties of active constraints to `kappa` times the stiffness of what a linear system has at the
+    /// vertex, the largest diagonal entry of its block (kilograms): equations that are solved for are kept to `1 /
+    /// kappa` by it alone. One-sided constraints are active by the penalties that they have, which do not mistake
+    /// round-off for a gap, and are equalities of the system then.
     pub(crate) fn stiffen(&mut self, kappa: f64, stiffness: impl Fn(VertexId) -> f64) {
-        for (p, v) in self.penalties.iter_mut().zip(&self.vertices) {
-            if *p > 0.0 {
-                *p = p.max(kappa * stiffness(v.vertex));
+        for i in 0..self.vertices.len() {
+            if self.penalties[i] > 0.0 && self.is_active(i) {
+                let raised = kappa * stiffness(self.vertices[i].vertex);
+                self.held[i] = !self.equality[i];
+                self.penalties[i] = raised.max(self.penalties[i]);
             }
         }
     }
 
-    /// Replaces the multipliers of one-sided constraints by their first-order estimates after the step `-dx`,
-    /// the equations being linearised: the negative part of `L + p (c - J dx)`. Returns the largest change
-    /// and the largest of them, kilogram metres.
+    /// Replaces the multipliers of one-sided constraints that are equalities of the linear system by their first-order
+    /// estimates after the step `-dx`, the equations being linearised: the negative part of `L + p (c - J dx)`. Others
+    /// have none. Returns the largest change and the largest of them, kilogram metres.
     pub(crate) fn update_one_sided(&mut self, dx: &[f64]) -> [f64; 2] {
         let mut largest = [0.0_f64; 2];
         for i in 0..self.multipliers.len() {
             if self.equality[i] {
                 self.active[i] = true;
+                continue;
+            }
+            if !self.held[i] {
+                self.multipliers[i] = Vector3::zeros();
+                self.active[i] = false;
                 continue;
             }
             let (local, vertex) = (&self.local[i], self.vertices[i].vertex);
@@ -94,6 +107,7 @@ impl VertexRows {
             largest[1] = largest[1].max(new.norm());
             self.multipliers[i] = new;
             self.active[i] = new.x < 0.0;
+            self.held[i] &= self.active[i];
         }
         largest
     }
@@ -141,7 +155,7 @@ impl VertexRows {
     /// metres: the force on the vertex is `-J^T` times it per squared step.
     pub(crate) fn multiplier_estimate(&self, i: usize) -> Vector3<f64> {
         let estimate = self.multipliers[i] + self.penalties[i] * self.local[i].value;
-        if self.equality[i] {
+        if self.equality[i] || self.held[i] {
             estimate
         } else {
             Vector3::new(estimate.x.min(0.0), 0.0, 0.0)
@@ -151,7 +165,7 @@ impl VertexRows {
     /// Whether the constraint is in the active set: an equality, or one-sided with a multiplier that is not
     /// zero.
     fn is_active(&self, i: usize) -> bool {
-        self.equality[i] || self.multiplier_estimate(i).x < 0.0
+        self.equality[i] || self.held[i] || self.multiplier_estimate(i).x < 0.0
     }
 
     /// The augmented Lagrangian's terms of the constraints, joules times squared step.
