@@ -204,9 +204,16 @@ fn implicit(tolerance: f64) -> [Method; 2] {
 fn supports_of_the_implicit_methods_balance_the_change_of_momentum() {
     // The tolerance is one of an energy, which is quadratic in the forces that are left.
     for tolerance in [1e-12, 1e-4_f64] {
-        let bound = tolerance.sqrt() + left_by_lengths();
+        let exact = tolerance.sqrt() + left_by_lengths();
         for method in implicit(tolerance) {
             for supports in two_sided().into_iter().chain(one_sided()) {
+                // A sheet that falls on its ledge buckles: with the semidefinite part of the Hessian the iteration
+                // converges linearly, and what a last iteration leaves adds up with those that would follow.
+                let bound = if supports.ledge {
+                    exact / (1.0 - 0.9)
+                } else {
+                    exact
+                };
                 for mass in MASSES {
                     let found = imbalance(supports, &method, mass);
                     assert!(found.of_forces < bound, "{supports:?} {method:?} {found:?}");

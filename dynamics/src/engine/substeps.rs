@@ -11,7 +11,7 @@ use crate::diagnosis::pressing::pressing;
 use crate::diagnosis::rank::rod_rank;
 use crate::engine::rod_forces::rod_forces;
 use crate::engine::subdivision::Subdivision;
-use crate::model::breaks::Start;
+use crate::model::breaks::{Breaks, Start};
 use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
 use crate::potential::{At, Memories};
@@ -54,6 +54,8 @@ pub(crate) struct Engine {
     /// What damped steps minimise, with the geometry of contact.
     objective: Objective,
     method: Method,
+    /// When what is prescribed changes abruptly.
+    pub(crate) breaks: Breaks,
     /// Vertices that became pins at the start because they cannot move.
     fixed: Vec<VertexId>,
     integrator: Box<dyn Integrator>,
@@ -112,6 +114,7 @@ impl Engine {
             control,
             tuning,
             objective: Objective::new(&model),
+            breaks: model.breaks.clone(),
             method,
             fixed,
             model,
@@ -260,7 +263,7 @@ impl Engine {
         let mut left = h;
         loop {
             let t = self.state().t;
-            let (start, next) = self.model.breaks_in([t, end], h);
+            let (start, next) = self.breaks.within([t, end], h);
             if start == Start::AtBreak {
                 totals.work += self.begin_anew(h);
             }

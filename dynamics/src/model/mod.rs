@@ -80,8 +80,8 @@ pub struct SheetModel {
     /// Forces that damped steps take as terms of their objective.
     implicit: Vec<Box<dyn ImplicitForce>>,
     damping: Vec<Damping>,
-    /// When what is prescribed changes abruptly, seconds, in order.
-    breaks: Vec<f64>,
+    /// When what is prescribed changes abruptly.
+    pub(crate) breaks: breaks::Breaks,
     /// The vertices of sheets; those after them belong to rigid bodies and to surfaces in prescribed motion.
     sheet_vertices: usize,
     /// The first vertex of surfaces in prescribed motion.
@@ -151,7 +151,7 @@ impl SheetModel {
             forces: Vec::new(),
             implicit: Vec::new(),
             damping: Vec::new(),
-            breaks: Vec::new(),
+            breaks: breaks::Breaks::default(),
             sheet_vertices: n,
             driven_from: n,
             free_index: (0..n as u32).collect(),

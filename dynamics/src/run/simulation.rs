@@ -7,6 +7,7 @@ use crate::contact::{
 };
 use crate::damped::start::{check_finite, check_motions, check_state};
 use crate::engine::substeps::Engine as FreeEngine;
+use crate::model::breaks::Breaks;
 use crate::potential::Memories;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::effort::{SolverEffort, StepProgress, TraceSink, Watch};
@@ -399,6 +400,14 @@ impl Simulation {
                 balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, engine.state().t))
             }
             Engine::Chart(chart) => chart.reactions.clone(),
+        }
+    }
+
+    /// Says anew when what is prescribed changes abruptly (seconds), as [`SheetModel::with_breaks`] does, where a motion
+    /// is led otherwise than it was foreseen.
+    pub fn set_breaks(&mut self, times: impl IntoIterator<Item = f64>) {
+        if let Engine::Free(engine) = &mut self.engine {
+            engine.breaks = Breaks::at(times);
         }
     }
 

@@ -423,6 +423,8 @@ impl LiveScene {
                     led.lead(motion);
                 }
             }
+            let breaks = file.scene().breaks();
+            self.under_way.simulation.set_breaks(breaks);
             self.file = file;
             return Ok(());
         }

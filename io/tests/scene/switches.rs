@@ -142,9 +142,9 @@ fn supports_are_released_by_a_measure_and_by_their_force() {
     }
     let mass = scene.simulation().model().mass().total();
     let event = scene.events()[0];
-    // In a step acts the acceleration at its start.
+    // In a step acts the acceleration at its end.
     let force = event.force.expect("of a support");
-    let expected = mass * 10.0 * (event.t - 0.01);
+    let expected = mass * 10.0 * event.t;
     assert!((force - expected).abs() < 1e-9, "{force}, {expected}");
     assert!(
         (0.01..0.01 + mass * 10.0 * 0.01).contains(&force),
