@@ -483,7 +483,7 @@ fn finish(
         largest_strain: progress.strain,
         largest_displacement: progress.displacement,
         energy: progress.energy,
-        balance: progress.balance,
+        balance: progress.balance.or(progress.end_balance),
         incidence: progress.incidence,
         time_error: progress.time_error,
         vibration: progress

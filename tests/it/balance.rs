@@ -130,9 +130,8 @@ fn imbalance(supports: Supports, method: &Method, mass: MassKind) -> Imbalance {
         if report.rejected > 0 {
             older = None;
         }
-        // The formula of BDF2 above is that of equal steps, and its first step has one of its own.
-        let begins = older.is_none() && matches!(method, Method::Bdf2(_));
-        let is_regular = report.substeps == 1 && !was_divided && !begins;
+        // The formula of BDF2 above is that of equal steps.
+        let is_regular = report.substeps == 1 && !was_divided;
         was_divided = report.substeps > 1;
         if is_regular {
             let reactions = simulation.reactions().into_iter().map(|r| r.force);

@@ -2,7 +2,9 @@
 
 use isosheet_coords::{CartesianChart, Chart, Choice, RodSystem};
 use isosheet_dynamics::chart::{ChartMethod, ChartOptions, ChartStepControl};
-use isosheet_dynamics::{AccelerationField, ImplicitOptions, Method, Profile, Simulation, State};
+use isosheet_dynamics::{
+    AccelerationField, ElasticSheet, ImplicitOptions, Method, Profile, Simulation, State,
+};
 use isosheet_tests::pushed::{DependsOn, END, MASS, SIZE, bare, exact, loads, start, triangle};
 use isosheet_tests::{methods, orders};
 
@@ -122,4 +124,35 @@ fn breaks_keep_the_order_of_bdf2() {
     let (without, with) = (observed(false), observed(true));
     assert!(with.iter().all(|e| *e < 1e-8), "{with:?}");
     assert!(without.iter().all(|e| *e > 1e-4), "{without:?}");
+}
+
+/// A card of an elastic sheet is shaken at 5 Hz from rest, `a = A sin(omega t)`: after a second, five periods, it is
+/// `A / omega` away. BDF2 itself is 10.6, 2.8 and 0.71 % off in steps of 1/60, 1/120 and 1/240 s.
+#[test]
+fn a_card_that_is_shaken_from_rest_drifts_as_it_should() {
+    let (size, frequency) = (10.0, 5.0);
+    let exact = size / (std::f64::consts::TAU * frequency);
+    let errors = [60_u32, 120, 240].map(|steps| {
+        let shaken = Profile::Sine {
+            mean: 0.0,
+            amplitude: size,
+            frequency,
+            phase: 0.0,
+        };
+        let field = AccelerationField::new(vec![MASS; 3], [0.0, 0.0, 1.0], shaken);
+        let elastic = ElasticSheet::new(&triangle(), 3e5, 0.3).expect("a sheet");
+        let model = bare().with_force(field.expect("a field"));
+        let model = model.with_elastic_sheet(elastic).expect("its mesh");
+        let start = State::at_rest(triangle().positions().to_vec());
+        let mut run = Simulation::new(model, start, Method::default()).expect("a simulation");
+        for _ in 0..steps {
+            let report = run.step(1.0 / f64::from(steps)).expect("accepted");
+            assert_eq!(report.rejected, 0);
+        }
+        (run.state().x[2] / exact - 1.0).abs()
+    });
+    for (error, expected) in errors.iter().zip([0.106233, 0.027897, 0.0070796]) {
+        assert!((error / expected - 1.0).abs() < 1e-4, "{errors:?}");
+    }
+    assert!(orders(&errors).iter().all(|o| *o > 1.9), "{errors:?}");
 }

@@ -1,6 +1,5 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
-use crate::constraint::VertexConstraint;
 use crate::contact::ContactTerm;
 use crate::damped::minimiser::Minimiser;
 use crate::damped::minimiser::problem::StepProblem;
@@ -8,14 +7,12 @@ use crate::damped::restitution::{FormulaStep, Outcome, handed_on};
 use crate::damped::turning::{Predictions, Turning};
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
-use crate::step::history::History;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::local_error::LocalError;
 use crate::step::tuning::Tuning;
 use crate::term::{Formula, StepStart};
 use crate::{ImplicitOptions, SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
-use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Largest growth of the step that the two-step formula is used over: variable-step BDF2 is
 /// unstable from 1 + sqrt 2 on.
@@ -54,10 +51,6 @@ impl Integrator for Implicit {
         MethodTraits::minimising()
     }
 
-    fn depends_on_memory(&self, _: &History) -> bool {
-        self.formula == Formula::TwoStep
-    }
-
     fn propose(
         &mut self,
         scene: Scene<'_>,
@@ -80,22 +73,6 @@ impl Integrator for Implicit {
             model,
             objective: &mut *objective,
         };
-        let bodies = inner
-            .objective
-            .contact
-            .as_ref()
-            .and_then(ContactTerm::points);
-        let may_jump = match model.rods().is_empty() {
-            true => model.constraints().iter().any(VertexConstraint::moves),
-            false => model.has_drives(),
-        };
-        let is_smooth = bodies.is_none() && !attempt.touches() && !may_jump;
-        if previous.is_none() && is_smooth && attempt.starts_itself() {
-            begin(minimiser, inner, attempt, proposal, effort)?;
-            proposal.motion.history.set_previous(Some(state));
-            proposal.motion.history.body_changes.clear();
-            return Ok(());
-        }
         let reach = previous.map_or(Reach::NONE, |before| Reach::of_steps(before, state, h));
         let formula = [reach.b, reach.k];
         let ends = previous.map(|before| [before, state]);
@@ -166,67 +143,6 @@ impl<'a> Reach<'a> {
         let before = Some(before);
         Self { before, b, k }
     }
-}
-
-/// The part of a step that its first stage takes, `1 - 1 / sqrt 2`.
-const STAGE: f64 = 1.0 - FRAC_1_SQRT_2;
-
-/// Proposes a step of second order without a state before: the diagonally implicit Runge-Kutta method of two stages
-/// (R. Alexander, SIAM J. Numer. Anal. 14, 1977), which is L-stable. With `g = 1 - 1 / sqrt 2` its first stage is a
-/// step of implicit Euler of the length `g h`, and its second one, from there to the end,
-///
-/// ```text
-/// x1 = x0 + (1 - g) h va + g h v1 = xa + (1/g - 2) (xa - x0) + g h v1.
-/// ```
-///
-/// (A step of implicit Euler errs by `h^2 a' / 2` in the velocities, which never goes away. It is the first one all the
-/// same where a force is not smooth: in contact, where its velocities go to their ends monotonically, so that nothing
-/// slips that sticks; in scenes with rigid bodies that respond, whose impacts are accounted for by one stage; and where
-/// rods, curves or surfaces take vertices along with supports that may begin to move abruptly, since the second stage
-/// takes back a part of the impulse of the first one.)
-fn begin(
-    (minimiser, turning): (&mut Minimiser, &Turning),
-    scene: Scene<'_>,
-    attempt: Attempt<'_>,
-    proposal: &mut Proposal,
-    effort: &mut SolverEffort<'_>,
-) -> Result<(), StepError> {
-    let (start, h) = (attempt.state, attempt.h);
-    let Scene { model, objective } = scene;
-    let inner = Scene {
-        model,
-        objective: &mut *objective,
-    };
-    let first = attempt.of_length(STAGE * h);
-    let first_of = (&mut *minimiser, turning);
-    minimised(first_of, inner, first, Reach::NONE, proposal, effort)?;
-    let StepAccount {
-        residual,
-        outcome,
-        mut exchange,
-        ..
-    } = proposal.account;
-    let middle = proposal.motion.clone();
-    let second = attempt.going_on(&middle).of_length((1.0 - STAGE) * h);
-    let reach = Reach {
-        before: Some(start),
-        b: 1.0 / STAGE - 2.0,
-        k: STAGE / (1.0 - STAGE),
-    };
-    let inner = Scene { model, objective };
-    minimised((minimiser, turning), inner, second, reach, proposal, effort)?;
-    let end = &mut proposal.motion.state;
-    end.t = start.t + h;
-    exchange.add(proposal.account.exchange);
-    let error = LocalError::of_start(model, [start, &middle.state, end], STAGE);
-    proposal.account = StepAccount {
-        residual: residual.max(proposal.account.residual),
-        outcome: outcome.max(proposal.account.outcome),
-        exchange,
-        damped: model.damping_loss(&start.v, h),
-        error: Some(error),
-    };
-    Ok(())
 }
 
 /// Proposes the step of a formula.

@@ -42,15 +42,8 @@ pub enum Method {
     /// `f(t1, x0 + h v0, v0 + w (v0 - v_))`: of second order.
     ///
     /// The first step, the first after a change of the state from outside or at a
-    /// [break](SheetModel::with_breaks), and steps with `w > 2` have no use for a step before. They are two stages of
-    /// second order with `g = 1 - 1 / sqrt 2` (Alexander 1977), an implicit Euler step of `g h` to `xa` and
-    ///
-    /// ```text
-    /// x1 = xa + (1/g - 2) (xa - x0) + g h v1,   M v1 = M (va + (1/g - 2) (va - v0)) + g h f(x1) + G(x1)^T L,
-    /// ```
-    ///
-    /// or one of implicit Euler (`w = 0`): where something touches, with rigid bodies that respond, where rods, curves
-    /// or surfaces hold vertices to what moves, and where a step with history would create energy.
+    /// [break](SheetModel::with_breaks), and steps with `w > 2` have no use for a step before, and are implicit Euler
+    /// (`w = 0`). One such step leaves the order two.
     Bdf2(ImplicitOptions),
     /// Energy-momentum method (after Simo and Gonzalez): second order, symmetric. With `w = (v0 + v1) / 2`,
     /// `x1 = x0 + h w` and `xm = (x0 + x1) / 2`:

@@ -561,11 +561,7 @@ impl Substeps<'_, '_> {
     ///
     /// Where the step is not to be halved any more, the fallback takes it if there is one.
     fn follow(&mut self, refusal: StepError) -> Decision<Stop> {
-        let Engine {
-            integrator, motion, ..
-        } = &*self.engine;
-        let looks_back =
-            self.memory > Memory::Restart && integrator.depends_on_memory(&motion.history);
+        let looks_back = self.memory > Memory::Restart && self.engine.motion.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         if self.proposer == Proposer::Fallback {
             Decision::Stop(self.stop(refusal))

@@ -385,7 +385,7 @@ impl Simulation {
     ///
     /// | method | rate of `p` | weight and other forces |
     /// |---|---|---|
-    /// | BDF2 | `(p1 - (1 + b) p0 + b p_) / (k h)`, see [`Method::Bdf2`]; in a first step that of its second stage | at the end |
+    /// | BDF2 | `(p1 - (1 + b) p0 + b p_) / (k h)`, see [`Method::Bdf2`] | at the end |
     /// | implicit Euler | `(p1 - p0) / h` | at the end |
     /// | energy-momentum, RATTLE | `(p1 - p0) / h` | over the step |
     ///

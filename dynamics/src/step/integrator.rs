@@ -133,34 +133,6 @@ impl<'a> Attempt<'a> {
         Self { state, ..self }
     }
 
-    /// Of another length, seconds.
-    pub(crate) fn of_length(self, h: f64) -> Self {
-        Self { h, ..self }
-    }
-
-    /// From a motion within the sub-step; what potentials remember is that of its start.
-    pub(crate) fn going_on(self, middle: &'a Motion) -> Self {
-        Self {
-            state: &middle.state,
-            contacts: middle.contacts.as_ref(),
-            history: &middle.history,
-            memory: Memory::All,
-            ..self
-        }
-    }
-
-    /// Whether anything touches at its beginning.
-    pub(crate) fn touches(&self) -> bool {
-        self.contacts
-            .is_some_and(|contacts| !contacts.active.list().is_empty())
-    }
-
-    /// Whether a method that looks back may begin with a step of its own where there is no state before. (One that
-    /// would have created energy is that of a one-step method.)
-    pub(crate) fn starts_itself(&self) -> bool {
-        self.memory > Memory::Restart
-    }
-
     /// With these phases of a minimisation alone.
     pub(crate) fn with(self, phases: Phases) -> Self {
         Self { phases, ..self }
@@ -231,11 +203,6 @@ pub(crate) trait Integrator: Send {
 
     /// What the method asks of a scene and what it can take.
     fn traits(&self) -> MethodTraits;
-
-    /// Whether a sub-step from a motion with this history is another one without memory ([`Memory::Restart`]).
-    fn depends_on_memory(&self, history: &History) -> bool {
-        history.looks_back()
-    }
 }
 
 /// What a method asks of a scene, and what it can take.

@@ -48,22 +48,6 @@ impl LocalError {
         }
     }
 
-    /// Of a step that the method of two stages takes, from its start over the end of its first stage, which takes the
-    /// part `g` of the step, to its end.
-    ///
-    /// Of a linear motion it leaves `(3 g^2 - 2 g^3 - 1/6) h^3 x'''`, and with the velocities of both stages, of which
-    /// the first one errs by `g^2 h^2 x''' / 2`, `v1 - va - (1 - g)/g (va - v0) = h^2 (1 - 2 g) x''' / 2 + O(h^3)`.
-    pub(crate) fn of_start(model: &SheetModel, states: [&State; 3], g: f64) -> Self {
-        let [start, _, end] = states;
-        let h = end.t - start.t;
-        let left = (g * g * (3.0 - 2.0 * g) - 1.0 / 6.0).abs();
-        let difference = second_difference(model, states, (1.0 - g) / g);
-        Self {
-            size: 2.0 * left / (1.0 - 2.0 * g) * h * difference,
-            formula: Formula::TwoStep,
-        }
-    }
-
     /// The estimate for a step of twice the length.
     pub(crate) fn of_twice(&self) -> f64 {
         match self.formula {

@@ -71,6 +71,9 @@ pub(crate) struct RunProgress {
     /// What supports left of the balance of forces so far.
     #[serde(default)]
     pub(crate) balance: Option<ForceBalance>,
+    /// What they left at the end, if the run has come to one.
+    #[serde(default)]
+    pub(crate) end_balance: Option<ForceBalance>,
     /// The largest angle of attached flow so far.
     #[serde(default)]
     pub(crate) incidence: Option<Incidence>,

@@ -112,8 +112,7 @@ impl<'a> Stepping<'a> {
             writer.record_frame(under_way)?;
         }
         if let Some(reason) = reason {
-            let balance = writer.progress.balance;
-            writer.progress.balance = ForceBalance::at_end(balance, &under_way.simulation);
+            writer.progress.end_balance = ForceBalance::at_end(None, &under_way.simulation);
             writer.progress.ending = Some(ending(under_way, reason, &report));
         }
         Ok(Some(Tick {
