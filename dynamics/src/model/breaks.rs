@@ -1,7 +1,5 @@
 //! Times at which what is prescribed changes abruptly.
 
-use crate::SheetModel;
-
 /// Part of a step within which a break counts as one of its ends: the force that comes so much too early or too late
 /// gives a momentum far below the error of the step.
 const AT_AN_END: f64 = 1e-6;
@@ -13,23 +11,12 @@ pub(crate) struct Breaks {
     times: Vec<f64>,
 }
 
-impl SheetModel {
-    /// Says when velocities or accelerations of prescribed motions, or forces, change abruptly (seconds, in any order;
-    /// what is not finite is left out), see [`Profile::breaks`](crate::Profile::breaks). Scenes do so for all their
-    /// functions of time.
-    ///
-    /// Methods without a chart end a sub-step there, give pins the velocities of the motion that begins, and those that
-    /// look back begin anew: a formula of second order over a jump of the acceleration `a` leaves an error `h a / 2` in
-    /// the velocities. Of breaks that follow one another within a step the first one counts, since the steps do not
-    /// resolve the others: keyframes of a motion that was sampled as often cost nothing.
-    #[must_use]
-    pub fn with_breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
-        self.breaks = Breaks::at(self.breaks.times.into_iter().chain(times));
-        self
-    }
-}
-
 impl Breaks {
+    /// At these times too, in any order.
+    pub(crate) fn and(self, times: impl IntoIterator<Item = f64>) -> Self {
+        Self::at(self.times.into_iter().chain(times))
+    }
+
     /// At these times, in any order.
     pub(crate) fn at(times: impl IntoIterator<Item = f64>) -> Self {
         let mut times: Vec<f64> = times.into_iter().filter(|t| t.is_finite()).collect();

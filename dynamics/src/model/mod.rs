@@ -243,6 +243,20 @@ impl SheetModel {
         self
     }
 
+    /// Says when velocities or accelerations of prescribed motions, or forces, change abruptly (seconds, in any order;
+    /// what is not finite is left out), see [`Profile::breaks`](crate::Profile::breaks). Scenes do so for all their
+    /// functions of time.
+    ///
+    /// Methods without a chart end a sub-step there, give pins the velocities of the motion that begins, and those that
+    /// look back begin anew: a formula of second order over a jump of the acceleration `a` leaves an error `h a / 2` in
+    /// the velocities. Of breaks that follow one another within a step the first one counts, since the steps do not
+    /// resolve the others: keyframes of a motion that was sampled as often cost nothing.
+    #[must_use]
+    pub fn with_breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
+        self.breaks = self.breaks.and(times);
+        self
+    }
+
     /// Whether there are forces that only steps which minimise have.
     pub(crate) fn needs_minimising(&self) -> bool {
         self.implicit.iter().any(|force| force.needs_minimising())
