@@ -82,7 +82,7 @@ impl Recording {
     /// Reads the frames of the run in a folder, all of them into memory.
     pub(crate) fn load(&mut self, frames: RunFrames, folder: &Path) -> Result<(), RunError> {
         self.trajectory = match frames {
-            RunFrames::Whole(trajectory) => trajectory,
+            RunFrames::Whole(trajectory) => *trajectory,
             // The trajectory of a run that goes on is that of its last stop.
             RunFrames::Stored(frames) => match &self.summary {
                 Some(summary) if is_whole(folder) => whole_trajectory(folder, summary)?,
@@ -106,7 +106,7 @@ impl Recording {
             check_whole(&history, "row", rows, summary.steps + 1)?;
             stored.least = summary.frames;
             if is_whole(folder) && !stored.path.is_file() {
-                frames = RunFrames::Whole(whole_trajectory(folder, summary)?);
+                frames = RunFrames::Whole(Box::new(whole_trajectory(folder, summary)?));
             }
         }
         Ok((recording, frames))
@@ -282,7 +282,7 @@ pub(crate) enum RunFrames {
     /// On the disk.
     Stored(StoredFrames),
     /// In memory, of a complete run of which only the trajectory is left.
-    Whole(Trajectory),
+    Whole(Box<Trajectory>),
 }
 
 impl Motion for RunFrames {
