@@ -129,7 +129,9 @@ impl Run {
 
 /// Values of all frames, frame by frame.
 fn frames_of(values: &[f64], count: usize) -> Vec<&[f64]> {
-    values.chunks((values.len() / count.max(1)).max(1)).collect()
+    values
+        .chunks((values.len() / count.max(1)).max(1))
+        .collect()
 }
 
 #[pymethods]
@@ -331,10 +333,7 @@ impl Run {
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
-        for series in TimeSeries::of_measures(
-            &self.recording.measures,
-            &self.recording.gauges,
-        ) {
+        for series in TimeSeries::of_measures(&self.recording.measures, &self.recording.gauges) {
             columns.set_item(series.name, array(py, &series.values))?;
         }
         Ok(columns)
