@@ -2,8 +2,9 @@
 
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::constraint::{Line, Plane, Side, Sphere};
-use isosheet_dynamics::{ImplicitOptions, Method, SheetModel, Simulation, State, VertexConstraint};
+use isosheet_dynamics::{Method, SheetModel, Simulation, State, VertexConstraint};
 use isosheet_mesh::{MassKind, VertexId, generate};
+use isosheet_tests::damped_to;
 use nalgebra::{Isometry3, Vector3};
 
 const SIDE: f64 = 0.2;
@@ -188,23 +189,12 @@ fn one_sided() -> [Supports; 2] {
     ]
 }
 
-fn implicit(tolerance: f64) -> [Method; 2] {
-    let options = ImplicitOptions {
-        tolerance: Some(tolerance),
-        ..Default::default()
-    };
-    [
-        Method::Bdf2(options.clone()),
-        Method::ImplicitEuler(options),
-    ]
-}
-
 #[test]
 fn supports_of_the_implicit_methods_balance_the_change_of_momentum() {
     // The tolerance is one of an energy, which is quadratic in the forces that are left.
     for tolerance in [1e-12, 1e-4_f64] {
         let exact = tolerance.sqrt() + left_by_lengths();
-        for method in implicit(tolerance) {
+        for method in damped_to(tolerance) {
             for supports in two_sided().into_iter().chain(one_sided()) {
                 // A sheet that falls on its ledge buckles: with the semidefinite part of the Hessian the iteration
                 // converges linearly, and what a last iteration leaves adds up with those that would follow.
@@ -273,7 +263,7 @@ fn contact_balances_the_change_of_momentum_but_for_its_curvature() {
         ),
         (all, 0.05),
     ] {
-        for method in implicit(1e-12) {
+        for method in damped_to(1e-12) {
             for mass in MASSES {
                 let found = imbalance(supports, &method, mass);
                 assert!(found.of_forces < bound, "{found:?}");

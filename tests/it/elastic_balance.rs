@@ -1,6 +1,7 @@
 //! Forces and torques of all supports of elastic sheets, with weight, loads and inertia, add up to zero step by step.
 
-use isosheet_dynamics::{ImplicitOptions, Method, Simulation, State};
+use isosheet_dynamics::{Method, Simulation, State};
+use isosheet_tests::damped_to;
 use isosheet_tests::held_strip::{G, HELD, Held, STEP, STEPS, held_strip, strip};
 use nalgebra::Vector3;
 
@@ -74,23 +75,12 @@ fn left(held: Held, method: &Method, stiffness: f64) -> [f64; 4] {
     std::array::from_fn(|k| largest[k] / sizes[k])
 }
 
-fn damped(tolerance: f64) -> [Method; 2] {
-    let options = ImplicitOptions {
-        tolerance: Some(tolerance),
-        ..ImplicitOptions::default()
-    };
-    [
-        Method::Bdf2(options.clone()),
-        Method::ImplicitEuler(options),
-    ]
-}
-
 /// The tolerance is one of an energy, which is quadratic in the forces that are left; what a strip of this stiffness
 /// leaves of the torque of the plate is of the order of its strain.
 #[test]
 fn all_supports_balance() {
     for tolerance in [1e-12, 1e-3_f64] {
-        for method in damped(tolerance) {
+        for method in damped_to(tolerance) {
             for held in HELD {
                 for stiffness in [1e3, 1e5] {
                     let found = left(held, &method, stiffness);

@@ -33,7 +33,8 @@ pub use excess_cone::ExcessCone;
 pub use flap::Flap;
 pub use linkage::Linkage;
 pub use methods::{
-    Named, conservative, damped, energy_momentum, implicit_euler, methods, rattle_composition,
+    Named, conservative, damped, damped_to, energy_momentum, implicit_euler, methods,
+    rattle_composition,
 };
 pub use pendulum::Pendulum;
 pub use rigid_body::RigidBody;

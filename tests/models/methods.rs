@@ -1,6 +1,6 @@
 //! The methods without a chart, with their default options, and their names.
 
-use isosheet_dynamics::Method;
+use isosheet_dynamics::{ImplicitOptions, Method};
 
 /// A method with its name.
 pub type Named = (&'static str, Method);
@@ -10,6 +10,18 @@ pub fn damped() -> [Named; 2] {
     [
         ("BDF2", Method::Bdf2(Default::default())),
         ("implicit Euler", Method::ImplicitEuler(Default::default())),
+    ]
+}
+
+/// BDF2 and implicit Euler, with a tolerance of their steps.
+pub fn damped_to(tolerance: f64) -> [Method; 2] {
+    let options = ImplicitOptions {
+        tolerance: Some(tolerance),
+        ..ImplicitOptions::default()
+    };
+    [
+        Method::Bdf2(options.clone()),
+        Method::ImplicitEuler(options),
     ]
 }
 

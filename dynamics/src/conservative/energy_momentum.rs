@@ -242,8 +242,7 @@ impl Integrator for EnergyMomentum {
         model.set_pin_velocities(state.t + h, h, &mut motion.state.v);
         motion.state.x.copy_from_slice(&self.newton.x1);
         motion.state.t = state.t + h;
-        damped += model.damping_loss(&motion.state.v, 0.5 * h);
-        model.damp(&mut motion.state.v, 0.5 * h);
+        damped += model.brake(&mut motion.state.v, 0.5 * h);
         let work = h * dot(&self.applied, &self.newton.u);
         proposal.account = StepAccount {
             damped,

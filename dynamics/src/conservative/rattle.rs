@@ -426,11 +426,9 @@ impl Integrator for Rattle {
         let mut total = StepAccount::of_forces(0.0, 0.0, StepOutcome::Newton);
         for k in 0..self.parts.len() {
             let (part, state) = (self.parts[k], &mut motion.state);
-            total.damped += model.damping_loss(&state.v, 0.5 * part * h);
-            model.damp(&mut state.v, 0.5 * part * h);
+            total.damped += model.brake(&mut state.v, 0.5 * part * h);
             let done = self.advance(model, state, multipliers, part * h, effort)?;
-            total.damped += model.damping_loss(&state.v, 0.5 * part * h);
-            model.damp(&mut state.v, 0.5 * part * h);
+            total.damped += model.brake(&mut state.v, 0.5 * part * h);
             total.residual = total.residual.max(done.residual);
             total.exchange.add(done.exchange);
             total.outcome = total.outcome.max(done.outcome);

@@ -75,14 +75,22 @@ impl SheetModel {
         }
     }
 
+    /// Damps velocities (`3V`, metres per second) over `h` seconds; the energy that this takes, joules.
+    pub(crate) fn brake(&self, v: &mut [f64], h: f64) -> f64 {
+        if self.damped(h).next().is_none() {
+            return 0.0;
+        }
+        let before = self.kinetic_energy(v);
+        self.damp(v, h);
+        before - self.kinetic_energy(v)
+    }
+
     /// The energy that damping takes from velocities (`3V`, metres per second) in `h` seconds, joules.
     pub(crate) fn damping_loss(&self, v: &[f64], h: f64) -> f64 {
         if self.damped(h).next().is_none() {
             return 0.0;
         }
-        let mut left = v.to_vec();
-        self.damp(&mut left, h);
-        self.kinetic_energy(v) - self.kinetic_energy(&left)
+        self.brake(&mut v.to_vec(), h)
     }
 }
 

@@ -41,9 +41,19 @@ impl LocalError {
                 (Formula::TwoStep, w, factor)
             }
         };
-        let states = [before.unwrap_or(start), start, end];
+        let before = before.unwrap_or(start);
+        let (mut sum, mut count) = (0.0, 0_usize);
+        let free = model.free_index().iter().enumerate();
+        for (vertex, _) in free.filter(|(_, place)| **place != PINNED) {
+            for i in 3 * vertex..3 * vertex + 3 {
+                let now = start.v[i];
+                let change = end.v[i] - now - w * (now - before.v[i]);
+                sum += change * change;
+            }
+            count += 1;
+        }
         Self {
-            size: factor * second_difference(model, states, w),
+            size: factor * (sum / count.max(1) as f64).sqrt(),
             formula,
         }
     }
@@ -55,22 +65,6 @@ impl LocalError {
             Formula::TwoStep => 8.0 * self.size,
         }
     }
-}
-
-/// Root of the mean square of `v1 - v0 - w (v0 - v_)` over the free vertices, of three states `_`, `0` and `1`, metres
-/// per second.
-fn second_difference(model: &SheetModel, [before, start, end]: [&State; 3], w: f64) -> f64 {
-    let (mut sum, mut count) = (0.0, 0_usize);
-    let free = model.free_index().iter().enumerate();
-    for (vertex, _) in free.filter(|(_, place)| **place != PINNED) {
-        for i in 3 * vertex..3 * vertex + 3 {
-            let now = start.v[i];
-            let change = end.v[i] - now - w * (now - before.v[i]);
-            sum += change * change;
-        }
-        count += 1;
-    }
-    (sum / count.max(1) as f64).sqrt()
 }
 
 #[cfg(test)]
