@@ -79,8 +79,12 @@ fn balanced(job: Job) -> Result<Measured> {
             let mut run = Simulation::new(held_strip(held, stiffness), start, method.clone())?;
             let mut momenta = [Vector3::zeros(); 2];
             let (mut left, mut force) = (0.0_f64, 0.0_f64);
-            for step in 0..STEPS {
-                measured.factorisations += run.step(STEP)?.factorisations;
+            // Steps of one length since the start, or since one that was divided.
+            let mut equal = 0;
+            for _ in 0..STEPS {
+                let report = run.step(STEP)?;
+                measured.factorisations += report.factorisations;
+                equal = if report.substeps == 1 { equal + 1 } else { 0 };
                 let State { t, x, v } = run.state();
                 let model = run.model();
                 let now = Vector3::from(model.linear_momentum(v));
@@ -90,8 +94,8 @@ fn balanced(job: Job) -> Result<Measured> {
                     _ => now - last,
                 } / STEP;
                 momenta = [now, last];
-                if step == 0 {
-                    // It has a formula of its own.
+                // The formula is that of equal steps, and the first one of all has its own.
+                if equal < 2 {
                     continue;
                 }
                 let mut loads = vec![0.0; x.len()];
