@@ -79,14 +79,13 @@ use swelling::Swelling;
 /// slack,
 ///
 /// ```text
-/// e = s / K + r s / (s_0 + s),   s = W_T',   r = 0.3 (k h)^2,   s_0 = max(20, 1000 r) D / h^2,
+/// e = s / K + r s / (s_0 + s),   s = W_T',   r = 0.3 (k h)^2,   s_0 = 20 D / h^2,
 /// ```
 ///
 /// with the mean square `h^2` of the edge lengths, the largest curvature `k` of a face around and the flexural
 /// rigidity `D`. Its strain is never further from Hooke's than `r`, which goes with the square of the mesh size;
 /// where the sheet is flat there is none, and a sheet that is pulled has the stiffness of its material. `s_0` is a
-/// force at which a wave of the size of a face is pulled flat, or buckles; faces that bend much yield by `h^2 / (1000
-/// D)` for each newton per metre, so that weight does not pull them out.
+/// force at which a wave of the size of a face is pulled flat, or buckles.
 ///
 /// *Directions.* A sheet whose material has two directions ([`OrthotropicMembrane`]) stores `(E_T - S_T) : C (E_T -
 /// S_T) / 2` where it is flat. The slack belongs to the mesh, and has no direction: its range is that of a norm

@@ -47,25 +47,6 @@ pub(super) struct Slack {
 const RANGE: f64 = 0.3;
 const FORCE: f64 = 20.0;
 
-/// The least stiffness with which slack is pulled out, in parts of the flexural rigidity over the squared size of the
-/// face: where `(k h)^2` is above 1/15, half of the slack takes a larger force than [`FORCE`] says.
-///
-/// The slack of a face that bends by a radian is as wide as three tenths of its size, and without this the weight of the
-/// sheet would pull it out until the limit of the strain stops it. Measured with a cloth of 1 m that rests on a ball of 0.2
-/// m (0.1 kg, 5e-5 N m, 3e5 N/m): area mean of the height in metres (factorisations), with limits of the strain of 0.01,
-/// 0.05 and 0.45. Sheets that are soft enough in the plane not to lock, 1000 N/m without slack, come to rest at -0.350 on
-/// 4225 vertices and at -0.354 on 16641. Cones with a wedge inserted, on the finest meshes: largest errors of energy and
-/// place.
-///
-/// | stiffness | 289 vertices, 0.01 | 0.05 | 0.45 | 1089 vertices, 0.05 | 0.45 | cones |
-/// |---|---|---|---|---|---|---|
-/// | none | -0.335 (1246) | -0.358 (1306) | -0.422 (1496) | | | 0.026, 0.014 |
-/// | **1000** | -0.335 (1233) | -0.356 (1242) | -0.375 (1722) | -0.361 (1347) | -0.363 (1225) | 0.018, 0.016 |
-/// | 2000 | -0.334 (1193) | -0.355 (1197) | -0.365 (1424) | -0.359 (1450) | -0.359 (1463) | 0.015, 0.024 |
-/// | 6000 | -0.334 (1155) | -0.351 (1278) | -0.354 (1257) | -0.350 (1637) | | one is refused |
-/// | 20000 | -0.325 (1326) | -0.337 (1184) | -0.338 (1281) | -0.340 (1929) | | |
-const STIFFNESS: f64 = 1000.0;
-
 impl Slack {
     /// None: the spring alone.
     pub(super) const NONE: Self = Self {
@@ -73,13 +54,11 @@ impl Slack {
         force: 0.0,
     };
 
-    /// Of a face of a squared size (m2), of a sheet with a flexural rigidity (N m), whose squared bend `(k h)^2` is
-    /// `squared_bend`.
+    /// Of a face of a squared size (m2) whose bend is `squared_bend`, of a sheet with a flexural rigidity (N m).
     pub(super) fn of_bend(rigidity: f64, squared_size: f64, squared_bend: f64) -> Self {
-        let range = RANGE * squared_bend;
         Self {
-            range,
-            force: FORCE.max(STIFFNESS * range) * rigidity / squared_size,
+            range: RANGE * squared_bend,
+            force: FORCE * rigidity / squared_size,
         }
     }
 
