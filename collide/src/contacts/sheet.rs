@@ -52,6 +52,12 @@ pub(super) fn query(
         pairs.push(key(kind, pair));
     });
     let is_near = |(_, pair): (f64, [u32; 2])| {
+        // The faces that an edge is a side of look after points.
+        let [first, second] = pair;
+        let is_flat = |e: u32| mesh.round(mesh.edges()[e as usize][0]).is_none();
+        if mesh.is_point(first) && is_flat(second) || mesh.is_point(second) && is_flat(first) {
+            return false;
+        }
         if !boxes.edge_meets_edge(boxes, pair) {
             return false;
         }
@@ -62,12 +68,6 @@ pub(super) fn query(
         let [a, b, c, d] = places;
         let directions = [(c - a) + (d - b), (b - a).cross(&(d - c))];
         if are_apart(&places, 2, &directions, clearance.reach + closer) {
-            return false;
-        }
-        // The faces that an edge is a side of look after points.
-        let [first, second] = pair;
-        let is_flat = |e: u32| mesh.round(mesh.edges()[e as usize][0]).is_none();
-        if mesh.is_point(first) && is_flat(second) || mesh.is_point(second) && is_flat(first) {
             return false;
         }
         let nearest = edge_edge(&places).distance() - closer;
