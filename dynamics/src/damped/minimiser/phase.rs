@@ -106,7 +106,8 @@ impl Phase {
     /// | augmented Lagrangian | prediction | none; by rounds | free | many loose ones in contact |
     ///
     /// Elastic sheets alone have no rods to solve for, and pins that move in contact stall SQP: both have the second
-    /// row alone. Without rods the multipliers of curves and surfaces are solved for there too, as in the first one. Slivers begin with it without contact, with its own multipliers of the step before.
+    /// row alone. Without rods the multipliers of curves and surfaces are solved for there too, as in the first one.
+    /// Slivers begin with it without contact, with its own multipliers of the step before.
     ///
     /// A whole step of rods among bodies and supports at rest is divided early where both fail: sheets that
     /// buckle, or touch while they are exactly flat, take fewer iterations in its parts. In contact the second
