@@ -14,6 +14,7 @@ mod limit;
 mod load;
 mod membrane;
 mod slack;
+mod surroundings;
 mod swelling;
 #[cfg(test)]
 mod swelling_tests;
@@ -79,13 +80,18 @@ use swelling::Swelling;
 /// slack,
 ///
 /// ```text
-/// e = s / K + r s / (s_0 + s),   s = W_T',   r = 0.3 (k h)^2,   s_0 = 20 D / h^2,
+/// e = s / K + r s / (s_0 + s),   s = W_T',   r = 0.3 (k h)^2,   s_0 = max(20, 500 r) D / h^2,
 /// ```
 ///
 /// with the mean square `h^2` of the edge lengths, the largest curvature `k` of a face around and the flexural
 /// rigidity `D`. Its strain is never further from Hooke's than `r`, which goes with the square of the mesh size;
 /// where the sheet is flat there is none, and a sheet that is pulled has the stiffness of its material. `s_0` is a
-/// force at which a wave of the size of a face is pulled flat, or buckles.
+/// force at which a wave of the size of a face is pulled flat, or buckles; faces that bend much yield by `h^2 / (500
+/// D)` for each newton per metre at most.
+///
+/// *Tension.* Under a tension `s_1`, the largest principal value of the mean stress of the faces around, `r` is `0.3 (k
+/// h)^2 min(1, 5 D / (h^2 s_1))`. A ripple of the curvature `k` costs `D k^2 / 2` for each square metre, and a tension
+/// gains up to `s_1 r` by the slack of the ripple: without this bound a taut sheet would ripple by itself, and yield.
 ///
 /// *Directions.* A sheet whose material has two directions ([`OrthotropicMembrane`]) stores `(E_T - S_T) : C (E_T -
 /// S_T) / 2` where it is flat. The slack belongs to the mesh, and has no direction: its range is that of a norm
@@ -460,6 +466,11 @@ impl Potential for ElasticSheet {
     }
 
     fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
+        if let [_, bends @ ..] = memory {
+            for arcs in &self.arcs {
+                arcs.start(&self.faces, At::new(state.t, state.x), bends);
+            }
+        }
         self.settle(state, memory);
     }
 

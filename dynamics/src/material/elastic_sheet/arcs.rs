@@ -2,10 +2,13 @@
 
 use super::bend::{Bend, NUMBERS};
 use super::face::Face;
+use super::surroundings::{Surroundings, largest_of_mean};
+use crate::material::evaluation::Room;
 use crate::material::plate_bending::PlateBending;
 use crate::material::plate_bending::SecondDerivatives;
 use crate::potential::At;
-use isosheet_mesh::{FaceId, Part, Sheet};
+use isosheet_mesh::{Part, Sheet};
+use nalgebra::Vector3;
 use std::ops::Range;
 
 /// The bends of the faces of a sheet, or of one of the parts of a union.
@@ -14,9 +17,9 @@ pub(super) struct Arcs {
     curvatures: SecondDerivatives,
     /// The bends of faces that are curved without stress; nothing where all are flat.
     at_rest: Vec<Bend>,
-    /// Where the faces around each face begin, and their numbers.
-    starts: Vec<usize>,
-    around: Vec<u32>,
+    around: Surroundings,
+    /// The stresses of the faces while bends are remembered.
+    stresses: Room<Vec<Vector3<f64>>>,
     /// The numbers of its coordinates in the union, and of its faces among those that are elastic.
     coordinates: Range<usize>,
     faces: Range<usize>,
@@ -26,18 +29,6 @@ impl Arcs {
     /// Of a sheet that bends as a plate with rigidity.
     pub(super) fn new(sheet: &Sheet, plate: &PlateBending, faces: &[Face]) -> Self {
         let topology = sheet.topology();
-        let (mut starts, mut around) = (vec![0], Vec::new());
-        for face in topology.face_ids() {
-            let corners = topology.faces()[face.index()].iter();
-            let mut faces: Vec<FaceId> = corners
-                .flat_map(|v| topology.vertex_faces(*v))
-                .copied()
-                .collect();
-            faces.sort_unstable();
-            faces.dedup();
-            around.extend(faces.iter().map(|f| f.0));
-            starts.push(around.len());
-        }
         let curvatures = plate.second_derivatives(sheet);
         let at_rest = At::new(0.0, sheet.positions());
         Self {
@@ -46,8 +37,8 @@ impl Arcs {
                 false => Vec::new(),
             },
             curvatures,
-            starts,
-            around,
+            around: Surroundings::new(topology, faces),
+            stresses: Room::default(),
             coordinates: 0..3 * topology.vertex_count(),
             faces: 0..topology.face_count(),
         }
@@ -63,35 +54,64 @@ impl Arcs {
         }
     }
 
-    /// Writes the bends at a time and positions of the union to the numbers that are remembered of its faces.
+    /// Writes the bends where a simulation starts to the numbers that are remembered of its faces, with the slack of
+    /// the bend of each face.
+    pub(super) fn start(&self, faces: &[Face], here: At<'_>, memory: &mut [f64]) {
+        let rows = self.rows(memory);
+        for (row, bend) in rows.iter_mut().zip(self.bends(faces, here)) {
+            let squared = bend.own;
+            *row = Bend { squared, ..bend }.numbers();
+        }
+    }
+
+    /// Writes the bends at a time and positions of the union to the numbers that are remembered of its faces. Each has
+    /// the slack of the bend of that face around it which bends most, as far as the tension around it leaves it.
     pub(super) fn remember(&self, faces: &[Face], here: At<'_>, memory: &mut [f64]) {
         let own = &faces[self.faces.clone()];
+        let rows = self.rows(memory);
+        self.stresses.with(|stresses| {
+            let before = own.iter().zip(rows.iter());
+            let stress = |(face, row): (&Face, &_)| face.stress(here, &Bend::remembered(row));
+            stresses.clear();
+            stresses.extend(before.map(stress));
+            for (row, bend) in rows.iter_mut().zip(self.bends(faces, here)) {
+                let Bend {
+                    squared, credit, ..
+                } = Bend::remembered(row);
+                *row = Bend {
+                    squared,
+                    credit,
+                    ..bend
+                }
+                .numbers();
+            }
+            for (k, around) in self.around.iter().enumerate() {
+                let bends = around.iter().map(|f| Bend::remembered(&rows[f.face]));
+                let most = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
+                let tension = largest_of_mean(around, |f| (own[f].area(), stresses[f]));
+                let wanted = own[k].left_by(tension) * most;
+                let bend = Bend::remembered(&rows[k]);
+                rows[k] = own[k].with_slack(here, bend, wanted).numbers();
+            }
+        });
+    }
+
+    fn rows<'a>(&self, memory: &'a mut [f64]) -> &'a mut [[f64; NUMBERS]] {
+        &mut memory.as_chunks_mut().0[self.faces.clone()]
+    }
+
+    /// The bends of its faces beyond those without stress, without slack.
+    fn bends<'a>(&'a self, faces: &'a [Face], here: At<'a>) -> impl Iterator<Item = Bend> + 'a {
+        let own = &faces[self.faces.clone()];
         let at = At::new(here.t, &here.x[self.coordinates.clone()]);
-        let rows = &mut memory.as_chunks_mut::<NUMBERS>().0[self.faces.clone()];
-        for (k, (row, mut bend)) in rows
-            .iter_mut()
-            .zip(bends(&self.curvatures, own, at))
-            .enumerate()
-        {
+        let bends = bends(&self.curvatures, own, at).enumerate();
+        bends.map(|(k, mut bend)| {
             if let Some(rest) = self.at_rest.get(k) {
                 bend.chords -= rest.chords;
                 bend.own = (bend.own - rest.own).abs();
             }
-            let before = Bend::remembered(row);
-            *row = Bend {
-                squared: before.squared,
-                credit: before.credit,
-                ..bend
-            }
-            .numbers();
-        }
-        for (k, range) in self.starts.windows(2).enumerate() {
-            let around = self.around[range[0]..range[1]].iter();
-            let bends = around.map(|f| Bend::remembered(&rows[*f as usize]));
-            let wanted = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
-            let bend = Bend::remembered(&rows[k]);
-            rows[k] = own[k].with_slack(here, bend, wanted).numbers();
-        }
+            bend
+        })
     }
 }
 

@@ -9,7 +9,7 @@ use crate::HessianSink;
 use crate::potential::At;
 use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Part, Sheet, VertexId};
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Complex, Matrix3, Vector2, Vector3};
 
 /// A face with one constant strain.
 #[derive(Debug, Clone)]
@@ -175,6 +175,27 @@ impl Face {
         }
         let size = self.mean_squared_length();
         Slack::of_bend(self.rigidity, size, bend.squared)
+    }
+
+    /// The stress against the lengths at rest, newtons per metre, by components `(s_11, sqrt(2) s_12, s_22)` as those of
+    /// [`Face::strains`].
+    pub(super) fn stress(&self, here: At<'_>, bend: &Bend) -> Vector3<f64> {
+        let at = self.at(here, bend);
+        self.edge_squares.tr_mul(&self.law_at(&at).slope())
+    }
+
+    /// The part of its slack, from 0 to 1, that a tension around it leaves, newtons per metre.
+    pub(super) fn left_by(&self, tension: f64) -> f64 {
+        Slack::left_by(tension, self.rigidity, self.mean_squared_length())
+    }
+
+    /// `exp(2 i a)`, with the angle `a` from its first axis to one of its edges.
+    pub(super) fn direction(&self, edge: EdgeId) -> Complex<f64> {
+        let k = self.edges.iter().position(|e| *e == edge);
+        let k = k.expect("an edge of the face");
+        let squares = self.edge_squares.row(k);
+        let twice = std::f64::consts::SQRT_2 * squares[1];
+        Complex::new(squares[0] - squares[2], twice) / self.squared_lengths[k]
     }
 
     /// The bend with slack for a squared bend of `wanted`, or as near to it as energy allows: slack that grows lets
