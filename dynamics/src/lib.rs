@@ -88,7 +88,7 @@ pub use hessian::HessianSink;
 pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, FLAT, RestAngle};
 pub use material::direction::{DirectionError, MaterialDirection};
 pub use material::elastic_sheet::{
-    ElasticSheet, ElasticSheetError, MembraneLaw, OrthotropicMembrane, StrainOfFace,
+    CurvedFace, ElasticSheet, ElasticSheetError, MembraneLaw, OrthotropicMembrane, StrainOfFace,
 };
 pub use material::glue::{Glue, GlueError};
 pub use material::patched::{NoFace, Patched};

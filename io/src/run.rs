@@ -90,7 +90,7 @@ pub use collect::Collection;
 pub use commit::note_commit;
 #[cfg(feature = "cli")]
 pub(crate) use constraints::HoldingBody;
-pub use elastic::{Bend, ElasticSummary};
+pub use elastic::{Bend, BendAtRest, ElasticSummary};
 pub use energy::EnergySummary;
 pub use error::RunError;
 pub use estimate::Estimate;

@@ -22,7 +22,7 @@ use crate::options::OptionsError;
 use crate::{HessianSink, Potential};
 use fold::Fold;
 use isosheet_mesh::wording::given;
-use isosheet_mesh::{Advice, EdgeId, Sheet, Topology, VertexId};
+use isosheet_mesh::{Advice, EdgeId, FaceId, Sheet, Topology, VertexId};
 use nalgebra::{Matrix3, Vector1};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
@@ -191,6 +191,8 @@ impl Advice for CreaseError {
 #[derive(Debug)]
 pub struct CreaseSprings {
     hinges: Vec<Hinge>,
+    /// The two faces at each hinge, where all of them together are the bending stiffness of a sheet; else empty.
+    bent: Vec<[FaceId; 2]>,
 }
 
 #[derive(Debug)]
@@ -244,7 +246,8 @@ impl CreaseSprings {
         };
         let hinges = springs.into_iter().map(hinge);
         let hinges = hinges.collect::<Result<_, _>>()?;
-        Ok(Self { hinges })
+        let bent = Vec::new();
+        Ok(Self { hinges, bent })
     }
 
     /// Springs across seams: each at an edge of a boundary, between the face there and the face at another edge of
@@ -278,7 +281,8 @@ impl CreaseSprings {
         };
         let hinges = springs.into_iter().map(hinge);
         let hinges = hinges.collect::<Result<_, _>>()?;
-        Ok(Self { hinges })
+        let bent = Vec::new();
+        Ok(Self { hinges, bent })
     }
 
     /// Makes springs of the bending stiffness of a sheet ([`CreaseSprings::bending`]) yield as the sheet
@@ -342,7 +346,12 @@ impl CreaseSprings {
                 in_series: None,
             })
         });
-        Self::new(t, springs.collect())
+        let mut springs = Self::new(t, springs.collect())?;
+        let faces = springs.edges().map(|edge| t.edge_faces(edge));
+        springs.bent = faces
+            .map(|faces| faces.map(|f| f.expect("inside")))
+            .collect();
+        Ok(springs)
     }
 
     /// Makes springs of the bending stiffness of a sheet ([`CreaseSprings::bending`]) rest at the fold angles
@@ -561,6 +570,18 @@ impl Potential for CreaseSprings {
             };
             let g = fold.gradient();
             h.add_blocks(hessian, |i, j| tangent * g[i] * g[j].transpose());
+        }
+    }
+
+    /// Half the elastic energy of a hinge goes to each of its faces: where a mesh has exactly the energy of a bend
+    /// ([`CreaseSprings::bending`]), so has each face inside.
+    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
+        for ((h, p), beside) in self.with_plastic(at.memory).zip(&self.bent) {
+            let angle = Fold::at(at.x, &h.vertices).angle();
+            let elastic = h.respond(at.t, angle, p).elastic;
+            for face in beside {
+                faces[face.index()] += 0.25 * h.stiffness * elastic * elastic;
+            }
         }
     }
 

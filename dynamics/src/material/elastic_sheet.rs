@@ -4,6 +4,7 @@ mod arcs;
 mod bend;
 #[cfg(test)]
 mod bend_tests;
+mod curved;
 #[cfg(test)]
 mod direction_tests;
 mod error;
@@ -29,6 +30,7 @@ use super::patched::Patched;
 use super::plate_bending::PlateBending;
 use arcs::Arcs;
 use bend::NUMBERS;
+pub use curved::CurvedFace;
 pub use error::ElasticSheetError;
 use evaluated::{EvaluatedFaces, barrier_of, strained};
 use face::Face;
@@ -340,6 +342,12 @@ impl ElasticSheet {
             let curvature = (2.0 * energy / (face.rigidity * face.area())).sqrt();
             curvature * face.mean_squared_length().sqrt()
         })
+    }
+
+    /// The face that is the largest for its bend at rest, by [`CurvedFace::coarseness`]; nothing where all are flat.
+    pub fn coarsest_curved(&self) -> Option<CurvedFace> {
+        let curved = self.arcs.iter().flat_map(|arcs| arcs.curved(&self.faces));
+        curved.max_by(|a, b| a.coarseness().total_cmp(&b.coarseness()))
     }
 
     /// The face that comes nearest to its limit or is farthest beyond it.

@@ -65,7 +65,8 @@ use stress_free::{Blocks, StressFreeCurvature};
 /// The two faces of an edge share `s_e`, which makes the energy that of Morley's plate element, with the
 /// slopes eliminated: inside, `s_e` is the slope of the quadratic polynomial that fits the vertices of the
 /// two faces and their neighbours by weighted least squares; at free edges it is that of the face and its
-/// neighbours to one side; at the edges of faces with three clamped corners it is the slope of that face.
+/// neighbours to one side; at the edges of faces with three clamped corners it is the slope of that face. Near clamps the
+/// polynomials fit the slopes that the clamps hold, too, and have the cubic terms that a clamp leaves free.
 /// Second derivatives are exact for quadratic positions, and deflections are of second order in the size of
 /// the faces on any mesh.
 ///

@@ -1,6 +1,7 @@
 //! What a run says of an elastic sheet.
 
-use isosheet_dynamics::{SheetModel, Simulation, State};
+use isosheet_dynamics::{Simulation, State};
+use isosheet_mesh::FaceId;
 use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -26,6 +27,34 @@ pub struct ElasticSummary {
     /// The same at the end.
     #[serde(default)]
     pub at_end: Option<Bend>,
+    /// The face that is the largest for its bend at rest, if the sheet is curved without stress.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_rest: Option<BendAtRest>,
+}
+
+/// A face that is curved without stress: a shell bends over the length `(R t)^1/2` near edges and loads.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BendAtRest {
+    /// The root mean square of the lengths of its edges, metres.
+    pub size: f64,
+    /// The radius `R` at rest, metres.
+    pub radius: f64,
+    /// The thickness `t` by the stiffness in the plane and the flexural rigidity, metres.
+    pub thickness: f64,
+    /// The middle of the face at the start, metres.
+    pub at: [f64; 3],
+}
+
+impl BendAtRest {
+    /// The length `(R t)^1/2`, metres.
+    pub fn bending_length(&self) -> f64 {
+        (self.radius * self.thickness).sqrt()
+    }
+
+    /// The size of the face in units of that.
+    pub fn coarseness(&self) -> f64 {
+        self.size / self.bending_length()
+    }
 }
 
 /// A bend of a face.
@@ -66,9 +95,15 @@ impl Bend {
 }
 
 impl ElasticSummary {
-    /// Of a model at the start of a run; none for a sheet of rods.
-    pub fn of(model: &SheetModel) -> Option<Self> {
-        let elastic = model.elastic_sheet()?;
+    /// At the start of a run; none for a sheet of rods.
+    pub fn of(simulation: &Simulation) -> Option<Self> {
+        let elastic = simulation.model().elastic_sheet()?;
+        let at_rest = elastic.coarsest_curved().map(|curved| BendAtRest {
+            size: curved.size,
+            radius: curved.radius,
+            thickness: curved.thickness,
+            at: middle(simulation, curved.face),
+        });
         Some(Self {
             stiffness: elastic.stiffness(),
             limit: elastic.limit(),
@@ -77,12 +112,13 @@ impl ElasticSummary {
             slack: 0.0,
             sharpest: None,
             at_end: None,
+            at_rest,
         })
     }
 
     /// Takes in where a simulation is.
     pub fn observe(&mut self, simulation: &Simulation) {
-        let State { t, x, .. } = simulation.state();
+        let State { t, .. } = simulation.state();
         let Some(deformation) = simulation.elastic_deformation() else {
             return;
         };
@@ -98,9 +134,7 @@ impl ElasticSummary {
         self.slack = deformation.slack_share();
         let before = self.sharpest.map_or(0.0, |bend| bend.angle);
         if let Some((face, angle)) = deformation.sharpest() {
-            let corners = simulation.model().topology().faces()[face];
-            let mean = |k: usize| corners.iter().map(|v| x[3 * v.index() + k]).sum::<f64>() / 3.0;
-            let at = [mean(0), mean(1), mean(2)];
+            let at = middle(simulation, FaceId::from_index(face));
             let bend = Bend { angle, t: *t, at };
             self.at_end = Some(bend);
             if angle > before {
@@ -108,4 +142,11 @@ impl ElasticSummary {
             }
         }
     }
+}
+
+/// The middle of a face where it is now, metres.
+fn middle(simulation: &Simulation, face: FaceId) -> [f64; 3] {
+    let corners = simulation.model().topology().faces()[face.index()];
+    let x = &simulation.state().x;
+    [0, 1, 2].map(|k| corners.iter().map(|v| x[3 * v.index() + k]).sum::<f64>() / 3.0)
 }

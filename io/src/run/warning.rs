@@ -19,6 +19,10 @@ impl Summary {
     /// Part by which the mesh may change the forces of bends.
     pub const FORCE_ERROR: f64 = 0.03;
 
+    /// Length of edges, by `(R t)^1/2`, up to which deflections of shells are right to 3 % (`cargo xtask validation`:
+    /// cylinders, a roof and a hemisphere under loads at points and on areas).
+    pub const SHELL_EDGE: f64 = 0.4;
+
     /// Part of the elastic energy that the slack of bends may have in a sheet that is stretched more than bent.
     pub const SLACK: f64 = 0.05;
 
@@ -40,6 +44,22 @@ impl Summary {
             );
             let remedy = "refine the mesh there: with half the edge length the error is a quarter; the page colours \
                           faces by their strain and by the share of stretching in their energy";
+            warnings.push(Warning::new(message, remedy));
+        }
+        let at_rest = self.elastic.and_then(|elastic| elastic.at_rest);
+        if let Some(bend) = at_rest.filter(|bend| bend.coarseness() > Self::SHELL_EDGE) {
+            let [x, y, z] = bend.at.map(brief);
+            let message = format!(
+                "the mesh is too coarse for how the sheet is curved at rest: edges near ({x}, {y}, {z}) m are {} m long, {} \
+                 times (R t)^1/2 with the radius R = {} m and the thickness t = {} m, the length over which it bends at its \
+                 edges and where forces act on it; shells are right to 3 % with edges of {} m",
+                brief(bend.size),
+                brief(bend.coarseness()),
+                brief(bend.radius),
+                brief(bend.thickness),
+                brief(Self::SHELL_EDGE * bend.bending_length()),
+            );
+            let remedy = "refine the mesh there; for a sheet that only rolls up or unrolls as a whole it may stay as it is";
             warnings.push(Warning::new(message, remedy));
         }
         // Where a sheet mostly bends, its forces are those of the bends.

@@ -152,7 +152,7 @@ impl RunWriter {
 
     /// Records the state at the start.
     fn record_start(&mut self, under_way: &UnderWay) -> Result<(), RunError> {
-        self.progress.elastic = ElasticSummary::of(under_way.simulation.model());
+        self.progress.elastic = ElasticSummary::of(&under_way.simulation);
         self.observe_elastic(under_way);
         self.progress.start_energy = under_way.simulation.energy();
         let row = HistoryRow::of_start(&under_way.simulation);

@@ -350,15 +350,28 @@ fn a_mesh_too_coarse_for_the_bends_is_named() {
         [stop]
         time = 1";
     fs::write(dir.join("strip.toml"), scene).unwrap();
-    let coarse = run(dir, &["simulate", "strip.toml", "--out", "coarse"]);
-    assert_eq!(code(&coarse), Some(0), "{}", stderr(&coarse));
-    let text = stderr(&coarse);
-    assert!(text.contains("too coarse for the bends"), "{text}");
-    assert!(text.contains("half the edge length"), "{text}");
-    let elastic = summary(&dir.join("coarse")).elastic.unwrap();
-    assert!(elastic.stiffness == 3e5 && elastic.strain < elastic.limit);
-    let bend = elastic.sharpest.unwrap();
-    assert!(bend.angle > 0.49 && bend.at[0] > 0.06, "{bend:?}");
+    for bending in ["plate", "hinges"] {
+        let edit = format!("sheet.bending={{ {bending} = {{ rigidity = 5e-4 }} }}");
+        let arguments = [
+            "simulate",
+            "strip.toml",
+            "--out",
+            "coarse",
+            "--force",
+            "--set",
+            &edit,
+        ];
+        let coarse = run(dir, &arguments);
+        assert_eq!(code(&coarse), Some(0), "{}", stderr(&coarse));
+        let text = stderr(&coarse);
+        assert!(text.contains("too coarse for the bends"), "{text}");
+        assert!(text.contains("half the edge length"), "{text}");
+        let elastic = summary(&dir.join("coarse")).elastic.unwrap();
+        assert!(elastic.stiffness == 3e5 && elastic.strain < elastic.limit);
+        let bend = elastic.sharpest.unwrap();
+        assert!(bend.angle > 0.49 && bend.at[0] > 0.06, "{bend:?}");
+        assert!(elastic.at_end.unwrap().angle > 0.0, "{elastic:?}");
+    }
     let page = fs::read_to_string(dir.join("coarse/index.html")).unwrap();
     assert!(page.contains("share of stretching"));
     let fine = [
@@ -372,6 +385,58 @@ fn a_mesh_too_coarse_for_the_bends_is_named() {
     let fine = run(dir, &fine);
     assert_eq!(code(&fine), Some(0), "{}", stderr(&fine));
     assert!(!stderr(&fine).contains("warning"), "{}", stderr(&fine));
+}
+
+/// A strip that is curved at rest, of edges longer and shorter than it takes: the warning names the length.
+#[test]
+fn a_mesh_too_coarse_for_its_curve_at_rest_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let (radius, turn) = (0.1, 0.5);
+    for (rows, is_told) in [(8_u32, true), (32, false)] {
+        let mut mesh = String::new();
+        for k in 0..=rows {
+            let (s, c) = (turn * f64::from(k) / f64::from(rows)).sin_cos();
+            for j in 0..=2 {
+                let y = radius * turn * f64::from(j) / f64::from(rows);
+                mesh += &format!("v {} {y} {}\n", radius * s, radius * c);
+            }
+        }
+        for a in (0..rows).flat_map(|k| [3 * k + 1, 3 * k + 2]) {
+            mesh += &format!("f {a} {} {}\nf {a} {} {}\n", a + 3, a + 4, a + 4, a + 1);
+        }
+        fs::write(dir.join("arc.obj"), mesh).unwrap();
+        // 12 D (1 - nu^2) / (E h) is the square of the thickness.
+        let thickness = 4e-4_f64;
+        let scene = format!(
+            "version = 1
+            [sheet]
+            mesh = {{ file = {{ path = \"arc.obj\" }} }}
+            isometry = {{ elastic = {{ stiffness = 3e5, poisson = 0 }} }}
+            bending = {{ plate = {{ rigidity = {}, poisson = 0 }} }}
+            mass = 1e-3
+            rest = \"mesh\"
+            [stop]
+            time = 0.01",
+            3e5 * thickness * thickness / 12.0
+        );
+        fs::write(dir.join("arc.toml"), scene).unwrap();
+        let out = format!("out-{rows}");
+        let done = run(dir, &["simulate", "arc.toml", "--out", &out]);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        let text = stderr(&done);
+        assert_eq!(text.contains("curved at rest"), is_told, "{text}");
+        let bend = summary(&dir.join(&out)).elastic.unwrap().at_rest.unwrap();
+        // Squares with one diagonal; chords are shorter than their arcs by less than 1 %.
+        let edge = radius * turn / f64::from(rows) * (4.0_f64 / 3.0).sqrt();
+        let expected = [edge, radius, thickness];
+        for (found, expected) in [bend.size, bend.radius, bend.thickness]
+            .iter()
+            .zip(expected)
+        {
+            assert!((found / expected - 1.0).abs() < 0.01, "{bend:?}");
+        }
+    }
 }
 
 /// Air that comes to a plate at 20 degrees separates from a real one, and a run says when; at 10 degrees it

@@ -1,6 +1,7 @@
 //! How much shorter the chords of a bent sheet are than its arcs.
 
 use super::bend::{Bend, NUMBERS};
+use super::curved::CurvedFace;
 use super::face::Face;
 use super::surroundings::{Surroundings, largest_of_mean};
 use crate::material::evaluation::Room;
@@ -52,6 +53,21 @@ impl Arcs {
             faces: first..first + self.faces.len(),
             ..self
         }
+    }
+
+    /// Its faces that are curved without stress.
+    pub(super) fn curved<'a>(&'a self, faces: &'a [Face]) -> impl Iterator<Item = CurvedFace> + 'a {
+        let own = faces[self.faces.clone()].iter().zip(&self.at_rest);
+        let bent = own.filter(|(_, bend)| bend.own > 0.0);
+        bent.map(|(face, bend)| {
+            let size = face.mean_squared_length().sqrt();
+            CurvedFace {
+                face: face.id,
+                size,
+                radius: size / bend.own.sqrt(),
+                thickness: face.thickness(),
+            }
+        })
     }
 
     /// Writes the bends where a simulation starts to the numbers that are remembered of its faces, with the slack of

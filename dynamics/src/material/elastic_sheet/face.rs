@@ -242,6 +242,11 @@ impl Face {
         self.squared_lengths.iter().sum::<f64>() * (1.0 / 3.0)
     }
 
+    /// `(12 D / K)^1/2`, metres.
+    pub(super) fn thickness(&self) -> f64 {
+        (12.0 * self.rigidity / self.law.stiffness()).sqrt()
+    }
+
     /// From corner `i + 1` to corner `i + 2`, of positions or displacements.
     fn edge_vectors(&self, x: &[f64]) -> [Vector3<f64>; 3] {
         let [a, b, c] = self.corners.map(|v| point(x, v));

@@ -82,6 +82,14 @@ impl Law {
         }
     }
 
+    /// `K`, N/m; that of the stiffest mode.
+    pub(super) fn stiffness(&self) -> f64 {
+        match self {
+            Self::Isotropic { stiffness, .. } => *stiffness,
+            Self::Orthotropic { stiffnesses, .. } => stiffnesses.max(),
+        }
+    }
+
     /// The trace of the quadratic form.
     pub(super) fn trace(&self) -> f64 {
         match self {

@@ -67,6 +67,10 @@ impl<'a> HeldEdges<'a> {
         Self { clamps, of_edges }
     }
 
+    pub(super) fn holds(&self, edge: EdgeId) -> bool {
+        self.of_edges[edge.index()].is_some()
+    }
+
     /// The clamp that holds a face at an edge, and the outward normal there.
     pub(super) fn director(
         &self,

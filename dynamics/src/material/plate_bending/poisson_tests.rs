@@ -135,6 +135,10 @@ fn eigenvalues(a: DMatrix<f64>, b: DMatrix<f64>) -> Vec<f64> {
     values
 }
 
+/// Errors below which those of the reference count: Ritz's values are bounds from above, up to 0.4 % above what all meshes
+/// of 16 cells across agree on (`cargo xtask validation`).
+const REFERENCE: f64 = 5e-3;
+
 /// The first frequencies of a square cantilever plate with Poisson's ratio 0.3, `omega a^2 sqrt(rho / D)`: the
 /// first bend and the first twist (A. W. Leissa, "The free vibration of rectangular plates", J. Sound Vib. 31,
 /// 1973).
@@ -226,7 +230,7 @@ fn a_plate_on_edge_buckles_where_ritz_says() {
             let what = format!("{width} {pattern:?}: {errors:?}");
             let [coarse, fine] = errors.map(f64::abs);
             assert!(
-                coarse < 0.07 && fine < 0.02 && fine < 0.6 * coarse,
+                coarse < 0.07 && fine < 0.02 && fine < (0.6 * coarse).max(REFERENCE),
                 "{what}"
             );
         }

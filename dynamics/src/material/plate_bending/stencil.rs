@@ -114,13 +114,15 @@ impl Stencils {
         let topology = sheet.topology();
         let clamps = Clamps::new(sheet, edges.pinned);
         let held = HeldEdges::new(sheet, edges.clamps);
-        let mut is_creased = vec![false; topology.edge_count()];
+        // No fit reaches across creases and clamps.
+        let is_held = |e: EdgeId| held.holds(e) && !topology.is_boundary_edge(e);
+        let mut is_closed: Vec<bool> = topology.edge_ids().map(is_held).collect();
         for edge in edges.creases {
-            is_creased[edge.index()] = true;
+            is_closed[edge.index()] = true;
         }
         let fits: Vec<_> = topology
             .edge_ids()
-            .map(|e| fit_at(sheet, roots, &clamps, &is_creased, e))
+            .map(|e| fit_at(sheet, roots, (&clamps, &held), &is_closed, e))
             .collect();
         let mut stencils = Self {
             starts: vec![0],
@@ -140,9 +142,10 @@ impl Stencils {
                     stencils.weights.push(scale * of_points[point]);
                 }
                 if !directors.is_empty() {
-                    let scaled = directors.iter().map(|d| Director {
-                        weights: scale * d.weights,
-                        ..d.clone()
+                    let scaled = directors.iter().map(|(clamp, rest, of_points)| Director {
+                        clamp: *clamp,
+                        rest: *rest,
+                        weights: scale * of_points[point],
                     });
                     let number = (stencils.starts.len() - 1) as u32;
                     stencils.directors.insert(number, scaled.collect());
@@ -236,6 +239,9 @@ impl Stencils {
 /// The weights of vertices at the points of a face.
 type PointWeights = Vec<(VertexId, [Vector3<f64>; POINTS])>;
 
+/// The weights of slopes that clamps hold, each with its clamp.
+type PointDirectors = Vec<(usize, Vector3<f64>, [Vector3<f64>; POINTS])>;
+
 /// `sqrt(D A)` of a point.
 fn scale(sheet: &Sheet, roots: &Roots, point: usize) -> f64 {
     let face = face_of(point);
@@ -250,7 +256,7 @@ fn face_weights(
     fits: &[Option<Fit>],
     director: impl Fn(EdgeId) -> Option<(usize, Vector3<f64>)>,
     face: FaceId,
-) -> (PointWeights, Vec<Director>) {
+) -> (PointWeights, PointDirectors) {
     let topology = sheet.topology();
     let [a, b, _] = topology.faces()[face.index()];
     let base = topology.find_edge(a, b).expect("an edge of a face");
@@ -268,7 +274,20 @@ fn face_weights(
             .iter_mut()
             .for_each(|sum| *sum += w);
     };
-    let (mut free, mut directors, mut varying) = (Vec::new(), Vec::new(), Vec::new());
+    let mut directors = PointDirectors::new();
+    let mut hold = |points: Range<usize>, clamp: usize, rest: Vector3<f64>, w: Vector3<f64>| {
+        let known = directors
+            .iter()
+            .position(|(c, r, _)| (*c, *r) == (clamp, rest));
+        let place = known.unwrap_or_else(|| {
+            directors.push((clamp, rest, [Vector3::zeros(); POINTS]));
+            directors.len() - 1
+        });
+        directors[place].2[points]
+            .iter_mut()
+            .for_each(|sum| *sum += w);
+    };
+    let (mut free, mut varying) = (Vec::new(), Vec::new());
     for k in 0..POINTS {
         let ((p, xp), (q, xq)) = (corners[k], corners[(k + 1) % 3]);
         let edge = topology.find_edge(p, q).expect("an edge of a face");
@@ -281,39 +300,41 @@ fn face_weights(
         let bend = symmetric(n, n) * (length / area);
         let is_left = topology.left_face(edge) == face;
         let sign = if is_left { 1.0 } else { -1.0 };
-        if let Some((clamp, rest)) = director(edge) {
-            let weights = bend;
-            directors.push(Director {
-                clamp,
-                rest,
-                weights,
-            });
-            continue;
-        }
-        match &fits[edge.index()] {
-            Some(fit) => {
-                let slope = fit.slope.iter();
-                slope.for_each(|(v, s)| add(0..POINTS, *v, sign * s * bend));
-                if !fit.bend.is_empty() {
-                    // The axes of the edge, both turned by half a turn or none.
-                    let axes = [symmetric(t, t), SQRT_2 * symmetric(t, -n), symmetric(n, n)];
-                    varying.push((k, Matrix3::from_columns(&axes), &fit.bend));
+        let fit = fits[edge.index()].as_ref();
+        match (director(edge), fit) {
+            (Some((clamp, rest)), _) => hold(0..POINTS, clamp, rest, bend),
+            (None, Some(fit)) => {
+                for (v, s) in &fit.slope {
+                    add(0..POINTS, *v, sign * s * bend);
+                }
+                for part in &fit.held {
+                    hold(0..POINTS, part.clamp, part.rest, sign * part.slope * bend);
                 }
             }
-            None => free.push(symmetric(n, n)),
+            (None, None) => free.push(symmetric(n, n)),
+        }
+        if let Some(fit) = fit.filter(|fit| !fit.bend.is_empty()) {
+            // The axes of the edge, both turned by half a turn or none.
+            let axes = [symmetric(t, t), SQRT_2 * symmetric(t, -n), symmetric(n, n)];
+            varying.push((k, VARIATION * Matrix3::from_columns(&axes), fit));
         }
     }
     let part = 1.0 / varying.len() as f64;
-    for (k, axes, bend) in &varying {
-        for (v, second) in *bend {
-            let second = VARIATION * axes * second;
-            add(*k..k + 1, *v, second);
-            for (other, ..) in &varying {
-                add(*other..other + 1, *v, -part * second);
+    for (k, axes, fit) in &varying {
+        // The point itself, and the mean of all.
+        let own = std::iter::once((*k, 1.0));
+        let points = own.chain(varying.iter().map(|(other, ..)| (*other, -part)));
+        for (point, factor) in points {
+            for (v, second) in &fit.bend {
+                add(point..point + 1, *v, factor * axes * second);
+            }
+            for held in &fit.held {
+                let second = factor * axes * held.bend;
+                hold(point..point + 1, held.clamp, held.rest, second);
             }
         }
     }
-    let of_directors = directors.iter_mut().map(|d| &mut d.weights);
+    let of_directors = directors.iter_mut().flat_map(|(.., w)| w);
     let of_vertices = weights.iter_mut().flat_map(|(_, w)| w);
     without(of_vertices.chain(of_directors), free);
     (weights, directors)
