@@ -217,10 +217,9 @@ catalogue! {
         "Typical values of plasticised cellulose diacetate: J. A. Brydson, Plastics Materials, 7th ed., \
          Butterworth-Heinemann 1999.";
     polyethylene_film: "polyethylene film", "low density (bags), 0.05 mm",
-        stretching(plate(2.5e8, 5e-5, 920.0, 0.45), 0.03),
+        plate(2.5e8, 5e-5, 920.0, 0.45),
         "Young's modulus: the middle of 0.2 to 0.3 GPa, and density of low-density polyethylene: J. A. Brydson, \
-         Plastics Materials, 7th ed., Butterworth-Heinemann 1999. Poisson's ratio: typical. Strain limit: half of the \
-         strain at yield, 5 to 8 %.";
+         Plastics Materials, 7th ed., Butterworth-Heinemann 1999. Poisson's ratio: typical.";
     aluminium_foil: "aluminium foil", "household foil, alloy 8011, 0.016 mm",
         plate(6.9e10, 1.6e-5, 2700.0, 0.33).with_yield_stress(1.6e-5, 3.5e7),
         "Young's modulus, density and Poisson's ratio: ASM Handbook Vol. 2, Properties and Selection: Nonferrous \
@@ -277,10 +276,10 @@ catalogue! {
         "Mass and thickness: specification MIL-C-7020, type I. Membrane stiffness: its strength of 42 lbf/in at an \
          elongation of about 30 %. Rigidity: typical of light woven nylon, 0.03 gf cm2/cm. Poisson's ratio: assumed.";
     leather: "leather", "soft upholstery leather, 1.2 mm",
-        stretching(fibrous(1.0, 3e4, 1e-3, 0.4), 0.05),
+        fibrous(1.0, 3e4, 1e-3, 0.4),
         "Typical values, Young's modulus being 25 MPa at small strains and the rigidity that of bending with the \
          grain outside, a quarter of that of a plate; leathers differ by a factor of three. A. Mihai, A. Seul, A. \
-         Curteza and M. Costea, Materials 15, 5107, 2022. Strain limit: stretch in use.";
+         Curteza and M. Costea, Materials 15, 5107, 2022.";
     rubber_sheet: "rubber sheet", "natural rubber, 45 Shore A, 1 mm",
         stretching(plate(1.8e6, 1e-3, 950.0, 0.5), 0.2),
         "Young's modulus by hardness: A. N. Gent (ed.), Engineering with Rubber, 3rd ed., Hanser 2012. Density of \

@@ -140,7 +140,7 @@ pub struct StrainOfFace {
 
 impl ElasticSheet {
     /// The limit of the strain unless another is asked for.
-    pub const LIMIT: f64 = 0.01;
+    pub const LIMIT: f64 = 0.05;
 
     /// The least and the largest part by which lengths may [grow](Self::with_swelling).
     pub const SWELLING: [f64; 2] = [-0.2, 0.2];
@@ -318,6 +318,13 @@ impl ElasticSheet {
             let (face, strained) = strained(&self.faces, k, at);
             face.energy(&strained, barrier)
         })
+    }
+
+    /// The part of the area whose strain is beyond half of its limit, where the barrier acts.
+    pub(crate) fn part_at_limit(&self, at: At<'_>) -> f64 {
+        let is_held = |face: &&Face| face.strain(at).norm() > 0.5 * face.limit();
+        let held: f64 = self.faces.iter().filter(is_held).map(Face::area).sum();
+        held / self.area()
     }
 
     /// The part of the slack in these energies, joules.

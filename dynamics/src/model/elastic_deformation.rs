@@ -15,6 +15,8 @@ pub struct ElasticDeformation {
     /// The part of it that is in the slack of faces that bend, joules: a sheet that is pulled yields by it as its
     /// material would not.
     pub slack: Vec<f64>,
+    /// Part of the area whose strain is beyond half of its limit, where the barrier acts, from 0 to 1.
+    pub at_limit: f64,
     /// Energy of bending, joules.
     pub bending: Vec<f64>,
     /// The angle by which the sheet bends over the size of the face, radians: `sqrt(2 V / (D A)) h`, with the
@@ -89,6 +91,7 @@ impl SheetModel {
             strain: of_faces(&mut elastic.strains(own)),
             stretching: of_faces(&mut elastic.face_energies(own)),
             slack: of_faces(&mut elastic.slack_energies(own)),
+            at_limit: elastic.part_at_limit(own),
             angle,
             bending,
         })

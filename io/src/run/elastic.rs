@@ -22,6 +22,10 @@ pub struct ElasticSummary {
     /// the mesh where a sheet bends and is pulled.
     #[serde(default)]
     pub slack: f64,
+    /// Part of the area at the end whose strain is beyond half of its limit, from 0 to 1: there the limit acts beside the
+    /// stiffness of the material.
+    #[serde(default)]
+    pub at_limit: f64,
     /// Where the sheet bent most over the size of a face, if it bends.
     pub sharpest: Option<Bend>,
     /// The same at the end.
@@ -110,6 +114,7 @@ impl ElasticSummary {
             strain: 0.0,
             share: 0.0,
             slack: 0.0,
+            at_limit: 0.0,
             sharpest: None,
             at_end: None,
             at_rest,
@@ -132,6 +137,7 @@ impl ElasticSummary {
         }
         self.share = deformation.total_share();
         self.slack = deformation.slack_share();
+        self.at_limit = deformation.at_limit;
         let before = self.sharpest.map_or(0.0, |bend| bend.angle);
         if let Some((face, angle)) = deformation.sharpest() {
             let at = middle(simulation, FaceId::from_index(face));
