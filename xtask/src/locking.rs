@@ -17,6 +17,7 @@ mod runs;
 mod scene;
 mod slack;
 mod strips;
+mod tension;
 
 use crate::interrupt;
 use crate::report::{Options, Part, Record, Report, Table, all_findings, findings};
@@ -78,6 +79,7 @@ impl Yardstick {
             "slack" => slack::runs,
             "curved-creases" => curved::runs,
             "buckling" => buckling::runs,
+            "tension" => tension::runs,
             name => panic!("no runs of the yardstick {name}"),
         };
         runs(records)

@@ -37,6 +37,7 @@ const PULLED: &str = "version = 1
 [sheet]
 mesh = { rectangle = { width = 0.1, height = 0.02, columns = 4, rows = 1 } }
 material = \"office paper\"
+isometry = { elastic = { limit = 0.01 } }
 [[support]]
 at = { half_space = { point = [0, 0, 0], normal = [-1, 0, 0] } }
 [[support]]

@@ -93,9 +93,9 @@ fn what_cannot_swell_is_refused() {
 fn what_a_sheet_cannot_follow_names_the_key() {
     for (swell, supports, reason) in [
         (
-            "{ smooth_step = { to = -0.05, end = 1 } }",
+            "{ smooth_step = { to = -0.1, end = 1 } }",
             ENDS,
-            "and the limit is 0.01",
+            "and the limit is 0.05",
         ),
         (
             "{ run_up = { rate = 0.5, end = 0.1 } }",
