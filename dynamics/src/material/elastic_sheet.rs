@@ -91,9 +91,10 @@ use swelling::Swelling;
 /// force at which a wave of the size of a face is pulled flat, or buckles; faces that bend much yield by `h^2 / (500
 /// D)` for each newton per metre at most.
 ///
-/// *Tension.* Under a tension `s_1`, the largest principal value of the mean stress of the faces around, `r` is `0.3 (k
-/// h)^2 min(1, 5 D / (h^2 s_1))`. A ripple of the curvature `k` costs `D k^2 / 2` for each square metre, and a tension
-/// gains up to `s_1 r` by the slack of the ripple: without this bound a taut sheet would ripple by itself, and yield.
+/// *Tension.* Under a tension `s_1` the slack `r` is `2 D k^2 / s_1` at most: a ripple of the curvature `k` costs `D k^2 /
+/// 2` for each square metre, and a tension gains up to `s_1 r` by the slack of the ripple. Without this bound a taut sheet
+/// would ripple by itself, and yield. `s_1` is the largest principal value of the mean stress of the faces around, or of
+/// `W_T(E_T)` without chords, if that is less: faces that are not as short as their chords yet are not pulled.
 ///
 /// *Directions.* A sheet whose material has two directions ([`OrthotropicMembrane`]) stores `(E_T - S_T) : C (E_T -
 /// S_T) / 2` where it is flat. The slack belongs to the mesh, and has no direction: its range is that of a norm

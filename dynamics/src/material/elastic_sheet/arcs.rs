@@ -19,8 +19,8 @@ pub(super) struct Arcs {
     /// The bends of faces that are curved without stress; nothing where all are flat.
     at_rest: Vec<Bend>,
     around: Surroundings,
-    /// The stresses of the faces while bends are remembered.
-    stresses: Room<Vec<Vector3<f64>>>,
+    /// While bends are remembered, the stresses of the faces, and those that their material alone would have.
+    stresses: Room<Vec<[Vector3<f64>; 2]>>,
     /// The numbers of its coordinates in the union, and of its faces among those that are elastic.
     coordinates: Range<usize>,
     faces: Range<usize>,
@@ -87,7 +87,9 @@ impl Arcs {
         let rows = self.rows(memory);
         self.stresses.with(|stresses| {
             let before = own.iter().zip(rows.iter());
-            let stress = |(face, row): (&Face, &_)| face.stress(here, &Bend::remembered(row));
+            let stress = |(face, row): (&Face, &_)| {
+                [Bend::remembered(row), Bend::FLAT].map(|bend| face.stress(here, &bend))
+            };
             stresses.clear();
             stresses.extend(before.map(stress));
             for (row, bend) in rows.iter_mut().zip(self.bends(faces, here)) {
@@ -104,8 +106,9 @@ impl Arcs {
             for (k, around) in self.around.iter().enumerate() {
                 let bends = around.iter().map(|f| Bend::remembered(&rows[f.face]));
                 let most = bends.fold(0.0, |most: f64, bend| most.max(bend.own));
-                let tension = largest_of_mean(around, |f| (own[f].area(), stresses[f]));
-                let wanted = own[k].left_by(tension) * most;
+                let mean =
+                    |which: usize| largest_of_mean(around, |f| (own[f].area(), stresses[f][which]));
+                let wanted = own[k].left_by(mean(0).min(mean(1))) * most;
                 let bend = Bend::remembered(&rows[k]);
                 rows[k] = own[k].with_slack(here, bend, wanted).numbers();
             }
