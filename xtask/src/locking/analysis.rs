@@ -232,8 +232,11 @@ pub(super) fn findings(
 ) -> Vec<Finding> {
     let mut all = Vec::new();
     for model in Model::ALL {
-        all.extend(required.iter().map(|r| r.on(model, runs, effort, reasons)));
         let of = with(runs, "model", &model.to_string());
+        if of.rows.is_empty() {
+            continue;
+        }
+        all.extend(required.iter().map(|r| r.on(model, runs, effort, reasons)));
         for (name, bound) in GUARANTEES {
             let worst = value(&made(&of, name, ""));
             let finding = worst.map(|v| Finding::worst(model.to_string(), name, bound, &[Some(v)]));

@@ -115,7 +115,7 @@ impl Job {
             value,
             reference,
             error,
-            at_limit: deformation.map_or(0.0, |d| d.at_limit),
+            at_limit: deformation.map_or(0.0, |d| d.at_limit + 0.0),
             factorisations: course.cost.factorisations,
             cpu: course.cost.cpu,
             strain: None,
@@ -178,10 +178,7 @@ fn crests(sheet: &Sheet, x: &[f64]) -> f64 {
     let heights: Vec<f64> = line.iter().map(|[_, z]| *z).collect();
     let highest = heights.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
     let is_crest = |w: &[f64]| (w[1] - w[0]) * (w[2] - w[1]) < 0.0 && w[1].abs() > 0.25 * highest;
-    heights
-        .array_windows::<3>()
-        .filter(|w| is_crest(&w[..]))
-        .count() as f64
+    heights.windows(3).filter(|w| is_crest(w)).count() as f64
 }
 
 /// The runs of the yardstick.
