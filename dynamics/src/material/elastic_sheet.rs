@@ -324,8 +324,9 @@ impl ElasticSheet {
     /// The part of the area whose strain is beyond half of its limit, where the barrier acts.
     pub(crate) fn part_at_limit(&self, at: At<'_>) -> f64 {
         let is_held = |face: &&Face| face.strain(at).norm() > 0.5 * face.limit();
-        let held: f64 = self.faces.iter().filter(is_held).map(Face::area).sum();
-        held / self.area()
+        let held = self.faces.iter().filter(is_held).map(Face::area);
+        // The sum of nothing would be -0.
+        held.fold(0.0, |sum, area| sum + area) / self.area()
     }
 
     /// The part of the slack in these energies, joules.

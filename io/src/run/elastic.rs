@@ -137,7 +137,7 @@ impl ElasticSummary {
         }
         self.share = deformation.total_share();
         self.slack = deformation.slack_share();
-        self.at_limit = deformation.at_limit + 0.0; // no negative zero
+        self.at_limit = deformation.at_limit;
         let before = self.sharpest.map_or(0.0, |bend| bend.angle);
         if let Some((face, angle)) = deformation.sharpest() {
             let at = middle(simulation, FaceId::from_index(face));

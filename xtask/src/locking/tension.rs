@@ -115,7 +115,7 @@ impl Job {
             value,
             reference,
             error,
-            at_limit: deformation.map_or(0.0, |d| d.at_limit + 0.0),
+            at_limit: deformation.map_or(0.0, |d| d.at_limit),
             factorisations: course.cost.factorisations,
             cpu: course.cost.cpu,
             strain: None,
