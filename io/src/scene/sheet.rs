@@ -116,7 +116,7 @@ pub struct Elasticity {
 ///
 /// ```toml
 /// [sheet]
-/// isometry = { elastic = { stiffness = 3e5, limit = 0.01 } }
+/// isometry = { elastic = { stiffness = 3e5, limit = 0.05 } }
 /// bending = { plate = { rigidity = 5e-4 } }
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -142,7 +142,8 @@ pub enum Isometry {
         #[serde(default)]
         poisson: Option<f64>,
         /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. If left out, that of
-        /// the material, or the largest of those of patches; without one 0.01.
+        /// the material, or the largest of those of patches; without one 0.05. The limit `m` is one of the norm of
+        /// Green's strain: edges become longer by a part of `sqrt(1 + 2 m) - 1` at most, shorter by `1 - sqrt(1 - 2 m)`.
         #[serde(default)]
         limit: Option<f64>,
     },

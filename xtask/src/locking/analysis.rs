@@ -211,17 +211,22 @@ impl Required {
 
 /// What every accepted step guarantees: lengths to within the limit of the strain that all models have by default, those
 /// of rods to 1e-12, and gaps above 0. Steps of runs that did not reach their end count.
-const GUARANTEES: [(&str, Bound); 3] = [
-    (
-        "largest strain of an edge",
-        Bound::AtMost(ElasticSheet::LIMIT),
-    ),
-    (
-        "largest violation of the equations of isometry",
-        Bound::AtMost(1e-12),
-    ),
-    ("smallest gap, m", Bound::Above(0.0)),
-];
+///
+/// The norm of Green's strain `(l^2 / L^2 - 1) / 2` is below the limit `m`, so that an edge becomes shorter by a part of
+/// `1 - sqrt(1 - 2 m)` at most, and longer by less.
+fn guarantees() -> [(&'static str, Bound); 3] {
+    [
+        (
+            "largest strain of an edge",
+            Bound::AtMost(1.0 - (1.0 - 2.0 * ElasticSheet::LIMIT).sqrt()),
+        ),
+        (
+            "largest violation of the equations of isometry",
+            Bound::AtMost(1e-12),
+        ),
+        ("smallest gap, m", Bound::Above(0.0)),
+    ]
+}
 
 /// What every model reaches of what is required, and what all steps guarantee.
 pub(super) fn findings(
@@ -237,7 +242,7 @@ pub(super) fn findings(
             continue;
         }
         all.extend(required.iter().map(|r| r.on(model, runs, effort, reasons)));
-        for (name, bound) in GUARANTEES {
+        for (name, bound) in guarantees() {
             let worst = value(&made(&of, name, ""));
             let finding = worst.map(|v| Finding::worst(model.to_string(), name, bound, &[Some(v)]));
             all.extend(finding);

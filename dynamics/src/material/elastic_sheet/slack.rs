@@ -178,6 +178,29 @@ mod tests {
         force: 0.5,
     };
 
+    /// A bend of the curvature `k` costs `D k^2 / 2`; what a tension `s` gains by its slack is at most `2 D k^2`.
+    #[test]
+    fn a_tension_leaves_no_more_slack_than_a_bend_is_worth() {
+        let (rigidity, size) = (5e-4, 0.02);
+        for bend in [1e-8, 1e-4, 0.1, 2.0] {
+            let all = Slack::of_bend(rigidity, size * size, bend).range;
+            let curvature = bend / (size * size);
+            for tension in [-1e3, 0.0, 1e-6, 1.0, 8.3, 8.4, 100.0, 1e6] {
+                let left = Slack::left_by(tension, rigidity, size * size);
+                assert!((0.0..=1.0).contains(&left));
+                let gain = tension * left * all;
+                assert!(
+                    gain <= 2.0 * rigidity * curvature * (1.0 + 1e-12),
+                    "{bend} {tension}: {gain}"
+                );
+                assert!(
+                    left == 1.0 || gain > 1.99 * rigidity * curvature,
+                    "{bend} {tension}: {gain}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn the_stress_solves_the_law() {
         for range in [0.0, 1e-12, 1e-4, 0.02, 0.3] {
