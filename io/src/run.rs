@@ -131,7 +131,7 @@ use crate::format::{
 };
 use crate::scene::{Kept, SceneFile, Setup, UnderWay};
 use crate::view::PageOptions;
-use checkpoint::RunProgress;
+use checkpoint::{RunProgress, StepsBy};
 pub(crate) use folder::Existing;
 use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
@@ -268,7 +268,7 @@ fn simulate_in(
     }
     let setup = file.build_with(&mut kept)?;
     let estimate = Estimate::of(file.scene(), &setup);
-    let warnings = [setup.warnings(), estimate.warnings(folder)].concat();
+    let mut warnings = [setup.warnings(), estimate.warnings(folder)].concat();
     let plan = Plan {
         file,
         hash,
@@ -301,6 +301,10 @@ fn simulate_in(
         FolderState::Partial(open) => {
             let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
             check_origin(&open, &saved.0, &hash.to_string())?;
+            warnings.extend(commit::other_build(
+                saved.0.commit.as_deref(),
+                commit::noted().as_deref(),
+            ));
             (open, Some(saved))
         }
     };
@@ -436,8 +440,8 @@ fn check_origin(folder: &RunFolder, progress: &RunProgress, hash: &str) -> Resul
     if progress.scene != hash {
         return Err(RunError::OtherScene { folder: root });
     }
-    if !progress.control.is_empty() {
-        return Err(RunError::Controlled { folder: root });
+    if progress.steps_by == StepsBy::Program {
+        return Err(RunError::Recorded { folder: root });
     }
     if progress.version != env!("CARGO_PKG_VERSION") {
         return Err(RunError::OtherVersion {

@@ -114,7 +114,7 @@ impl From<RunError> for Failure {
             | RunError::NotOwn { .. }
             | RunError::Taken { .. }
             | RunError::ReadByScene { .. }
-            | RunError::Controlled { .. } => Code::OtherScene,
+            | RunError::Recorded { .. } => Code::OtherScene,
             RunError::Busy { .. } => Code::Busy,
             RunError::NoFolder | RunError::Extension { .. } => Code::CommandLine,
             RunError::SceneFile(SceneFileError::Edit(_)) => Code::CommandLine,

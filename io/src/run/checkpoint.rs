@@ -26,6 +26,12 @@ pub(crate) struct RunProgress {
     pub(crate) scene: String,
     /// Version of the program that began the run.
     pub(crate) version: String,
+    /// The commit that this program was built from, if it said so.
+    #[serde(default)]
+    pub(crate) commit: Option<String>,
+    /// Who takes the steps.
+    #[serde(default)]
+    pub(crate) steps_by: StepsBy,
     /// Steps taken.
     pub(crate) steps: u64,
     /// What is written of the history.
@@ -90,6 +96,16 @@ pub(crate) struct RunProgress {
     pub(crate) elastic: Option<ElasticSummary>,
     /// How it ended, if it did.
     pub(crate) ending: Option<Ending>,
+}
+
+/// Who takes the steps of a run, and so who can continue it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum StepsBy {
+    /// The scene says all of it. A recording that has ended, and during which nothing was changed, is such a run.
+    #[default]
+    Scene,
+    /// A program, which may have been about to change something.
+    Program,
 }
 
 /// First bytes of the file; the last two are the version of the format.

@@ -115,12 +115,13 @@ pub enum RunError {
         /// What the scene reads.
         path: PathBuf,
     },
-    /// A program interfered between the steps of the run, which its scene alone does not continue.
+    /// A program took the steps of the run, which its scene alone does not continue.
     #[error(
-        "the run in {} was controlled by a program between its steps, and its scene alone does not continue it",
+        "the run in {} was recorded by a program, which took its steps and may change the scene between them: the scene \
+         alone does not continue it",
         folder.display()
     )]
-    Controlled {
+    Recorded {
         /// The folder.
         folder: PathBuf,
     },
@@ -170,8 +171,8 @@ impl Advice for RunError {
                 Some("choose another folder, or have the run replaced: `replace=True` in Python")
             }
             Self::ReadByScene { .. } => Some("choose another folder for the run (`--out`)"),
-            Self::Controlled { .. } => Some(
-                "have that program make it again, or run the scene of the folder from its start in another folder",
+            Self::Recorded { .. } => Some(
+                "have that program make it again, with `replace=True` in Python, or run the scene of the folder from its start in another folder; `isosheet page` and `isosheet convert` show what was recorded",
             ),
             Self::NotRecordable { .. } => Some(
                 "have it in the scene from the start, with no effect at first; or end the recording and begin another",

@@ -1,5 +1,6 @@
 //! Recordings of simulations whose steps a program takes.
 
+use super::checkpoint::StepsBy;
 use super::control::Control;
 use super::folder::{Existing, FolderState, RunFolder, RunInputs, SceneHash, stored_scene};
 use super::frames::FrameShape;
@@ -192,6 +193,7 @@ impl Recorder {
             facts: &under_way.facts,
             shape,
             rows: Rows::InMemory,
+            steps_by: StepsBy::Program,
         };
         let mut writer = RunWriter::begin(&subject, &open, under_way, None, clock)?;
         let reached = under_way.simulation.state().t;
@@ -407,6 +409,9 @@ impl Recorder {
         };
         let failed = self.failed.take();
         self.writer.progress.ending = Some(Ending { failed, ..ended });
+        if self.writer.progress.control.is_empty() {
+            self.writer.progress.steps_by = StepsBy::Scene;
+        }
         self.writer.save(&live.simulation().checkpoint())?;
         let mut kept = Kept::in_folder(file.folder());
         let plan = Plan {

@@ -1,7 +1,7 @@
 //! The steps of a run and what is recorded of them.
 
 use super::balance::ForceBalance;
-use super::checkpoint::RunProgress;
+use super::checkpoint::{RunProgress, StepsBy};
 use super::folder::{RunFolder, SceneHash};
 use super::frames::FrameShape;
 use super::steps::{step_count, step_length};
@@ -46,6 +46,7 @@ impl<'a> Stepping<'a> {
             facts: &plan.facts,
             shape: plan.shape,
             rows: plan.rows,
+            steps_by: StepsBy::Scene,
         };
         let writer = RunWriter::begin(&subject, folder, &under_way, saved, clock)?;
         Ok(Self {

@@ -2,7 +2,8 @@
 
 use super::RunError;
 use super::balance::ForceBalance;
-use super::checkpoint::{self, RunProgress};
+use super::checkpoint::{self, RunProgress, StepsBy};
+use super::commit;
 use super::elastic::ElasticSummary;
 use super::energy::EnergySummary;
 use super::folder::{RunFolder, SceneHash};
@@ -61,6 +62,7 @@ pub(super) struct Subject<'a> {
     pub(super) facts: &'a Facts,
     pub(super) shape: FrameShape,
     pub(super) rows: Rows,
+    pub(super) steps_by: StepsBy,
 }
 
 impl RunWriter {
@@ -78,6 +80,7 @@ impl RunWriter {
             facts,
             shape,
             rows,
+            steps_by,
         } = subject;
         let bears_loads =
             !scene.support.is_empty() || !scene.obstacle.is_empty() || !scene.body.is_empty();
@@ -138,6 +141,8 @@ impl RunWriter {
             progress: saved.unwrap_or_else(|| RunProgress {
                 scene: hash.to_string(),
                 version: env!("CARGO_PKG_VERSION").into(),
+                commit: commit::noted(),
+                steps_by,
                 ..RunProgress::default()
             }),
             checkpoint: folder.path(RunFolder::CHECKPOINT),

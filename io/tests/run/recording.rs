@@ -3,7 +3,8 @@
 use isosheet_io::LoadKind;
 use isosheet_io::mesh::VertexId;
 use isosheet_io::run::{
-    EndReason, ExistingRun, Recorder, RecorderOptions, Recording, RecordingEnd, RunError, simulate,
+    EndReason, ExistingRun, Recorder, RecorderOptions, Recording, RecordingEnd, RunError,
+    extend_folder, resume_folder, simulate,
 };
 use isosheet_io::scene::{LiveScene, SceneFile};
 use std::fs;
@@ -142,4 +143,30 @@ fn a_hand_and_an_error_are_told() {
         ..options
     };
     assert!(Recorder::begin(&mut live, folder.path(), &options).is_ok());
+}
+
+/// A program that was killed may have been about to change something: the scene alone is another run.
+#[test]
+fn a_recording_that_has_not_ended_is_not_continued() {
+    for steps in [0, 3] {
+        let folder = tempfile::tempdir().unwrap();
+        let file = scene(&[]);
+        let mut live = LiveScene::start(file.clone()).unwrap();
+        let options = RecorderOptions::default();
+        let mut recorder = Recorder::begin(&mut live, folder.path(), &options).unwrap();
+        for _ in 0..steps {
+            let go_on = &mut |_: &_| ControlFlow::Continue(());
+            recorder.step(&mut live, 0.01, go_on).unwrap();
+        }
+        drop(recorder);
+        let go_on = &mut |_: &_| ControlFlow::Continue(());
+        for again in [
+            simulate(&file, folder.path(), go_on),
+            resume_folder(folder.path(), go_on),
+            extend_folder(folder.path(), 0.1, go_on),
+        ] {
+            assert!(matches!(again.err(), Some(RunError::Recorded { .. })));
+        }
+        assert_eq!(Recording::read(folder.path()).unwrap().summary, None);
+    }
 }
