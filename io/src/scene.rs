@@ -44,6 +44,7 @@ mod curl;
 mod direction;
 mod drawing;
 mod driven;
+mod driven_into;
 mod driven_surface;
 mod edit;
 mod enclosed;
@@ -183,7 +184,7 @@ pub use support_forces::{SupportForces, SupportLoad};
 pub use supports::{Curve, Followed, Hold, Support, Surface, SurfaceSide};
 pub use switch::{Condition, Threshold, When};
 pub use targets::{CreaseResidual, DrivenCrease, Residuals, Targets};
-pub use unit::UnitRange;
+pub use unit::{UnitRange, UsualSize};
 pub use up_axis::UpAxis;
 pub use warning::Warning;
 pub use weight::Weight;
@@ -321,6 +322,17 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with all problems that were found.
     pub fn validate(&self) -> Result<(), SceneError> {
+        SceneError::of(self.checks().problems)
+    }
+
+    /// Numbers that are possible, and larger or smaller than those of any sheet of this world.
+    pub(crate) fn doubts(&self) -> Vec<Warning> {
+        let mut doubts = self.checks().doubts;
+        doubts.extend(creases::in_radians(&self.crease));
+        doubts
+    }
+
+    fn checks(&self) -> Checks {
         let (root, mut checks) = (Key::root(), Checks::default());
         if self.version != VERSION {
             let message = format!("version {} of scene files is not known", self.version);
@@ -401,7 +413,7 @@ impl Scene {
         let step = self.method.step;
         self.stop.check(step, &root.name("stop"), &mut checks);
         self.output.check(&root.name("output"), &mut checks);
-        SceneError::of(checks.problems)
+        checks
     }
 
     /// Sheets without rods need a method whose steps are minima, contact such a method or a chart.

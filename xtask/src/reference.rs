@@ -108,6 +108,7 @@ fn ranges(page: &mut String) {
         least,
         most,
         reason,
+        usual,
     } in UnitRange::all()
     {
         let least = if least > 0.0 {
@@ -119,8 +120,15 @@ fn ranges(page: &mut String) {
             "" => "coefficients of friction and drag",
             symbol => symbol,
         };
+        let (questioned, compare) = match usual {
+            Some(usual) => (
+                given(usual.most).to_string(),
+                format!("{reason}; {}", usual.compare),
+            ),
+            None => (String::new(), reason.to_owned()),
+        };
         page.push_str(&format!(
-            "| {symbol} | {least} | {} | {reason} |\n",
+            "| {symbol} | {least} | {questioned} | {} | {compare} |\n",
             given(most)
         ));
     }
@@ -131,10 +139,11 @@ const RANGES: &str = "
 
 A number beyond the range of its unit is refused. The bounds are far beyond everything that a sheet is made of, and near
 enough for the squares, cubes and quotients of a step neither to overflow nor to vanish. The smallest size holds for
-numbers that have to be above zero.
+numbers that have to be above zero. A number beyond the size that its unit usually has is warned of, as it is mostly
+meant in another unit.
 
-| unit | smallest | largest | for comparison |
-|---|---|---|---|
+| unit | smallest | warned of above | largest | for comparison |
+|---|---|---|---|---|
 ";
 
 const INTRODUCTION: &str = "\

@@ -8,6 +8,7 @@ use super::profile::Profile;
 use super::refined::Refined;
 use super::selection::{ON_LINE, beside_line, size};
 use super::unit::Unit;
+use super::warning::Warning;
 use super::yields::CreaseYield;
 use crate::format::drawing::Selector;
 use isosheet_dynamics::CreaseSpring;
@@ -136,6 +137,24 @@ pub enum PatternEdges {
     Flat,
     /// The zigzag creases of `sheet.mesh.miura`; a positive angle folds each to its side.
     Zigzags,
+}
+
+/// Angles of creases that seem to be radians: none is larger than half a turn of them, and one is not zero.
+pub(super) fn in_radians(creases: &[Crease]) -> Option<Warning> {
+    let sizes = creases.iter().enumerate().map(|(k, crease)| {
+        let (_, angles) = crease.angle.numbers();
+        (k, angles.into_iter().map(f64::abs).fold(0.0, f64::max))
+    });
+    let (k, largest) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (largest > 0.0 && largest <= std::f64::consts::PI).then(|| {
+        let key = Key::root().name("crease").entry(k).name("angle");
+        let message = format!(
+            "no crease folds by more than {} degrees, the size of `{key}`: in radians that is {} degrees",
+            brief(largest),
+            brief(largest.to_degrees())
+        );
+        Warning::new(message, "give angles in degrees")
+    })
 }
 
 impl Crease {

@@ -2,6 +2,7 @@
 
 use super::key::Key;
 use super::unit::Unit;
+use super::warning::Warning;
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
 use std::fmt;
@@ -70,6 +71,8 @@ fn in_unit(remedy: &str, unit: Unit) -> String {
 #[derive(Debug, Default)]
 pub(crate) struct Checks {
     pub(crate) problems: Vec<Problem>,
+    /// Numbers that no sheet of this world has.
+    pub(crate) doubts: Vec<Warning>,
 }
 
 impl Checks {
@@ -113,7 +116,7 @@ impl Checks {
     fn in_range(&mut self, key: Key, value: f64, least: f64, unit: Unit) {
         let range = unit.range();
         if (least..=range.most).contains(&value.abs()) {
-            return;
+            return self.question(&key, value, unit);
         }
         let sign = if value < 0.0 { "-" } else { "" };
         let (bound, side) = match value.abs() > range.most {
@@ -126,6 +129,24 @@ impl Checks {
         );
         let remedy = in_unit(&format!("give {side} {sign}{}", given(bound)), unit);
         self.report(key, message, format!("{remedy}: {}", range.reason));
+    }
+
+    /// Questions a number that is larger than those of its unit usually are.
+    fn question(&mut self, key: &Key, value: f64, unit: Unit) {
+        let Some(usual) = unit.range().usual else {
+            return;
+        };
+        if value.abs() > usual.most {
+            let message = format!(
+                "`{key}` is {}, which is hardly meant: {}",
+                quantity(value, unit),
+                usual.compare
+            );
+            self.doubts.push(Warning::new(
+                message,
+                "give it in the unit that the message has",
+            ));
+        }
     }
 
     /// A number from `least` to `most`, if there is one.

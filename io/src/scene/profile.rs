@@ -225,7 +225,7 @@ impl Profile {
     }
 
     /// Times and values, of which any may be out of range.
-    fn numbers(&self) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn numbers(&self) -> (Vec<f64>, Vec<f64>) {
         let course = match self {
             Self::Constant(value) => return (Vec::new(), vec![*value]),
             Self::Course(course) => course,

@@ -1,5 +1,6 @@
 //! Supports and obstacles that move too fast for a step.
 
+use super::driven_into::driven_into;
 use super::engine_problem::is_without_room;
 use super::functions::Moved;
 use super::key::{Key, KeyPart};
@@ -21,7 +22,9 @@ impl UnderWay {
     /// What is wrong with a step of `h` seconds that failed.
     pub(crate) fn problem(&self, scene: &Scene, error: &StepError, h: f64) -> Problem {
         let of_engine = || self.facts.origins.of_failed_step(error, &self.simulation);
-        too_fast(scene, self, error, h).unwrap_or_else(of_engine)
+        let of_motions = too_fast(scene, self, error, h);
+        let of_motions = of_motions.or_else(|| driven_into(scene, self, error, h));
+        of_motions.unwrap_or_else(of_engine)
     }
 }
 
@@ -57,6 +60,27 @@ fn too_fast(scene: &Scene, under_way: &UnderWay, error: &StepError, h: f64) -> O
 
 /// What moves farthest in a step from the present state.
 fn fastest(scene: &Scene, under_way: &UnderWay, h: f64) -> Option<Fastest> {
+    let ways = courses(scene, under_way, h).into_iter().map(|course| {
+        let ways = course.points.iter().map(|[from, to]| (to - from).norm());
+        let way = ways.fold(0.0, f64::max);
+        Fastest {
+            key: course.key,
+            way,
+        }
+    });
+    ways.max_by(|a, b| a.way.total_cmp(&b.way))
+}
+
+/// How the points of a support, or the origin of an obstacle, move.
+pub(super) struct Course {
+    /// The motion.
+    pub(super) key: Key,
+    /// Where each point is, and where it is to be.
+    pub(super) points: Vec<[Point3<f64>; 2]>,
+}
+
+/// How supports and obstacles with a motion move in a step of `h` seconds from the present state.
+pub(super) fn courses(scene: &Scene, under_way: &UnderWay, h: f64) -> Vec<Course> {
     let simulation = &under_way.simulation;
     let (t, x) = (
         simulation.state().t,
@@ -65,7 +89,7 @@ fn fastest(scene: &Scene, under_way: &UnderWay, h: f64) -> Option<Fastest> {
     let (origins, model) = (&under_way.facts.origins, simulation.model());
     let held = origins.vertices(model, scene.support.len());
     let mut scene = scene.clone();
-    let ways = scene.motions_mut().into_iter().filter_map(|moved| {
+    let courses = scene.motions_mut().into_iter().filter_map(|moved| {
         let Moved { key, motion, frame } = moved;
         let Some(KeyPart::Entry(number)) = key.parts().get(1) else {
             return None;
@@ -80,9 +104,8 @@ fn fastest(scene: &Scene, under_way: &UnderWay, h: f64) -> Option<Fastest> {
             _ => vec![from * Point3::origin()],
         };
         let there = to * from.inverse();
-        let ways = points.iter().map(|p| (there * p - p).norm());
-        let way = ways.fold(0.0, f64::max);
-        Some(Fastest { key, way })
+        let points = points.iter().map(|p| [*p, there * p]).collect();
+        Some(Course { key, points })
     });
-    ways.max_by(|a, b| a.way.total_cmp(&b.way))
+    courses.collect()
 }

@@ -37,6 +37,18 @@ pub struct UnitRange {
     pub most: f64,
     /// What the bounds are far beyond.
     pub reason: &'static str,
+    /// The size from which a number is questioned.
+    pub usual: Option<UsualSize>,
+}
+
+/// What the numbers of a unit hardly ever exceed with the sheets of this world: larger ones are mostly meant in another
+/// unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UsualSize {
+    /// The largest size that is usual.
+    pub most: f64,
+    /// Sizes to compare with.
+    pub compare: &'static str,
 }
 
 impl UnitRange {
@@ -178,6 +190,42 @@ impl Unit {
             least,
             most,
             reason,
+            usual: self.usual(),
         }
+    }
+
+    fn usual(self) -> Option<UsualSize> {
+        let (most, compare) = match self {
+            Self::KilogramPerSquareMetre => (
+                50.0,
+                "office paper of 80 g/m2 has 0.08 kg/m2, steel of 6 mm has 47 kg/m2",
+            ),
+            Self::KilogramPerCubicMetre => (
+                2.3e4,
+                "paper has 800 kg/m3, steel has 7850 kg/m3, osmium has 22600 kg/m3",
+            ),
+            Self::NewtonPerMetre => (
+                2e9,
+                "paper has 3e5 N/m, steel of 1 mm has 2e8 N/m, which is Young's modulus times thickness",
+            ),
+            Self::NewtonMetre => (
+                2e4,
+                "paper has a rigidity of 3e-4 N m, steel of 1 mm of 18 N m, steel of 10 mm of 18000 N m",
+            ),
+            Self::Pascal => (
+                1.3e12,
+                "paper has 3e9 Pa, steel has 2.1e11 Pa, diamond has 1.2e12 Pa",
+            ),
+            Self::MetrePerSecond => (
+                100.0,
+                "sheets leave printing presses at 20 m/s, the wind of a hurricane has 70 m/s",
+            ),
+            Self::MetrePerSquareSecond => (
+                300.0,
+                "the gravity of the earth is 9.81 m/s2, shakers reach some 100 m/s2",
+            ),
+            _ => return None,
+        };
+        Some(UsualSize { most, compare })
     }
 }

@@ -135,6 +135,7 @@ impl PlacedSheets<'_> {
             Warning::closed(&sheet.form.placed, &name)
         });
         of_sheets
+            .chain(scene.doubts())
             .chain(self.far_points(scene))
             .chain(closed)
             .collect()

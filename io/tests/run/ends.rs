@@ -220,6 +220,39 @@ step = 0.005
     }
 }
 
+/// A held vertex cannot give way: the support, the obstacle and the depth are named, not the solver.
+#[test]
+fn a_pin_that_is_driven_into_a_floor_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    let scene = "version = 1
+[sheet]
+mesh = { rectangle = { width = 0.2, height = 0.05, columns = 8, rows = 2 } }
+material = \"cotton\"
+[[support]]
+at = { box = { min = [-1, -1, -1], max = [0.001, 1, 1] } }
+hold = { moving_pin = { z = { ramp = { to = -0.1, end = 0.5 } } } }
+[[obstacle]]
+shape = \"half_space\"
+pose = { position = [0, 0, -0.03] }
+[stop]
+time = 0.6
+";
+    fs::write(dir.join("floor.toml"), scene).unwrap();
+    let failed = run(dir, &["simulate", "floor.toml"]);
+    let said = stderr(&failed);
+    assert_eq!(code(&failed), Some(1), "{said}");
+    // At 0.2 m/s the floor is reached at 0.15 s; the step ends 1/60 s after that.
+    for part in [
+        "`support[0].hold.moving_pin` is driven into `obstacle[0]`: at 0.167 s",
+        "0.00333 m inside",
+        "--> floor.toml:7:23",
+        "end its motion before that",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
 /// A sheet of rods that is clamped across its mesh: `check` and `simulate` say so before the run, which is
 /// refused with the remedy, after a bounded effort.
 #[test]

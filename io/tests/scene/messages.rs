@@ -562,6 +562,48 @@ fn slips_of_units_of_a_material_are_told() {
     }
 }
 
+/// Numbers that are possible, and that no sheet of this world has.
+#[test]
+fn numbers_that_are_hardly_meant_are_told() {
+    let scene = "version = 1\n[sheet]\nmesh = { rectangle = { width = 0.2, height = 0.1, columns = 2, rows = 1 } }\n\
+                 material = \"office paper\"\n[[crease]]\nat = { line = { from = [0.1, 0, 0], to = [0.1, 0.1, 0] } }\n\
+                 stiffness = 0.1\nangle = 30\n[forces]\ngravity = [0, 0, -9.81]\n[stop]\ntime = 1";
+    let warnings = |edits: &[&str]| -> Vec<String> {
+        let edits: Vec<String> = edits.iter().map(|edit| (*edit).to_owned()).collect();
+        let scene = SceneFile::parse(scene.into(), Path::new("scene.toml"), &edits).unwrap();
+        let warnings = scene.build().unwrap().warnings();
+        warnings.iter().map(ToString::to_string).collect()
+    };
+    assert_eq!(warnings(&[]), Vec::<String>::new());
+    for (edit, told) in [
+        (
+            "forces.gravity=[0,0,-9810]",
+            "`forces.gravity[2]` is -9810 m/s2",
+        ),
+        ("forces.gravity=[0,0,-981]", "9.81 m/s2"),
+        ("sheet.density=80", "`sheet.density` is 80 kg/m2"),
+        (
+            "sheet.start.velocity=[0,0,500]",
+            "`sheet.start.velocity[2]` is 500 m/s",
+        ),
+        ("crease.0.angle=0.8", "in radians that is 45.8 degrees"),
+        (
+            "crease.0.angle={smooth_step={to=-3.14,end=1}}",
+            "in radians that is 180 degrees",
+        ),
+        (
+            "sheet.isometry.elastic={stiffness=3e9}",
+            "`sheet.isometry.elastic.stiffness` is 3e9 N/m",
+        ),
+    ] {
+        let found = warnings(&[edit]);
+        assert!(
+            found.len() == 1 && found[0].contains(told),
+            "{edit}: {found:?}"
+        );
+    }
+}
+
 /// A mesh or a drawing in the place of a scene is told the key that takes it; an open outline the key that
 /// closes it; a face that is too narrow for contact where it is.
 #[test]

@@ -11,8 +11,9 @@ use crate::scene::supports::Hold;
 use crate::scene::switch::Holder;
 use isosheet_dynamics::VertexConstraint;
 use isosheet_dynamics::constraint::Line;
+use isosheet_mesh::wording::{brief, counted};
 use isosheet_mesh::{EdgeId, VertexId};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 use std::collections::BTreeSet;
 
 impl Builder<'_> {
@@ -121,9 +122,21 @@ impl Builder<'_> {
         let is_held = |e: &EdgeId| topology.edges()[e.index()].iter().all(|v| held.contains(v));
         let edges: Vec<EdgeId> = topology.edge_ids().filter(is_held).collect();
         if edges.is_empty() {
+            let start = self.sheets.start.as_chunks::<3>().0;
+            let ends = topology.edges().iter();
+            let at_it = ends.filter(|ends| ends.iter().any(|v| held.contains(v)));
+            let lengths = at_it.map(|&[a, b]| {
+                let [a, b] = [a, b].map(|v| Vector3::from(start[v.index()]));
+                (b - a).norm()
+            });
             return Err(Problem::new(
                 key.name("at"),
-                "a clamp needs an edge of the mesh between two of its vertices",
+                format!(
+                    "a clamp needs an edge of the mesh between two of its vertices: it has {}, and the nearest neighbour \
+                     is {} m away",
+                    counted(held.len(), "vertex", "vertices"),
+                    brief(lengths.fold(f64::INFINITY, f64::min))
+                ),
                 "name neighbours along the line that is clamped, or use `pin`",
             ));
         }
