@@ -27,7 +27,10 @@ impl BodyMesh {
                 radius,
                 half_length,
             } => Some(capsule(radius, half_length, sides)),
-            _ => shape.contact_geometry(sides)?.map(|geometry| Self {
+            Shape::HalfSpace
+            | Shape::Cuboid { .. }
+            | Shape::Cylinder { .. }
+            | Shape::Surface(_) => shape.contact_geometry(sides)?.map(|geometry| Self {
                 points: geometry.positions.as_chunks::<3>().0.to_vec(),
                 faces: geometry.mesh.faces().to_vec(),
             }),

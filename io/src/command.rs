@@ -155,3 +155,29 @@ pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
     };
     done.map_or_else(|failure| exit::report(&failure), |()| 0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Cli;
+    use clap::CommandFactory;
+
+    /// `-o, --out` is the one way to say where to write. `convert` has the file as its second word besides, as all
+    /// converters have it.
+    #[test]
+    fn outputs_are_given_by_one_option() {
+        for command in Cli::command().get_subcommands() {
+            let name = command.get_name();
+            for argument in command.get_arguments() {
+                let is_out = argument.get_long() == Some("out");
+                assert_eq!(
+                    argument.get_short() == Some('o'),
+                    is_out,
+                    "{name}: {argument}"
+                );
+            }
+            let words = command.get_positionals().filter(|word| !word.is_hide_set());
+            let most = if name == "convert" { 2 } else { 1 };
+            assert!(words.count() <= most, "{name}");
+        }
+    }
+}

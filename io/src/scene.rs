@@ -58,6 +58,8 @@ mod folding;
 mod follower_loads;
 mod forces;
 mod form;
+#[cfg(test)]
+mod found_tests;
 mod functions;
 mod glue;
 mod guides;
@@ -94,6 +96,7 @@ mod resolution;
 mod round_bodies;
 mod schema;
 mod selection;
+mod selections;
 mod sequence;
 mod setup;
 mod sheet;

@@ -1,6 +1,6 @@
 //! Why contact cannot start.
 
-use super::BarrierError;
+use super::{BarrierError, FrictionError};
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::brief;
 use std::fmt;
@@ -85,6 +85,9 @@ pub enum ContactError {
     /// The barrier makes no sense.
     #[error(transparent)]
     Barrier(#[from] BarrierError),
+    /// A law of friction makes no sense.
+    #[error(transparent)]
+    Friction(#[from] FrictionError),
     /// The method has no place for contact.
     #[error("this method has no place for contact")]
     Method,
@@ -99,6 +102,7 @@ impl Advice for ContactError {
             }
             Self::Sheet { .. } => Some("set it up for this sheet"),
             Self::Barrier(error) => error.advice(),
+            Self::Friction(error) => error.advice(),
             Self::Method => Some("use BDF2 or implicit Euler, or a chart simulation with impulses"),
         }
     }

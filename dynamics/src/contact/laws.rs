@@ -1,6 +1,6 @@
 //! The parameters of a scene's contact.
 
-use super::{Coefficients, Friction};
+use super::{Coefficients, Friction, FrictionError};
 use std::ops::Range;
 
 /// Stiffness `kappa` of the barrier potential `kappa b`, constant over a run.
@@ -111,6 +111,22 @@ impl ContactLaws {
             return None;
         }
         Friction::new(c.rest, c.sliding, self.rest_speed * h).ok()
+    }
+
+    /// # Errors
+    /// [`FrictionError`] unless all coefficients are `0 <= sliding <= rest`, and the speed of rest is positive where there
+    /// is friction.
+    pub fn validate(&self) -> Result<(), FrictionError> {
+        let pairs = self.pairs.iter().map(|pair| &pair.coefficients);
+        let of_obstacles = self.obstacle_pairs.iter().map(|pair| &pair.coefficients);
+        let all = [&self.itself].into_iter().chain(&self.bodies);
+        for coefficients in all.chain(pairs).chain(of_obstacles) {
+            coefficients.validate()?;
+        }
+        match self.is_frictionless() || self.rest_speed > 0.0 && self.rest_speed.is_finite() {
+            true => Ok(()),
+            false => Err(FrictionError::Smoothing(self.rest_speed)),
+        }
     }
 
     /// Whether there is no friction anywhere.

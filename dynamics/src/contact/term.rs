@@ -59,6 +59,7 @@ impl ContactTerm {
         state: &State,
     ) -> Result<(Self, ContactState), ContactError> {
         let bodies = check_start(geometry.as_mut(), model, state)?;
+        geometry.laws().validate()?;
         let barrier = BarrierPotential::at_start(geometry.laws(), model, state)?;
         Ok(Self::at_rest_with(geometry, barrier, bodies, state))
     }

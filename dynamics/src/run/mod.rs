@@ -3,6 +3,7 @@
 mod arrays;
 mod change;
 pub(crate) mod checkpoint;
+mod coupling_check;
 pub(crate) mod fold_start;
 mod held;
 pub(crate) mod observe;

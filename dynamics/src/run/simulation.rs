@@ -15,6 +15,7 @@ use crate::report::simulation_error::SimulationError;
 use crate::report::step_error::{StepError, StepReport, StepTotals};
 use crate::report::trace::TraceEvent;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
+use crate::run::coupling_check::check_couplings;
 use crate::step::reaction::{Imbalance, Reaction};
 use crate::step::tuning::Tuning;
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
@@ -84,6 +85,7 @@ impl Simulation {
         model.clear_pinned(&mut state.v);
         model.set_pin_velocities(state.t, MOTION_SPAN, &mut state.v);
         check_state(&model, &state)?;
+        check_couplings(&model, &state)?;
         let engine = Engine::Free(Box::new(FreeEngine::new(model, method, state)?));
         Ok(Self::start(engine, sheet))
     }

@@ -1,7 +1,7 @@
 //! What commands share that compose their scene themselves.
 
 use super::failure::{Code, Done, Failure, Format, Message};
-use super::message::print_result;
+use super::message::{print_message, print_result};
 use super::progress::event;
 use super::simulate::{How, default_folder, existing};
 use crate::dynamics::Material;
@@ -19,7 +19,11 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(super) struct Composing {
     /// The folder to write to [default: the name of the first file with `-run`, in the current folder]
+    #[arg(short, long, value_name = "DIR", value_parser = folder)]
     out: Option<PathBuf>,
+    /// The folder, as commands had it up to version 0.1
+    #[arg(hide = true, conflicts_with = "out", value_parser = folder)]
+    old_out: Option<PathBuf>,
     /// What the sheet is made of: a name of the page "Materials" of the book [default: see below]
     #[arg(long, value_name = "NAME", value_parser = material)]
     material: Option<String>,
@@ -27,9 +31,9 @@ pub(super) struct Composing {
     #[arg(long, value_name = "METRES", value_parser = length, allow_negative_numbers = true)]
     size: Option<f64>,
     /// Write the scene to a file, which `isosheet simulate` runs again
-    #[arg(short = 'o', long = "scene", value_name = "FILE")]
+    #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// Delete the run that the folder holds before, and replace the scene of `-o`
+    /// Delete the run that the folder holds before, and replace the scene of `--scene`
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -40,6 +44,14 @@ pub(super) struct Composing {
 fn material(text: &str) -> Result<String, String> {
     let found = Material::named(text).map(|_| text.to_owned());
     found.map_err(|e| e.with_advice())
+}
+
+/// The folder of a run, which has no name of a scene: `-o` named the file of the scene up to version 0.1.
+fn folder(text: &str) -> Result<PathBuf, String> {
+    match text.ends_with(".toml") {
+        true => Err("this is the folder of the run: `--scene FILE` writes the scene".to_owned()),
+        false => Ok(text.into()),
+    }
 }
 
 /// A length in metres.
@@ -89,8 +101,8 @@ impl Composing {
 
     /// The folder of the run of a file.
     fn folder(&self, of: &Path) -> PathBuf {
-        let beside = || default_folder(of);
-        self.out.clone().unwrap_or_else(beside)
+        let given = self.out.as_ref().or(self.old_out.as_ref());
+        given.cloned().unwrap_or_else(|| default_folder(of))
     }
 
     /// Gets ready, and refuses what would be refused after the work: a folder in which nothing can be written, and a scene
@@ -119,6 +131,12 @@ impl Composing {
             })?;
         }
         check_folder(&folder)?;
+        if let Some(old) = &self.old_out {
+            print_message(format_args!(
+                "warning: the folder is given without its option, which the next version refuses\n  = help: write `--out {}`",
+                old.display()
+            ));
+        }
         self.how.prepare()
     }
 
@@ -200,7 +218,7 @@ impl Composing {
                 ))
             }
             (Message::Scene(_), None) => failure.remedy(
-                "the keys are those of the scene: write it by `-o FILE`, edit it, and run it by `isosheet simulate FILE`",
+                "the keys are those of the scene: write it by `--scene FILE`, edit it, and run it by `isosheet simulate FILE`",
             ),
             _ => failure,
         }

@@ -9,7 +9,7 @@ use clap::Args;
 const EXAMPLES: &str = "\
 Examples:
   isosheet crumple letter.obj --open           a sheet of paper is crumpled, in the folder letter-run
-  isosheet crumple letter.svg --material 'aluminium foil' -o letter.toml";
+  isosheet crumple letter.svg --material 'aluminium foil' --scene letter.toml";
 
 const NOTES: &str = "\
 The sheet is any mesh file that a scene reads (OBJ, PLY, STL, OFF, glTF, FOLD ...), or a drawing (SVG, DXF), which is

@@ -14,7 +14,8 @@ Examples:
   isosheet drape cloth.obj --open              a tablecloth falls on a round table, in the folder cloth-run
   isosheet drape cloth.obj --on vase.glb --material cotton
                                                over a body, which has the unit of the cloth
-  isosheet drape napkin.svg -o napkin.toml     the sheet of a drawing; write the scene that was run";
+  isosheet drape napkin.svg --scene napkin.toml
+                                               the sheet of a drawing; write the scene that was run";
 
 const NOTES: &str = "\
 The sheet is any mesh file that a scene reads (OBJ, PLY, STL, OFF, glTF, FOLD ...), or a drawing (SVG, DXF), which is

@@ -13,7 +13,7 @@ const EXAMPLES: &str = "\
 Examples:
   isosheet fold crane.svg --open               fold a crease pattern in the folder crane-run, and look at it
   isosheet fold crane.fold --part 0.8          fold it to four fifths of its angles
-  isosheet fold crane.cp --contact -o crane.toml
+  isosheet fold crane.cp --contact --scene crane.toml
                                                panels touch each other; write the scene that was run
   isosheet fold crane.fold --order 'valleys; 3 7 12; mountains'
                                                three groups of creases, one after the other";

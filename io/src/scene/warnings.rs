@@ -1,10 +1,11 @@
 //! What of a scene may not do what was meant.
 
 use super::placed::{PlacedSheet, PlacedSheets};
-use super::selection::{self, Selection};
+use super::selection;
+use super::selections::Selected;
 use super::setup::Setup;
 use super::warning::Warning;
-use super::{Isometry, Key, Material, Mesh, Quantity, Scene, bodies};
+use super::{Isometry, Material, Mesh, Scene};
 use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{Sheet, VertexId};
 
@@ -143,35 +144,8 @@ impl PlacedSheets<'_> {
 
     /// Points that choose vertices which are far away.
     fn far_points(&self, scene: &Scene) -> Vec<Warning> {
-        let mut selections: Vec<(Key, Option<&String>, &Selection)> = Vec::new();
-        let entry = |name: &str, k: usize| Key::root().name(name).entry(k);
-        for (k, support) in scene.support.iter().enumerate() {
-            let key = entry("support", k).name("at");
-            selections.push((key, support.sheet.as_ref(), &support.at));
-        }
-        for (k, load) in scene.forces.load.iter().enumerate() {
-            let key = entry("forces.load", k).name("at");
-            selections.push((key, load.sheet.as_ref(), &load.at));
-        }
-        for (k, moment) in scene.forces.moment.iter().enumerate() {
-            let key = entry("forces.moment", k).name("at");
-            selections.push((key, moment.sheet.as_ref(), &moment.at));
-        }
-        for (k, weight) in scene.weight.iter().enumerate() {
-            let key = entry("weight", k).name("at");
-            selections.push((key, weight.sheet.as_ref(), &weight.at));
-        }
-        for (k, measure) in scene.measure.iter().enumerate() {
-            let (key, sheet) = (entry("measure", k), measure.sheet.as_ref());
-            if sheet.is_some_and(|name| bodies::number_of(&scene.body, name).is_some()) {
-                continue;
-            }
-            selections.extend(measure.at.iter().map(|at| (key.name("at"), sheet, at)));
-            if let Quantity::DistanceTo(others) = &measure.quantity {
-                selections.push((key.name("quantity.distance_to"), sheet, others));
-            }
-        }
-        let far = selections.into_iter().flat_map(|(key, sheet, at)| {
+        let selections = scene.selections().into_iter();
+        let far = selections.flat_map(|Selected { key, sheet, at }| {
             let points = self.start_of(sheet).as_chunks::<3>().0;
             let width = selection::size(points);
             let distances = at.distances(points).into_iter().enumerate();

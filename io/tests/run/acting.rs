@@ -50,7 +50,10 @@ fn a_cloth_drapes_over_a_table_and_over_a_body() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("cloth.obj"), cloth(0.0)).unwrap();
     fs::write(dir.path().join("block.obj"), BLOCK).unwrap();
-    let (said, recording) = done(dir.path(), &["drape", "cloth.obj", "out", "--table"]);
+    let (said, recording) = done(
+        dir.path(),
+        &["drape", "cloth.obj", "--out", "out", "--table"],
+    );
     // The cloth is 0.5 m wide, and the table 0.3 m.
     assert!((recording.sheet.area() - 0.25).abs() < 1e-6);
     let points = last(&recording);
@@ -73,7 +76,7 @@ fn a_cloth_drapes_over_a_table_and_over_a_body() {
         "--on",
         "block.obj",
         "--force",
-        "-o",
+        "--scene",
         "scene.toml",
     ];
     let (said, recording) = done(dir.path(), &words);
@@ -97,7 +100,14 @@ fn a_cloth_drapes_over_a_table_and_over_a_body() {
 fn the_sheet_of_a_drawing_has_its_own_size() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("napkin.svg"), NAPKIN).unwrap();
-    let words = ["drape", "napkin.svg", "out", "--material", "cotton"];
+    let words = [
+        "drape",
+        "napkin.svg",
+        "--out",
+        "out",
+        "--material",
+        "cotton",
+    ];
     let (said, recording) = done(dir.path(), &words);
     let area = 0.12 * 0.08 - std::f64::consts::PI * 1e-4;
     assert!((recording.sheet.area() / area - 1.0).abs() < 3e-3, "{said}");
@@ -137,7 +147,14 @@ fn a_sheet_is_crumpled() {
         "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
     )
     .unwrap();
-    let words = ["crumple", "foil.off", "out", "--material", "aluminium foil"];
+    let words = [
+        "crumple",
+        "foil.off",
+        "--out",
+        "out",
+        "--material",
+        "aluminium foil",
+    ];
     let (said, recording) = done(dir.path(), &words);
     // Foil yields: it neither spreads out again to its diagonal of 141 mm nor lies flat.
     let points = last(&recording);
@@ -160,7 +177,14 @@ fn a_film_springs_back() {
     fs::write(dir.path().join("film.obj"), cloth(0.0)).unwrap();
     let (said, _) = done(
         dir.path(),
-        &["crumple", "film.obj", "out", "--material", "PET film"],
+        &[
+            "crumple",
+            "film.obj",
+            "--out",
+            "out",
+            "--material",
+            "PET film",
+        ],
     );
     let words = "it sprang back, as its material does not yield: from 100 mm by 0 mm by 100 mm to";
     assert!(said.contains(words), "{said}");
@@ -174,7 +198,7 @@ fn a_body_of_a_gltf_file_stands_upright() {
     fs::write(dir.path().join("block.obj"), BLOCK).unwrap();
     let convert = run(dir.path(), &["convert", "block.obj", "block.glb"]);
     assert_eq!(code(&convert), Some(0), "{}", stderr(&convert));
-    let words = ["drape", "cloth.obj", "out", "--on", "block.glb"];
+    let words = ["drape", "cloth.obj", "--out", "out", "--on", "block.glb"];
     let (said, recording) = done(dir.path(), &words);
     // In the unit of the cloth, a twelfth of a metre.
     let distance = |x: f64, z: f64| {
@@ -194,7 +218,7 @@ fn a_triangle_drapes_about_the_centre_of_its_area() {
         "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
     )
     .unwrap();
-    let (said, _) = done(dir.path(), &["drape", "triangle.off", "out"]);
+    let (said, _) = done(dir.path(), &["drape", "triangle.off", "--out", "out"]);
     assert!(said.contains("draped: the hem hangs"), "{said}");
 }
 
@@ -211,7 +235,7 @@ fn a_cloth_that_falls_between_two_blocks_is_not_draped() {
         )
         + "f -8 -5 -6 -7\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -7 -6 -2 -3\nf -6 -5 -1 -2\nf -5 -8 -4 -1\n";
     fs::write(dir.path().join("blocks.obj"), BLOCK.to_owned() + &second).unwrap();
-    let words = ["drape", "cloth.obj", "out", "--on", "blocks.obj"];
+    let words = ["drape", "cloth.obj", "--out", "out", "--on", "blocks.obj"];
     let (said, _) = done(dir.path(), &words);
     let last = said.lines().last().unwrap();
     assert!(last.starts_with("warning: the sheet fell past"), "{said}");
@@ -296,7 +320,7 @@ fn misuse_is_answered_before_anything_is_run() {
     let files = ["cloth.obj", "block.obj", "own.toml"];
     let contents = || files.map(|name| fs::read(dir.path().join(name)).unwrap());
     let before = contents();
-    let over = ["drape", "cloth.obj", "--on", "block.obj", "-o"];
+    let over = ["drape", "cloth.obj", "--on", "block.obj", "--scene"];
     for (name, what) in files.iter().zip(["no scene", "no scene", "another scene"]) {
         let words = [&over[..], &[name]].concat();
         refused(&words, 2, &[what, "another name"]);
@@ -305,12 +329,19 @@ fn misuse_is_answered_before_anything_is_run() {
     }
     assert_eq!(contents(), before, "files that were there are as they were");
     refused(
-        &["drape", "cloth.obj", "full"],
+        &["drape", "cloth.obj", "--out", "full"],
         4,
         &["holds files", "help: choose an empty or a new folder"],
     );
     refused(
-        &["hang", "cloth.obj", "out", "-o", "out/scene.toml"],
+        &[
+            "hang",
+            "cloth.obj",
+            "--out",
+            "out",
+            "--scene",
+            "out/scene.toml",
+        ],
         2,
         &["in the folder of the run"],
     );

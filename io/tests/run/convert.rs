@@ -942,7 +942,7 @@ fn a_frame_of_a_fold_is_chosen_by_its_part() {
     let dir = dir.path();
     let square = "1 0 0 1 0\n1 1 0 1 1\n1 1 1 0 1\n1 0 1 0 0\n3 0 0 1 1\n";
     fs::write(dir.join("square.cp"), square).unwrap();
-    let folded = run(dir, &["fold", "square.cp", "out"]);
+    let folded = run(dir, &["fold", "square.cp", "--out", "out"]);
     assert_eq!(code(&folded), Some(0), "{}", stderr(&folded));
     let angle_of = |option: &str, value: &str| {
         let done = run(dir, &["convert", "out", "half.fold", option, value]);

@@ -192,7 +192,7 @@ fn creases_of_patterns_are_measured_in_scenes_of_fold() {
             "out",
             "--part",
             "0.25",
-            "-o",
+            "--scene",
             "strip.toml",
         ],
     );

@@ -33,7 +33,8 @@ fn folded(folder: &Path, words: &[&str]) -> (String, Summary, FoldVerdict) {
 fn a_vertex_folds_flat_without_a_scene_file() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("vertex.fold"), VERTEX).unwrap();
-    let (said, summary, verdict) = folded(dir.path(), &["vertex.fold", "out", "-o", "scene.toml"]);
+    let (said, summary, verdict) =
+        folded(dir.path(), &["vertex.fold", "out", "--scene", "scene.toml"]);
     // Kawasaki and Maekawa hold, so that all four angles of 180 degrees close.
     assert!(verdict.residual.rms < 1.0, "{:?}", verdict.residual);
     assert_eq!((verdict.residual.creases, verdict.open), (4, 0));
@@ -58,7 +59,7 @@ fn a_vertex_folds_flat_without_a_scene_file() {
             "vertex.fold",
             "out",
             "--contact",
-            "-o",
+            "--scene",
             "touch.toml",
             "--force",
         ],
@@ -248,7 +249,7 @@ fn groups_are_named_by_lines_of_the_drawing() {
         "0.5",
         "--order",
         order,
-        "-o",
+        "--scene",
         "strip.toml",
     ];
     let (said, _, verdict) = folded(path, &words);
@@ -332,7 +333,7 @@ fn an_order_that_is_not_achieved_is_told() {
 fn used_folders_are_refused_before_the_trials() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("vertex.fold"), VERTEX).unwrap();
-    let words = ["vertex.fold", "out", "-o", "scene.toml"];
+    let words = ["vertex.fold", "out", "--scene", "scene.toml"];
     folded(dir.path(), &words);
     let refused = |words: &[&str], expected: &str| {
         let output = run(dir.path(), &[&["fold"], words].concat());
@@ -348,7 +349,14 @@ fn used_folders_are_refused_before_the_trials() {
         "holds a run of another scene",
     );
     refused(
-        &["vertex.fold", "new", "--part", "0.5", "-o", "scene.toml"],
+        &[
+            "vertex.fold",
+            "new",
+            "--part",
+            "0.5",
+            "--scene",
+            "scene.toml",
+        ],
         "is another scene",
     );
     // What was done already is not refused.

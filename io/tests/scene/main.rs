@@ -1,5 +1,6 @@
 //! Scene files: what they mean, and what is said of wrong ones.
 
+mod all_keys;
 mod bends;
 mod bodies;
 mod book;
