@@ -168,6 +168,17 @@ impl Crease {
         }
         if let Some(yields) = &self.yields {
             yields.check(&key.name("yield"), checks);
+            let (_, angles) = self.angle.numbers();
+            if angles.iter().any(|angle| *angle != angles[0]) {
+                let message = format!(
+                    "`{}` is for moments, and a crease that folds by its own angle, `{}`, has hardly any: it yields little, \
+                     and goes where its angle goes",
+                    key.name("yield"),
+                    key.name("angle")
+                );
+                let remedy = "leave the angle as it is at rest, and fold the sheet by supports, loads or obstacles";
+                checks.doubts.push(Warning::new(message, remedy));
+            }
         }
         match &self.at {
             CreaseEdges::Line { from, to } => checks.line(&key.name("at.line"), from, to),
