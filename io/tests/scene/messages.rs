@@ -592,6 +592,10 @@ fn numbers_that_are_hardly_meant_are_told() {
             "in radians that is 180 degrees",
         ),
         (
+            "crease.0={at={line={from=[0.1,0,0],to=[0.1,0.1,0]}},stiffness=0.1,yield={moment=0.01},angle={ramp={to=90,end=1}}}",
+            "a crease that folds by its own angle, `crease[0].angle`, has hardly any",
+        ),
+        (
             "sheet.isometry.elastic={stiffness=3e9}",
             "`sheet.isometry.elastic.stiffness` is 3e9 N/m",
         ),
