@@ -7,6 +7,7 @@ use super::profile::Profile;
 use super::selection::{ON_LINE, beside_line, by_number, nearest, nearest_in_words, size};
 use super::switch::When;
 use super::unit::Unit;
+use super::warning::Warning;
 use super::{Body, Sheet, bodies, sheets};
 use isosheet_mesh::wording::brief;
 use isosheet_mesh::{Sheet as Mesh, VertexId};
@@ -185,6 +186,15 @@ impl Glue {
                 "a seam with a body holds from the start on",
                 "leave the key out",
             );
+        }
+        if self.until.is_some() && body.is_some() {
+            let message = format!(
+                "the faces at `{}` do not meet the body in contact, also after `{}`",
+                key.name("first"),
+                key.name("until")
+            );
+            let remedy = "hold the sheet by a support with `until` in the place of glue where it may touch the body again";
+            checks.doubts.push(Warning::new(message, remedy));
         }
         let sides = [
             ("first", Some(&self.first)),
