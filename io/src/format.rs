@@ -1,5 +1,6 @@
 //! Files that a run reads and writes, one format a file. Needs the mesh alone.
 
+pub(crate) mod allowance;
 pub(crate) mod atomic;
 #[cfg(feature = "run")]
 mod cell;
@@ -21,6 +22,7 @@ mod motion_file;
 mod numbered;
 mod trajectory;
 mod vector;
+pub(crate) mod xml;
 
 #[cfg(all(feature = "run", feature = "picture"))]
 pub(crate) use atomic::prepare_folder;

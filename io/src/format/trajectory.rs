@@ -16,7 +16,7 @@ pub(crate) use moving_mesh::{Clock, MovingMesh};
 
 use crate::format::atomic::write_atomically;
 use crate::format::{DataError, FileError};
-use archive::{ArchiveReader, ArchiveWriter, wrong_array};
+use archive::{ArchiveReader, ArchiveWriter, Packing, is_read, wrong_array};
 use data::not_finite;
 use isosheet_mesh::wording::{counted, given};
 use isosheet_mesh::{Sheet, VertexId};
@@ -425,30 +425,40 @@ impl Trajectory {
             })?;
             done
         };
-        let written = write_atomically(path, |w| {
-            let mut npz = ArchiveWriter::new(w);
-            npz.put("t", &[frames], times.iter().copied())?;
-            npz.put_rows("x", &[frames, vertices, 3], |put| {
-                rows(&|frame| frame.x, put)
-            })?;
-            let faces = self.faces.iter().flatten().copied();
-            npz.put("faces", &[self.faces.len() as u64, 3], faces)?;
-            let edges = self.edges.iter().flatten().copied();
-            npz.put("edges", &[self.edges.len() as u64, 2], edges)?;
-            let lengths = self.rest_lengths.iter().copied();
-            npz.put("rest_lengths", &[self.rest_lengths.len() as u64], lengths)?;
-            for quantity in quantities {
-                let frame = quantity.shape(self.counts());
-                let shape = [&[frames], &frame[..]].concat();
-                npz.put_rows(quantity.name(), &shape, |put| {
-                    rows(&|frame| quantity.of(&frame.data), put)
+        let mut write = |packing| {
+            write_atomically(path, |w| {
+                let mut npz = ArchiveWriter::new(w, packing);
+                npz.put("t", &[frames], times.iter().copied())?;
+                npz.put_rows("x", &[frames, vertices, 3], |put| {
+                    rows(&|frame| frame.x, put)
                 })?;
-            }
-            npz.finish()
-        });
+                let faces = self.faces.iter().flatten().copied();
+                npz.put("faces", &[self.faces.len() as u64, 3], faces)?;
+                let edges = self.edges.iter().flatten().copied();
+                npz.put("edges", &[self.edges.len() as u64, 2], edges)?;
+                let lengths = self.rest_lengths.iter().copied();
+                npz.put("rest_lengths", &[self.rest_lengths.len() as u64], lengths)?;
+                for quantity in &quantities {
+                    let frame = quantity.shape(self.counts());
+                    let shape = [&[frames], &frame[..]].concat();
+                    npz.put_rows(quantity.name(), &shape, |put| {
+                        rows(&|frame| quantity.of(&frame.data), put)
+                    })?;
+                }
+                npz.finish()
+            })
+        };
+        let mut written = write(Packing::Compressed);
+        let length = std::fs::metadata(path).map_or(0, |file| file.len());
+        if written
+            .as_ref()
+            .is_ok_and(|arrays| !is_read(*arrays, length))
+        {
+            written = write(Packing::Plain);
+        }
         match failed {
             Some(error) => Err(MotionError::Frame(error)),
-            None => Ok(written?),
+            None => Ok(written.map(drop)?),
         }
     }
 

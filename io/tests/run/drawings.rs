@@ -485,7 +485,7 @@ fn what_is_no_sheet_is_refused() {
         assert!(said.contains("= help:"), "{said}");
     }
     for (text, expected) in [
-        ("", "it is no XML"),
+        ("", "the file is not valid XML"),
         ("<html/>", "its root is <html>"),
         (
             "<svg xmlns='http://www.w3.org/2000/svg'><g id='a'><use href='#a'/></g></svg>",

@@ -2,8 +2,8 @@
 
 use super::extension::has_extension;
 use super::samples::{self, SampleTimes};
+use crate::format::xml::{self, Entities};
 use crate::format::{FileError, MovingMesh, input};
-use roxmltree::Document;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -35,8 +35,8 @@ pub(super) fn files(path: &Path) -> Result<(Vec<f64>, Vec<PathBuf>), FileError> 
 
 /// The times and files of a collection in XML.
 fn collection(text: &str) -> Result<Vec<(f64, PathBuf)>, String> {
-    let document = Document::parse(text.trim_start_matches('\u{feff}'));
-    let document = document.map_err(|e| format!("the file is not valid XML: {e}"))?;
+    let document = xml::parse(text.trim_start_matches('\u{feff}'), Entities::Refused);
+    let document = document.map_err(|e| e.to_string())?;
     let sets = document.descendants().filter(|n| n.has_tag_name("DataSet"));
     let entry = |(k, set): (usize, roxmltree::Node<'_, '_>)| {
         let time = set.attribute("timestep").unwrap_or_default();

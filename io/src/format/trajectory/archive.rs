@@ -1,8 +1,8 @@
 //! Arrays in an archive of numpy: a zip file with one `.npy` file for each.
 
 use super::npy::{ArrayWriter, Header, Number, read_entries};
-use crate::format::FileError;
-use crate::format::{input, memory};
+use crate::format::allowance::Allowance;
+use crate::format::{FileError, input, memory};
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -10,8 +10,32 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
+/// How the arrays of an archive are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Packing {
+    Compressed,
+    /// Byte for byte: compressed to a small part of their length, arrays would not be read again.
+    Plain,
+}
+
+/// Whether arrays of so many bytes are read from an archive of so many.
+pub(super) fn is_read(arrays: u64, archive: u64) -> bool {
+    arrays <= most(archive)
+}
+
+/// The bytes that the arrays of an archive of some length may take.
+fn most(archive: u64) -> u64 {
+    let length = usize::try_from(archive).unwrap_or(usize::MAX);
+    Allowance::of(length).half().all() as u64
+}
+
 /// Writes arrays.
-pub(super) struct ArchiveWriter<W: Write + Seek>(ZipWriter<UntilFailure<W>>);
+pub(super) struct ArchiveWriter<W: Write + Seek> {
+    zip: ZipWriter<UntilFailure<W>>,
+    packing: Packing,
+    /// The bytes of all arrays.
+    bytes: u64,
+}
 
 /// A file to which nothing more is written once that has failed, without a further word: the library ends an
 /// archive that is given up, and prints what goes wrong with that.
@@ -90,8 +114,12 @@ fn of_archive(error: ZipError) -> io::Error {
 }
 
 impl<W: Write + Seek> ArchiveWriter<W> {
-    pub(super) fn new(file: W) -> Self {
-        Self(ZipWriter::new(UntilFailure::new(file)))
+    pub(super) fn new(file: W, packing: Packing) -> Self {
+        Self {
+            zip: ZipWriter::new(UntilFailure::new(file)),
+            packing,
+            bytes: 0,
+        }
     }
 
     /// Adds an array with the values of its entries by rows.
@@ -102,7 +130,7 @@ impl<W: Write + Seek> ArchiveWriter<W> {
         values: impl Iterator<Item = T>,
     ) -> io::Result<()> {
         self.begin::<T>(name, shape)?;
-        let mut writer = ArrayWriter::new::<T>(&mut self.0, shape)?;
+        let mut writer = ArrayWriter::new::<T>(&mut self.zip, shape)?;
         values
             .into_iter()
             .try_for_each(|value| writer.push(value))?;
@@ -117,7 +145,7 @@ impl<W: Write + Seek> ArchiveWriter<W> {
         rows: impl FnOnce(&mut dyn FnMut(&[f64]) -> io::Result<()>) -> io::Result<()>,
     ) -> io::Result<()> {
         self.begin::<f64>(name, shape)?;
-        let mut writer = ArrayWriter::new::<f64>(&mut self.0, shape)?;
+        let mut writer = ArrayWriter::new::<f64>(&mut self.zip, shape)?;
         rows(&mut |row| row.iter().try_for_each(|value| writer.push(*value)))?;
         writer.finish()
     }
@@ -125,27 +153,39 @@ impl<W: Write + Seek> ArchiveWriter<W> {
     /// Begins the file of an array.
     fn begin<T>(&mut self, name: &str, shape: &[u64]) -> io::Result<()> {
         let bytes = shape.iter().product::<u64>() * size_of::<T>() as u64;
+        self.bytes += bytes_read(shape.iter().product(), size_of::<T>());
+        let method = match self.packing {
+            Packing::Compressed => CompressionMethod::Deflated,
+            Packing::Plain => CompressionMethod::Stored,
+        };
         let options = SimpleFileOptions::default()
-            .compression_method(CompressionMethod::Deflated)
+            .compression_method(method)
             // A fixed date (that of an empty entry, 1980), so that equal runs give equal files.
             .last_modified_time(DateTime::default())
             // An entry of more than 4 GiB, with its header, has another form.
             .large_file(bytes > u64::from(u32::MAX) / 2);
-        self.0
+        self.zip
             .start_file(file_of(name), options)
             .map_err(of_archive)
     }
 
-    pub(super) fn finish(self) -> io::Result<()> {
-        self.0.finish().map(drop).map_err(of_archive)
+    /// Ends the archive, and returns the bytes that its arrays take when they are read.
+    pub(super) fn finish(self) -> io::Result<u64> {
+        self.zip.finish().map_err(of_archive)?;
+        Ok(self.bytes)
     }
+}
+
+/// The memory for so many entries of some bytes, which may become floats.
+fn bytes_read(entries: u64, size: usize) -> u64 {
+    entries.saturating_mul(size.max(size_of::<f64>()) as u64)
 }
 
 /// Reads arrays.
 pub(super) struct ArchiveReader<'a, R> {
     zip: ZipArchive<R>,
-    /// The bytes that further arrays may take.
-    left: u64,
+    /// The bytes that further arrays may take, by the length of the archive and by the memory that there is.
+    left: [u64; 2],
     /// For messages.
     path: &'a Path,
 }
@@ -161,10 +201,11 @@ impl<'a> ArchiveReader<'a, BufReader<File>> {
 
 impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
     /// Reads what is an archive as a whole; `path` is used in errors only.
-    pub(super) fn new(archive: R, path: &'a Path) -> io::Result<Self> {
+    pub(super) fn new(mut archive: R, path: &'a Path) -> io::Result<Self> {
+        let length = archive.seek(SeekFrom::End(0))?;
         let zip = ZipArchive::new(archive)?;
         // What is read is used, too.
-        let left = memory::free() / 2;
+        let left = [most(length), memory::free() / 2];
         Ok(Self { zip, left, path })
     }
 
@@ -268,10 +309,19 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
                 "its shape {shape:?} needs {bytes} bytes, and it has {announced}"
             )));
         }
-        if bytes > self.left {
+        let memory = bytes_read(expected, size_of::<T>());
+        let [of_file, free] = self.left;
+        if memory > of_file {
+            let problem = format!(
+                "array `{name}`: it takes {memory} bytes, more than the {of_file} that an archive of this length \
+                 may take"
+            );
+            let remedy = "save the arrays without compression: `numpy.savez`";
+            return Err(FileError::content(self.path, problem, remedy));
+        }
+        if memory > free {
             return Err(error(format!(
-                "it needs {bytes} bytes, and there is memory for {}",
-                self.left
+                "it needs {memory} bytes, and there is memory for {free}"
             )));
         }
         let mut read = Vec::new();
@@ -279,7 +329,7 @@ impl<'a, R: Read + Seek> ArchiveReader<'a, R> {
         reserved.map_err(|e| error(e.to_string()))?;
         let done = read_entries(&mut entry, order, expected as usize, &mut read);
         done.map_err(|e| error(e.to_string()))?;
-        self.left -= bytes;
+        self.left = self.left.map(|left| left - memory);
         Ok(Some((header.shape, read)))
     }
 }

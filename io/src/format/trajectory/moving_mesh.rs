@@ -1,6 +1,6 @@
 //! Meshes in motion, of archives of numpy.
 
-use super::archive::{ArchiveReader, ArchiveWriter};
+use super::archive::{ArchiveReader, ArchiveWriter, Packing, is_read};
 use crate::format::FileError;
 use isosheet_mesh::wording::{counted, given};
 use std::io::{self, Cursor};
@@ -159,8 +159,17 @@ impl MovingMesh {
     /// # Errors
     /// What the system says.
     pub(crate) fn archive(&self) -> io::Result<Vec<u8>> {
+        let (bytes, arrays) = self.packed(Packing::Compressed)?;
+        match is_read(arrays, bytes.len() as u64) {
+            true => Ok(bytes),
+            false => Ok(self.packed(Packing::Plain)?.0),
+        }
+    }
+
+    /// The bytes of the archive, and those that its arrays take.
+    fn packed(&self, packing: Packing) -> io::Result<(Vec<u8>, u64)> {
         let mut bytes = Vec::new();
-        let mut npz = ArchiveWriter::new(Cursor::new(&mut bytes));
+        let mut npz = ArchiveWriter::new(Cursor::new(&mut bytes), packing);
         let [frames, vertices, faces] =
             [self.times.len(), self.vertex_count, self.faces.len()].map(|n| n as u64);
         npz.put(self.clock.array(), &[frames], self.times.iter().copied())?;
@@ -170,8 +179,8 @@ impl MovingMesh {
             &[faces, 3],
             self.faces.as_flattened().iter().copied(),
         )?;
-        npz.finish()?;
-        Ok(bytes)
+        let arrays = npz.finish()?;
+        Ok((bytes, arrays))
     }
 
     /// The unit of the times.
@@ -265,7 +274,7 @@ mod tests {
     /// An archive with these arrays.
     fn archive<T: Number, X: Number, F: Number>(t: &[T], x: &[X], faces: &[F]) -> Vec<u8> {
         let mut bytes = Vec::new();
-        let mut npz = ArchiveWriter::new(Cursor::new(&mut bytes));
+        let mut npz = ArchiveWriter::new(Cursor::new(&mut bytes), Packing::Compressed);
         npz.put("t", &[t.len() as u64], t.iter().copied()).unwrap();
         let shape = [t.len() as u64, (x.len() / 3 / t.len().max(1)) as u64, 3];
         npz.put("x", &shape, x.iter().copied()).unwrap();

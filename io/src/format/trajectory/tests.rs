@@ -346,7 +346,7 @@ fn bad_frames_are_refused() {
 
 /// Writes what no trajectory has.
 fn write_unchecked(run: &Trajectory, path: &Path) {
-    let mut npz = ArchiveWriter::new(File::create(path).unwrap());
+    let mut npz = ArchiveWriter::new(File::create(path).unwrap(), Packing::Compressed);
     let (frames, vertices) = (run.t.len() as u64, run.vertex_count as u64);
     npz.put("t", &[frames], run.t.iter().copied()).unwrap();
     npz.put("x", &[frames, vertices, 3], run.x.iter().copied())
@@ -404,10 +404,41 @@ fn other_files_are_refused() {
 
     // A missing array.
     let file = File::create(&path).unwrap();
-    let mut npz = ArchiveWriter::new(file);
+    let mut npz = ArchiveWriter::new(file, Packing::Compressed);
     npz.put("t", &[1], [0.0].into_iter()).unwrap();
     npz.put("x", &[3], [0.0f64; 3].into_iter()).unwrap();
     npz.finish().unwrap();
     let error = Trajectory::read(&path).unwrap_err().to_string();
     assert!(error.contains("array `x`: it has 1 dimensions"), "{error}");
+}
+
+/// Deflate makes a thousandth of zeros at best, so that small archives may stand for any memory.
+#[test]
+fn arrays_are_in_proportion_to_their_archive() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("x.npz");
+    let mut npz = ArchiveWriter::new(File::create(&path).unwrap(), Packing::Compressed);
+    let entries = 5 << 20;
+    npz.put("t", &[entries], std::iter::repeat_n(0.0, entries as usize))
+        .unwrap();
+    npz.finish().unwrap();
+    let length = std::fs::metadata(&path).unwrap().len();
+    // 40 MiB, where half of 64 MiB and of a hundred times the archive are allowed.
+    let (needs, most) = (8 * entries, (32 << 20) + 50 * length);
+    assert!(needs > most);
+    let error = Trajectory::read(&path).unwrap_err();
+    let said = format!("array `t`: it takes {needs} bytes, more than the {most} that");
+    assert!(error.to_string().contains(&said), "{error}");
+    let advice = "save the arrays without compression: `numpy.savez`";
+    assert_eq!(error.advice(), Some(advice));
+
+    // A sheet at rest is one frame over and over, and is read again all the same.
+    let sheet = generate::annulus(7, 2, 0.3, 1.0).unwrap();
+    let mut run = Trajectory::new(&sheet);
+    let frames = (36 << 20) / size_of_val(sheet.positions());
+    for k in 0..frames {
+        run.push(k as f64, sheet.positions()).unwrap();
+    }
+    run.write(&path).unwrap();
+    assert_eq!(Trajectory::read(&path).unwrap().len(), frames);
 }

@@ -8,22 +8,24 @@ mod page;
 mod path;
 mod shapes;
 mod style;
+mod style_sheet;
 
 use super::colour::Colour;
-use super::lines::{Drawing, Pen};
+use super::lines::{Drawing, DrawnLine, Pen};
 use super::unit::DrawingUnit;
 use crate::format::DataError;
+use crate::format::allowance::Allowance;
+use crate::format::xml::{self, Entities};
+use isosheet_mesh::plane::PlaneCurve;
 use matrix::{Matrix, compose, scaling, translation};
 use page::{Along, Viewport, content, page_size};
-use roxmltree::{Document, Node, ParsingOptions};
-use simplecss::StyleSheet;
+use roxmltree::{Document, Node};
+use std::collections::HashMap;
 use style::{Ink, Style};
+use style_sheet::{Rules, without_comments};
 
 /// Groups in groups, and elements that use others, are followed so deep.
 const DEEPEST: usize = 200;
-
-/// As many elements are drawn at most: those that use each other can ask for any number.
-const MOST_ELEMENTS: usize = 1_000_000;
 
 const EXPORT: &str = "export it again as plain SVG";
 
@@ -46,26 +48,21 @@ pub(in crate::format) fn parse(
 ) -> Result<Drawing, DataError> {
     let text = std::str::from_utf8(bytes)
         .map_err(|e| DataError::new(format!("byte {} is not UTF-8", e.valid_up_to()), EXPORT))?;
-    let parsing = ParsingOptions {
-        allow_dtd: true,
-        nodes_limit: 1 << 24,
-        ..ParsingOptions::default()
-    };
-    let document = Document::parse_with_options(text, parsing)
-        .map_err(|e| DataError::new(format!("it is no XML: {e}"), EXPORT))?;
+    let document =
+        xml::parse(text, Entities::Expanded).map_err(|e| DataError::new(e.to_string(), EXPORT))?;
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
         let found = root.tag_name().name();
         let message = format!("its root is <{found}>, and not <svg>");
         return Err(DataError::new(message, EXPORT));
     }
-    let mut sheet = StyleSheet::new();
+    let allowance = Allowance::of(bytes.len());
     let styles = document
         .descendants()
         .filter(|n| n.tag_name().name() == "style");
-    for text in styles.flat_map(|n| n.children()).filter_map(|n| n.text()) {
-        sheet.parse_more(text);
-    }
+    let texts = styles.flat_map(|n| n.children()).filter_map(|n| n.text());
+    let texts: Vec<String> = texts.map(without_comments).collect();
+    let rules = Rules::parse(&texts, allowance);
     let mut drawing = Drawing::default();
     let (size, is_absolute) = page_size(root).map_err(|e| wrong(root, &e))?;
     let of_page = |size| content(root, size).map_err(|e| wrong(root, &e));
@@ -85,17 +82,19 @@ pub(in crate::format) fn parse(
     }
     let metres = length.metres(scale);
     let upright = compose(scaling(metres, -metres), translation(0.0, -size[1]));
+    let style = Style::initial().of(root, &rules)?;
     let mut reader = Reader {
-        document: &document,
-        sheet,
+        named: named(&document),
+        rules,
         drawing,
         areas,
-        elements: 0,
+        memory: allowance.half(),
+        steps: allowance,
     };
     let state = State {
         matrix: compose(upright, place),
         viewport,
-        style: Style::initial().of(root, &reader.sheet),
+        style,
         layers: Vec::new(),
         depth: 0,
     };
@@ -112,12 +111,26 @@ fn wrong(node: Node<'_, '_>, problem: &str) -> DataError {
     DataError::new(format!("line {line}: <{name}>: {problem}"), EXPORT).at(line as usize)
 }
 
+/// The elements by their identifiers, the first of each.
+fn named<'a, 'input>(document: &'a Document<'input>) -> HashMap<&'a str, Node<'a, 'input>> {
+    let mut named = HashMap::new();
+    for node in document.descendants() {
+        if let Some(id) = node.attribute("id") {
+            named.entry(id).or_insert(node);
+        }
+    }
+    named
+}
+
 struct Reader<'a, 'input> {
-    document: &'a Document<'input>,
-    sheet: StyleSheet<'a>,
+    named: HashMap<&'a str, Node<'a, 'input>>,
+    rules: Rules<'a>,
     drawing: Drawing,
     areas: Areas,
-    elements: usize,
+    /// For lines and pens.
+    memory: Allowance,
+    /// For elements with their attributes and the names around them, each time that they are drawn.
+    steps: Allowance,
 }
 
 /// What an element takes over from those that it is in.
@@ -136,13 +149,17 @@ impl Reader<'_, '_> {
         if !node.is_element() {
             return Ok(());
         }
-        self.elements += 1;
-        if around.depth > DEEPEST || self.elements > MOST_ELEMENTS {
+        if around.depth > DEEPEST {
             let message = "elements are nested or used too often";
             return Err(DataError::new(message, EXPORT));
         }
+        // Elements that use each other can ask for any number of them.
+        let names_around: usize = around.layers.iter().map(memory_of_name).sum();
+        let attributes: usize = node.attributes().map(|a| a.value().len()).sum();
+        let cost = size_of::<State>() + names_around + attributes;
+        self.steps.spend(cost, "the elements")?;
         let name = node.tag_name().name();
-        let style = around.style.of(node, &self.sheet);
+        let style = around.style.of(node, &self.rules)?;
         if !style.shown {
             self.drawing.leave_out("hidden element");
             return Ok(());
@@ -180,11 +197,12 @@ impl Reader<'_, '_> {
                 Ok(())
             }
             _ => {
-                let paths = shapes::paths(node, state.viewport).map_err(|e| wrong(node, &e))?;
-                if let Some(paths) = paths {
-                    self.shape(node, paths, &state);
+                let left = self.memory.left() / MEMORY_OF_CURVE;
+                let paths = shapes::paths(node, state.viewport, left);
+                match paths.map_err(|e| wrong(node, &e))? {
+                    Some(paths) => self.shape(node, paths, &state),
+                    None => Ok(()),
                 }
-                Ok(())
             }
         }
     }
@@ -225,13 +243,7 @@ impl Reader<'_, '_> {
     fn used(&mut self, node: Node<'_, '_>, mut state: State) -> Result<(), DataError> {
         let link = node.attributes().find(|a| a.name() == "href");
         let id = link.and_then(|a| a.value().strip_prefix('#'));
-        let document = self.document;
-        let target = id.and_then(|id| {
-            document
-                .descendants()
-                .find(|n| n.attribute("id") == Some(id))
-        });
-        let Some(target) = target else {
+        let Some(target) = id.and_then(|id| self.named.get(id).copied()) else {
             self.drawing.leave_out("use of what is not in the file");
             return Ok(());
         };
@@ -243,7 +255,7 @@ impl Reader<'_, '_> {
         state.matrix = compose(state.matrix, translation(x, y));
         match target.tag_name().name() {
             "symbol" | "svg" => {
-                state.style = state.style.of(target, &self.sheet);
+                state.style = state.style.of(target, &self.rules)?;
                 state.layers.extend(names(target));
                 self.nested(target, node, state)
             }
@@ -254,15 +266,15 @@ impl Reader<'_, '_> {
     fn shape(
         &mut self,
         node: Node<'_, '_>,
-        paths: Vec<Vec<isosheet_mesh::plane::PlaneCurve>>,
+        paths: Vec<Vec<PlaneCurve>>,
         state: &State,
-    ) {
+    ) -> Result<(), DataError> {
         let style = &state.style;
         let is_area = node.tag_name().name() != "line";
         let (ink, opacity) = match (&style.stroke, self.areas) {
             (Ink::Nothing, Areas::LeftOut) => {
                 self.drawing.leave_out("shape without a stroke");
-                return;
+                return Ok(());
             }
             (Ink::Nothing, Areas::Outlined) if is_area => (&style.fill, style.fill_opacity),
             (stroke, _) => (stroke, style.stroke_opacity),
@@ -272,24 +284,36 @@ impl Reader<'_, '_> {
             Ink::Unknown(text) if style.visible => {
                 let what = format!("shape of the colour {text:?}, which is not understood");
                 self.drawing.leave_out(what);
-                return;
+                return Ok(());
             }
             Ink::Paint { colour, alpha } if style.visible && alpha * opacity > 0.0 => {
                 pen(*colour, alpha * opacity, state)
             }
             _ => {
                 self.drawing.leave_out("invisible shape");
-                return;
+                return Ok(());
             }
         };
         if node.attribute("clip-path").is_some() {
             self.drawing.leave_out("clipping of a shape");
         }
+        let curves: usize = paths.iter().map(Vec::len).sum();
+        let of_pen = size_of::<Pen>() + pen.layers.iter().map(memory_of_name).sum::<usize>();
+        let cost = curves * MEMORY_OF_CURVE + paths.len() * of_pen;
+        self.memory.spend(cost, "the lines")?;
         for path in paths {
             let curves = path.iter().map(|c| c.transformed(state.matrix));
             self.drawing.push(pen.clone(), curves);
         }
+        Ok(())
     }
+}
+
+/// The bytes for a curve, as it is read and as it is drawn.
+const MEMORY_OF_CURVE: usize = size_of::<DrawnLine>() + size_of::<PlaneCurve>();
+
+fn memory_of_name(name: &String) -> usize {
+    size_of::<String>() + name.len()
 }
 
 fn pen(colour: Colour, opacity: f64, state: &State) -> Pen {

@@ -2,19 +2,17 @@
 
 use super::{Segment, cp};
 use crate::format::DataError;
-use roxmltree::{Document, Node, ParsingOptions};
+use crate::format::xml::{self, Entities};
+use roxmltree::Node;
 
 /// The lines of the drawing, in which y points downwards.
 ///
 /// A line is an object of the class `OriLineProxy`, whose `type` is as in CP files. Coordinates of 0 are left out.
 pub(in crate::format) fn parse(bytes: &[u8]) -> Result<Vec<Segment>, DataError> {
     let text = String::from_utf8_lossy(bytes);
-    let options = ParsingOptions::default();
-    let document = Document::parse_with_options(text.trim_start_matches('\u{feff}'), options);
-    let document = document.map_err(|e| {
-        let message = format!("the file is not valid XML: {e}");
-        DataError::new(message, "copy or export it again")
-    })?;
+    let document = xml::parse(text.trim_start_matches('\u{feff}'), Entities::Refused);
+    let document =
+        document.map_err(|e| DataError::new(e.to_string(), "copy or export it again"))?;
     let is_line = |node: &Node<'_, '_>| {
         let class = node.attribute("class").unwrap_or_default();
         node.has_tag_name("object") && class.ends_with("OriLineProxy")

@@ -410,7 +410,7 @@ fn colours_and_opacity_of_svg_drawings_are_assignments_and_angles() {
         middle[0] < 50.0 * PIXEL && middle[1] > 50.0 * PIXEL,
         "{middle:?}"
     );
-    assert!(refusal(MeshFormat::Svg, "a poem").contains("no XML"));
+    assert!(refusal(MeshFormat::Svg, "a poem").contains("not valid XML"));
 }
 
 #[test]

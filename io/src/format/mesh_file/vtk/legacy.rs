@@ -53,7 +53,7 @@ fn polygons(file: &mut Cursor<'_>) -> Result<Contents, DataError> {
             },
             "POINTS" => {
                 let count = file.count("the number of points")?;
-                found.points = file.numbers(form, 3 * count)?;
+                found.points = file.numbers(form, count.saturating_mul(3))?;
             }
             "POLYGONS" => [found.ends, found.corners] = file.cells(form)?,
             "VERTICES" | "LINES" => drop(file.cells(form)?),

@@ -261,3 +261,32 @@ fn legacy_files_are_read() {
         }
     }
 }
+
+/// A block that is named often stands for any memory: the lengths of all are counted before they are decoded.
+#[test]
+fn arrays_are_in_proportion_to_their_file() {
+    let block = |length: usize| {
+        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
+        encoder.write_all(&vec![0; length]).unwrap();
+        encoder.finish().unwrap()
+    };
+    let file = |count: usize, length: usize| {
+        let block = block(length);
+        let numbers = [vec![count, length, 0], vec![block.len(); count]].concat();
+        let head: Vec<u8> = numbers.iter().flat_map(|n| (*n as u64).to_le_bytes()).collect();
+        let points = STANDARD.encode(head) + &STANDARD.encode(block.repeat(count));
+        format!(
+            "<VTKFile type=\"PolyData\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\"><PolyData>\
+             <Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points><DataArray type=\"Float64\" Name=\"p\" \
+             format=\"binary\">{points}</DataArray></Points></Piece></PolyData></VTKFile>"
+        )
+    };
+    // Bytes and numbers, where half of 64 MiB and of a hundred times the file are allowed.
+    let said = |text: &str| read(MeshFormat::Vtp, text.as_bytes()).unwrap_err();
+    let bomb = file(20, 1 << 20);
+    let most = (32 << 20) + 50 * bomb.len();
+    assert!(2 * 20 << 20 > most);
+    let expected = format!("the array \"p\" of the file would take more than {} MiB", most >> 20);
+    assert!(said(&bomb).contains(&expected), "{}", said(&bomb));
+    assert!(said(&file(8, 1 << 20)).contains("and its array has 1048576"));
+}

@@ -2,12 +2,15 @@
 
 use super::{TimedPolygons, other_data, plain, strips};
 use crate::format::DataError;
-use crate::format::input;
+use crate::format::allowance::Allowance;
 use crate::format::mesh_file::error::{COPY, CORRECT, Located, cut_short, excerpt, unexpected};
+use crate::format::xml::{self, Entities};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
-use roxmltree::{Document, Node};
+use roxmltree::Node;
+use std::borrow::Cow;
+use std::cell::Cell;
 use std::io::Read;
 
 /// The points and polygons of a file of the type `PolyData`, and the field `TimeValue`. Vertices, lines and
@@ -21,11 +24,8 @@ pub(in crate::format::mesh_file) fn parse(bytes: &[u8]) -> Result<TimedPolygons,
 
 fn polygons(bytes: &[u8]) -> Result<TimedPolygons, DataError> {
     let (text, appended) = divided(bytes)?;
-    let document = Document::parse(text.trim_start_matches('\u{feff}'));
-    let document = document.map_err(|e| {
-        let message = format!("the file is not valid XML: {e}");
-        DataError::new(message, COPY)
-    })?;
+    let document = xml::parse(text.trim_start_matches('\u{feff}'), Entities::Refused);
+    let document = document.map_err(|e| DataError::new(e.to_string(), COPY))?;
     let root = document.root_element();
     if !root.has_tag_name("VTKFile") {
         let found = excerpt(root.tag_name().name());
@@ -35,7 +35,7 @@ fn polygons(bytes: &[u8]) -> Result<TimedPolygons, DataError> {
     if kind != "PolyData" {
         return Err(other_data(&excerpt(kind)));
     }
-    let form = Form::of(root, appended)?;
+    let form = Form::of(root, appended, Allowance::of(bytes.len()).half())?;
     let mut found = TimedPolygons::default();
     let named = |node: &Node<'_, '_>, name: &str| node.attribute("Name") == Some(name);
     let mut arrays = document
@@ -68,7 +68,11 @@ fn polygons(bytes: &[u8]) -> Result<TimedPolygons, DataError> {
         };
         let (corners, ends) = (cells("connectivity")?, cells("offsets")?);
         let expected = [
-            ("coordinates", 3 * count("NumberOfPoints")?, points.len()),
+            (
+                "coordinates",
+                count("NumberOfPoints")?.saturating_mul(3),
+                points.len(),
+            ),
             ("polygons", count("NumberOfPolys")?, ends.len()),
         ];
         for (what, expected, got) in expected {
@@ -120,12 +124,30 @@ struct Form<'a> {
     header: usize,
     is_big_endian: bool,
     is_compressed: bool,
+    /// The bytes that further arrays may take: all may be made of one and the same part of a file.
+    left: Cell<Allowance>,
 }
 
 /// The bytes of an array.
 enum Source<'a> {
     Raw(&'a [u8]),
-    Base64(Vec<u8>),
+    Base64(Cow<'a, [u8]>),
+}
+
+/// Where the bytes of an array are behind the numbers before it.
+struct Layout {
+    begin: usize,
+    /// The length of each part of the array in the file, and in the array.
+    parts: Vec<[usize; 2]>,
+}
+
+impl Layout {
+    /// All lengths of the parts together.
+    fn lengths(&self) -> Option<[usize; 2]> {
+        self.parts.iter().try_fold([0_usize; 2], |[a, b], [c, d]| {
+            Some([a.checked_add(*c)?, b.checked_add(*d)?])
+        })
+    }
 }
 
 impl Source<'_> {
@@ -155,7 +177,7 @@ impl Source<'_> {
 }
 
 impl<'a> Form<'a> {
-    fn of(root: Node<'_, '_>, appended: Appended<'a>) -> Result<Self, DataError> {
+    fn of(root: Node<'_, '_>, appended: Appended<'a>, left: Allowance) -> Result<Self, DataError> {
         let header = match root.attribute("header_type") {
             Some("UInt64") => 8,
             Some("UInt32") | None => 4,
@@ -175,6 +197,7 @@ impl<'a> Form<'a> {
             header,
             is_big_endian: root.attribute("byte_order") == Some("BigEndian"),
             is_compressed: compressor.is_some(),
+            left: Cell::new(left),
         })
     }
 
@@ -227,7 +250,8 @@ impl<'a> Form<'a> {
             }
             (Some("binary"), _) => {
                 let text = text();
-                Source::Base64(text.bytes().filter(|b| !b.is_ascii_whitespace()).collect())
+                let code = text.bytes().filter(|b| !b.is_ascii_whitespace());
+                Source::Base64(Cow::Owned(code.collect()))
             }
             (_, Appended::Nothing) => return Err(wrong("is appended, and nothing is")),
             (_, Appended::Raw(data)) => {
@@ -237,13 +261,20 @@ impl<'a> Form<'a> {
             (_, Appended::Base64(data)) => {
                 let offset = offset(array).and_then(|at| data.get(at..));
                 let data = offset.ok_or_else(|| wrong("begins beyond the end of the file"))?;
-                let is_code =
-                    |b: &&u8| b.is_ascii_alphanumeric() || [b'+', b'/', b'='].contains(*b);
-                Source::Base64(data.iter().take_while(is_code).copied().collect())
+                Source::Base64(Cow::Borrowed(data))
             }
         };
-        let bytes = self.bytes(&source);
-        let bytes = bytes.ok_or_else(|| wrong("cannot be decoded, or was cut short"))?;
+        let undecoded = || wrong("cannot be decoded, or was cut short");
+        let layout = self.layout(&source).ok_or_else(undecoded)?;
+        let [stored, length] = layout.lengths().ok_or_else(undecoded)?;
+        let values = (length / N).saturating_mul(size_of::<T>());
+        let mut left = self.left.get();
+        left.spend(
+            stored.saturating_add(length).saturating_add(values),
+            &format!("the array {name:?}"),
+        )?;
+        self.left.set(left);
+        let bytes = self.bytes(&source, &layout).ok_or_else(undecoded)?;
         let (values, rest) = bytes.as_chunks::<N>();
         if !rest.is_empty() {
             return Err(wrong("ends within a number"));
@@ -258,11 +289,11 @@ impl<'a> Form<'a> {
         Ok(values.iter().map(in_order).collect())
     }
 
-    /// The bytes of an array without the numbers before it.
-    fn bytes(&self, source: &Source<'_>) -> Option<Vec<u8>> {
+    /// Reads the numbers before an array.
+    fn layout(&self, source: &Source<'_>) -> Option<Layout> {
         let word = self.header;
-        let numbers = |from: usize, count: usize| -> Option<Vec<usize>> {
-            let bytes = source.part(from, count.checked_mul(word)?)?;
+        let numbers = |count: usize| -> Option<Vec<usize>> {
+            let bytes = source.part(0, count.checked_mul(word)?)?;
             let value = |b: &[u8]| {
                 let in_order = |value: u64, b: &u8| value << 8 | u64::from(*b);
                 let value = match self.is_big_endian {
@@ -274,34 +305,43 @@ impl<'a> Form<'a> {
             bytes.chunks_exact(word).map(value).collect()
         };
         if !self.is_compressed {
-            let length = numbers(0, 1)?[0];
-            let mut all = source.part(0, word.checked_add(length)?)?;
-            all.drain(..word);
-            return Some(all);
+            let length = numbers(1)?[0];
+            return Some(Layout {
+                begin: word,
+                parts: vec![[length; 2]],
+            });
         }
-        let [blocks, size, last] = numbers(0, 3)?[..] else {
+        let [blocks, size, last] = numbers(3)?[..] else {
             return None;
         };
-        let head = numbers(0, blocks.checked_add(3)?)?;
-        let mut place = 0;
-        let begin = source.after(0, head.len().checked_mul(word)?);
-        let total = head[3..]
-            .iter()
-            .try_fold(0_usize, |sum, n| sum.checked_add(*n))?;
-        let compressed = source.part(begin, total)?;
-        let mut bytes = Vec::new();
-        for (k, &length) in head[3..].iter().enumerate() {
+        let head = numbers(blocks.checked_add(3)?)?;
+        let part = |(k, stored): (usize, &usize)| {
             let is_last = k + 1 == blocks && last > 0;
-            let expected = if is_last { last } else { size };
-            let block = &compressed[place..place + length];
-            place += length;
-            let before = bytes.len();
-            let limit = (expected as u64).min(input::LARGEST);
-            ZlibDecoder::new(block)
-                .take(limit)
-                .read_to_end(&mut bytes)
-                .ok()?;
-            if bytes.len() - before != expected {
+            [*stored, if is_last { last } else { size }]
+        };
+        Some(Layout {
+            begin: source.after(0, head.len().checked_mul(word)?),
+            parts: head[3..].iter().enumerate().map(part).collect(),
+        })
+    }
+
+    /// The bytes of an array without the numbers before it.
+    fn bytes(&self, source: &Source<'_>, layout: &Layout) -> Option<Vec<u8>> {
+        let [stored, length] = layout.lengths()?;
+        if !self.is_compressed {
+            let mut all = source.part(0, layout.begin.checked_add(stored)?)?;
+            all.drain(..layout.begin);
+            return Some(all);
+        }
+        let mut compressed = &source.part(layout.begin, stored)?[..];
+        let mut bytes = Vec::with_capacity(length);
+        for &[stored, length] in &layout.parts {
+            let (block, rest) = compressed.split_at_checked(stored)?;
+            compressed = rest;
+            let end = bytes.len() + length;
+            let mut block = ZlibDecoder::new(block).take(length as u64);
+            block.read_to_end(&mut bytes).ok()?;
+            if bytes.len() != end {
                 return None;
             }
         }

@@ -6,13 +6,18 @@ use svgtypes::{PathParser, PathSegment};
 
 type Point = [f64; 2];
 
-/// The curves of the sub-paths of path data.
+/// The curves of the sub-paths of path data, `most` at most.
 ///
 /// # Errors
 /// What is wrong. (A program that shows drawings leaves out the rest of the path: here it would be lost to the sheet.)
-pub(super) fn sub_paths(data: &str) -> Result<Vec<Vec<PlaneCurve>>, String> {
+pub(super) fn sub_paths(data: &str, most: usize) -> Result<Vec<Vec<PlaneCurve>>, String> {
     let mut pen = Drawn::default();
-    for segment in PathParser::from(data) {
+    for (count, segment) in PathParser::from(data).enumerate() {
+        if count > 2 * most {
+            return Err(format!(
+                "`d` has more than {count} commands, and a file of this length may have no more"
+            ));
+        }
         let segment = segment.map_err(|e| format!("`d` is no path data: {e}"))?;
         pen.draw(segment);
     }
@@ -211,7 +216,10 @@ mod tests {
 
     #[test]
     fn relative_smooth_and_closed_paths() {
-        let paths = sub_paths("m1 1 h2 v3 z l1 0 M5 5 c0 1 1 2 2 2 s2 -1 2 -2 q1 1 2 0 t2 0");
+        let paths = sub_paths(
+            "m1 1 h2 v3 z l1 0 M5 5 c0 1 1 2 2 2 s2 -1 2 -2 q1 1 2 0 t2 0",
+            100,
+        );
         let paths = paths.unwrap();
         assert_eq!(paths.len(), 3);
         assert_eq!(paths[0].len(), 3);
@@ -230,9 +238,9 @@ mod tests {
         assert_eq!((d[0], d[3]), ([11.0, 5.0], [13.0, 5.0]));
         // The control point of the second quadratic curve is mirrored: (10, 6) to (12, 4).
         assert!(near(d[1], [(11.0 + 24.0) / 3.0, (5.0 + 8.0) / 3.0]));
-        assert_eq!(sub_paths(""), Ok(Vec::new()));
+        assert_eq!(sub_paths("", 0), Ok(Vec::new()));
         for broken in ["M0 0 L1 0 L nonsense", "M0 0 L1", "M0 0 V nan", "L1 1"] {
-            let message = sub_paths(broken).unwrap_err();
+            let message = sub_paths(broken, 100).unwrap_err();
             assert!(message.starts_with("`d` is no path data"), "{message}");
         }
     }

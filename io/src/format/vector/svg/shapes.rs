@@ -7,13 +7,14 @@ use roxmltree::Node;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use svgtypes::NumberListParser;
 
-/// The paths of a shape in its own units; `None` for other elements.
+/// The paths of a shape in its own units, of `most` curves at most; `None` for other elements.
 ///
 /// # Errors
 /// What is wrong with its attributes.
 pub(super) fn paths(
     node: Node<'_, '_>,
     viewport: Viewport,
+    most: usize,
 ) -> Result<Option<Vec<Vec<PlaneCurve>>>, String> {
     let get = |name: &str, along| viewport.attribute(node, name, along);
     let x = |name| get(name, Along::X).map(|c| c.unwrap_or(0.0));
@@ -24,7 +25,7 @@ pub(super) fn paths(
         Ok::<_, String>([rx.or(ry), ry.or(rx)].map(|r| r.unwrap_or(0.0)))
     };
     Ok(Some(match node.tag_name().name() {
-        "path" => sub_paths(node.attribute("d").unwrap_or_default())?,
+        "path" => sub_paths(node.attribute("d").unwrap_or_default(), most)?,
         "line" => vec![lines(&[[x("x1")?, y("y1")?], [x("x2")?, y("y2")?]])],
         "polyline" => vec![lines(&points(node)?)],
         "polygon" => {

@@ -1,8 +1,10 @@
 //! Styles of elements: attributes, style sheets and inheritance.
 
 use super::super::colour::Colour;
+use super::style_sheet::Rules;
+use crate::format::DataError;
 use roxmltree::Node;
-use simplecss::{AttributeOperator, DeclarationTokenizer, Element, PseudoClass, StyleSheet};
+use simplecss::DeclarationTokenizer;
 use svgtypes::{Color, Paint};
 
 /// How lines or areas are painted.
@@ -14,7 +16,7 @@ pub(super) enum Ink {
         /// How opaque the colour itself is, from 0 to 1.
         alpha: f64,
     },
-    /// A colour that is not understood, as it is written.
+    /// A colour that is not understood: how what is written begins.
     Unknown(String),
 }
 
@@ -60,22 +62,19 @@ impl Style {
     }
 
     /// The style of an element in one of this style.
-    pub(super) fn of(&self, node: Node<'_, '_>, sheet: &StyleSheet<'_>) -> Self {
+    pub(super) fn of(&self, node: Node<'_, '_>, rules: &Rules<'_>) -> Result<Self, DataError> {
         let mut style = self.clone();
         for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
             style.set(attribute.name(), attribute.value());
         }
-        let rules = sheet.rules.iter();
-        for rule in rules.filter(|rule| rule.selector.matches(&Styled(node))) {
-            for declaration in &rule.declarations {
-                style.set(declaration.name, declaration.value);
-            }
+        for declaration in rules.of(node)? {
+            style.set(declaration.name, declaration.value);
         }
         let own = node.attribute("style").unwrap_or_default();
         for declaration in DeclarationTokenizer::from(own) {
             style.set(declaration.name, declaration.value);
         }
-        style
+        Ok(style)
     }
 
     /// Takes over a property; what cannot be read changes nothing.
@@ -119,10 +118,13 @@ impl Style {
         match Paint::from_str(value) {
             // A gradient or a pattern has no colour of its own.
             Ok(_) => Ink::of((Colour([128; 3]), 1.0)),
-            Err(_) => Ink::Unknown(value.to_owned()),
+            Err(_) => Ink::Unknown(value.chars().take(LONGEST).collect()),
         }
     }
 }
+
+/// So many characters of a colour that is not understood are told.
+const LONGEST: usize = 40;
 
 /// A colour, and how opaque it is, from 0 to 1; none of what is no colour, or one of a kind that is not known.
 fn colour(value: &str) -> Option<(Colour, f64)> {
@@ -158,33 +160,6 @@ fn part(value: &str) -> Option<f64> {
         None => value.parse().ok()?,
     };
     part.is_finite().then(|| part.clamp(0.0, 1.0))
-}
-
-/// An element as selectors of style sheets see it.
-struct Styled<'a, 'input>(Node<'a, 'input>);
-
-impl Element for Styled<'_, '_> {
-    fn parent_element(&self) -> Option<Self> {
-        self.0.parent_element().map(Self)
-    }
-
-    fn prev_sibling_element(&self) -> Option<Self> {
-        self.0.prev_sibling_element().map(Self)
-    }
-
-    fn has_local_name(&self, name: &str) -> bool {
-        self.0.tag_name().name() == name
-    }
-
-    fn attribute_matches(&self, name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.0
-            .attribute(name)
-            .is_some_and(|value| operator.matches(value))
-    }
-
-    fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
-        matches!(class, PseudoClass::FirstChild) && self.0.prev_sibling_element().is_none()
-    }
 }
 
 #[cfg(test)]
