@@ -26,6 +26,7 @@ mod colour_scale;
 mod colours;
 mod error;
 mod lines;
+mod memory;
 mod montage;
 mod occlusion;
 mod pieces;
@@ -47,6 +48,8 @@ pub(crate) use colour_bar::strip;
 pub use colour_scale::{ColourMap, ColourScale, Spacing};
 pub use colours::Colours;
 pub use error::PictureError;
+#[cfg(feature = "run")]
+pub(crate) use memory::at_once;
 pub use montage::{Labelled, montage};
 pub use sheet::{Look, SheetPicture, render, render_folded};
 pub use solid::Solid;

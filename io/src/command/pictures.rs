@@ -119,7 +119,15 @@ pub(crate) fn write(
                 progress.drawn(drawn.fetch_add(1, Ordering::Relaxed) + 1);
                 saved
             };
-            (0..film.len()).into_par_iter().try_for_each(one)
+            // Each thread draws one picture, unless memory holds fewer.
+            let threads = rayon::current_num_threads();
+            film.at_once(threads).map_err(failed).and_then(|batch| {
+                let batch = if batch < threads { batch } else { film.len() };
+                (0..film.len()).step_by(batch).try_for_each(|first| {
+                    let end = film.len().min(first + batch);
+                    (first..end).into_par_iter().try_for_each(one)
+                })
+            })
         }
     };
     progress.end();

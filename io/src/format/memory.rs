@@ -27,10 +27,22 @@ fn limit_of_group() -> Option<u64> {
     Some(number("max")?.saturating_sub(number("current")?))
 }
 
-/// The limit of the address space of the process (`ulimit -v`).
+/// What is left of the address space of the process, where that has a limit (`ulimit -v`).
 fn limit_of_process() -> Option<u64> {
     #[cfg(unix)]
-    return rustix::process::getrlimit(rustix::process::Resource::As).current;
+    return {
+        let limit = rustix::process::getrlimit(rustix::process::Resource::As).current?;
+        Some(limit.saturating_sub(address_space().unwrap_or(0)))
+    };
     #[cfg(not(unix))]
     None
+}
+
+/// The address space that the process has, where the system says it as Linux does.
+#[cfg(unix)]
+fn address_space() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find_map(|l| l.strip_prefix("VmSize:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kibibytes.checked_mul(1024)
 }

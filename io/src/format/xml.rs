@@ -155,7 +155,9 @@ fn attributes(element: &str) -> impl Iterator<Item = &str> {
         .split_once(char::is_whitespace)
         .map_or("", |(_, rest)| rest);
     std::iter::from_fn(move || {
-        let (name, value) = rest.split_once('=').filter(|(name, _)| !name.contains('>'))?;
+        let (name, value) = rest
+            .split_once('=')
+            .filter(|(name, _)| !name.contains('>'))?;
         let value = value.trim_start();
         let quote = value.chars().next().filter(|c| ['"', '\''].contains(c))?;
         rest = value[1..].split_once(quote)?.1;

@@ -2,6 +2,7 @@
 
 use super::canvas::{Image, encoder, srgb_bytes};
 use super::error::PictureError;
+use super::memory::at_once;
 use crate::DataError;
 use rayon::prelude::*;
 
@@ -10,7 +11,8 @@ use rayon::prelude::*;
 /// Programs that know no animations show the first picture.
 ///
 /// # Errors
-/// [`PictureError::Data`] for no picture, or for one of another size,
+/// [`PictureError::Data`] for no picture, or for one of another size, [`PictureError::Options`] for a size that memory does
+/// not hold,
 /// [`PictureError::Png`] if the file cannot be made, and whatever `picture` returns.
 pub fn animated_png(
     size: [usize; 2],
@@ -30,7 +32,7 @@ pub fn animated_png(
     encoder.set_frame_delay(delay, 1000)?;
     let mut writer = encoder.write_header()?;
     // So many pictures are in memory at a time.
-    let batch = 2 * rayon::current_num_threads();
+    let batch = at_once(size, 2 * rayon::current_num_threads())?;
     for first in (0..count).step_by(batch) {
         let drawn = (first..count.min(first + batch)).into_par_iter();
         let drawn = drawn.map(|frame| {

@@ -1,6 +1,7 @@
 //! Why a picture cannot be made.
 
 use crate::format::DataError;
+use crate::scene::bytes_in_words;
 use isosheet_collide::ObstacleError;
 use isosheet_mesh::Advice;
 
@@ -31,6 +32,16 @@ impl PictureError {
     pub(crate) fn size(width: usize, height: usize) -> Self {
         let message = format!("the picture has {width} x {height} pixels");
         let remedy = "give at least one each way, and no more than memory holds";
+        Self::Options(DataError::new(message, remedy))
+    }
+
+    /// A picture of a size (pixels) takes more bytes than are free.
+    pub(crate) fn memory([width, height]: [usize; 2], needed: u64, free: u64) -> Self {
+        let [needed, free] = [needed, free].map(|bytes| bytes_in_words(bytes as f64));
+        let message = format!(
+            "a picture of {width} x {height} pixels takes {needed} of memory, and {free} are free"
+        );
+        let remedy = "give a smaller size (`--size`), or end other programs";
         Self::Options(DataError::new(message, remedy))
     }
 

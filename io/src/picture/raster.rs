@@ -67,6 +67,9 @@ struct Sample {
     ink: f32,
 }
 
+/// Bytes of the samples that a thread keeps for each column of a picture.
+pub(super) const MEMORY_OF_COLUMN: usize = BAND * SAMPLES * SAMPLES * size_of::<Sample>();
+
 /// How far outside of a triangle a sample still counts as inside, as a part of the triangle.
 const HAIR: f64 = 1e-7;
 

@@ -4,7 +4,8 @@ use super::quantity::Quantity;
 use super::{Recording, Viewpoint};
 use crate::DataError;
 use crate::picture::{
-    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render_folded, strip,
+    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, at_once, render_folded,
+    strip,
 };
 use crate::scene::bounds;
 use isosheet_mesh::wording::given;
@@ -55,7 +56,7 @@ impl Default for FilmOptions {
 }
 
 /// The largest side of a picture, pixels: four times that of a screen. A picture of this size each way takes
-/// 3 GB.
+/// 7 GB and more.
 const LARGEST: usize = 16_384;
 
 /// Milliseconds for which browsers show no picture of an animation: they take 100 instead.
@@ -146,8 +147,8 @@ impl<'a> Film<'a> {
     /// The given frames of a run.
     ///
     /// # Errors
-    /// [`PictureError::Data`] without frames or for a frame that the run has not, and those of
-    /// [`FilmOptions::validate`].
+    /// [`PictureError::Data`] without frames or for a frame that the run has not, [`PictureError::Options`] for pictures that
+    /// memory does not hold, and those of [`FilmOptions::validate`].
     pub fn new(
         recording: &'a Recording,
         frames: Vec<usize>,
@@ -222,6 +223,7 @@ impl<'a> Film<'a> {
         if width > LARGEST {
             return Err(PictureError::size(width, height));
         }
+        at_once([width, height], 1)?;
         let strip = quantity.as_ref().map(|q| strip(&q.scale, [width, height]));
         let strip = strip.transpose()?;
         let height = height - strip.as_ref().map_or(0, |strip| strip.size()[1]);
@@ -257,6 +259,11 @@ impl<'a> Film<'a> {
         let [width, height] = self.look.size;
         let below = self.strip.as_ref().map_or(0, |strip| strip.size()[1]);
         [width, height + below]
+    }
+
+    /// As many pictures as memory holds at a time, `most` at most.
+    pub(crate) fn at_once(&self, most: usize) -> Result<usize, PictureError> {
+        at_once(self.size(), most)
     }
 
     /// Pictures a second, in real time; one for a single picture.

@@ -17,7 +17,7 @@ const PROGRAM: &str = "ffmpeg";
 /// The extensions of films that it is asked for.
 const FORMATS: [&str; 7] = ["mp4", "m4v", "mov", "webm", "mkv", "avi", "gif"];
 
-/// Pictures that are drawn before they are passed on: memory is needed for so many.
+/// Pictures that are drawn before they are passed on, if memory holds so many.
 const AT_ONCE: usize = 16;
 
 /// Why a film is not encoded.
@@ -144,8 +144,9 @@ impl Film<'_> {
             drawn(count.fetch_add(1, Ordering::Relaxed) + 1);
             picture
         };
-        for first in (0..self.len()).step_by(AT_ONCE) {
-            let some = first..self.len().min(first + AT_ONCE);
+        let batch = self.at_once(AT_ONCE).map_err(Fed::Picture)?;
+        for first in (0..self.len()).step_by(batch) {
+            let some = first..self.len().min(first + batch);
             let pictures: Result<Vec<_>, _> = some.into_par_iter().map(one).collect();
             for picture in pictures.map_err(Fed::Picture)? {
                 pipe.write_all(&picture).map_err(Fed::Closed)?;

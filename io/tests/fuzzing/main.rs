@@ -4,9 +4,12 @@
 //! of nothing in what was read, and allocations beyond [`MOST_MEMORY`]. A case that does not end keeps the
 //! test from ending: `--nocapture` shows which target that is, and `target/tmp/fuzz/TARGET/current` is the
 //! case. `cargo test` tries [`CASES`] cases of each target, `cargo xtask soak` more of them with other seeds,
-//! and `ISOSHEET_FUZZ_TARGET=T` runs one target alone.
+//! and `ISOSHEET_FUZZ_TARGET=T` runs one target alone. `limits.rs` runs cases in processes with limits.
 //! The seeds of all targets are written to `target/tmp/fuzz/` for cargo-fuzz, which `io/fuzz` is for.
 
+mod bombs;
+#[cfg(unix)]
+mod limits;
 mod mutation;
 mod targets;
 

@@ -18,7 +18,7 @@ use std::path::Path;
 pub(crate) type Target = fn(&[u8]);
 
 /// All targets with their names.
-pub(crate) const TARGETS: [(&str, Target); 14] = [
+pub(crate) const TARGETS: [(&str, Target); 18] = [
     ("obj", obj),
     ("off", off),
     ("stl", stl),
@@ -26,6 +26,10 @@ pub(crate) const TARGETS: [(&str, Target); 14] = [
     ("fold", fold),
     ("gltf", gltf),
     ("glb", glb),
+    ("vtk", vtk),
+    ("vtp", vtp),
+    ("cp", cp),
+    ("opx", opx),
     ("svg", svg),
     ("dxf", dxf),
     ("scene", scene),
@@ -69,8 +73,26 @@ fn glb(data: &[u8]) {
     mesh(data, MeshFormat::Glb);
 }
 
+fn vtk(data: &[u8]) {
+    mesh(data, MeshFormat::Vtk);
+}
+
+fn vtp(data: &[u8]) {
+    mesh(data, MeshFormat::Vtp);
+}
+
+fn cp(data: &[u8]) {
+    mesh(data, MeshFormat::Cp);
+}
+
+fn opx(data: &[u8]) {
+    mesh(data, MeshFormat::Opx);
+}
+
+/// A drawing of lines, and of a crease pattern.
 fn svg(data: &[u8]) {
     drawing(data, Path::new("drawing.svg"));
+    mesh(data, MeshFormat::Svg);
 }
 
 fn dxf(data: &[u8]) {

@@ -1,6 +1,8 @@
 //! Chords of curves, and which of them come near to each other.
 
 use super::curve::PlaneCurve;
+use super::error::PlaneError;
+use super::near;
 use super::vec2::{Point, between, cross, distance, foot, sub};
 
 /// A part of a curve between two of its points.
@@ -51,12 +53,6 @@ impl Chord {
         [self.ends[0], self.ends[1], self.apex]
     }
 
-    /// The largest coordinate along an axis, or of the negative axis.
-    fn extent(&self, axis: usize, sign: f64) -> f64 {
-        let along = self.corners().map(|p| sign * p[axis]);
-        along.into_iter().fold(f64::NEG_INFINITY, f64::max)
-    }
-
     /// The distance of a point from the chord.
     pub(super) fn distance(&self, p: Point) -> f64 {
         let [a, b] = self.ends;
@@ -105,21 +101,15 @@ impl Chord {
     }
 }
 
-/// Calls `visit` for all pairs of chords whose boxes are at most `reach` apart.
-pub(super) fn near_pairs(chords: &[Chord], reach: f64, mut visit: impl FnMut(usize, usize)) {
-    let mut order: Vec<usize> = (0..chords.len()).collect();
-    let least = |k: usize, axis| -chords[k].extent(axis, -1.0);
-    order.sort_by(|&i, &j| least(i, 0).total_cmp(&least(j, 0)));
-    for (place, &i) in order.iter().enumerate() {
-        let most = [0, 1].map(|axis| chords[i].extent(axis, 1.0) + reach);
-        let bottom = least(i, 1) - reach;
-        for &j in &order[place + 1..] {
-            if least(j, 0) > most[0] {
-                break;
-            }
-            if least(j, 1) <= most[1] && chords[j].extent(1, 1.0) >= bottom {
-                visit(i.min(j), i.max(j));
-            }
-        }
-    }
+/// Calls `visit` for all pairs of chords that are at most `reach` apart, with their bends.
+///
+/// # Errors
+/// [`PlaneError::TooManyMeetings`]
+pub(super) fn near_pairs(
+    chords: &[Chord],
+    reach: f64,
+    visit: impl FnMut(usize, usize),
+) -> Result<(), PlaneError> {
+    let corners: Vec<[Point; 3]> = chords.iter().map(Chord::corners).collect();
+    near::near_pairs(&corners, reach, visit)
 }

@@ -67,6 +67,12 @@ pub enum PlaneError {
         /// Where, metres.
         at: [f64; 2],
     },
+    /// More lines cross or touch each other than a drawing of so many lines has.
+    #[error("the lines of the drawing meet more than {limit} times")]
+    TooManyMeetings {
+        /// The largest number allowed.
+        limit: usize,
+    },
     /// The result would be too large to handle.
     #[error("the mesh would have about {} triangles, more than the {limit} that are allowed", brief(*faces))]
     TooManyFaces {
@@ -104,6 +110,9 @@ impl Advice for PlaneError {
             Self::Touching { .. } => {
                 Some("move them apart, or give a larger tolerance for snapping")
             }
+            Self::TooManyMeetings { .. } => Some(
+                "draw fewer lines, each of them once: the sheet would have too many edges to fold",
+            ),
             Self::TooManyFaces { .. } => Some("give a larger spacing"),
         }
     }

@@ -4,7 +4,7 @@ use super::chords::{Chord, near_pairs};
 use super::curve::PlaneCurve;
 use super::error::PlaneError;
 use super::vec2::{Point, cross, distance, sub};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A part of a curve between two nodes, where it meets others or ends.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,8 @@ impl PlaneGraph {
     /// each other as near as this become one.
     ///
     /// # Errors
-    /// [`PlaneError::Size`] for a tolerance that is not positive, and [`PlaneError::NotFinite`].
+    /// [`PlaneError::Size`] for a tolerance that is not positive, [`PlaneError::NotFinite`], and
+    /// [`PlaneError::TooManyMeetings`].
     pub fn new(curves: &[PlaneCurve], snap: f64) -> Result<Self, PlaneError> {
         if !(snap > 0.0 && snap.is_finite()) {
             let name = "the tolerance for snapping";
@@ -90,11 +91,12 @@ impl PlaneGraph {
             snap,
         };
         let chords = graph.chords(curves);
-        let mut cuts = graph.cuts(curves, &chords);
+        let mut cuts = graph.cuts(curves, &chords)?;
         // Nodes lie on the curves that run on there, so that these keep their form.
         let inner = cuts.len();
+        let dropped: HashSet<usize> = graph.dropped.iter().copied().collect();
         for (curve, c) in curves.iter().enumerate() {
-            if !graph.dropped.contains(&curve) {
+            if !dropped.contains(&curve) {
                 cuts.extend([0.0, 1.0].map(|t| Cut {
                     curve,
                     t,
@@ -137,7 +139,7 @@ impl PlaneGraph {
     }
 
     /// Where curves meet others between their ends.
-    fn cuts(&mut self, curves: &[PlaneCurve], chords: &[Chord]) -> Vec<Cut> {
+    fn cuts(&mut self, curves: &[PlaneCurve], chords: &[Chord]) -> Result<Vec<Cut>, PlaneError> {
         let snap = self.snap;
         let mut cuts = Vec::new();
         let mut crossings: Vec<([usize; 2], Point)> = Vec::new();
@@ -195,9 +197,9 @@ impl PlaneGraph {
             if !is_at_end {
                 crossings.push(([a.curve, b.curve], at));
             }
-        });
+        })?;
         self.crossings = crossings;
-        cuts
+        Ok(cuts)
     }
 
     /// The node of each cut; points that are as near as the tolerance have the same.

@@ -2,6 +2,7 @@
 
 use super::error::{Gap, PlaneError};
 use super::graph::PlaneGraph;
+use super::near;
 use super::net::{Net, Place, Segment};
 use super::refine::Refiner;
 use super::vec2::{Point, between, cross, distance, foot, sub};
@@ -179,14 +180,9 @@ fn open_ends(graph: &PlaneGraph, roles: &[Role], stray: &[bool]) -> Vec<Gap> {
         .flat_map(|(p, _)| p.nodes)
         .filter(|n| meeting[*n] == 1);
     let ends: Vec<Point> = nodes.map(|n| graph.nodes[n]).collect();
-    let gap = |(k, at): (usize, &Point)| {
-        let others = ends.iter().enumerate().filter(|(j, _)| *j != k);
-        let width = others
-            .map(|(_, p)| distance(*p, *at))
-            .fold(f64::INFINITY, f64::min);
-        Gap { at: *at, width }
-    };
-    let mut gaps: Vec<Gap> = ends.iter().enumerate().map(gap).collect();
+    let widths = near::gaps(&ends).into_iter();
+    let gaps = ends.iter().zip(widths);
+    let mut gaps: Vec<Gap> = gaps.map(|(at, width)| Gap { at: *at, width }).collect();
     gaps.sort_by(|a, b| a.width.total_cmp(&b.width));
     gaps
 }

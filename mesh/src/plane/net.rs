@@ -65,7 +65,7 @@ impl Net {
             segments: BTreeMap::new(),
         };
         let mut of_node = vec![None; graph.nodes.len()];
-        for chord in chords(graph, keep, longest) {
+        for chord in chords(graph, keep, longest)? {
             let piece = &graph.pieces[chord.curve];
             let mut ends = [0; 2];
             for k in 0..2 {
@@ -179,7 +179,7 @@ pub(super) fn handle(vertex: u32) -> FixedVertexHandle {
 }
 
 /// The chords of the pieces, one after the other, which meet in their common ends alone.
-fn chords(graph: &PlaneGraph, keep: &[bool], longest: f64) -> Vec<Chord> {
+fn chords(graph: &PlaneGraph, keep: &[bool], longest: f64) -> Result<Vec<Chord>, PlaneError> {
     let mut chords = Vec::new();
     for (number, piece) in graph.pieces.iter().enumerate().filter(|(k, _)| keep[*k]) {
         let parameters = piece.curve.subdivide(piece.range, longest, TURN);
@@ -199,7 +199,7 @@ fn chords(graph: &PlaneGraph, keep: &[bool], longest: f64) -> Vec<Chord> {
                 halve[i] |= curved[0];
                 halve[j] |= curved[1];
             }
-        });
+        })?;
         if !halve.contains(&true) {
             break;
         }
@@ -214,7 +214,7 @@ fn chords(graph: &PlaneGraph, keep: &[bool], longest: f64) -> Vec<Chord> {
         });
         chords = halves.collect();
     }
-    chords
+    Ok(chords)
 }
 
 /// A part of a piece, which ends in the nodes exactly.

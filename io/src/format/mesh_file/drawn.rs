@@ -1,7 +1,7 @@
 //! How the lines of a drawing are drawn that edges of its mesh follow.
 
 use crate::format::vector::Pen;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The lines of the drawing that a mesh is made of: colours, dashes and layers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -10,31 +10,33 @@ pub struct DrawnLines {
     pens: Vec<Pen>,
     /// Of the lines that lie on each other along an edge the numbers of their pens.
     sets: Vec<BTreeSet<usize>>,
+    /// The numbers of the sets.
+    of_set: BTreeMap<BTreeSet<usize>, u32>,
 }
 
 impl DrawnLines {
     /// No edges yet, of a drawing with some pens; what its pen `k` is here is entry `k` of the list.
     pub(in crate::format) fn of_pens(pens: &[Pen]) -> (Self, Vec<usize>) {
         let mut lines = Self::default();
-        let mut number = |pen: &Pen| {
-            let known = lines.pens.iter().position(|known| known == pen);
-            known.unwrap_or_else(|| {
-                lines.pens.push(pen.clone());
-                lines.pens.len() - 1
-            })
+        let mut known = HashMap::new();
+        let mut number = |pen: &'_ Pen| {
+            lines.pens.push(pen.clone());
+            lines.pens.len() - 1
         };
-        let numbers = pens.iter().map(&mut number).collect();
+        let numbers = pens.iter().map(|pen| {
+            let key = (pen.colour.0, pen.dashed, pen.opacity.to_bits(), &pen.layers);
+            *known.entry(key).or_insert_with(|| number(pen))
+        });
+        let numbers = numbers.collect();
         (lines, numbers)
     }
 
     /// The number of a set of pens, which is [`FileCrease::drawn`](super::FileCrease::drawn).
     pub(in crate::format) fn set(&mut self, pens: BTreeSet<usize>) -> u32 {
-        let known = self.sets.iter().position(|known| *known == pens);
-        let number = known.unwrap_or_else(|| {
-            self.sets.push(pens);
-            self.sets.len() - 1
-        });
-        number as u32
+        *self.of_set.entry(pens).or_insert_with_key(|pens| {
+            self.sets.push(pens.clone());
+            self.sets.len() as u32 - 1
+        })
     }
 
     /// How the lines of the drawing are drawn; none if the mesh is not made of one.

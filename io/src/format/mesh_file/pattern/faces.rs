@@ -5,8 +5,7 @@ use crate::format::mesh_file::{EdgeAssignment, FileCrease};
 use crate::format::mesh_file::{Point, twice_area};
 use std::collections::BTreeMap;
 
-/// More edges are refused: pairs of edges are compared, which takes a second or two for so many edges that
-/// all overlap in one direction.
+/// More lines are refused: a pattern of so many takes a second or two, and is more than anybody folds.
 pub(super) const MOST_EDGES: usize = 50_000;
 
 /// The faces, counter-clockwise, as corners from 0.

@@ -18,7 +18,8 @@ pub(super) fn of(
     near: f64,
 ) -> (usize, Vec<Point>) {
     let point = |v: u32| points[v as usize];
-    let is_inside = |p: Point| faces.iter().any(|face| is_within(p, face, points));
+    let border = border(faces);
+    let is_inside = |p: Point| is_within(p, &border, points);
     let outline = loose.iter().filter(|e| is_outline(e));
     let is_in_face = |e: &&FileCrease| {
         let [a, b] = e.ends.map(point);
@@ -45,7 +46,7 @@ pub(super) fn of(
     }
     let ends = edges.iter().flat_map(|e| e.ends);
     let connected: HashSet<usize> = ends.map(|v| root(&mut tree, v as usize)).collect();
-    let misses_faces = has_crease_at_border(edges, faces);
+    let misses_faces = has_crease_at_border(edges, &border);
     let mut is_gap = |v: u32| {
         let of = root(&mut tree, v as usize);
         match connected.contains(&of) {
@@ -66,8 +67,8 @@ fn is_outline(edge: &FileCrease) -> bool {
     )
 }
 
-/// Whether a crease has a face on one of its sides alone.
-fn has_crease_at_border(edges: &[FileCrease], faces: &[Vec<i64>]) -> bool {
+/// The sides that one face alone has.
+fn border(faces: &[Vec<i64>]) -> Vec<[i64; 2]> {
     let mut sides: HashMap<[i64; 2], usize> = HashMap::new();
     for face in faces {
         let next = face.iter().cycle().skip(1);
@@ -75,11 +76,18 @@ fn has_crease_at_border(edges: &[FileCrease], faces: &[Vec<i64>]) -> bool {
             *sides.entry([*a.min(b), *a.max(b)]).or_default() += 1;
         }
     }
-    let mut creases = edges.iter().filter(|e| !is_outline(e));
-    creases.any(|e| {
-        let [a, b] = e.ends.map(i64::from);
-        sides.get(&[a.min(b), a.max(b)]) == Some(&1)
-    })
+    let single = sides.into_iter().filter(|(_, count)| *count == 1);
+    single.map(|(ends, _)| ends).collect()
+}
+
+/// Whether a crease has a face on one of its sides alone.
+fn has_crease_at_border(edges: &[FileCrease], border: &[[i64; 2]]) -> bool {
+    let creases = edges.iter().filter(|e| !is_outline(e));
+    let creases: HashSet<[i64; 2]> = creases
+        .map(|e| e.ends.map(i64::from))
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    border.iter().any(|ends| creases.contains(ends))
 }
 
 /// Whether points are on a line within a distance.
@@ -96,10 +104,10 @@ fn is_straight(points: &[Point], near: f64) -> bool {
     points.iter().all(|p| distance(*p, [end, other]) <= near)
 }
 
-/// Whether a point is in a polygon: whether a ray from it to the right crosses an odd number of sides.
-fn is_within(p: Point, polygon: &[i64], points: &[Point]) -> bool {
-    let corner = |k: usize| points[polygon[k % polygon.len()] as usize];
-    let sides = (0..polygon.len()).map(|k| [corner(k), corner(k + 1)]);
+/// Whether a point is in one of some faces, whose border has these sides: whether a ray from it to the right crosses an
+/// odd number of them.
+fn is_within(p: Point, border: &[[i64; 2]], points: &[Point]) -> bool {
+    let sides = border.iter().map(|ends| ends.map(|v| points[v as usize]));
     let crossed = sides.filter(|[a, b]| {
         let at = (p[1] - a[1]) / (b[1] - a[1]);
         (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + at * (b[0] - a[0])

@@ -1,9 +1,11 @@
 //! From lines that may cross, overlap and end anywhere to the edges of a planar graph.
 
-use super::faces::{MOST_EDGES, bounds};
+use super::faces::MOST_EDGES;
 use crate::format::DataError;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease};
 use crate::format::mesh_file::{Point, distance, twice_area};
+use isosheet_mesh::Advice;
+use isosheet_mesh::plane::{gaps, near_pairs};
 use isosheet_mesh::wording::{brief, counted};
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
@@ -104,7 +106,8 @@ impl Points {
 /// leaves out those that lead nowhere, and finds the faces.
 ///
 /// # Errors
-/// [`DataError`] for edges without length, and for a drawing with a part inside of a face of another part.
+/// [`DataError`] for edges without length, for lines that meet more often than a drawing of so many lines has it, and for
+/// a drawing with a part inside of a face of another part.
 pub(in crate::format) fn planar(
     given: Vec<Point>,
     edges: &[FileCrease],
@@ -134,7 +137,7 @@ pub(in crate::format) fn planar(
     for p in given {
         points.push(p);
     }
-    let on = points_on_edges(&mut points, edges, near);
+    let on = points_on_edges(&mut points, edges, near)?;
     let mut planar = Planar {
         divided: on.iter().filter(|points| !points.is_empty()).count(),
         points: points.into_points(),
@@ -157,23 +160,24 @@ pub(in crate::format) fn planar(
 }
 
 /// Of each edge the points between its ends that are on it: ends of other edges, and where others cross it.
-fn points_on_edges(points: &mut Points, edges: &[FileCrease], near: f64) -> Vec<Vec<u32>> {
-    let range = |points: &Points, e: usize, k: usize| {
-        bounds(edges[e].ends.iter().map(|&v| points.points[v as usize][k]))
-    };
-    let mut order: Vec<(usize, [f64; 2], [f64; 2])> = (0..edges.len())
-        .map(|e| (e, range(points, e, 0), range(points, e, 1)))
+fn points_on_edges(
+    points: &mut Points,
+    edges: &[FileCrease],
+    near: f64,
+) -> Result<Vec<Vec<u32>>, DataError> {
+    let lines: Vec<[[f64; 2]; 3]> = edges
+        .iter()
+        .map(|edge| {
+            let [a, b] = edge.ends.map(|v| points.points[v as usize]);
+            [a, b, a].map(|p| [p[0], p[1]])
+        })
         .collect();
-    order.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
     let mut on = vec![Vec::new(); edges.len()];
-    for (k, &(e, x, y)) in order.iter().enumerate() {
-        for &(f, _, v) in order[k + 1..].iter().take_while(|o| o.1[0] <= x[1] + near) {
-            if v[0] <= y[1] + near && y[0] <= v[1] + near {
-                meeting(points, [e, f], edges, near, &mut on);
-            }
-        }
-    }
-    on
+    near_pairs(&lines, near, |e, f| {
+        meeting(points, [e, f], edges, near, &mut on)
+    })
+    .map_err(|e| DataError::new(e.to_string(), e.advice().unwrap_or_default()))?;
+    Ok(on)
 }
 
 /// Notes where two edges meet between the ends of one of them.
@@ -226,14 +230,8 @@ impl Planar {
     /// # Errors
     /// [`DataError`] for a drawing whose outline is open, or that encloses no face.
     pub(in crate::format) fn closed(self, unit: FileUnit) -> Result<Self, DataError> {
-        let away = |p: &Point, q: &Point| (p[0] - q[0]).hypot(p[1] - q[1]);
-        let gaps = self.open.iter().enumerate().map(|(k, p)| {
-            let others = self.open.iter().enumerate().filter(|(j, _)| *j != k);
-            let width = others
-                .map(|(_, q)| away(p, q))
-                .fold(f64::INFINITY, f64::min);
-            (width, p)
-        });
+        let ends: Vec<[f64; 2]> = self.open.iter().map(|p| [p[0], p[1]]).collect();
+        let gaps = gaps(&ends).into_iter().zip(&ends);
         if let Some((width, p)) = gaps.min_by(|a, b| a.0.total_cmp(&b.0)) {
             let [x, y] = [0, 1].map(|k| brief(unit.along[k] * p[k]));
             let name = unit.name;

@@ -485,3 +485,82 @@ fn vertices_at_one_place_of_patterns_without_faces_are_one() {
     let folded = square(0.0, r#", "frame_classes": ["foldedForm"]"#);
     assert!(read(MeshFormat::Fold, &folded).is_err());
 }
+
+/// A grid of 400 lines each way crosses more often than what is allowed of so many lines, and that is told at once.
+#[test]
+fn lines_that_meet_too_often_are_refused() {
+    let grid = |count: u32| {
+        let lines = (1..count).map(|k| format!("2 0 {k} {count} {k}\n3 {k} 0 {k} {count}\n"));
+        let frame = format!(
+            "1 0 0 {count} 0\n1 {count} 0 {count} {count}\n1 {count} {count} 0 {count}\n1 0 {count} 0 0\n"
+        );
+        frame + &lines.collect::<String>()
+    };
+    let message = refusal(MeshFormat::Cp, &grid(400));
+    let limit = (1 << 17) + 8 * (4 + 2 * 399);
+    let expected = format!("the lines of the drawing meet more than {limit} times");
+    assert!(message.contains(&expected), "{message}");
+    let mesh = read(MeshFormat::Cp, &grid(40)).unwrap();
+    assert_eq!(mesh.faces.len(), 2 * 40 * 40);
+}
+
+/// What small files made of XML may become is bounded by the length of the file: its elements that are used, the curves of
+/// them and the styles that are compared.
+#[test]
+fn svg_drawings_are_in_proportion_to_their_file() {
+    let file = |inside: &str| {
+        format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'>{inside}</svg>")
+    };
+    let entity = "M0 0L1 1 ".repeat(300);
+    let entities = format!(
+        "<!DOCTYPE svg [<!ENTITY a '{entity}'>]>{}",
+        file(&format!("<path stroke='black' d='{}'/>", "&a;".repeat(800)))
+    );
+    let path = format!(
+        "<path id='p' stroke='black' d='M0 0{}'/>",
+        "h1".repeat(10_000)
+    );
+    let used = file(&(path + &"<use href='#p'/>".repeat(1000)));
+    // Nine groups, each of which uses the one before ten times.
+    let group = |k: u32| {
+        let uses = format!("<use href='#g{}'/>", k - 1).repeat(10);
+        format!("<g id='g{k}'>{uses}</g>")
+    };
+    let groups: String = (1..10).map(group).collect();
+    let groups = file(&format!("<path id='g0'/>{groups}"));
+    for (text, says) in [
+        (
+            entities,
+            "its entities would become a text of 2160000 bytes",
+        ),
+        (used, "and a file of this length may have no more"),
+        (groups, "the elements of the file would take more than"),
+    ] {
+        let message = refusal(MeshFormat::Svg, &text);
+        assert!(message.contains(says), "{message}");
+    }
+}
+
+/// Each line has a name of its own, as drawing programs give it.
+#[test]
+fn lines_of_many_names_are_read() {
+    let line = |k: u32| format!("<path id='p{k}' stroke='red' d='M0 {k}H9000'/>");
+    let lines: String = (1..9000).map(line).collect();
+    let svg = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9000 9000'>\
+         <rect width='9000' height='9000' stroke='black'/>{lines}</svg>"
+    );
+    let options = MeshOptions {
+        weld: Some(0.1 * PIXEL),
+        ..MeshOptions::default()
+    };
+    let mesh = parse_mesh(
+        svg.as_bytes(),
+        MeshFormat::Svg,
+        Path::new("x.svg"),
+        &options,
+    )
+    .unwrap();
+    assert_eq!(mesh.faces.len(), 2 * 9000);
+    assert_eq!(mesh.drawn.pens().len(), 9000);
+}

@@ -273,7 +273,10 @@ fn arrays_are_in_proportion_to_their_file() {
     let file = |count: usize, length: usize| {
         let block = block(length);
         let numbers = [vec![count, length, 0], vec![block.len(); count]].concat();
-        let head: Vec<u8> = numbers.iter().flat_map(|n| (*n as u64).to_le_bytes()).collect();
+        let head: Vec<u8> = numbers
+            .iter()
+            .flat_map(|n| (*n as u64).to_le_bytes())
+            .collect();
         let points = STANDARD.encode(head) + &STANDARD.encode(block.repeat(count));
         format!(
             "<VTKFile type=\"PolyData\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\"><PolyData>\
@@ -286,7 +289,10 @@ fn arrays_are_in_proportion_to_their_file() {
     let bomb = file(20, 1 << 20);
     let most = (32 << 20) + 50 * bomb.len();
     assert!(2 * 20 << 20 > most);
-    let expected = format!("the array \"p\" of the file would take more than {} MiB", most >> 20);
+    let expected = format!(
+        "the array \"p\" of the file would take more than {} MiB",
+        most >> 20
+    );
     assert!(said(&bomb).contains(&expected), "{}", said(&bomb));
     assert!(said(&file(8, 1 << 20)).contains("and its array has 1048576"));
 }
