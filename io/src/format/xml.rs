@@ -47,7 +47,7 @@ const MOST_PREFIXES: usize = 100;
 const DEEPEST: usize = 10;
 
 /// Bytes that entities may become in any file.
-const LEAST: u64 = 1 << 20;
+const LEAST: u64 = 1 << 17;
 
 /// Bytes that entities may become for each byte of a file: the name of a style of Illustrator with its path takes 38
 /// bytes, and the style 106.
@@ -179,19 +179,19 @@ mod tests {
             let (value, named) = ("x".repeat(length), "&a;".repeat(count));
             format!(r#"<!DOCTYPE s [<!ENTITY a "{value}">]><s d="{named}"/>"#)
         };
-        let most = |text: &str| (1 << 20) + 4 * text.len();
-        // 300 times 4 000 bytes are more than 1 MiB and four times the file.
-        let text = file(4000, 300);
-        assert!(1_200_000 > most(&text));
+        let most = |text: &str| (1 << 17) + 4 * text.len();
+        // 50 times 4 000 bytes are more than 128 KiB and four times the file.
+        let text = file(4000, 50);
+        assert!(200_000 > most(&text));
         let expected = format!(
-            "its entities would become a text of 1200000 bytes, more than the {} for a file of this length",
+            "its entities would become a text of 200000 bytes, more than the {} for a file of this length",
             most(&text)
         );
         assert_eq!(refusal(&text), expected);
-        let document = file(4000, 200);
+        let document = file(4000, 30);
         let document = parse(&document, Entities::Expanded).unwrap();
         let value = document.root_element().attribute("d").unwrap();
-        assert_eq!(value.len(), 800_000);
+        assert_eq!(value.len(), 120_000);
         // Entities in entities: 10 to the power of 9 bytes.
         let mut text = "<!DOCTYPE s [<!ENTITY a0 'x'>".to_owned();
         for k in 1..10 {

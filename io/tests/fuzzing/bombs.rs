@@ -25,7 +25,7 @@ pub(crate) fn of(target: &str, rng: &mut impl Rng) -> Vec<Vec<u8>> {
             rules(size(10), size(10)),
             declarations(size(11), size(11)),
             names(size(13), size(10)),
-            circles(size(9)),
+            circles(size(5)),
             svg(&lines(size(8), "stroke='black'")),
             svg(&lines(size(8), "stroke='red'")),
         ],

@@ -151,6 +151,12 @@ impl PlaneGraph {
                     return;
                 }
             } else {
+                let is_line = |c: &Chord| matches!(curves[c.curve], PlaneCurve::Line(_));
+                let [from, to] = b.ends;
+                if [[from, to], [to, from]].contains(&a.ends) && is_line(a) && is_line(b) {
+                    // A line that is drawn twice is cut at its ends alone.
+                    return;
+                }
                 for (c, d) in [(a, b), (b, a)] {
                     let ends = [0, 1].into_iter().filter(|&k| c.range[k] == [0.0, 1.0][k]);
                     for end in ends.map(|k| c.ends[k]) {

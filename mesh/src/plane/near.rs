@@ -14,7 +14,7 @@ const LEAST: usize = 1 << 17;
 const TIMES: usize = 8;
 
 /// A leaf of the tree has at most so many shapes.
-const LEAF: usize = 4;
+const LEAF: usize = 16;
 
 /// Some shapes, and which of them are near a place.
 struct Nearby {
@@ -310,7 +310,7 @@ mod tests {
                 let near = |n: &&Node| !n.bounds.is_apart(&tree.shapes[shape], 1.5);
                 tree.nodes.iter().filter(near).count()
             };
-            // Two ways from the root to the leaves, of ten levels each.
+            // Two ways from the root to the leaves, of eight levels each.
             let most = (0..3000).map(visited).max().unwrap();
             assert!(most < 50, "{most} nodes at {turn}");
         }

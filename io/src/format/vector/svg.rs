@@ -97,6 +97,7 @@ pub(in crate::format) fn parse(
         style,
         layers: Vec::new(),
         depth: 0,
+        memory_of_curve: MEMORY_OF_CURVE,
     };
     for child in root.children() {
         reader.element(child, &state)?;
@@ -142,6 +143,8 @@ struct State {
     /// The outermost first.
     layers: Vec<String>,
     depth: usize,
+    /// The bytes for a curve.
+    memory_of_curve: usize,
 }
 
 impl Reader<'_, '_> {
@@ -197,7 +200,7 @@ impl Reader<'_, '_> {
                 Ok(())
             }
             _ => {
-                let left = self.memory.left() / MEMORY_OF_CURVE;
+                let left = self.memory.left() / state.memory_of_curve;
                 let paths = shapes::paths(node, state.viewport, left);
                 match paths.map_err(|e| wrong(node, &e))? {
                     Some(paths) => self.shape(node, paths, &state),
@@ -253,6 +256,7 @@ impl Reader<'_, '_> {
         };
         let [x, y] = [get("x", Along::X)?, get("y", Along::Y)?].map(|c| c.unwrap_or(0.0));
         state.matrix = compose(state.matrix, translation(x, y));
+        state.memory_of_curve = MEMORY_OF_USED_CURVE;
         match target.tag_name().name() {
             "symbol" | "svg" => {
                 state.style = state.style.of(target, &self.rules)?;
@@ -299,7 +303,7 @@ impl Reader<'_, '_> {
         }
         let curves: usize = paths.iter().map(Vec::len).sum();
         let of_pen = size_of::<Pen>() + pen.layers.iter().map(memory_of_name).sum::<usize>();
-        let cost = curves * MEMORY_OF_CURVE + paths.len() * of_pen;
+        let cost = curves * state.memory_of_curve + paths.len() * of_pen;
         self.memory.spend(cost, "the lines")?;
         for path in paths {
             let curves = path.iter().map(|c| c.transformed(state.matrix));
@@ -311,6 +315,10 @@ impl Reader<'_, '_> {
 
 /// The bytes for a curve, as it is read and as it is drawn.
 const MEMORY_OF_CURVE: usize = size_of::<DrawnLine>() + size_of::<PlaneCurve>();
+
+/// The bytes for a curve of an element that is used, for which the file has no text: as many as it takes until it is a
+/// part of a mesh, with its chords, their boxes and its pieces.
+const MEMORY_OF_USED_CURVE: usize = 4 * MEMORY_OF_CURVE;
 
 fn memory_of_name(name: &String) -> usize {
     size_of::<String>() + name.len()
