@@ -157,7 +157,7 @@ impl Reader<'_, '_> {
             return Err(DataError::new(message, EXPORT));
         }
         // Elements that use each other can ask for any number of them.
-        let names_around: usize = around.layers.iter().map(memory_of_name).sum();
+        let names_around: usize = around.layers.iter().map(|name| memory_of_name(name)).sum();
         let attributes: usize = node.attributes().map(|a| a.value().len()).sum();
         let cost = size_of::<State>() + names_around + attributes;
         self.steps.spend(cost, "the elements")?;
@@ -302,7 +302,12 @@ impl Reader<'_, '_> {
             self.drawing.leave_out("clipping of a shape");
         }
         let curves: usize = paths.iter().map(Vec::len).sum();
-        let of_pen = size_of::<Pen>() + pen.layers.iter().map(memory_of_name).sum::<usize>();
+        let of_pen = size_of::<Pen>()
+            + pen
+                .layers
+                .iter()
+                .map(|name| memory_of_name(name))
+                .sum::<usize>();
         let cost = curves * state.memory_of_curve + paths.len() * of_pen;
         self.memory.spend(cost, "the lines")?;
         for path in paths {
@@ -320,7 +325,7 @@ const MEMORY_OF_CURVE: usize = size_of::<DrawnLine>() + size_of::<PlaneCurve>();
 /// part of a mesh, with its chords, their boxes and its pieces.
 const MEMORY_OF_USED_CURVE: usize = 4 * MEMORY_OF_CURVE;
 
-fn memory_of_name(name: &String) -> usize {
+fn memory_of_name(name: &str) -> usize {
     size_of::<String>() + name.len()
 }
 

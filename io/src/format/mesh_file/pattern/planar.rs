@@ -174,7 +174,7 @@ fn points_on_edges(
         .collect();
     let mut on = vec![Vec::new(); edges.len()];
     near_pairs(&lines, near, |e, f| {
-        meeting(points, [e, f], edges, near, &mut on)
+        meeting(points, [e, f], edges, near, &mut on);
     })
     .map_err(|e| DataError::new(e.to_string(), e.advice().unwrap_or_default()))?;
     Ok(on)

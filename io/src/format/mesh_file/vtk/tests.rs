@@ -288,7 +288,7 @@ fn arrays_are_in_proportion_to_their_file() {
     let said = |text: &str| read(MeshFormat::Vtp, text.as_bytes()).unwrap_err();
     let bomb = file(20, 1 << 20);
     let most = (32 << 20) + 50 * bomb.len();
-    assert!(2 * 20 << 20 > most);
+    assert!(2 * (20 << 20) > most);
     let expected = format!(
         "the array \"p\" of the file would take more than {} MiB",
         most >> 20

@@ -213,7 +213,7 @@ mod tests {
         let depth = 60;
         let file = format!("{}{}", "<g>".repeat(depth), "</g>".repeat(depth));
         let document = Document::parse(&file).unwrap();
-        let innermost = document.descendants().last().unwrap();
+        let innermost = document.descendants().next_back().unwrap();
         let rules = Rules::parse(&texts, Allowance::of(file.len()));
         let error = rules.of(innermost).unwrap_err().to_string();
         let said =
