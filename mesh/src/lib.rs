@@ -7,6 +7,7 @@
 //! * [`Dof`]: degrees of freedom by counting, with the two lemmas.
 //! * [`EdgeAngles`], [`check_compatibility`], [`fold_angle`]: angles of any state; [`CreasePattern`]: where
 //!   the sheet folds straight.
+//! * [`FlatFoldingLaw`]: whether the creases around a vertex fold flat together.
 //! * [`Ruling`], [`angle_deficits`], [`GaussCurvature`]: straight lines of a bent sheet, and how far it is from
 //!   developable.
 //! * [`angle_from_lengths`], [`area_from_lengths`]: triangles from the lengths of their sides.
@@ -30,6 +31,7 @@ mod cut;
 mod dof;
 mod edit;
 mod error;
+mod flat_vertex;
 pub mod generate;
 mod ids;
 mod lengths;
@@ -58,6 +60,7 @@ pub use creases::{CreaseLine, CreasePattern, FoldingDirection, LineEnds};
 pub use cut::FlatCut;
 pub use dof::Dof;
 pub use error::{MeshError, TopologyError};
+pub use flat_vertex::{FlatCrease, FlatFoldingLaw};
 pub use ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
 pub use lengths::LengthConstraints;
 pub use mass::{MassKind, MassMatrix};

@@ -1,12 +1,10 @@
 //! What every crease pattern that can be folded flat fulfils, for tests of generators.
 
-use crate::VertexId;
 use crate::generate::{FoldAssignment, FoldPattern};
-use std::f64::consts::TAU;
+use crate::{FlatCrease, FlatFoldingLaw, VertexId};
 
-/// Checks that a pattern is a flat disk and that every inner vertex of which `folds_flat` is true fulfils the
-/// theorems of Maekawa (mountains and valleys differ by two) and of Kawasaki (the sectors between creases,
-/// with alternating signs, add up to zero). Returns the number of these vertices.
+/// Checks that a pattern is a flat disk and that every inner vertex of which `folds_flat` is true breaks no
+/// [`FlatFoldingLaw`]. Returns the number of these vertices.
 pub(crate) fn check_flat_folding(p: &FoldPattern, folds_flat: impl Fn(VertexId) -> bool) -> usize {
     let t = p.sheet.topology();
     t.check_invariants();
@@ -23,19 +21,15 @@ pub(crate) fn check_flat_folding(p: &FoldPattern, folds_flat: impl Fn(VertexId) 
         let [x, y, _] = p.sheet.position(v);
         let edges = t.vertex_edges(v).iter();
         let creases = edges.filter(|e| p.assignment(**e).sign() != 0.0);
-        let (mut directions, mut sum) = (Vec::new(), 0.0);
-        for e in creases {
+        let creases = creases.map(|e| {
             let [a, b, _] = p.sheet.position(t.other_end(*e, v));
-            directions.push((b - y).atan2(a - x));
-            sum += p.assignment(*e).sign();
-        }
-        assert_eq!(f64::abs(sum), 2.0, "Maekawa at {v}");
-        directions.sort_by(f64::total_cmp);
-        directions.push(directions[0] + TAU);
-        let sectors = directions.windows(2).map(|d| d[1] - d[0]);
-        let signs = [1.0, -1.0].into_iter().cycle();
-        let alternating: f64 = sectors.zip(signs).map(|(sector, sign)| sign * sector).sum();
-        assert!(alternating.abs() < 1e-12, "Kawasaki at {v}: {alternating}");
+            FlatCrease {
+                direction: (b - y).atan2(a - x),
+                is_mountain: p.assignment(*e) == FoldAssignment::Mountain,
+            }
+        });
+        let creases: Vec<FlatCrease> = creases.collect();
+        assert_eq!(FlatFoldingLaw::broken(&creases, 1e-12), None, "{v}");
         count += 1;
     }
     count
