@@ -9,11 +9,13 @@ mod graph;
 mod mesh;
 mod near;
 mod net;
+mod outline;
 mod refine;
 mod vec2;
 
 pub use curve::{EllipticArc, PlaneCurve};
 pub use error::{Gap, PlaneError};
 pub use graph::{Join, Piece, PlaneGraph};
-pub use mesh::{PlaneMesh, PlaneOptions, Role};
+pub use mesh::{PlaneMesh, PlaneOptions};
 pub use near::{gaps, near_pairs};
+pub use outline::Role;

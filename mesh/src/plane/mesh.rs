@@ -1,24 +1,15 @@
 //! Triangle meshes whose edges follow a drawing.
 
-use super::error::{Gap, PlaneError};
+use super::error::PlaneError;
 use super::graph::PlaneGraph;
-use super::near;
 use super::net::{Net, Place, Segment};
+use super::outline::{Outline, Role};
 use super::refine::Refiner;
 use super::vec2::{Point, between, cross, distance, foot, sub};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use spade::{Point2, PositionInTriangulation, Triangulation};
 use std::collections::{BTreeSet, HashMap};
-
-/// What a line does to the sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// The sheet ends here, or is cut.
-    Cut,
-    /// The sheet has edges along it.
-    Crease,
-}
 
 /// How a mesh is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +47,8 @@ pub struct PlaneMesh {
     pub edges: Vec<([u32; 2], usize)>,
     /// The pieces that lie outside of the sheet and were left out.
     pub outside: Vec<usize>,
+    /// The pieces of creases that close the outline where cuts leave it open.
+    pub closing: Vec<usize>,
 }
 
 /// As many triangles are made at most: some minutes of work, and more than any simulation bears.
@@ -72,7 +65,8 @@ const CLEARANCE: f64 = 0.6;
 
 impl PlaneMesh {
     /// The mesh of the sheet that cuts bound: what is separated from the outside by one line, by three, ...,
-    /// so that outlines within outlines are holes.
+    /// so that outlines within outlines are holes. Where cuts leave the outline open and creases beside the outside
+    /// close it, these are cuts.
     ///
     /// Triangles have angles of 25 degrees and more where the lines allow it: where they meet at 60 degrees
     /// or more. The same arguments give the same mesh.
@@ -88,8 +82,14 @@ impl PlaneMesh {
         let spacing = options.spacing;
         let length: f64 = graph.pieces.iter().map(|p| p.length()).sum();
         check_faces(length / spacing)?;
+        let Outline {
+            roles,
+            keep,
+            closing,
+            area,
+        } = Outline::new(graph, roles)?;
+        check_faces(DENSITY * area / spacing / spacing)?;
         let is_cut = |s: &Segment| roles[s.piece] == Role::Cut;
-        let keep = sheet(graph, roles, spacing)?;
         let mut net = Net::new(graph, &keep, spacing)?;
         let inside: Vec<bool> = net.depths(is_cut).iter().map(|d| d % 2 == 1).collect();
         net.mark_sides(&inside);
@@ -101,11 +101,15 @@ impl PlaneMesh {
         Refiner::new(&mut net, graph, spacing, most).refine(&inside)?;
         let inside = net.depths(is_cut).iter().map(|d| d % 2 == 1).collect();
         let outside = (0..keep.len()).filter(|&k| !keep[k]).collect();
-        Ok(Self::of(&net, inside, outside))
+        Ok(Self {
+            outside,
+            closing,
+            ..Self::of(&net, inside)
+        })
     }
 
     /// The part of a triangulation that belongs to the sheet.
-    fn of(net: &Net, inside: Vec<bool>, outside: Vec<usize>) -> Self {
+    fn of(net: &Net, inside: Vec<bool>) -> Self {
         let faces = net.triangles.inner_faces();
         let faces: Vec<[u32; 3]> = faces
             .filter(|f| inside[f.fix().index()])
@@ -121,7 +125,8 @@ impl PlaneMesh {
                 .filter(|s| s.inside.contains(&true))
                 .map(|s| (s.ends.map(|v| number[&v]), s.piece))
                 .collect(),
-            outside,
+            outside: Vec::new(),
+            closing: Vec::new(),
         }
     }
 }
@@ -131,77 +136,6 @@ fn check_faces(faces: f64) -> Result<(), PlaneError> {
     match faces <= limit as f64 {
         true => Ok(()),
         false => Err(PlaneError::TooManyFaces { faces, limit }),
-    }
-}
-
-/// Which pieces bound the sheet or lie on it.
-fn sheet(graph: &PlaneGraph, roles: &[Role], spacing: f64) -> Result<Vec<bool>, PlaneError> {
-    let mut net = Net::new(graph, &vec![true; roles.len()], f64::INFINITY)?;
-    let depths = net.depths(|s| roles[s.piece] == Role::Cut);
-    let inside: Vec<bool> = depths.iter().map(|d| d % 2 == 1).collect();
-    net.mark_sides(&inside);
-    let mut keep = vec![false; roles.len()];
-    let mut stray = vec![false; roles.len()];
-    for segment in net.segments.values() {
-        let [left, right] = net.faces_at(segment).map(|f| depths[f]);
-        keep[segment.piece] |= left % 2 == 1 || right % 2 == 1;
-        stray[segment.piece] |= roles[segment.piece] == Role::Cut && left == 0 && right == 0;
-    }
-    let gaps = open_ends(graph, roles, &stray);
-    if !gaps.is_empty() {
-        return Err(PlaneError::Open { gaps });
-    }
-    let twice_area = |f: [Point; 3]| cross(sub(f[1], f[0]), sub(f[2], f[0]));
-    let faces = net
-        .triangles
-        .inner_faces()
-        .filter(|f| inside[f.fix().index()]);
-    let corners = faces.map(|f| f.vertices().map(|v| net.point(v.index() as u32)));
-    let area: f64 = corners.map(|f| 0.5 * twice_area(f)).sum();
-    if area <= 0.0 {
-        return Err(PlaneError::NoOutline);
-    }
-    check_faces(DENSITY * area / spacing / spacing)?;
-    Ok(keep)
-}
-
-/// The ends of cut lines outside of the sheet where no other cut line goes on.
-fn open_ends(graph: &PlaneGraph, roles: &[Role], stray: &[bool]) -> Vec<Gap> {
-    let mut meeting = vec![0; graph.nodes.len()];
-    for (piece, role) in graph.pieces.iter().zip(roles) {
-        if *role == Role::Cut {
-            for node in piece.nodes {
-                meeting[node] += 1;
-            }
-        }
-    }
-    let pieces = graph.pieces.iter().zip(stray).filter(|(_, stray)| **stray);
-    let nodes = pieces
-        .flat_map(|(p, _)| p.nodes)
-        .filter(|n| meeting[*n] == 1);
-    let ends: Vec<Point> = nodes.map(|n| graph.nodes[n]).collect();
-    let widths = near::gaps(&ends).into_iter();
-    let gaps = ends.iter().zip(widths);
-    let mut gaps: Vec<Gap> = gaps.map(|(at, width)| Gap { at: *at, width }).collect();
-    gaps.sort_by(|a, b| a.width.total_cmp(&b.width));
-    gaps
-}
-
-impl Net {
-    /// The faces on the left and on the right of a segment, by their numbers.
-    fn faces_at(&self, segment: &Segment) -> [usize; 2] {
-        let outer = self.triangles.outer_face().fix().index();
-        let [a, b] = segment.ends;
-        [[a, b], [b, a]].map(|ends| self.edge(ends).map_or(outer, |e| e.face().fix().index()))
-    }
-
-    /// Tells segments on which of their sides the sheet is.
-    fn mark_sides(&mut self, inside: &[bool]) {
-        let sides = |segment: &Segment| self.faces_at(segment).map(|f| inside[f]);
-        let marked: Vec<[bool; 2]> = self.segments.values().map(sides).collect();
-        for (segment, inside) in self.segments.values_mut().zip(marked) {
-            segment.inside = inside;
-        }
     }
 }
 

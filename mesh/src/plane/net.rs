@@ -172,6 +172,22 @@ impl Net {
         }
         depths
     }
+
+    /// The faces on the left and on the right of a segment, by their numbers.
+    pub(super) fn faces_at(&self, segment: &Segment) -> [usize; 2] {
+        let outer = self.triangles.outer_face().fix().index();
+        let [a, b] = segment.ends;
+        [[a, b], [b, a]].map(|ends| self.edge(ends).map_or(outer, |e| e.face().fix().index()))
+    }
+
+    /// Tells segments on which of their sides the sheet is.
+    pub(super) fn mark_sides(&mut self, inside: &[bool]) {
+        let sides = |segment: &Segment| self.faces_at(segment).map(|f| inside[f]);
+        let marked: Vec<[bool; 2]> = self.segments.values().map(sides).collect();
+        for (segment, inside) in self.segments.values_mut().zip(marked) {
+            segment.inside = inside;
+        }
+    }
 }
 
 pub(super) fn handle(vertex: u32) -> FixedVertexHandle {
