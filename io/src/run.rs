@@ -37,6 +37,7 @@ mod commit;
 mod constraints;
 mod control;
 mod elastic;
+mod ending;
 mod energy;
 mod error;
 mod estimate;
@@ -100,7 +101,7 @@ pub use extension_error::ExtensionError;
 pub use film::{Film, FilmOptions, Marks};
 #[cfg(feature = "picture")]
 pub use film_encoder::FilmError;
-pub use flat_vertex::{FlatFoldingLaw, UnfoldableVertex};
+pub use flat_vertex::UnfoldableVertex;
 pub use fold_order::{FoldOrder, GroupFold};
 pub use fold_verdict::{FoldVerdict, FoldedCrease};
 pub use folder::{SceneHash, holds_other_files, remove_unfinished, run_of_file};

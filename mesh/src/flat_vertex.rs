@@ -8,7 +8,7 @@ use std::fmt;
 pub struct FlatCrease {
     /// Its direction from the vertex, radians from the x axis.
     pub direction: f64,
-    /// Whether it is a mountain, and not a valley.
+    /// Whether it is a mountain; otherwise it is a valley.
     pub is_mountain: bool,
 }
 
@@ -27,8 +27,8 @@ pub enum FlatFoldingLaw {
         /// The two sums, degrees.
         sums: [f64; 2],
     },
-    /// The order of the layers: an angle between larger ones lies between a mountain and a valley, and of equal angles one
-    /// does (Hull 1994; Bern and Hayes 1996).
+    /// The order of the layers: an angle between larger ones lies between a mountain and a valley, and of
+    /// equal angles one does (Hull 1994; Bern and Hayes 1996).
     Layers {
         /// The angle, degrees.
         angle: f64,
@@ -50,8 +50,9 @@ struct Sector {
 }
 
 impl FlatFoldingLaw {
-    /// The condition that the creases around a vertex break first; `None` if they fold flat. Sums of angles that differ by
-    /// no more than `tolerance` (radians) from half a turn are half a turn, and angles that differ by no more are equal.
+    /// The condition that the creases around a vertex break first; `None` if they fold flat. Sums of angles
+    /// that differ by no more than `tolerance` (radians) from half a turn are half a turn, and angles that
+    /// differ by no more are equal.
     ///
     /// The time grows with the square of the number of creases.
     pub fn broken(creases: &[FlatCrease], tolerance: f64) -> Option<Self> {
@@ -85,9 +86,9 @@ fn sectors(creases: &[FlatCrease]) -> Vec<Sector> {
     between.collect()
 }
 
-/// Folds the smallest sectors away, one after the other, each with its mountain and its valley, until two creases are
-/// left, or the smallest sectors lie between creases of one kind. Such a crimp changes neither whether the vertex folds
-/// flat nor the difference of mountains and valleys, which is two.
+/// Folds the smallest sectors away, one after the other, each with its mountain and its valley, until two
+/// creases are left, or the smallest sectors lie between creases of one kind. Such a crimp changes neither
+/// whether the vertex folds flat nor the difference of mountains and valleys, which is two.
 fn layers(mut sectors: Vec<Sector>, tolerance: f64) -> Option<FlatFoldingLaw> {
     let mut crimps = 0;
     while sectors.len() > 2 {
@@ -199,9 +200,9 @@ mod tests {
         FlatFoldingLaw::broken(&creases(sectors, mountains), ROUND_OFF).is_none()
     }
 
-    /// All mountains and valleys with which the sectors of a vertex fold flat, by trying each order of their layers: the
-    /// sectors are intervals of a line one above the other, no layer passes through a crease, and no two creases at one
-    /// place on one side pass through each other.
+    /// All mountains and valleys with which the sectors of a vertex fold flat, by trying each order of their
+    /// layers: the sectors are intervals of a line one above the other, no layer passes through a crease, and
+    /// no two creases at one place on one side pass through each other.
     fn by_layers(sectors: &[u32]) -> BTreeSet<u32> {
         let n = sectors.len();
         let mut places = vec![0_i64];
@@ -295,7 +296,8 @@ mod tests {
         }
     }
 
-    /// Hull's counts: `2 C(2n, n - 1)` for `2n` equal angles, and `2^n` where each smallest angle is the only one.
+    /// Hull's counts: `2 C(2n, n - 1)` for `2n` equal angles, and `2^n` where each smallest angle is the only
+    /// one.
     #[test]
     fn as_many_assignments_fold_as_hull_counts() {
         assert_eq!(same_as_by_layers(&[180, 180]), 2);
@@ -305,7 +307,8 @@ mod tests {
         // The smallest angles of each stage: 40, then 80 with 100 beside it.
         assert_eq!(same_as_by_layers(&[40, 80, 140, 100]), 4);
         assert_eq!(same_as_by_layers(&[10, 50, 60, 35, 110, 95]), 8);
-        // Two equal angles between larger ones have C(3, 1) ways for three creases, for either kind of the one that stays.
+        // Two equal angles between larger ones have C(3, 1) ways for three creases, for either kind of the
+        // one that stays.
         assert_eq!(same_as_by_layers(&[40, 40, 140, 140]), 6);
     }
 

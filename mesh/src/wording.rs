@@ -38,6 +38,19 @@ pub fn place(point: &[f64; 3]) -> impl fmt::Display {
     format!("({x}, {y}, {z}) m")
 }
 
+/// Shows a name in quotes, of a long one its beginning and how long it is.
+pub fn quoted(name: &str) -> String {
+    /// As much as a line of text takes.
+    const SHOWN: usize = 80;
+    match name.char_indices().nth(SHOWN) {
+        None => format!("{name:?}"),
+        Some((end, _)) => {
+            let (shown, all) = (&name[..end], name.chars().count());
+            format!("{shown:?}... ({all} characters)")
+        }
+    }
+}
+
 /// A number of things: `1 step`, `2 steps`.
 pub fn counted(count: usize, one: &str, more: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { more })
@@ -61,6 +74,15 @@ pub fn listed(vertices: &[VertexId]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_names_are_shown_by_their_beginning() {
+        assert_eq!(quoted("Flügel"), "\"Flügel\"");
+        assert_eq!(quoted("a\u{2028}b"), "\"a\\u{2028}b\"");
+        let expected = format!("\"{}\"... (100000 characters)", "ü".repeat(80));
+        assert_eq!(quoted(&"ü".repeat(100_000)), expected);
+        assert_eq!(quoted(&"ü".repeat(80)), format!("{:?}", "ü".repeat(80)));
+    }
 
     #[test]
     fn numbers_are_short_and_keep_three_digits() {

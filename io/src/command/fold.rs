@@ -22,11 +22,15 @@ const NOTES: &str = "\
 The pattern is a FOLD file, an SVG drawing by the colours of Origami Simulator (black the outline, red mountains, blue
 valleys, green cuts, yellow what stays flat, magenta what folds freely; opacity is the fold angle as a part of 180
 degrees), a CP file of ORIPA or Oriedita, or an OPX file of ORIPA. Where it gives no angles, mountains and valleys are
-folded by 180 degrees. The sheet is of office paper and 0.2 m long, where nothing else is said.
+folded by 180 degrees. The sheet is of office paper, where nothing else is said, and as large as the file says; of a file
+without a unit of length it is 0.2 m long.
 
 Rigid panels are tried first. Where they do not close, the panels are an elastic sheet, then one that is soft in its
-plane and stretches on the way, and at last an elastic one whose triangles are divided. The last line says which it was, which panels
-bend and stretch, and which creases stay open.";
+plane and stretches on the way, and at last an elastic one whose triangles are divided. The last line says which creases
+stay open, which panels bend and stretch, and what stands against the folding; notes before it say more.";
+
+/// As many sentences has the last line at most; notes before it have the others.
+const SENTENCES: usize = 3;
 
 /// Fold a crease pattern, without a scene file
 #[derive(Debug, Args)]
@@ -61,9 +65,17 @@ impl Fold {
         let chosen = pattern.chosen(scene)?;
         let verdict = |recording: &Recording| {
             let verdict = FoldVerdict::of(recording)?;
-            let words = verdict.in_words(chosen.rigid.as_ref());
-            let more = [chosen.others(), chosen.obstruction()];
-            Some(words + &more.into_iter().flatten().collect::<String>())
+            let mut words = verdict.in_words(chosen.rigid.as_ref());
+            // What no paper does needs no contact to stand against it.
+            let obstruction = chosen.obstruction();
+            words.extend(obstruction.filter(|_| verdict.unfoldable.is_empty()));
+            words.extend(chosen.others());
+            let more = words.split_off(SENTENCES.min(words.len()));
+            let notes: String = more
+                .iter()
+                .map(|words| format!("note: {words}\n"))
+                .collect();
+            Some(format!("{notes}folded: {}", words.join(" ")))
         };
         let text = text_of(&chosen.scene)?;
         self.composing.run(&self.pattern, text, verdict)

@@ -6,6 +6,7 @@ use super::message::counted;
 use super::write::{is_same_file, to_stdout};
 use crate::format::drawing::{
     DrawingError, DrawingOptions, DrawingUnit, DrawnSheet, Length, LineClass, LineRules, Selector,
+    read_drawing,
 };
 use crate::mesh::plane::PlaneError;
 use crate::{ExportError, MeshFormat, write_mesh};
@@ -144,6 +145,20 @@ impl MeshArgs {
         }
     }
 
+    /// A tolerance that makes a sheet of a drawing with this fault.
+    fn helping_snap(&self, error: &DrawingError) -> Option<f64> {
+        let is_of_ends = match error {
+            DrawingError::Plane(error) => {
+                matches!(error, PlaneError::Open { .. } | PlaneError::Touching { .. })
+            }
+            DrawingError::Crossing(_) => true,
+            _ => false,
+        };
+        let options = self.options();
+        let drawing = is_of_ends.then(|| read_drawing(&self.drawing, &options))?;
+        DrawnSheet::helping_snap(&drawing.ok()?, &options)
+    }
+
     fn failed(&self, error: &DrawingError) -> Failure {
         let code = match error {
             DrawingError::Data(e) if e.value.is_some() => Code::CommandLine,
@@ -151,6 +166,12 @@ impl MeshArgs {
             _ => Code::Input,
         };
         let failure = Failure::of(code, error);
+        if let Some(snap) = self.helping_snap(error) {
+            return failure.remedy(format!(
+                "`--snap {}` joins what nearly meets, and makes a sheet of this drawing: look whether it is the right one",
+                Length { metres: snap }.to_string().replace(' ', "")
+            ));
+        }
         match error {
             DrawingError::Plane(PlaneError::Open { .. }) => failure.remedy(
                 "close the outline there, give `--snap` a length of at least the gap, or leave out lines that are no \

@@ -1,7 +1,7 @@
 //! Text for people: results on standard output, everything else on standard error.
 
 use super::failure::Done;
-use super::printable::printable;
+use super::printable::{printable, shortened};
 use super::write::to_stdout;
 use crate::Advice;
 pub(crate) use crate::mesh::wording::counted;
@@ -47,12 +47,14 @@ const ESCAPE: char = '\u{1b}';
 /// as behind `2>&1 | head`: the work goes on.
 pub(crate) fn print_message(text: Arguments<'_>) {
     let text = text.to_string();
+    let text = shortened(&text);
     let _ = writeln!(std::io::stderr(), "{}", printable(&text, &[]));
 }
 
 /// The same for a text with colours.
 pub(crate) fn print_coloured(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", printable(text, &[ESCAPE]));
+    let text = shortened(text);
+    let _ = writeln!(std::io::stderr(), "{}", printable(&text, &[ESCAPE]));
 }
 
 /// Writes warnings with what to do about them.

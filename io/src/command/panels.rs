@@ -19,7 +19,7 @@ pub(super) struct Pattern<'a> {
     pub(super) scene: PathBuf,
 }
 
-/// The material and the longest side (metres) of a sheet of which nothing is said.
+/// The material and the longest side (metres) of a sheet of which neither the file nor the command says them.
 const MATERIAL: &str = "office paper";
 const SIZE: f64 = 0.2;
 
@@ -59,18 +59,18 @@ pub(super) struct Chosen {
 }
 
 impl Chosen {
-    /// Which other panels end nearer to their angles, as the end of a sentence.
+    /// Which other panels end nearer to their angles, a sentence.
     pub(super) fn others(&self) -> Option<String> {
         let (panels, trial) = self.nearer?;
         Some(format!(
-            "; {} end nearer to their angles, {:.1} degrees rms, with strains of {:.0} %",
+            "With {} creases end nearer to their angles, {:.1} degrees rms, with strains of {:.0} %.",
             named(panels),
             trial.residual.rms,
             100.0 * trial.strain
         ))
     }
 
-    /// Why panels with contact do not close that do without, as the end of a sentence.
+    /// Why panels with contact do not close that do without, a sentence.
     pub(super) fn obstruction(&self) -> Option<String> {
         let FoldTrial {
             residual, passing, ..
@@ -80,8 +80,8 @@ impl Chosen {
             false => "creases fold in this order",
         };
         Some(format!(
-            "; panels are in each other's way as {order}: without contact they pass through each other \
-             from {:.0} % of the folding on, and creases end {:.1} degrees rms from their angles",
+            "Panels are in each other's way as {order}: without contact they pass through each other \
+             from {:.0} % of the folding on, and creases end {:.1} degrees rms from their angles.",
             100.0 * passing?,
             residual.rms
         ))
@@ -114,7 +114,15 @@ impl Pattern<'_> {
             let message = format!("{} has no extent", self.file.display());
             return Err(Failure::new(Code::Input, message).remedy("correct its coordinates"));
         }
-        let size = size.unwrap_or(SIZE);
+        let size = size.unwrap_or_else(|| {
+            if mesh.in_metres {
+                return side;
+            }
+            print_progress(format_args!(
+                "note: the file has no unit of length, and the longest side of the sheet is {SIZE} m (`--size` says another)"
+            ));
+            SIZE
+        });
         Ok(FoldScene {
             pattern: named_from(&self.scene, self.file)?,
             frame,

@@ -11,6 +11,7 @@ use super::summary::{Ending, Measured};
 use super::time_error::TimeError;
 use super::vibration::Vibrations;
 use crate::format::{FileError, Written, input, write_atomically};
+use crate::scene::FollowedFolds;
 use crc::{CRC_64_XZ, Crc};
 use isosheet_dynamics::Checkpoint;
 use serde::{Deserialize, Serialize};
@@ -66,6 +67,9 @@ pub(crate) struct RunProgress {
     pub(crate) sheet_strains: Vec<f64>,
     /// Largest displacement of a vertex so far, metres.
     pub(crate) displacement: f64,
+    /// The angles of creases that are folded to targets, as they were followed so far.
+    #[serde(default)]
+    pub(crate) folds: Option<FollowedFolds>,
     /// Extremes of the energies so far.
     pub(crate) energy: EnergySummary,
     /// Vibrations so far.

@@ -3,7 +3,7 @@
 use crate::scene::FoldTargets;
 use isosheet_dynamics::FLAT;
 use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{EdgeId, Sheet, VertexId, fold_angle};
+use isosheet_mesh::{EdgeId, FlatCrease, FlatFoldingLaw, Sheet, VertexId, fold_angle};
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -18,24 +18,7 @@ pub struct UnfoldableVertex {
     pub violates: FlatFoldingLaw,
 }
 
-/// A condition for the creases of a vertex inside a sheet, all of which fold by 180 degrees.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FlatFoldingLaw {
-    /// Maekawa's theorem: mountains and valleys differ by two in number.
-    Maekawa {
-        /// Number of mountains.
-        mountains: usize,
-        /// Number of valleys.
-        valleys: usize,
-    },
-    /// Kawasaki's theorem: the angles between creases, taken by turns, add up to 180 degrees twice.
-    Kawasaki {
-        /// The two sums, degrees.
-        sums: [f64; 2],
-    },
-}
-
-/// Sums of angles that differ by no more from 180 degrees are 180 degrees: creases that are so far from their
+/// Angles and sums of them that differ by no more, degrees, are equal: creases that are so far from their
 /// angles are closed.
 const CLOSED: f64 = 1.0;
 
@@ -63,12 +46,15 @@ impl UnfoldableVertex {
             if t.is_boundary_vertex(v) || !edges.iter().all(|e| is_flat(*e)) {
                 return None;
             }
-            let (mut angles, mut directions) = (Vec::new(), Vec::new());
+            let (mut angles, mut creases) = (Vec::new(), Vec::new());
             for &e in edges {
                 match target[e.index()] {
                     Some(angle) => {
                         angles.push(angle);
-                        directions.push(direction(sheet, v, e));
+                        creases.push(FlatCrease {
+                            direction: direction(sheet, v, e),
+                            is_mountain: angle < 0.0,
+                        });
                     }
                     None if stays_flat(e) => {}
                     None => return None,
@@ -78,7 +64,7 @@ impl UnfoldableVertex {
             if angles.is_empty() || !angles.iter().all(folds_whole) {
                 return None;
             }
-            broken(&angles, directions)
+            FlatFoldingLaw::broken(&creases, CLOSED.to_radians())
         };
         let vertices = (0..t.vertex_count()).map(VertexId::from_index);
         let found = vertices.filter_map(|v| {
@@ -101,22 +87,6 @@ fn direction(sheet: &Sheet, v: VertexId, e: EdgeId) -> f64 {
     (q[1] - p[1]).atan2(q[0] - p[0])
 }
 
-/// The theorem that creases break by their fold angles or by their directions, radians.
-fn broken(angles: &[f64], mut directions: Vec<f64>) -> Option<FlatFoldingLaw> {
-    let mountains = angles.iter().filter(|angle| **angle < 0.0).count();
-    let valleys = angles.len() - mountains;
-    if mountains.abs_diff(valleys) != 2 {
-        return Some(FlatFoldingLaw::Maekawa { mountains, valleys });
-    }
-    directions.sort_by(f64::total_cmp);
-    let mut sums = [0.0; 2];
-    for k in 0..directions.len() {
-        let next = directions[(k + 1) % directions.len()];
-        sums[k % 2] += (next - directions[k]).rem_euclid(2.0 * PI).to_degrees();
-    }
-    ((sums[0] - 180.0).abs() > CLOSED).then_some(FlatFoldingLaw::Kawasaki { sums })
-}
-
 /// The vertex, its place, and why.
 impl fmt::Display for UnfoldableVertex {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -126,21 +96,5 @@ impl fmt::Display for UnfoldableVertex {
             "vertex {} at ({x:.3}, {y:.3}) m does not fold flat: {}",
             self.vertex.0, self.violates
         )
-    }
-}
-
-impl fmt::Display for FlatFoldingLaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Maekawa { mountains, valleys } => write!(
-                f,
-                "it has {mountains} mountains and {valleys} valleys, whose numbers have to differ by 2 (Maekawa)"
-            ),
-            Self::Kawasaki { sums: [a, b] } => write!(
-                f,
-                "the angles between its creases add up to {a:.1} and {b:.1} degrees by turns, which have to be 180 \
-                 (Kawasaki)"
-            ),
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! Whether groups of creases fold in the order that is asked for.
 
 use crate::scene::{FoldTargets, Folding};
-use std::fmt;
 
 /// Creases that are further from their angles than this, degrees, are open.
 pub(super) const OPEN: f64 = 5.0;
@@ -57,12 +56,9 @@ impl FoldOrder {
             }
         }
     }
-}
 
-/// What is not as it was asked for, as the end of a sentence; nothing if all groups have reached their angles
-/// in turn.
-impl fmt::Display for FoldOrder {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    /// What is not as it was asked for, a sentence; `None` if all groups have reached their angles in turn.
+    pub(super) fn in_words(&self) -> Option<String> {
         let is_short = |off: &f64| *off > OPEN;
         let told = self.groups.iter().enumerate().filter_map(|(k, group)| {
             let GroupFold { name, at_end, .. } = group;
@@ -81,9 +77,6 @@ impl fmt::Display for FoldOrder {
             }
         });
         let told: Vec<String> = told.collect();
-        match told.is_empty() {
-            true => Ok(()),
-            false => write!(f, "; the order is not achieved: {}", told.join("; ")),
-        }
+        (!told.is_empty()).then(|| format!("The order is not achieved: {}.", told.join("; ")))
     }
 }

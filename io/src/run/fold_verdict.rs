@@ -4,7 +4,7 @@ use super::fold_order::OPEN;
 use super::passing::Passing;
 use super::{FoldOrder, Recording, TouchingFaces, UnfoldableVertex};
 use crate::scene::{FoldResidual, FoldTargets, FollowedFolds, Isometry};
-use isosheet_mesh::wording::counted;
+use isosheet_mesh::wording::{counted, quoted};
 use isosheet_mesh::{EdgeId, Topology, fold_angle};
 use std::fmt;
 
@@ -42,6 +42,9 @@ pub struct FoldedCrease {
     pub name: Option<String>,
     /// Where its middle is in the rest shape, metres.
     pub middle: [f64; 2],
+    /// Its fold angle, followed from the start on, degrees: beyond 180 its panels have turned through each
+    /// other.
+    pub angle: f64,
 }
 
 /// The name, if there is one, the vertices and the place.
@@ -49,7 +52,7 @@ impl fmt::Display for FoldedCrease {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ([a, b], [x, y]) = (self.ends, self.middle);
         if let Some(name) = &self.name {
-            write!(f, "in \"{name}\" ")?;
+            write!(f, "in {} ", quoted(name))?;
         }
         write!(f, "between the vertices {a} and {b} at ({x:.3}, {y:.3}) m")
     }
@@ -111,6 +114,7 @@ impl FoldVerdict {
                 ends: ends.map(|v| v.0),
                 name: targets.name(k).map(str::to_owned),
                 middle: [0, 1].map(|k| 0.5 * (p[k] + q[k])),
+                angle: folds.angle(k),
             }
         });
         let mut bends = vec![false; panel.len()];
@@ -139,8 +143,57 @@ impl FoldVerdict {
         })
     }
 
-    /// One sentence. `rigid` is how far rigid panels close, where that was tried.
-    pub fn in_words(&self, rigid: Option<&FoldResidual>) -> String {
+    /// Sentences, the most telling first: what the creases do, what the panels do, and what stands against the folding.
+    /// `rigid` is how far rigid panels close, where that was tried.
+    pub fn in_words(&self, rigid: Option<&FoldResidual>) -> Vec<String> {
+        let mut words = vec![self.creases_in_words(), self.panels_in_words(rigid)];
+        if let [first, others @ ..] = &self.unfoldable[..] {
+            let besides = match others.len() {
+                0 => String::new(),
+                more => format!("; and {} besides", counted(more, "vertex", "vertices")),
+            };
+            words.push(format!("The {first}{besides}."));
+        }
+        words.extend(self.order.in_words());
+        words.extend(self.passing.map(|part| {
+            let part = 100.0 * part;
+            format!("Panels pass through each other from {part:.0} % of the folding on.")
+        }));
+        words
+    }
+
+    fn creases_in_words(&self) -> String {
+        let end = 100.0 * self.strain[0];
+        let FoldResidual { rms, largest, .. } = self.residual;
+        let held = self.held_open.map(|touching| format!(", where {touching}"));
+        let held = held.unwrap_or_default();
+        let creases = match (self.open, &self.furthest) {
+            (0, _) | (_, None) => {
+                let only = match (self.unfoldable.is_empty(), self.passing) {
+                    _ if end > Self::STRETCHES => {
+                        ", but only with stretched panels, which is no shape of paper"
+                    }
+                    (false, Some(_)) => {
+                        ", but only as panels pass through each other, which no paper does"
+                    }
+                    _ => "",
+                };
+                format!("every crease closes{only}")
+            }
+            (open, Some(crease)) => format!(
+                "{} open by more than {} degrees, most by {largest:.0}{} {crease}{held}",
+                counted(open, "crease stays", "creases stay"),
+                Self::OPEN,
+                match crease.angle.abs() > 180.0 {
+                    true => " (its panels have turned through each other)",
+                    false => "",
+                }
+            ),
+        };
+        format!("{creases}, {rms:.1} degrees rms.")
+    }
+
+    fn panels_in_words(&self, rigid: Option<&FoldResidual>) -> String {
         let [panels, bent] = self.panels;
         let all = counted(panels, "panel", "panels");
         let panels = match (self.is_elastic, bent) {
@@ -149,7 +202,7 @@ impl FoldVerdict {
                 format!("{bent} of {all} bend at edges of the pattern that fold freely")
             }
             (true, 0) => format!(
-                "none of {all} bends by more than {} degrees at an edge",
+                "None of {all} bends by more than {} degrees at an edge",
                 Self::BENDS
             ),
             (true, bent) => format!("{bent} of {all} bend"),
@@ -162,52 +215,11 @@ impl FoldVerdict {
         let [end, largest] = self.strain.map(|s| 100.0 * s);
         let stretch = match largest > Self::STRETCHES {
             true => format!(
-                "; panels stretch by {largest:.0} % on the way, and by {end:.1} % at the end"
+                ", and they stretch by {largest:.0} % on the way and by {end:.1} % at the end"
             ),
             false => String::new(),
         };
-        let FoldResidual { rms, largest, .. } = self.residual;
-        let held = self.held_open.map(|touching| format!(", where {touching}"));
-        let held = held.unwrap_or_default();
-        let creases = match (self.open, &self.furthest) {
-            (0, _) | (_, None) if end > Self::STRETCHES => {
-                "every crease closes, but only with stretched panels, which is no shape of paper"
-                    .to_owned()
-            }
-            (0, _) | (_, None) => "every crease closes".to_owned(),
-            (open, Some(crease)) => format!(
-                "{} open by more than {} degrees, most by {largest:.0}{} {crease}{held}",
-                counted(open, "crease stays", "creases stay"),
-                Self::OPEN,
-                // Angles are followed from the flat sheet on.
-                if largest > 180.0 {
-                    " (its panels have turned through each other)"
-                } else {
-                    ""
-                }
-            ),
-        };
-        let unfoldable = match &self.unfoldable[..] {
-            [first, others @ ..] if self.open > 0 => match others.len() {
-                0 => format!("; {first}"),
-                more => format!(
-                    "; {first}; and {} besides",
-                    counted(more, "vertex", "vertices")
-                ),
-            },
-            _ => String::new(),
-        };
-        let passing = match self.passing {
-            Some(part) => format!(
-                "; panels pass through each other from {:.0} % of the folding on",
-                100.0 * part
-            ),
-            None => String::new(),
-        };
-        format!(
-            "folded: {creases}, {rms:.1} degrees rms; {panels}{rigid}{stretch}{unfoldable}{passing}{}",
-            self.order
-        )
+        format!("{panels}{rigid}{stretch}.")
     }
 }
 

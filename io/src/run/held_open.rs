@@ -2,6 +2,7 @@
 
 use isosheet_collide::distance::{edge_edge, point_triangle};
 use isosheet_collide::{BroadPhase, Candidates, ContactMesh};
+use isosheet_mesh::wording::brief;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, Topology, VertexId};
 use nalgebra::Vector3;
 use std::fmt;
@@ -98,10 +99,10 @@ fn faces_beside(topology: &Topology, e: EdgeId) -> Vec<FaceId> {
 impl fmt::Display for TouchingFaces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ([a, b], [x, y]) = (self.faces, self.at);
-        let gap = 1e3 * self.gap;
+        let gap = brief(1e3 * self.gap);
         write!(
             f,
-            "face {a} beside it is {gap:.2} mm from face {b} at ({x:.3}, {y:.3}) m"
+            "face {a} beside it is {gap} mm from face {b} at ({x:.3}, {y:.3}) m"
         )
     }
 }

@@ -9,7 +9,7 @@ use super::recording::Recording;
 use super::stepping::Plan;
 use super::steps::{ROUND_OFF, step_length};
 use super::summary::{EndReason, Ending};
-use super::writer::{Rows, RunWriter, Subject, ending, ending_at_start};
+use super::writer::{Rows, RunWriter, Subject};
 use super::{RunError, finish, write_trajectory};
 use crate::format::{EventRow, FileError, FrameQuantity, HistoryRow, Row, write_atomically};
 use crate::scene::{FailedStep, Files, Kept, Key, LiveScene, Scene, SceneFile, UnderWay};
@@ -318,7 +318,7 @@ impl Recorder {
         }
         self.reached = under_way.simulation.state().t;
         self.last = Some(LastStep {
-            ending: reason.map(|reason| ending(under_way, reason, report)),
+            ending: reason.map(|reason| writer.ending(under_way, reason, report)),
             report: report.clone(),
             frame,
         });
@@ -401,9 +401,9 @@ impl Recorder {
             RecordingEnd::Error => EndReason::Error,
         };
         let ended = match last {
-            None => ending_at_start(under_way, reason),
+            None => self.writer.ending_at_start(under_way, reason),
             Some(last) => {
-                let of_program = || ending(under_way, reason, &last.report);
+                let of_program = || self.writer.ending(under_way, reason, &last.report);
                 last.ending.unwrap_or_else(of_program)
             }
         };

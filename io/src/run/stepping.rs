@@ -5,7 +5,7 @@ use super::checkpoint::{RunProgress, StepsBy};
 use super::folder::{RunFolder, SceneHash};
 use super::frames::FrameShape;
 use super::steps::{step_count, step_length};
-use super::writer::{Rows, RunWriter, Subject, ending};
+use super::writer::{Rows, RunWriter, Subject};
 use super::{RunError, StepPart, Tick, Watch};
 use crate::scene::check_positions;
 use crate::scene::{Facts, Kept, SceneError, SceneFile, UnderWay};
@@ -114,7 +114,7 @@ impl<'a> Stepping<'a> {
         }
         if let Some(reason) = reason {
             writer.progress.end_balance = ForceBalance::at_end(None, &under_way.simulation);
-            writer.progress.ending = Some(ending(under_way, reason, &report));
+            writer.progress.ending = Some(writer.ending(under_way, reason, &report));
         }
         Ok(Some(Tick {
             t: report.t,

@@ -11,15 +11,14 @@ use super::frames::{FrameFile, FrameShape};
 use super::incidence::Incidence;
 use super::last_change::last_change;
 use super::recording::Tables;
-use super::row::dissipated;
 use super::steps::step_count;
-use super::summary::{EndReason, Ending, Measured};
+use super::summary::{EndReason, Measured};
 use super::time_error::TimeError;
 use crate::format::{
     EventRow, EventWriter, FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter,
     MeasureRow, MeasureWriter,
 };
-use crate::scene::{CarriedBody, Facts, Integrator, Scene, UnderWay};
+use crate::scene::{CarriedBody, Facts, FollowedFolds, Integrator, Scene, UnderWay};
 use isosheet_dynamics::{Checkpoint, StepReport};
 use nalgebra::Vector3;
 use std::path::PathBuf;
@@ -164,6 +163,7 @@ impl RunWriter {
         self.progress.energy = EnergySummary::of_start(&under_way.simulation);
         self.progress.strain = row.strain;
         self.observe_sheets(under_way);
+        self.follow_folds(under_way);
         self.progress.gap = row.gap;
         self.record_row(row)?;
         self.record_measures(under_way)?;
@@ -182,6 +182,7 @@ impl RunWriter {
         self.count(scene, under_way, report);
         self.observe_sheets(under_way);
         self.observe_elastic(under_way);
+        self.follow_folds(under_way);
         let model = under_way.simulation.model();
         let row = HistoryRow::of_step(report, model, self.progress.start_energy);
         self.record_row(row)?;
@@ -392,6 +393,19 @@ impl RunWriter {
         }
     }
 
+    /// Takes in the angles of creases that are folded to targets.
+    fn follow_folds(&mut self, under_way: &UnderWay) {
+        let Some(targets) = &under_way.facts.targets.folding else {
+            return;
+        };
+        let topology = under_way.simulation.model().topology();
+        let x = &under_way.simulation.state().x;
+        match &mut self.progress.folds {
+            Some(folds) => folds.follow(targets, topology, x),
+            none => *none = Some(FollowedFolds::begin(targets, topology, x)),
+        }
+    }
+
     /// Whether a condition to stop holds after a step.
     pub(super) fn end_reason(
         &mut self,
@@ -458,7 +472,7 @@ fn displacement(under_way: &UnderWay) -> f64 {
 }
 
 /// Largest speed of a vertex, m/s.
-fn largest_speed(under_way: &UnderWay) -> f64 {
+pub(super) fn largest_speed(under_way: &UnderWay) -> f64 {
     let velocities = under_way.facts.shown(&under_way.simulation.state().v);
     let speeds = velocities
         .as_chunks::<3>()
@@ -466,44 +480,4 @@ fn largest_speed(under_way: &UnderWay) -> f64 {
         .iter()
         .map(|v| Vector3::from(*v).norm());
     speeds.fold(0.0, f64::max)
-}
-
-/// The state at the end of a step, which ends a run for a reason.
-pub(super) fn ending(under_way: &UnderWay, reason: EndReason, report: &StepReport) -> Ending {
-    Ending {
-        t: report.t,
-        kinetic: report.kinetic,
-        potential: report.potential,
-        plastic: dissipated(under_way.simulation.model(), report.plastic),
-        energy_drift: report.energy_drift,
-        taut: report.taut.as_ref().map(|demand| {
-            let origins = &under_way.facts.origins;
-            demand.named(|body| format!("`{}`", origins.obstacle_called(body)))
-        }),
-        ..ending_at_start(under_way, reason)
-    }
-}
-
-/// The present state, which ends a run without a step for a reason.
-pub(super) fn ending_at_start(under_way: &UnderWay, reason: EndReason) -> Ending {
-    let row = HistoryRow::of_start(&under_way.simulation);
-    let loads = under_way.facts.obstacle_loads(&under_way.simulation);
-    Ending {
-        reason,
-        t: row.t,
-        kinetic: row.kinetic,
-        potential: row.potential,
-        plastic: row.plastic,
-        energy_drift: 0.0,
-        largest_speed: largest_speed(under_way),
-        supports: under_way.support_forces(),
-        obstacles: loads.iter().map(|load| load.force).collect(),
-        bodies: CarriedBody::contact_loads(&under_way.facts.bodies, &under_way.simulation)
-            .iter()
-            .map(|load| load.force)
-            .collect(),
-        taut: None,
-        failed: None,
-        residuals: under_way.facts.targets.residuals(&under_way.simulation),
-    }
 }

@@ -137,7 +137,8 @@ impl FoldTargets {
         self.drawn.name(self.of_pattern[crease].drawn)
     }
 
-    /// The differences at positions `x` (`3V`, metres), taken the short way round as the springs do.
+    /// The differences at positions `x` (`3V`, metres), taken the short way round as the springs do. (A run
+    /// follows angles from its start on: one that was folded the other way round is further from its target.)
     ///
     /// # Panics
     /// If `x` is not of length `3V`.
@@ -168,7 +169,7 @@ impl FoldTargets {
 /// The fold angles of driven creases, followed through a motion: one that was folded the other way round is at -180
 /// degrees, and not at 180.
 #[cfg(feature = "run")]
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FollowedFolds {
     /// Radians, in the order of the creases.
     angles: Vec<f64>,
@@ -190,6 +191,11 @@ impl FollowedFolds {
         for (angle, &(e, _)) in self.angles.iter_mut().zip(&targets.creases) {
             *angle = angle_near(fold_angle(t, x, e).unwrap_or(0.0), *angle);
         }
+    }
+
+    /// The angle of a crease, degrees.
+    pub(crate) fn angle(&self, crease: usize) -> f64 {
+        self.angles[crease].to_degrees()
     }
 
     /// How far each crease is from its target, degrees.

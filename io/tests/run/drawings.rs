@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 /// Makes a mesh of a drawing and says what the command said.
-fn meshed(folder: &Path, drawing: &str, options: &[&str]) -> (MeshFile, String) {
+pub(crate) fn meshed(folder: &Path, drawing: &str, options: &[&str]) -> (MeshFile, String) {
     let mut arguments = vec!["mesh", drawing, "-o", "out.fold"];
     arguments.extend(options);
     let output = run(folder, &arguments);
@@ -23,7 +23,7 @@ fn meshed(folder: &Path, drawing: &str, options: &[&str]) -> (MeshFile, String) 
     (mesh, said)
 }
 
-fn refused(folder: &Path, drawing: &str, options: &[&str], exit: i32) -> String {
+pub(crate) fn refused(folder: &Path, drawing: &str, options: &[&str], exit: i32) -> String {
     let mut arguments = vec!["mesh", drawing, "-o", "refused.fold"];
     arguments.extend(options);
     let output = run(folder, &arguments);
@@ -37,7 +37,7 @@ fn refused(folder: &Path, drawing: &str, options: &[&str], exit: i32) -> String 
     stderr(&output)
 }
 
-fn area(mesh: &MeshFile) -> f64 {
+pub(crate) fn area(mesh: &MeshFile) -> f64 {
     mesh.clone().into_sheet().unwrap().area()
 }
 
@@ -54,7 +54,7 @@ fn in_order(mesh: &MeshFile) -> Vec<[u32; 3]> {
 }
 
 /// The length of the edges with an assignment.
-fn length(mesh: &MeshFile, assignment: EdgeAssignment) -> f64 {
+pub(crate) fn length(mesh: &MeshFile, assignment: EdgeAssignment) -> f64 {
     let p = mesh.positions.as_chunks::<3>().0;
     let own = mesh.creases.iter().filter(|c| c.assignment == assignment);
     own.map(|c| {
@@ -65,7 +65,7 @@ fn length(mesh: &MeshFile, assignment: EdgeAssignment) -> f64 {
 }
 
 /// A drawing in millimetres on a page of 200 by 100.
-fn svg(shapes: &str) -> String {
+pub(crate) fn svg(shapes: &str) -> String {
     format!(
         "<svg xmlns='http://www.w3.org/2000/svg' width='200mm' height='100mm' viewBox='0 0 200 100' \
          fill='none' stroke='black'>{shapes}</svg>"

@@ -39,6 +39,7 @@ mod time_error;
 mod tools;
 mod traces;
 mod trajectories;
+mod what_drawings_say;
 mod yielding;
 
 use isosheet_io::read_json;

@@ -5,7 +5,7 @@ use super::graph::PlaneGraph;
 use super::net::{Net, Place, Segment};
 use super::outline::{Outline, Role};
 use super::refine::Refiner;
-use super::vec2::{Point, between, cross, distance, foot, sub};
+use super::vec2::{Point, between, distance, foot};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use spade::{Point2, PositionInTriangulation, Triangulation};
@@ -65,8 +65,8 @@ const CLEARANCE: f64 = 0.6;
 
 impl PlaneMesh {
     /// The mesh of the sheet that cuts bound: what is separated from the outside by one line, by three, ...,
-    /// so that outlines within outlines are holes. Where cuts leave the outline open and creases beside the outside
-    /// close it, these are cuts.
+    /// so that outlines within outlines are holes. Where cuts leave the outline open and creases beside the
+    /// outside close it, these are cuts.
     ///
     /// Triangles have angles of 25 degrees and more where the lines allow it: where they meet at 60 degrees
     /// or more. The same arguments give the same mesh.
@@ -193,6 +193,7 @@ fn lattice(net: &Net, inside: &[bool], options: &PlaneOptions) -> Vec<Point> {
 mod tests {
     use super::super::curve::{EllipticArc, PlaneCurve};
     use super::super::graph::Piece;
+    use super::super::vec2::{cross, sub};
     use super::*;
     use std::f64::consts::TAU;
 

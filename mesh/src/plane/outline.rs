@@ -70,8 +70,8 @@ impl Outline {
     }
 }
 
-/// How many cuts lie between each face and the outside, which pieces bound the sheet or lie on it, and the open ends of
-/// its outline.
+/// How many cuts lie between each face and the outside, which pieces bound the sheet or lie on it, and the
+/// open ends of its outline.
 fn bounded(graph: &PlaneGraph, net: &Net, roles: &[Role]) -> (Vec<u32>, Vec<bool>, Vec<Gap>) {
     let depths = net.depths(|s| roles[s.piece] == Role::Cut);
     let mut keep = vec![false; roles.len()];
@@ -128,7 +128,8 @@ mod tests {
         sides.map(|p| PlaneCurve::Line([p[0], p[1]])).collect()
     }
 
-    /// A tab of 80 by 20 on the crease at the end of a panel of 100 by 50: the crease is the outline beside the tab.
+    /// A tab of 80 by 20 on the crease at the end of a panel of 100 by 50: the crease is the outline beside
+    /// the tab.
     #[test]
     fn creases_close_an_outline() {
         let mut curves = path(&[[0.0, 0.5], [0.0, 0.0], [1.0, 0.0], [1.0, 0.5]]);

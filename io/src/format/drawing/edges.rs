@@ -3,6 +3,7 @@
 use super::selector::Selector;
 use crate::format::vector::Pen;
 use crate::format::{DataError, DrawnLines, MeshFile};
+use isosheet_mesh::wording::quoted;
 use std::collections::BTreeSet;
 
 /// The edges of the mesh of a drawing that follow lines, with how these are drawn.
@@ -57,7 +58,7 @@ pub(crate) fn refuse_idle(selector: &Selector, pens: &[Pen]) -> Result<(), DataE
     let message = format!(
         "{selector} selects no line: the colours are {}, and the layers and names {}",
         listed(colours.into_iter().collect()),
-        listed(layers.iter().map(|name| format!("{name:?}")).collect())
+        listed(layers.iter().map(|name| quoted(name)).collect())
     );
     Err(DataError::new(
         message,

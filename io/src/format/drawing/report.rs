@@ -45,8 +45,12 @@ pub struct DrawingReport {
     pub doubled: Option<Places>,
     /// Those of them that were drawn as lines of different classes, of which the strongest counts.
     pub contradicting: Option<Places>,
+    /// Creases that close the outline where cuts leave it open, and how long they are.
+    pub closing: Option<Places>,
     /// Lines beyond the outline or within holes, which were cut off there, and how long they are.
     pub beyond: Option<Places>,
+    /// In how many pieces the sheet is.
+    pub pieces: usize,
     /// Lines that are shorter than the tolerance for snapping.
     pub too_short: usize,
     /// What is no line, or is drawn in a colour that is not understood, with its number.
@@ -117,6 +121,11 @@ impl fmt::Display for DrawingReport {
                 "of several classes (a cut counts before a fold, and a mountain on a valley is a crease), the longest",
             ),
             (
+                &self.closing,
+                ["line", "lines"],
+                "of creases taken as the outline where cuts leave it open, the longest",
+            ),
+            (
                 &self.beyond,
                 ["line", "lines"],
                 "beyond the outline or in a hole left out, the longest",
@@ -127,6 +136,9 @@ impl fmt::Display for DrawingReport {
                 let count = counted(places.count, one, more);
                 writeln!(f, "note: {count} {what} {}", places.told())?;
             }
+        }
+        if self.pieces > 1 {
+            writeln!(f, "note: the sheet is in {} pieces", self.pieces)?;
         }
         if self.too_short > 0 {
             let count = counted(self.too_short, "line", "lines");

@@ -3,6 +3,7 @@
 use super::class::LineClass;
 use super::selector::Selector;
 use crate::format::vector::Pen;
+use isosheet_mesh::wording::quoted;
 
 /// What lines are taken for. A selector by layer counts before one by colour, and that before one by dash;
 /// what is selected by none goes by the words in the names of its layers, then by its colour as in Origami
@@ -61,6 +62,8 @@ const WORDS: [(LineClass, &[&str]); 6] = [
             "texts",
             "guide",
             "guides",
+            "hint",
+            "hints",
             "bleed",
             "print",
             "artwork",
@@ -88,7 +91,8 @@ impl LineRules {
         if let Some((selector, class)) = selected.min_by_key(|(s, _)| s.rank()) {
             return Some((*class, selector.to_string()));
         }
-        let by_word = |name: &String| Some((class_of_name(name)?, format!("layer {name:?}")));
+        let by_word =
+            |name: &String| Some((class_of_name(name)?, format!("layer {}", quoted(name))));
         if let Some(found) = pen.layers.iter().find_map(by_word) {
             return Some(found);
         }
@@ -187,6 +191,7 @@ mod tests {
                 pen([128; 3], false, &["dimensions"]),
                 Some(LineClass::Ignored),
             ),
+            (pen([0; 3], false, &["hint"]), Some(LineClass::Ignored)),
         ] {
             assert_eq!(class(&pen), expected, "{pen:?}");
         }

@@ -27,6 +27,9 @@ pub enum DrawingError {
     /// An option is out of range, or it is not known what lines are.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// A line that bounds the sheet crosses itself.
+    #[error(transparent)]
+    Crossing(DataError),
     /// The lines bound no sheet.
     #[error(transparent)]
     Plane(#[from] PlaneError),
@@ -39,7 +42,7 @@ impl Advice for DrawingError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::File(error) => error.advice(),
-            Self::Data(error) => error.advice(),
+            Self::Data(error) | Self::Crossing(error) => error.advice(),
             Self::Plane(error) => error.advice(),
             Self::Mesh(error) => error.advice(),
         }
@@ -85,8 +88,8 @@ pub fn mesh_drawing(
     let lines: Vec<&DrawnLine> = lines.iter().collect();
     let curves: Vec<_> = lines.iter().map(|l| l.curve).collect();
     let graph = PlaneGraph::new(&curves, snap)?;
-    refuse_self_crossing(&graph, &lines, of_line)?;
-    let classes: Vec<LineClass> = graph
+    refuse_self_crossing(&graph, &lines, of_line).map_err(DrawingError::Crossing)?;
+    let mut classes: Vec<LineClass> = graph
         .pieces
         .iter()
         .map(|p| class_of(p.sources.iter().map(|s| of_line(lines[*s]))))
@@ -100,6 +103,9 @@ pub fn mesh_drawing(
         PlaneError::NoOutline => no_outline(options, diagonal),
         error => error.into(),
     })?;
+    for &piece in &plane.closing {
+        classes[piece] = LineClass::Cut;
+    }
     let angle = |piece: usize| {
         let sources = graph.pieces[piece].sources.iter().map(|s| lines[*s]);
         let mut own = sources.filter(|line| of_line(line) == classes[piece]);
@@ -129,7 +135,12 @@ pub fn mesh_drawing(
         .collect();
     let mut mesh = assemble(&plane, creases);
     mesh.drawn = drawn;
-    Sheet::new(mesh.positions.clone(), &mesh.faces)?;
+    mesh.in_metres = drawing.assumed_unit.is_none();
+    let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces)?;
+    let places = |pieces: &[usize]| {
+        let pieces = pieces.iter().map(|k| &graph.pieces[*k]);
+        Places::of(pieces.map(|piece| (piece.length(), piece.middle())))
+    };
     let report = DrawingReport {
         size: extent(&plane.points),
         spacing: options.spacing,
@@ -144,10 +155,9 @@ pub fn mesh_drawing(
                 })
                 .map(|p| (p.length(), p.middle())),
         ),
-        beyond: Places::of(plane.outside.iter().map(|&k| {
-            let piece = &graph.pieces[k];
-            (piece.length(), piece.middle())
-        })),
+        closing: places(&plane.closing),
+        beyond: places(&plane.outside),
+        pieces: sheet.topology().component_count(),
         too_short: graph.dropped.len(),
         left_out: drawing.left_out.clone(),
         assumed_unit: drawing.assumed_unit,
@@ -176,7 +186,31 @@ fn no_outline(options: &DrawingOptions, diagonal: f64) -> DrawingError {
     }
 }
 
+/// Larger tolerances that are tried for a drawing that makes no sheet, as parts of its diagonal: from the
+/// default on to a millimetre on a drawing of twenty centimetres.
+const LARGER: [f64; 2] = [SNAP, 5e-3];
+
 impl DrawnSheet {
+    /// The smallest of the tolerances 0.1, 0.2, 0.5, 1 mm, ... (metres) with which a drawing becomes a sheet
+    /// that does not without one; `None` if none of them helps, or one was given.
+    pub fn helping_snap(drawing: &Drawing, options: &DrawingOptions) -> Option<f64> {
+        let lines: Vec<&DrawnLine> = drawing.lines.iter().collect();
+        let diagonal = diagonal(&lines);
+        let [least, most] = LARGER.map(|part| part * diagonal);
+        let decade = 10.0_f64.powf(least.log10().floor());
+        let round = (0..9).map(|k| decade * [1.0, 2.0, 5.0][k % 3] * 10.0_f64.powi(k as i32 / 3));
+        let mut larger =
+            round.filter(|snap| (least..=most).contains(snap) && options.snap.is_none());
+        larger.find(|snap| {
+            let coarse = DrawingOptions {
+                spacing: diagonal,
+                snap: Some(*snap),
+                ..options.clone()
+            };
+            mesh_drawing(drawing, &coarse).is_ok()
+        })
+    }
+
     /// The sheet of a file.
     ///
     /// # Errors
@@ -297,7 +331,8 @@ fn refuse_self_crossing(
     };
     let [x, y] = at.map(|c| (1e5 * c).round() / 1e2 + 0.0);
     let message = format!("an outline crosses itself at ({x}, {y}) mm");
-    Err(DataError::new(message, "draw it without the crossing"))
+    let remedy = "draw it without the crossing, or give a larger tolerance for snapping where it is that small";
+    Err(DataError::new(message, remedy))
 }
 
 fn doubled(graph: &PlaneGraph) -> impl Iterator<Item = &Piece> {

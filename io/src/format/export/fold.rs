@@ -97,9 +97,10 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
     Ok(vec![path.to_owned()])
 }
 
-/// Writes one mesh with the creases that were read. Their fold angles are those of the file they were read
-/// from, and null where it has none, and so are the lines of a drawing that they follow. Other edges are `B`
-/// if they have one face, and `U` otherwise.
+/// Writes one mesh with the creases that were read, and the lines of a drawing that they follow. Their fold
+/// angles are those of the file they were read from. Where it has none, mountains and valleys of a flat
+/// pattern fold by 180 degrees, flat edges by 0, and the angle of others is null. Edges that were not read
+/// are `B` if they have one face, and `U` otherwise.
 pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
     let points = mesh.positions.as_chunks::<3>().0;
     let mut faces_at: BTreeMap<[u32; 2], usize> = BTreeMap::new();
@@ -108,6 +109,12 @@ pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError
             *faces_at.entry([a.min(b), a.max(b)]).or_default() += 1;
         }
     }
+    let is_flat = points.iter().all(|p| p[2] == 0.0);
+    let area = |f: &[u32; 3]| {
+        let [a, b, c] = f.map(|v| points[v as usize]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    let is_pattern = is_flat && mesh.faces.iter().all(|f| area(f) >= 0.0);
     let (mut ends, mut assignments, mut angles) = (Vec::new(), Vec::new(), Vec::new());
     let mut lines_of_edges = Vec::new();
     for crease in &mesh.creases {
@@ -115,7 +122,8 @@ pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError
         faces_at.remove(&[a.min(b), a.max(b)]);
         ends.push(crease.ends);
         assignments.push(letter(crease.assignment));
-        angles.push(crease.angle.map(f64::to_degrees));
+        let whole = whole_angle(crease.assignment).filter(|_| is_pattern);
+        angles.push(crease.angle.map(f64::to_degrees).or(whole));
         lines_of_edges.push(mesh.drawn.numbers(crease.drawn).collect());
     }
     for (edge, faces) in faces_at {
@@ -131,19 +139,13 @@ pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError
     if angles.iter().all(Option::is_none) {
         angles.clear();
     }
-    let is_flat = points.iter().all(|p| p[2] == 0.0);
-    let area = |f: &[u32; 3]| {
-        let [a, b, c] = f.map(|v| points[v as usize]);
-        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    };
-    let is_pattern = is_flat && mesh.faces.iter().all(|f| area(f) >= 0.0);
     let file = FoldFile {
         file_spec: 1.2,
         file_creator: "isosheet",
         file_classes: &["singleModel"],
         frame_classes: if is_pattern { PATTERN } else { FOLDED },
         frame_attributes: &[if is_flat { "2D" } else { "3D" }],
-        frame_unit: None,
+        frame_unit: mesh.in_metres.then_some("m"),
         time: None,
         vertices_coords: points,
         edges_vertices: ends,
@@ -155,6 +157,16 @@ pub(super) fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError
         file_frames: Vec::new(),
     };
     Ok(write_atomically(path, |w| write_json(w, &file))?)
+}
+
+/// The angle of an edge of a pattern that is folded flat, degrees, where its assignment says it.
+fn whole_angle(assignment: EdgeAssignment) -> Option<f64> {
+    match assignment {
+        EdgeAssignment::Mountain => Some(-180.0),
+        EdgeAssignment::Valley => Some(180.0),
+        EdgeAssignment::Flat | EdgeAssignment::Join => Some(0.0),
+        EdgeAssignment::Boundary | EdgeAssignment::Unassigned | EdgeAssignment::Cut => None,
+    }
 }
 
 fn letter(assignment: EdgeAssignment) -> &'static str {

@@ -139,6 +139,25 @@ fn creases_and_cuts_come_back_from_fold_files() {
     let written: serde_json::Value = serde_json::from_slice(&fs::read(&plain).unwrap()).unwrap();
     assert!(!has_empty_entries(&written), "{written}");
     assert!(written.get("edges_foldAngle").is_none());
+    // Mountains and valleys of a pattern are folded whole, as the format has it where no angle is given.
+    let pattern = br#"{"file_spec": 1.2, "frame_unit": "cm", "vertices_coords": [[0,0],[1,0],[2,0],[2,1],[1,1],[0,1]],
+        "edges_vertices": [[0,1],[1,2],[2,3],[3,4],[4,5],[5,0],[1,4]],
+        "edges_assignment": ["B","B","B","B","B","B","M"], "faces_vertices": [[0,1,4,5],[1,2,3,4]]}"#;
+    for (letter, angle) in [("M", -180.0), ("V", 180.0)] {
+        let text = String::from_utf8_lossy(pattern).replace("\"M\"", &format!("\"{letter}\""));
+        let path = folder.path().join("pattern.fold");
+        fs::write(&path, text).unwrap();
+        let mesh = read_mesh(&path).unwrap();
+        write_mesh(&path, &mesh).unwrap();
+        let written: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+        assert_eq!(written["edges_foldAngle"][6], angle);
+        assert!(written["edges_foldAngle"][0].is_null());
+        // The unit of the file was known.
+        assert_eq!(
+            (&written["frame_unit"], &written["vertices_coords"][3][0]),
+            (&"m".into(), &0.02.into())
+        );
+    }
     assert_eq!(read_mesh(&plain).unwrap().faces, square.faces);
     assert_eq!((second.polygons, second.changes), (0, first.changes));
     let valley = second.creases[6];

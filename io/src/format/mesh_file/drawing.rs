@@ -28,6 +28,7 @@ pub(super) fn parse(
     }
     let mut mesh = polyhedron.assemble(options)?;
     mesh.take_edges(planar);
+    mesh.in_metres = lines.in_metres;
     mesh.drawn = lines.drawn;
     mesh.changes.other_lines = lines.of_other_colours;
     mesh.left_out = lines.left_out;

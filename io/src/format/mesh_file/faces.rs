@@ -132,6 +132,7 @@ impl Polyhedron {
             path: PathBuf::new(),
             time: None,
             positions: Vec::new(),
+            in_metres: false,
         };
         let mut start = 0;
         let mut origin = Vec::with_capacity(self.ends.len());

@@ -113,6 +113,7 @@ pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Loc
     }
     polyhedron.lines = edges.len();
     let mut mesh = polyhedron.assemble(options)?;
+    mesh.in_metres = frame.has_length();
     mesh.changes.welded_vertices = drawing.welded;
     mesh.drawn = drawn;
     drawing.edges = edges;

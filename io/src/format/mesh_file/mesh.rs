@@ -131,6 +131,8 @@ pub struct MeshFile {
     /// Coordinates x0 y0 z0 x1 ..., in the file's unit and axes. Two formats say what these are, and are
     /// converted: FOLD files with a unit of length to metres; glTF files, which have y upwards, to z upwards.
     pub positions: Vec<f64>,
+    /// Whether the file says how long its unit is: then the positions are in metres.
+    pub in_metres: bool,
     /// Triangles, as wound in the file.
     pub faces: Vec<[u32; 3]>,
     /// How many faces had more than three corners and were cut.
@@ -167,6 +169,7 @@ impl MeshFile {
     ) -> Self {
         Self {
             positions,
+            in_metres: true,
             faces,
             polygons: 0,
             diagonals: Vec::new(),

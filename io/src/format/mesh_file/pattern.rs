@@ -35,6 +35,8 @@ pub(super) struct Segment {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PatternLines {
     pub(super) segments: Vec<Segment>,
+    /// Whether the drawing says how long its unit is.
+    pub(super) in_metres: bool,
     /// How they are drawn, where the format has colours and layers.
     pub(super) drawn: DrawnLines,
     /// Visible lines of colours that mean nothing.

@@ -28,8 +28,8 @@ pub(super) fn of_pattern(path: &Path) -> Result<MovingMesh, FileError> {
     for file in &all {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let digits = name.strip_prefix(begin).and_then(|n| n.strip_suffix(end));
-        if let Some(number) = digits.and_then(number) {
-            add(&mut files, number, file)?;
+        if let Some(digits) = digits.filter(|digits| is_number(digits)) {
+            add(&mut files, digits, file)?;
         }
     }
     match files.is_empty() {
@@ -47,9 +47,10 @@ pub(super) fn of_folder(path: &Path) -> Result<MovingMesh, FileError> {
         let extension = file.extension().unwrap_or_default().to_string_lossy();
         let begin = stem.trim_end_matches(|c: char| c.is_ascii_digit());
         let is_mesh = MeshFormat::of(file).is_some_and(|format| !format.is_drawing());
-        if let (Some(number), true) = (number(&stem[begin.len()..]), is_mesh) {
+        let digits = &stem[begin.len()..];
+        if is_number(digits) && is_mesh {
             let files = all.entry(format!("{begin}*.{extension}")).or_default();
-            add(files, number, file)?;
+            add(files, digits, file)?;
         }
     }
     if all.len() > 1 {
@@ -95,7 +96,11 @@ fn without_samples(path: &Path, found: &[PathBuf]) -> FileError {
     FileError::content(path, problem, remedy)
 }
 
-fn add(files: &mut Numbered, number: u64, file: &Path) -> Result<(), FileError> {
+fn add(files: &mut Numbered, digits: &str, file: &Path) -> Result<(), FileError> {
+    let number = digits.parse().map_err(|_| {
+        let problem = format!("its number is larger than {}", u64::MAX);
+        FileError::content(file, problem, "give it a smaller number, or remove it")
+    })?;
     match files.insert(number, file.to_owned()) {
         None => Ok(()),
         Some(other) => {
@@ -107,9 +112,8 @@ fn add(files: &mut Numbered, number: u64, file: &Path) -> Result<(), FileError> 
     }
 }
 
-fn number(digits: &str) -> Option<u64> {
-    let all_digits = digits.bytes().all(|b| b.is_ascii_digit());
-    digits.parse().ok().filter(|_| all_digits)
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit())
 }
 
 fn files_in(folder: &Path) -> Result<Vec<PathBuf>, FileError> {

@@ -316,6 +316,11 @@ def Xform "root" ( kind = "group"
             "5: [(0, 0, 0), (2",
             "the time code 5 follows 10",
         ),
+        (
+            "def Xform \"root\"",
+            "def PointInstancer \"root\"",
+            "/root has instances of its parts",
+        ),
         ("[0, 1, 2]", "[0, 1, 3]", "a face refers to vertex 3"),
         (
             "double3 xformOp:rotateXYZ",
@@ -334,6 +339,32 @@ def Xform "root" ( kind = "group"
     for end in 0..text.len() {
         std::fs::write(&path, &text[..end]).unwrap();
         let _ = read(&path);
+    }
+}
+
+/// Files with numbers that no integer holds are refused, and not passed over.
+#[test]
+fn numbers_beyond_64_bits_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str| {
+        std::fs::write(
+            dir.path().join(name),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+        )
+        .unwrap();
+    };
+    for name in ["a1.obj", "a2.obj", "a00000000000000000000000003.obj"] {
+        write(name);
+    }
+    let paths = [dir.path().to_owned(), dir.path().join("a*.obj")];
+    for path in &paths {
+        assert_eq!(read(path).unwrap().times(), [0.0, 1.0, 2.0]);
+    }
+    write("a18446744073709551616.obj");
+    for path in &paths {
+        let said = read(path).unwrap_err();
+        assert!(said.contains("a18446744073709551616.obj"), "{said}");
+        assert!(said.contains("larger than 18446744073709551615"), "{said}");
     }
 }
 

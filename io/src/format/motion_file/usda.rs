@@ -17,7 +17,8 @@ use transform::Placing;
 pub(super) fn read(path: &Path) -> Result<MovingMesh, FileError> {
     let bytes = input::read(path).map_err(|e| FileError::unreadable(path, e))?;
     let wrong = |problem: String| {
-        let remedy = "export the meshes with their samples as one file of text (`usdcat --flatten IN -o OUT.usda`)";
+        let remedy = "export the meshes with their samples as one file of text (`usdcat --flatten IN -o OUT.usda`), each \
+                      instance as a mesh of its own";
         FileError::content(path, problem, remedy)
     };
     let layer = Layer::parse(&String::from_utf8_lossy(&bytes)).map_err(wrong)?;

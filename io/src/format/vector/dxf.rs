@@ -1,16 +1,18 @@
 //! Drawing Exchange Format, as text.
 //!
 //! Read are LINE, ARC, CIRCLE, ELLIPSE, LWPOLYLINE and POLYLINE with bulges, and SPLINE without weights, with
-//! their layers, colours and line types. Blocks are not taken apart.
+//! their layers, colours and line types, and blocks wherever INSERT puts them.
 
+mod blocks;
 mod entity;
 mod groups;
 mod layers;
 mod spline;
 
-use super::lines::Drawing;
+use super::lines::{Drawing, Pen};
 use super::unit::DrawingUnit;
 use crate::format::DataError;
+use blocks::{Blocks, Place, compose};
 use entity::Entity;
 use groups::{Record, section};
 use layers::Layers;
@@ -39,43 +41,133 @@ pub(in crate::format) fn parse(
         },
     };
     let scale = unit * scale;
-    let layers = Layers::of(&records)?;
-    let mut entities = section(&records, "ENTITIES")?.iter();
-    while let Some(record) = entities.next() {
-        let mut vertices = Vec::new();
-        if record.kind == "POLYLINE" {
-            vertices = entities
-                .by_ref()
-                .take_while(|r| r.kind == "VERTEX")
-                .collect();
-        }
-        let Some(pen) = layers.pen(record)? else {
-            drawing.leave_out("hidden entity");
-            continue;
-        };
-        let entity = Entity {
-            record,
-            vertices: &vertices,
-        };
-        match entity.curves()? {
-            Some(curves) => {
-                let grown = |c: &isosheet_mesh::plane::PlaneCurve| {
-                    c.transformed([[scale, 0.0], [0.0, scale], [0.0, 0.0]])
-                };
-                drawing.push(pen, curves.iter().map(grown));
+    let mut reader = Reader {
+        layers: Layers::of(&records)?,
+        blocks: Blocks::of(&records)?,
+        drawing,
+        entities: 0,
+        most: COPIES * bytes.len() / SHORTEST,
+    };
+    let place = [[scale, 0.0], [0.0, scale], [0.0, 0.0]];
+    reader.entities(section(&records, "ENTITIES")?, place, &[])?;
+    Ok(reader.drawing)
+}
+
+/// Blocks in blocks are followed so deep.
+const DEEPEST: usize = 200;
+
+/// Bytes of the shortest line that a file can write: six groups of a digit and an end of the line each, with
+/// their numbers.
+const SHORTEST: usize = 32;
+
+/// Insertions may draw so many times the lines that a file of the length can write.
+const COPIES: usize = 256;
+
+struct Reader<'a, 'b> {
+    layers: Layers<'a>,
+    blocks: Blocks<'a, 'b>,
+    drawing: Drawing,
+    /// How many entities have been drawn.
+    entities: usize,
+    /// How many are drawn at most.
+    most: usize,
+}
+
+impl<'a, 'b> Reader<'a, 'b> {
+    /// Draws entities in a place, which a block has that is inserted with some pens, the outermost first.
+    fn entities(
+        &mut self,
+        records: &'b [Record<'a>],
+        place: Place,
+        inserts: &[Pen],
+    ) -> Result<(), DataError> {
+        let mut records = records.iter();
+        while let Some(record) = records.next() {
+            let mut vertices = Vec::new();
+            if record.kind == "POLYLINE" {
+                vertices = records
+                    .by_ref()
+                    .take_while(|r| r.kind == "VERTEX")
+                    .collect();
             }
-            None => drawing.leave_out(match record.kind {
-                "TEXT" | "MTEXT" | "ATTDEF" | "ATTRIB" => "text",
-                "IMAGE" => "image",
-                "INSERT" => "block",
-                "DIMENSION" | "LEADER" | "MLEADER" => "dimension",
-                "HATCH" | "SOLID" => "filled area",
-                "POINT" => "point",
-                _ => "entity of another kind",
-            }),
+            self.entities += 1;
+            if self.entities > self.most || inserts.len() > DEEPEST {
+                return Err(self.too_many(record));
+            }
+            let Some(pen) = self.layers.pen(record, inserts.last())? else {
+                self.drawing.leave_out("hidden entity");
+                continue;
+            };
+            if record.kind == "INSERT" {
+                self.insert(record, place, pen, inserts)?;
+                continue;
+            }
+            let entity = Entity {
+                record,
+                vertices: &vertices,
+            };
+            match entity.curves()? {
+                Some(curves) => {
+                    let curves = curves.iter().map(|c| c.transformed(place));
+                    self.drawing.push(pen, curves);
+                }
+                None => self.drawing.leave_out(match record.kind {
+                    "TEXT" | "MTEXT" | "ATTDEF" | "ATTRIB" => "text",
+                    "IMAGE" => "image",
+                    "DIMENSION" | "LEADER" | "MLEADER" => "dimension",
+                    "HATCH" | "SOLID" => "filled area",
+                    "POINT" => "point",
+                    // The end of the texts of a block.
+                    "SEQEND" => continue,
+                    _ => "entity of another kind",
+                }),
+            }
         }
+        Ok(())
     }
-    Ok(drawing)
+
+    /// Draws a block wherever an entity inserts it.
+    fn insert(
+        &mut self,
+        insert: &Record<'a>,
+        place: Place,
+        mut pen: Pen,
+        inserts: &[Pen],
+    ) -> Result<(), DataError> {
+        let Some(block) = self.blocks.of_insert(insert) else {
+            self.drawing.leave_out("block that the file does not have");
+            return Ok(());
+        };
+        // Programs give other blocks names that begin so.
+        if !block.name.starts_with('*') {
+            pen.layers.insert(1, block.name.to_owned());
+        }
+        let (entities, places) = (block.entities, block.places(insert)?);
+        let inserts = [inserts, &[pen]].concat();
+        for copy in places {
+            self.entities += 1;
+            if self.entities > self.most {
+                return Err(self.too_many(insert));
+            }
+            self.entities(entities, compose(place, copy), &inserts)?;
+        }
+        Ok(())
+    }
+
+    fn too_many(&self, record: &Record<'_>) -> DataError {
+        let Record { kind, line, .. } = record;
+        let message = match self.entities > self.most {
+            true => format!(
+                "line {line}: {kind}: with the blocks that are inserted the drawing has more than {} entities, the most for \
+                 a file of its length",
+                self.most
+            ),
+            false => format!(
+                "line {line}: {kind}: blocks are inserted in each other more than {DEEPEST} deep"
+            ),
+        };
+        DataError::new(message, "explode the blocks before the export").at(*line)
+    }
 }
 
 /// The length of a unit, metres; `None` where the file does not say it.

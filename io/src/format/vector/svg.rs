@@ -338,18 +338,17 @@ fn pen(colour: Colour, opacity: f64, state: &State) -> Pen {
     }
 }
 
-/// The names of an element as drawing programs write them: Inkscape has labels of layers, Illustrator has
-/// identifiers, in which other characters than letters are written as `_x20_`, and names.
+/// The names of an element as drawing programs write them, and its identifier: Inkscape has labels of layers,
+/// Illustrator has names, and identifiers in which other characters than letters are written as `_x20_`. The
+/// last of them is the one that people see.
 fn names(node: Node<'_, '_>) -> Vec<String> {
-    let labels = node
-        .attributes()
-        .filter(|a| a.name() == "label" || a.name() == "data-name");
-    let mut names: Vec<String> = labels.map(|a| a.value().to_owned()).collect();
-    if names.is_empty() {
-        let others = ["class", "id"]
-            .into_iter()
-            .filter_map(|name| node.attribute(name));
-        names.extend(others.map(|id| id.replace("_x20_", " ")));
-    }
+    let of = |name: &'static str| node.attributes().filter(move |a| a.name() == name);
+    let identifiers = of("id").chain(of("class"));
+    let mut names: Vec<String> = identifiers
+        .map(|a| a.value().replace("_x20_", " "))
+        .collect();
+    let labels = of("data-name").chain(of("label"));
+    names.extend(labels.map(|a| a.value().to_owned()));
+    names.dedup();
     names
 }

@@ -182,6 +182,13 @@ impl FrameRecord {
         self.frame_classes.iter().flatten().any(|c| c == class)
     }
 
+    /// Whether the unit of the frame is a length.
+    pub(super) fn has_length(&self) -> bool {
+        self.frame_unit
+            .as_deref()
+            .is_some_and(|unit| unit != "unit")
+    }
+
     /// The unit of the frame in metres; 1 if it has none.
     pub(super) fn metres(&self) -> Result<f64, DataError> {
         Ok(match self.frame_unit.as_deref() {

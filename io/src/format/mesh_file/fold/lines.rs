@@ -88,6 +88,7 @@ mod tests {
     fn edges_know_the_lines_of_their_drawing() {
         let text = r##"{"vertices_coords": [[0,0],[1,0],[1,1],[0,1]], "faces_vertices": [[0,1,2],[0,2,3]],
         "edges_vertices": [[0,1],[1,2],[2,3],[3,0],[0,2]], "edges_assignment": ["B","B","B","B","V"],
+        "edges_foldAngle": [null,null,null,null,90],
         "isosheet:lines": [{"colour": "#000000"}, {"colour": "#e6007e", "dashed": true, "layers": ["Wing", "Box"]}],
         "edges_isosheet:lines": [[0],[0],[0],[0],[1]]}"##;
         let mesh = parse(MeshFormat::Fold, text.as_bytes()).unwrap();

@@ -42,6 +42,7 @@ pub(in crate::format) fn parse(bytes: &[u8]) -> Result<PatternLines, DataError> 
     }
     Ok(PatternLines {
         segments,
+        in_metres: drawing.assumed_unit.is_none(),
         drawn,
         of_other_colours,
         left_out: drawing.left_out,

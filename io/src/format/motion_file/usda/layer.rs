@@ -163,6 +163,9 @@ fn prim(tokens: &mut Tokens<'_>, specifier: &str, depth: usize) -> Result<Prim, 
         Token::Text(name) => found.name = name.to_owned(),
         other => return Err(tokens.problem(&format!("expected a name, found {other:?}"))),
     }
+    if found.kind == "PointInstancer" {
+        found.elsewhere = Some("instances of its parts");
+    }
     if tokens.take(b'(')? {
         for (name, value) in metadata(tokens)? {
             let has = |what| Some(what);

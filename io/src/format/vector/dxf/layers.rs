@@ -42,22 +42,36 @@ impl<'a> Layers<'a> {
         Ok(Self(layers))
     }
 
-    /// How an entity is drawn; `None` if it is hidden or not on the sheet.
-    pub(super) fn pen(&self, entity: &Record<'_>) -> Result<Option<Pen>, DataError> {
-        let name = entity.text(8).unwrap_or("0");
+    /// How an entity is drawn, of a block with the pen with which this is inserted; `None` if it is hidden or
+    /// not on the sheet. Entities of a block on the layer `0` are on the layer on which it is inserted.
+    pub(super) fn pen(
+        &self,
+        entity: &Record<'_>,
+        inserted: Option<&Pen>,
+    ) -> Result<Option<Pen>, DataError> {
+        let around = inserted.map_or(&[][..], |pen| &pen.layers);
+        let name = match (entity.text(8).unwrap_or("0"), around) {
+            ("0", [outer, ..]) => outer,
+            (own, _) => own,
+        };
         let layer = self.0.get(name).copied().unwrap_or(DEFAULT);
         if layer.hidden || entity.flags(60)? == 1 || entity.flags(67)? == 1 {
             return Ok(None);
         }
+        let of_block = inserted.filter(|_| entity.text(62) == Some("0"));
+        let colour = own_colour(entity)?.or(of_block.map(|pen| pen.colour));
+        let mut layers = vec![name.to_owned()];
+        layers.extend(around.iter().filter(|outer| *outer != name).cloned());
         Ok(Some(Pen {
-            colour: own_colour(entity)?.unwrap_or(layer.colour),
-            dashed: match entity.text(6) {
-                None => layer.dashed,
-                Some(name) if name.eq_ignore_ascii_case("BYLAYER") => layer.dashed,
-                Some(name) => is_dashed(name),
+            colour: colour.unwrap_or(layer.colour),
+            dashed: match (entity.text(6), inserted) {
+                (None, _) => layer.dashed,
+                (Some(name), _) if name.eq_ignore_ascii_case("BYLAYER") => layer.dashed,
+                (Some(name), Some(pen)) if name.eq_ignore_ascii_case("BYBLOCK") => pen.dashed,
+                (Some(name), _) => is_dashed(name),
             },
             opacity: 1.0,
-            layers: vec![name.to_owned()],
+            layers,
         }))
     }
 }

@@ -90,7 +90,7 @@ impl Style {
             "stroke-dasharray" => {
                 let digits = value.split(|c: char| c == ',' || c.is_whitespace());
                 let gap = |part: &str| {
-                    part.trim_end_matches(char::is_alphabetic)
+                    part.trim_end_matches(|c: char| c.is_alphabetic() || c == '%')
                         .parse()
                         .unwrap_or(0.0)
                         > 0.0
@@ -165,6 +165,25 @@ fn part(value: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Lengths and percentages are positive in a dash, as SVG has them.
+    #[test]
+    fn dashes_have_units_and_percentages() {
+        for (value, dashed) in [
+            ("2%,1%", true),
+            ("2% 1%", true),
+            ("3,2", true),
+            ("1.5mm", true),
+            ("none", false),
+            ("0", false),
+            ("0%", false),
+            ("", false),
+        ] {
+            let mut style = Style::initial();
+            style.set("stroke-dasharray", value);
+            assert_eq!(style.dashed, dashed, "{value:?}");
+        }
+    }
 
     #[test]
     fn colours_have_an_alpha() {
