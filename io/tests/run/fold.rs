@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 
 /// A vertex with three mountains and a valley: its sectors are 60, 90, 120 and 90 degrees.
-const VERTEX: &str = r#"{
+pub(crate) const VERTEX: &str = r#"{
   "vertices_coords": [[0, 0], [10, 0], [5, 8.660254037844386], [-8.660254037844386, 5], [0, -10]],
   "faces_vertices": [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]],
   "edges_vertices": [[0, 1], [0, 2], [0, 3], [0, 4], [1, 2], [2, 3], [3, 4], [4, 1]],
@@ -20,7 +20,7 @@ const VERTEX: &str = r#"{
 const MIURA: &str = "1 0 0 2 1\n1 2 1 4 0\n1 4 0 4 3\n1 4 3 2 4\n1 2 4 0 3\n1 0 3 0 0\n3 2 1 2 2.5\n2 2 2.5 2 4\n\
                      2 0 1.5 2 2.5\n2 2 2.5 4 1.5\n";
 
-fn folded(folder: &Path, words: &[&str]) -> (String, Summary, FoldVerdict) {
+pub(crate) fn folded(folder: &Path, words: &[&str]) -> (String, Summary, FoldVerdict) {
     let output = run(folder, &[&["fold"], words].concat());
     assert_eq!(code(&output), Some(0), "{}", stderr(&output));
     let out = folder.join("out");
@@ -481,122 +481,4 @@ fn panels_that_end_nearer_are_told() {
     let error = |degrees: f64, strain: f64| degrees.to_radians().hypot(strain);
     let chosen = error(verdict.residual.rms, verdict.strain[0]);
     assert!(chosen < error(nearer, 0.01 * strain), "{said}");
-}
-
-/// A vertex of four creases for which Kawasaki's and Maekawa's theorems hold, with its smallest angle between
-/// two mountains: it closes as panels pass through each other alone.
-const BIG_LITTLE_BIG: &str = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100' \
-    fill='none'><rect width='100' height='100' stroke='#000'/><path stroke='#f00' d='M50 50 H100 M50 50 L100 8.045 \
-    M50 50 L8.045 0'/><path stroke='#00f' d='M50 50 V100'/></svg>";
-
-#[test]
-fn a_vertex_without_an_order_of_layers_is_told() {
-    let dir = tempfile::tempdir().unwrap();
-    fs::write(dir.path().join("blb.svg"), BIG_LITTLE_BIG).unwrap();
-    for contact in [&[][..], &["--contact"]] {
-        let words = [&["blb.svg", "out", "--force"], contact].concat();
-        let (said, _, verdict) = folded(dir.path(), &words);
-        let FlatFoldingLaw::Layers { angle, count, .. } = verdict.unfoldable[0].violates else {
-            panic!("{:?}", verdict.unfoldable)
-        };
-        assert!((angle - 40.0).abs() < 0.01 && count == 1, "{angle}");
-        assert!(
-            said.contains("The vertex ") && said.contains("(big-little-big)"),
-            "{said}"
-        );
-        assert!(!said.contains("in each other's way"), "{said}");
-        assert!(!said.contains("every crease closes, 0"), "{said}");
-    }
-    // With its other small angle's mountain a valley it folds flat.
-    let right = BIG_LITTLE_BIG
-        .replace("M50 50 H100 ", "")
-        .replace("d='M50 50 V100'", "d='M50 50 H100'");
-    let right = right.replace("</svg>", "<path stroke='#f00' d='M50 50 V100'/></svg>");
-    fs::write(dir.path().join("blb.svg"), right).unwrap();
-    let (said, _, verdict) = folded(dir.path(), &["blb.svg", "out", "--force"]);
-    assert_eq!((verdict.unfoldable.len(), verdict.open), (0, 0), "{said}");
-    assert!(said.contains("folded: every crease closes, 0"), "{said}");
-}
-
-/// The last line has three sentences at most, and its numbers are those of the other lines.
-#[test]
-fn the_lines_of_a_folding_agree() {
-    let dir = tempfile::tempdir().unwrap();
-    let blocked =
-        "1 0 0 2 0\n1 2 0 2 2\n1 2 2 0 2\n1 0 2 0 0\n3 0 0 2 2\n2 2 0 0 2\n2 1 0 1 2\n3 0 1 2 1\n";
-    fs::write(dir.path().join("blocked.cp"), blocked).unwrap();
-    fs::write(dir.path().join("blb.svg"), BIG_LITTLE_BIG).unwrap();
-    fs::write(dir.path().join("vertex.fold"), VERTEX).unwrap();
-    for words in [
-        &["blocked.cp", "out", "--force"][..],
-        &["blocked.cp", "out", "--force", "--contact"],
-        &["blb.svg", "out", "--force", "--contact"],
-        &["vertex.fold", "out", "--force", "--order", "0; 1 2 3"],
-    ] {
-        let (said, summary, verdict) = folded(dir.path(), words);
-        let last = said.lines().last().unwrap();
-        assert!(
-            last.starts_with("folded: ") && last.split(". ").count() <= 3,
-            "{said}"
-        );
-        let residual = summary.ending.residuals.folding.unwrap();
-        assert!(
-            (residual.rms - verdict.residual.rms).abs() < 1e-6,
-            "{residual:?} {verdict:?}"
-        );
-        let rms = format!("{:.1} degrees rms", residual.rms);
-        assert!(last.contains(&rms), "{rms}: {said}");
-        let of_run = format!(
-            "by {:.2} degrees at most and {:.2} rms",
-            residual.largest, residual.rms
-        );
-        assert!(said.contains(&of_run), "{of_run}: {said}");
-        // Panels have turned through each other where a crease is folded by more than 180 degrees alone.
-        let through = verdict
-            .furthest
-            .is_some_and(|crease| crease.angle.abs() > 180.0);
-        assert_eq!(
-            said.contains("turned through"),
-            verdict.open > 0 && through,
-            "{said}"
-        );
-    }
-}
-
-/// A sheet has the size that its file says, and 0.2 m where it says none.
-#[test]
-fn the_size_of_a_file_with_a_unit_is_kept() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path();
-    fs::write(path.join("blb.svg"), BIG_LITTLE_BIG).unwrap();
-    let in_metres = VERTEX.replace(
-        "\"vertices_coords\"",
-        "\"frame_unit\": \"cm\", \"vertices_coords\"",
-    );
-    fs::write(path.join("cm.fold"), in_metres).unwrap();
-    fs::write(path.join("vertex.fold"), VERTEX).unwrap();
-    let made = run(
-        path,
-        &["mesh", "blb.svg", "-o", "made.fold", "--spacing", "50mm"],
-    );
-    assert_eq!(code(&made), Some(0), "{}", stderr(&made));
-    for (name, expected) in [
-        ("blb.svg", 0.1),
-        ("made.fold", 0.1),
-        ("cm.fold", 0.1866),
-        ("vertex.fold", 0.2),
-    ] {
-        let output = run(path, &["fold", name, "out", "--force", "--part", "0.1"]);
-        assert_eq!(code(&output), Some(0), "{}", stderr(&output));
-        let recording = Recording::read(&path.join("out")).unwrap();
-        let places = recording.sheet.positions().as_chunks::<3>().0;
-        let side = |k: usize| {
-            let along = || places.iter().map(|p| p[k]);
-            along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
-        };
-        let longest = side(0).max(side(1));
-        assert!((longest - expected).abs() < 1e-4, "{name}: {longest}");
-        let is_told = stderr(&output).contains("the file has no unit of length");
-        assert_eq!(is_told, name == "vertex.fold", "{}", stderr(&output));
-    }
 }
