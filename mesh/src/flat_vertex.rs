@@ -207,7 +207,7 @@ mod tests {
         let n = sectors.len();
         let mut places = vec![0_i64];
         for (k, sector) in sectors.iter().enumerate() {
-            let sign = if k % 2 == 0 { 1 } else { -1 };
+            let sign = if k.is_multiple_of(2) { 1 } else { -1 };
             places.push(places[k] + sign * i64::from(*sector));
         }
         assert_eq!(places[n], 0, "Kawasaki");
@@ -236,7 +236,8 @@ mod tests {
         permuted(&mut heights, 0, &mut |height| {
             if !crossed(height) {
                 // Every second sector is seen from behind.
-                let is_mountain = |k: usize| (height[(k + 1) % n] > height[k]) == (k % 2 == 0);
+                let is_mountain =
+                    |k: usize| (height[(k + 1) % n] > height[k]) == k.is_multiple_of(2);
                 found.insert((0..n).map(|k| u32::from(is_mountain(k)) << k).sum());
             }
         });

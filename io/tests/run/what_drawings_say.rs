@@ -199,19 +199,19 @@ fn blocks_are_inserted() {
         places.any(|p| (p[0] - x * MM).hypot(p[1] - y * MM) < 1e-9)
     };
     // The point (10, 0) comes to (100, 50), all is scaled by 2 and 3, then turned by 90 degrees.
-    let part = block("Part", ["10", "0"], &triangle("0"));
+    let part = [block("Part", ["10", "0"], &triangle("0"))];
     let placed = [(10, "100"), (20, "50"), (41, "2"), (42, "3"), (50, "90")];
-    let (mesh, said) = made(&[part.clone()], &insert("PART", "0", &placed));
+    let (mesh, said) = made(&part, &insert("PART", "0", &placed));
     assert!((area(&mesh) / MM / MM - 900.0).abs() < 1e-6, "{said}");
     for corner in [[100.0, 30.0], [100.0, 110.0 - 20.0], [70.0, 30.0]] {
         assert!(has(&mesh, corner), "{corner:?} {:?}", mesh.positions);
     }
     // Mirrored by a factor, and as it is seen from below.
     let mirrored = [(10, "0"), (20, "0"), (41, "-1")];
-    let (mesh, _) = made(&[part.clone()], &insert("Part", "0", &mirrored));
+    let (mesh, _) = made(&part, &insert("Part", "0", &mirrored));
     assert!(has(&mesh, [10.0, 0.0]) && has(&mesh, [-20.0, 0.0]) && has(&mesh, [10.0, 10.0]));
     let below = [(10, "5"), (20, "0"), (210, "0"), (220, "0"), (230, "-1")];
-    let (mesh, _) = made(&[part.clone()], &insert("Part", "0", &below));
+    let (mesh, _) = made(&part, &insert("Part", "0", &below));
     assert!(has(&mesh, [5.0, 0.0]) && has(&mesh, [-25.0, 0.0]) && has(&mesh, [5.0, 10.0]));
     // An array of 3 by 2 in a block that is inserted twice, larger.
     let rows = [
@@ -225,7 +225,7 @@ fn blocks_are_inserted() {
     let all = block("All", ["0", "0"], &insert("Part", "0", &rows));
     let two = insert("All", "0", &[(10, "0"), (20, "0")])
         + &insert("All", "0", &[(10, "0"), (20, "100"), (41, "2"), (42, "2")]);
-    let (mesh, said) = made(&[part.clone(), all], &two);
+    let (mesh, said) = made(&[&part[..], &[all]].concat(), &two);
     assert!(said.contains("in 12 pieces"), "{said}");
     assert!(
         (area(&mesh) / MM / MM - 6.0 * 150.0 * 5.0).abs() < 1e-6,
