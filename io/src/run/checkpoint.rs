@@ -105,7 +105,8 @@ pub(crate) struct RunProgress {
 /// Who takes the steps of a run, and so who can continue it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum StepsBy {
-    /// The scene says all of it. A recording that has ended, and during which nothing was changed, is such a run.
+    /// The scene says all of it. A recording that has ended, and during which nothing was changed, is such a
+    /// run.
     #[default]
     Scene,
     /// A program, which may have been about to change something.

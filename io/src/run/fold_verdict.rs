@@ -184,7 +184,7 @@ impl FoldVerdict {
                 "{} open by more than {} degrees, most by {largest:.0}{} {crease}{held}",
                 counted(open, "crease stays", "creases stay"),
                 Self::OPEN,
-                match crease.angle.abs() > 180.0 {
+                match crease.angle.abs() > 180.0 + Self::OPEN {
                     true => " (its panels have turned through each other)",
                     false => "",
                 }

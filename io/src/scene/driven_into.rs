@@ -7,8 +7,8 @@ use super::{Key, Problem, Scene};
 use isosheet_dynamics::StepError;
 use isosheet_mesh::wording::brief;
 
-/// What is wrong with a step of `h` seconds that failed and at whose end a vertex of a support that moves is to be inside
-/// an obstacle: it cannot give way. Nothing if none is.
+/// What is wrong with a step of `h` seconds that failed and at whose end a vertex of a support that moves is
+/// to be inside an obstacle: it cannot give way. Nothing if none is.
 pub(super) fn driven_into(
     scene: &Scene,
     under_way: &UnderWay,

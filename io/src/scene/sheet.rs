@@ -142,8 +142,9 @@ pub enum Isometry {
         #[serde(default)]
         poisson: Option<f64>,
         /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. If left out, that of
-        /// the material, or the largest of those of patches; without one 0.05. The limit `m` is one of the norm of
-        /// Green's strain: edges become longer by a part of `sqrt(1 + 2 m) - 1` at most, shorter by `1 - sqrt(1 - 2 m)`.
+        /// the material, or the largest of those of patches; without one 0.05. The limit `m` is one of the
+        /// norm of Green's strain: edges become longer by a part of `sqrt(1 + 2 m) - 1` at most, shorter by
+        /// `1 - sqrt(1 - 2 m)`.
         #[serde(default)]
         limit: Option<f64>,
     },

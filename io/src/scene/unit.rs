@@ -41,8 +41,8 @@ pub struct UnitRange {
     pub usual: Option<UsualSize>,
 }
 
-/// What the numbers of a unit hardly ever exceed with the sheets of this world: larger ones are mostly meant in another
-/// unit.
+/// What the numbers of a unit hardly ever exceed with the sheets of this world: larger ones are mostly meant
+/// in another unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UsualSize {
     /// The largest size that is usual.

@@ -3,7 +3,8 @@
 use crate::fold::{VERTEX, folded};
 use crate::{code, run, stderr};
 use isosheet_io::mesh::FlatFoldingLaw;
-use isosheet_io::run::Recording;
+use isosheet_io::read_json;
+use isosheet_io::run::{FoldVerdict, Recording, Summary};
 use std::fs;
 
 /// A vertex of four creases for which Kawasaki's and Maekawa's theorems hold, with its smallest angle between
@@ -77,13 +78,46 @@ fn the_lines_of_a_folding_agree() {
         // Panels have turned through each other where a crease is folded by more than 180 degrees alone.
         let through = verdict
             .furthest
-            .is_some_and(|crease| crease.angle.abs() > 180.0);
+            .is_some_and(|crease| crease.angle.abs() > 180.0 + FoldVerdict::OPEN);
         assert_eq!(
             said.contains("turned through"),
             verdict.open > 0 && through,
             "{said}"
         );
     }
+}
+
+/// Rigid panels fold this vertex flat with two creases to their wrong sides: these are 360 degrees from their
+/// angles, not 0, in the summary as in the verdict.
+#[test]
+fn the_summary_follows_creases_as_the_verdict_does() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("blb.svg"), BIG_LITTLE_BIG).unwrap();
+    let scene = "version = 1\n[sheet]\nmesh = { file = { path = \"blb.svg\", polygons = \"triangulate\" } }\n\
+                 material = \"office paper\"\nisometry = \"rods\"\nbending = \"none\"\ndamping = 20.0\n\
+                 [folding]\ntime = 1.0\nstiffness = 0.1\n[stop]\ntime = 2.0\n";
+    fs::write(dir.path().join("scene.toml"), scene).unwrap();
+    let output = run(dir.path(), &["simulate", "scene.toml", "-o", "out"]);
+    assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    let out = dir.path().join("out");
+    let summary: Summary = read_json(&out.join("summary.json")).unwrap();
+    let residual = summary.ending.residuals.folding.unwrap();
+    assert!((residual.largest - 360.0).abs() < 0.1, "{residual:?}");
+    assert_eq!(residual.wrong_side, 2);
+    // Two of four creases: 360 / 2^1/2.
+    assert!(
+        (residual.rms - 360.0 / 2.0_f64.sqrt()).abs() < 0.1,
+        "{residual:?}"
+    );
+    let verdict = FoldVerdict::of(&Recording::read(&out).unwrap()).unwrap();
+    assert!(
+        (residual.rms - verdict.residual.rms).abs() < 1e-9,
+        "{verdict:?}"
+    );
+    // They lie on each other on the other side, and have not turned through each other.
+    let words = verdict.in_words(None).concat();
+    assert!(words.contains("2 creases stay open"), "{words}");
+    assert!(!words.contains("turned through"), "{words}");
 }
 
 /// A sheet has the size that its file says, and 0.2 m where it says none.

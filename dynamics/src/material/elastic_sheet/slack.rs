@@ -178,7 +178,8 @@ mod tests {
         force: 0.5,
     };
 
-    /// A bend of the curvature `k` costs `D k^2 / 2`; what a tension `s` gains by its slack is at most `2 D k^2`.
+    /// A bend of the curvature `k` costs `D k^2 / 2`; what a tension `s` gains by its slack is at most `2 D
+    /// k^2`.
     #[test]
     fn a_tension_leaves_no_more_slack_than_a_bend_is_worth() {
         let (rigidity, size) = (5e-4, 0.02);
