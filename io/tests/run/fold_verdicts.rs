@@ -18,7 +18,7 @@ fn a_vertex_without_an_order_of_layers_is_told() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("blb.svg"), BIG_LITTLE_BIG).unwrap();
     for contact in [&[][..], &["--contact"]] {
-        let words = [&["blb.svg", "out", "--force"], contact].concat();
+        let words = [&["blb.svg", "--out", "out", "--force"], contact].concat();
         let (said, _, verdict) = folded(dir.path(), &words);
         let FlatFoldingLaw::Layers { angle, count, .. } = verdict.unfoldable[0].violates else {
             panic!("{:?}", verdict.unfoldable)
@@ -37,7 +37,7 @@ fn a_vertex_without_an_order_of_layers_is_told() {
         .replace("d='M50 50 V100'", "d='M50 50 H100'");
     let right = right.replace("</svg>", "<path stroke='#f00' d='M50 50 V100'/></svg>");
     fs::write(dir.path().join("blb.svg"), right).unwrap();
-    let (said, _, verdict) = folded(dir.path(), &["blb.svg", "out", "--force"]);
+    let (said, _, verdict) = folded(dir.path(), &["blb.svg", "--out", "out", "--force"]);
     assert_eq!((verdict.unfoldable.len(), verdict.open), (0, 0), "{said}");
     assert!(said.contains("folded: every crease closes, 0"), "{said}");
 }
@@ -52,10 +52,17 @@ fn the_lines_of_a_folding_agree() {
     fs::write(dir.path().join("blb.svg"), BIG_LITTLE_BIG).unwrap();
     fs::write(dir.path().join("vertex.fold"), VERTEX).unwrap();
     for words in [
-        &["blocked.cp", "out", "--force"][..],
-        &["blocked.cp", "out", "--force", "--contact"],
-        &["blb.svg", "out", "--force", "--contact"],
-        &["vertex.fold", "out", "--force", "--order", "0; 1 2 3"],
+        &["blocked.cp", "--out", "out", "--force"][..],
+        &["blocked.cp", "--out", "out", "--force", "--contact"],
+        &["blb.svg", "--out", "out", "--force", "--contact"],
+        &[
+            "vertex.fold",
+            "--out",
+            "out",
+            "--force",
+            "--order",
+            "0; 1 2 3",
+        ],
     ] {
         let (said, summary, verdict) = folded(dir.path(), words);
         let last = said.lines().last().unwrap();
@@ -143,7 +150,10 @@ fn the_size_of_a_file_with_a_unit_is_kept() {
         ("cm.fold", 0.1866),
         ("vertex.fold", 0.2),
     ] {
-        let output = run(path, &["fold", name, "out", "--force", "--part", "0.1"]);
+        let output = run(
+            path,
+            &["fold", name, "--out", "out", "--force", "--part", "0.1"],
+        );
         assert_eq!(code(&output), Some(0), "{}", stderr(&output));
         let recording = Recording::read(&path.join("out")).unwrap();
         let places = recording.sheet.positions().as_chunks::<3>().0;
