@@ -143,7 +143,7 @@ impl FoldVerdict {
         })
     }
 
-    /// Sentences, the most telling first: what the creases do, what the panels do, and what stands against the folding.
+    /// Sentences, the most telling first: what the creases do, what the panels do, what stands against the folding.
     /// `rigid` is how far rigid panels close, where that was tried.
     pub fn in_words(&self, rigid: Option<&FoldResidual>) -> Vec<String> {
         let mut words = vec![self.creases_in_words(), self.panels_in_words(rigid)];
