@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn a_pair_that_is_not_named_is_refused_at_the_start() {
-        let sheet = generate::regular_square(2, 1.0).unwrap();
+        let sheet = generate::isotropic_square(2, 1.0).unwrap();
         let far = [VertexId(0), VertexId(24)];
         let start = |pairs: Vec<[VertexId; 2]>, named: Vec<[VertexId; 2]>| {
             let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).unwrap();
