@@ -39,6 +39,7 @@ mod carried;
 mod changed;
 mod chart;
 mod contact;
+mod courses;
 mod creases;
 mod curl;
 mod direction;

@@ -1,7 +1,7 @@
 //! Supports that are driven into obstacles.
 
+use super::courses::courses;
 use super::engine_problem::is_without_room;
-use super::too_fast::courses;
 use super::under_way::UnderWay;
 use super::{Key, Problem, Scene};
 use isosheet_dynamics::StepError;
