@@ -32,7 +32,7 @@ pub(super) fn check_couplings(model: &SheetModel, state: &State) -> Result<(), S
             .flatten()
             .find(|v| v.index() >= blocks.vertices);
         let unknown = out_of_range
-            .map(|v| format!("vertex {v} in its couplings"))
+            .map(|v| format!("{v} in its couplings"))
             .or(blocks.unknown);
         if let Some(block) = unknown {
             return Err(SimulationError::Coupling { index, block });
@@ -64,7 +64,7 @@ impl NamedBlocks {
 
 impl HessianSink for NamedBlocks {
     fn add_vertex(&mut self, v: VertexId, _: &Matrix3<f64>) {
-        self.require(v.index() < self.vertices, || format!("vertex {v}"));
+        self.require(v.index() < self.vertices, || format!("{v}"));
     }
 
     fn add_edge(&mut self, e: EdgeId, _: &Matrix3<f64>) {
@@ -73,12 +73,12 @@ impl HessianSink for NamedBlocks {
 
     fn add_pair(&mut self, a: VertexId, b: VertexId, _: &Matrix3<f64>) {
         let is_known = self.named.contains(&sorted([a, b]));
-        self.require(is_known, || format!("the pair of the vertices {a} and {b}"));
+        self.require(is_known, || format!("the pair of {a} and {b}"));
     }
 
     fn add_square(&mut self, _: f64, gradient: &[(VertexId, Vector3<f64>)]) {
         for (v, _) in gradient {
-            self.require(v.index() < self.vertices, || format!("vertex {v}"));
+            self.require(v.index() < self.vertices, || format!("{v}"));
         }
     }
 }
@@ -149,7 +149,7 @@ mod tests {
         let Some(SimulationError::Coupling { index: 0, block }) = found else {
             panic!("{found:?}")
         };
-        assert!(block.contains("v0") && block.contains("v24"), "{block}");
+        assert!(block == "the pair of vertex 0 and vertex 24", "{block}");
         let found = start(vec![], vec![[VertexId(0), VertexId(25)]]);
         assert!(matches!(found, Some(SimulationError::Coupling { .. })));
     }
