@@ -144,10 +144,13 @@ impl fmt::Display for FlatFoldingLaw {
                 crimps,
             } => {
                 if crimps > 0 {
-                    let angles = crate::wording::counted(crimps, "smaller angle", "smaller angles");
+                    let (angles, are) = match crimps {
+                        1 => ("1 smaller angle".to_owned(), "is"),
+                        more => (format!("{more} smaller angles"), "are"),
+                    };
                     write!(
                         f,
-                        "once {angles} between a mountain and a valley are folded, "
+                        "once {angles} between a mountain and a valley {are} folded, "
                     )?;
                 }
                 let kind = if are_mountains {

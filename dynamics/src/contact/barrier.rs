@@ -162,7 +162,8 @@ impl BarrierPotential {
 /// The acceleration that contact has to withstand, metres per second squared, see [`Stiffness::Automatic`].
 fn load(model: &SheetModel, state: &State) -> f64 {
     let forces = largest_acceleration(model, state);
-    if constant_acceleration(model, state).is_some() && forces.is_finite() {
+    // Where nothing is free to move, no force says how hard things will press once it is.
+    if constant_acceleration(model, state).is_some() && forces.is_finite() && forces > 0.0 {
         return forces;
     }
     let LoadScale {

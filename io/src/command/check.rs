@@ -157,8 +157,8 @@ fn read(path: &Path, polygons: Polygons) -> Result<MeshFile, Failure> {
         let failure = Failure::of(Code::Input, &error);
         match error.problem {
             MeshFileProblem::Polygon(_) => failure.remedy(
-                "`--fix -o FILE2` cuts polygons into triangles: their new edges are lines along which the sheet can \
-                 fold",
+                "of a crease pattern `isosheet fold FILE` keeps the panels flat; `--fix -o FILE2` cuts polygons into \
+                 triangles, whose new edges are lines along which the sheet can fold",
             ),
             _ => failure,
         }

@@ -22,7 +22,7 @@ pub(super) struct Composing {
     #[arg(short, long, value_name = "DIR", value_parser = folder)]
     out: Option<PathBuf>,
     /// The folder, as commands had it up to version 0.1
-    #[arg(hide = true, conflicts_with = "out", value_parser = folder)]
+    #[arg(hide = true, value_name = "OUT", conflicts_with = "out", value_parser = folder)]
     old_out: Option<PathBuf>,
     /// What the sheet is made of: a name of the page "Materials" of the book [default: see below]
     #[arg(long, value_name = "NAME", value_parser = material)]

@@ -169,13 +169,11 @@ impl FoldVerdict {
         let held = held.unwrap_or_default();
         let creases = match (self.open, &self.furthest) {
             (0, _) | (_, None) => {
-                let only = match (self.unfoldable.is_empty(), self.passing) {
+                let only = match self.unfoldable.is_empty() {
                     _ if end > Self::STRETCHES => {
                         ", but only with stretched panels, which is no shape of paper"
                     }
-                    (false, Some(_)) => {
-                        ", but only as panels pass through each other, which no paper does"
-                    }
+                    false => ", but only as panels pass through each other, which no paper does",
                     _ => "",
                 };
                 format!("every crease closes{only}")

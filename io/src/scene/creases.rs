@@ -139,6 +139,9 @@ pub enum PatternEdges {
     Zigzags,
 }
 
+/// Half a turn in radians, rounded up to as few digits as people give.
+const HALF_TURN: f64 = 3.15;
+
 /// Angles of creases that seem to be radians: none is larger than half a turn of them, and one is not zero.
 pub(super) fn in_radians(creases: &[Crease]) -> Option<Warning> {
     let sizes = creases.iter().enumerate().map(|(k, crease)| {
@@ -146,7 +149,7 @@ pub(super) fn in_radians(creases: &[Crease]) -> Option<Warning> {
         (k, angles.into_iter().map(f64::abs).fold(0.0, f64::max))
     });
     let (k, largest) = sizes.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (largest > 0.0 && largest <= std::f64::consts::PI).then(|| {
+    (largest > 0.0 && largest <= HALF_TURN).then(|| {
         let key = Key::root().name("crease").entry(k).name("angle");
         let message = format!(
             "no crease folds by more than {} degrees, the size of `{key}`: in radians that is {} degrees",

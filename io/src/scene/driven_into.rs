@@ -20,15 +20,19 @@ pub(super) fn driven_into(
     }
     let facts = &under_way.facts;
     let end = under_way.simulation.state().t + h;
+    // Contact keeps a gap, so that a vertex on the surface is inside as well.
+    let half_thickness = 0.5 * scene.largest_thickness();
     let mut deepest: Option<(Key, usize, f64)> = None;
     for course in courses(scene, under_way, h) {
         for [from, to] in &course.points {
             for (k, obstacle) in facts.obstacles.iter().enumerate() {
-                let depth = -obstacle.signed_distance(end, &to.coords).value;
-                let least = deepest.as_ref().map_or(0.0, |(.., depth)| *depth);
+                let depth = half_thickness - obstacle.signed_distance(end, &to.coords).value;
+                let deeper = deepest
+                    .as_ref()
+                    .map_or(depth >= 0.0, |(.., least)| depth > *least);
                 // The origin of an obstacle that moves is inside of it, and always was.
                 let was_outside = obstacle.signed_distance(end - h, &from.coords).value > 0.0;
-                if depth > least && was_outside {
+                if deeper && was_outside {
                     deepest = Some((course.key.clone(), k, depth));
                 }
             }
@@ -36,7 +40,7 @@ pub(super) fn driven_into(
     }
     let (key, obstacle, depth) = deepest?;
     let message = format!(
-        "{} is driven into `{}`: at {} s, the end of the step, one of its vertices is to be {} m inside; {}",
+        "{} is driven into `{}`: at {} s, the end of the step, one of its vertices is to be {} m inside, thickness taken off; {}",
         facts.origins.called(&key),
         facts.origins.obstacle_called(obstacle),
         brief(end),

@@ -239,9 +239,22 @@ pose = { position = [0, 0, -0.03] }
 time = 0.6
 ";
     fs::write(dir.join("floor.toml"), scene).unwrap();
-    let failed = run(dir, &["simulate", "floor.toml"]);
-    let said = stderr(&failed);
-    assert_eq!(code(&failed), Some(1), "{said}");
+    let refused = |edits: &[&str]| {
+        let failed = run(dir, &[&["simulate", "floor.toml"], edits].concat());
+        let said = stderr(&failed);
+        assert_eq!(code(&failed), Some(1), "{said}");
+        said
+    };
+    // Down onto the floor is too far: contact keeps a gap.
+    let onto = [
+        "--set",
+        "support.0.hold.moving_pin.z.ramp.to=-0.03",
+        "--out",
+        "onto",
+    ];
+    let said = refused(&onto);
+    assert!(said.contains("is driven into `obstacle[0]`"), "{said}");
+    let said = refused(&[]);
     // At 0.2 m/s the floor is reached at 0.15 s; the step ends 1/60 s after that.
     for part in [
         "`support[0].hold.moving_pin` is driven into `obstacle[0]`: at 0.167 s",

@@ -262,25 +262,46 @@ fn what_blocks_draw_is_bounded() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let refused = |blocks: &[String], entities: &str| {
-        let text = dxf(blocks, entities);
-        fs::write(dir.join("a.dxf"), &text).unwrap();
-        (refused(dir, "a.dxf", &["--spacing", "20mm"], 3), text.len())
+        fs::write(dir.join("a.dxf"), dxf(blocks, entities)).unwrap();
+        refused(dir, "a.dxf", &["--spacing", "20mm"], 3)
     };
+    let too_much = "the blocks that are inserted of the file would take more than 64 MiB";
     let at = [(10, "0"), (20, "0")];
     let ten =
         |name: &str, inner: &str| block(name, ["0", "0"], &insert(inner, "0", &at).repeat(10));
     let names = ["a", "b", "c", "d", "e", "f", "g", "h", "i"];
     let mut blocks = vec![block("a", ["0", "0"], &triangle("0"))];
     blocks.extend(names.windows(2).map(|pair| ten(pair[1], pair[0])));
-    let (said, length) = refused(&blocks, &insert("i", "0", &at));
-    assert!(
-        said.contains(&format!("more than {} entities", 8 * length)),
-        "{said}"
-    );
+    let said = refused(&blocks, &insert("i", "0", &at));
+    assert!(said.contains(too_much), "{said}");
     let many = [(10, "0"), (20, "0"), (70, "30000"), (71, "30000")];
-    let (said, _) = refused(&[block("a", ["0", "0"], "")], &insert("a", "0", &many));
-    assert!(said.contains("the most for a file of its length"), "{said}");
-    let (said, _) = refused(
+    let said = refused(&[block("a", ["0", "0"], "")], &insert("a", "0", &many));
+    assert!(said.contains(too_much), "{said}");
+    // A line of 3 000 corners is one entity, and not one line.
+    let corners: String = (0..3000)
+        .map(|k| groups(&[(10, &k.to_string()), (20, "0")]))
+        .collect();
+    let long = groups(&[(0, "LWPOLYLINE"), (8, "0"), (90, "3000")]) + &corners;
+    let many = [(10, "0"), (20, "0"), (70, "100"), (71, "100"), (45, "9")];
+    let said = refused(&[block("a", ["0", "0"], &long)], &insert("a", "0", &many));
+    assert!(said.contains(too_much), "{said}");
+    // A short file may have many parts.
+    let parts = [
+        (10, "0"),
+        (20, "0"),
+        (70, "45"),
+        (71, "45"),
+        (44, "40"),
+        (45, "15"),
+    ];
+    let text = dxf(
+        &[block("a", ["0", "0"], &triangle("0"))],
+        &insert("a", "0", &parts),
+    );
+    fs::write(dir.join("a.dxf"), text).unwrap();
+    let (_, said) = meshed(dir, "a.dxf", &["--spacing", "50mm"]);
+    assert!(said.contains("in 2025 pieces"), "{said}");
+    let said = refused(
         &[block("a", ["0", "0"], &insert("a", "0", &at))],
         &insert("a", "0", &at),
     );

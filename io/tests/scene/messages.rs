@@ -587,6 +587,7 @@ fn numbers_that_are_hardly_meant_are_told() {
             "`sheet.start.velocity[2]` is 500 m/s",
         ),
         ("crease.0.angle=0.8", "in radians that is 45.8 degrees"),
+        ("crease.0.angle=3.1416", "in radians that is 180 degrees"),
         (
             "crease.0.angle={smooth_step={to=-3.14,end=1}}",
             "in radians that is 180 degrees",

@@ -314,3 +314,33 @@ fn what_cannot_come_and_go_is_said_at_the_start() {
         assert!(said.contains(part), "{wrong}: {said}");
     }
 }
+
+/// Where nothing is free at the start, the barrier is as stiff as without weight, and the sheet lands when it is let go.
+#[test]
+fn a_sheet_that_is_held_whole_may_fall_later() {
+    let mut live = live(&format!(
+        "{SQUARE}
+        [[support]]
+        at = \"all\"
+        until = 0.05
+        [[obstacle]]
+        shape = \"half_space\"
+        pose = {{ position = [0, 0, -0.02] }}
+        [contact]
+        self_contact = true
+        [forces]
+        gravity = [0, 0, -9.81]
+        [stop]
+        time = 0.3"
+    ));
+    for _ in 0..30 {
+        live.step(0.01).unwrap();
+    }
+    let heights = live.positions();
+    let lowest = heights
+        .iter()
+        .skip(2)
+        .step_by(3)
+        .fold(f64::INFINITY, |m, z| m.min(*z));
+    assert!((-0.02..-0.018).contains(&lowest), "{lowest}");
+}

@@ -12,6 +12,7 @@ mod spline;
 use super::lines::{Drawing, Pen};
 use super::unit::DrawingUnit;
 use crate::format::DataError;
+use crate::format::allowance::Allowance;
 use blocks::{Blocks, Place, compose};
 use entity::Entity;
 use groups::{Record, section};
@@ -45,8 +46,7 @@ pub(in crate::format) fn parse(
         layers: Layers::of(&records)?,
         blocks: Blocks::of(&records)?,
         drawing,
-        entities: 0,
-        most: COPIES * bytes.len() / SHORTEST,
+        allowance: Allowance::of(bytes.len()),
     };
     let place = [[scale, 0.0], [0.0, scale], [0.0, 0.0]];
     reader.entities(section(&records, "ENTITIES")?, place, &[])?;
@@ -56,21 +56,15 @@ pub(in crate::format) fn parse(
 /// Blocks in blocks are followed so deep.
 const DEEPEST: usize = 200;
 
-/// Bytes of the shortest line that a file can write: six groups of a digit and an end of the line each, with
-/// their numbers.
-const SHORTEST: usize = 32;
-
-/// Insertions may draw so many times the lines that a file of the length can write.
-const COPIES: usize = 256;
+/// Bytes of an entity that is drawn, besides its curves and the names of its layers.
+const ENTITY: usize = 256;
 
 struct Reader<'a, 'b> {
     layers: Layers<'a>,
     blocks: Blocks<'a, 'b>,
     drawing: Drawing,
-    /// How many entities have been drawn.
-    entities: usize,
-    /// How many are drawn at most.
-    most: usize,
+    /// What is left for what blocks become.
+    allowance: Allowance,
 }
 
 impl<'a, 'b> Reader<'a, 'b> {
@@ -90,10 +84,10 @@ impl<'a, 'b> Reader<'a, 'b> {
                     .take_while(|r| r.kind == "VERTEX")
                     .collect();
             }
-            self.entities += 1;
-            if self.entities > self.most || inserts.len() > DEEPEST {
-                return Err(self.too_many(record));
+            if inserts.len() > DEEPEST {
+                return Err(too_deep(record));
             }
+            self.spend(ENTITY, record)?;
             let Some(pen) = self.layers.pen(record, inserts.last())? else {
                 self.drawing.leave_out("hidden entity");
                 continue;
@@ -108,6 +102,9 @@ impl<'a, 'b> Reader<'a, 'b> {
             };
             match entity.curves()? {
                 Some(curves) => {
+                    let names: usize = pen.layers.iter().map(String::len).sum();
+                    // A list that grows has up to twice the room.
+                    self.spend(names + 2 * size_of_val(&curves[..]), record)?;
                     let curves = curves.iter().map(|c| c.transformed(place));
                     self.drawing.push(pen, curves);
                 }
@@ -145,29 +142,22 @@ impl<'a, 'b> Reader<'a, 'b> {
         let (entities, places) = (block.entities, block.places(insert)?);
         let inserts = [inserts, &[pen]].concat();
         for copy in places {
-            self.entities += 1;
-            if self.entities > self.most {
-                return Err(self.too_many(insert));
-            }
+            self.spend(ENTITY, insert)?;
             self.entities(entities, compose(place, copy), &inserts)?;
         }
         Ok(())
     }
 
-    fn too_many(&self, record: &Record<'_>) -> DataError {
-        let Record { kind, line, .. } = record;
-        let message = match self.entities > self.most {
-            true => format!(
-                "line {line}: {kind}: with the blocks that are inserted the drawing has more than {} entities, the most for \
-                 a file of its length",
-                self.most
-            ),
-            false => format!(
-                "line {line}: {kind}: blocks are inserted in each other more than {DEEPEST} deep"
-            ),
-        };
-        DataError::new(message, "explode the blocks before the export").at(*line)
+    fn spend(&mut self, bytes: usize, record: &Record<'_>) -> Result<(), DataError> {
+        let spent = self.allowance.spend(bytes, "the blocks that are inserted");
+        spent.map_err(|error| error.at(record.line))
     }
+}
+
+fn too_deep(Record { kind, line, .. }: &Record<'_>) -> DataError {
+    let message =
+        format!("line {line}: {kind}: blocks are inserted in each other more than {DEEPEST} deep");
+    DataError::new(message, "explode the blocks before the export").at(*line)
 }
 
 /// The length of a unit, metres; `None` where the file does not say it.
