@@ -150,7 +150,7 @@ mod tests {
             panic!("{found:?}")
         };
         assert!(block == "the pair of vertex 0 and vertex 24", "{block}");
-        let found = start(vec![], vec![[VertexId(0), VertexId(25)]]);
+        let found = start(vec![], vec![[VertexId(0), VertexId(1000)]]);
         assert!(matches!(found, Some(SimulationError::Coupling { .. })));
     }
 }

@@ -143,6 +143,17 @@ fn one_drawing_in_many_units_is_one_mesh() {
             vec![],
         ),
         (
+            "css",
+            svg(&format!(
+                "<style>.moved {{ transform: translate(20px, 10px) }} .half {{ transform: rotate(90deg) scale(.5) }}</style>\
+                 <g class='moved' transform='nonsense'><g style='transform: translate(-20px,-10px)'>\
+                 <g class='half' style='transform-origin: 0 0'><g transform='scale(2) rotate(-90)'>\
+                 <g transform='rotate(180)' transform-origin='30 40'><g transform='translate(60 80) rotate(180)'>\
+                 {shapes}</g></g></g></g></g></g>"
+            )),
+            vec![],
+        ),
+        (
             "use",
             svg(&format!(
                 "<defs><g id='a'>{shapes}</g></defs><use href='#a' x='3' transform='translate(-3)'/>"
@@ -614,6 +625,10 @@ fn broken_shapes_are_refused() {
         ("<circle r='' stroke='black'/>", "`r` is \"\""),
         ("<svg viewBox='0 0 a b'/>", "`viewBox` is \"0 0 a b\""),
         ("<g transform='turn(1)'/>", "no transform"),
+        (
+            "<g transform='scale(2)' transform-origin='50% center'/>",
+            "which is no point of two numbers",
+        ),
     ] {
         let text =
             format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'>\n{shape}</svg>");

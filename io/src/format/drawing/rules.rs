@@ -19,8 +19,8 @@ const WORDS: [(LineClass, &[&str]); 6] = [
     (
         LineClass::Cut,
         &[
-            "cut", "cuts", "cutting", "outline", "contour", "knife", "boundary", "border", "edge",
-            "edges", "hole", "holes", "slit", "slits", "slot", "slots",
+            "cut", "cuts", "cutting", "outline", "contour", "knife", "boundary", "border", "hole",
+            "holes", "slit", "slits", "slot", "slots",
         ],
     ),
     (LineClass::Mountain, &["mountain", "mountains"]),
@@ -30,6 +30,7 @@ const WORDS: [(LineClass, &[&str]); 6] = [
         &[
             "crease",
             "creases",
+            "unassigned",
             "fold",
             "folds",
             "folding",

@@ -172,9 +172,15 @@ impl Reader<'_, '_> {
             depth: around.depth + 1,
             ..around.clone()
         };
-        if let Some(text) = node.attribute("transform") {
+        if let Some(text) = &state.style.transform {
             let Some(matrix) = matrix::parse(text) else {
                 return Err(wrong(node, &format!("{text:?} is no transform")));
+            };
+            let origin = state.style.transform_origin.as_deref().unwrap_or("0 0");
+            let Some(matrix) = matrix::about(origin, matrix) else {
+                let problem =
+                    format!("the transform is about {origin:?}, which is no point of two numbers");
+                return Err(wrong(node, &problem));
             };
             state.matrix = compose(state.matrix, matrix);
         }

@@ -14,10 +14,14 @@ pub(super) fn compose(outer: Matrix, inner: Matrix) -> Matrix {
     [u, v, [w[0] + outer[2][0], w[1] + outer[2][1]]]
 }
 
-/// The map of an attribute `transform`; `None` if it cannot be read.
+/// The map of a property `transform`, which may have the units that the attribute has not; `None` if it cannot be read.
 pub(super) fn parse(text: &str) -> Option<Matrix> {
     let mut matrix = IDENTITY;
-    for token in TransformListParser::from(text) {
+    if text == "none" {
+        return Some(matrix);
+    }
+    let text = text.replace("px", "").replace("deg", "");
+    for token in TransformListParser::from(text.as_str()) {
         let next = match token.ok()? {
             TransformListToken::Matrix { a, b, c, d, e, f } => [[a, b], [c, d], [e, f]],
             TransformListToken::Translate { tx, ty } => translation(tx, ty),
@@ -36,6 +40,18 @@ pub(super) fn parse(text: &str) -> Option<Matrix> {
         matrix = compose(matrix, next);
     }
     Some(matrix)
+}
+
+/// A map about a point, which is written as two numbers; `None` if it is written in another way.
+pub(super) fn about(point: &str, matrix: Matrix) -> Option<Matrix> {
+    let numbers = point.split(|c: char| c == ',' || c.is_whitespace());
+    let numbers = numbers.filter(|part| !part.is_empty());
+    let numbers = numbers.map(|part| part.trim_end_matches("px").parse().ok());
+    let [x, y] = numbers.collect::<Option<Vec<f64>>>()?[..] else {
+        return None;
+    };
+    let there = compose(translation(x, y), matrix);
+    Some(compose(there, translation(-x, -y)))
 }
 
 pub(super) fn translation(x: f64, y: f64) -> Matrix {

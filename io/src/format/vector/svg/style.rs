@@ -44,6 +44,9 @@ pub(super) struct Style {
     /// Whether it is shown at all, with all that is in it.
     pub(super) shown: bool,
     current: Ink,
+    /// The map of the element and the point about which it is, as they are written; inner elements do not have them.
+    pub(super) transform: Option<String>,
+    pub(super) transform_origin: Option<String>,
 }
 
 impl Style {
@@ -58,12 +61,18 @@ impl Style {
             visible: true,
             shown: true,
             current: Ink::BLACK,
+            transform: None,
+            transform_origin: None,
         }
     }
 
     /// The style of an element in one of this style.
     pub(super) fn of(&self, node: Node<'_, '_>, rules: &Rules<'_>) -> Result<Self, DataError> {
-        let mut style = self.clone();
+        let mut style = Self {
+            transform: None,
+            transform_origin: None,
+            ..self.clone()
+        };
         for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
             style.set(attribute.name(), attribute.value());
         }
@@ -100,6 +109,8 @@ impl Style {
             "stroke-opacity" => self.stroke_opacity = part(value).unwrap_or(self.stroke_opacity),
             "fill-opacity" => self.fill_opacity = part(value).unwrap_or(self.fill_opacity),
             "opacity" => self.group_opacity *= part(value).unwrap_or(1.0),
+            "transform" => self.transform = Some(value.to_owned()),
+            "transform-origin" => self.transform_origin = Some(value.to_owned()),
             "visibility" => self.visible = value == "visible",
             "display" => self.shown &= value != "none",
             _ => {}
