@@ -196,7 +196,7 @@ pub use yields::{CreaseYield, SheetYield};
 
 #[cfg(feature = "run")]
 pub(crate) use build::Kept;
-#[cfg(feature = "run")]
+#[cfg(any(feature = "run", feature = "picture"))]
 pub(crate) use bytes::bytes_in_words;
 pub(crate) use functions::Moved;
 #[cfg(feature = "run")]
