@@ -146,7 +146,7 @@ def test_other_changes_are_told_and_the_run_is_not_continued(tmp_path):
     assert recorder.run.scene["forces.gravity"] == [0, 0, -9.81]
     (tmp_path / "run" / "summary.json").unlink()
     done = command("resume", "run", cwd=tmp_path)
-    assert done.returncode == 4 and "controlled by a program" in done.stderr
+    assert done.returncode == 4 and "recorded by a program" in done.stderr
 
 
 def test_what_would_change_the_columns_is_refused(tmp_path):
