@@ -117,12 +117,7 @@ impl ContactLaws {
     /// [`FrictionError`] unless all coefficients are `0 <= sliding <= rest`, and the speed of rest is positive where there
     /// is friction.
     pub fn validate(&self) -> Result<(), FrictionError> {
-        let pairs = self.pairs.iter().map(|pair| &pair.coefficients);
-        let of_obstacles = self.obstacle_pairs.iter().map(|pair| &pair.coefficients);
-        let all = [&self.itself].into_iter().chain(&self.bodies);
-        for coefficients in all.chain(pairs).chain(of_obstacles) {
-            coefficients.validate()?;
-        }
+        self.all().try_for_each(Coefficients::validate)?;
         match self.is_frictionless() || self.rest_speed > 0.0 && self.rest_speed.is_finite() {
             true => Ok(()),
             false => Err(FrictionError::Smoothing(self.rest_speed)),
@@ -131,10 +126,14 @@ impl ContactLaws {
 
     /// Whether there is no friction anywhere.
     pub(crate) fn is_frictionless(&self) -> bool {
+        self.all().all(Coefficients::is_frictionless)
+    }
+
+    /// The coefficients of all that may touch.
+    fn all(&self) -> impl Iterator<Item = &Coefficients> {
         let pairs = self.pairs.iter().map(|pair| &pair.coefficients);
         let of_obstacles = self.obstacle_pairs.iter().map(|pair| &pair.coefficients);
         let bodies = self.bodies.iter().chain(of_obstacles);
-        let mut all = bodies.chain(pairs).chain([&self.itself]);
-        all.all(Coefficients::is_frictionless)
+        bodies.chain(pairs).chain([&self.itself])
     }
 }
