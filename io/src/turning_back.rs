@@ -120,6 +120,7 @@ fn keyframes(keys: Vec<[f64; 2]>) -> Profile {
     Profile::Course(Course::Keyframes {
         interpolation: Interpolation::Linear,
         keys,
+        kinks: None,
     })
 }
 

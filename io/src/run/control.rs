@@ -123,9 +123,11 @@ impl Control {
                 last.map_or(&*function, |course| &course.profile).value(t)
             };
             let all = std::iter::once(0.0).chain(times.iter().copied().filter(|t| *t > 0.0));
+            let pieces = courses.iter().map(|course| (course.begin, course.profile.breaks()));
             *function = Profile::Course(Course::Keyframes {
                 interpolation: Interpolation::Linear,
                 keys: without_rests(all.map(|t| [t, value(t)]).collect(), |a, b| a[1] == b[1]),
+                kinks: Some(kinks(function.breaks(), pieces)),
             });
             keys.push(key);
         }
@@ -143,7 +145,12 @@ impl Control {
             let all = std::iter::once(0.0).chain(times.iter().copied().filter(|t| *t > 0.0));
             let keys_of = all.map(|t| at(t).pose_of(frame, t)).collect();
             let keys_of = without_rests(keys_of, |a, b| a.is_as(b));
+            let pieces = new.iter().map(|new| (new.begin, new.motion.breaks()));
+            let kinks = kinks(motion.breaks(), pieces);
             *motion = Motion::through(frame, keys_of);
+            if let Some(poses) = &mut motion.poses {
+                poses.kinks = Some(kinks);
+            }
             keys.push(key);
         }
         if scene.stop.time != stop {
@@ -152,6 +159,17 @@ impl Control {
         }
         begun.changed(scene, keys).ok()
     }
+}
+
+/// When what went in turn as several functions changed abruptly: the first one from the beginning, and each that replaced
+/// another one from its time on.
+fn kinks(first: Vec<f64>, further: impl Iterator<Item = (f64, Vec<f64>)>) -> Vec<f64> {
+    let mut all = first;
+    for (begin, breaks) in further {
+        all.retain(|t| *t < begin);
+        all.extend(breaks.into_iter().filter(|t| *t >= begin));
+    }
+    all
 }
 
 /// Keyframes without those between two of the same value.

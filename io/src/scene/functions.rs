@@ -3,6 +3,7 @@
 use super::Scene;
 use super::key::Key;
 use super::pose::Motion;
+use super::poses::Poses;
 use super::profile::Profile;
 use super::sheets::sheet_key;
 use super::{Obstacle, Support};
@@ -85,11 +86,10 @@ impl Scene {
         let mut scene = self.clone();
         let functions = scene.functions_mut().into_iter();
         let mut all: Vec<f64> = functions
-            .flat_map(|(_, function)| function.as_given().breaks())
+            .flat_map(|(_, function)| function.breaks())
             .collect();
         for Moved { motion, .. } in scene.motions_mut() {
-            let poses = motion.poses.iter().flat_map(|poses| &poses.keys);
-            all.extend(poses.map(|key| key.time));
+            all.extend(motion.poses.iter().flat_map(Poses::breaks));
         }
         all
     }
@@ -124,6 +124,15 @@ fn moved<'a>(supports: &'a mut [Support], obstacles: &'a mut [Obstacle]) -> Vec<
 }
 
 impl Motion {
+    /// The times at which the velocity or the acceleration jumps, seconds.
+    pub(crate) fn breaks(&self) -> Vec<f64> {
+        let mut motion = self.clone();
+        let functions = motion.functions_mut(&Key::root()).into_iter();
+        let of_functions = functions.flat_map(|(_, function)| function.breaks());
+        let of_poses = self.poses.iter().flat_map(Poses::breaks);
+        of_functions.chain(of_poses).collect()
+    }
+
     fn functions_mut(&mut self, key: &Key) -> Vec<(Key, &mut Profile)> {
         let Self {
             x, y, z, rotation, ..

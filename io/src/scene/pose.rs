@@ -194,7 +194,11 @@ impl Motion {
     pub(crate) fn through(frame: FramePose, keys: Vec<TimedPose>) -> Self {
         let frame = Some(frame);
         Self {
-            poses: Some(Poses { keys, frame }),
+            poses: Some(Poses {
+                keys,
+                frame,
+                kinks: None,
+            }),
             ..Self::default()
         }
     }

@@ -36,6 +36,10 @@ pub struct Poses {
     /// the first key.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<FramePose>,
+    /// The times at which the velocity really jumps, seconds: there the method begins anew. If left out, at each
+    /// pose; a smooth motion that was sampled has none, `[]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kinks: Option<Vec<f64>>,
 }
 
 /// The pose of a frame.
@@ -150,6 +154,12 @@ impl TimedPose {
 }
 
 impl Poses {
+    /// The times at which the velocity jumps, seconds.
+    pub(crate) fn breaks(&self) -> Vec<f64> {
+        let times = || self.keys.iter().map(|key| key.time).collect();
+        self.kinks.clone().unwrap_or_else(times)
+    }
+
     /// The frame while nothing is displaced.
     pub(crate) fn frame(&self) -> FramePose {
         let first = self.keys.first().map(TimedPose::pose);
@@ -173,6 +183,10 @@ impl Poses {
         let before = checks.problems.len();
         if let Some(frame) = &self.frame {
             frame.check(&key.name("frame"), checks);
+        }
+        let kinks = self.kinks.as_deref().unwrap_or_default();
+        for (key, time) in key.name("kinks").entries(kinks) {
+            checks.number(key, *time, Unit::Second);
         }
         for (key, pose) in key.name("keys").entries(&self.keys) {
             checks.number(key.name("time"), pose.time, Unit::Second);

@@ -81,6 +81,10 @@ pub enum Course {
         interpolation: Interpolation,
         /// Pairs of time (seconds) and value, in the order of time.
         keys: Vec<[f64; 2]>,
+        /// The times at which the rate really jumps, seconds: there the method begins anew. If left out, at each
+        /// keyframe; a smooth motion that was sampled has none, `[]`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        kinks: Option<Vec<f64>>,
     },
 }
 
@@ -204,6 +208,7 @@ impl Profile {
             Course::Keyframes {
                 interpolation,
                 keys,
+                ..
             } => engine::Profile::Keyframes {
                 interpolation: match interpolation {
                     Interpolation::Linear => engine::Interpolation::Linear,
@@ -212,6 +217,15 @@ impl Profile {
                 keys: keys.iter().map(|[t, value]| [*t, scale * value]).collect(),
             },
         }
+    }
+
+    /// The times at which the rate or the acceleration jumps, seconds.
+    pub(crate) fn breaks(&self) -> Vec<f64> {
+        let kinks = match self {
+            Self::Course(Course::Keyframes { kinks, .. }) => kinks.clone(),
+            _ => None,
+        };
+        kinks.unwrap_or_else(|| self.as_given().breaks())
     }
 
     /// The profile in metres, newtons or other units that scene and engine share.
@@ -241,7 +255,11 @@ impl Profile {
             Course::Sine {
                 mean, amplitude, ..
             } => (Vec::new(), vec![*mean, *amplitude]),
-            Course::Keyframes { keys, .. } => keys.iter().map(|[t, value]| (*t, *value)).unzip(),
+            Course::Keyframes { keys, kinks, .. } => {
+                let (mut times, values): (Vec<f64>, _) = keys.iter().map(|[t, v]| (*t, *v)).unzip();
+                times.extend(kinks.iter().flatten());
+                (times, values)
+            }
         }
     }
 

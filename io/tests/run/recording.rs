@@ -6,7 +6,7 @@ use isosheet_io::run::{
     EndReason, ExistingRun, Recorder, RecorderOptions, Recording, RecordingEnd, RunError,
     extend_folder, resume_folder, simulate,
 };
-use isosheet_io::scene::{LiveScene, SceneFile};
+use isosheet_io::scene::{FramePose, Key, LiveScene, SceneFile, Target};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -169,4 +169,51 @@ fn a_recording_that_has_not_ended_is_not_continued() {
         }
         assert_eq!(Recording::read(folder.path()).unwrap().summary, None);
     }
+}
+
+/// What a program drove is in the scene of the recording, with the times at which it changed abruptly, so that the
+/// motion is made again: a pin in parts of three steps each, a load by a sine that is replaced half-way, and an
+/// obstacle by poses.
+#[test]
+fn a_recording_that_was_driven_makes_the_motion_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = scene(&[
+        "support[0].hold={ moving_pin = {} }",
+        r#"forces.load=[{ at = { vertices = [12] }, direction = [1, 0, 0],
+            size = { sine = { amplitude = 1e-3, frequency = 5 } } }]"#,
+        "stop.time=0.12",
+    ]);
+    let mut live = LiveScene::start(file).unwrap();
+    let first = folder.path().join("first");
+    let mut recorder = Recorder::begin(&mut live, &first, &RecorderOptions::default()).unwrap();
+    let key = |text: &str| text.parse::<Key>().unwrap();
+    for part in 0..4_u8 {
+        let end = 0.03 * f64::from(part + 1);
+        let to = Target::Value(0.004 * f64::from(part % 2));
+        let mut targets = vec![(key("support[0].hold.moving_pin.z"), to)];
+        if part == 2 {
+            targets.push((key("forces.load[0].size"), Target::Value(0.0)));
+            let lifted = FramePose {
+                position: [0.0, 0.0, -0.04],
+                orientation: [1.0, 0.0, 0.0, 0.0],
+            };
+            targets.push((key("obstacle[0].motion"), Target::Pose(lifted)));
+        }
+        live.drive(&targets, end).unwrap();
+        for _ in 0..3 {
+            let go_on = &mut |_: &_| ControlFlow::Continue(());
+            recorder.step(&mut live, 0.01, go_on).unwrap();
+        }
+    }
+    let recorded = recorder.finish(&live, RecordingEnd::Program).unwrap();
+    let control = &recorded.summary.as_ref().unwrap().control;
+    assert!(control.iter().all(|change| change.in_scene), "{control:?}");
+
+    let again = SceneFile::read(&first.join("scene.toml"), &[]).unwrap();
+    let go_on = &mut |_: &_| ControlFlow::Continue(());
+    let second = simulate(&again, &folder.path().join("second"), go_on).unwrap();
+    let ends = [&recorded, &second].map(|run| run.trajectory.frame(run.trajectory.len() - 1).unwrap());
+    let distances = ends[0].iter().zip(ends[1]).map(|(a, b)| (a - b).abs());
+    // The tolerance of the solver on forces; a method that begins anew at each keyframe is 1e-4 m off.
+    assert!(distances.fold(0.0, f64::max) < 1e-9);
 }
