@@ -50,7 +50,7 @@ create_exception!(
      ...     isosheet.Simulation(scene).run(0.1)\n\
      ... except isosheet.StepFailed as error:\n\
      ...     print(error.key)\n\
-     sheet"
+     support[1].hold"
 );
 create_exception!(
     isosheet,
