@@ -74,7 +74,7 @@ mod rigid_body;
 mod run;
 mod state;
 mod step;
-mod term;
+pub mod term;
 mod vectors;
 
 pub use conservative::energy_momentum::EnergyMomentumOptions;
@@ -121,8 +121,8 @@ pub use motion::{
 };
 pub use options::OptionsError;
 pub use potential::{
-    At, CouplingKind, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape, Reached,
-    Settled,
+    At, CouplingKind, Force, Gravity, Limited, MaterialReport, Memories, PAPER_GRAVITY, Potential,
+    PotentialShape, Reached, Remembering, Settled,
 };
 pub use report::checkpoint_error::CheckpointError;
 pub use report::effort::StepProgress;

@@ -423,7 +423,7 @@ impl ChartSimulation {
 /// Refuses a state of the wrong length or with values that are not finite, and supports that a chart cannot
 /// have.
 fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsError> {
-    if model.potentials().any(|p| p.has_limit()) {
+    if model.has_limit() {
         return Err(ChartDynamicsError::Elastic);
     }
     if model.can_yield() {

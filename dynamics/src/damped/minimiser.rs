@@ -171,8 +171,7 @@ impl Minimiser {
         })?;
         let start = problem.start;
         let (objective, at) = problem.objective_at(&self.work.lagrangian.x);
-        let finished = objective.finish(&start, at);
-        let mut exchange = finished.map_err(|refusal| problem.error(refusal, effort.iterations))?;
+        let mut exchange = objective.finish(&start, at)?;
         exchange.length_slack = self.length_slack(problem);
         Ok((minimum, exchange))
     }

@@ -4,7 +4,6 @@ mod held;
 
 use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan, SurfacePoints};
 use crate::damped::implicit::Implicit;
-use crate::damped::start::{check_swelling, check_swollen};
 use crate::diagnosis::blocked::{blocked_vertices, dependent_vertices};
 use crate::diagnosis::infeasibility::infeasibility;
 use crate::diagnosis::pressing::pressing;
@@ -14,7 +13,7 @@ use crate::engine::subdivision::Subdivision;
 use crate::model::breaks::{Breaks, Start};
 use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
-use crate::potential::{At, Memories};
+use crate::potential::Memories;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::infeasibility::Infeasibility;
 use crate::report::pressing::Pressing;
@@ -87,7 +86,7 @@ impl Engine {
         state: State,
         fixed: Vec<VertexId>,
     ) -> Result<Self, SimulationError> {
-        if model.potentials().any(|p| p.has_limit()) && !method.is_minimising() {
+        if model.has_limit() && !method.is_minimising() {
             return Err(SimulationError::Elastic);
         }
         if model.can_yield() && !method.is_minimising() {
@@ -156,18 +155,18 @@ impl Engine {
         engine.set_control(kept.control)?;
         engine.motion.copy_from(&motion);
         let barrier = motion.contacts.map(|contacts| contacts.barrier);
-        engine.objective.contact = match (contact, barrier) {
-            (None, None) => None,
+        match (contact, barrier) {
+            (None, None) => {}
             (Some(contact), Some(barrier)) => {
                 let state = &engine.motion.state;
                 let term = ContactTerm::resume(contact, barrier, &engine.model, state)?;
-                Some(term)
+                engine.objective.set(term);
             }
             (_, barrier) => {
                 let expected = barrier.is_some();
                 return Err(CheckpointError::Contact { expected }.into());
             }
-        };
+        }
         Ok(engine)
     }
 
@@ -178,10 +177,7 @@ impl Engine {
 
     /// The points between which contact acts, where these are not the vertices.
     pub(crate) fn surface_points(&self) -> Option<&SurfacePoints> {
-        self.objective
-            .contact
-            .as_ref()
-            .and_then(ContactTerm::points)
+        self.objective.get().and_then(ContactTerm::points)
     }
 
     /// Forces of the rods in the last accepted sub-step; `None` where the method does not solve for them.
@@ -232,7 +228,7 @@ impl Engine {
             return Err(ContactError::Method.into());
         }
         let (term, contacts) = ContactTerm::new(contact, &self.model, &self.motion.state)?;
-        self.objective.contact = Some(term);
+        self.objective.set(term);
         self.motion.contacts = Some(contacts);
         Ok(())
     }
@@ -344,24 +340,22 @@ impl Engine {
         let Motion {
             state, contacts, ..
         } = &self.motion;
-        let contact = self.objective.contact.as_mut().zip(contacts.as_ref());
+        let contact = self.objective.get_mut().zip(contacts.as_ref());
         infeasibility(&self.model, contact, state, t)
     }
 
     /// The body that presses the sheet most while it moves on until time `end`, seconds, if one does.
     fn pressing(&mut self, end: f64) -> Option<Pressing> {
         let t0 = self.state().t;
-        let contact = self.objective.contact.as_mut();
+        let contact = self.objective.get_mut();
         let (contact, contacts) = contact.zip(self.motion.contacts.as_ref())?;
         pressing(contact, contacts, StepSpan { t0, h: end - t0 })
     }
 
     /// Whether supports and bodies rest until time `end`, seconds.
     fn surroundings_rest(&mut self, end: f64) -> bool {
-        let t0 = self.state().t;
-        let span = StepSpan { t0, h: end - t0 };
-        let contact = self.objective.contact.as_mut();
-        !self.model.has_drives() && contact.is_none_or(|contact| !contact.motions(span).any_moves())
+        let span = [self.state().t, end];
+        !self.model.has_drives() && self.objective.rests(span)
     }
 
     /// The error of dependent rods, if there are any and the method needs independent ones.
@@ -481,15 +475,11 @@ impl Substeps<'_, '_> {
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
         }
-        check_swelling(model, t)?;
-        check_swollen(model, At::new(t, &motion.state.x))?;
-        if let Some(contact) = &mut objective.contact {
-            contact.check_bodies(StepSpan {
-                t0: motion.state.t,
-                h,
-            })?;
-        }
-        let scene = Scene { model, objective };
+        objective.check([motion.state.t, t], &motion.state.x)?;
+        let scene = Scene {
+            model,
+            objective: &mut *objective,
+        };
         let attempt = Attempt::new(motion, h, self.memory).with(phases);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
@@ -503,8 +493,7 @@ impl Substeps<'_, '_> {
         }
         proposed?;
         let (before, after) = (&motion.state, &proposal.motion.state);
-        // For the work of swelling, which is measured at both ends.
-        check_swollen(model, At::new(before.t, &after.x))?;
+        objective.check_end(before.t, &after.x)?;
         let mut exchange = proposal.account.exchange;
         if model.has_drives() {
             let kept = motion.has_moved.then_some(&motion.balance);

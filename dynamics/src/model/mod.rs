@@ -237,8 +237,10 @@ impl SheetModel {
         self
     }
 
-    /// Adds a force that damped steps take as a term of their objective.
-    pub(crate) fn with_implicit_force(mut self, force: impl ImplicitForce + 'static) -> Self {
+    /// Adds a force that BDF2 and implicit Euler take as a [term](crate::term::Term) of their objective, and other
+    /// methods as it is: one that is too stiff to be taken as it is expected at the end of a step, or has a barrier.
+    #[must_use]
+    pub fn with_implicit_force(mut self, force: impl ImplicitForce + 'static) -> Self {
         self.implicit.push(Box::new(force));
         self
     }
@@ -255,6 +257,11 @@ impl SheetModel {
     pub fn with_breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
         self.breaks = self.breaks.and(times);
         self
+    }
+
+    /// Whether a potential has a limit.
+    pub(crate) fn has_limit(&self) -> bool {
+        self.potentials().any(|p| p.limit().is_some())
     }
 
     /// Whether there are forces that only steps which minimise have.

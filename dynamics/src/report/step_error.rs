@@ -268,6 +268,32 @@ pub enum StepError {
         /// Why.
         reason: Reason,
     },
+    /// Loads that follow the sheet do not come to rest in a step.
+    #[error(
+        "loads that follow the sheet have not settled in a step of {h} s at t = {t} s: they differ from those at its end \
+         by the part {error} of the largest",
+        h = brief(*h), t = brief(*t), error = brief(*error)
+    )]
+    UnsettledLoads {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// The difference, as a part of the largest load.
+        error: f64,
+    },
+    /// A [term](crate::term::Term) refuses a step for a reason of its own.
+    #[error("{by} refuses a step at t = {t} s: {why}", t = brief(*t))]
+    Refused {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// What refuses, such as "the drag of the water".
+        by: String,
+        /// Why, in a clause.
+        why: String,
+        /// What to do, in the imperative.
+        remedy: Option<&'static str>,
+    },
     /// A step of a damped method gains energy.
     #[error(
         "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
@@ -433,10 +459,12 @@ impl Advice for StepError {
             ),
             Self::Swelling { .. } => Some("give a function of time from -0.2 to 0.2"),
             Self::NotConverged { .. }
+            | Self::UnsettledLoads { .. }
             | Self::EnergyGain { .. }
             | Self::Inaccurate { .. }
             | Self::Friction { .. }
             | Self::Contact { .. } => Some("take a smaller step"),
+            Self::Refused { remedy, .. } => *remedy,
             Self::RankDeficient { .. } => Some(
                 "start from a folded state, displace the sheet with `leave_flat`, allow a `Fallback`, or use \
                  BDF2",

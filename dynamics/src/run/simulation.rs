@@ -8,6 +8,7 @@ use crate::contact::{
 use crate::damped::start::{check_finite, check_motions, check_state};
 use crate::engine::substeps::Engine as FreeEngine;
 use crate::model::breaks::Breaks;
+use crate::potential::At;
 use crate::potential::Memories;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::effort::{SolverEffort, StepProgress, TraceSink, Watch};
@@ -429,8 +430,11 @@ impl Simulation {
     /// forces of the pins ([`Simulation::reactions`]) they are all that such a clamp does.
     pub fn clamp_moments(&self) -> Vec<[f64; 3]> {
         let State { t, x, .. } = self.state();
-        let potentials = self.model().potentials_at(*t, x, self.memories());
-        potentials.flat_map(|(p, at)| p.clamp_moments(at)).collect()
+        let at = |memory| At::new(*t, x).with_memory(memory);
+        let reports = self.model().reports(self.memories());
+        reports
+            .flat_map(|(p, memory)| p.clamp_moments(at(memory)))
+            .collect()
     }
 
     /// Forces of the rods in the last accepted sub-step, newtons, tension positive, in the order of the

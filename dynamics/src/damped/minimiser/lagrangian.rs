@@ -141,8 +141,7 @@ impl Lagrangian {
         self.x.copy_from_slice(start);
         self.end.copy_from_slice(start);
         problem.model.place_pins(problem.t(), &mut self.end);
-        let begun = problem.objective.begin(&problem.start);
-        begun.map_err(|refusal| problem.error(refusal, 0))
+        problem.objective.begin(&problem.start)
     }
 
     /// Sets the penalties of rods and of vertex constraints: so many times as stiff as the masses.

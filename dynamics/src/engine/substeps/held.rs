@@ -40,7 +40,7 @@ impl Engine {
             (Some(contact), Some(barrier)) => {
                 let state = &engine.motion.state;
                 let (term, contacts) = ContactTerm::anew(contact, barrier, &engine.model, state)?;
-                engine.objective.contact = Some(term);
+                engine.objective.set(term);
                 engine.motion.contacts = Some(contacts);
             }
             (_, barrier) => {

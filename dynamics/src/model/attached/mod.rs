@@ -11,7 +11,7 @@ mod wake;
 
 use super::SheetModel;
 use super::air::Air;
-use crate::potential::{At, Memories, Potential, PotentialShape, Reached, Settled};
+use crate::potential::{At, Memories, Potential, PotentialShape, Reached, Remembering, Settled};
 pub use error::AttachedFlowError;
 use flow::InAir;
 use isosheet_mesh::{EdgeId, FaceId};
@@ -111,6 +111,12 @@ impl Potential for Wake {
         PotentialShape::Linear
     }
 
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        Some(self)
+    }
+}
+
+impl Remembering for Wake {
     fn memory(&self) -> Vec<f64> {
         vec![0.0; self.0.size.len()]
     }

@@ -2,9 +2,10 @@
 
 use super::Attached;
 use super::wake::Past;
+use crate::StepError;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::potential::Force;
-use crate::term::{Exchange, Formula, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
+use crate::term::{Exchange, Formula, ImplicitForce, Iterate, StepStart, Term, Value};
 use crate::vectors::{add, dot, largest_norm};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::sync::Arc;
@@ -186,11 +187,14 @@ impl FlowStep {
     }
 
     /// The forces of the flow at positions at the end of the step.
-    fn exact(&self, x: &[f64]) -> Result<Vec<f64>, Refusal> {
+    fn exact(&self, x: &[f64]) -> Result<Vec<f64>, StepError> {
         let air = &self.attached.air;
         let past = self.past.as_ref().expect("the step has begun");
         let v = self.velocities(x);
-        let flow = air.flow(past, self.start.t, x).map_err(Refusal::Linalg)?;
+        let t = self.start.t;
+        let flow = air
+            .flow(past, t, x)
+            .map_err(|source| StepError::Linalg { t, source })?;
         let circulation = air.circulation(&flow, &v);
         let edges = air.edge_forces(&flow.shape, self.start.t, &v);
         let rate = self.rate(&circulation);
@@ -203,12 +207,15 @@ impl FlowStep {
     }
 
     /// Lags behind at positions (`3V`, metres).
-    fn lag(&mut self, x: &[f64]) -> Result<(), Refusal> {
+    fn lag(&mut self, x: &[f64]) -> Result<(), StepError> {
         let air = &self.attached.air;
         let past = self.past.as_ref().expect("the step has begun");
         let h = self.start.h;
         let v = self.velocities(x);
-        let flow = air.flow(past, self.start.t, x).map_err(Refusal::Linalg)?;
+        let t = self.start.t;
+        let flow = air
+            .flow(past, t, x)
+            .map_err(|source| StepError::Linalg { t, source })?;
         let circulation = air.circulation(&flow, &v);
         let edges = air.edge_forces(&flow.shape, self.start.t, &v);
         let rate = self.rate(&circulation);
@@ -291,7 +298,7 @@ fn relative(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Term for FlowStep {
-    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
+    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), StepError> {
         let attached = self.attached.clone();
         let past = attached.past(step.memories);
         let (last, before) = (&past.circulations[0], &past.circulations[1]);
@@ -314,7 +321,7 @@ impl Term for FlowStep {
         let bad = self.lagged.force.iter().position(|f| !f.is_finite());
         match bad {
             None => Ok(()),
-            Some(i) => Err(Refusal::NonFiniteForce {
+            Some(i) => Err(StepError::NonFiniteForce {
                 vertex: attached.air.lattice.vertices[i / 3],
                 value: self.lagged.force[i],
                 t: step.t(),
@@ -384,10 +391,14 @@ impl Term for FlowStep {
         }
     }
 
-    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
+    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         let error = self.error(at.x, UNSETTLED);
         if error.is_nan() || error > UNSETTLED {
-            return Err(Refusal::UnsettledLoads { error });
+            return Err(StepError::UnsettledLoads {
+                t: step.state.t,
+                h: step.span,
+                error,
+            });
         }
         let here = self.own(at.x);
         let moved = difference(&here, &self.own(&self.start.x));
