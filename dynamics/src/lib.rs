@@ -100,7 +100,6 @@ pub use material::plate_bending::{
 pub use material::stiffening::Stiffening;
 pub use material::{Directions, Isotropic, Material, NamedMaterial, Orthotropic, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};
-pub use model::attached::{AttachedFlow, AttachedFlowError};
 pub use model::clamps::ClampAcrossMesh;
 pub use model::edge_moment::EdgeMoment;
 pub use model::elastic_deformation::ElasticDeformation;

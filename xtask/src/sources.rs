@@ -21,6 +21,7 @@ const SOLVER: &[&str] = &[
     "coords/src",
     "coords/linalg/src",
     "dynamics/src",
+    "dynamics/attached-flow/src",
     "collide/src",
     "io/src/scene",
     "tests/models",

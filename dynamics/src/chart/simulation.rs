@@ -430,7 +430,7 @@ fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsErr
         return Err(ChartDynamicsError::Plastic);
     }
     if model.needs_minimising() {
-        return Err(ChartDynamicsError::AttachedFlow);
+        return Err(ChartDynamicsError::NeedsMinimising);
     }
     if model.damping().is_none() {
         return Err(ChartDynamicsError::Damping);

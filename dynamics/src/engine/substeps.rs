@@ -93,7 +93,7 @@ impl Engine {
             return Err(SimulationError::Plastic);
         }
         if model.needs_minimising() && !method.is_minimising() {
-            return Err(SimulationError::AttachedFlow);
+            return Err(SimulationError::NeedsMinimising);
         }
         let model = Arc::new(model);
         let tuning = Tuning::default();

@@ -1,7 +1,6 @@
 //! The mechanical system: rods, masses, pins, potentials and forces.
 
 pub(crate) mod air;
-pub(crate) mod attached;
 pub(crate) mod breaks;
 pub(crate) mod clamps;
 mod damped_range;
@@ -358,8 +357,9 @@ impl SheetModel {
         self.potentials.iter().map(Box::as_ref).chain(elastic)
     }
 
-    /// The number of potentials without that of an elastic sheet, which is the last one.
-    pub(crate) fn outer_potential_count(&self) -> usize {
+    /// The place in [`Memories::lists`](crate::Memories::lists) of the potential that is added next: that of an elastic
+    /// sheet stays the last one.
+    pub fn next_potential(&self) -> usize {
         self.potentials.len()
     }
 

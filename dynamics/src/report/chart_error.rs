@@ -95,9 +95,9 @@ pub enum ChartDynamicsError {
         "the sheet yields (its bends or creases stay), and the equations in a chart have no place for that"
     )]
     Plastic,
-    /// Charts do not support attached flow.
-    #[error("the flow of the air is attached, and a chart has no place for its wake")]
-    AttachedFlow,
+    /// A force of the sheet acts in steps that minimise alone, such as that of attached flow.
+    #[error("a force of the sheet acts in steps that minimise alone, and a chart has none")]
+    NeedsMinimising,
     /// Sheets have different rates of the velocity damping, and momenta of a chart belong to all of them.
     #[error("a chart damps all sheets alike, and these have different rates of damping")]
     Damping,
@@ -221,7 +221,7 @@ impl Advice for ChartDynamicsError {
                 Some("build the chart with some or all of the pins of the model")
             }
             Self::MovingPin { .. } => Some("build the chart with that vertex free"),
-            Self::Elastic | Self::Plastic | Self::AttachedFlow => {
+            Self::Elastic | Self::Plastic | Self::NeedsMinimising => {
                 Some("use BDF2 or implicit Euler without a chart")
             }
             Self::Damping => {

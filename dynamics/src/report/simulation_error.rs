@@ -67,9 +67,9 @@ pub enum SimulationError {
         "the sheet yields (its bends or creases stay), and the method has no place for what yielding loses"
     )]
     Plastic,
-    /// The method does not support attached flow.
-    #[error("the flow of the air is attached, and the method has no place for its wake")]
-    AttachedFlow,
+    /// A force of the sheet acts in steps that minimise alone, such as that of attached flow.
+    #[error("a force of the sheet, such as attached flow, acts in steps that minimise alone")]
+    NeedsMinimising,
     /// The method has no estimate of its error, and an accuracy was asked for.
     #[error("an accuracy is asked for, and the method does not estimate the errors of its steps")]
     Accuracy,
@@ -95,7 +95,7 @@ impl Advice for SimulationError {
             Self::Chart(error) => error.advice(),
             Self::Contact(error) => error.advice(),
             Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
-            Self::Elastic | Self::Plastic | Self::AttachedFlow | Self::Held | Self::Accuracy => {
+            Self::Elastic | Self::Plastic | Self::NeedsMinimising | Self::Held | Self::Accuracy => {
                 Some("use BDF2 or implicit Euler")
             }
             Self::Checkpoint(error) => error.advice(),

@@ -11,6 +11,7 @@
 //! - Friction of each obstacle, thickness of the sheet: [`collide::Contacts::new`], [`collide::ContactOptions`].
 //! - Loads, air, potentials and forces of one's own: [`dynamics::SheetModel`], [`dynamics::Potential`],
 //!   [`dynamics::Force`].
+//! - Lift and a wake: [`attached_flow::AttachedFlow`].
 //! - Energies, strain and gap of each step, frames: [`dynamics::StepReport`], [`dynamics::History`],
 //!   [`dynamics::Frames`].
 //! - Torques on obstacles, forces of contact at vertices: [`dynamics::Simulation::body_loads`],
@@ -23,6 +24,7 @@
 //! All numbers are in SI units. Functions that take vectors of `nalgebra` exist beside those that take arrays;
 //! its version is re-exported as [`nalgebra`].
 
+pub use isosheet_attached_flow as attached_flow;
 pub use isosheet_collide as collide;
 pub use isosheet_coords as coords;
 pub use isosheet_dynamics as dynamics;

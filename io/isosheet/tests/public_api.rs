@@ -22,6 +22,7 @@ fn what_is_public_is_in_the_lists() {
         "coords/linalg",
         "coords",
         "dynamics",
+        "dynamics/attached-flow",
         "collide",
         "io",
         "io/isosheet",

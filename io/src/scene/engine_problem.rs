@@ -366,7 +366,7 @@ impl Origins {
                 Problem::from_error(key, error)
             }
             SimulationError::Elastic => Problem::from_error(root.name("sheet.isometry"), error),
-            SimulationError::Plastic | SimulationError::AttachedFlow => {
+            SimulationError::Plastic | SimulationError::NeedsMinimising => {
                 Problem::from_error(root.name("method"), error)
             }
             SimulationError::Options(_) => Problem::from_error(root.name("method"), error),

@@ -1,6 +1,6 @@
 //! Why flow cannot be attached to a sheet.
 
-use crate::model::air::AirError;
+use isosheet_dynamics::AirError;
 use isosheet_mesh::{Advice, EdgeId, FaceId};
 
 /// Why there cannot be such a flow.

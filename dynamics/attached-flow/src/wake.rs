@@ -2,7 +2,7 @@
 
 use super::lattice::{Lattice, Trailing};
 use super::vortex::segment;
-use crate::model::air::Wind;
+use isosheet_dynamics::Wind;
 use nalgebra::Vector3;
 
 /// Part of the way of the air in a step by which a line of the wake is behind the trailing edges that shed it:

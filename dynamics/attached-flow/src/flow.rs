@@ -3,8 +3,8 @@
 use super::lattice::{Lattice, Shape};
 use super::vortex::segment;
 use super::wake::Past;
-use crate::model::air::Wind;
-use isosheet_coords::linalg::{DenseLu, LinalgError};
+use isosheet_dynamics::Wind;
+use isosheet_linalg::{DenseLu, LinalgError};
 use nalgebra::Vector3;
 
 /// Radius of the core of the vortices of the wake, in shortest edges.

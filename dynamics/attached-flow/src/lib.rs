@@ -1,4 +1,4 @@
-//! Attached flow around sheets: lift, the mass of the air that moves along, and a wake.
+#![doc = include_str!("../README.md")]
 
 mod error;
 mod flow;
@@ -6,14 +6,16 @@ mod lattice;
 mod step;
 #[cfg(test)]
 mod tests;
+mod vectors;
 mod vortex;
 mod wake;
 
-use super::SheetModel;
-use super::air::Air;
-use crate::potential::{At, Memories, Potential, PotentialShape, Reached, Remembering, Settled};
 pub use error::AttachedFlowError;
+
 use flow::InAir;
+use isosheet_dynamics::{
+    Air, At, Memories, Potential, PotentialShape, Reached, Remembering, Settled, SheetModel,
+};
 use isosheet_mesh::{EdgeId, FaceId};
 use lattice::Lattice;
 use std::sync::Arc;
@@ -57,41 +59,37 @@ impl Attached {
     }
 }
 
-impl SheetModel {
-    /// Surrounds the sheet with air whose flow is attached to some faces: it flows along both sides and leaves
+impl AttachedFlow {
+    /// Surrounds a sheet with air whose flow is attached to the faces: it flows along both sides and leaves
     /// at the trailing edges. The drag across these faces stays: at small angles it is small against the lift,
     /// and it bounds motions in which the flow would separate (Eloy, Kofman and Schouveiler, J. Fluid Mech. 691,
     /// 2012).
     ///
     /// # Errors
     /// [`AttachedFlowError`].
-    pub fn with_attached_flow(
-        self,
-        air: Air,
-        flow: &AttachedFlow,
-    ) -> Result<Self, AttachedFlowError> {
+    pub fn around(&self, model: SheetModel, air: Air) -> Result<SheetModel, AttachedFlowError> {
         air.validate()?;
-        let faces = flow.faces.len();
+        let faces = self.faces.len();
         if faces > AttachedFlow::MOST_FACES {
             let most = AttachedFlow::MOST_FACES;
             return Err(AttachedFlowError::TooManyFaces { faces, most });
         }
-        if !(2..=AttachedFlow::MOST_ROWS).contains(&flow.rows) {
-            return Err(AttachedFlowError::Rows { rows: flow.rows });
+        if !(2..=AttachedFlow::MOST_ROWS).contains(&self.rows) {
+            return Err(AttachedFlowError::Rows { rows: self.rows });
         }
-        let lengths = self.edges().lengths();
-        let lattice = Lattice::new(self.topology(), lengths, &flow.faces, &flow.trailing)?;
+        let lengths = model.edges().lengths();
+        let lattice = Lattice::new(model.topology(), lengths, &self.faces, &self.trailing)?;
         let attached = Attached {
-            size: Size::of(&lattice, flow.rows),
+            size: Size::of(&lattice, self.rows),
             air: Arc::new(InAir {
                 lattice,
                 density: air.density,
                 wind: air.wind.clone(),
             }),
-            potential: self.outer_potential_count(),
+            potential: model.next_potential(),
         };
         let wake = Wake(attached.clone());
-        let model = self.with_air(air)?;
+        let model = model.with_air(air)?;
         Ok(model.with_potential(wake).with_implicit_force(attached))
     }
 }

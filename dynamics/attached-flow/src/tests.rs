@@ -1,7 +1,7 @@
 //! Lift, added mass and their growth against closed forms of wing theory.
 
 use super::*;
-use crate::model::air::Wind;
+use isosheet_dynamics::Wind;
 use isosheet_mesh::generate::{Diagonals, grid};
 use isosheet_mesh::{MassKind, Sheet};
 use nalgebra::Vector3;
@@ -191,7 +191,7 @@ fn flows_that_cannot_be_are_refused() {
     };
     let refused = |flow: &AttachedFlow| {
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).expect("mass");
-        model.with_attached_flow(Air::default(), flow).err()
+        flow.around(model, Air::default()).err()
     };
     let face = FaceId(99);
     let (faces, edge) = (vec![face], rim(false));
