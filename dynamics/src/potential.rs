@@ -1,6 +1,7 @@
 //! Potential energies (Liu, Tang and Joneja 2007, Eq. 1).
 
 use crate::hessian::HessianSink;
+use crate::report::checkpoint_error::CheckpointError;
 use crate::report::step_error::StepError;
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use nalgebra::Matrix2;
@@ -209,6 +210,9 @@ pub trait MaterialReport {
     }
 }
 
+/// What is counted where a checkpoint does not fit.
+const REMEMBERED: &str = "what potentials remember";
+
 /// What each of the potentials of a model remembers ([`Remembering::memory`]), in the order of
 /// [`SheetModel::potentials`](crate::SheetModel::potentials).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -263,8 +267,8 @@ impl Memories {
     /// they hold, and of others by their order.
     ///
     /// # Errors
-    /// The numbers of numbers, found and expected, where they are not those of this model.
-    pub(crate) fn take_over(&mut self, other: &Self) -> Result<(), [usize; 2]> {
+    /// [`CheckpointError::Length`] where there are not as many as this model remembers.
+    pub fn take_over(&mut self, other: &Self) -> Result<(), CheckpointError> {
         let held = self.held.iter().enumerate();
         let held = held.filter_map(|(k, (vertex, own))| {
             // The second one at a vertex goes on from the second one.
@@ -276,13 +280,21 @@ impl Memories {
         let [found, expected] = [other, &*self].map(|m| m.lasting().count());
         let pairs: Vec<(usize, usize)> = held.chain(others).collect();
         if found != expected {
-            return Err([found, expected]);
+            return Err(CheckpointError::Length {
+                what: REMEMBERED,
+                found,
+                expected,
+            });
         }
         for (own, theirs) in pairs {
             let kept = other.lists.get(theirs).map_or(&[][..], Vec::as_slice);
             let own = &mut self.lists[own];
             if kept.len() != own.len() {
-                return Err([kept.len(), own.len()]);
+                return Err(CheckpointError::Length {
+                    what: REMEMBERED,
+                    found: kept.len(),
+                    expected: own.len(),
+                });
             }
             own.copy_from_slice(kept);
         }

@@ -13,6 +13,7 @@
 use crate::State;
 pub use crate::hessian::{BlockSink, CouplingSink, HessianPart, HessianProduct};
 use crate::potential::{Force, Memories};
+pub use crate::report::step_error::Refused;
 use crate::report::step_error::StepError;
 use crate::report::trace::Cut;
 use std::any::Any;
@@ -160,7 +161,7 @@ pub trait Term: Any + Send {
     }
 
     /// Adds `scale` times what a displacement of second order takes back of the displacement `dx`; whether
-    /// there is any, see [`Potential::add_second_order`](crate::Potential::add_second_order).
+    /// there is any, see [`Limited::add_second_order`](crate::Limited::add_second_order).
     fn add_second_order(
         &mut self,
         _at: Iterate<'_>,

@@ -43,12 +43,13 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 8] = [
+const LIBRARIES: [&str; 9] = [
     "mesh",
     "coords/linalg",
     "coords",
     "dynamics",
     "dynamics/attached-flow",
+    "dynamics/charts",
     "collide",
     "io",
     "io/python",

@@ -22,6 +22,7 @@ const SOLVER: &[&str] = &[
     "coords/linalg/src",
     "dynamics/src",
     "dynamics/attached-flow/src",
+    "dynamics/charts/src",
     "collide/src",
     "io/src/scene",
     "tests/models",

@@ -456,7 +456,7 @@ impl Term for ContactTerm {
 ///
 /// # Errors
 /// [`ContactError::Motion`] if the pose of a body is not finite, and as [`Contact::check_start`].
-pub(crate) fn check_start(
+fn check_start(
     geometry: &mut dyn Contact,
     model: &SheetModel,
     state: &State,

@@ -12,7 +12,7 @@ use crate::step::local_error::LocalError;
 use crate::step::tuning::Tuning;
 use crate::term::{Formula, StepStart};
 use crate::{ImplicitOptions, SheetModel, State};
-use isosheet_coords::linalg::LinalgError;
+use isosheet_linalg::LinalgError;
 
 /// Largest growth of the step that the two-step formula is used over: variable-step BDF2 is
 /// unstable from 1 + sqrt 2 on.

@@ -19,7 +19,6 @@ use crate::report::infeasibility::Infeasibility;
 use crate::report::pressing::Pressing;
 use crate::report::step_error::{StepError, StepOutcome, StepTotals};
 use crate::report::trace::TraceEvent;
-use crate::step::control::{Decision, Stepping, take_substep};
 use crate::step::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
 };
@@ -36,7 +35,7 @@ use std::sync::Arc;
 
 /// What a checkpoint keeps of a simulation without a chart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct WithoutChart {
+pub(crate) struct ByMethod {
     pub(crate) method: Method,
     pub(crate) control: StepControl,
     pub(crate) motion: Motion,
@@ -121,8 +120,8 @@ impl Engine {
     }
 
     /// What a checkpoint keeps.
-    pub(crate) fn kept(&self) -> WithoutChart {
-        WithoutChart {
+    pub(crate) fn kept(&self) -> ByMethod {
+        ByMethod {
             method: self.method.clone(),
             control: self.control.clone(),
             motion: self.motion.compact(),
@@ -134,16 +133,11 @@ impl Engine {
     pub(crate) fn resume(
         mut model: SheetModel,
         contact: Option<Box<dyn Contact>>,
-        kept: WithoutChart,
+        kept: ByMethod,
     ) -> Result<Self, SimulationError> {
         let mut motion = kept.motion;
         let mut memories = model.memories();
-        let taken = memories.take_over(&motion.memories);
-        taken.map_err(|[found, expected]| CheckpointError::Length {
-            what: "what potentials remember",
-            found,
-            expected,
-        })?;
+        memories.take_over(&motion.memories)?;
         motion.memories = memories;
         motion.check(&model, &kept.fixed)?;
         let fixed: Vec<VertexId> = kept.fixed.iter().copied().map(VertexId).collect();
@@ -306,7 +300,7 @@ impl Engine {
         run.totals.effort.begin(run.limit);
         while !run.lengths.is_finished() {
             let h = run.lengths.length();
-            match take_substep(&mut run, h) {
+            match run.take(h) {
                 Ok(()) => (),
                 Err(Stop::Taut(infeasibility)) => {
                     run.totals.taut = Some(infeasibility);
@@ -549,7 +543,7 @@ impl Substeps<'_, '_> {
     /// | for any other reason | halve | halve | stop |
     ///
     /// Where the step is not to be halved any more, the fallback takes it if there is one.
-    fn follow(&mut self, refusal: StepError) -> Decision<Stop> {
+    fn follow(&mut self, refusal: StepError) -> Decision {
         let looks_back = self.memory > Memory::Restart && self.engine.motion.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         if self.proposer == Proposer::Fallback {
@@ -570,12 +564,52 @@ impl Substeps<'_, '_> {
     }
 }
 
-impl Stepping for Substeps<'_, '_> {
-    type Refusal = StepError;
-    type Error = Stop;
-    type Report = ();
+/// What follows from a refusal.
+enum Decision {
+    /// The sub-step is proposed again without history.
+    Restart,
+    /// One of this length, seconds.
+    Shorten(f64),
+    /// One of this length, seconds, by the fallback.
+    FallBack(f64),
+    /// There is none.
+    Stop(Stop),
+}
 
-    /// An attempt that the limit ends is made again without a limit, unless the sheet locks, or has nowhere to
+impl Decision {
+    /// Its name in a trace.
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Restart => "restart",
+            Self::Shorten(_) => "shorten",
+            Self::FallBack(_) => "fall back",
+            Self::Stop(_) => "stop",
+        }
+    }
+}
+
+impl Substeps<'_, '_> {
+    /// Takes a sub-step of at most `h` seconds.
+    fn take(&mut self, mut h: f64) -> Result<(), Stop> {
+        loop {
+            let Err(refusal) = self.propose(h) else {
+                self.commit(h);
+                return Ok(());
+            };
+            match self.decide(refusal, h) {
+                Decision::Restart => self.memory = Memory::Restart,
+                Decision::Shorten(shorter) => h = shorter,
+                Decision::FallBack(length) => {
+                    h = length;
+                    self.memory = Memory::Restart;
+                    self.proposer = Proposer::Fallback;
+                }
+                Decision::Stop(stop) => return Err(stop),
+            }
+        }
+    }
+
+    /// Proposes a sub-step of `h` seconds; the state does not change. An attempt that the limit ends is made again without a limit, unless the sheet locks, or has nowhere to
     /// go: what is accepted does not depend on the effort.
     fn propose(&mut self, h: f64) -> Result<(), StepError> {
         let proposed = self.attempt(h);
@@ -599,7 +633,8 @@ impl Stepping for Substeps<'_, '_> {
         self.attempt(h)
     }
 
-    fn decide(&mut self, refusal: StepError, h: f64) -> Decision<Stop> {
+    /// Decides what follows from the refusal of a sub-step of `h` seconds.
+    fn decide(&mut self, refusal: StepError, h: f64) -> Decision {
         if matches!(
             refusal,
             StepError::NonFiniteMotion { .. }
@@ -626,17 +661,8 @@ impl Stepping for Substeps<'_, '_> {
         decision
     }
 
-    fn restart(&mut self) -> Result<(), Stop> {
-        self.memory = Memory::Restart;
-        Ok(())
-    }
-
-    fn fall_back(&mut self) {
-        self.memory = Memory::Restart;
-        self.proposer = Proposer::Fallback;
-    }
-
-    fn commit(&mut self, h: f64) -> Result<(), Stop> {
+    /// Makes the proposal of `h` seconds the state.
+    fn commit(&mut self, h: f64) {
         let engine = &mut *self.engine;
         let (step, exchange) = (engine.proposal.account, self.exchange);
         std::mem::swap(&mut engine.motion, &mut engine.proposal.motion);
@@ -687,7 +713,6 @@ impl Stepping for Substeps<'_, '_> {
         });
         totals.effort.begin(self.limit);
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
-        Ok(())
     }
 }
 

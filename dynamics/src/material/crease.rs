@@ -184,7 +184,7 @@ impl Advice for CreaseError {
 /// their Jacobians* (2013); the semidefinite part of the Hessian is `k grad theta grad theta^T`.
 ///
 /// Springs that [yield](Yield) remember plastic angles `p_e` besides (radians, one for each layer, in
-/// [`Potential::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a
+/// [`Remembering::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a
 /// step what they dissipate in it.
 #[derive(Debug)]
 pub struct CreaseSprings {

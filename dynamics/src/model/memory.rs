@@ -29,7 +29,7 @@ impl SheetModel {
     }
 
     /// What the potentials remember at the start of a simulation.
-    pub(crate) fn memories_at_start(&self, state: &State) -> Memories {
+    pub fn memories_at_start(&self, state: &State) -> Memories {
         let mut memories = self.memories();
         for (p, memory) in self.potentials().zip(memories.lists_mut()) {
             if let Some(p) = p.remembering() {

@@ -5,7 +5,7 @@ use crate::model::PINNED;
 use crate::potential::{At, Limited};
 use crate::term::{Barrier, Exchange, Formula, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
-use isosheet_coords::linalg::norm_inf;
+use isosheet_linalg::norm_inf;
 use isosheet_mesh::VertexId;
 use std::sync::Arc;
 

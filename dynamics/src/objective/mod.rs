@@ -13,8 +13,8 @@ use crate::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
 use acting::Acting;
 use inertia::Inertia;
-use isosheet_coords::linalg::LinalgError;
-use isosheet_coords::linalg::parallel::both;
+use isosheet_linalg::LinalgError;
+use isosheet_linalg::parallel::both;
 use std::any::Any;
 use std::sync::Arc;
 

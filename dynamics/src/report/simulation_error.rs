@@ -2,10 +2,10 @@
 
 use crate::contact::ContactError;
 use crate::options::OptionsError;
-use crate::report::chart_error::ChartDynamicsError;
 use crate::report::checkpoint_error::CheckpointError;
+use crate::report::engine_error::EngineError;
 use crate::report::step_error::StepError;
-use isosheet_coords::linalg::LinalgError;
+use isosheet_linalg::LinalgError;
 use isosheet_mesh::Advice;
 
 /// Errors of the start of a simulation.
@@ -44,9 +44,9 @@ pub enum SimulationError {
     /// Linear algebra failed.
     #[error(transparent)]
     Linalg(#[from] LinalgError),
-    /// The chart is invalid.
+    /// An [engine](crate::engine::Engine) from outside cannot start.
     #[error(transparent)]
-    Chart(#[from] ChartDynamicsError),
+    Engine(#[from] EngineError),
     /// The start state is in contact, or the method does not support contact.
     #[error(transparent)]
     Contact(#[from] ContactError),
@@ -92,7 +92,7 @@ impl Advice for SimulationError {
         match self {
             Self::Options(error) => error.advice(),
             Self::Start(error) => error.advice(),
-            Self::Chart(error) => error.advice(),
+            Self::Engine(error) => error.advice(),
             Self::Contact(error) => error.advice(),
             Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
             Self::Elastic | Self::Plastic | Self::NeedsMinimising | Self::Held | Self::Accuracy => {

@@ -16,7 +16,7 @@
 //!   [`dynamics::Frames`].
 //! - Torques on obstacles, forces of contact at vertices: [`dynamics::Simulation::body_loads`],
 //!   [`dynamics::Simulation::contact_forces`].
-//! - Other methods, and the paper's coordinates: [`dynamics::Method`], [`coords`], [`dynamics::chart`].
+//! - Other methods, and the paper's coordinates: [`dynamics::Method`], [`coords`], [`charts`].
 //! - Meshes and series of frames as files: [`io::write_mesh`], [`io::write_series`].
 //! - Scene files, runs and the command: the features `scene`, `run` and `cli`, with `io::scene`, `io::run` and
 //!   `io::command`.
@@ -25,6 +25,7 @@
 //! its version is re-exported as [`nalgebra`].
 
 pub use isosheet_attached_flow as attached_flow;
+pub use isosheet_charts as charts;
 pub use isosheet_collide as collide;
 pub use isosheet_coords as coords;
 pub use isosheet_dynamics as dynamics;

@@ -23,6 +23,7 @@ fn what_is_public_is_in_the_lists() {
         "coords",
         "dynamics",
         "dynamics/attached-flow",
+        "dynamics/charts",
         "collide",
         "io",
         "io/isosheet",

@@ -370,7 +370,7 @@ impl Origins {
                 Problem::from_error(root.name("method"), error)
             }
             SimulationError::Options(_) => Problem::from_error(root.name("method"), error),
-            SimulationError::Chart(_) => Problem::from_error(root.name("method.chart"), error),
+            SimulationError::Engine(_) => Problem::from_error(root.name("method.chart"), error),
             _ => Problem::from_error(root, error),
         }
     }

@@ -15,7 +15,7 @@ use crate::report::step_error::StepError;
 use crate::report::trace::Cut;
 use crate::step::tuning::Tuning;
 use crate::vectors::dot;
-use isosheet_coords::linalg::{LinalgError, norm_inf};
+use isosheet_linalg::{LinalgError, norm_inf};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};

@@ -88,14 +88,10 @@ pub struct ChartOptions {
     pub margin_limit: f64,
     /// Largest edge strain of the initial state, default 1e-6.
     pub strain_limit: f64,
-    /// Coefficient of restitution `e` of impacts, see
-    /// [`ChartSimulation::with_contact`](super::ChartSimulation::with_contact): a single contact that
-    /// approaches at a speed parts at `e` times that speed. From 0, the default, to 1.
-    pub restitution: f64,
     /// Edge strain at which a run is given up as diverged, default 0.5. Only the linear position update
     /// ever strains edges.
     pub failure_strain: f64,
-    /// Most steps, rejected ones included, in one call of [`Simulation::step`](crate::Simulation::step),
+    /// Most steps, rejected ones included, in one call of [`Simulation::step`](isosheet_dynamics::Simulation::step),
     /// default 2^20: a step control that crawls along a singularity ends with an error instead of taking
     /// hours.
     pub max_steps: usize,
@@ -162,7 +158,6 @@ impl Default for ChartOptions {
             growth_limit: 4.0,
             margin_limit: 0.1,
             strain_limit: 1e-6,
-            restitution: 0.0,
             failure_strain: 0.5,
             max_steps: 1 << 20,
         }
@@ -199,13 +194,6 @@ impl ChartOptions {
             "check at least every so many steps",
         )?;
         positive("most steps", self.max_steps as f64, "allow at least one")?;
-        if !(0.0..=1.0).contains(&self.restitution) {
-            return Err(ChartDynamicsError::Option {
-                option: "restitution",
-                value: self.restitution,
-                remedy: "give a value from 0 to 1",
-            });
-        }
         if !(0.0..1.0).contains(&self.margin_limit) {
             return Err(ChartDynamicsError::Option {
                 option: "margin limit",

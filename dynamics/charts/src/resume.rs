@@ -4,9 +4,9 @@ use super::simulation::ChartSimulation;
 use super::state::ChartState;
 use super::stepping::Stepper;
 use super::{ChartDynamicsError, ChartMechanics, ChartOptions};
-use crate::SheetModel;
-use crate::step::reaction::{Balance, ForceTime};
 use isosheet_coords::Chart;
+use isosheet_dynamics::SheetModel;
+use isosheet_dynamics::engine::{Balance, ForceTime};
 
 impl ChartSimulation {
     /// What a checkpoint keeps.
@@ -56,12 +56,7 @@ impl ChartSimulation {
             chart = chart.rebased(reference)?;
         }
         let mut mechanics = ChartMechanics::new(model, chart, options.solver)?;
-        let taken = mechanics.memories_mut().take_over(&motion.memories);
-        taken.map_err(|[found, expected]| ChartDynamicsError::WrongLength {
-            what: "what potentials remember",
-            found,
-            expected,
-        })?;
+        mechanics.memories_mut().take_over(&motion.memories)?;
         let n = mechanics.dimension();
         for (what, found) in [
             ("q", motion.state.q.len()),
@@ -88,7 +83,6 @@ impl ChartSimulation {
             stepper,
             options,
             motion: ChartState { balance, ..motion },
-            contact: None,
             replaced: None,
         })
     }

@@ -1,8 +1,7 @@
 //! Why mechanics in a chart fails.
 
-use crate::contact::BodyMotionError;
-use crate::model::support::Support;
 use isosheet_coords::ChartError;
+use isosheet_dynamics::{CheckpointError, Support};
 use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, VertexId};
 use thiserror::Error;
@@ -11,6 +10,9 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ChartDynamicsError {
+    /// A checkpoint does not fit.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// The chart is not usable at this state.
     #[error(transparent)]
     Chart(#[from] ChartError),
@@ -125,19 +127,7 @@ pub enum ChartDynamicsError {
         /// Closure equations.
         equations: usize,
     },
-    /// The way on is closed by contact.
-    #[error(
-        "at t = {t} s no step above {h} s keeps the sheet out of contact: it is caught between \
-         bodies or pins that move into each other, or the explicit scheme has become unstable",
-        t = brief(*t), h = brief(*h)
-    )]
-    Contact {
-        /// Time, seconds.
-        t: f64,
-        /// The last step tried, seconds.
-        h: f64,
-    },
-    /// One call of [`Simulation::step`](crate::Simulation::step) takes too long.
+    /// One call of [`Simulation::step`](isosheet_dynamics::Simulation::step) takes too long.
     #[error(
         "{limit} steps, with those rejected, went no further than t = {t} s (near a singularity of \
          the chart a step control crawls)",
@@ -182,9 +172,6 @@ pub enum ChartDynamicsError {
         /// The limit.
         limit: f64,
     },
-    /// The prescribed motion of a body is not finite.
-    #[error(transparent)]
-    Body(#[from] BodyMotionError),
     /// A prescribed motion of a support is not finite.
     #[error(
         "the prescribed motion of {support} gives {value} at t = {t} s",
@@ -212,6 +199,7 @@ pub enum ChartDynamicsError {
 impl Advice for ChartDynamicsError {
     fn advice(&self) -> Option<&'static str> {
         match self {
+            Self::Checkpoint(error) => error.advice(),
             Self::Chart(error) => error.advice(),
             Self::Option { remedy, .. } => Some(remedy),
             Self::TooManyCoordinates { .. } => Some("use another solver"),
@@ -233,7 +221,7 @@ impl Advice for ChartDynamicsError {
             Self::Closure { .. } => {
                 Some("start closer to them, remove or move one, or take a smaller step")
             }
-            Self::Contact { .. } | Self::NotFinite { .. } => Some("take smaller steps"),
+            Self::NotFinite { .. } => Some("take smaller steps"),
             Self::TooManySteps { .. } => Some(
                 "ask for less time at once, take longer steps, loosen the tolerance or use a method without \
                  a chart",
@@ -245,7 +233,6 @@ impl Advice for ChartDynamicsError {
             Self::Diverged { .. } => {
                 Some("take smaller steps, exact positions or other equations of motion")
             }
-            Self::Body(error) => error.advice(),
             Self::Motion { .. } => Some("check the function"),
             Self::Combination { .. } | Self::WrongLength { .. } => None,
         }

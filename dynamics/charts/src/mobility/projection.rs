@@ -1,7 +1,7 @@
 //! Projection of positions onto lengths and closure equations, and the check whether a state meets them.
 
 use super::Mobility;
-use crate::chart::{ChartDynamicsError, ChartMechanics, PositionUpdate};
+use crate::{ChartDynamicsError, ChartMechanics, PositionUpdate};
 use isosheet_coords::ChartError;
 use isosheet_coords::linalg::norm_inf;
 
@@ -32,7 +32,7 @@ impl Mobility {
 
     /// Refuses a state whose closures are off by more than `limit`, relative to the shortest rod at the
     /// vertex.
-    pub(in crate::chart) fn check(
+    pub(crate) fn check(
         &mut self,
         mechanics: &ChartMechanics,
         t: f64,
@@ -61,7 +61,7 @@ impl Mobility {
     /// Newton's method for the nearest positions in the mass metric that meet the closures at time `t` and,
     /// unless positions are updated linearly, have the right lengths. Pins end where they belong to the last
     /// bit.
-    pub(in crate::chart) fn project(
+    pub(crate) fn project(
         &mut self,
         mechanics: &ChartMechanics,
         t: f64,

@@ -1,19 +1,10 @@
-//! One step in a chart: proposals of the method, judged by the step control and by contact.
+//! One step in a chart: proposals of the method, judged by the step control.
 
 use super::energy_bound::{EnergyBound, Verdict};
 use super::simulation::ChartSimulation;
 use super::state::StepRange;
 use super::stepping::PhaseState;
 use super::{ChartDynamicsError, ChartStepControl, ChartStepReport, Rebase};
-use crate::contact::{ActiveContacts, StepSpan};
-use crate::step::control::{Decision, Stepping, take_substep};
-
-/// Part of the planned step below which contact does not shorten a step: beyond, positions drown in
-/// round-off.
-const SHORTEST_CUT: f64 = 1e-10;
-/// How often contact may shorten a step. Each time the gap shrinks by nine tenths, so that 100 times are the
-/// range of f64.
-const MOST_CUTS: u32 = 100;
 
 impl ChartSimulation {
     /// Take one step.
@@ -63,29 +54,32 @@ impl ChartSimulation {
         }
         let bound = EnergyBound::new(self.options.control, self.motion.next_step);
         let h = bound.planned().min(limit);
-        let mut substep = ChartSubstep::new(self, bound, h, rebased);
-        take_substep(&mut substep, h)
+        ChartSubstep::new(self, bound, h, rebased).take(h)
     }
 }
 
-/// A step to be proposed and committed.
-pub(super) struct ChartSubstep<'a> {
+/// A step to be proposed and taken.
+struct ChartSubstep<'a> {
     simulation: &'a mut ChartSimulation,
     bound: EnergyBound,
     /// Whether the step is shorter than planned because the caller wants it so.
     is_cut_short: bool,
-    /// How often contact has shortened it.
-    cuts: u32,
     rejected: u32,
     is_rebased: bool,
-    /// The state at the end of the proposal.
-    trial: Option<PhaseState>,
+}
+
+/// What follows from a refusal.
+enum Decision {
+    /// The step is proposed again in a new chart.
+    Rebase,
+    /// A step of this length is proposed, seconds.
+    Shorten(f64),
+    /// There is no step.
+    Stop(ChartDynamicsError),
 }
 
 /// Why a step in a chart is not taken as proposed.
 pub(super) enum SubstepRefusal {
-    /// Only this part of the displacement is proven free of contact.
-    Blocked(f64),
     /// It changes the Hamiltonian by this much, joules.
     Energy(f64),
     /// There is no such step.
@@ -104,10 +98,8 @@ impl<'a> ChartSubstep<'a> {
             is_cut_short: h < bound.planned(),
             simulation,
             bound,
-            cuts: 0,
             rejected: 0,
             is_rebased,
-            trial: None,
         }
     }
 
@@ -115,24 +107,8 @@ impl<'a> ChartSubstep<'a> {
         self.simulation.motion.t
     }
 
-    /// Contact allows a step of `shorter` seconds.
-    fn cut(&mut self, shorter: f64) -> Decision<ChartDynamicsError> {
-        self.cuts += 1;
-        if shorter < SHORTEST_CUT * self.bound.planned() || self.cuts > MOST_CUTS {
-            let t = self.t();
-            Decision::Stop(ChartDynamicsError::Contact { t, h: shorter })
-        } else {
-            Decision::Shorten(shorter)
-        }
-    }
-
     /// A step of `h` seconds changed the Hamiltonian by `change`, or failed with an error.
-    fn shorten(
-        &mut self,
-        h: f64,
-        change: f64,
-        error: Option<ChartDynamicsError>,
-    ) -> Decision<ChartDynamicsError> {
+    fn shorten(&mut self, h: f64, change: f64, error: Option<ChartDynamicsError>) -> Decision {
         if let Verdict::Shorten(shorter) = self.bound.judge(h, change) {
             self.rejected += 1;
             return Decision::Shorten(shorter);
@@ -159,26 +135,18 @@ impl<'a> ChartSubstep<'a> {
         simulation.motion.growth = simulation.stepper.growth()?;
         let motion = &mut simulation.motion;
         let energy_change = trial.hamiltonian - motion.hamiltonian;
-        if self.cuts == 0 && !(self.is_cut_short && self.rejected == 0) {
+        if !(self.is_cut_short && self.rejected == 0) {
             motion.next_step = self.bound.next(h, energy_change.abs());
         }
         let start = (motion.t, std::mem::replace(&mut motion.state, trial));
         motion.t += h;
         motion.is_fresh = false;
         motion.since_check += 1;
-        let mut driven = simulation.drive_work((start.0, &start.1.x), h)?;
-        let mut impact = 0.0;
-        if let Some(mut contact) = simulation.contact.take() {
-            let outcome = simulation.impact(&mut contact, h);
-            simulation.contact = Some(contact);
-            let [loss, work] = outcome?;
-            impact = loss;
-            driven += work;
-        }
+        let driven = simulation.drive_work((start.0, &start.1.x), h)?;
         let before_damping = simulation.motion.state.hamiltonian;
         let potential = simulation.damp(h)?;
         let motion = &mut simulation.motion;
-        if self.cuts == 0 && (!self.is_cut_short || self.rejected > 0) {
+        if !self.is_cut_short || self.rejected > 0 {
             let so_far = motion.range.unwrap_or(StepRange {
                 min: h,
                 max: h,
@@ -199,11 +167,6 @@ impl<'a> ChartSubstep<'a> {
             potential,
             energy_change,
             damped: before_damping - motion.hamiltonian,
-            impact,
-            gap: simulation
-                .contact
-                .as_ref()
-                .map(|c| ActiveContacts::gap(c.active())),
             strain: system.max_strain(&motion.state.x),
             driven,
             rebased: self.is_rebased,
@@ -211,16 +174,30 @@ impl<'a> ChartSubstep<'a> {
     }
 }
 
-impl Stepping for ChartSubstep<'_> {
-    type Refusal = SubstepRefusal;
-    type Error = ChartDynamicsError;
-    type Report = ChartStepReport;
+impl ChartSubstep<'_> {
+    /// Takes a step of at most `h` seconds.
+    fn take(mut self, mut h: f64) -> Result<ChartStepReport, ChartDynamicsError> {
+        loop {
+            let refusal = match self.propose(h) {
+                Ok(trial) => return self.apply(trial, h),
+                Err(refusal) => refusal,
+            };
+            match self.decide(refusal, h) {
+                Decision::Rebase => {
+                    self.is_rebased = true;
+                    self.simulation.rebase()?;
+                }
+                Decision::Shorten(shorter) => h = shorter,
+                Decision::Stop(error) => return Err(error),
+            }
+        }
+    }
 
-    fn propose(&mut self, h: f64) -> Result<(), SubstepRefusal> {
+    /// The state after a step of `h` seconds.
+    fn propose(&mut self, h: f64) -> Result<PhaseState, SubstepRefusal> {
         let ChartSimulation {
             stepper,
             motion,
-            contact,
             options,
             ..
         } = &mut *self.simulation;
@@ -232,14 +209,6 @@ impl Stepping for ChartSubstep<'_> {
         let trial = stepper
             .attempt(motion.t, &motion.state, h)
             .map_err(SubstepRefusal::Failed)?;
-        if let Some(contact) = contact {
-            let span = StepSpan { t0: motion.t, h };
-            let part = contact.safe_fraction(span, &motion.state.x, &trial.x);
-            let part = part.map_err(|error| SubstepRefusal::Failed(error.into()))?;
-            if part < 1.0 {
-                return Err(SubstepRefusal::Blocked(part));
-            }
-        }
         let change = (trial.hamiltonian - motion.hamiltonian).abs();
         if self.bound.judge(h, change) != Verdict::Accept {
             return Err(SubstepRefusal::Energy(change));
@@ -252,46 +221,21 @@ impl Stepping for ChartSubstep<'_> {
                 limit: options.failure_strain,
             }));
         }
-        self.trial = Some(trial);
-        Ok(())
+        Ok(trial)
     }
 
-    fn decide(&mut self, refusal: SubstepRefusal, h: f64) -> Decision<ChartDynamicsError> {
+    fn decide(&mut self, refusal: SubstepRefusal, h: f64) -> Decision {
         let may_rebase = self.simulation.options.rebase == Rebase::WhenNeeded
             && !self.simulation.motion.is_fresh;
         match refusal {
-            SubstepRefusal::Blocked(part) => self.cut(part * h),
-            SubstepRefusal::Failed(ChartDynamicsError::Chart(_)) if may_rebase => Decision::Restart,
+            SubstepRefusal::Failed(ChartDynamicsError::Chart(_)) if may_rebase => Decision::Rebase,
             // The edge lengths have drifted over many steps, or a prescribed motion is not finite: a shorter
             // step does not help.
             SubstepRefusal::Failed(
-                error @ (ChartDynamicsError::Diverged { .. }
-                | ChartDynamicsError::Motion { .. }
-                | ChartDynamicsError::Body(_)),
+                error @ (ChartDynamicsError::Diverged { .. } | ChartDynamicsError::Motion { .. }),
             ) => Decision::Stop(error),
             SubstepRefusal::Failed(error) => self.shorten(h, f64::NAN, Some(error)),
             SubstepRefusal::Energy(change) => self.shorten(h, change, None),
         }
-    }
-
-    fn restart(&mut self) -> Result<(), ChartDynamicsError> {
-        self.is_rebased = true;
-        self.simulation.rebase()
-    }
-
-    fn fall_back(&mut self) {}
-
-    fn commit(&mut self, h: f64) -> Result<ChartStepReport, ChartDynamicsError> {
-        let trial = self.trial.take().expect("proposed before it is committed");
-        if let Some(contact) = &mut self.simulation.contact {
-            contact.keep();
-        }
-        let applied = self.apply(trial, h);
-        if applied.is_err()
-            && let Some(contact) = &mut self.simulation.contact
-        {
-            contact.restore();
-        }
-        applied
     }
 }

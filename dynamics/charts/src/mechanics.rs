@@ -1,9 +1,9 @@
 //! Momenta, Hamiltonian and its derivatives at a state.
 
 use super::{ChartDynamicsError, MassSolver, MassSolverKind};
-use crate::SheetModel;
-use crate::potential::Memories;
 use isosheet_coords::{Chart, Linearised, RodSystem};
+use isosheet_dynamics::Memories;
+use isosheet_dynamics::SheetModel;
 use isosheet_mesh::VertexId;
 
 /// Which terms of the equations of motion are kept, and what happens to the momenta.

@@ -1,12 +1,11 @@
 //! Solvers against each other, derivatives against differences, orders against closed forms, refusals.
 
-mod impacts;
 mod orders;
 
 use super::*;
-use crate::{SheetModel, Simulation, State};
 use isosheet_coords::assignment::{AssignmentOptions, Degenerate};
 use isosheet_coords::{CartesianChart, Chart, ChartError, Choice, FrontChart, RodSystem};
+use isosheet_dynamics::{SheetModel, State};
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId};
 use std::f64::consts::PI;
 
@@ -230,7 +229,7 @@ fn one_call_takes_no_more_than_so_many_steps() {
     };
     let m = model(&sheet, &pins, MassKind::Lumped);
     let start = State::at_rest(sheet.positions().to_vec());
-    let mut s = Simulation::in_chart(m, start, cartesian(&sheet, &pins), options).unwrap();
+    let mut s = in_chart(m, start, cartesian(&sheet, &pins), options).unwrap();
     assert_eq!(s.step(4e-3).unwrap().substeps, 4);
     let error = s.step(8e-3).unwrap_err().to_string();
     assert!(error.contains("5 steps"), "{error}");
@@ -314,7 +313,7 @@ fn charts_for_other_pins_are_refused_as_such() {
 #[derive(Debug)]
 struct Wind([f64; 3]);
 
-impl crate::Force for Wind {
+impl isosheet_dynamics::Force for Wind {
     fn add_force(&self, _t: f64, _x: &[f64], v: &[f64], force: &mut [f64]) {
         // Drag relative to the wind, 0.01 N per m/s and vertex.
         for (f, v) in force.chunks_exact_mut(3).zip(v.chunks_exact(3)) {

@@ -1,11 +1,9 @@
 //! One step of each method.
 
-use super::impact::{Impact, Impacts};
 use super::mobility::Mobility;
 use super::{ChartDynamicsError, ChartMechanics, Equations};
 use super::{ChartMethod, ChartOptions, PositionUpdate};
-use crate::contact::ContactPoint;
-use crate::step::reaction::Balance;
+use isosheet_dynamics::engine::Balance;
 use serde::{Deserialize, Serialize};
 
 /// Power iterations after a rebase; later ones start from the last vector, one per step.
@@ -156,58 +154,6 @@ impl Stepper {
         self.mechanics.momenta(&v, &mut qdot)?;
         add(1.0, &qdot, p);
         Ok(())
-    }
-
-    /// Impulses of contacts on the momenta of a state; `None` if nothing approaches.
-    pub(super) fn impact(
-        &mut self,
-        time: (f64, f64),
-        s: &mut PhaseState,
-        points: &[ContactPoint],
-        restitution: f64,
-    ) -> Result<Option<Impact>, ChartDynamicsError> {
-        let v = self.velocities(s)?;
-        self.mobility.at(&self.mechanics, time.0, &s.x)?;
-        let mean_mass = self.mechanics.model().mean_mass();
-        let system = self.mechanics.system();
-        let impacts = Impacts::new(system, &mut self.mobility, mean_mass, points)?;
-        let mut reduced = vec![0.0; system.unknowns()];
-        system.gather(&v, &mut reduced);
-        let Some(impact) = impacts.solve(system, &reduced, restitution) else {
-            return Ok(None);
-        };
-        let mut change = vec![0.0; v.len()];
-        system.scatter(&impact.change, &mut change);
-        let mut share = vec![0.0; s.p.len()];
-        self.mechanics.momenta(&change, &mut share)?;
-        add(1.0, &share, &mut s.p);
-        s.hamiltonian = self.mechanics.hamiltonian(time.0, &s.x, &s.p)?;
-        Ok(Some(impact))
-    }
-
-    /// The least displacement in the mass metric that opens all gaps to `least`, lengths and closures kept:
-    /// the state there with the same velocities.
-    pub(super) fn separated(
-        &mut self,
-        t: f64,
-        s: &PhaseState,
-        points: &[ContactPoint],
-        least: f64,
-    ) -> Result<PhaseState, ChartDynamicsError> {
-        let v = self.velocities(s)?;
-        self.mobility.at(&self.mechanics, t, &s.x)?;
-        let mean_mass = self.mechanics.model().mean_mass();
-        let system = self.mechanics.system();
-        let step = Impacts::new(system, &mut self.mobility, mean_mass, points)?.open(least);
-        let mut trial = s.clone();
-        system.add_scaled(1.0, &step, &mut trial.x);
-        self.mobility
-            .project(&self.mechanics, t, self.position, &mut trial.x)?;
-        self.mechanics.at(&trial.x)?;
-        self.mechanics.coordinates(&trial.x, &mut trial.q)?;
-        self.mechanics.momenta(&v, &mut trial.p)?;
-        trial.hamiltonian = self.mechanics.hamiltonian(t, &trial.x, &trial.p)?;
-        Ok(trial)
     }
 
     /// Forces of all supports at a state.

@@ -29,10 +29,9 @@
 mod projection;
 
 use super::{ChartDynamicsError, ChartMechanics};
-use crate::model::support::Support;
-use crate::step::reaction::Balance;
-use crate::vectors::point;
 use isosheet_coords::SaddlePoint;
+use isosheet_dynamics::Support;
+use isosheet_dynamics::engine::Balance;
 use isosheet_mesh::VertexId;
 use nalgebra::{DMatrix, DVector, Matrix2x3, SymmetricEigen, Vector2, Vector3};
 
@@ -88,6 +87,11 @@ pub(super) struct Mobility {
     rank: usize,
     mu: Vec<f64>,
     no_rates: Vec<f64>,
+}
+
+/// The coordinates of a vertex.
+fn point(x: &[f64], v: VertexId) -> Vector3<f64> {
+    Vector3::from(x.as_chunks::<3>().0[v.index()])
 }
 
 impl Mobility {
@@ -240,20 +244,6 @@ impl Mobility {
                 *v += l * c;
             }
         }
-    }
-
-    /// Velocities on the unknowns that impulses on the unknowns cause where rods and closures hold. At the
-    /// state of [`Mobility::at`].
-    pub(super) fn respond(
-        &mut self,
-        impulse: &[f64],
-        v: &mut [f64],
-    ) -> Result<(), ChartDynamicsError> {
-        self.saddle
-            .solve(impulse, &self.no_rates, v, &mut self.mu)?;
-        let lambda = self.multipliers(self.rows.iter().map(|r| r.apply(v)));
-        self.give_way(&lambda, v);
-        Ok(())
     }
 
     /// Changes velocities `v` (full) to the nearest in the mass metric that keep the closures: the change, on

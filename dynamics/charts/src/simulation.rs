@@ -1,19 +1,14 @@
 //! Explicit integration in a chart, with the published step control.
 
-use super::contact::ChartContact;
 use super::mechanics::ReplacedChart;
 use super::state::{ChartState, StepRange};
 use super::stepping::{PhaseState, Stepper};
-use super::{
-    ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
-};
-use crate::HandError;
-use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
-use crate::potential::Memories;
-use crate::step::reaction::{Balance, ForceTime, Reaction};
-use crate::{SheetModel, State};
+use super::{ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, Rebase};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
-use isosheet_mesh::VertexId;
+use isosheet_dynamics::Memories;
+use isosheet_dynamics::Reaction;
+use isosheet_dynamics::engine::{Balance, ForceTime};
+use isosheet_dynamics::{SheetModel, State};
 
 /// What one step did.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,18 +24,13 @@ pub struct ChartStepReport {
     pub kinetic: f64,
     /// Potential energy after the step, joules.
     pub potential: f64,
-    /// Change of the Hamiltonian over the step, before impacts and velocity damping, joules.
+    /// Change of the Hamiltonian over the step, before velocity damping, joules.
     pub energy_change: f64,
     /// Energy taken out by velocity damping, joules.
     pub damped: f64,
-    /// Energy lost in the impacts at the end of the step, joules; not negative.
-    pub impact: f64,
-    /// Smallest gap after the step, metres; `None` without contact.
-    pub gap: Option<f64>,
     /// Largest edge strain after the step.
     pub strain: f64,
-    /// Work done over the step by moving pins and vertex constraints, and by moving bodies in impacts,
-    /// joules.
+    /// Work done over the step by moving pins and vertex constraints, joules.
     pub driven: f64,
     /// Whether the chart was rebased before the step.
     pub rebased: bool,
@@ -51,14 +41,9 @@ pub struct ChartSimulation {
     pub(super) stepper: Stepper,
     pub(super) options: ChartOptions,
     pub(super) motion: ChartState,
-    pub(super) contact: Option<ChartContact>,
     /// The chart at the start of the present step, if the step has replaced it.
     pub(super) replaced: Option<ReplacedChart>,
 }
-
-/// Gaps below this part of the activation distance are widened to it. The curvature of the path brings a
-/// sheet that lies or slides closer in each step by the square of the step, which no impulse prevents.
-const LEAST_GAP: f64 = 0.1;
 
 impl ChartSimulation {
     /// Start at time zero at positions x with velocities v, three values per vertex. See
@@ -139,7 +124,6 @@ impl ChartSimulation {
             motion: ChartState::start(t, state, step, pins),
             stepper,
             options,
-            contact: None,
             replaced: None,
         };
         simulation.check_condition()?;
@@ -148,57 +132,6 @@ impl ChartSimulation {
             simulation.motion.balance = Some(simulation.new_balance(step)?);
         }
         Ok(simulation)
-    }
-
-    /// Adds contact with bodies and of the sheet with itself, by impulses on the momenta.
-    ///
-    /// The paper applies collision forces to momenta and does not say how; this is our choice. A step whose
-    /// displacement is not proven free of contact ([`crate::contact::ContactSet::safe_fraction`]) is taken
-    /// anew as short as that allows, so that every gap stays positive. At the end of each step all contacts
-    /// within the activation distance that approach get impulses together, `p += J^T R^T l`, with
-    /// [`ChartOptions::restitution`] and Coulomb friction with the kinetic coefficient, of which the energy
-    /// never grows. The barrier of the contact is not used; a sheet rebounds at gaps below its activation
-    /// distance: choose that small. Gaps that the curvature of the path has closed to a tenth of it are
-    /// widened to that again.
-    ///
-    /// A sheet that lies on a body stays at rest in forward Euler, the paper's method, which moves with the
-    /// momenta that the impulses left. The other methods move with what forces make of them in the step, and
-    /// creep by the acceleration along the body times the squared step, each step, against friction too.
-    ///
-    /// Reactions do not contain the impulses that supports answer impacts with, nor does the work of moving
-    /// pins.
-    ///
-    /// # Errors
-    /// [`ContactError`] if something touches already or the contact belongs to another sheet.
-    pub fn with_contact(mut self, contact: impl Contact + 'static) -> Result<Self, ContactError> {
-        self.set_contact(Box::new(contact))?;
-        Ok(self)
-    }
-
-    pub(crate) fn set_contact(&mut self, contact: Box<dyn Contact>) -> Result<(), ContactError> {
-        let mut state = State::at_rest(self.motion.state.x.clone());
-        state.t = self.motion.t;
-        let model = self.stepper.mechanics.model();
-        self.contact = Some(ChartContact::new(contact, model, &state)?);
-        Ok(())
-    }
-
-    /// The contacts at the present state; `None` in scenes without contact.
-    #[must_use]
-    pub fn contacts(&self) -> Option<&ActiveContacts> {
-        self.contact.as_ref().map(ChartContact::active)
-    }
-
-    /// Gap below which contacts are named, metres; `None` in scenes without contact.
-    pub(crate) fn activation(&self) -> Option<f64> {
-        self.contact.as_ref().map(ChartContact::activation)
-    }
-
-    /// The impulses of contacts at the end of the last step, zero ones of contacts that do not press
-    /// included; empty if nothing approached.
-    #[must_use]
-    pub fn impulses(&self) -> &[ContactImpulse] {
-        &self.motion.impulses
     }
 
     /// Forces of the supports at the present state, motions differentiated over parts of the time `span`.
@@ -320,66 +253,14 @@ impl ChartSimulation {
         Ok(())
     }
 
-    /// Impacts at the end of a step: energy lost and work of the bodies.
-    pub(super) fn impact(
-        &mut self,
-        contact: &mut ChartContact,
-        h: f64,
-    ) -> Result<[f64; 2], ChartDynamicsError> {
-        self.motion.impulses.clear();
-        contact.evaluate(&self.motion.state.x)?;
-        let least = LEAST_GAP * contact.activation();
-        if contact.points().iter().any(|p| p.gap < least) {
-            let points = contact.points();
-            let separated =
-                self.stepper
-                    .separated(self.motion.t, &self.motion.state, points, least);
-            let span = StepSpan {
-                t0: self.motion.t,
-                h: 0.0,
-            };
-            // Where this is not possible the collision detection still holds.
-            if let Ok(separated) = separated
-                && contact.safe_fraction(span, &self.motion.state.x, &separated.x)? >= 1.0
-            {
-                self.motion.state = separated;
-                contact.evaluate(&self.motion.state.x)?;
-            }
-            self.stepper.mechanics.at(&self.motion.state.x)?;
-        }
-        let mut done = [0.0; 2];
-        if !contact.points().is_empty() {
-            let (time, e) = ((self.motion.t, h), self.options.restitution);
-            let points = contact.points();
-            if let Some(impact) = self
-                .stepper
-                .impact(time, &mut self.motion.state, points, e)?
-            {
-                self.motion.impulses = impact.impulses;
-                done = [impact.loss, impact.driven];
-            }
-        }
-        Ok(done)
-    }
-
     /// What the potentials remember.
     pub(crate) fn memories(&self) -> &Memories {
         self.stepper.mechanics.memories()
     }
 
-    /// Leads the hand that holds a vertex to a point (metres) until time `end`, seconds.
-    pub(crate) fn lead_hand(
-        &mut self,
-        vertex: VertexId,
-        to: [f64; 3],
-        end: f64,
-    ) -> Result<(), HandError> {
-        let (number, hand) = self.stepper.mechanics.model().hand(vertex)?;
-        let (t, mut memory) = (self.motion.t, self.memories().lists()[number].clone());
-        hand.lead(to, [t, end], &mut memory)?;
-        let memories = self.stepper.mechanics.memories_mut();
-        memories.list_mut(number).copy_from_slice(&memory);
-        Ok(())
+    /// What the potentials remember.
+    pub(crate) fn memories_mut(&mut self) -> &mut Memories {
+        self.stepper.mechanics.memories_mut()
     }
 
     /// Velocity damping over `h`; returns the potential energy.

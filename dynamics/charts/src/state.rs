@@ -1,10 +1,9 @@
 //! Where a motion in a chart is, as a value.
 
-use super::ContactImpulse;
 use super::stepping::PhaseState;
-use crate::potential::Memories;
-use crate::report::checkpoint_error::{CheckpointError, check_finite};
-use crate::step::reaction::Balance;
+use isosheet_dynamics::CheckpointError;
+use isosheet_dynamics::Memories;
+use isosheet_dynamics::engine::Balance;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -48,24 +47,22 @@ pub(crate) struct ChartState {
     pub(super) balance: Option<Balance>,
     /// What the potentials remember.
     pub(super) memories: Memories,
-    /// Impulses of contacts at the end of the last step.
-    pub(super) impulses: Vec<ContactImpulse>,
 }
 
 impl ChartState {
     /// Refuses numbers that are not finite, which a checkpoint that was changed from outside may have.
     pub(crate) fn check_numbers(&self) -> Result<(), CheckpointError> {
-        check_finite("times", &[self.t])?;
-        check_finite("positions", &self.state.x)?;
-        check_finite("coordinates", &self.state.q)?;
-        check_finite("momenta", &self.state.p)?;
+        let check =
+            |what, values: &[f64]| CheckpointError::check_numbers(what, values, values.len());
+        check("times", &[self.t])?;
+        check("positions", &self.state.x)?;
+        check("coordinates", &self.state.q)?;
+        check("momenta", &self.state.p)?;
         for memory in self.memories.lists() {
-            check_finite("memories of potentials", memory)?;
+            check("memories of potentials", memory)?;
         }
-        check_finite(
-            "reference positions",
-            self.reference.as_deref().unwrap_or_default(),
-        )
+        let reference = self.reference.as_deref().unwrap_or_default();
+        check("reference positions", reference)
     }
 
     /// The motion at time `t` before its first step, with the chart as its user built it.
@@ -90,7 +87,6 @@ impl ChartState {
             pins,
             balance: None,
             memories: Memories::default(),
-            impulses: Vec::new(),
         }
     }
 }
