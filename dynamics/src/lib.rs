@@ -81,6 +81,7 @@ pub use conservative::rattle::RattleOptions;
 pub use constraint::VertexConstraint;
 pub use damped::options::ImplicitOptions;
 pub use damped::start::{leave_flat, leave_flat_in, project_positions};
+pub use diagnosis::derivatives::{DerivativeErrors, check_derivatives};
 pub use diagnosis::rank::{RodRank, rod_rank};
 pub use engine::method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use hessian::HessianSink;
@@ -125,6 +126,7 @@ pub use potential::{
 pub use report::checkpoint_error::CheckpointError;
 pub use report::effort::StepProgress;
 pub use report::infeasibility::{Driver, Infeasibility};
+pub use report::potential_fault::{BadPotential, PotentialFault};
 pub use report::pressing::Pressing;
 pub use report::reason::Reason;
 pub use report::simulation_error::SimulationError;

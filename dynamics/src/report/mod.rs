@@ -4,6 +4,7 @@ pub(crate) mod checkpoint_error;
 pub(crate) mod effort;
 pub(crate) mod engine_error;
 pub(crate) mod infeasibility;
+pub(crate) mod potential_fault;
 pub(crate) mod pressing;
 pub(crate) mod reason;
 pub(crate) mod simulation_error;
