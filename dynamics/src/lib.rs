@@ -110,7 +110,6 @@ pub use model::load::{AccelerationField, LoadError, VertexLoad};
 pub use model::loaded_faces::{LoadedFaces, LoadedFacesError};
 pub use model::of_material::{SheetOfMaterial, SheetOfMaterialError};
 pub use model::part::PotentialOfPart;
-pub use model::support::Support;
 pub use model::turning_load::TurningLoad;
 pub use model::{Isometry, ModelError, SheetModel};
 pub use motion::profile::{Interpolation, Profile, ProfileError};
@@ -131,6 +130,7 @@ pub use report::pressing::Pressing;
 pub use report::reason::Reason;
 pub use report::simulation_error::SimulationError;
 pub use report::step_error::{StepError, StepOutcome, StepReport};
+pub use report::support::Support;
 pub use report::trace::{Continuation, Cut, TraceEvent};
 pub use rigid_body::{
     Attachment, BodyForce, BodyTorque, JointCoordinate, JointError, JointSpring, RigidBody,

@@ -3,11 +3,11 @@
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::diagnosis::potentials::{Differences, find_fault};
 use crate::linear::primal::PrimalMatrix;
-use crate::model::support::Support;
 use crate::options::OptionsError;
 use crate::potential::{At, Memories};
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
+use crate::report::support::Support;
 use crate::step::tuning::Tuning;
 use crate::vectors::point;
 use crate::{SheetModel, SimulationError, State};

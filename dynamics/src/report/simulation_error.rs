@@ -1,8 +1,8 @@
 //! Errors of the start of a simulation.
 
-use crate::contact::ContactError;
 use crate::options::OptionsError;
 use crate::report::checkpoint_error::CheckpointError;
+use crate::report::contact_error::ContactError;
 use crate::report::engine_error::EngineError;
 use crate::report::step_error::StepError;
 use isosheet_linalg::LinalgError;

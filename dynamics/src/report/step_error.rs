@@ -1,13 +1,13 @@
 //! Reports and errors of steps.
 
-use crate::contact::BodyMotionError;
-use crate::model::support::Support;
+use crate::report::contact_error::BodyMotionError;
 use crate::report::effort::SolverEffort;
 use crate::report::engine_error::EngineError;
 use crate::report::infeasibility::Infeasibility;
 use crate::report::potential_fault::BadPotential;
 use crate::report::pressing::Pressing;
 use crate::report::reason::Reason;
+use crate::report::support::Support;
 use isosheet_linalg::LinalgError;
 use isosheet_mesh::wording::{brief, counted, given, listed};
 use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
