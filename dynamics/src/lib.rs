@@ -143,7 +143,7 @@ pub use run::simulation::Simulation;
 pub use state::State;
 pub use step::reaction::{Imbalance, Reaction};
 #[doc(hidden)]
-pub use step::tuning::{Constant, Tuning};
+pub use step::tuning::Tuning;
 
 pub use nalgebra;
 

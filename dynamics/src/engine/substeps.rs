@@ -238,14 +238,6 @@ impl Engine {
         Ok(())
     }
 
-    /// Replaces the constants of the damped methods.
-    pub(crate) fn set_tuning(&mut self, tuning: Tuning) -> Result<(), SimulationError> {
-        self.tuning = tuning;
-        self.integrator = self.method.build(&self.model, &tuning)?;
-        self.fallback = fallback(&self.model, &self.control, &tuning)?;
-        Ok(())
-    }
-
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     ///
     /// A step that something prescribed breaks ends a sub-step there ([`SheetModel::with_breaks`]).

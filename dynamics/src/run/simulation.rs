@@ -16,7 +16,6 @@ use crate::report::step_error::{StepError, StepReport, StepTotals};
 use crate::report::trace::TraceEvent;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
 use crate::step::reaction::{Imbalance, Reaction};
-use crate::step::tuning::Tuning;
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
 use isosheet_mesh::VertexId;
 use std::any::Any;
@@ -222,19 +221,6 @@ impl Simulation {
     pub fn with_control(mut self, control: StepControl) -> Result<Self, SimulationError> {
         match &mut self.engine {
             Moved::ByMethod(engine) => engine.set_control(control)?,
-            Moved::ByEngine(_) => return Err(SimulationError::ChartControl),
-        }
-        Ok(self)
-    }
-
-    /// Sets the constants of the damped methods, for measurements.
-    ///
-    /// # Errors
-    /// [`SimulationError::ChartControl`] in charts, [`SimulationError::Linalg`] if memory runs out.
-    #[doc(hidden)]
-    pub fn with_tuning(mut self, tuning: Tuning) -> Result<Self, SimulationError> {
-        match &mut self.engine {
-            Moved::ByMethod(engine) => engine.set_tuning(tuning)?,
             Moved::ByEngine(_) => return Err(SimulationError::ChartControl),
         }
         Ok(self)
