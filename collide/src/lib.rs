@@ -37,34 +37,23 @@
 //! Everything is free of absolute tolerances: a sheet of a micrometre and one of a kilometre are
 //! treated alike. SI units and `f64` throughout.
 
-mod broad_phase;
-mod ccd;
 mod constraint;
-mod contact_mesh;
 mod contacts;
-mod crossings;
-pub mod distance;
 mod obstacle;
-mod signed_distance;
-mod surface;
-#[cfg(test)]
-mod testing;
-mod vectors;
 
-pub use broad_phase::{BroadPhase, Candidates, CrossCandidates};
-pub use ccd::{CcdOptions, CcdOptionsError};
-pub use contact_mesh::{ContactMesh, ContactMeshError};
 pub use contacts::{ContactOptions, Contacts, ContactsError, RoundBody};
-pub use crossings::{crossings, crossings_between};
-pub use distance::{Closest, Feature, Jet};
 pub use isosheet_dynamics::contact::{Coefficients, FrictionError, Stiffness};
 pub use nalgebra;
-pub use obstacle::{ContactGeometry, Obstacle, ObstacleError, Shape};
-pub use signed_distance::SignedDistance;
-pub use surface::{SurfaceError, TriangleSurface, rounded_line};
+pub use obstacle::{Obstacle, ObstacleError};
 
 #[doc(no_inline)]
 pub use isosheet_dynamics::{Keyframe, MotionError, RigidMotion};
+#[doc(no_inline)]
+pub use isosheet_geometry::{
+    BroadPhase, Candidates, CcdOptions, CcdOptionsError, Closest, ContactGeometry, ContactMesh,
+    ContactMeshError, CrossCandidates, Feature, Jet, Shape, ShapeError, SignedDistance,
+    SurfaceError, TriangleSurface, crossings, crossings_between, distance, rounded_line,
+};
 
 /// The code of the README is compiled and run as a test.
 #[cfg(doctest)]

@@ -1,8 +1,9 @@
 //! The bodies of a scene.
 
 use super::features::{Ends, Features};
-use crate::{Obstacle, ObstacleError, Shape};
+use crate::Obstacle;
 use isosheet_dynamics::contact::{BodyMotion, ContactKey, ContactKind, StepMotion, StepSpan};
+use isosheet_geometry::{Shape, ShapeError};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 /// Directions of an axis closer than this are the same but for the round-off of a quaternion.
@@ -22,7 +23,7 @@ impl Body {
         number: u32,
         segments: usize,
         ends: Ends,
-    ) -> Result<Self, ObstacleError> {
+    ) -> Result<Self, ShapeError> {
         Ok(Self {
             features: Features::new(obstacle.shape(), segments, ends)?,
             obstacle,

@@ -1,8 +1,7 @@
 //! The corners, edges and faces of a body, as edges and faces of a sheet meet them.
 
 use super::displacements::Displacements;
-use super::path::PartOfStep;
-use crate::{BroadPhase, ContactGeometry, ContactMesh, ObstacleError, Shape};
+use isosheet_geometry::{BroadPhase, ContactGeometry, ContactMesh, RigidPath, Shape, ShapeError};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::HashMap;
 
@@ -39,8 +38,8 @@ pub(super) struct Features {
     displacements: Displacements,
 }
 
-/// Whether the centre of a ball and the ends of the axis of a capsule are edges without length besides: what meets the
-/// axes of capsules that respond, which have neither faces nor other edges beside them.
+/// Whether the centre of a ball and the ends of the axis of a capsule are edges without length besides: what
+/// meets the axes of capsules that respond, which have neither faces nor other edges beside them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ends {
     /// They are points alone.
@@ -54,7 +53,7 @@ impl Features {
         shape: &Shape,
         segments: usize,
         ends: Ends,
-    ) -> Result<Option<Self>, ObstacleError> {
+    ) -> Result<Option<Self>, ShapeError> {
         let Some(mut geometry) = shape.contact_geometry(segments)? else {
             return Ok(None);
         };
@@ -107,7 +106,7 @@ impl Features {
 
     /// Sets the boxes to those of a motion, for pairs with a sheet within `reach`, metres; those of a resting
     /// body stay.
-    pub(super) fn place(&mut self, part: &PartOfStep, reach: f64) {
+    pub(super) fn place(&mut self, part: &RigidPath, reach: f64) {
         // Half of the reach, the radius, and the bulge of the paths of a turning body.
         let inflation = 0.5 * reach + self.radius + part.sagitta(self.extent);
         let pose = part.pose_at(0.0);

@@ -6,11 +6,12 @@ mod safety;
 mod start;
 
 use super::*;
-use crate::{Keyframe, Shape, Stiffness, TriangleSurface};
+use crate::{Keyframe, Stiffness};
 use isosheet_dynamics::contact::BodyMotions;
 use isosheet_dynamics::contact::internals::{
     BarrierPotential, ContactSet, ContactTerms, CouplingSink, LaggedFriction,
 };
+use isosheet_geometry::{Shape, TriangleSurface};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Matrix3};
 use std::sync::Arc;

@@ -30,6 +30,7 @@ pub use isosheet_collide as collide;
 pub use isosheet_coords as coords;
 pub use isosheet_dynamics as dynamics;
 pub use isosheet_dynamics::nalgebra;
+pub use isosheet_geometry as geometry;
 pub use isosheet_io as io;
 pub use isosheet_linalg as linalg;
 pub use isosheet_mesh as mesh;

@@ -1,5 +1,4 @@
 use super::*;
-use crate::testing::{safe_part, smallest_distance};
 use crate::{BroadPhase, Candidates, CcdOptions};
 use isosheet_mesh::generate;
 use proptest::prelude::*;
@@ -32,12 +31,12 @@ proptest! {
             let goal = add(&x, &dx, 1.0);
             phase.update(&x, &goal, 0.0);
             phase.self_candidates(&mut candidates);
-            let before = smallest_distance(&mesh, &candidates, &x);
-            let t = safe_part(&mesh, &candidates, &options, [&x, &dx]);
+            let before = candidates.smallest_distance(&mesh, &x);
+            let t = candidates.safe_part(&mesh, &options, &x, &dx);
             cut += usize::from(t < 1.0);
             x = add(&x, &dx, t);
             prop_assert_eq!(crossings(&mesh, &x), Vec::<[u32; 2]>::new());
-            prop_assert!(smallest_distance(&mesh, &candidates, &x) > 0.0);
+            prop_assert!(candidates.smallest_distance(&mesh, &x) > 0.0);
             prop_assert!(before > 0.0);
         }
         prop_assert!(cut > 0, "no step was cut");
@@ -76,7 +75,7 @@ proptest! {
         pairs.vertex_face.retain(|&[v, f]| is_across(v, of_face(f)));
         pairs.edge_edge.retain(|&[e, g]| is_across(of_edge(e), of_edge(g)));
         let options = CcdOptions { separation, ..CcdOptions::default() };
-        let t = safe_part(&both, &pairs, &options, [&z, &dz]);
+        let t = pairs.safe_part(&both, &options, &z, &dz);
         let impact = (gap - separation) / speed;
         prop_assert!(t < impact && t > 0.8 * impact, "{t} {impact}");
         let stopped = add(&y, &dy, t);

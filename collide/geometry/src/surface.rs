@@ -1,4 +1,4 @@
-//! Triangle surfaces as obstacles.
+//! Surfaces of triangles, and the distances from them.
 
 use crate::contact_mesh::{ContactMesh, ContactMeshError};
 use crate::distance::{Closest, Feature, point_triangle};
@@ -42,7 +42,7 @@ struct Normals {
     vertices: Vec<Vector3<f64>>,
 }
 
-/// Why triangles cannot be an obstacle.
+/// Why triangles are no surface.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
@@ -266,7 +266,7 @@ impl TriangleSurface {
     /// Distance of `p` with derivatives, negative on the side that the face normals point away from, of an
     /// open surface too. Smooth across the faces; beyond the rim of an open surface it is the distance from
     /// the rim, and changes sign with a jump where the surface would go on. Not a number if `p` is not.
-    pub(crate) fn oriented_distance(&self, p: &Vector3<f64>) -> SignedDistance {
+    pub fn oriented_distance(&self, p: &Vector3<f64>) -> SignedDistance {
         let Some((face, closest)) = self.closest(p) else {
             return SignedDistance {
                 value: f64::NAN,
