@@ -76,13 +76,14 @@ const NEXT_PART: f64 = 4.0;
 /// Gaps are:
 ///
 /// * half-space: that of every vertex. A flat face is away if its corners are.
-/// * box, ball, cylinder, capsule: the signed distance of every vertex, and the distances of faces
-///   from the body's corners and of edges from its edges ([`crate::Shape::contact_geometry`], without edges
-///   inside a flat facet); for a ball and a capsule these are their centre and axis, and the radius is
-///   taken off. A cylinder meets edges and faces as a prism inside it: they, unlike vertices, may come
-///   closer than the true cylinder by up to `radius (1 - cos(pi / segments))`.
-/// * triangle surface, open or closed: vertices and its faces, faces and its vertices, edges and its
-///   edges. An open one has two sides.
+/// * box, ball, cylinder, capsule, and whatever else is [convex](crate::Shape::is_convex): the signed
+///   distance of every vertex, and the distances of faces from the body's corners and of edges from its edges
+///   ([`crate::Shape::contact_geometry`], without edges inside a flat facet); for a ball and a capsule these
+///   are their centre and axis, and the radius is taken off. A cylinder meets edges and faces as a prism
+///   inside it: they, unlike vertices, may come closer than the true cylinder by up to `radius (1 - cos(pi /
+///   segments))`.
+/// * triangle surface, open or closed, and the triangles of a form that is not convex: vertices and its
+///   faces, faces and its vertices, edges and its edges. An open one has two sides.
 /// * the sheet itself: vertices and faces, edges and edges without a common vertex.
 ///
 /// Two edges have the factor of [`isosheet_dynamics::contact::ParallelEdges`], without which their energy has

@@ -128,9 +128,8 @@ mod contact_mesh;
 mod crossings;
 pub mod distance;
 mod rigid_path;
-mod shape;
+mod shapes;
 mod signed_distance;
-mod surface;
 #[cfg(test)]
 mod testing;
 pub mod vectors;
@@ -143,9 +142,11 @@ pub use crossings::{crossings, crossings_between, pierces};
 pub use distance::{Closest, Feature, Jet};
 pub use nalgebra;
 pub use rigid_path::{Course, RigidPath};
-pub use shape::{ContactGeometry, Shape, ShapeError};
+pub use shapes::{
+    ContactGeometry, Form, Moments, Shape, ShapeError, Skin, SurfaceError, Symmetry,
+    TriangleSurface, Triangles, rounded_line,
+};
 pub use signed_distance::SignedDistance;
-pub use surface::{SurfaceError, TriangleSurface, rounded_line};
 
 /// The code of the README is compiled and run as a test.
 #[cfg(doctest)]

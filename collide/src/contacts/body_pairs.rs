@@ -8,7 +8,7 @@ use super::neighbours::Neighbours;
 use isosheet_dynamics::contact::{ContactKey, ContactKind};
 use isosheet_geometry::distance::{Closest, edge_edge, point_triangle};
 use isosheet_geometry::vectors::{gather, smaller};
-use isosheet_geometry::{Course, RigidPath, Shape};
+use isosheet_geometry::{Course, RigidPath};
 use nalgebra::Vector3;
 
 impl Body {
@@ -39,7 +39,7 @@ impl Body {
         pairs: &mut Vec<ContactKey>,
     ) {
         let shape = self.obstacle().shape();
-        if matches!(shape, Shape::Surface(_)) {
+        if !shape.is_convex() {
             return;
         }
         let places = sheet.x.as_chunks::<3>().0.iter();

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// the round-off of unit normals, and a ridge too low to matter.
 const FLAT_SINE: f64 = 1e-12;
 
-/// What of a body meets edges and faces of the sheet; of a triangle surface vertices as well.
+/// What of a body meets edges and faces of the sheet; of one that is not convex vertices as well.
 #[derive(Debug, Clone)]
 pub(super) struct Features {
     phase: BroadPhase,
@@ -57,7 +57,7 @@ impl Features {
         let Some(mut geometry) = shape.contact_geometry(segments)? else {
             return Ok(None);
         };
-        if ends == Ends::Edges && matches!(shape, Shape::Sphere { .. } | Shape::Capsule { .. }) {
+        if ends == Ends::Edges && geometry.radius > 0.0 {
             geometry.mesh = geometry.mesh.with_points_as_edges();
         }
         let ContactGeometry {
@@ -78,13 +78,13 @@ impl Features {
             }
         }
         // The faces of a convex body are looked after by its signed distance.
-        let (mesh, flat_edges) = if matches!(shape, Shape::Surface(_)) {
-            (mesh, flat_edges)
-        } else {
+        let (mesh, flat_edges) = if shape.is_convex() {
             let mut flat = flat_edges.iter();
             let mesh = mesh.without_faces(|_| flat.next() == Some(&false));
             let kept = mesh.edges().len();
             (mesh, vec![false; kept])
+        } else {
+            (mesh, flat_edges)
         };
         Ok(Some(Self {
             phase: BroadPhase::new(mesh, &positions),

@@ -3,7 +3,7 @@
 use super::evaluate::Placed;
 use isosheet_dynamics::contact::{ActiveContact, ContactError, ContactPair};
 use isosheet_geometry::vectors::gather;
-use isosheet_geometry::{BroadPhase, ContactMesh, Shape, pierces};
+use isosheet_geometry::{BroadPhase, ContactMesh, pierces};
 use nalgebra::Vector3;
 
 /// Refuses a contact whose gap is closed or not a number, naming the closest.
@@ -76,13 +76,11 @@ pub(super) fn check_body(
         let body = number;
         (ContactPair::Body { vertex, body }, gap)
     };
-    if let Shape::Surface(surface) = shape
-        && surface.is_closed()
-    {
+    if shape.is_solid() && !shape.is_convex() {
         let vertices = (0..).zip(x.as_chunks::<3>().0);
         for (v, p) in vertices.filter(|(v, _)| meets_bodies(*v)) {
             let local = place.to_local(&Vector3::from(*p));
-            let gap = surface.signed_distance(&local).value;
+            let gap = shape.signed_distance(&local).value;
             if gap <= 0.0 {
                 return Err(touching(v, gap));
             }

@@ -10,7 +10,7 @@ fn passes(step: &Step, x: &[f64], s: f64) -> bool {
     let body = &contacts.bodies[0];
     let pose = step.bodies.list()[0].surface.pose(s);
     let shape = body.obstacle().shape();
-    let solid = !matches!(shape, Shape::Surface(surface) if !surface.is_closed());
+    let solid = shape.is_solid();
     if solid {
         for p in x.as_chunks::<3>().0 {
             let local = pose.inverse_transform_point(&(*p).into()).coords;

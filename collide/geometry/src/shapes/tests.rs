@@ -1,7 +1,10 @@
 use super::*;
 use crate::distance::{Jet, point_edge, point_point};
 use crate::testing::{check_jet, points, sizes};
+use nalgebra::Matrix3;
 use proptest::prelude::*;
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 
 fn shapes() -> impl Strategy<Value = Shape> {
     (0..5_u8, proptest::array::uniform3(0.2..1.0_f64)).prop_map(|(kind, [a, b, c])| match kind {
@@ -178,4 +181,160 @@ fn bad_lengths_are_named() {
         half_height: 1.0,
     };
     assert_eq!(cylinder.contact_geometry(2), Err(ShapeError::Segments(2)));
+}
+
+/// The volume that the faces enclose; positive where they are counter-clockwise from outside.
+fn volume(mesh: &Triangles) -> f64 {
+    let six = |f: &[u32; 3]| {
+        let [a, b, c] = f.map(|v| mesh.points[v as usize]);
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    mesh.faces.iter().map(six).sum::<f64>() / 6.0
+}
+
+/// Round bodies are closed, wound outwards, and have the volume of their shapes.
+#[test]
+fn round_bodies_have_their_volumes() {
+    let (radius, half_length) = (0.5, 0.75);
+    let ball = TAU / 1.5 * radius * radius * radius;
+    let tube = TAU * radius * radius * half_length;
+    let shapes = [
+        (Shape::Sphere { radius }, ball),
+        (
+            Shape::Capsule {
+                radius,
+                half_length,
+            },
+            ball + tube,
+        ),
+        (
+            Shape::Cylinder {
+                radius,
+                half_height: half_length,
+            },
+            tube,
+        ),
+    ];
+    for (shape, expected) in shapes {
+        let moments = shape.moments().unwrap();
+        assert!((moments.volume / expected - 1.0).abs() < 1e-15, "{shape:?}");
+        let mesh = shape.triangles(128).unwrap().unwrap();
+        let found = volume(&mesh);
+        assert!(
+            found < expected && found > 0.998 * expected,
+            "{shape:?}: {found}"
+        );
+        let sides: BTreeSet<[u32; 2]> = mesh
+            .faces
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .collect();
+        assert_eq!(sides.len(), 3 * mesh.faces.len());
+        assert!(sides.iter().all(|[a, b]| sides.contains(&[*b, *a])));
+    }
+    assert_eq!(Shape::HalfSpace.triangles(8).unwrap(), None);
+    assert!(Shape::Sphere { radius }.triangles(3).is_err());
+}
+
+/// The second moments of the volume about the origin, as sums over tetrahedra with the origin.
+fn second_moments(mesh: &Triangles) -> Matrix3<f64> {
+    let of = |f: &[u32; 3]| {
+        let [a, b, c] = f.map(|v| Vector3::from(mesh.points[v as usize]));
+        let sum = a + b + c;
+        let squares = [a, b, c, sum].map(|v| v * v.transpose());
+        a.dot(&b.cross(&c)) / 120.0 * squares.iter().sum::<Matrix3<f64>>()
+    };
+    mesh.faces.iter().map(of).sum()
+}
+
+/// Bounds and moments are those of triangles with many sides, which are inside of the shape.
+#[test]
+fn bounds_and_moments_are_those_of_the_triangles() {
+    let shapes = [
+        Shape::Cuboid {
+            half: [0.3, 0.5, 0.2],
+        },
+        Shape::Sphere { radius: 0.3 },
+        Shape::Cylinder {
+            radius: 0.2,
+            half_height: 0.35,
+        },
+        Shape::Capsule {
+            radius: 0.2,
+            half_length: 0.25,
+        },
+    ];
+    for shape in shapes {
+        let mesh = shape.triangles(256).unwrap().unwrap();
+        let surface = TriangleSurface::new(&mesh.points.concat(), &mesh.faces).unwrap();
+        let [found, expected] = [Form::bounds(&surface), shape.bounds()].map(Option::unwrap);
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).amax() < 1e-15, "{shape:?}");
+        }
+        let (moments, second) = (shape.moments().unwrap(), second_moments(&mesh));
+        assert_eq!(moments.centre, Vector3::zeros());
+        // Corners are on the shape, and sides `r (1 - cos(pi / 256))` inside of it.
+        assert!(
+            (volume(&mesh) / moments.volume - 1.0).abs() < 1e-3,
+            "{shape:?}"
+        );
+        let error = (second - moments.second).amax() / moments.second.amax();
+        assert!(error < 1e-3, "{shape:?}: {error}");
+    }
+    assert!(Shape::HalfSpace.bounds().is_none() && Shape::HalfSpace.moments().is_none());
+}
+
+/// Turned by what leaves it as it is, a shape has the same distances; what is convex is beside the planes at
+/// its closest points.
+#[test]
+fn symmetry_and_convexity_are_what_is_said() {
+    let turns = |shape: &Shape| match shape.symmetry() {
+        Symmetry::None => vec![],
+        Symmetry::Axis => vec![Vector3::z()],
+        Symmetry::Full => vec![Vector3::z(), Vector3::new(0.6, -0.3, 0.8)],
+    };
+    let open = TriangleSurface::wall(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], 0.5).unwrap();
+    let shapes = [
+        Shape::HalfSpace,
+        Shape::Cuboid {
+            half: [0.3, 0.5, 0.2],
+        },
+        Shape::Sphere { radius: 0.3 },
+        Shape::Cylinder {
+            radius: 0.2,
+            half_height: 0.35,
+        },
+        Shape::Capsule {
+            radius: 0.2,
+            half_length: 0.25,
+        },
+        Shape::Surface(Arc::new(open)),
+    ];
+    let points = || {
+        (0..50)
+            .map(f64::from)
+            .map(|i| Vector3::new((1.3 * i).sin(), (2.1 * i).cos(), (0.7 * i).sin()))
+    };
+    for shape in shapes {
+        assert_eq!(shape.is_solid(), !matches!(shape, Shape::Surface(_)));
+        for axis in turns(&shape) {
+            let turn = nalgebra::Rotation3::new(axis);
+            for p in points() {
+                let [here, there] = [p, turn * p].map(|p| shape.signed_distance(&p).value);
+                assert!((here - there).abs() < 1e-14, "{shape:?}");
+            }
+        }
+        let corners = shape.triangles(16).unwrap().filter(|_| shape.is_convex());
+        for corner in corners.iter().flat_map(|mesh| &mesh.points) {
+            for p in points() {
+                let d = shape.signed_distance(&p);
+                assert!(
+                    d.normal.dot(&(Vector3::from(*corner) - d.closest(&p))) < 1e-14,
+                    "{shape:?}"
+                );
+            }
+        }
+    }
 }
