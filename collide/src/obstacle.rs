@@ -19,9 +19,6 @@ pub enum ObstacleError {
     /// The motion cannot be used.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// Too few sides for a solid.
-    #[error("a round body cannot have {0} segments")]
-    Segments(usize),
 }
 
 impl Advice for ObstacleError {
@@ -29,7 +26,6 @@ impl Advice for ObstacleError {
         match self {
             Self::Shape(error) => error.advice(),
             Self::Motion(error) => error.advice(),
-            Self::Segments(..) => Some("give at least 3"),
         }
     }
 }

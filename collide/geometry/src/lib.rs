@@ -72,7 +72,7 @@
 //! # A mesh that is thrown about
 //!
 //! ```
-//! use isosheet_geometry::{BroadPhase, Candidates, CcdOptions, ContactMesh, crossings};
+//! use isosheet_geometry::{BroadPhase, Candidates, CcdOptions, ContactMesh, MeshMotion, crossings};
 //! use isosheet_mesh::generate;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -88,7 +88,8 @@
 //! boxes.update(x, &goal, 0.0);
 //! let mut pairs = Candidates::default();
 //! boxes.self_candidates(&mut pairs);
-//! let part = pairs.safe_part(&mesh, &CcdOptions::default(), x, &dx);
+//! let motion = MeshMotion { mesh: &mesh, x, dx: &dx };
+//! let part = pairs.safe_part(&CcdOptions::default(), motion);
 //! let stopped: Vec<f64> = x.iter().zip(&dx).map(|(x, dx)| x + part * dx).collect();
 //! assert!(part > 0.0 && part < 1.0);
 //! assert!(crossings(&mesh, &stopped).is_empty());
@@ -135,7 +136,7 @@ mod testing;
 pub mod vectors;
 
 pub use broad_phase::BroadPhase;
-pub use candidates::{Candidates, CrossCandidates};
+pub use candidates::{Candidates, CrossCandidates, MeshMotion};
 pub use ccd::{CcdOptions, CcdOptionsError};
 pub use contact_mesh::{ContactMesh, ContactMeshError};
 pub use crossings::{crossings, crossings_between, pierces};

@@ -8,6 +8,25 @@ mod tests;
 
 /// The motion of a rigid body as time runs from 0 to 1: its origin goes on a straight line, and it turns at a
 /// constant rate about an axis through its origin that keeps its direction.
+///
+/// A point at rest above the middle of a slab that turns by a radian: the slab meets it as it turns.
+///
+/// ```
+/// use isosheet_geometry::nalgebra::{Isometry3, Vector3, vector};
+/// use isosheet_geometry::{CcdOptions, RigidPath, Shape};
+///
+/// let slab = Shape::Cuboid { half: [1.0, 1.0, 0.1] };
+/// let path = RigidPath::new(&Isometry3::identity(), Vector3::zeros(), vector![0.0, 1.0, 0.0]);
+/// let point = path.course(&vector![0.0, 0.0, 0.15], &Vector3::zeros());
+/// let time = path.advance(&CcdOptions::default(), &[point], 1.0, |[p]| {
+///     // A box is convex: the plane at the closest point has it on one side.
+///     let distance = slab.signed_distance(p);
+///     (distance.normal, distance.normal.dot(p) - distance.value)
+/// });
+/// // Where the point is at the height of the slab: cos(time) = 0.1 / 0.15.
+/// let met = (0.1_f64 / 0.15).acos();
+/// assert!(time < met && time > 0.9 * met);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct RigidPath {
     origin: Vector3<f64>,

@@ -61,6 +61,8 @@ pub enum Shape {
     },
     /// Triangles.
     Surface(Arc<TriangleSurface>),
+    /// A form that a program describes.
+    Other(Arc<dyn Form>),
 }
 
 impl Shape {
@@ -85,6 +87,7 @@ impl Shape {
                 half_length,
             }),
             Self::Surface(ref surface) => question(&**surface),
+            Self::Other(ref form) => question(&**form),
         }
     }
 

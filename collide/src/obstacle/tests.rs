@@ -51,7 +51,7 @@ fn scaled(shape: &Shape, s: f64) -> Shape {
             radius: s * radius,
             half_length: s * half_length,
         },
-        Shape::Surface(_) => unreachable!("only analytic shapes are generated"),
+        Shape::Surface(_) | Shape::Other(_) => unreachable!("only analytic shapes are generated"),
     }
 }
 

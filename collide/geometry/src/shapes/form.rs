@@ -14,8 +14,86 @@ use thiserror::Error;
 /// A form of a body in its own frame, with all that contact, mass, pictures and files ask about it. Lengths
 /// in metres.
 ///
-/// Each [`Shape`](crate::Shape) is a file that implements this. Distance, triangles and bounds are enough, and what
-/// follows from them is there by default.
+/// Each [`Shape`](crate::Shape) is a file that implements this. A program gives one of its own as
+/// [`Shape::Other`](crate::Shape::Other): distance, triangles and bounds are enough, and what follows from
+/// them is there by default:
+///
+/// ```
+/// use isosheet_geometry::nalgebra::{Matrix3, Vector3, vector};
+/// use isosheet_geometry::{Form, Shape, ShapeError, SignedDistance, Triangles};
+/// use std::f64::consts::TAU;
+/// use std::sync::Arc;
+///
+/// /// All points within `tube` of a circle about the z axis.
+/// #[derive(Debug)]
+/// struct Torus {
+///     radius: f64,
+///     tube: f64,
+/// }
+///
+/// impl Form for Torus {
+///     fn name(&self) -> &'static str {
+///         "torus"
+///     }
+///
+///     fn lengths(&self) -> Vec<(&'static str, f64)> {
+///         vec![("radius", self.radius), ("tube", self.tube), ("hole", self.radius - self.tube)]
+///     }
+///
+///     fn signed_distance(&self, p: &Vector3<f64>) -> SignedDistance {
+///         let rho = p.x.hypot(p.y);
+///         let out = if rho > 0.0 { vector![p.x / rho, p.y / rho, 0.0] } else { Vector3::x() };
+///         let from_circle = p - self.radius * out;
+///         let d = from_circle.norm();
+///         let normal = if d > 0.0 { from_circle / d } else { Vector3::z() };
+///         let around = Vector3::z().cross(&out);
+///         let tilt = around.cross(&normal);
+///         // The normal turns about the circle, and with the circle about the axis.
+///         let [tilting, turning] = [1.0 / d, normal.dot(&out) / rho].map(|c| if c.is_finite() { c } else { 0.0 });
+///         SignedDistance {
+///             value: d - self.tube,
+///             normal,
+///             hessian: tilting * tilt * tilt.transpose() + turning * around * around.transpose(),
+///         }
+///     }
+///
+///     fn triangles(&self, sides: usize) -> Result<Option<Triangles>, ShapeError> {
+///         let turn = |k: usize| (TAU * k as f64 / sides as f64).sin_cos();
+///         let corner = |i: usize, j: usize| {
+///             let ((sin, cos), (up, out)) = (turn(i), turn(j));
+///             let rho = self.radius + self.tube * out;
+///             [rho * cos, rho * sin, self.tube * up]
+///         };
+///         let at = |i: usize, j: usize| ((i % sides) * sides + j % sides) as u32;
+///         let places = || (0..sides).flat_map(|i| (0..sides).map(move |j| (i, j)));
+///         Ok(Some(Triangles {
+///             points: places().map(|(i, j)| corner(i, j)).collect(),
+///             faces: places()
+///                 .flat_map(|(i, j)| {
+///                     let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+///                     [[a, b, c], [a, c, d]]
+///                 })
+///                 .collect(),
+///         }))
+///     }
+///
+///     fn bounds(&self) -> Option<[Vector3<f64>; 2]> {
+///         let out = self.radius + self.tube;
+///         let high = vector![out, out, self.tube];
+///         Some([-high, high])
+///     }
+/// }
+///
+/// let torus = Shape::Other(Arc::new(Torus { radius: 0.5, tube: 0.1 }));
+/// torus.validate()?;
+/// assert!((torus.signed_distance(&vector![0.0, 0.0, 0.0]).value - 0.4).abs() < 1e-15);
+/// assert!((torus.signed_distance(&vector![0.0, 0.5, 0.3]).value - 0.2).abs() < 1e-15);
+/// for p in torus.triangles(24)?.expect("it has an end").points {
+///     assert!(torus.signed_distance(&p.into()).value.abs() < 1e-15);
+/// }
+/// assert_eq!(torus.contact_geometry(24)?.expect("it has an end").mesh.faces().len(), 1152);
+/// # Ok::<(), ShapeError>(())
+/// ```
 pub trait Form: Debug + Send + Sync {
     /// What it is called in messages.
     fn name(&self) -> &'static str;
