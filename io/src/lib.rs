@@ -35,7 +35,10 @@ mod turning_back;
 pub mod scene;
 
 #[cfg(feature = "scene")]
-pub use {isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics};
+pub use {
+    isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics,
+    isosheet_geometry as geometry,
+};
 
 #[cfg(feature = "cli")]
 pub mod command;
