@@ -1,14 +1,12 @@
-//! The geometry of contact: distances, collision times, candidate pairs and obstacles.
+//! Contact of sheets with obstacles and with themselves.
 //!
-//! * [`distance`]: squared distances of points, edges and triangles with closest points, gradients
-//!   and Hessians.
-//! * [`CcdOptions`]: how far a motion may go before two primitives touch.
-//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle.
-//! * [`crossings`]: edges that pass through faces, as a check without a tree or a distance.
 //! * [`Contacts`]: all of it together, as a step of [`isosheet_dynamics::contact`] asks for it, where barrier
-//!   and friction are functions of these distances.
-//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
-//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
+//!   and friction are functions of distances.
+//! * [`Obstacle`]: a [`Shape`], such as a half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at
+//!   rest or in a prescribed [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
+//!
+//! Distances, continuous collision detection, the broad phase and all else that shapes are is in
+//! [`isosheet_geometry`], which needs no mechanics.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!
@@ -50,9 +48,7 @@ pub use obstacle::{Obstacle, ObstacleError};
 pub use isosheet_dynamics::{Keyframe, MotionError, RigidMotion};
 #[doc(no_inline)]
 pub use isosheet_geometry::{
-    BroadPhase, Candidates, CcdOptions, CcdOptionsError, Closest, ContactGeometry, ContactMesh,
-    ContactMeshError, CrossCandidates, Feature, Jet, Shape, ShapeError, SignedDistance,
-    SurfaceError, TriangleSurface, crossings, crossings_between, distance, rounded_line,
+    CcdOptionsError, Shape, ShapeError, SignedDistance, SurfaceError, TriangleSurface,
 };
 
 /// The code of the README is compiled and run as a test.
