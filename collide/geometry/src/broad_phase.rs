@@ -27,6 +27,7 @@ impl Bounds {
         }
     }
 
+    #[inline]
     fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
     }
@@ -87,6 +88,7 @@ impl BroadPhase {
     }
 
     /// The primitives.
+    #[inline]
     pub fn mesh(&self) -> &ContactMesh {
         &self.mesh
     }
@@ -147,11 +149,13 @@ impl BroadPhase {
     }
 
     /// Whether the boxes of a vertex of this mesh and of a face of another one overlap.
+    #[inline]
     pub fn vertex_meets_face(&self, other: &Self, [v, f]: [u32; 2]) -> bool {
         self.vertices[v as usize].overlaps(&other.faces[f as usize])
     }
 
     /// Whether the boxes of an edge of this mesh and of an edge of another one overlap.
+    #[inline]
     pub fn edge_meets_edge(&self, other: &Self, [e, g]: [u32; 2]) -> bool {
         self.edges[e as usize].overlaps(&other.edges[g as usize])
     }

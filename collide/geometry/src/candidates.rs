@@ -40,8 +40,8 @@ impl Candidates {
     /// The part of a motion of the mesh, from 0 to 1, that brings none of the pairs to within the separation
     /// of the options, in which no radii of round bodies are. With the pairs of
     /// [`BroadPhase::self_candidates`](crate::BroadPhase::self_candidates) since an
-    /// [update](crate::BroadPhase::update) for this motion, nothing of the mesh touches itself on that part
-    /// of it.
+    /// [update](crate::BroadPhase::update) for this motion, of boxes that are enlarged by half the separation
+    /// at least, the mesh keeps the separation from itself on that part of it.
     ///
     /// # Panics
     /// If the pairs are not those of the mesh, or the lists of the motion are too short.
@@ -116,8 +116,8 @@ impl CrossCandidates {
     /// The part of the motions of both meshes, from 0 to 1, that brings none of the pairs to within the
     /// separation of the options, in which no radii of round bodies are. With the pairs of
     /// [`BroadPhase::candidates_with`](crate::BroadPhase::candidates_with) since
-    /// [updates](crate::BroadPhase::update) for these motions, the meshes do not touch each other on that
-    /// part of them.
+    /// [updates](crate::BroadPhase::update) for these motions, of boxes that are enlarged by the separation at
+    /// least, both meshes together, the meshes keep it on that part of them.
     ///
     /// # Panics
     /// If the pairs are not those of the meshes, or the lists of the motions are too short.

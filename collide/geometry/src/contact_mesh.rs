@@ -341,28 +341,33 @@ impl ContactMesh {
     }
 
     /// Whether a vertex is one of a round body.
+    #[inline]
     pub fn is_round(&self, vertex: u32) -> bool {
         self.rounds.radius(vertex).is_some()
     }
 
     /// Whether an edge is a point of a round body.
+    #[inline]
     pub fn is_point(&self, edge: u32) -> bool {
         let [a, b] = self.edges[edge as usize];
         self.rounds.is_point([a, b])
     }
 
     /// Whether an edge is the axis of a round body.
+    #[inline]
     pub fn is_axis(&self, edge: u32) -> bool {
         let [a, _] = self.edges[edge as usize];
         self.is_round(a) && !self.is_point(edge)
     }
 
     /// How far the surface is from a vertex, metres: the radius of a round body, and otherwise zero.
+    #[inline]
     pub fn radius(&self, vertex: u32) -> f64 {
         self.rounds.radius(vertex).unwrap_or(0.0)
     }
 
     /// Whether a vertex takes part: of a round body some do, and what it is in the place of does not.
+    #[inline]
     pub fn takes_part(&self, vertex: u32) -> bool {
         self.rounds.takes_part(vertex)
     }
@@ -380,27 +385,32 @@ impl ContactMesh {
     }
 
     /// Number of vertices.
+    #[inline]
     pub fn vertex_count(&self) -> usize {
         self.vertex_count
     }
 
     /// Ends of the edges.
+    #[inline]
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.edges
     }
 
     /// Corners of the faces.
+    #[inline]
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }
 
     /// The vertices of the pair of a vertex and a face, in this order.
+    #[inline]
     pub fn vertex_face(&self, [v, f]: [u32; 2]) -> [u32; 4] {
         let [a, b, c] = self.faces[f as usize];
         [v, a, b, c]
     }
 
     /// The vertices of the pair of two edges, those of the first one first.
+    #[inline]
     pub fn edge_edge(&self, [e, g]: [u32; 2]) -> [u32; 4] {
         let ([a, b], [c, d]) = (self.edges[e as usize], self.edges[g as usize]);
         [a, b, c, d]

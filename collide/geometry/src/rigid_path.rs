@@ -60,11 +60,13 @@ impl RigidPath {
     }
 
     /// Whether the body moves or turns.
+    #[inline]
     pub fn moves(&self) -> bool {
         self.shift != Vector3::zeros() || self.turn != Vector3::zeros()
     }
 
     /// The pose at a time, from 0 to 1.
+    #[inline]
     pub fn pose_at(&self, time: f64) -> Isometry3<f64> {
         Isometry3::from_parts(
             Translation3::from(self.origin + time * self.shift),
@@ -76,6 +78,7 @@ impl RigidPath {
     ///
     /// In the body's frame the point is at `p = Q^T y` with `y` linear in time and `Q' = [w] Q`, so
     /// `p'' = Q^T (w x (w x y) - 2 w x y')`, which is bounded.
+    #[inline]
     pub fn course(&self, x: &Vector3<f64>, dx: &Vector3<f64>) -> Course {
         let (offset, rate) = (x - self.origin, dx - self.shift);
         let w = &self.turn;
@@ -90,11 +93,13 @@ impl RigidPath {
 
     /// Largest distance of a point of the body at radius `r` from the chord of its path in space,
     /// metres: its acceleration, at most `|w|^2 r`, over eight.
+    #[inline]
     pub fn sagitta(&self, r: f64) -> f64 {
         self.turn.norm_squared() * r / 8.0
     }
 
     /// Takes vectors in space to the body's frame at a time.
+    #[inline]
     fn body_axes(&self, time: f64) -> Matrix3<f64> {
         if self.turn == Vector3::zeros() {
             return self.frame.transpose();
@@ -114,6 +119,7 @@ impl RigidPath {
     }
 
     /// Where a point is at the start, in the body's frame, metres.
+    #[inline]
     pub fn now(&self, course: &Course) -> Vector3<f64> {
         self.frame.tr_mul(&course.offset)
     }
@@ -175,6 +181,7 @@ impl RigidPath {
 impl Course {
     /// Bound on the distance from the place at the start during the motion, in the body's frame, metres:
     /// chord and bulge.
+    #[inline]
     pub fn reach(&self, part: &RigidPath) -> f64 {
         if self.bend == 0.0 {
             return self.rate.norm();

@@ -17,6 +17,7 @@ pub struct SignedDistance {
 
 impl SignedDistance {
     /// The closest point of the surface to `p`.
+    #[inline]
     pub fn closest(&self, p: &Vector3<f64>) -> Vector3<f64> {
         p - self.value * self.normal
     }

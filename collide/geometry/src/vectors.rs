@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 ///
 /// # Panics
 /// If a point does not exist.
+#[inline]
 pub fn gather<const N: usize>(x: &[f64], vertices: [u32; N]) -> [Vector3<f64>; N] {
     vertices.map(|v| {
         let i = 3 * v as usize;
@@ -15,6 +16,7 @@ pub fn gather<const N: usize>(x: &[f64], vertices: [u32; N]) -> [Vector3<f64>; N
 
 /// The minimum, or not a number if one of the two is not: a broken state must not pass for a wide
 /// gap.
+#[inline]
 pub fn smaller(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         f64::NAN
@@ -24,6 +26,7 @@ pub fn smaller(a: f64, b: f64) -> f64 {
 }
 
 /// The maximum, or not a number if one of the two is not.
+#[inline]
 pub fn larger(a: f64, b: f64) -> f64 {
     -smaller(-a, -b)
 }

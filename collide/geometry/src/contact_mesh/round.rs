@@ -36,6 +36,7 @@ impl Rounds {
     }
 
     /// The radius about a vertex of one of the bodies, metres.
+    #[inline]
     pub(super) fn radius(&self, vertex: u32) -> Option<f64> {
         let place = vertex.checked_sub(self.first)?;
         let (number, _) = self.vertices.get(place as usize)?;
@@ -43,11 +44,13 @@ impl Rounds {
     }
 
     /// Whether an edge is a point: both ends are at the same place.
+    #[inline]
     pub(super) fn is_point(&self, [first, second]: [u32; 2]) -> bool {
         self.radius(first).is_some() && self.takes_part(first) && !self.takes_part(second)
     }
 
     /// Whether a vertex takes part in contact.
+    #[inline]
     pub(super) fn takes_part(&self, vertex: u32) -> bool {
         if self.radii.is_empty() {
             return true;
