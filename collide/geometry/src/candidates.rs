@@ -116,8 +116,8 @@ impl CrossCandidates {
     /// The part of the motions of both meshes, from 0 to 1, that brings none of the pairs to within the
     /// separation of the options, in which no radii of round bodies are. With the pairs of
     /// [`BroadPhase::candidates_with`](crate::BroadPhase::candidates_with) since
-    /// [updates](crate::BroadPhase::update) for these motions, of boxes that are enlarged by the separation at
-    /// least, both meshes together, the meshes keep it on that part of them.
+    /// [updates](crate::BroadPhase::update) for these motions, of boxes that are enlarged by the separation
+    /// at least, both meshes together, the meshes keep it on that part of them.
     ///
     /// # Panics
     /// If the pairs are not those of the meshes, or the lists of the motions are too short.
