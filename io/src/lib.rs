@@ -29,16 +29,16 @@ pub use isosheet_mesh as mesh;
 pub use isosheet_mesh::Advice;
 
 #[cfg(feature = "scene")]
-mod body_mesh;
-
-#[cfg(feature = "scene")]
 mod turning_back;
 
 #[cfg(feature = "scene")]
 pub mod scene;
 
 #[cfg(feature = "scene")]
-pub use {isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics};
+pub use {
+    isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics,
+    isosheet_geometry as geometry,
+};
 
 #[cfg(feature = "cli")]
 pub mod command;

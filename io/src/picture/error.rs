@@ -2,7 +2,7 @@
 
 use crate::format::DataError;
 use crate::scene::bytes_in_words;
-use isosheet_collide::ObstacleError;
+use isosheet_geometry::ShapeError;
 use isosheet_mesh::Advice;
 
 /// Why a picture cannot be made.
@@ -17,7 +17,7 @@ pub enum PictureError {
     Data(DataError),
     /// A body has no geometry.
     #[error(transparent)]
-    Body(#[from] ObstacleError),
+    Body(#[from] ShapeError),
     /// A vector drawing cannot be read.
     #[cfg(feature = "labels")]
     #[error("cannot read the vector drawing: {0}")]

@@ -1,7 +1,7 @@
 //! Whether panels of a sheet that does not touch itself pass through each other.
 
 use crate::scene::{Folding, size};
-use isosheet_collide::{BroadPhase, ContactMesh};
+use isosheet_geometry::{BroadPhase, ContactMesh};
 use isosheet_mesh::Topology;
 
 /// How deep an edge is in a panel that passes through it, beside the longest side of the sheet: two thicknesses of office paper

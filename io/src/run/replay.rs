@@ -6,7 +6,8 @@ use crate::format::{
 };
 use crate::scene::{Gauge, Origins};
 use crate::view::{Body, BodyShape, Replay, Scale, TimeSeries};
-use isosheet_collide::{Obstacle, Shape};
+use isosheet_collide::Obstacle;
+use isosheet_geometry::{Shape, Skin};
 use isosheet_mesh::Sheet;
 use nalgebra::Isometry3;
 use std::ops::ControlFlow;
@@ -15,8 +16,9 @@ impl Replay {
     /// The page of a recorded motion: the sheet, the bodies in their poses, and
     ///
     /// - the field "strain" ([`Field::edge_strain`](crate::view::Field::edge_strain)), where there are bodies
-    ///   "distance to obstacles" (of each vertex, without the thickness of the sheet), and where the trajectory has
-    ///   them the forces of the rods, the forces of contact and the gaps of the vertices, and what has yielded,
+    ///   "distance to obstacles" (of each vertex, without the thickness of the sheet), and where the
+    ///   trajectory has them the forces of the rods, the forces of contact and the gaps of the vertices, and
+    ///   what has yielded,
     /// - the series of the history (see [`TimeSeries::of_history`]).
     ///
     /// Titles, pins and texts are left to the caller.
@@ -93,33 +95,39 @@ impl From<Isometry3<f64>> for BodyPose {
     }
 }
 
+/// Sides of the circles of round bodies of which the page knows no form of its own.
+const SIDES: usize = 64;
+
+/// The page draws boxes, balls, capsules, cylinders and planes itself, and of all other shapes the triangles.
 impl From<&Shape> for BodyShape {
     fn from(shape: &Shape) -> Self {
-        match *shape {
-            Shape::HalfSpace => Self::HalfSpace,
-            Shape::Cuboid { half } => Self::Cuboid { half },
-            Shape::Sphere { radius } => Self::Sphere { radius },
-            Shape::Cylinder {
+        match shape.skin() {
+            Skin::Plane => Self::HalfSpace,
+            Skin::Round {
+                half_length: 0.0,
                 radius,
-                half_height,
-            } => Self::Cylinder {
-                radius,
-                half_height,
-            },
-            Shape::Capsule {
-                radius,
+            } => Self::Sphere { radius },
+            Skin::Round {
                 half_length,
+                radius,
             } => Self::Capsule {
                 radius,
                 half_length,
             },
-            Shape::Surface(ref surface) => Self::Mesh {
-                vertices: surface
-                    .positions()
-                    .iter()
-                    .flat_map(|p| [p.x, p.y, p.z])
-                    .collect(),
-                faces: surface.mesh().faces().to_vec(),
+            Skin::Tube {
+                half_length,
+                radius,
+            } => Self::Cylinder {
+                radius,
+                half_height: half_length,
+            },
+            Skin::Flat => match (shape, shape.triangles(SIDES).ok().flatten()) {
+                (Shape::Cuboid { half }, _) => Self::Cuboid { half: *half },
+                (_, Some(mesh)) => Self::Mesh {
+                    vertices: mesh.points.concat(),
+                    faces: mesh.faces,
+                },
+                (_, None) => Self::HalfSpace,
             },
         }
     }

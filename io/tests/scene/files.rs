@@ -1,7 +1,7 @@
 //! Scenes with mesh files of several formats.
 
-use isosheet_io::collide::Shape;
 use isosheet_io::dynamics::Simulation;
+use isosheet_io::geometry::Shape;
 use isosheet_io::mesh::generate;
 use isosheet_io::scene::SceneFile;
 use isosheet_io::{read_mesh, write_mesh, write_obj};

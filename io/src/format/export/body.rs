@@ -96,8 +96,8 @@ impl BodyPose {
 #[cfg(feature = "scene")]
 mod of_obstacle {
     use super::{BodyPose, SeriesBody};
-    use crate::body_mesh::BodyMesh;
     use isosheet_collide::Obstacle;
+    use isosheet_geometry::Triangles;
 
     /// Sides of the circles of round bodies: their surface is at most 0.1 % of the radius off.
     const SIDES: usize = 64;
@@ -107,8 +107,8 @@ mod of_obstacle {
         /// is a square in its plane, about the origin of its frame and with this half side (metres).
         pub fn of_obstacle(name: String, obstacle: &Obstacle, times: &[f64], half: f64) -> Self {
             // The sides are enough for any shape.
-            let mesh = BodyMesh::of(obstacle.shape(), SIDES).ok().flatten();
-            let mesh = mesh.unwrap_or_else(|| BodyMesh::square(half));
+            let mesh = obstacle.shape().triangles(SIDES).ok().flatten();
+            let mesh = mesh.unwrap_or_else(|| Triangles::square(half));
             let mut poses: Vec<BodyPose> = Vec::with_capacity(times.len());
             for t in times {
                 let pose = obstacle.motion().pose(*t);

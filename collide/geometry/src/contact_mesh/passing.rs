@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// Pairs of ranges of vertices: what has its vertices in one of a pair does not repel what has them in the other.
+/// Pairs of ranges of vertices: what has its vertices in one of a pair does not repel what has them in the
+/// other.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Passing(Vec<[Range<usize>; 2]>);
 

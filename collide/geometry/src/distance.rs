@@ -122,7 +122,7 @@ impl<const N: usize> Closest<N> {
     ///
     /// The Hessian is that of the current [`Feature`]. It jumps where the feature changes, as the
     /// second derivatives of a distance do; value and gradient are continuous except, for the
-    /// gradient of two edges, where they are parallel ([`isosheet_dynamics::contact::ParallelEdges`]).
+    /// gradient of two edges, where they are parallel.
     pub fn jet(&self, x: &[Vector3<f64>; N]) -> Jet<N> {
         let (w, r) = (&self.weights, &self.difference);
         let mut hessian: [[Matrix3<f64>; N]; N] = std::array::from_fn(|i| {

@@ -1,13 +1,34 @@
-//! The sheet as seen from a moving body, and how far that motion is safe.
+//! Points as seen from a rigid body that moves and turns, and how far their motion is safe.
 
-use crate::CcdOptions;
-use crate::ccd::{CLOSE_ENOUGH, room};
-use isosheet_dynamics::contact::StepMotion;
+use crate::ccd::{CLOSE_ENOUGH, CcdOptions, room};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
-/// A part of a body's motion over a step; time runs from 0 to 1 again.
+#[cfg(test)]
+mod tests;
+
+/// The motion of a rigid body as time runs from 0 to 1: its origin goes on a straight line, and it turns at a
+/// constant rate about an axis through its origin that keeps its direction.
+///
+/// A point at rest above the middle of a slab that turns by a radian: the slab meets it as it turns.
+///
+/// ```
+/// use isosheet_geometry::nalgebra::{Isometry3, Vector3, vector};
+/// use isosheet_geometry::{CcdOptions, RigidPath, Shape};
+///
+/// let slab = Shape::Cuboid { half: [1.0, 1.0, 0.1] };
+/// let path = RigidPath::new(&Isometry3::identity(), Vector3::zeros(), vector![0.0, 1.0, 0.0]);
+/// let point = path.course(&vector![0.0, 0.0, 0.15], &Vector3::zeros());
+/// let time = path.advance(&CcdOptions::default(), &[point], 1.0, |[p]| {
+///     // A box is convex: the plane at the closest point has it on one side.
+///     let distance = slab.signed_distance(p);
+///     (distance.normal, distance.normal.dot(p) - distance.value)
+/// });
+/// // Where the point is at the height of the slab: cos(time) = 0.1 / 0.15.
+/// let met = (0.1_f64 / 0.15).acos();
+/// assert!(time < met && time > 0.9 * met);
+/// ```
 #[derive(Debug, Clone, Copy)]
-pub(super) struct PartOfStep {
+pub struct RigidPath {
     origin: Vector3<f64>,
     shift: Vector3<f64>,
     turn: Vector3<f64>,
@@ -16,44 +37,49 @@ pub(super) struct PartOfStep {
     frame: Matrix3<f64>,
 }
 
-/// A point of the sheet on the way from `x` to `x + dx`, relative to a body.
+/// A point on a straight line at a constant speed, relative to a rigid body that [moves](RigidPath).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Course {
+pub struct Course {
     /// Offset from the body's origin in space, and its rate.
     offset: Vector3<f64>,
     rate: Vector3<f64>,
     /// Bound on the acceleration in the body's frame.
-    pub(super) bend: f64,
+    bend: f64,
 }
 
-impl PartOfStep {
-    /// From one progress of a motion to another.
-    pub(super) fn new(motion: &StepMotion, [from, to]: [f64; 2]) -> Self {
-        let pose = motion.pose(from);
+impl RigidPath {
+    /// From a pose, by a displacement of the origin (metres) and a rotation vector (radians), both in space.
+    pub fn new(start: &Isometry3<f64>, shift: Vector3<f64>, turn: Vector3<f64>) -> Self {
         Self {
-            origin: pose.translation.vector,
-            shift: (to - from) * motion.shift(),
-            turn: (to - from) * motion.turn(),
-            rotation: pose.rotation,
-            frame: pose.rotation.to_rotation_matrix().into_inner(),
+            origin: start.translation.vector,
+            shift,
+            turn,
+            rotation: start.rotation,
+            frame: start.rotation.to_rotation_matrix().into_inner(),
         }
     }
 
-    pub(super) fn moves(&self) -> bool {
+    /// Whether the body moves or turns.
+    #[inline]
+    pub fn moves(&self) -> bool {
         self.shift != Vector3::zeros() || self.turn != Vector3::zeros()
     }
 
-    /// Pose at a time.
-    pub(super) fn pose_at(&self, time: f64) -> Isometry3<f64> {
+    /// The pose at a time, from 0 to 1.
+    #[inline]
+    pub fn pose_at(&self, time: f64) -> Isometry3<f64> {
         Isometry3::from_parts(
             Translation3::from(self.origin + time * self.shift),
             UnitQuaternion::from_scaled_axis(time * self.turn) * self.rotation,
         )
     }
 
+    /// A point on its way from `x` to `x + dx` (metres, in space), as the body sees it.
+    ///
     /// In the body's frame the point is at `p = Q^T y` with `y` linear in time and `Q' = [w] Q`, so
-    /// `p'' = Q^T (w x (w x y) - 2 w x y')`.
-    pub(super) fn course(&self, x: &Vector3<f64>, dx: &Vector3<f64>) -> Course {
+    /// `p'' = Q^T (w x (w x y) - 2 w x y')`, which is bounded.
+    #[inline]
+    pub fn course(&self, x: &Vector3<f64>, dx: &Vector3<f64>) -> Course {
         let (offset, rate) = (x - self.origin, dx - self.shift);
         let w = &self.turn;
         let bend = if *w == Vector3::zeros() {
@@ -67,11 +93,13 @@ impl PartOfStep {
 
     /// Largest distance of a point of the body at radius `r` from the chord of its path in space,
     /// metres: its acceleration, at most `|w|^2 r`, over eight.
-    pub(super) fn sagitta(&self, r: f64) -> f64 {
+    #[inline]
+    pub fn sagitta(&self, r: f64) -> f64 {
         self.turn.norm_squared() * r / 8.0
     }
 
     /// Takes vectors in space to the body's frame at a time.
+    #[inline]
     fn body_axes(&self, time: f64) -> Matrix3<f64> {
         if self.turn == Vector3::zeros() {
             return self.frame.transpose();
@@ -90,13 +118,15 @@ impl PartOfStep {
         ]
     }
 
-    /// Where a point is now, in the body's frame.
-    pub(super) fn now(&self, course: &Course) -> Vector3<f64> {
+    /// Where a point is at the start, in the body's frame, metres.
+    #[inline]
+    pub fn now(&self, course: &Course) -> Vector3<f64> {
         self.frame.tr_mul(&course.offset)
     }
 
-    /// A time up to which points of the sheet stay further from the body than the separation of the
-    /// options; at most `limit`.
+    /// A time up to which a primitive that `N` points span stays further from a convex primitive of the body
+    /// than the separation of the options; at most `limit` (0 to 1). Zero if it is not further to begin with,
+    /// up to round-off.
     ///
     /// `support` gives, for places of the points in the body's frame, a unit vector `n` and a bound
     /// on `n . q` over the body's primitive: a separating plane. The distance of a point from that
@@ -104,7 +134,7 @@ impl PartOfStep {
     /// acceleration allows later; the plane stays clear for as long as that. The sum of such times is
     /// safe whatever the choice of `n`, on the true curved path of a turning body. Without rotation
     /// it is the advance of [`CcdOptions`].
-    pub(super) fn advance<const N: usize>(
+    pub fn advance<const N: usize>(
         &self,
         options: &CcdOptions,
         courses: &[Course; N],
@@ -149,8 +179,10 @@ impl PartOfStep {
 }
 
 impl Course {
-    /// Bound on the distance from the place now during the motion, metres: chord and bulge.
-    pub(super) fn reach(&self, part: &PartOfStep) -> f64 {
+    /// Bound on the distance from the place at the start during the motion, in the body's frame, metres:
+    /// chord and bulge.
+    #[inline]
+    pub fn reach(&self, part: &RigidPath) -> f64 {
         if self.bend == 0.0 {
             return self.rate.norm();
         }

@@ -1,5 +1,6 @@
-//! Which primitives may meet during a step: a bounding-volume hierarchy over swept boxes.
+//! Which primitives may meet during a motion: a bounding-volume hierarchy over swept boxes.
 
+use crate::candidates::{Candidates, CrossCandidates};
 use crate::contact_mesh::{ContactMesh, Element};
 use crate::crossings::pierces;
 use crate::vectors::gather;
@@ -10,50 +11,6 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
 #[cfg(test)]
 mod tests;
-
-/// Pairs of primitives of one mesh whose swept boxes overlap.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Candidates {
-    /// Vertex and face; the vertex is no corner of the face, nor glued to one.
-    pub vertex_face: Vec<[u32; 2]>,
-    /// Two edges without a common end, glued or not, the lower number first.
-    pub edge_edge: Vec<[u32; 2]>,
-}
-
-/// Pairs of primitives of two meshes whose swept boxes overlap.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct CrossCandidates {
-    /// Vertex of the first mesh and face of the second.
-    pub vertex_face: Vec<[u32; 2]>,
-    /// Face of the first mesh and vertex of the second.
-    pub face_vertex: Vec<[u32; 2]>,
-    /// Edge of the first mesh and edge of the second.
-    pub edge_edge: Vec<[u32; 2]>,
-}
-
-impl Candidates {
-    /// Number of pairs.
-    pub fn len(&self) -> usize {
-        self.vertex_face.len() + self.edge_edge.len()
-    }
-
-    /// Whether there is no pair.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-}
-
-impl CrossCandidates {
-    /// Number of pairs.
-    pub fn len(&self) -> usize {
-        self.vertex_face.len() + self.face_vertex.len() + self.edge_edge.len()
-    }
-
-    /// Whether there is no pair.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-}
 
 /// An axis-aligned box.
 #[derive(Debug, Clone, Copy)]
@@ -70,6 +27,7 @@ impl Bounds {
         }
     }
 
+    #[inline]
     fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
     }
@@ -130,13 +88,14 @@ impl BroadPhase {
     }
 
     /// The primitives.
+    #[inline]
     pub fn mesh(&self) -> &ContactMesh {
         &self.mesh
     }
 
-    /// Refits the tree to the motion from `x0` to `x1` (`3V`, metres), every box enlarged by
-    /// `inflation` (metres) on all sides, and those of round bodies by their radius. For pairs within a distance `d` give both meshes `d / 2`,
-    /// or one of them `d`.
+    /// Refits the tree to the motion from `x0` to `x1` (`3V`, metres), every box enlarged by `inflation`
+    /// (metres) on all sides, and those of round bodies by their radius. For pairs within a distance `d` give
+    /// both meshes `d / 2`, or one of them `d`.
     ///
     /// # Panics
     /// If the lengths of `x0` and `x1` are not three times the number of vertices.
@@ -153,7 +112,10 @@ impl BroadPhase {
 
     /// Sets the boxes alone, as [`BroadPhase::update`] does, for questions about single pairs. Searches for
     /// pairs need the tree too.
-    pub(crate) fn update_boxes(&mut self, x0: &[f64], x1: &[f64], inflation: f64) {
+    ///
+    /// # Panics
+    /// If the lengths of `x0` and `x1` are not three times the number of vertices.
+    pub fn update_boxes(&mut self, x0: &[f64], x1: &[f64], inflation: f64) {
         let n = 3 * self.mesh.vertex_count();
         assert!(
             x0.len() == n && x1.len() == n,
@@ -186,13 +148,15 @@ impl BroadPhase {
         }
     }
 
-    /// Whether the boxes of a vertex and of a face of another mesh overlap.
-    pub(crate) fn vertex_meets_face(&self, other: &Self, [v, f]: [u32; 2]) -> bool {
+    /// Whether the boxes of a vertex of this mesh and of a face of another one overlap.
+    #[inline]
+    pub fn vertex_meets_face(&self, other: &Self, [v, f]: [u32; 2]) -> bool {
         self.vertices[v as usize].overlaps(&other.faces[f as usize])
     }
 
-    /// Whether the boxes of an edge and of an edge of another mesh overlap.
-    pub(crate) fn edge_meets_edge(&self, other: &Self, [e, g]: [u32; 2]) -> bool {
+    /// Whether the boxes of an edge of this mesh and of an edge of another one overlap.
+    #[inline]
+    pub fn edge_meets_edge(&self, other: &Self, [e, g]: [u32; 2]) -> bool {
         self.edges[e as usize].overlaps(&other.edges[g as usize])
     }
 
@@ -250,9 +214,10 @@ impl BroadPhase {
         });
     }
 
-    /// An edge that passes through a face of the mesh at positions `x` (`3V`) of the last update, and the face, of
-    /// those that are not joined. Both ends of the edge are further than `depth` (metres) from the plane of the face: with 0
-    /// every crossing counts, and with more not those of faces that lie on each other up to round-off.
+    /// An edge that passes through a face of the mesh at positions `x` (`3V`) of the last update, and the
+    /// face, of those that are not joined. Both ends of the edge are further than `depth` (metres) from the
+    /// plane of the face: with 0 every crossing counts, and with more not those of faces that lie on each
+    /// other up to round-off.
     pub fn self_crossing(&mut self, x: &[f64], depth: f64) -> Option<[u32; 2]> {
         let mut pairs = Vec::new();
         self.self_edge_faces(&mut pairs);
@@ -268,7 +233,7 @@ impl BroadPhase {
 
     /// Pairs of an edge and a face of the mesh without a common vertex since the last update; `out` is
     /// overwritten.
-    pub(crate) fn self_edge_faces(&mut self, out: &mut Vec<[u32; 2]>) {
+    pub fn self_edge_faces(&mut self, out: &mut Vec<[u32; 2]>) {
         out.clear();
         let Self {
             mesh,
@@ -298,7 +263,7 @@ impl BroadPhase {
 
     /// Pairs of an edge of this mesh and a face of another since the last updates of both; `out` is
     /// overwritten.
-    pub(crate) fn edge_faces_with(&self, other: &Self, out: &mut Vec<[u32; 2]>) {
+    pub fn edge_faces_with(&self, other: &Self, out: &mut Vec<[u32; 2]>) {
         out.clear();
         for (i, j) in self.tree.leaf_pairs(&other.tree, |a, b| a.intersects(b)) {
             let Some(f) = other.mesh.elements()[j as usize].face else {

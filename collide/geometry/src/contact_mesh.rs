@@ -6,7 +6,6 @@ mod passing;
 mod round;
 
 use glued::Glued;
-use isosheet_dynamics::contact::Round;
 use isosheet_mesh::{Advice, Topology};
 use parts::Parts;
 use passing::Passing;
@@ -28,8 +27,6 @@ pub struct ContactMesh {
     glued: Option<Glued>,
     parts: Option<Parts>,
     passing: Passing,
-    /// The vertices that do not meet bodies.
-    driven: Range<u32>,
     rounds: Rounds,
 }
 
@@ -161,24 +158,26 @@ impl ContactMesh {
     }
 
     /// A single point.
-    pub(crate) fn point() -> Self {
+    pub fn point() -> Self {
         Self::with_elements(1, Vec::new(), Vec::new(), &[])
     }
 
     /// A single segment between the vertices 0 and 1.
-    pub(crate) fn segment() -> Self {
+    pub fn segment() -> Self {
         Self::with_elements(2, vec![[0, 1]], Vec::new(), &[])
     }
 
     /// The same vertices without faces, and with an edge at each of them besides, both ends of which it is.
-    pub(crate) fn with_points_as_edges(mut self) -> Self {
+    #[must_use]
+    pub fn with_points_as_edges(mut self) -> Self {
         self.edges
             .extend((0..index(self.vertex_count)).map(|v| [v, v]));
         Self::with_elements(self.vertex_count, self.edges, Vec::new(), &[])
     }
 
     /// The same vertices without the faces, and with the edges that are to be kept.
-    pub(crate) fn without_faces(mut self, keep: impl FnMut(&[u32; 2]) -> bool) -> Self {
+    #[must_use]
+    pub fn without_faces(mut self, keep: impl FnMut(&[u32; 2]) -> bool) -> Self {
         self.edges.retain(keep);
         Self::with_elements(self.vertex_count, self.edges, Vec::new(), &[])
     }
@@ -234,7 +233,6 @@ impl ContactMesh {
             glued: None,
             parts: None,
             passing: Passing::default(),
-            driven: 0..0,
             rounds: Rounds::default(),
         }
     }
@@ -251,8 +249,8 @@ impl ContactMesh {
         self
     }
 
-    /// Names parts, by ranges of vertices, that do not repel themselves, and vertices outside of a part that do
-    /// not repel it, each with the number of the part. Replaces what was named before.
+    /// Names parts, by ranges of vertices, that do not repel themselves, and vertices outside of a part that
+    /// do not repel it, each with the number of the part. Replaces what was named before.
     ///
     /// # Panics
     /// If a vertex does not exist.
@@ -274,26 +272,22 @@ impl ContactMesh {
         self
     }
 
-    /// Says that the vertices from this one on move in a prescribed way: primitives that have them meet no bodies,
-    /// which do so too.
+    /// Puts a round body in the place of vertices with all that they are corners of, which take no part any
+    /// more. It has new vertices, which come after all others and of which those that are marked take part as
+    /// they are, and new edges, by their numbers among the new vertices; an edge may have both ends in one
+    /// place. Its surface is `radius` (metres) about these. It belongs to a [part](Self::with_parts), by its
+    /// number, if there are any.
+    ///
+    /// # Panics
+    /// If the primitives are more than 32-bit indices can number.
     #[must_use]
-    pub fn with_driven_from(mut self, first: u32) -> Self {
-        self.driven = first..index(self.vertex_count);
-        self
-    }
-
-    /// Puts a round body in the place of vertices with all that they are corners of, which take no part any more.
-    /// It has new vertices, of which those that are named take part as they are, and new edges, by their numbers
-    /// among the new vertices; an edge may have both ends in one place. It belongs to a part, by its number, if there is
-    /// one. The frame of `round` is given by numbers among the new vertices.
-    #[must_use]
-    pub(crate) fn with_round(
+    pub fn with_round(
         mut self,
         replaced: Range<usize>,
         part: usize,
         vertices: &[bool],
         edges: &[[u32; 2]],
-        round: Round,
+        radius: f64,
     ) -> Self {
         let first = index(self.vertex_count);
         let is_replaced = |v: &u32| replaced.contains(&(*v as usize));
@@ -336,11 +330,7 @@ impl ContactMesh {
             self.edges.push(edge.map(|v| first + v));
             self.elements.push(element);
         }
-        let round = Round {
-            frame: round.frame.map(|v| first + v),
-            ..round
-        };
-        self.rounds.add(first, replaced, vertices, round);
+        self.rounds.add(first, replaced, vertices, radius);
         if let Some(glued) = &mut self.glued {
             glued.extend(self.vertex_count);
         }
@@ -350,36 +340,41 @@ impl ContactMesh {
         self
     }
 
-    /// What is round about a vertex.
-    pub(crate) fn round(&self, vertex: u32) -> Option<&Round> {
-        self.rounds.of(vertex)
+    /// Whether a vertex is one of a round body.
+    #[inline]
+    pub fn is_round(&self, vertex: u32) -> bool {
+        self.rounds.radius(vertex).is_some()
     }
 
     /// Whether an edge is a point of a round body.
-    pub(crate) fn is_point(&self, edge: u32) -> bool {
+    #[inline]
+    pub fn is_point(&self, edge: u32) -> bool {
         let [a, b] = self.edges[edge as usize];
         self.rounds.is_point([a, b])
     }
 
     /// Whether an edge is the axis of a round body.
-    pub(crate) fn is_axis(&self, edge: u32) -> bool {
+    #[inline]
+    pub fn is_axis(&self, edge: u32) -> bool {
         let [a, _] = self.edges[edge as usize];
-        self.round(a).is_some() && !self.is_point(edge)
+        self.is_round(a) && !self.is_point(edge)
     }
 
-    /// How far the surface is from a vertex, metres.
-    pub(crate) fn radius(&self, vertex: u32) -> f64 {
-        self.round(vertex).map_or(0.0, |round| round.radius)
+    /// How far the surface is from a vertex, metres: the radius of a round body, and otherwise zero.
+    #[inline]
+    pub fn radius(&self, vertex: u32) -> f64 {
+        self.rounds.radius(vertex).unwrap_or(0.0)
     }
 
-    /// Whether a primitive meets bodies, by one of its vertices.
-    pub(crate) fn meets_bodies(&self, vertex: u32) -> bool {
-        !self.driven.contains(&vertex) && self.rounds.takes_part(vertex)
+    /// Whether a vertex takes part: of a round body some do, and what it is in the place of does not.
+    #[inline]
+    pub fn takes_part(&self, vertex: u32) -> bool {
+        self.rounds.takes_part(vertex)
     }
 
-    /// Whether two primitives have a vertex in common, are glued to each other, belong together or pass through
-    /// each other.
-    pub(crate) fn are_joined(&self, first: &[u32], second: &[u32]) -> bool {
+    /// Whether two primitives, by their vertices, have one of them in common, are glued to each other, belong
+    /// together or pass through each other: no pair of the mesh with itself.
+    pub fn are_joined(&self, first: &[u32], second: &[u32]) -> bool {
         let parts = self.parts.as_ref();
         self.passing.pass(first, second)
             || parts.is_some_and(|parts| parts.are_joined(first, second))
@@ -390,18 +385,35 @@ impl ContactMesh {
     }
 
     /// Number of vertices.
+    #[inline]
     pub fn vertex_count(&self) -> usize {
         self.vertex_count
     }
 
     /// Ends of the edges.
+    #[inline]
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.edges
     }
 
     /// Corners of the faces.
+    #[inline]
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
+    }
+
+    /// The vertices of the pair of a vertex and a face, in this order.
+    #[inline]
+    pub fn vertex_face(&self, [v, f]: [u32; 2]) -> [u32; 4] {
+        let [a, b, c] = self.faces[f as usize];
+        [v, a, b, c]
+    }
+
+    /// The vertices of the pair of two edges, those of the first one first.
+    #[inline]
+    pub fn edge_edge(&self, [e, g]: [u32; 2]) -> [u32; 4] {
+        let ([a, b], [c, d]) = (self.edges[e as usize], self.edges[g as usize]);
+        [a, b, c, d]
     }
 
     pub(crate) fn elements(&self) -> &[Element] {

@@ -1,5 +1,8 @@
-//! Triangle surfaces as obstacles.
+//! Surfaces of triangles, and the distances from them.
 
+use super::contact_geometry::ContactGeometry;
+use super::form::{Form, ShapeError};
+use super::triangles::Triangles;
 use crate::contact_mesh::{ContactMesh, ContactMeshError};
 use crate::distance::{Closest, Feature, point_triangle};
 use crate::signed_distance::SignedDistance;
@@ -42,7 +45,7 @@ struct Normals {
     vertices: Vec<Vector3<f64>>,
 }
 
-/// Why triangles cannot be an obstacle.
+/// Why triangles are no surface.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
@@ -266,7 +269,7 @@ impl TriangleSurface {
     /// Distance of `p` with derivatives, negative on the side that the face normals point away from, of an
     /// open surface too. Smooth across the faces; beyond the rim of an open surface it is the distance from
     /// the rim, and changes sign with a jump where the surface would go on. Not a number if `p` is not.
-    pub(crate) fn oriented_distance(&self, p: &Vector3<f64>) -> SignedDistance {
+    pub fn oriented_distance(&self, p: &Vector3<f64>) -> SignedDistance {
         let Some((face, closest)) = self.closest(p) else {
             return SignedDistance {
                 value: f64::NAN,
@@ -314,6 +317,46 @@ impl TriangleSurface {
             // Of the root of the squared distance.
             hessian: sign * (0.5 * square - n * n.transpose()) / d,
         }
+    }
+}
+
+impl Form for TriangleSurface {
+    fn name(&self) -> &'static str {
+        "surface"
+    }
+
+    fn signed_distance(&self, p: &Vector3<f64>) -> SignedDistance {
+        self.signed_distance(p)
+    }
+
+    fn oriented_distance(&self, p: &Vector3<f64>) -> SignedDistance {
+        self.oriented_distance(p)
+    }
+
+    /// Its own, whatever the number of sides.
+    fn triangles(&self, _: usize) -> Result<Option<Triangles>, ShapeError> {
+        Ok(Some(Triangles {
+            points: self.positions.iter().map(|p| (*p).into()).collect(),
+            faces: self.mesh.faces().to_vec(),
+        }))
+    }
+
+    fn contact_geometry(&self, _: usize) -> Result<Option<ContactGeometry>, ShapeError> {
+        Ok(Some(ContactGeometry {
+            mesh: self.mesh.clone(),
+            positions: self.positions.iter().flatten().copied().collect(),
+            radius: 0.0,
+        }))
+    }
+
+    fn bounds(&self) -> Option<[Vector3<f64>; 2]> {
+        let points = || self.positions.iter().copied();
+        let low = points().reduce(|a, b| a.inf(&b))?;
+        Some([low, points().reduce(|a, b| a.sup(&b))?])
+    }
+
+    fn is_solid(&self) -> bool {
+        self.is_closed()
     }
 }
 

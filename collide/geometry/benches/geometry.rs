@@ -1,8 +1,8 @@
 //! Distances, derivatives, collision times, the broad phase of a rolled sheet, and obstacles.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use isosheet_collide::distance::{edge_edge, point_triangle};
-use isosheet_collide::{BroadPhase, Candidates, CcdOptions, ContactMesh, Shape, TriangleSurface};
+use isosheet_geometry::distance::{edge_edge, point_triangle};
+use isosheet_geometry::{BroadPhase, Candidates, CcdOptions, ContactMesh, Shape, TriangleSurface};
 use isosheet_mesh::generate;
 use nalgebra::Vector3;
 use std::hint::black_box;

@@ -1,6 +1,5 @@
 use super::*;
-use crate::testing::{safe_part, smallest_distance};
-use crate::{BroadPhase, Candidates, CcdOptions};
+use crate::{BroadPhase, Candidates, CcdOptions, CrossCandidates, MeshMotion};
 use isosheet_mesh::generate;
 use proptest::prelude::*;
 
@@ -32,12 +31,12 @@ proptest! {
             let goal = add(&x, &dx, 1.0);
             phase.update(&x, &goal, 0.0);
             phase.self_candidates(&mut candidates);
-            let before = smallest_distance(&mesh, &candidates, &x);
-            let t = safe_part(&mesh, &candidates, &options, [&x, &dx]);
+            let before = candidates.smallest_distance(&mesh, &x);
+            let t = candidates.safe_part(&options, MeshMotion { mesh: &mesh, x: &x, dx: &dx });
             cut += usize::from(t < 1.0);
             x = add(&x, &dx, t);
             prop_assert_eq!(crossings(&mesh, &x), Vec::<[u32; 2]>::new());
-            prop_assert!(smallest_distance(&mesh, &candidates, &x) > 0.0);
+            prop_assert!(candidates.smallest_distance(&mesh, &x) > 0.0);
             prop_assert!(before > 0.0);
         }
         prop_assert!(cut > 0, "no step was cut");
@@ -60,23 +59,15 @@ proptest! {
         let dy: Vec<f64> = (0..12).map(|k| if k % 3 == 2 { -speed } else { 0.0 }).collect();
         let x = sheet.positions();
         let separation = thickness * gap;
-        // Both as one mesh, of whose pairs those of the sheet with the body are kept.
-        let first = mesh.vertex_count() as u32;
-        let shifted = tetrahedron.map(|face| face.map(|v| first + v));
-        let faces: Vec<[u32; 3]> = mesh.faces().iter().copied().chain(shifted).collect();
-        let both = ContactMesh::from_triangles(mesh.vertex_count() + 4, &faces).unwrap();
-        let (z, dz) = ([x, &y].concat(), [&vec![0.0; x.len()][..], &dy].concat());
-        let mut phase = BroadPhase::new(both.clone(), &z);
-        let mut pairs = Candidates::default();
-        phase.update(&z, &add(&z, &dz, 1.0), separation);
-        phase.self_candidates(&mut pairs);
-        let is_across = |a: u32, b: u32| (a < first) != (b < first);
-        let of_face = |f: u32| both.faces()[f as usize][0];
-        let of_edge = |e: u32| both.edges()[e as usize][0];
-        pairs.vertex_face.retain(|&[v, f]| is_across(v, of_face(f)));
-        pairs.edge_edge.retain(|&[e, g]| is_across(of_edge(e), of_edge(g)));
+        let rest = vec![0.0; x.len()];
+        let [mut phase, mut of_body] = [(&mesh, x), (&body, &y[..])].map(|(mesh, x)| BroadPhase::new(mesh.clone(), x));
+        phase.update(x, x, separation);
+        of_body.update(&y, &add(&y, &dy, 1.0), 0.0);
+        let mut pairs = CrossCandidates::default();
+        phase.candidates_with(&of_body, &mut pairs);
         let options = CcdOptions { separation, ..CcdOptions::default() };
-        let t = safe_part(&both, &pairs, &options, [&z, &dz]);
+        let (first, second) = (MeshMotion { mesh: &mesh, x, dx: &rest }, MeshMotion { mesh: &body, x: &y, dx: &dy });
+        let t = pairs.safe_part(&options, first, second);
         let impact = (gap - separation) / speed;
         prop_assert!(t < impact && t > 0.8 * impact, "{t} {impact}");
         let stopped = add(&y, &dy, t);

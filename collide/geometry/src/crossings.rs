@@ -53,8 +53,9 @@ fn pierced(
 /// Round-off of a triple product over the product of the lengths.
 const VOLUME_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
-/// Whether the open segment `pq` runs through the open triangle `abc`.
-pub(crate) fn pierces([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
+/// Whether the open segment `pq` runs through the open triangle `abc`: strictly inside the three sides, with
+/// its ends strictly on different sides of the plane, beyond round-off.
+pub fn pierces([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
     // Zero in one plane: what is left there is round-off of arbitrary sign.
     let volume = |a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>, d: Vector3<f64>| {
         let (b, c, d) = (b - a, c - a, d - a);

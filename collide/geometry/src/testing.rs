@@ -1,8 +1,6 @@
-//! Random stencils, difference quotients, and queries over candidate pairs for the tests.
+//! Random stencils and difference quotients for the tests.
 
-use crate::distance::{Jet, edge_edge, point_triangle};
-use crate::vectors::{gather, smaller};
-use crate::{Candidates, CcdOptions, ContactMesh};
+use crate::distance::Jet;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -69,45 +67,4 @@ pub(crate) fn check_jet<const N: usize>(
             }
         }
     }
-}
-
-/// The vertices of the pairs of a vertex and a face, and those of the pairs of two edges.
-fn stencils(mesh: &ContactMesh, pairs: &Candidates) -> [Vec<[u32; 4]>; 2] {
-    let vertex_face = pairs.vertex_face.iter().map(|&[v, f]| {
-        let [a, b, c] = mesh.faces()[f as usize];
-        [v, a, b, c]
-    });
-    let edge_edge = pairs.edge_edge.iter().map(|&[e, g]| {
-        let ([a, b], [c, d]) = (mesh.edges()[e as usize], mesh.edges()[g as usize]);
-        [a, b, c, d]
-    });
-    [vertex_face.collect(), edge_edge.collect()]
-}
-
-/// Part of the motion from `x` to `x + dx` that brings no pair to within the separation of the options.
-pub(crate) fn safe_part(
-    mesh: &ContactMesh,
-    pairs: &Candidates,
-    options: &CcdOptions,
-    [x, dx]: [&[f64]; 2],
-) -> f64 {
-    let [vertex_face, edge_edge] = stencils(mesh, pairs);
-    let part = vertex_face.into_iter().fold(1.0, |part, stencil| {
-        options.point_triangle(&gather(x, stencil), &gather(dx, stencil), part)
-    });
-    edge_edge.into_iter().fold(part, |part, stencil| {
-        options.edge_edge(&gather(x, stencil), &gather(dx, stencil), part)
-    })
-}
-
-/// Smallest distance of the pairs at positions `x`, metres.
-pub(crate) fn smallest_distance(mesh: &ContactMesh, pairs: &Candidates, x: &[f64]) -> f64 {
-    let [vertex_face, two_edges] = stencils(mesh, pairs);
-    let faces = vertex_face
-        .into_iter()
-        .map(|stencil| point_triangle(&gather(x, stencil)).distance());
-    let edges = two_edges
-        .into_iter()
-        .map(|stencil| edge_edge(&gather(x, stencil)).distance());
-    faces.chain(edges).fold(f64::INFINITY, smaller)
 }

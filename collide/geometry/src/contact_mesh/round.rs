@@ -1,6 +1,5 @@
-//! Points and edges with a radius: round bodies that respond.
+//! Points and edges with a radius: round bodies.
 
-use isosheet_dynamics::contact::Round;
 use std::ops::Range;
 
 /// The round bodies of a mesh, whose vertices come after all others.
@@ -10,7 +9,8 @@ pub(super) struct Rounds {
     first: u32,
     /// Of each of these its body, and whether it takes part in contact as a vertex.
     vertices: Vec<(u32, bool)>,
-    list: Vec<Round>,
+    /// The radii of the bodies, metres.
+    radii: Vec<f64>,
     /// Vertices that take no part, because round bodies are in the place of them.
     replaced: Vec<Range<usize>>,
 }
@@ -23,33 +23,36 @@ impl Rounds {
         first: u32,
         replaced: Range<usize>,
         vertices: &[bool],
-        round: Round,
+        radius: f64,
     ) {
-        if self.list.is_empty() {
+        if self.radii.is_empty() {
             self.first = first;
         }
-        let number = self.list.len() as u32;
+        let number = self.radii.len() as u32;
         self.vertices
             .extend(vertices.iter().map(|own| (number, *own)));
-        self.list.push(round);
+        self.radii.push(radius);
         self.replaced.push(replaced);
     }
 
-    /// What is round about a vertex.
-    pub(super) fn of(&self, vertex: u32) -> Option<&Round> {
+    /// The radius about a vertex of one of the bodies, metres.
+    #[inline]
+    pub(super) fn radius(&self, vertex: u32) -> Option<f64> {
         let place = vertex.checked_sub(self.first)?;
         let (number, _) = self.vertices.get(place as usize)?;
-        self.list.get(*number as usize)
+        self.radii.get(*number as usize).copied()
     }
 
     /// Whether an edge is a point: both ends are at the same place.
+    #[inline]
     pub(super) fn is_point(&self, [first, second]: [u32; 2]) -> bool {
-        self.of(first).is_some() && self.takes_part(first) && !self.takes_part(second)
+        self.radius(first).is_some() && self.takes_part(first) && !self.takes_part(second)
     }
 
     /// Whether a vertex takes part in contact.
+    #[inline]
     pub(super) fn takes_part(&self, vertex: u32) -> bool {
-        if self.list.is_empty() {
+        if self.radii.is_empty() {
             return true;
         }
         match vertex.checked_sub(self.first) {
