@@ -126,16 +126,14 @@ pub use vibration::Vibration;
 pub use viewpoint::Viewpoint;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
-use crate::format::{
-    FileError, HistoryRow, Motion, MotionError, Row, Trajectory, frame_path, read_json, write_json,
-    write_obj,
-};
+use crate::format::{HistoryRow, Motion, MotionError, Row, Trajectory, frame_path, write_obj};
 use crate::scene::{Kept, SceneFile, Setup, UnderWay};
 use crate::view::PageOptions;
 use checkpoint::{RunProgress, StepsBy};
 pub(crate) use folder::Existing;
 use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
+use isosheet_files::{FileError, read_json, write_json};
 use page::write_page_of;
 use recording::RunFrames;
 use rulings::RuledFrames;

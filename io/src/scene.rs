@@ -34,7 +34,6 @@ mod attached_flow;
 mod bodies;
 mod bond;
 mod build;
-mod bytes;
 mod carried;
 mod changed;
 mod chart;
@@ -196,8 +195,6 @@ pub use yields::{CreaseYield, SheetYield};
 
 #[cfg(feature = "run")]
 pub(crate) use build::Kept;
-#[cfg(any(feature = "run", feature = "picture"))]
-pub(crate) use bytes::bytes_in_words;
 pub(crate) use functions::Moved;
 #[cfg(feature = "run")]
 pub(crate) use mesh_file::Files;

@@ -84,7 +84,7 @@
 //! }
 //! .to_html()?;
 //! assert!(page.starts_with("<!doctype html>"));
-//! # Ok::<(), isosheet_io::DataError>(())
+//! # Ok::<(), isosheet_files::DataError>(())
 //! ```
 
 mod body;

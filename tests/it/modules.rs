@@ -43,12 +43,13 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 7] = [
+const LIBRARIES: [&str; 8] = [
     "mesh",
     "coords/linalg",
     "coords",
     "dynamics",
     "collide",
+    "io/files",
     "io",
     "io/python",
 ];

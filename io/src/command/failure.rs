@@ -1,8 +1,9 @@
 //! Why a subcommand fails, and the code that the command ends with.
 
+use crate::Advice;
 use crate::run::{RunError, SweepError};
 use crate::scene::{SceneError, SceneFileError};
-use crate::{Advice, FileError};
+use isosheet_files::FileError;
 
 /// A class of failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,9 +3,9 @@
 use super::failure::{Code, Done, Failure};
 use super::message::{counted, print_message, print_result};
 use super::open::open_page;
-use crate::FileError;
 use crate::run::{Gallery, GalleryError};
 use clap::Args;
+use isosheet_files::FileError;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

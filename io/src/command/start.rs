@@ -3,9 +3,9 @@
 use super::failure::{Code, Done, Failure};
 use super::message::print_result;
 use crate::scene::StartingPoint;
-use crate::write_atomically;
 use clap::builder::{PathBufValueParser, PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
+use isosheet_files::write_atomically;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::path::PathBuf;

@@ -8,8 +8,7 @@ use std::io::{self, Read, Seek, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-use crate::format::atomic::prepare_folder;
-use crate::format::{DataError, FileError, WriteError, input};
+use isosheet_files::{DataError, FileError, WriteError, input, prepare_folder};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 

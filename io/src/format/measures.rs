@@ -1,7 +1,7 @@
 //! The measures of a run.
 
-use super::FileError;
 use super::history::{Row, RowWriter, read_rows};
+use isosheet_files::FileError;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

@@ -39,8 +39,8 @@ pub(super) use fold::LineRecord;
 pub(super) use plane::{Point, distance, twice_area};
 pub(super) use polygon::{cross, sub};
 
-use crate::format::{DataError, input};
 use error::Located;
+use isosheet_files::{DataError, input};
 use isosheet_mesh::Sheet;
 use std::path::Path;
 

@@ -8,8 +8,9 @@ mod samples;
 mod tests;
 mod usda;
 
-use super::{FileError, MeshFormat, input};
+use super::MeshFormat;
 use extension::has_extension;
+use isosheet_files::{FileError, input};
 use std::path::Path;
 #[cfg(feature = "run")]
 use std::path::PathBuf;

@@ -14,10 +14,9 @@ pub(crate) use motion::{Motion, MotionError, MotionFrame};
 #[cfg(feature = "scene")]
 pub(crate) use moving_mesh::{Clock, MovingMesh};
 
-use crate::format::atomic::write_atomically;
-use crate::format::{DataError, FileError};
 use archive::{ArchiveReader, ArchiveWriter, Packing, is_read, wrong_array};
 use data::not_finite;
+use isosheet_files::{DataError, FileError, write_atomically};
 use isosheet_mesh::wording::{counted, given};
 use isosheet_mesh::{Sheet, VertexId};
 use std::convert::Infallible;

@@ -3,7 +3,7 @@
 use super::canvas::{Image, encoder, srgb_bytes};
 use super::error::PictureError;
 use super::memory::at_once;
-use crate::DataError;
+use isosheet_files::DataError;
 use rayon::prelude::*;
 
 /// An animated PNG file of `count` pictures of one size (pixels), which `picture` makes, several at a time on

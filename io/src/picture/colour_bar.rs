@@ -6,7 +6,7 @@ use super::error::PictureError;
 use super::sheet::INK;
 use super::text::Line;
 use super::ticks::Ticks;
-use crate::DataError;
+use isosheet_files::DataError;
 
 /// Size of the letters, as part of the height of the whole picture, and the smallest, pixels.
 const LETTERS: f64 = 1.0 / 28.0;

@@ -1,7 +1,7 @@
 //! Values as colours.
 
 use super::error::PictureError;
-use crate::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 
 /// Colours in their order, between which the others are interpolated.

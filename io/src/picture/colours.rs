@@ -1,7 +1,7 @@
 //! Colours of a sheet by a quantity.
 
 use super::error::PictureError;
-use crate::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::{EdgeId, Topology};
 
 /// The sRGB colour of faces whose edges show values.

@@ -1,8 +1,7 @@
 //! Why a picture cannot be made.
 
-use crate::format::DataError;
-use crate::scene::bytes_in_words;
 use isosheet_collide::ObstacleError;
+use isosheet_files::{DataError, bytes_in_words};
 use isosheet_mesh::Advice;
 
 /// Why a picture cannot be made.

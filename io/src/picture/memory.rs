@@ -3,7 +3,7 @@
 use super::canvas::Light;
 use super::error::PictureError;
 use super::raster::MEMORY_OF_COLUMN;
-use crate::format::memory;
+use isosheet_files::memory;
 
 /// Bytes for a pixel of a picture: its light, twice its three bytes as they are listed, and these bytes as the file is
 /// made of them, filtered, compressed and gathered.

@@ -9,7 +9,7 @@ use super::pieces::{Cutter, Piece};
 use super::raster::{Corner, Drawing, Facet};
 use super::solid::{Skin, Solid, Triangles};
 use super::vector::dot;
-use crate::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{EdgeId, Part, Topology, VertexId};
 

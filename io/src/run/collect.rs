@@ -3,7 +3,7 @@
 use super::Summary;
 use super::folder::RunFolder;
 use super::sweep::{Sweep, SweepError};
-use crate::format::{FileError, cell, check_finite, read_json, write_atomically};
+use isosheet_files::{FileError, cell, check_finite, read_json, write_atomically};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,8 @@
 
 use crate::scene::{Curve, Hold, Scene, Support, Surface, frame_motion};
 use crate::view::{Body, BodyShape};
-use isosheet_dynamics::constraint::{self, Polyline, Spline};
+use isosheet_dynamics::constraint;
+use isosheet_dynamics::constraint::{Polyline, Spline};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;
 

@@ -123,7 +123,9 @@ impl Control {
                 last.map_or(&*function, |course| &course.profile).value(t)
             };
             let all = std::iter::once(0.0).chain(times.iter().copied().filter(|t| *t > 0.0));
-            let pieces = courses.iter().map(|course| (course.begin, course.profile.breaks()));
+            let pieces = courses
+                .iter()
+                .map(|course| (course.begin, course.profile.breaks()));
             *function = Profile::Course(Course::Keyframes {
                 interpolation: Interpolation::Linear,
                 keys: without_rests(all.map(|t| [t, value(t)]).collect(), |a, b| a[1] == b[1]),

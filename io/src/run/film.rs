@@ -2,12 +2,12 @@
 
 use super::quantity::Quantity;
 use super::{Recording, Viewpoint};
-use crate::DataError;
 use crate::picture::{
     Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, at_once, render_folded,
     strip,
 };
 use crate::scene::bounds;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Part, VertexId};
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -2,8 +2,8 @@
 
 use super::Film;
 use crate::Advice;
-use crate::format::{FileError, prepare_folder};
 use crate::picture::PictureError;
+use isosheet_files::{FileError, prepare_folder};
 use rayon::prelude::*;
 use std::fs;
 use std::io::{self, Read, Write};

@@ -2,10 +2,10 @@
 
 use super::Recording;
 use super::frame_field::FrameField;
-use crate::DataError;
 use crate::format::{Motion, Series, SeriesOptions};
 use crate::picture::{ColourMap, ColourScale, Colours, PictureError, Spacing};
 use crate::view::{Centering, Field, Scale};
+use isosheet_files::DataError;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 

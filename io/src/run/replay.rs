@@ -1,12 +1,11 @@
 //! What the page shows of a recorded motion.
 
 use super::frame_field::{FrameField, check_frame};
-use crate::format::{
-    BodyPose, DataError, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory,
-};
+use crate::format::{BodyPose, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory};
 use crate::scene::{Gauge, Origins};
 use crate::view::{Body, BodyShape, Replay, Scale, TimeSeries};
 use isosheet_collide::{Obstacle, Shape};
+use isosheet_files::DataError;
 use isosheet_mesh::Sheet;
 use nalgebra::Isometry3;
 use std::ops::ControlFlow;

@@ -4,11 +4,11 @@ use super::key::Key;
 use super::mesh_file::Files;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use crate::format::FileError;
 use crate::format::drawing::{
     DrawingError, DrawingOptions, DrawingUnit, DrawnSheet, LineClass, LineRules, Selector,
     mesh_drawing, parse_drawing,
 };
+use isosheet_files::FileError;
 use isosheet_mesh::plane::PlaneError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! Edits of a scene by `key=value`.
 
 use super::key::{Key, KeyPart};
-use crate::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::Advice;
 use std::fmt;
 use std::str::FromStr;

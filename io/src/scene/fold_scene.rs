@@ -1,8 +1,8 @@
 //! The scene that folds a crease pattern.
 
 use super::fold_group::FoldGroup;
-use crate::format::FileError;
 use isosheet_dynamics::Material;
+use isosheet_files::FileError;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 

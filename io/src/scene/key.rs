@@ -1,6 +1,6 @@
 //! Places in a scene.
 
-use crate::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::Advice;
 use std::fmt;
 use std::str::FromStr;
@@ -39,10 +39,7 @@ impl Advice for KeyError {
 
 impl From<KeyError> for DataError {
     fn from(error: KeyError) -> Self {
-        Self {
-            remedy: error.advice(),
-            ..Self::plain(error.to_string())
-        }
+        Self::plain(error.to_string()).remedy(error.advice())
     }
 }
 

@@ -7,8 +7,9 @@ use super::unit::Unit;
 use super::up_axis::UpAxis;
 use crate::format::{
     self, FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, MovingMesh, Polygons,
-    SeparateBuffers, input, motion_archive, parse_mesh, read_mesh_with,
+    SeparateBuffers, motion_archive, parse_mesh, read_mesh_with,
 };
+use isosheet_files::input;
 use isosheet_mesh::Advice;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,11 +1,10 @@
 //! Crease patterns by formula.
 
 use crate::format::drawing::DrawnEdges;
-use isosheet_mesh::EdgeId;
 use isosheet_mesh::generate::{
     FoldAssignment, FoldPattern, GenerateError, degree_four, miura, miura_zigzags,
 };
-use isosheet_mesh::origami;
+use isosheet_mesh::{EdgeId, origami};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

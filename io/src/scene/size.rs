@@ -1,11 +1,10 @@
 //! How large the mesh of a scene is, before it is made.
 
-use super::bytes::bytes_in_words;
 use super::key::Key;
 use super::mesh::Mesh;
 use super::problem::Problem;
 use super::sheet::Sheet;
-use crate::format::memory;
+use isosheet_files::{bytes_in_words, memory};
 use isosheet_mesh::wording::brief;
 
 /// Memory that a run needs for each face of its sheet at least, bytes, for its model and for the matrix of a step

@@ -1,6 +1,6 @@
 //! Checks of lists. The name of a list is only made up when it is needed for an error.
 
-use crate::format::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::{counted, given};
 use isosheet_mesh::{Advice, Topology};
 
@@ -92,9 +92,8 @@ pub(super) fn vertices(what: &str, list: &[u32], vertices: usize) -> Result<(), 
 
 /// The connectivity of triangles.
 pub(super) fn topology(vertices: usize, faces: &[[u32; 3]]) -> Result<Topology, DataError> {
-    Topology::from_faces(vertices, faces).map_err(|e| DataError {
-        remedy: e.advice(),
-        ..DataError::plain(format!("the triangles of the sheet: {e}"))
+    Topology::from_faces(vertices, faces).map_err(|e| {
+        DataError::plain(format!("the triangles of the sheet: {e}")).remedy(e.advice())
     })
 }
 

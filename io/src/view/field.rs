@@ -3,7 +3,7 @@
 use isosheet_mesh::Topology;
 
 use super::check;
-use crate::format::DataError;
+use isosheet_files::DataError;
 use serde::Serialize;
 
 /// Where the values of a [`Field`] belong.

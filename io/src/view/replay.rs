@@ -6,7 +6,8 @@ use super::body::Body;
 use super::check;
 use super::field::{Field, TimeSeries};
 use super::frames::KeptFrames;
-use crate::format::{DataError, FrameData, Motion, MotionFrame};
+use crate::format::{FrameData, Motion, MotionFrame};
+use isosheet_files::DataError;
 use serde::Serialize;
 use std::ops::ControlFlow;
 

@@ -2,7 +2,8 @@
 
 use super::selector::Selector;
 use crate::format::vector::Pen;
-use crate::format::{DataError, DrawnLines, MeshFile};
+use crate::format::{DrawnLines, MeshFile};
+use isosheet_files::DataError;
 use isosheet_mesh::wording::quoted;
 use std::collections::BTreeSet;
 

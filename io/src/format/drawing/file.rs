@@ -2,7 +2,7 @@
 
 use super::options::DrawingOptions;
 use crate::format::vector::{Drawing, dxf, svg};
-use crate::format::{DataError, FileError, input};
+use isosheet_files::{DataError, FileError, input};
 use std::path::Path;
 
 /// A format of drawings, as the extension of a file says.

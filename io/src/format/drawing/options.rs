@@ -1,8 +1,8 @@
 //! How drawings become sheets.
 
 use super::rules::LineRules;
-use crate::format::DataError;
 use crate::format::vector::DrawingUnit;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 
 /// How a drawing becomes a sheet.

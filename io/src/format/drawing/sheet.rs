@@ -6,7 +6,8 @@ use super::file::read_drawing;
 use super::options::DrawingOptions;
 use super::report::{ClassCount, DrawingReport, Places};
 use crate::format::vector::{Drawing, DrawnLine};
-use crate::format::{DataError, DrawnLines, EdgeAssignment, FileCrease, FileError, MeshFile};
+use crate::format::{DrawnLines, EdgeAssignment, FileCrease, MeshFile};
+use isosheet_files::{DataError, FileError};
 use isosheet_mesh::plane::{
     Piece, PlaneCurve, PlaneError, PlaneGraph, PlaneMesh, PlaneOptions, Role,
 };

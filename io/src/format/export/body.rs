@@ -2,7 +2,7 @@
 
 use super::ExportError;
 use super::error::check_mesh;
-use crate::format::DataError;
+use isosheet_files::DataError;
 
 /// A rigid body: a mesh in its own frame, and where that is.
 #[derive(Clone, Debug, PartialEq)]

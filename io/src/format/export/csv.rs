@@ -1,7 +1,7 @@
 //! Positions and fields of vertices as a table.
 
 use super::{ExportError, FieldSupport, Series};
-use crate::format::atomic::write_atomically;
+use isosheet_files::write_atomically;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! What can be wrong with a mesh or a series that is to be written.
 
-use crate::format::{DataError, FileError};
+use isosheet_files::{DataError, FileError};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, TopologyError, VertexId};
 use thiserror::Error;

@@ -171,8 +171,8 @@ fn extent(places: &[Option<[f64; 2]>]) -> Option<([f64; 2], f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isosheet_mesh::Sheet;
-    use isosheet_mesh::generate::{self, Diagonals};
+    use isosheet_mesh::generate::Diagonals;
+    use isosheet_mesh::{Sheet, generate};
 
     /// A rolled strip is laid out as the flat one that it was.
     #[test]

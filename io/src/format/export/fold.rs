@@ -1,8 +1,8 @@
 //! FOLD 1.2 files.
 
 use super::{ExportError, Series};
-use crate::format::atomic::{FileWriter, write_atomically};
 use crate::format::mesh_file::{EdgeAssignment, LineRecord, MeshFile};
+use isosheet_files::{FileWriter, write_atomically};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{self, Write};

@@ -3,7 +3,7 @@
 use super::error::{fits, single};
 use super::moving::{Moving, MovingSheet};
 use super::{BodyPose, ExportError, Series, SeriesBody};
-use crate::format::atomic::write_atomically;
+use isosheet_files::write_atomically;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;

@@ -3,8 +3,7 @@
 use super::error::{check_count, check_mesh};
 use super::{ExportError, Series};
 use crate::format::FaceGroups;
-use crate::format::atomic::{FileWriter, write_atomically};
-use crate::format::numbered::NumberedFiles;
+use isosheet_files::{FileWriter, NumberedFiles, write_atomically};
 use isosheet_mesh::Topology;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

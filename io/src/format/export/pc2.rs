@@ -2,8 +2,7 @@
 
 use super::error::{fits, single};
 use super::{ExportError, Series, obj};
-use crate::format::DataError;
-use crate::format::atomic::write_atomically;
+use isosheet_files::{DataError, write_atomically};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,7 @@
 //! PLY files (Polygon File Format).
 
 use super::ExportError;
-use crate::format::atomic::write_atomically;
+use isosheet_files::write_atomically;
 use std::io::Write;
 use std::path::Path;
 

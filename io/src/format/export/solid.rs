@@ -1,8 +1,8 @@
 //! Sheets as bodies with a thickness.
 
 use super::ExportError;
-use crate::format::DataError;
 use crate::format::mesh_file::{MeshFile, cross, sub};
+use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 use std::collections::HashSet;
 

@@ -2,7 +2,7 @@
 
 use super::ExportError;
 use super::error::{fits, single};
-use crate::format::atomic::write_atomically;
+use isosheet_files::write_atomically;
 use std::path::Path;
 use stl_io::{Normal, Triangle, Vertex};
 

@@ -6,8 +6,8 @@ use crate::{
     EdgeAssignment, FoldFrame, MeshFile, MeshFormat, MeshOptions, parse_mesh, read_mesh,
     read_mesh_with,
 };
-use isosheet_mesh::generate::{self, Diagonals, FoldAssignment};
-use isosheet_mesh::{Sheet, Topology, fold_angle};
+use isosheet_mesh::generate::{Diagonals, FoldAssignment};
+use isosheet_mesh::{Sheet, Topology, fold_angle, generate};
 use std::fs;
 
 /// A sheet that is rolled up: at time t it lies on a cylinder of radius 1 / (4 t), with its rows straight.

@@ -3,7 +3,7 @@
 use super::error::single;
 use super::moving::Moving;
 use super::{BodyPose, ExportError, SeriesBody};
-use crate::format::atomic::{FileWriter, write_atomically};
+use isosheet_files::{FileWriter, write_atomically};
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::Path;

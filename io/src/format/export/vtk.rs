@@ -1,9 +1,7 @@
 //! VTK: one `.vtp` file for each frame and a `.pvd` file that lists them.
 
 use super::{ExportError, FieldSupport, Series};
-use crate::format::atomic::write_atomically;
-use crate::format::numbered::NumberedFiles;
-use crate::format::{FileError, WriteError};
+use isosheet_files::{FileError, NumberedFiles, WriteError, write_atomically};
 use isosheet_mesh::{EdgeId, Part};
 use std::fmt::Write as _;
 use std::fs;

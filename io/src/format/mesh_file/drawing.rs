@@ -3,8 +3,8 @@
 use super::error::{Located, Location};
 use super::faces::Polyhedron;
 use super::{EdgeAssignment, MeshFile, MeshFormat, MeshOptions};
-use crate::format::DataError;
 use crate::format::mesh_file::pattern::{self, FileUnit, PatternLines, Planar};
+use isosheet_files::DataError;
 use std::collections::BTreeMap;
 
 /// Reads a drawing. Its faces are what its lines enclose, in the plane z = 0 as seen on the screen; points that are

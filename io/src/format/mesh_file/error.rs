@@ -1,6 +1,6 @@
 //! What can be wrong with a mesh file.
 
-use crate::format::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, MeshError};
 use std::fmt;

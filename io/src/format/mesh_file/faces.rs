@@ -2,7 +2,7 @@
 
 use super::error::{COPY, Located, Location, MeshFileProblem, no_such_vertex};
 use super::{DrawnLines, FaceGroups, MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
-use crate::format::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::{counted, given};
 use std::collections::BTreeMap;
 use std::ops::Range;

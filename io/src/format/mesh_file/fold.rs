@@ -12,9 +12,9 @@ use super::error::{Located, Location};
 use super::faces::Polyhedron;
 use super::plane::{self, NEAR, Point};
 use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
-use crate::format::DataError;
 use crate::format::mesh_file::pattern::{self, FileUnit, Planar, planar};
 use frames::FrameRecord;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::{brief, counted};
 pub(in crate::format) use lines::LineRecord;
 use std::collections::HashMap;
@@ -134,14 +134,12 @@ fn folded_drawing(points: &[Point], edges: &[FileCrease]) -> Result<Planar, Data
 }
 
 /// The edges of a file make no faces.
-fn without_faces(e: DataError) -> DataError {
-    DataError {
-        message: format!(
-            "the file has no `faces_vertices` that fit its edges, and {}",
-            e.message
-        ),
-        ..e
-    }
+fn without_faces(mut e: DataError) -> DataError {
+    e.message = format!(
+        "the file has no `faces_vertices` that fit its edges, and {}",
+        e.message
+    );
+    e
 }
 
 fn add_vertices(frame: &FrameRecord, polyhedron: &mut Polyhedron) -> Result<(), DataError> {

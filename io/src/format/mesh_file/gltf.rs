@@ -3,11 +3,11 @@
 use super::error::{Located, Location, MeshFileProblem, cut_short};
 use super::faces::Polyhedron;
 use super::{MeshOptions, SeparateBuffers};
-use crate::format::{DataError, input};
 use base64::Engine;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
 use gltf::{Accessor, Document, Gltf, Mesh, Semantic};
+use isosheet_files::{DataError, input};
 use std::io::{self, Read};
 use std::path::Path;
 

@@ -5,7 +5,7 @@
 
 use super::error::{Located, Location, excerpt, no_such_vertex};
 use super::faces::Polyhedron;
-use crate::format::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 
 /// Reads the vertices and faces of an OBJ file.

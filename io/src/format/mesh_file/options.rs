@@ -2,7 +2,7 @@
 
 use super::error::MeshFileProblem;
 use super::fold_frame::FoldFrame;
-use crate::format::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 
 /// What to do with faces of more than three corners.

@@ -14,8 +14,8 @@ mod tests;
 
 use super::plane::{NEAR, Point};
 use super::{DrawnLines, EdgeAssignment, FileCrease, polygon};
-use crate::format::DataError;
 pub(super) use faces::faces;
+use isosheet_files::DataError;
 pub(super) use planar::{FileUnit, Planar, planar};
 use std::collections::BTreeMap;
 

@@ -2,7 +2,7 @@
 
 use super::error::{CORRECT, Located, Location, announced, unexpected};
 use super::faces::Polyhedron;
-use crate::format::DataError;
+use isosheet_files::DataError;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,

@@ -2,7 +2,7 @@
 
 use super::error::{CORRECT, Located, Location, announced, cut_short};
 use super::faces::Polyhedron;
-use crate::format::DataError;
+use isosheet_files::DataError;
 use std::io::Cursor;
 
 /// Bytes before the first facet of a binary file: a comment of 80 bytes and the number of facets.

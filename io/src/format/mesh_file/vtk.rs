@@ -10,7 +10,7 @@ pub(super) use xml::parse as parse_xml;
 
 use super::error::{CORRECT, Located, Location};
 use super::faces::Polyhedron;
-use crate::format::DataError;
+use isosheet_files::DataError;
 
 /// The polygons of a file, and the time that it gives them.
 #[derive(Debug, Default)]

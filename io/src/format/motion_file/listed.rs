@@ -2,8 +2,9 @@
 
 use super::extension::has_extension;
 use super::samples::{self, SampleTimes};
-use crate::format::xml::{self, Entities};
-use crate::format::{FileError, MovingMesh, input};
+use crate::format::MovingMesh;
+use isosheet_files::xml::Entities;
+use isosheet_files::{FileError, input, xml};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 

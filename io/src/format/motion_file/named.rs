@@ -1,7 +1,8 @@
 //! Mesh files whose names have the number of their sample.
 
 use super::samples::{self, SampleTimes};
-use crate::format::{FileError, MeshFormat, MovingMesh};
+use crate::format::{MeshFormat, MovingMesh};
+use isosheet_files::FileError;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,7 @@
 //! Samples of a mesh in motion, each in a mesh file of its own.
 
-use crate::format::{
-    Clock, FileError, MeshFile, MeshFileError, MeshFileProblem, MovingMesh, read_mesh,
-};
+use crate::format::{Clock, MeshFile, MeshFileError, MeshFileProblem, MovingMesh, read_mesh};
+use isosheet_files::FileError;
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::counted;
 use std::collections::BTreeSet;

@@ -5,7 +5,8 @@ mod tokens;
 mod transform;
 
 use crate::format::mesh_file::polygon_mesh;
-use crate::format::{Clock, FileError, MovingMesh, input};
+use crate::format::{Clock, MovingMesh};
+use isosheet_files::{FileError, input};
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::counted;
 use layer::{Attribute, Layer, Prim};

@@ -1,8 +1,7 @@
 //! Arrays in an archive of numpy: a zip file with one `.npy` file for each.
 
 use super::npy::{ArrayWriter, Header, Number, read_entries};
-use crate::format::allowance::Allowance;
-use crate::format::{FileError, input, memory};
+use isosheet_files::{Allowance, FileError, input, memory};
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;

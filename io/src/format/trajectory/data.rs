@@ -1,6 +1,6 @@
 //! What frames have besides positions.
 
-use crate::format::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 
 /// What a frame has besides its positions. An empty slice says that there is nothing of its kind.

@@ -1,7 +1,7 @@
 //! Motions whose frames need not all be in memory.
 
 use super::data::FrameData;
-use crate::format::FileError;
+use isosheet_files::FileError;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 

@@ -1,7 +1,7 @@
 //! Meshes in motion, of archives of numpy.
 
 use super::archive::{ArchiveReader, ArchiveWriter, Packing, is_read};
-use crate::format::FileError;
+use isosheet_files::FileError;
 use isosheet_mesh::wording::{counted, given};
 use std::io::{self, Cursor};
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use super::Trajectory;
 use super::data::FrameQuantity;
-use crate::format::DataError;
+use isosheet_files::DataError;
 
 /// The largest number of frames that are made: an hour of film at 24 frames a second.
 const MOST_FRAMES: f64 = 86_400.0;
@@ -70,7 +70,8 @@ impl Trajectory {
 mod tests {
     use super::super::FrameData;
     use super::*;
-    use isosheet_mesh::generate::{self, Diagonals};
+    use isosheet_mesh::generate;
+    use isosheet_mesh::generate::Diagonals;
 
     /// Frames at 0, 1, 1 and 3 seconds that move by their time along z, with gaps that say the same.
     fn recorded() -> Trajectory {

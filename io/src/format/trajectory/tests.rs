@@ -1,5 +1,4 @@
-use isosheet_mesh::Advice;
-use isosheet_mesh::generate;
+use isosheet_mesh::{Advice, generate};
 use npyz::NpyFile;
 use npyz::npz::{array_name_from_file_name, file_name_from_array_name};
 use std::fs::File;

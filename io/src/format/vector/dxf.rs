@@ -11,11 +11,10 @@ mod spline;
 
 use super::lines::{Drawing, Pen};
 use super::unit::DrawingUnit;
-use crate::format::DataError;
-use crate::format::allowance::Allowance;
 use blocks::{Blocks, Place, compose};
 use entity::Entity;
 use groups::{Record, section};
+use isosheet_files::{Allowance, DataError};
 use layers::Layers;
 
 /// Reads the entities of a drawing.

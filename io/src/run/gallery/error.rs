@@ -1,6 +1,6 @@
 //! Why there is no gallery.
 
-use crate::format::FileError;
+use isosheet_files::FileError;
 use isosheet_mesh::Advice;
 use std::path::PathBuf;
 

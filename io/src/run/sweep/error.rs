@@ -1,8 +1,8 @@
 //! Why a sweep cannot be made, run or collected.
 
 use super::run::SweepRun;
-use crate::format::{DataError, FileError};
 use crate::scene::SceneFileError;
+use isosheet_files::{DataError, FileError};
 use isosheet_mesh::Advice;
 use std::path::PathBuf;
 use thiserror::Error;

@@ -1,7 +1,7 @@
 //! The table of the runs of a sweep.
 
 use super::SweepError;
-use crate::format::{FileError, input, write_atomically};
+use isosheet_files::{FileError, input, write_atomically};
 use std::path::Path;
 
 /// The first two columns; the keys follow.

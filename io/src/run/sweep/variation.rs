@@ -1,7 +1,7 @@
 //! A key of a scene and the values that a sweep gives it.
 
-use crate::DataError;
 use crate::scene::Key;
+use isosheet_files::DataError;
 use std::fmt;
 use std::str::FromStr;
 
@@ -15,7 +15,7 @@ use std::str::FromStr;
 /// let v: Variation = "forces.gravity=[0, 0, -9.81],[0, 0, -1.62]".parse()?;
 /// assert_eq!(v.key(), "forces.gravity");
 /// assert_eq!(v.values(), ["[0, 0, -9.81]", "[0, 0, -1.62]"]);
-/// # Ok::<(), isosheet_io::DataError>(())
+/// # Ok::<(), isosheet_files::DataError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Variation {

@@ -1,10 +1,10 @@
 //! Frames of FOLD files and what they inherit.
 
 use super::lines::LineRecord;
-use crate::format::DataError;
 use crate::format::mesh_file::error::{CORRECT, excerpt};
 use crate::format::mesh_file::faces::empty;
 use crate::format::mesh_file::{FoldFrame, MeshFileProblem};
+use isosheet_files::DataError;
 use serde::Deserialize;
 
 /// What is used of a frame. All keys of the format are optional.

@@ -2,9 +2,9 @@
 //! colours (`"#rrggbb"`), dashes and layers, and `edges_isosheet:lines`, of each edge the numbers of its
 //! lines in that list.
 
-use crate::format::DataError;
 use crate::format::mesh_file::{DrawnLines, FileCrease};
 use crate::format::vector::{Colour, Pen};
+use isosheet_files::DataError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 

@@ -1,8 +1,8 @@
 //! Edges and the faces beside them: whether an edge is a mountain or a valley depends on the side of these
 //! that it is seen from.
 
-use crate::format::DataError;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
+use isosheet_files::DataError;
 use isosheet_mesh::FaceId;
 use std::collections::{HashMap, HashSet};
 

@@ -1,8 +1,8 @@
 //! Crease patterns of ORIPA and Oriedita as text (`.cp`): a line `kind x1 y1 x2 y2` for each line of the drawing.
 
 use super::Segment;
-use crate::format::DataError;
 use crate::format::mesh_file::EdgeAssignment;
+use isosheet_files::DataError;
 
 /// What a line of one of the kinds of these programs is meant to do: 1 the outline, 2 a mountain, 3 a valley, 4 and 0
 /// auxiliary lines, which stay flat.

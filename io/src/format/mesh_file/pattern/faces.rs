@@ -1,8 +1,8 @@
 //! Faces of a flat crease pattern that has vertices and edges alone.
 
-use crate::format::DataError;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease};
 use crate::format::mesh_file::{Point, twice_area};
+use isosheet_files::DataError;
 use std::collections::BTreeMap;
 
 /// More lines are refused: a pattern of so many takes a second or two, and is more than anybody folds.

@@ -1,8 +1,8 @@
 //! Crease patterns of ORIPA as XML (`.opx`): what Java writes of its objects.
 
 use super::{Segment, cp};
-use crate::format::DataError;
-use crate::format::xml::{self, Entities};
+use isosheet_files::xml::Entities;
+use isosheet_files::{DataError, xml};
 use roxmltree::Node;
 
 /// The lines of the drawing, in which y points downwards.

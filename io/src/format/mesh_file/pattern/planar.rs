@@ -1,9 +1,9 @@
 //! From lines that may cross, overlap and end anywhere to the edges of a planar graph.
 
 use super::faces::MOST_EDGES;
-use crate::format::DataError;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease};
 use crate::format::mesh_file::{Point, distance, twice_area};
+use isosheet_files::DataError;
 use isosheet_mesh::Advice;
 use isosheet_mesh::plane::{gaps, near_pairs};
 use isosheet_mesh::wording::{brief, counted};

@@ -1,10 +1,10 @@
 //! Legacy files of VTK (`.vtk`), text or binary.
 
 use super::{TimedPolygons, other_data, plain, strips};
-use crate::format::DataError;
 use crate::format::mesh_file::error::{
     COPY, Located, Location, announced, cut_short, excerpt, unexpected,
 };
+use isosheet_files::DataError;
 
 /// The points and polygons of a data set `POLYDATA`, and the field `TimeValue`. Vertices, lines and data of
 /// points and cells are skipped.

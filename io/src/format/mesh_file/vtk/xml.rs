@@ -1,13 +1,12 @@
 //! XML files of VTK (`.vtp`): arrays as text, in base 64 or as bytes after the XML, also compressed by zlib.
 
 use super::{TimedPolygons, other_data, plain, strips};
-use crate::format::DataError;
-use crate::format::allowance::Allowance;
 use crate::format::mesh_file::error::{COPY, CORRECT, Located, cut_short, excerpt, unexpected};
-use crate::format::xml::{self, Entities};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
+use isosheet_files::xml::Entities;
+use isosheet_files::{Allowance, DataError, xml};
 use roxmltree::Node;
 use std::borrow::Cow;
 use std::cell::Cell;

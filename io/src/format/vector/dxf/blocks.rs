@@ -1,7 +1,7 @@
 //! Blocks, and where they are inserted.
 
 use super::groups::{Record, section};
-use crate::format::DataError;
+use isosheet_files::DataError;
 use std::collections::HashMap;
 
 /// Entities that are drawn wherever the block is inserted.

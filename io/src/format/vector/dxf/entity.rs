@@ -2,7 +2,7 @@
 
 use super::groups::Record;
 use super::spline;
-use crate::format::DataError;
+use isosheet_files::DataError;
 use isosheet_mesh::plane::{EllipticArc, PlaneCurve};
 use std::f64::consts::TAU;
 

@@ -1,6 +1,6 @@
 //! Pairs of a number and a value, which all of a DXF file consists of.
 
-use crate::format::DataError;
+use isosheet_files::DataError;
 
 /// What to do about a file that is no such drawing.
 const EXPORT: &str = "export it again as DXF in text form, with blocks and texts exploded";

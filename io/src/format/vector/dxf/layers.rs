@@ -3,7 +3,7 @@
 use super::super::colour::Colour;
 use super::super::lines::Pen;
 use super::groups::{Record, section};
-use crate::format::DataError;
+use isosheet_files::DataError;
 use std::collections::HashMap;
 
 /// What entities of a layer look like.

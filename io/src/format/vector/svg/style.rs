@@ -2,7 +2,7 @@
 
 use super::super::colour::Colour;
 use super::style_sheet::Rules;
-use crate::format::DataError;
+use isosheet_files::DataError;
 use roxmltree::Node;
 use simplecss::DeclarationTokenizer;
 use svgtypes::{Color, Paint};

@@ -1,7 +1,6 @@
 //! Style sheets: the rules for an element are found by its name, its classes and its identifier.
 
-use crate::format::DataError;
-use crate::format::allowance::Allowance;
+use isosheet_files::{Allowance, DataError};
 use roxmltree::Node;
 use simplecss::{
     AttributeOperator, Declaration, DeclarationTokenizer, Element, PseudoClass, Selector,

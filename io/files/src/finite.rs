@@ -2,13 +2,13 @@
 //!
 //! JSON has no NaN, and `serde_json` silently writes `null` for it; this finds it first and says where.
 
-use super::DataError;
+use crate::DataError;
 use ciborium::Value;
 use isosheet_mesh::wording::given;
 use serde::Serialize;
 
 /// Checks every number in `value`; what is not finite is named by its path, as in `steps[3].energy`.
-pub(crate) fn check_finite<T: Serialize + ?Sized>(value: &T) -> Result<(), DataError> {
+pub fn check_finite<T: Serialize + ?Sized>(value: &T) -> Result<(), DataError> {
     // Of all forms that a value may take, CBOR has what JSON has, and NaN too.
     let value = Value::serialized(value)
         .map_err(|e| DataError::plain(format!("the value has no form in JSON: {e}")))?;

@@ -8,17 +8,17 @@ use std::io::{self, ErrorKind, Read};
 use std::path::{Component, Path, PathBuf};
 
 /// The largest file that is read as a whole, bytes: some twenty million triangles of a mesh.
-pub(crate) const LARGEST: u64 = 2 << 30;
+pub const LARGEST: u64 = 2 << 30;
 
 /// Opens a regular file to be read.
-pub(crate) fn open(path: &Path) -> io::Result<File> {
+pub fn open(path: &Path) -> io::Result<File> {
     // What opening a device does is not known, so that it is not tried.
     refuse_irregular(&fs::metadata(path)?)?;
     regular(File::options().read(true), &[Flag::Immediately], path)
 }
 
 /// Reads a regular file as a whole.
-pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let length = file.metadata()?.len();
     let mut bytes = Vec::new();
@@ -32,13 +32,12 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// The bytes of a text without the mark of their order, with which some programs begin UTF-8.
-pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+pub fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
 /// Reads a regular file of text as a whole.
-#[cfg(feature = "scene")]
-pub(crate) fn read_text(path: &Path) -> io::Result<String> {
+pub fn read_text(path: &Path) -> io::Result<String> {
     String::from_utf8(without_mark(&read(path)?).to_vec()).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let problem = format!("byte {at} is not UTF-8, as text has to be");
@@ -48,7 +47,7 @@ pub(crate) fn read_text(path: &Path) -> io::Result<String> {
 
 /// The file that a file of a folder names: it lies in that folder or beneath it, by its name and with all
 /// links followed.
-pub(crate) fn within(folder: &Path, name: &Path) -> io::Result<PathBuf> {
+pub fn within(folder: &Path, name: &Path) -> io::Result<PathBuf> {
     let outside = || {
         let problem = "it leads out of its folder";
         io::Error::new(ErrorKind::PermissionDenied, problem)
@@ -69,7 +68,7 @@ pub(crate) fn within(folder: &Path, name: &Path) -> io::Result<PathBuf> {
 }
 
 /// Makes a new file in place of one of this name. A link is replaced, and what it leads to stays.
-pub(crate) fn replace(path: &Path) -> io::Result<File> {
+pub fn replace(path: &Path) -> io::Result<File> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() || found.is_file() => fs::remove_file(path)?,
         Ok(found) => refuse_irregular(&found)?,
@@ -80,7 +79,7 @@ pub(crate) fn replace(path: &Path) -> io::Result<File> {
 }
 
 /// Opens a regular file to write on it as `options` say, where no link has its name.
-pub(crate) fn reopen(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+pub fn reopen(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
     match fs::symlink_metadata(path) {
         Ok(found) => refuse_irregular(&found)?,
         Err(error) if error.kind() == ErrorKind::NotFound => {}

@@ -1,6 +1,6 @@
 //! Files that appear only when they are complete.
 
-use super::file_error::{FileError, WriteError};
+use crate::file_error::{FileError, WriteError};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -15,14 +15,13 @@ const PREFIX: &str = ".";
 const SUFFIX: &str = ".part";
 
 /// Whether a file is what [`write_atomically`] leaves when the process is killed.
-#[cfg(feature = "run")]
-pub(crate) fn is_unfinished(name: &std::ffi::OsStr) -> bool {
+pub fn is_unfinished(name: &std::ffi::OsStr) -> bool {
     let name = name.to_string_lossy();
     name.starts_with(PREFIX) && name.ends_with(SUFFIX)
 }
 
 /// Creates the missing parent folders of `path` and returns the folder; refuses a path of something else than a file.
-pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, FileError> {
+pub fn prepare_folder(path: &Path) -> Result<PathBuf, FileError> {
     if path.file_name().is_none() {
         let path = path.to_owned();
         return Err(WriteError::NoFileName { path }.into());
@@ -56,7 +55,7 @@ pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, FileError> {
 /// use std::io::Write;
 /// # let folder = tempfile::tempdir()?;
 /// # let path = folder.path().join("runs/note.txt");
-/// isosheet_io::write_atomically(&path, |w| writeln!(w, "done"))?;
+/// isosheet_files::write_atomically(&path, |w| writeln!(w, "done"))?;
 /// assert_eq!(std::fs::read_to_string(&path)?, "done\n");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

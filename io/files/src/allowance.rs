@@ -1,6 +1,6 @@
 //! What a file may cost: memory and steps in proportion to its length.
 
-use super::DataError;
+use crate::DataError;
 
 /// Every file may cost so much, bytes: less than a program that shows an empty window takes.
 const LEAST: usize = 64 << 20;
@@ -11,20 +11,20 @@ const TIMES: usize = 100;
 
 /// The bytes or steps that what is made of a file may still take.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Allowance {
+pub struct Allowance {
     all: usize,
     left: usize,
 }
 
 impl Allowance {
     /// What a file of so many bytes may cost.
-    pub(crate) fn of(length: usize) -> Self {
+    pub fn of(length: usize) -> Self {
         let all = LEAST.saturating_add(length.saturating_mul(TIMES));
         Self { all, left: all }
     }
 
     /// Half of it: what is read is copied once.
-    pub(crate) fn half(self) -> Self {
+    pub fn half(self) -> Self {
         Self {
             all: self.all / 2,
             left: self.left / 2,
@@ -32,12 +32,12 @@ impl Allowance {
     }
 
     /// All of it, bytes.
-    pub(crate) fn all(self) -> usize {
+    pub fn all(self) -> usize {
         self.all
     }
 
     /// What is left of it, bytes.
-    pub(crate) fn left(self) -> usize {
+    pub fn left(self) -> usize {
         self.left
     }
 
@@ -45,7 +45,7 @@ impl Allowance {
     ///
     /// # Errors
     /// [`DataError`] where less is left, which names what it was for.
-    pub(crate) fn spend(&mut self, cost: usize, what: &str) -> Result<(), DataError> {
+    pub fn spend(&mut self, cost: usize, what: &str) -> Result<(), DataError> {
         match self.left.checked_sub(cost) {
             Some(left) => {
                 self.left = left;

@@ -1,6 +1,6 @@
 //! Files that cannot be read or written.
 
-use super::DataError;
+use crate::DataError;
 use isosheet_mesh::Advice;
 use std::fmt::Display;
 use std::io;
@@ -114,7 +114,7 @@ pub enum FileError {
 
 impl FileError {
     /// What the system says of a file or a folder that is to be read.
-    pub(crate) fn unreadable(path: &Path, source: io::Error) -> Self {
+    pub fn unreadable(path: &Path, source: io::Error) -> Self {
         Self::Read(ReadError {
             path: path.to_owned(),
             message: format!("cannot read {}: {source}", path.display()),
@@ -124,13 +124,13 @@ impl FileError {
     }
 
     /// What the system says of a file that is being written.
-    pub(crate) fn unwritable(path: &Path, source: io::Error) -> Self {
+    pub fn unwritable(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         Self::Write(WriteError::Write { path, source })
     }
 
     /// What is wrong with the content of a file, and what to do.
-    pub(crate) fn content(path: &Path, problem: impl Display, remedy: &'static str) -> Self {
+    pub fn content(path: &Path, problem: impl Display, remedy: &'static str) -> Self {
         Self::Read(ReadError {
             path: path.to_owned(),
             message: format!("{}: {problem}", path.display()),
@@ -140,8 +140,7 @@ impl FileError {
     }
 
     /// Whether what is to be read is not there.
-    #[cfg(feature = "run")]
-    pub(crate) fn is_missing(&self) -> bool {
+    pub fn is_missing(&self) -> bool {
         let Self::Read(error) = self else {
             return false;
         };

@@ -1,8 +1,7 @@
 //! JSON files such as a run's summary.
 
-use crate::format::atomic::write_atomically;
-use crate::format::finite::check_finite;
-use crate::format::{DataError, FileError, input};
+use crate::check_finite;
+use crate::{DataError, FileError, input, write_atomically};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io::Write;

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 /// What becomes of the entities that a file defines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Entities {
+pub enum Entities {
     /// Their text stands where they are named.
     Expanded,
     /// The file is refused.
@@ -18,17 +18,28 @@ pub(crate) enum Entities {
 
 /// Why a file is not read as XML.
 #[derive(Debug, Error)]
-pub(crate) enum XmlError {
+#[non_exhaustive]
+pub enum XmlError {
+    /// The parser refuses it.
     #[error("the file is not valid XML: {0}")]
     Invalid(#[from] roxmltree::Error),
+    /// Its entities would become too long a text.
     #[error(
         "its entities would become a text of {expanded} bytes, more than the {most} for a file of this length"
     )]
-    Entities { expanded: u64, most: u64 },
+    Entities {
+        /// The length of the text, bytes.
+        expanded: u64,
+        /// How long it may be, bytes.
+        most: u64,
+    },
+    /// Its entities are too many.
     #[error("it defines more than {MOST_ENTITIES} entities")]
     ManyEntities,
+    /// The attributes of an element are too many.
     #[error("an element has more than {MOST_ATTRIBUTES} attributes")]
     Attributes,
+    /// Its prefixes are too many.
     #[error("it has more than {MOST_PREFIXES} prefixes of namespaces")]
     Prefixes,
 }
@@ -57,7 +68,7 @@ const TIMES: u64 = 4;
 ///
 /// # Errors
 /// [`XmlError`]
-pub(crate) fn parse(text: &str, entities: Entities) -> Result<Document<'_>, XmlError> {
+pub fn parse(text: &str, entities: Entities) -> Result<Document<'_>, XmlError> {
     let options = ParsingOptions {
         allow_dtd: entities == Entities::Expanded,
         // (Each has four bytes or more: `<a/>`.)

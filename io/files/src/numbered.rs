@@ -1,6 +1,6 @@
 //! Numbered files of an export, one for each frame.
 
-use super::{FileError, WriteError};
+use crate::{FileError, WriteError};
 use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// The files `NAME_00000.EXTENSION` and so on of a folder: their names sort as their numbers do.
 #[derive(Clone, Debug)]
-pub(crate) struct NumberedFiles {
+pub struct NumberedFiles {
     folder: PathBuf,
     name: &'static str,
     extension: String,
@@ -16,7 +16,7 @@ pub(crate) struct NumberedFiles {
 
 impl NumberedFiles {
     /// Those of a name and an extension in a folder, which need not exist.
-    pub(crate) fn new(folder: &Path, name: &'static str, extension: &str) -> Self {
+    pub fn new(folder: &Path, name: &'static str, extension: &str) -> Self {
         Self {
             folder: folder.to_owned(),
             name,
@@ -25,17 +25,17 @@ impl NumberedFiles {
     }
 
     /// The name of the file of a number.
-    pub(crate) fn name(&self, number: usize) -> String {
+    pub fn name(&self, number: usize) -> String {
         format!("{}_{number:05}.{}", self.name, self.extension)
     }
 
     /// The file of a number.
-    pub(crate) fn path(&self, number: usize) -> PathBuf {
+    pub fn path(&self, number: usize) -> PathBuf {
         self.folder.join(self.name(number))
     }
 
     /// The number of the file that has a name, if it is one that [`name`](Self::name) gives.
-    pub(crate) fn number(&self, name: &OsStr) -> Option<usize> {
+    pub fn number(&self, name: &OsStr) -> Option<usize> {
         let stem = name.to_str()?.strip_suffix(&self.extension)?;
         let digits = stem.strip_suffix('.')?.strip_prefix(self.name)?;
         let number = digits.strip_prefix('_')?.parse().ok()?;
@@ -47,7 +47,7 @@ impl NumberedFiles {
     ///
     /// # Errors
     /// [`FileError`] if the folder cannot be listed or a file cannot be removed.
-    pub(crate) fn keep_only(&self, numbers: &[usize]) -> Result<usize, FileError> {
+    pub fn keep_only(&self, numbers: &[usize]) -> Result<usize, FileError> {
         let unreadable = |source| FileError::unreadable(&self.folder, source);
         let entries = match fs::read_dir(&self.folder) {
             Ok(entries) => entries,

@@ -20,7 +20,7 @@ pub struct DataError {
 
 impl DataError {
     /// What is wrong, and what to do.
-    pub(crate) fn new(message: impl Into<String>, remedy: &'static str) -> Self {
+    pub fn new(message: impl Into<String>, remedy: &'static str) -> Self {
         Self {
             remedy: Some(remedy),
             ..Self::plain(message)
@@ -28,7 +28,7 @@ impl DataError {
     }
 
     /// What is wrong, where that says all that is known.
-    pub(crate) fn plain(message: impl Into<String>) -> Self {
+    pub fn plain(message: impl Into<String>) -> Self {
         Self {
             message: message.into(),
             index: None,
@@ -37,8 +37,13 @@ impl DataError {
         }
     }
 
+    /// The same with what to do, if anything.
+    pub fn remedy(self, remedy: Option<&'static str>) -> Self {
+        Self { remedy, ..self }
+    }
+
     /// The same with the number of the part to blame.
-    pub(crate) fn at(self, index: usize) -> Self {
+    pub fn at(self, index: usize) -> Self {
         Self {
             index: Some(index),
             ..self
@@ -46,7 +51,7 @@ impl DataError {
     }
 
     /// The same with the number that cannot be used.
-    pub(crate) fn value(self, value: f64) -> Self {
+    pub fn value(self, value: f64) -> Self {
         Self {
             value: Some(value),
             ..self

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 /// A cell that no spreadsheet takes for a formula: a text that begins like one gets an apostrophe before it, which
 /// spreadsheets do not show. Numbers stay as they are.
-pub(crate) fn cell(text: &str) -> Cow<'_, str> {
+pub fn cell(text: &str) -> Cow<'_, str> {
     let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']);
     match is_formula && text.parse::<f64>().is_err() {
         true => Cow::Owned(format!("'{text}")),

@@ -5,7 +5,7 @@ const UNKNOWN: u64 = 8 << 30;
 
 /// The memory that this process may still get, bytes: what the system says is free, within the limits of the
 /// process and of its control group.
-pub(crate) fn free() -> u64 {
+pub fn free() -> u64 {
     let limits = [free_of_machine(), limit_of_group(), limit_of_process()];
     limits.into_iter().flatten().min().unwrap_or(UNKNOWN)
 }
