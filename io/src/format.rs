@@ -10,8 +10,8 @@ mod mesh_file;
 #[cfg(feature = "scene")]
 mod motion_file;
 mod trajectory;
-mod vector;
 
+pub use isosheet_drawings::DrawnLines;
 pub use isosheet_files::{
     DataError, FileError, FileWriter, ReadError, WriteError, read_json, write_atomically,
     write_json,
@@ -27,9 +27,9 @@ pub use history::{HistoryRow, HistoryWriter, Row, RowWriter, Written, read_histo
 pub use loads::{LoadKind, LoadRow, LoadWriter, read_loads};
 pub use measures::{MeasureRow, MeasureWriter, read_measures};
 pub use mesh_file::{
-    DrawnLines, EdgeAssignment, FaceGroups, FileCrease, FoldFrame, Location, MeshFile,
-    MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, Polygons, ReadingChanges, Repair,
-    SeparateBuffers, parse_mesh, read_mesh, read_mesh_with, read_sheet,
+    EdgeAssignment, FaceGroups, FileCrease, FoldFrame, Location, MeshFile, MeshFileError,
+    MeshFileProblem, MeshFormat, MeshOptions, Polygons, ReadingChanges, Repair, SeparateBuffers,
+    parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
 #[cfg(feature = "run")]
 pub(crate) use motion_file::sources;

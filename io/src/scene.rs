@@ -57,6 +57,7 @@ mod fold_scene;
 mod folding;
 mod follower_loads;
 mod forces;
+mod foreign;
 mod form;
 #[cfg(test)]
 mod found_tests;

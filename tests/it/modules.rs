@@ -43,13 +43,14 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 8] = [
+const LIBRARIES: [&str; 9] = [
     "mesh",
     "coords/linalg",
     "coords",
     "dynamics",
     "collide",
     "io/files",
+    "io/drawings",
     "io",
     "io/python",
 ];

@@ -7,7 +7,6 @@ use super::message::counted;
 use super::one_frame::OneFrame;
 use super::pictures::{self, FrameChoice, PictureFormat, input, wrong};
 use super::write::{is_same_file, refuse_file_of_run, to_stdout};
-use crate::format::drawing::Length;
 use crate::mesh::wording::given;
 use crate::run::{FilmOptions, Marks, Recording};
 use crate::scene::Folding;
@@ -17,6 +16,7 @@ use crate::{
     write_frame, write_mesh, write_series,
 };
 use clap::Args;
+use isosheet_drawings::Length;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 

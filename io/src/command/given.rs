@@ -4,7 +4,7 @@ use super::composing::Composing;
 use super::failure::{Code, Failure};
 use super::info::refuse_folder;
 use super::message::print_progress;
-use crate::format::drawing::{DrawingFormat, DrawingOptions, DrawnSheet};
+use crate::format::drawing::DrawnSheet;
 use crate::format::read_mesh_with;
 use crate::mesh::Topology;
 use crate::mesh::wording::{brief, counted};
@@ -12,6 +12,7 @@ use crate::scene::{
     DrawingFile, FaceMoments, MeshFile, PolygonFaces, SheetSource, UpAxis, size as extent,
 };
 use crate::{MeshFormat, MeshOptions, Polygons};
+use isosheet_drawings::{DrawingFormat, DrawingOptions};
 use std::path::Path;
 
 /// Edges of the mesh of a drawing are about this part of its longest side.

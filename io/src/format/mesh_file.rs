@@ -2,7 +2,6 @@
 
 mod assignment;
 mod drawing;
-mod drawn;
 mod error;
 mod face_groups;
 mod faces;
@@ -26,7 +25,6 @@ mod vtk;
 mod weld;
 
 pub use assignment::EdgeAssignment;
-pub use drawn::DrawnLines;
 pub use error::{Location, MeshFileError, MeshFileProblem};
 pub use face_groups::FaceGroups;
 pub use fold_frame::FoldFrame;

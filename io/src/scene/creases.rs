@@ -10,7 +10,7 @@ use super::selection::{ON_LINE, beside_line, size};
 use super::unit::Unit;
 use super::warning::Warning;
 use super::yields::CreaseYield;
-use crate::format::drawing::Selector;
+use isosheet_drawings::Selector;
 use isosheet_dynamics::CreaseSpring;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::wording::{brief, place};

@@ -1,12 +1,13 @@
 //! Drawings as meshes of a scene.
 
+use super::foreign;
 use super::key::Key;
 use super::mesh_file::Files;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use crate::format::drawing::{
-    DrawingError, DrawingOptions, DrawingUnit, DrawnSheet, LineClass, LineRules, Selector,
-    mesh_drawing, parse_drawing,
+use crate::format::drawing::{DrawingError, DrawnSheet, mesh_drawing};
+use isosheet_drawings::{
+    DrawingOptions, DrawingUnit, LineClass, LineRules, Selector, parse_drawing,
 };
 use isosheet_files::FileError;
 use isosheet_mesh::plane::PlaneError;
@@ -35,6 +36,7 @@ pub struct DrawingFile {
     pub snap: Option<f64>,
     /// What a unit of the drawing means. If left out, what the file says.
     #[serde(default)]
+    #[schemars(with = "Option<foreign::DrawingUnit>")]
     pub unit: Option<DrawingUnit>,
     /// The drawing is made larger by this factor.
     #[serde(default = "one")]

@@ -3,8 +3,7 @@
 use super::drawing::check_lines;
 use super::key::Key;
 use super::problem::{Checks, Problem};
-use crate::format::DrawnLines;
-use crate::format::drawing::{Selector, refuse_idle};
+use isosheet_drawings::{DrawnLines, Selector, refuse_idle};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;

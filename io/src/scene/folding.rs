@@ -2,6 +2,7 @@
 
 use super::Mesh;
 use super::fold_group::{FoldGroup, PatternCrease};
+use super::foreign;
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
 use super::problem::{Checks, Problem};
@@ -9,7 +10,8 @@ use super::profile::{Change, Course, Profile};
 use super::refined::Refined;
 use super::sheet::{Isometry, Sheet as SheetOfScene};
 use super::unit::Unit;
-use crate::format::{DrawnLines, EdgeAssignment, FoldFrame};
+use crate::format::{EdgeAssignment, FoldFrame};
+use isosheet_drawings::DrawnLines;
 use isosheet_dynamics::{CreaseSpring, FLAT, RestAngle};
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, angle_near, fold_angle};
 use schemars::JsonSchema;
@@ -67,6 +69,7 @@ pub struct Folding {
     /// that is the mesh of the sheet. If its vertices are not in a plane, the creases are driven to the
     /// angles that they have there, and otherwise to its `edges_foldAngle`.
     #[serde(default)]
+    #[schemars(with = "Option<foreign::FoldFrame>")]
     pub frame: Option<FoldFrame>,
     /// Groups of creases that fold one after the other, each in an equal part of `time`. Creases of no group fold with
     /// the last one. If left out, all fold at the same time.

@@ -1,5 +1,6 @@
 //! The mesh files of a scene.
 
+use super::foreign;
 use super::key::Key;
 use super::problem::{Checks, Problem};
 use super::sequence::Sequence;
@@ -44,6 +45,7 @@ pub struct MeshFile {
     /// the first one with vertices. Frame 0 is the key frame of the file. One file can give the flat crease
     /// pattern to `sheet.mesh` and a folded form of it to `sheet.start.file`.
     #[serde(default)]
+    #[schemars(with = "Option<foreign::FoldFrame>")]
     pub frame: Option<FoldFrame>,
     /// Of a glTF file: the name of the mesh that is taken; if left out, all meshes that its scene shows, each
     /// where its nodes place it.

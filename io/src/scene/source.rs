@@ -11,7 +11,7 @@ use super::switches::Switches;
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
 use crate::format::MeshFormat;
-use crate::format::drawing::DrawingFormat;
+use isosheet_drawings::DrawingFormat;
 use isosheet_dynamics::Checkpoint;
 use isosheet_files::{FileError, input};
 use isosheet_mesh::Advice;

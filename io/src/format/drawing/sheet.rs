@@ -1,12 +1,10 @@
 //! The mesh of a drawing.
 
-use super::class::LineClass;
-use super::edges::{listed, refuse_idle};
-use super::file::read_drawing;
-use super::options::DrawingOptions;
-use super::report::{ClassCount, DrawingReport, Places};
-use crate::format::vector::{Drawing, DrawnLine};
-use crate::format::{DrawnLines, EdgeAssignment, FileCrease, MeshFile};
+use crate::format::{EdgeAssignment, FileCrease, MeshFile};
+use isosheet_drawings::{
+    ClassCount, Drawing, DrawingOptions, DrawingReport, DrawnLine, DrawnLines, LineClass, Places,
+    listed, read_drawing, refuse_idle,
+};
 use isosheet_files::{DataError, FileError};
 use isosheet_mesh::plane::{
     Piece, PlaneCurve, PlaneError, PlaneGraph, PlaneMesh, PlaneOptions, Role,
@@ -129,7 +127,7 @@ pub fn mesh_drawing(
         .iter()
         .map(|(ends, piece)| FileCrease {
             ends: *ends,
-            assignment: classes[*piece].assignment(),
+            assignment: assignment(classes[*piece]),
             angle: angle(*piece),
             drawn: Some(of_piece[*piece]),
         })
@@ -219,6 +217,17 @@ impl DrawnSheet {
     pub fn read(path: &Path, options: &DrawingOptions) -> Result<Self, DrawingError> {
         options.validate()?;
         mesh_drawing(&read_drawing(path, options)?, options)
+    }
+}
+
+/// The assignment of edges along a line of a class.
+fn assignment(class: LineClass) -> EdgeAssignment {
+    match class {
+        LineClass::Cut => EdgeAssignment::Cut,
+        LineClass::Mountain => EdgeAssignment::Mountain,
+        LineClass::Valley => EdgeAssignment::Valley,
+        LineClass::Crease => EdgeAssignment::Unassigned,
+        LineClass::Flat | LineClass::Ignored => EdgeAssignment::Flat,
     }
 }
 

@@ -1,7 +1,8 @@
 //! Polygons of a file, and what becomes of them.
 
 use super::error::{COPY, Located, Location, MeshFileProblem, no_such_vertex};
-use super::{DrawnLines, FaceGroups, MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
+use super::{FaceGroups, MeshFile, MeshOptions, Polygons, ReadingChanges, polygon};
+use isosheet_drawings::DrawnLines;
 use isosheet_files::DataError;
 use isosheet_mesh::wording::{counted, given};
 use std::collections::BTreeMap;

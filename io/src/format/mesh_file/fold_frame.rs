@@ -12,7 +12,6 @@ use std::fmt;
 /// file = { path = "crane.fold", frame = "flat pattern" }
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "scene", derive(schemars::JsonSchema))]
 #[serde(
     untagged,
     expecting = "expected the number of a frame of a FOLD file, from 0, or its title in quotes"

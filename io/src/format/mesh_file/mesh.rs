@@ -1,9 +1,9 @@
 //! The mesh that a file has.
 
 use super::assignment::EdgeAssignment;
-use super::drawn::DrawnLines;
 use super::error::MeshFileError;
 use super::face_groups::FaceGroups;
+use isosheet_drawings::DrawnLines;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Sheet, Topology, VertexId};

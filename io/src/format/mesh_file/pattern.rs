@@ -13,8 +13,9 @@ pub(super) mod svg;
 mod tests;
 
 use super::plane::{NEAR, Point};
-use super::{DrawnLines, EdgeAssignment, FileCrease, polygon};
+use super::{EdgeAssignment, FileCrease, polygon};
 pub(super) use faces::faces;
+use isosheet_drawings::DrawnLines;
 use isosheet_files::DataError;
 pub(super) use planar::{FileUnit, Planar, planar};
 use std::collections::BTreeMap;

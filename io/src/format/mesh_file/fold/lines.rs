@@ -2,8 +2,8 @@
 //! colours (`"#rrggbb"`), dashes and layers, and `edges_isosheet:lines`, of each edge the numbers of its
 //! lines in that list.
 
-use crate::format::mesh_file::{DrawnLines, FileCrease};
-use crate::format::vector::{Colour, Pen};
+use crate::format::mesh_file::FileCrease;
+use isosheet_drawings::{Colour, DrawnLines, Pen};
 use isosheet_files::DataError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -31,13 +31,12 @@ impl From<&Pen> for LineRecord {
 
 impl LineRecord {
     fn pen(&self, line: usize) -> Result<Pen, DataError> {
-        let colour: Result<svgtypes::Color, _> = self.colour.parse();
-        let colour = colour.map_err(|_| {
+        let colour = Colour::parse(&self.colour).ok_or_else(|| {
             let message = format!("line {line} of `isosheet:lines` has no colour that is known");
             DataError::new(message, "write it as \"#rrggbb\"").at(line)
         })?;
         Ok(Pen {
-            colour: Colour([colour.red, colour.green, colour.blue]),
+            colour,
             dashed: self.dashed,
             opacity: 1.0,
             layers: self.layers.clone(),

@@ -1,8 +1,8 @@
 //! Crease patterns as SVG drawings by the colours of Origami Simulator.
 
 use super::{PatternLines, Segment};
-use crate::format::mesh_file::{DrawnLines, EdgeAssignment};
-use crate::format::vector::{Pen, svg};
+use crate::format::mesh_file::EdgeAssignment;
+use isosheet_drawings::{DrawnLines, Pen, svg};
 use isosheet_files::DataError;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;

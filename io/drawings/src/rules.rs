@@ -2,7 +2,7 @@
 
 use super::class::LineClass;
 use super::selector::Selector;
-use crate::format::vector::Pen;
+use crate::Pen;
 use isosheet_mesh::wording::quoted;
 
 /// What lines are taken for. A selector by layer counts before one by colour, and that before one by dash;
@@ -144,7 +144,7 @@ fn spaced(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::vector::Colour;
+    use crate::Colour;
 
     fn pen(colour: [u8; 3], dashed: bool, layers: &[&str]) -> Pen {
         Pen {

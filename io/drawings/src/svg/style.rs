@@ -1,7 +1,7 @@
 //! Styles of elements: attributes, style sheets and inheritance.
 
-use super::super::colour::Colour;
 use super::style_sheet::Rules;
+use crate::colour::Colour;
 use isosheet_files::DataError;
 use roxmltree::Node;
 use simplecss::DeclarationTokenizer;

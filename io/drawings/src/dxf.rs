@@ -18,7 +18,7 @@ use isosheet_files::{Allowance, DataError};
 use layers::Layers;
 
 /// Reads the entities of a drawing.
-pub(in crate::format) fn parse(
+pub(crate) fn parse(
     bytes: &[u8],
     unit: Option<DrawingUnit>,
     scale: f64,

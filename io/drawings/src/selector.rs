@@ -1,6 +1,9 @@
 //! Lines that are meant, by layer, colour or dash.
 
-use crate::format::vector::{Colour, Pen};
+use crate::{Colour, DrawnLines, Pen};
+use isosheet_files::DataError;
+use isosheet_mesh::wording::quoted;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::str::FromStr;
 
@@ -34,6 +37,12 @@ impl Selector {
         }
     }
 
+    /// Whether one of the lines is meant that an edge follows, by its
+    /// number in [`DrawnLines`].
+    pub fn selects_any(&self, lines: &DrawnLines, drawn: Option<u32>) -> bool {
+        lines.pens_of(drawn).any(|pen| self.selects(pen))
+    }
+
     /// Which of several selectors counts: the lowest.
     pub(super) fn rank(&self) -> usize {
         match self {
@@ -61,9 +70,9 @@ impl FromStr for Selector {
             "gray" => return Ok(Self::Named("grey")),
             _ => {}
         }
-        match text.parse::<svgtypes::Color>() {
-            Ok(c) => Ok(Self::Exact(Colour([c.red, c.green, c.blue]))),
-            Err(_) => Err(format!(
+        match Colour::parse(text) {
+            Some(colour) => Ok(Self::Exact(colour)),
+            None => Err(format!(
                 "{text:?} selects no lines: write layer:NAME, a colour such as red or #ff8000, dashed or solid"
             )),
         }
@@ -79,5 +88,46 @@ impl fmt::Display for Selector {
             Self::Dashed => f.write_str("dashed"),
             Self::Solid => f.write_str("solid"),
         }
+    }
+}
+
+/// Refuses a selector that selects nothing: what it was meant for would be taken for something else.
+///
+/// # Errors
+/// [`DataError`] with the colours and layers that there are.
+pub fn refuse_idle(selector: &Selector, pens: &[Pen]) -> Result<(), DataError> {
+    if pens.iter().any(|pen| selector.selects(pen)) {
+        return Ok(());
+    }
+    let colours: BTreeSet<String> = pens.iter().map(|p| p.colour.to_string()).collect();
+    let layers: BTreeSet<&str> = pens
+        .iter()
+        .flat_map(|p| &p.layers)
+        .map(String::as_str)
+        .collect();
+    let message = format!(
+        "{selector} selects no line: the colours are {}, and the layers and names {}",
+        listed(colours.into_iter().collect()),
+        listed(layers.iter().map(|name| quoted(name)).collect())
+    );
+    Err(DataError::new(
+        message,
+        "name lines that the drawing has, or leave it out",
+    ))
+}
+
+/// Most names that an error lists.
+const MOST_LISTED: usize = 12;
+
+/// The first of some names, and the number of the others.
+pub fn listed(names: Vec<String>) -> String {
+    match names.len() {
+        0 => "none".to_owned(),
+        n if n > MOST_LISTED => format!(
+            "{} and {} more",
+            names[..MOST_LISTED].join(", "),
+            n - MOST_LISTED
+        ),
+        _ => names.join(", "),
     }
 }

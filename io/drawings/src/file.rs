@@ -1,7 +1,7 @@
 //! Files of drawings.
 
 use super::options::DrawingOptions;
-use crate::format::vector::{Drawing, dxf, svg};
+use crate::{Drawing, dxf, svg};
 use isosheet_files::{DataError, FileError, input};
 use std::path::Path;
 

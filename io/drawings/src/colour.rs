@@ -28,6 +28,12 @@ impl Colour {
         "black", "white", "grey", "red", "yellow", "green", "cyan", "blue", "magenta",
     ];
 
+    /// The colour that a text says as style sheets do, such as `#ff8000`, whatever its opacity.
+    pub fn parse(text: &str) -> Option<Self> {
+        let colour: svgtypes::Color = text.parse().ok()?;
+        Some(Self([colour.red, colour.green, colour.blue]))
+    }
+
     /// The name of the colour that it looks like; none between two hues.
     pub fn name(self) -> Option<&'static str> {
         let [r, g, b] = self.0.map(f64::from);

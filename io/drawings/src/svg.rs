@@ -30,7 +30,7 @@ const EXPORT: &str = "export it again as plain SVG";
 
 /// What becomes of shapes that have no stroke, whether they are filled or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::format) enum Areas {
+pub enum Areas {
     /// What bounds a filled area is a line of its colour.
     Outlined,
     /// They are left out.
@@ -39,7 +39,10 @@ pub(in crate::format) enum Areas {
 
 /// Reads the shapes of a drawing, `scale` times as large, by the unit of the file unless another is given. Its y axis
 /// points upwards, from the lower edge of the page.
-pub(in crate::format) fn parse(
+///
+/// # Errors
+/// [`DataError`] for a text that is no SVG, or asks for more than a file of its length may.
+pub fn parse(
     bytes: &[u8],
     areas: Areas,
     unit: Option<DrawingUnit>,

@@ -1,7 +1,7 @@
 //! Sizes of pages and of lengths on them.
 
-use super::super::unit::DrawingUnit;
 use super::matrix::{Matrix, compose, scaling, translation};
+use crate::unit::DrawingUnit;
 use roxmltree::Node;
 use svgtypes::{Align, AspectRatio, Length, LengthUnit, ViewBox};
 

@@ -1,7 +1,7 @@
 //! What was taken for what in a drawing, and what was changed.
 
 use super::class::LineClass;
-use crate::format::vector::Length;
+use crate::Length;
 use isosheet_mesh::wording::counted;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -72,7 +72,7 @@ const SAME_UNIT: f64 = 0.01;
 
 impl Places {
     /// Those of a list of places.
-    pub(super) fn of(places: impl IntoIterator<Item = (f64, [f64; 2])>) -> Option<Self> {
+    pub fn of(places: impl IntoIterator<Item = (f64, [f64; 2])>) -> Option<Self> {
         let mut found: Option<Self> = None;
         for (extent, at) in places {
             let count = found.map_or(1, |f| f.count + 1);

@@ -1,7 +1,7 @@
 //! How drawings become sheets.
 
 use super::rules::LineRules;
-use crate::format::vector::DrawingUnit;
+use crate::DrawingUnit;
 use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 

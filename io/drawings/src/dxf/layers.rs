@@ -1,8 +1,8 @@
 //! Layers with their colours and line types.
 
-use super::super::colour::Colour;
-use super::super::lines::Pen;
 use super::groups::{Record, section};
+use crate::colour::Colour;
+use crate::lines::Pen;
 use isosheet_files::DataError;
 use std::collections::HashMap;
 

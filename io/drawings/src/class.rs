@@ -1,6 +1,5 @@
 //! What the lines of drawings are meant to do.
 
-use crate::format::EdgeAssignment;
 use std::fmt;
 
 /// What a line of a drawing is meant to do, the strongest first: where lines of several kinds lie on each
@@ -31,17 +30,6 @@ impl LineClass {
         Self::Flat,
         Self::Ignored,
     ];
-
-    /// The assignment of edges along such a line.
-    pub(super) fn assignment(self) -> EdgeAssignment {
-        match self {
-            Self::Cut => EdgeAssignment::Cut,
-            Self::Mountain => EdgeAssignment::Mountain,
-            Self::Valley => EdgeAssignment::Valley,
-            Self::Crease => EdgeAssignment::Unassigned,
-            Self::Flat | Self::Ignored => EdgeAssignment::Flat,
-        }
-    }
 }
 
 impl fmt::Display for LineClass {

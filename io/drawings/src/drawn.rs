@@ -1,6 +1,6 @@
 //! How the lines of a drawing are drawn that edges of its mesh follow.
 
-use crate::format::vector::Pen;
+use crate::Pen;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The lines of the drawing that a mesh is made of: colours, dashes and layers.
@@ -16,7 +16,7 @@ pub struct DrawnLines {
 
 impl DrawnLines {
     /// No edges yet, of a drawing with some pens; what its pen `k` is here is entry `k` of the list.
-    pub(in crate::format) fn of_pens(pens: &[Pen]) -> (Self, Vec<usize>) {
+    pub fn of_pens(pens: &[Pen]) -> (Self, Vec<usize>) {
         let mut lines = Self::default();
         let mut known = HashMap::new();
         let mut number = |pen: &'_ Pen| {
@@ -31,8 +31,8 @@ impl DrawnLines {
         (lines, numbers)
     }
 
-    /// The number of a set of pens, which is [`FileCrease::drawn`](super::FileCrease::drawn).
-    pub(in crate::format) fn set(&mut self, pens: BTreeSet<usize>) -> u32 {
+    /// The number of a set of pens, which is `FileCrease::drawn` of a mesh.
+    pub fn set(&mut self, pens: BTreeSet<usize>) -> u32 {
         *self.of_set.entry(pens).or_insert_with_key(|pens| {
             self.sets.push(pens.clone());
             self.sets.len() as u32 - 1
@@ -45,13 +45,13 @@ impl DrawnLines {
     }
 
     /// The numbers of the pens of the lines that an edge follows, by its
-    /// [`FileCrease::drawn`](super::FileCrease::drawn).
+    /// `FileCrease::drawn` of a mesh.
     pub fn numbers(&self, drawn: Option<u32>) -> impl Iterator<Item = usize> {
         let set = drawn.and_then(|set| self.sets.get(set as usize));
         set.into_iter().flatten().copied()
     }
 
-    /// The name of a line that an edge follows, by its [`FileCrease::drawn`](super::FileCrease::drawn): the
+    /// The name of a line that an edge follows, by its `FileCrease::drawn` of a mesh: the
     /// innermost of its layers and groups, or its own.
     pub fn name(&self, drawn: Option<u32>) -> Option<&str> {
         let mut pens = self.pens_of(drawn);

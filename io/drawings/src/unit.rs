@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 /// The length that a unit of a drawing means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "scene", derive(schemars::JsonSchema))]
+
 pub enum DrawingUnit {
     /// Metres.
     #[serde(rename = "m")]
