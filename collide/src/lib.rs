@@ -9,6 +9,7 @@
 //!   and friction are functions of these distances.
 //! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
 //!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
+//! * [`BodyMesh`]: a shape as triangles, for pictures and files.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!
@@ -37,6 +38,7 @@
 //! Everything is free of absolute tolerances: a sheet of a micrometre and one of a kilometre are
 //! treated alike. SI units and `f64` throughout.
 
+mod body_mesh;
 mod broad_phase;
 mod ccd;
 mod constraint;
@@ -51,6 +53,7 @@ mod surface;
 mod testing;
 mod vectors;
 
+pub use body_mesh::BodyMesh;
 pub use broad_phase::{BroadPhase, Candidates, CrossCandidates};
 pub use ccd::{CcdOptions, CcdOptionsError};
 pub use contact_mesh::{ContactMesh, ContactMeshError};

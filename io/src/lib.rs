@@ -29,9 +29,6 @@ pub use isosheet_mesh as mesh;
 pub use isosheet_mesh::Advice;
 
 #[cfg(feature = "scene")]
-mod body_mesh;
-
-#[cfg(feature = "scene")]
 mod turning_back;
 
 #[cfg(feature = "scene")]

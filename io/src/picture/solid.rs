@@ -3,8 +3,7 @@
 use super::camera::normal;
 use super::error::PictureError;
 use super::vector::{axpy, dot, sub, unit};
-use crate::body_mesh::BodyMesh;
-use isosheet_collide::{Obstacle, Shape};
+use isosheet_collide::{BodyMesh, Obstacle, Shape};
 use isosheet_mesh::{Topology, VertexId};
 use nalgebra::{Isometry3, Point3};
 use std::collections::BTreeMap;

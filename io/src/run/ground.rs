@@ -1,8 +1,7 @@
 //! The ground of pictures and pages of runs without a floor, which shows shadows alone.
 
 use super::Recording;
-use crate::body_mesh::BodyMesh;
-use isosheet_collide::{Obstacle, Shape};
+use isosheet_collide::{BodyMesh, Obstacle, Shape};
 use nalgebra::Point3;
 
 /// How far the ground is below bodies that stand on it, as part of the size of the space that the sheet

@@ -2,6 +2,7 @@
 
 use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, StoredFrames, check_whole};
+use super::series_body::series_body;
 use super::{RunError, Summary};
 use crate::format::{
     EventRow, ExportError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion, MotionFrame,
@@ -216,7 +217,7 @@ impl Recording {
             // Half as far again as the farthest point of the sheet.
             let half = 1.5 * far.fold(0.0, f64::max);
             let name = format!("obstacle_{}", self.origins.obstacle_number(k));
-            SeriesBody::of_obstacle(name, obstacle, times, half)
+            series_body(name, obstacle, times, half)
         };
         self.obstacles.iter().enumerate().map(body).collect()
     }

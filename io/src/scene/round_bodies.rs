@@ -94,7 +94,7 @@ mod tests {
     /// The moments of a polyhedron with many sides, which are integrals over its faces.
     #[test]
     fn moments_are_those_of_a_polyhedron_with_many_sides() {
-        use crate::body_mesh::BodyMesh;
+        use isosheet_collide::BodyMesh;
         use isosheet_dynamics::Solid;
         use isosheet_mesh::Sheet;
         let shapes = [

@@ -1,15 +1,15 @@
 //! Bodies as triangles.
 
-use isosheet_collide::{ObstacleError, Shape};
+use crate::obstacle::{ObstacleError, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Triangles in the frame of a body.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct BodyMesh {
+pub struct BodyMesh {
     /// Corners, metres.
-    pub(crate) points: Vec<[f64; 3]>,
+    pub points: Vec<[f64; 3]>,
     /// Faces, counter-clockwise as seen from outside.
-    pub(crate) faces: Vec<[u32; 3]>,
+    pub faces: Vec<[u32; 3]>,
 }
 
 impl BodyMesh {
@@ -17,7 +17,7 @@ impl BodyMesh {
     ///
     /// # Errors
     /// [`ObstacleError::Segments`] for fewer than four sides.
-    pub(crate) fn of(shape: &Shape, sides: usize) -> Result<Option<Self>, ObstacleError> {
+    pub fn of(shape: &Shape, sides: usize) -> Result<Option<Self>, ObstacleError> {
         if sides < 4 {
             return Err(ObstacleError::Segments(sides));
         }
@@ -38,7 +38,7 @@ impl BodyMesh {
     }
 
     /// A square about the origin in the plane z = 0, seen from above.
-    pub(crate) fn square(half: f64) -> Self {
+    pub fn square(half: f64) -> Self {
         let corner = |[x, y]: [f64; 2]| [half * x, half * y, 0.0];
         Self {
             points: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
