@@ -22,11 +22,20 @@
 //! ([`write_atomically`]). The one exception is the history, which grows by whole rows, so that what an
 //! interrupted run leaves behind can be read.
 
-mod format;
-
-pub use format::*;
+pub use isosheet_drawings::DrawnLines;
+pub use isosheet_files::{
+    DataError, FileError, FileWriter, ReadError, WriteError, read_json, write_atomically,
+    write_json,
+};
+pub use isosheet_formats::*;
 pub use isosheet_mesh as mesh;
 pub use isosheet_mesh::Advice;
+
+/// Sheets of drawings.
+pub mod drawing {
+    pub use isosheet_drawings::*;
+    pub use isosheet_formats::{DrawingError, DrawnEdges, DrawnSheet, mesh_drawing};
+}
 
 #[cfg(feature = "scene")]
 mod turning_back;

@@ -5,7 +5,7 @@
 //! the same to the bit at every run, for any number of threads and with any fonts on the system.
 //!
 //! ```
-//! use isosheet_io::mesh::generate;
+//! use isosheet_mesh::generate;
 //! use isosheet_io::picture::{Camera, Look, SheetPicture, render};
 //!
 //! let sheet = generate::isotropic_square(1, 0.2)?;

@@ -6,9 +6,9 @@
 //! |---|---|
 //! | `scene.toml` | the scene as it is run, edits included; mesh files are copied to `meshes/` |
 //! | `history.csv` | one row for each step ([`HistoryRow`]) |
-//! | `loads.csv` | the loads of each support and obstacle at each step ([`LoadRow`](crate::LoadRow)), if there are any |
-//! | `measures.csv` | what each measure of the scene shows at the start and at each step ([`MeasureRow`](crate::MeasureRow)), if there are any |
-//! | `events.csv` | what was taken up and released ([`EventRow`](crate::EventRow)), if anything can be |
+//! | `loads.csv` | the loads of each support and obstacle at each step ([`LoadRow`](isosheet_formats::LoadRow)), if there are any |
+//! | `measures.csv` | what each measure of the scene shows at the start and at each step ([`MeasureRow`](isosheet_formats::MeasureRow)), if there are any |
+//! | `events.csv` | what was taken up and released ([`EventRow`](isosheet_formats::EventRow)), if anything can be |
 //! | `trajectory.npz` | the frames ([`Trajectory`]), when the run ends, fails or is stopped |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
 //! | `index.html` | the 3D page of the run ([`view`](crate::view)), unless the scene says `page = false` |
@@ -116,6 +116,8 @@ pub use intervention::Intervention;
 pub use page::write_page;
 pub use recorder::{ExistingRun, RecordedStepError, Recorder, RecorderOptions, RecordingEnd};
 pub use recording::Recording;
+#[cfg(feature = "cli")]
+pub(crate) use row::row_of_step;
 pub use rulings::RecordedRulings;
 pub use series_body::series_body;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
@@ -128,7 +130,6 @@ pub use vibration::Vibration;
 pub use viewpoint::Viewpoint;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
-use crate::format::{HistoryRow, Motion, MotionError, Row, Trajectory, frame_path, write_obj};
 use crate::scene::{Kept, SceneFile, Setup, UnderWay};
 use crate::view::PageOptions;
 use checkpoint::{RunProgress, StepsBy};
@@ -136,8 +137,10 @@ pub(crate) use folder::Existing;
 use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use isosheet_files::{FileError, read_json, write_json};
+use isosheet_formats::{Motion, MotionError, Row, Trajectory, frame_path, write_obj};
 use page::write_page_of;
 use recording::RunFrames;
+pub(crate) use row::row_of_start;
 use rulings::RuledFrames;
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
@@ -429,7 +432,7 @@ fn complete_summary(folder: &Path, hash: SceneHash) -> Result<Summary, RunError>
 /// The simulation at the start, whose energies can be written.
 fn started(file: &SceneFile, setup: Setup) -> Result<UnderWay, RunError> {
     let started = UnderWay::begin(file.scene(), setup, Setup::start)?;
-    let start = HistoryRow::of_start(&started.simulation).check_finite();
+    let start = row_of_start(&started.simulation).check_finite();
     start.map_err(FileError::from)?;
     Ok(started)
 }

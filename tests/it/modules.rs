@@ -43,7 +43,7 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 9] = [
+const LIBRARIES: [&str; 10] = [
     "mesh",
     "coords/linalg",
     "coords",
@@ -51,6 +51,7 @@ const LIBRARIES: [&str; 9] = [
     "collide",
     "io/files",
     "io/drawings",
+    "io/formats",
     "io",
     "io/python",
 ];

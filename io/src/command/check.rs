@@ -5,14 +5,13 @@ use super::info::{describe_scene, is_scene, refuse_edits, refuse_folder};
 use super::message::{counted, print_warnings};
 use super::reading::what_reading_did;
 use super::write::{is_same_file, to_stdout};
-use crate::mesh::Sheet;
 use crate::run::Estimate;
 use crate::scene::{SceneFile, Warning};
-use crate::{
-    Advice, MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
-    write_mesh,
-};
 use clap::Args;
+use isosheet_formats::{
+    MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_mesh,
+};
+use isosheet_mesh::{Advice, Sheet};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\

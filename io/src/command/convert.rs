@@ -7,16 +7,17 @@ use super::message::counted;
 use super::one_frame::OneFrame;
 use super::pictures::{self, FrameChoice, PictureFormat, input, wrong};
 use super::write::{is_same_file, refuse_file_of_run, to_stdout};
-use crate::mesh::wording::given;
 use crate::run::{FilmOptions, Marks, Recording};
 use crate::scene::Folding;
-use crate::{
-    Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem,
-    MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, read_mesh_with, thickened,
-    write_frame, write_mesh, write_series,
-};
 use clap::Args;
 use isosheet_drawings::Length;
+use isosheet_formats::{
+    ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem, MeshFormat,
+    MeshOptions, Series, SeriesOptions, Trajectory, read_mesh_with, thickened, write_frame,
+    write_mesh, write_series,
+};
+use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 

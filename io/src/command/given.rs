@@ -4,15 +4,13 @@ use super::composing::Composing;
 use super::failure::{Code, Failure};
 use super::info::refuse_folder;
 use super::message::print_progress;
-use crate::format::drawing::DrawnSheet;
-use crate::format::read_mesh_with;
-use crate::mesh::Topology;
-use crate::mesh::wording::{brief, counted};
 use crate::scene::{
     DrawingFile, FaceMoments, MeshFile, PolygonFaces, SheetSource, UpAxis, size as extent,
 };
-use crate::{MeshFormat, MeshOptions, Polygons};
 use isosheet_drawings::{DrawingFormat, DrawingOptions};
+use isosheet_formats::{DrawnSheet, MeshFormat, MeshOptions, Polygons, read_mesh_with};
+use isosheet_mesh::Topology;
+use isosheet_mesh::wording::{brief, counted};
 use std::path::Path;
 
 /// Edges of the mesh of a drawing are about this part of its longest side.
@@ -194,7 +192,7 @@ pub(super) fn scaled(points: &[[f64; 3]], scale: f64) -> Vec<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::{MeshFile, write_mesh};
+    use isosheet_formats::{MeshFile, write_mesh};
 
     /// A glTF file has z upwards once it is read, whatever points upwards in other files.
     #[test]

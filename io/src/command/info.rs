@@ -4,12 +4,14 @@ use super::failure::{Code, Done, Failure};
 use super::message::{counted, print_warnings};
 use super::reading::what_reading_did;
 use super::write::to_stdout;
-use crate::dynamics::{SheetModel, rod_rank};
-use crate::mesh::{Dof, MassKind, Sheet, Topology, VertexId};
 use crate::run::Recording;
 use crate::scene::{CarriedBody, SceneFile, Setup, bounds};
-use crate::{FaceGroups, MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with};
 use clap::Args;
+use isosheet_dynamics::{SheetModel, rod_rank};
+use isosheet_formats::{
+    FaceGroups, MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
+};
+use isosheet_mesh::{Dof, MassKind, Sheet, Topology, VertexId};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\

@@ -4,13 +4,12 @@ use super::failure::{Code, Done, Failure};
 use super::info::refuse_folder;
 use super::message::counted;
 use super::write::{is_same_file, to_stdout};
-use crate::format::drawing::{DrawingError, DrawnSheet};
-use crate::mesh::plane::PlaneError;
-use crate::{ExportError, MeshFormat, write_mesh};
 use clap::Args;
 use isosheet_drawings::{
     DrawingOptions, DrawingUnit, Length, LineClass, LineRules, Selector, read_drawing,
 };
+use isosheet_formats::{DrawingError, DrawnSheet, ExportError, MeshFormat, write_mesh};
+use isosheet_mesh::plane::PlaneError;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

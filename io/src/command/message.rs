@@ -3,9 +3,9 @@
 use super::failure::Done;
 use super::printable::{printable, shortened};
 use super::write::to_stdout;
-use crate::Advice;
-pub(crate) use crate::mesh::wording::counted;
 use clap::Args;
+use isosheet_mesh::Advice;
+pub(crate) use isosheet_mesh::wording::counted;
 use std::fmt::Arguments;
 use std::io::Write;
 use std::sync::OnceLock;

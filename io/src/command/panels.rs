@@ -5,10 +5,9 @@ use super::failure::{Code, Failure};
 use super::interrupt;
 use super::message::print_progress;
 use super::progress::{LINES, go_on};
-use crate::MeshOptions;
-use crate::format::read_mesh_with;
 use crate::run::{FoldTrial, FoldVerdict};
 use crate::scene::{FoldResidual, FoldScene, Panels, SceneFile, Touch, size as extent};
+use isosheet_formats::{MeshOptions, read_mesh_with};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -96,7 +95,7 @@ impl Pattern<'_> {
         size: Option<f64>,
     ) -> Result<FoldScene, Failure> {
         let options = MeshOptions {
-            frame: frame.map(crate::FoldFrame::Number),
+            frame: frame.map(isosheet_formats::FoldFrame::Number),
             ..MeshOptions::default()
         };
         let mesh = read_mesh_with(self.file, &options);

@@ -1,6 +1,6 @@
 //! What reading a mesh changed, in words.
 
-use crate::MeshFile;
+use isosheet_formats::MeshFile;
 
 /// What reading a mesh changed, as a line; none if nothing.
 pub(super) fn what_reading_did(mesh: &MeshFile) -> String {

@@ -1,9 +1,9 @@
 //! The end of a run.
 
 use super::row::dissipated;
+use super::row::row_of_start;
 use super::summary::{EndReason, Ending};
 use super::writer::{RunWriter, largest_speed};
-use crate::format::HistoryRow;
 use crate::scene::{CarriedBody, Residuals, UnderWay};
 use isosheet_dynamics::StepReport;
 
@@ -31,7 +31,7 @@ impl RunWriter {
 
     /// The present state, which ends a run without a step for a reason.
     pub(super) fn ending_at_start(&self, under_way: &UnderWay, reason: EndReason) -> Ending {
-        let row = HistoryRow::of_start(&under_way.simulation);
+        let row = row_of_start(&under_way.simulation);
         let loads = under_way.facts.obstacle_loads(&under_way.simulation);
         Ending {
             reason,

@@ -1,9 +1,9 @@
 //! Why a run cannot go on.
 
 use super::extension_error::ExtensionError;
-use crate::format::ExportError;
 use crate::scene::{SceneError, SceneFileError};
 use isosheet_files::{DataError, FileError};
+use isosheet_formats::ExportError;
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
 use std::io;

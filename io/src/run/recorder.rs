@@ -6,15 +6,16 @@ use super::folder::{Existing, FolderState, RunFolder, RunInputs, SceneHash, stor
 use super::frames::FrameShape;
 use super::intervention::note;
 use super::recording::Recording;
+use super::row::row_of_start;
 use super::stepping::Plan;
 use super::steps::{ROUND_OFF, step_length};
 use super::summary::{EndReason, Ending};
 use super::writer::{Rows, RunWriter, Subject};
 use super::{RunError, finish, write_trajectory};
-use crate::format::{EventRow, FrameQuantity, HistoryRow, Row};
 use crate::scene::{FailedStep, Files, Kept, Key, LiveScene, Scene, SceneFile, UnderWay};
 use isosheet_dynamics::{StepProgress, StepReport};
 use isosheet_files::{FileError, write_atomically};
+use isosheet_formats::{EventRow, FrameQuantity, Row};
 use isosheet_mesh::Advice;
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -186,7 +187,7 @@ impl Recorder {
         let setup = begun.build()?;
         let shape = FrameShape::of(&setup);
         let under_way = live.under_way();
-        let start = HistoryRow::of_start(&under_way.simulation).check_finite();
+        let start = row_of_start(&under_way.simulation).check_finite();
         start.map_err(FileError::from)?;
         let subject = Subject {
             scene: begun.scene(),

@@ -4,15 +4,15 @@ use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, StoredFrames, check_whole};
 use super::series_body::series_body;
 use super::{RunError, Summary};
-use crate::format::{
-    EventRow, ExportError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion, MotionFrame,
-    Series, SeriesBody, SeriesOptions, Trajectory, read_events, read_history, read_loads,
-    read_measures,
-};
 use crate::scene::{FoldTargets, Gauge, Origins, SceneFile, Setup};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
 use isosheet_files::{FileError, read_json};
+use isosheet_formats::{
+    EventRow, ExportError, HistoryRow, LoadRow, MeasureRow, MeshCounts, Motion, MotionFrame,
+    Series, SeriesBody, SeriesOptions, Trajectory, read_events, read_history, read_loads,
+    read_measures,
+};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, Part, Sheet, VertexId};
 use nalgebra::{Isometry3, Vector3};

@@ -1,11 +1,11 @@
 //! What the page shows of a recorded motion.
 
 use super::frame_field::{FrameField, check_frame};
-use crate::format::{BodyPose, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory};
 use crate::scene::{Gauge, Origins};
 use crate::view::{Body, BodyShape, Replay, Scale, TimeSeries};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_files::DataError;
+use isosheet_formats::{BodyPose, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory};
 use isosheet_mesh::Sheet;
 use nalgebra::Isometry3;
 use std::ops::ControlFlow;
@@ -79,16 +79,6 @@ impl Replay {
             ControlFlow::Continue(())
         });
         done.map(|()| self)
-    }
-}
-
-impl From<Isometry3<f64>> for BodyPose {
-    fn from(pose: Isometry3<f64>) -> Self {
-        let q = pose.rotation.quaternion();
-        Self {
-            rotation: [q.i, q.j, q.k, q.w],
-            translation: pose.translation.vector.into(),
-        }
     }
 }
 

@@ -2,10 +2,10 @@
 
 use super::Recording;
 use super::frame_field::FrameField;
-use crate::format::{FrameData, FrameQuantity, Motion, MotionFrame};
 use crate::scene::Facts;
 use crate::view::{Centering, Field, Scale};
 use isosheet_dynamics::FaceCurvature;
+use isosheet_formats::{FrameData, FrameQuantity, Motion, MotionFrame};
 use isosheet_mesh::{EdgeId, Part, Sheet, Topology, VertexId};
 use std::cell::OnceCell;
 use std::ops::ControlFlow;
@@ -142,7 +142,7 @@ impl Recording {
     }
 
     /// Gives the frames of the trajectory their rulings
-    /// ([`Trajectory::rulings`](crate::Trajectory::rulings)), for files that have room for them.
+    /// ([`Trajectory::rulings`](isosheet_formats::Trajectory::rulings)), for files that have room for them.
     pub fn add_rulings(&mut self) {
         let Some(all) = self.rulings() else {
             return;

@@ -1,7 +1,7 @@
 //! Obstacles for files of other programs.
 
-use crate::format::{BodyPose, SeriesBody};
 use isosheet_collide::{BodyMesh, Obstacle};
+use isosheet_formats::{BodyPose, SeriesBody};
 
 /// Sides of the circles of round bodies: their surface is at most 0.1 % of the radius off.
 const SIDES: usize = 64;

@@ -11,15 +11,16 @@ use super::frames::{FrameFile, FrameShape};
 use super::incidence::Incidence;
 use super::last_change::last_change;
 use super::recording::Tables;
+use super::row::{row_of_start, row_of_step};
 use super::steps::step_count;
 use super::summary::{EndReason, Measured};
 use super::time_error::TimeError;
-use crate::format::{
+use crate::scene::{CarriedBody, Facts, FollowedFolds, Integrator, Scene, UnderWay};
+use isosheet_dynamics::{Checkpoint, StepReport};
+use isosheet_formats::{
     EventRow, EventWriter, FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter,
     MeasureRow, MeasureWriter,
 };
-use crate::scene::{CarriedBody, Facts, FollowedFolds, Integrator, Scene, UnderWay};
-use isosheet_dynamics::{Checkpoint, StepReport};
 use nalgebra::Vector3;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -159,7 +160,7 @@ impl RunWriter {
         self.progress.elastic = ElasticSummary::of(&under_way.simulation);
         self.observe_elastic(under_way);
         self.progress.start_energy = under_way.simulation.energy();
-        let row = HistoryRow::of_start(&under_way.simulation);
+        let row = row_of_start(&under_way.simulation);
         self.progress.energy = EnergySummary::of_start(&under_way.simulation);
         self.progress.strain = row.strain;
         self.observe_sheets(under_way);
@@ -184,7 +185,7 @@ impl RunWriter {
         self.observe_elastic(under_way);
         self.follow_folds(under_way);
         let model = under_way.simulation.model();
-        let row = HistoryRow::of_step(report, model, self.progress.start_energy);
+        let row = row_of_step(report, model, self.progress.start_energy);
         self.record_row(row)?;
         self.record_loads(under_way)?;
         self.record_measures(under_way)

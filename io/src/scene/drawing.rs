@@ -5,11 +5,11 @@ use super::key::Key;
 use super::mesh_file::Files;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use crate::format::drawing::{DrawingError, DrawnSheet, mesh_drawing};
 use isosheet_drawings::{
     DrawingOptions, DrawingUnit, LineClass, LineRules, Selector, parse_drawing,
 };
 use isosheet_files::FileError;
+use isosheet_formats::{DrawingError, DrawnSheet, mesh_drawing};
 use isosheet_mesh::plane::PlaneError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

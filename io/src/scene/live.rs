@@ -18,10 +18,10 @@ use super::{
     Body, BodyLoad, CarriedBody, FramePose, Method, Motion, Problem, Profile, Scene, SceneError,
     SceneFile, SceneFileError, Setup,
 };
-use crate::format::EventRow;
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{Checkpoint, Hand, Simulation, StepError, StepProgress, StepReport};
 use isosheet_files::DataError;
+use isosheet_formats::EventRow;
 use isosheet_mesh::{Advice, Part, Sheet, VertexId};
 use std::borrow::Cow;
 use std::ops::ControlFlow;

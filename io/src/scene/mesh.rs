@@ -11,8 +11,8 @@ use super::pattern::{
 };
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use crate::format::drawing::DrawnEdges;
-use crate::format::{self, FaceGroups, ReadingChanges};
+use isosheet_formats;
+use isosheet_formats::{DrawnEdges, FaceGroups, ReadingChanges};
 use isosheet_mesh::generate::{FoldPattern, GenerateError};
 use isosheet_mesh::{MeshError, Sheet, generate};
 use schemars::JsonSchema;
@@ -445,7 +445,7 @@ fn read_sheet(file: &MeshFile, key: &Key, files: &mut Files) -> Result<RestMesh,
 }
 
 /// The sheet of a mesh with what is said of its edges and faces.
-fn rest_mesh(mesh: &format::MeshFile) -> Result<RestMesh, MeshError> {
+fn rest_mesh(mesh: &isosheet_formats::MeshFile) -> Result<RestMesh, MeshError> {
     let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces)?;
     let assignments = mesh.fold_assignments(sheet.topology());
     Ok(RestMesh {

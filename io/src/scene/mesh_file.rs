@@ -6,11 +6,12 @@ use super::problem::{Checks, Problem};
 use super::sequence::Sequence;
 use super::unit::Unit;
 use super::up_axis::UpAxis;
-use crate::format::{
-    self, FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, MovingMesh, Polygons,
+use isosheet_files::input;
+use isosheet_formats;
+use isosheet_formats::{
+    FoldFrame, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, MovingMesh, Polygons,
     SeparateBuffers, motion_archive, parse_mesh, read_mesh_with,
 };
-use isosheet_files::input;
 use isosheet_mesh::Advice;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -101,7 +102,7 @@ impl MeshFile {
     }
 
     /// Puts a mesh as the file has it in metres and with z upwards.
-    fn place(&self, mesh: &mut format::MeshFile) {
+    fn place(&self, mesh: &mut isosheet_formats::MeshFile) {
         for p in mesh.positions.as_chunks_mut::<3>().0 {
             *p = self.up.place(p.map(|c| self.scale * c));
         }
@@ -117,7 +118,7 @@ pub(crate) struct Files {
     contents: BTreeMap<PathBuf, Arc<[u8]>>,
     /// The archives of meshes in motion.
     motions: BTreeMap<PathBuf, Arc<[u8]>>,
-    meshes: Vec<(MeshFile, Arc<format::MeshFile>)>,
+    meshes: Vec<(MeshFile, Arc<isosheet_formats::MeshFile>)>,
     sequences: Vec<(Sequence, Arc<MovingMesh>)>,
 }
 
@@ -156,7 +157,7 @@ impl Files {
         &mut self,
         file: &MeshFile,
         key: &Key,
-    ) -> Result<Arc<format::MeshFile>, Problem> {
+    ) -> Result<Arc<isosheet_formats::MeshFile>, Problem> {
         self.mesh(file).map_err(|e| {
             let name = match &e.problem {
                 MeshFileProblem::Frame(_) => "frame",
@@ -195,7 +196,10 @@ impl Files {
     }
 
     /// [`Self::read`] with the error of the reader.
-    pub(crate) fn mesh(&mut self, file: &MeshFile) -> Result<Arc<format::MeshFile>, MeshFileError> {
+    pub(crate) fn mesh(
+        &mut self,
+        file: &MeshFile,
+    ) -> Result<Arc<isosheet_formats::MeshFile>, MeshFileError> {
         if let Some((_, mesh)) = self.meshes.iter().find(|(known, _)| known == file) {
             return Ok(mesh.clone());
         }

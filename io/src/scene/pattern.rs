@@ -1,6 +1,6 @@
 //! Crease patterns by formula.
 
-use crate::format::drawing::DrawnEdges;
+use isosheet_formats::DrawnEdges;
 use isosheet_mesh::generate::{
     FoldAssignment, FoldPattern, GenerateError, degree_four, miura, miura_zigzags,
 };

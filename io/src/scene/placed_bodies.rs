@@ -13,13 +13,13 @@ use super::resolution::check_shape;
 use super::round_bodies::RoundShape;
 use super::selection::{InPlace, Selection};
 use super::start::velocities;
-use crate::format::FaceGroups;
 use isosheet_collide as collide;
 use isosheet_collide::{BodyMesh, BroadPhase, ContactMesh, RoundBody};
 use isosheet_dynamics::contact::SurfacePoints;
 use isosheet_dynamics::{
     BodyForce, BodyTorque, JointCoordinate, Profile, RigidBody, Solid, SolidError,
 };
+use isosheet_formats::FaceGroups;
 use isosheet_mesh::{MassMatrix, Part, Sheet, VertexId};
 use nalgebra::{Point3, Vector3};
 

@@ -3,7 +3,7 @@
 use super::key::Key;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
-use crate::format::FaceGroups;
+use isosheet_formats::FaceGroups;
 use isosheet_mesh::wording::{brief, place};
 use isosheet_mesh::{FaceId, Topology, VertexId};
 use schemars::JsonSchema;

@@ -4,7 +4,7 @@ use super::key::Key;
 use super::problem::{Checks, Problem};
 use super::unit::Unit;
 use super::up_axis::UpAxis;
-use crate::format::{Clock, MovingMesh};
+use isosheet_formats::{Clock, MovingMesh};
 use isosheet_mesh::wording::brief;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -5,9 +5,9 @@ use super::key::Key;
 use super::problem::Problem;
 use super::switch::{Condition, Holder, Period, When};
 use super::{Scene, SceneError};
-use crate::format::{EventChange, EventKind, EventRow};
 use isosheet_dynamics::contact::ContactError;
 use isosheet_dynamics::{SimulationError, StepError};
+use isosheet_formats::{EventChange, EventKind, EventRow};
 use isosheet_mesh::wording::brief;
 use serde::{Deserialize, Serialize};
 

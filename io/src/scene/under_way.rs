@@ -4,9 +4,9 @@ use super::build::Kept;
 use super::setup::Facts;
 use super::switches::{Reached, Switches, not_taken_up};
 use super::{Scene, SceneError, Setup, SupportForces};
-use crate::format::EventRow;
 use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{Hand, Simulation, StepError, StepProgress, StepReport};
+use isosheet_formats::EventRow;
 use std::cell::OnceCell;
 use std::ops::ControlFlow;
 

@@ -2,7 +2,7 @@
 
 use super::key::Key;
 use super::problem::Checks;
-use crate::format::says_up;
+use isosheet_formats::says_up;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use super::check;
 use super::pack::{packed_doubles, packed_triangles};
-use crate::format::BodyPose;
 use isosheet_files::DataError;
+use isosheet_formats::BodyPose;
 use isosheet_mesh::wording::{brief, given};
 use serde::Serialize;
 

@@ -10,8 +10,8 @@ use super::live::LivePage;
 use super::pack::{Packed, RowPacker, pack_doubles, pack_indices};
 use super::quantise::{FieldScale, PositionScale};
 use super::replay::{Axis, Replay};
-use crate::format::Motion;
 use isosheet_files::DataError;
+use isosheet_formats::Motion;
 
 /// A replay with every `stride`-th frame and the last one. The field names are those in the JSON text.
 #[derive(Serialize)]

@@ -1,7 +1,7 @@
 //! Which frames of a motion a page shows.
 
-use crate::format::{Motion, MotionFrame};
 use isosheet_files::DataError;
+use isosheet_formats::{Motion, MotionFrame};
 use std::ops::ControlFlow;
 
 /// Which frames of a run are kept: every `stride`-th one and the last one.

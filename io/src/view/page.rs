@@ -7,8 +7,8 @@ use super::frames::KeptFrames;
 use super::live::LivePage;
 use super::pack::pack_text;
 use super::replay::Replay;
-use crate::format::Motion;
 use isosheet_files::DataError;
+use isosheet_formats::Motion;
 
 /// The page without title, style, licences, data and program, which belong at the markers, in this order.
 const TEMPLATE: &str = include_str!("../../view/page.html");

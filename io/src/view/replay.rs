@@ -6,8 +6,8 @@ use super::body::Body;
 use super::check;
 use super::field::{Field, TimeSeries};
 use super::frames::KeptFrames;
-use crate::format::{FrameData, Motion, MotionFrame};
 use isosheet_files::DataError;
+use isosheet_formats::{FrameData, Motion, MotionFrame};
 use serde::Serialize;
 use std::ops::ControlFlow;
 

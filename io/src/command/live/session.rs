@@ -2,12 +2,12 @@
 
 use super::message::{HandFrame, LiveCommand, LiveFrame, Notice, NoticeKind};
 use super::slider::Slider;
-use crate::BodyPose;
-use crate::format::HistoryRow;
 use crate::run::HoldingBody;
+use crate::run::{row_of_start, row_of_step};
 use crate::scene::{Key, LiveScene, Profile, SceneError, SceneFile, bounds};
 use crate::view::TimeSeries;
 use isosheet_dynamics::{StepError, StepProgress};
+use isosheet_formats::{BodyPose, HistoryRow};
 use isosheet_mesh::wording::brief;
 use isosheet_mesh::{Advice, VertexId};
 use std::collections::BTreeMap;
@@ -74,7 +74,7 @@ impl Session {
         let scene = live.file().scene();
         let corners = bounds(live.positions().as_chunks::<3>().0);
         let holding = HoldingBody::all(scene, corners);
-        let row = HistoryRow::of_start(live.simulation());
+        let row = row_of_start(live.simulation());
         let mut session = Self {
             sliders: Slider::all(scene),
             holding,
@@ -194,7 +194,7 @@ impl Session {
         match self.live.step_watched(h, watch) {
             Ok(report) => {
                 let model = self.live.simulation().model();
-                self.row = HistoryRow::of_step(&report, model, self.start_energy);
+                self.row = row_of_step(&report, model, self.start_energy);
                 if report.taut.is_some() {
                     let what = "The supports ask for more than the lengths of the sheet allow.";
                     self.pause(what.into());

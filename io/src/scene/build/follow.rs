@@ -1,7 +1,6 @@
 //! Vertices that follow those of a mesh in motion.
 
 use super::builder::{Builder, at};
-use crate::format::MovingMesh;
 use crate::scene::error::SceneError;
 use crate::scene::key::Key;
 use crate::scene::problem::Problem;
@@ -9,6 +8,7 @@ use crate::scene::selection;
 use crate::scene::sequence::Sequence;
 use crate::scene::supports::Followed;
 use isosheet_dynamics::PointMotion;
+use isosheet_formats::MovingMesh;
 use isosheet_mesh::VertexId;
 use std::sync::Arc;
 
