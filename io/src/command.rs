@@ -3,6 +3,7 @@
 //! The program `isosheet` and the Python module of the same name are thin shells around [`run`].
 
 mod acting;
+mod action_scene;
 #[cfg(test)]
 mod book_tests;
 mod check;
@@ -12,6 +13,7 @@ mod convert;
 mod crumple;
 mod drape;
 mod exit;
+mod face_moments;
 mod failure;
 mod fold;
 mod fold_options;

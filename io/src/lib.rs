@@ -38,10 +38,7 @@ pub mod drawing {
 }
 
 #[cfg(feature = "scene")]
-mod turning_back;
-
-#[cfg(feature = "scene")]
-pub mod scene;
+pub use isosheet_scenes as scene;
 
 #[cfg(feature = "scene")]
 pub use {isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics};

@@ -21,7 +21,7 @@
 //! gives the same bits as a run without a stop. A folder with another scene, with other files, or in use by
 //! another process is refused; [`simulate_anew`] deletes the run of another scene. When the process is
 //! killed, at most the steps since the last checkpoint are lost
-//! ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
+//! ([`Output::checkpoint_interval`](isosheet_scenes::Output::checkpoint_interval)).
 //!
 //! A [`Recorder`] writes the same folder of a simulation whose steps a program takes.
 //!
@@ -124,13 +124,12 @@ pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
 pub use time_error::TimeError;
 #[cfg(feature = "cli")]
-pub(crate) use trial::FoldTrial;
+pub(crate) use trial::{FoldTrial, folds_to};
 pub use vibration::Vibration;
 #[cfg(feature = "picture")]
 pub use viewpoint::Viewpoint;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
-use crate::scene::{Kept, SceneFile, Setup, UnderWay};
 use crate::view::PageOptions;
 use checkpoint::{RunProgress, StepsBy};
 pub(crate) use folder::Existing;
@@ -138,6 +137,7 @@ use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use isosheet_files::{FileError, read_json, write_json};
 use isosheet_formats::{Motion, MotionError, Row, Trajectory, frame_path, write_obj};
+use isosheet_scenes::{Kept, SceneFile, Setup, UnderWay};
 use page::write_page_of;
 use recording::RunFrames;
 pub(crate) use row::row_of_start;
@@ -165,7 +165,7 @@ pub enum Outcome {
 ///
 /// ```
 /// use isosheet_io::run::{Outcome, simulate};
-/// use isosheet_io::scene::{Mesh, Scene, SceneFile, Sheet};
+/// use isosheet_scenes::{Mesh, Scene, SceneFile, Sheet};
 /// use std::ops::ControlFlow;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -43,7 +43,7 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 10] = [
+const LIBRARIES: [&str; 11] = [
     "mesh",
     "coords/linalg",
     "coords",
@@ -52,6 +52,7 @@ const LIBRARIES: [&str; 10] = [
     "io/files",
     "io/drawings",
     "io/formats",
+    "io/scenes",
     "io",
     "io/python",
 ];

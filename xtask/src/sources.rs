@@ -22,7 +22,7 @@ const SOLVER: &[&str] = &[
     "coords/linalg/src",
     "dynamics/src",
     "collide/src",
-    "io/src/scene",
+    "io/scenes/src",
     "tests/models",
 ];
 

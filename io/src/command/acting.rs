@@ -1,11 +1,12 @@
 //! What commands share in which the sheet of a file does one thing.
 
+use super::action_scene::{Action, ActionScene};
 use super::composing::Composing;
 use super::failure::{Code, Done, Failure};
 use super::given::GivenSheet;
 use crate::run::ActionVerdict;
-use crate::scene::{Action, ActionScene, UpAxis};
-use clap::Args;
+use clap::{Args, ValueEnum};
+use isosheet_scenes::UpAxis;
 use std::path::PathBuf;
 
 /// A sheet, and how it is run.
@@ -23,7 +24,17 @@ pub(super) struct Acting {
     time: Option<f64>,
     /// The axis that points upwards in the files, other than glTF files, which say it
     #[arg(long, value_name = "AXIS", value_enum, default_value_t)]
-    pub(super) up: UpAxis,
+    up: Axis,
+}
+
+/// The axis of a file that points upwards.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum Axis {
+    /// z: coordinates are used as they are.
+    #[default]
+    Z,
+    /// y: (x, y, z) becomes (x, -z, y).
+    Y,
 }
 
 /// A time in seconds.
@@ -34,6 +45,14 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 impl Acting {
+    /// The axis that points upwards in the files.
+    pub(super) fn up(&self) -> UpAxis {
+        match self.up {
+            Axis::Z => UpAxis::Z,
+            Axis::Y => UpAxis::Y,
+        }
+    }
+
     /// Lets a sheet do something: one of a material and a size (metres) where the command line has none.
     pub(super) fn run(
         &self,
@@ -53,7 +72,7 @@ impl Acting {
         action: impl FnOnce(&GivenSheet) -> Result<Action, Failure>,
         words: fn(&ActionVerdict) -> String,
     ) -> Done {
-        let sheet = GivenSheet::read(&self.mesh, &self.composing, self.up, size)?;
+        let sheet = GivenSheet::read(&self.mesh, &self.composing, self.up(), size)?;
         let action = action(&sheet)?;
         self.composing.begin(&self.mesh)?;
         let scene = ActionScene {

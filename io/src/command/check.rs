@@ -6,12 +6,12 @@ use super::message::{counted, print_warnings};
 use super::reading::what_reading_did;
 use super::write::{is_same_file, to_stdout};
 use crate::run::Estimate;
-use crate::scene::{SceneFile, Warning};
 use clap::Args;
 use isosheet_formats::{
     MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_mesh,
 };
 use isosheet_mesh::{Advice, Sheet};
+use isosheet_scenes::{SceneFile, Warning};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\

@@ -8,7 +8,6 @@ use super::one_frame::OneFrame;
 use super::pictures::{self, FrameChoice, PictureFormat, input, wrong};
 use super::write::{is_same_file, refuse_file_of_run, to_stdout};
 use crate::run::{FilmOptions, Marks, Recording};
-use crate::scene::Folding;
 use clap::Args;
 use isosheet_drawings::Length;
 use isosheet_formats::{
@@ -18,6 +17,7 @@ use isosheet_formats::{
 };
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
+use isosheet_scenes::Folding;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 

@@ -1,9 +1,9 @@
 //! `isosheet crumple`.
 
 use super::acting::Acting;
+use super::action_scene::Action;
 use super::failure::Done;
 use crate::run::ActionVerdict;
-use crate::scene::Action;
 use clap::Args;
 
 const EXAMPLES: &str = "\

@@ -1,12 +1,13 @@
 //! `isosheet drape`.
 
 use super::acting::Acting;
+use super::action_scene::{Action, Below, DrapedBody, SheetSource};
 use super::composing::length;
 use super::failure::{Done, Failure};
 use super::given::{Given, GivenSheet, moments, scaled};
 use crate::run::ActionVerdict;
-use crate::scene::{Action, Below, DrapedBody, SheetSource, bounds, size as extent};
 use clap::Args;
+use isosheet_scenes::{bounds, size as extent};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -61,7 +62,7 @@ impl Drape {
         let Some(tool) = &self.on else {
             return Ok(DrapedBody::Table);
         };
-        let given = Given::read(tool, self.acting.up)?;
+        let given = Given::read(tool, self.acting.up())?;
         let scale = match (self.tool_size, &sheet.source) {
             (Some(size), _) => size / extent(&given.positions),
             (None, SheetSource::File(file)) => file.scale,

@@ -3,7 +3,7 @@
 use super::failure::{Failure, Format, Message};
 use super::message::{print_coloured, print_message};
 use super::progress::event;
-use crate::scene::Colours;
+use isosheet_scenes::Colours;
 use serde_json::json;
 use std::io::IsTerminal;
 

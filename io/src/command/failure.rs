@@ -1,9 +1,9 @@
 //! Why a subcommand fails, and the code that the command ends with.
 
 use crate::run::{RunError, SweepError};
-use crate::scene::{SceneError, SceneFileError};
 use isosheet_files::FileError;
 use isosheet_mesh::Advice;
+use isosheet_scenes::{SceneError, SceneFileError};
 
 /// A class of failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

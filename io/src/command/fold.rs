@@ -5,8 +5,8 @@ use super::failure::Done;
 use super::fold_options::FoldOptions;
 use super::panels::{Pattern, text_of};
 use crate::run::{FoldVerdict, Recording};
-use crate::scene::FoldScene;
 use clap::Args;
+use isosheet_scenes::FoldScene;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

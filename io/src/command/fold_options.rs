@@ -1,7 +1,7 @@
 //! How a crease pattern is folded, as command lines say it.
 
-use crate::scene::{FoldGroup, FoldScene, Touch};
 use clap::Args;
+use isosheet_scenes::{FoldGroup, FoldScene, Touch};
 
 /// How a crease pattern is folded.
 #[derive(Debug, Args)]

@@ -4,13 +4,12 @@ use super::composing::Composing;
 use super::failure::{Code, Failure};
 use super::info::refuse_folder;
 use super::message::print_progress;
-use crate::scene::{
-    DrawingFile, FaceMoments, MeshFile, PolygonFaces, SheetSource, UpAxis, size as extent,
-};
+use super::{action_scene::SheetSource, face_moments::FaceMoments};
 use isosheet_drawings::{DrawingFormat, DrawingOptions};
 use isosheet_formats::{DrawnSheet, MeshFormat, MeshOptions, Polygons, read_mesh_with};
 use isosheet_mesh::Topology;
 use isosheet_mesh::wording::{brief, counted};
+use isosheet_scenes::{DrawingFile, MeshFile, PolygonFaces, UpAxis, size as extent};
 use std::path::Path;
 
 /// Edges of the mesh of a drawing are about this part of its longest side.

@@ -1,9 +1,9 @@
 //! `isosheet hang`.
 
 use super::acting::Acting;
+use super::action_scene::{Action, HeldCorners};
 use super::failure::Done;
 use crate::run::ActionVerdict;
-use crate::scene::{Action, HeldCorners};
 use clap::Args;
 
 const EXAMPLES: &str = "\

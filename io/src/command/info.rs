@@ -5,13 +5,13 @@ use super::message::{counted, print_warnings};
 use super::reading::what_reading_did;
 use super::write::to_stdout;
 use crate::run::Recording;
-use crate::scene::{CarriedBody, SceneFile, Setup, bounds};
 use clap::Args;
 use isosheet_dynamics::{SheetModel, rod_rank};
 use isosheet_formats::{
     FaceGroups, MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
 };
 use isosheet_mesh::{Dof, MassKind, Sheet, Topology, VertexId};
+use isosheet_scenes::{CarriedBody, SceneFile, Setup, bounds};
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
@@ -148,10 +148,10 @@ pub(crate) fn describe_scene(setup: &Setup) -> String {
     let bodies = setup.bodies.iter().map(|body| body.surface());
     let bodies: Vec<_> = bodies.collect();
     let sheets = setup.parts.iter().map(|(name, part)| {
-        let mut driven = setup.origins.driven.iter();
+        let mut driven = setup.origins.driven_parts();
         let kind = match bodies.contains(&part.vertices) {
             true => "body",
-            false if driven.any(|surface| surface.part == *part) => "obstacle",
+            false if driven.any(|surface| surface == part) => "obstacle",
             false => "sheet",
         };
         let (v, f) = (&part.vertices, &part.faces);

@@ -1,10 +1,10 @@
 //! Which frame of a run is meant.
 
 use super::failure::Failure;
-use crate::scene::Folding;
 use clap::Args;
 use isosheet_formats::Trajectory;
 use isosheet_mesh::wording::{brief, given};
+use isosheet_scenes::Folding;
 
 /// The one frame of a run that is written, if one alone is.
 #[derive(Debug, Args)]

@@ -5,9 +5,9 @@ use super::failure::{Code, Failure};
 use super::interrupt;
 use super::message::print_progress;
 use super::progress::{LINES, go_on};
-use crate::run::{FoldTrial, FoldVerdict};
-use crate::scene::{FoldResidual, FoldScene, Panels, SceneFile, Touch, size as extent};
+use crate::run::{FoldTrial, FoldVerdict, folds_to};
 use isosheet_formats::{MeshOptions, read_mesh_with};
+use isosheet_scenes::{FoldResidual, FoldScene, Panels, SceneFile, Touch, size as extent};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -240,7 +240,7 @@ impl Pattern<'_> {
             }
             go_on()
         };
-        let found = self.parsed(scene)?.folds_to(&mut watch)?;
+        let found = folds_to(&self.parsed(scene)?, &mut watch)?;
         if interrupt::requested() {
             return Err(Failure::new(Code::Interrupted, "stopped by Ctrl-C"));
         }

@@ -9,9 +9,9 @@ use super::trace::TraceFile;
 use crate::run::{
     Existing, Outcome, RunError, Summary, extend_folder, resume_folder, simulate, simulate_anew,
 };
-use crate::scene::SceneFile;
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
+use isosheet_scenes::SceneFile;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

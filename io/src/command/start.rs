@@ -2,10 +2,10 @@
 
 use super::failure::{Code, Done, Failure};
 use super::message::print_result;
-use crate::scene::StartingPoint;
 use clap::builder::{PathBufValueParser, PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
 use isosheet_files::write_atomically;
+use isosheet_scenes::StartingPoint;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::path::PathBuf;
@@ -28,17 +28,33 @@ pub(crate) struct New {
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// What it shows
-    #[arg(long, value_enum, default_value_t = StartingPoint::Hanging)]
-    kind: StartingPoint,
+    #[arg(long, value_enum, default_value_t = Kind(StartingPoint::Hanging))]
+    kind: Kind,
 }
 
-impl ValueEnum for StartingPoint {
+/// A starting point as a value on the command line.
+#[derive(Clone, Copy, Debug)]
+struct Kind(StartingPoint);
+
+impl Kind {
+    const ALL: [Self; StartingPoint::ALL.len()] = {
+        let mut all = [Self(StartingPoint::Hanging); StartingPoint::ALL.len()];
+        let mut k = 0;
+        while k < all.len() {
+            all[k] = Self(StartingPoint::ALL[k]);
+            k += 1;
+        }
+        all
+    };
+}
+
+impl ValueEnum for Kind {
     fn value_variants<'a>() -> &'a [Self] {
         &Self::ALL
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name()).help(self.about()))
+        Some(PossibleValue::new(self.0.name()).help(self.0.about()))
     }
 }
 
@@ -62,7 +78,7 @@ impl New {
             let message = format!("{} exists", path.display());
             return Err(Failure::new(Code::Output, message).remedy("choose another name"));
         }
-        let text = self.kind.text();
+        let text = self.kind.0.text();
         write_atomically(&path, |w| w.write_all(text.as_bytes()))
             .map_err(|e| Failure::of(Code::Output, &e))?;
         print_result(format_args!(

@@ -1,8 +1,8 @@
 //! What came of a sheet that drapes, hangs or was crumpled, in words.
 
 use super::{EndReason, Recording, Summary};
-use crate::scene::bounds;
 use isosheet_mesh::wording::counted;
+use isosheet_scenes::bounds;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// The sheet at the end of a run.

@@ -1,6 +1,6 @@
 //! The commit that a program was built from.
 
-use crate::scene::Warning;
+use isosheet_scenes::Warning;
 use std::sync::OnceLock;
 
 static COMMIT: OnceLock<String> = OnceLock::new();

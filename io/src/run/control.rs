@@ -2,7 +2,9 @@
 
 use super::RunError;
 use super::intervention::{Intervention, note};
-use crate::scene::{Course, Interpolation, Key, KeyPart, Motion, Moved, Profile, Scene, SceneFile};
+use isosheet_scenes::{
+    Course, Interpolation, Key, KeyPart, Motion, Moved, Profile, Scene, SceneFile,
+};
 use toml::Value;
 
 /// What was changed in the course of a run.

@@ -4,8 +4,8 @@ use super::row::dissipated;
 use super::row::row_of_start;
 use super::summary::{EndReason, Ending};
 use super::writer::{RunWriter, largest_speed};
-use crate::scene::{CarriedBody, Residuals, UnderWay};
 use isosheet_dynamics::StepReport;
+use isosheet_scenes::{CarriedBody, Residuals, UnderWay};
 
 impl RunWriter {
     /// The state at the end of a step, which ends a run for a reason.

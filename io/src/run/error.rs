@@ -1,11 +1,11 @@
 //! Why a run cannot go on.
 
 use super::extension_error::ExtensionError;
-use crate::scene::{SceneError, SceneFileError};
 use isosheet_files::{DataError, FileError};
 use isosheet_formats::ExportError;
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
+use isosheet_scenes::{SceneError, SceneFileError};
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;

@@ -2,9 +2,9 @@
 
 use super::frames::FrameShape;
 use super::steps::step_count;
-use crate::scene::{Key, MEMORY_OF_FACE, Problem, Scene, SceneError, SceneFile, Setup, Warning};
 use isosheet_files::{bytes_in_words, memory};
 use isosheet_mesh::wording::counted;
+use isosheet_scenes::{Key, MEMORY_OF_FACE, Problem, Scene, SceneError, SceneFile, Setup, Warning};
 use std::fmt;
 use std::path::Path;
 

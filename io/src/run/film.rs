@@ -6,10 +6,10 @@ use crate::picture::{
     Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, at_once, render_folded,
     strip,
 };
-use crate::scene::bounds;
 use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Part, VertexId};
+use isosheet_scenes::bounds;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How a run is shown.

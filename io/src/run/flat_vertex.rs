@@ -1,9 +1,9 @@
 //! Vertices at which a crease pattern does not fold flat.
 
-use crate::scene::FoldTargets;
 use isosheet_dynamics::FLAT;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, FlatCrease, FlatFoldingLaw, Sheet, VertexId, fold_angle};
+use isosheet_scenes::FoldTargets;
 use std::f64::consts::PI;
 use std::fmt;
 

@@ -1,6 +1,6 @@
 //! Whether groups of creases fold in the order that is asked for.
 
-use crate::scene::{FoldTargets, Folding};
+use isosheet_scenes::{FoldTargets, Folding};
 
 /// Creases that are further from their angles than this, degrees, are open.
 pub(super) const OPEN: f64 = 5.0;

@@ -3,9 +3,9 @@
 use super::fold_order::OPEN;
 use super::passing::Passing;
 use super::{FoldOrder, Recording, TouchingFaces, UnfoldableVertex};
-use crate::scene::{FoldResidual, FoldTargets, FollowedFolds, Isometry};
 use isosheet_mesh::wording::{counted, quoted};
 use isosheet_mesh::{EdgeId, Topology, fold_angle};
+use isosheet_scenes::{FoldResidual, FoldTargets, FollowedFolds, Isometry};
 use std::fmt;
 
 /// How closely creases and panels do what they are meant to, at the end of a run that folds a pattern.

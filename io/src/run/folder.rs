@@ -2,10 +2,10 @@
 
 use super::error::BEGIN_ANEW;
 use super::{RunError, Summary};
-use crate::scene::{FileKind, Files, Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use isosheet_files::{FileError, NumberedFiles, input, is_unfinished, read_json, write_atomically};
 use isosheet_formats::sources;
+use isosheet_scenes::{FileKind, Files, Problem, Scene, SceneError, SceneFile};
 use std::ffi::OsString;
 use std::fmt;
 use std::fs::{self, File, Metadata, TryLockError};

@@ -1,12 +1,12 @@
 //! Fields of a page, frame by frame.
 
-use crate::scene::{FoldTargets, Origins, off_target};
 use crate::view::{Centering, Field, Scale, strains};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{ElasticDeformation, SheetModel};
 use isosheet_files::DataError;
 use isosheet_formats::{FrameQuantity, MotionFrame};
 use isosheet_mesh::Sheet;
+use isosheet_scenes::{FoldTargets, Origins, off_target};
 use nalgebra::Point3;
 use std::borrow::Cow;
 
@@ -40,10 +40,7 @@ impl<'a> FrameField<'a> {
         has: impl Fn(FrameQuantity) -> bool,
     ) -> Vec<Self> {
         let strain = strains(sheet.topology(), sheet.positions());
-        let driven = origins
-            .driven
-            .iter()
-            .map(|surface| surface.part.edges.clone());
+        let driven = origins.driven_parts().map(|part| part.edges.clone());
         let driven: Vec<_> = driven.collect();
         let of_sheets = move |frame: &MotionFrame<'_>| {
             let mut strains = strain(frame.x);

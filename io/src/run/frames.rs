@@ -2,11 +2,11 @@
 
 use super::RunError;
 use super::error::BEGIN_ANEW;
-use crate::scene::Setup;
 use crc::{CRC_64_XZ, Crc};
 use isosheet_files::{FileError, input};
 use isosheet_formats::{FrameData, FrameQuantity, MeshCounts, Motion, MotionFrame};
 use isosheet_mesh::wording::counted;
+use isosheet_scenes::Setup;
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::ops::ControlFlow;

@@ -1,7 +1,7 @@
 //! The angle at which air comes to sheets along which it flows.
 
-use crate::scene::{AttachedFlow, Scene, UnderWay};
 use isosheet_mesh::wording::brief;
+use isosheet_scenes::{AttachedFlow, Scene, UnderWay};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -1,6 +1,6 @@
 //! Until when something prescribed changes.
 
-use crate::scene::{Course, Moved, Profile, Scene};
+use isosheet_scenes::{Course, Moved, Profile, Scene};
 
 /// Until when the functions of time and the poses of a scene change, seconds, or zero. Sines, which have no end, do not
 /// count.

@@ -5,11 +5,11 @@ use super::frame_field::FrameField;
 use super::recording::{Recording, RunFrames};
 use super::spool::Spool;
 use super::{EndReason, FoldVerdict, RunError, SheetPlace, Summary, constraints};
-use crate::scene::{Gauge, Scene, bounds};
 use crate::view::{PageOptions, Replay, TimeSeries, no_frames};
 use isosheet_files::{DataError, prepare_folder, write_atomically};
 use isosheet_formats::FrameQuantity;
 use isosheet_mesh::wording::brief;
+use isosheet_scenes::{Gauge, Scene, bounds};
 use std::io::Write;
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! Whether panels of a sheet that does not touch itself pass through each other.
 
-use crate::scene::{Folding, size};
 use isosheet_collide::{BroadPhase, ContactMesh};
 use isosheet_mesh::Topology;
+use isosheet_scenes::{Folding, size};
 
 /// How deep an edge is in a panel that passes through it, beside the longest side of the sheet: two thicknesses of office paper
 /// of 0.2 m. Panels that lie on each other in one plane are less deep in each other, by round-off.

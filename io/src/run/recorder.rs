@@ -12,11 +12,11 @@ use super::steps::{ROUND_OFF, step_length};
 use super::summary::{EndReason, Ending};
 use super::writer::{Rows, RunWriter, Subject};
 use super::{RunError, finish, write_trajectory};
-use crate::scene::{FailedStep, Files, Kept, Key, LiveScene, Scene, SceneFile, UnderWay};
 use isosheet_dynamics::{StepProgress, StepReport};
 use isosheet_files::{FileError, write_atomically};
 use isosheet_formats::{EventRow, FrameQuantity, Row};
 use isosheet_mesh::Advice;
+use isosheet_scenes::{FailedStep, Files, Kept, Key, LiveScene, Scene, SceneFile, UnderWay};
 use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -84,7 +84,7 @@ impl Advice for RecordedStepError {
 ///
 /// ```
 /// use isosheet_io::run::{Recorder, RecorderOptions, RecordingEnd};
-/// use isosheet_io::scene::{LiveScene, Mesh, Scene, SceneFile, Sheet};
+/// use isosheet_scenes::{LiveScene, Mesh, Scene, SceneFile, Sheet};
 /// use std::ops::ControlFlow;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {

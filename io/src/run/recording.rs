@@ -4,7 +4,6 @@ use super::folder::{RunFolder, stored_scene};
 use super::frames::{FrameShape, StoredFrames, check_whole};
 use super::series_body::series_body;
 use super::{RunError, Summary};
-use crate::scene::{FoldTargets, Gauge, Origins, SceneFile, Setup};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{SheetModel, immobile_vertices};
 use isosheet_files::{FileError, read_json};
@@ -15,6 +14,7 @@ use isosheet_formats::{
 };
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, Part, Sheet, VertexId};
+use isosheet_scenes::{FoldTargets, Gauge, Origins, SceneFile, Setup};
 use nalgebra::{Isometry3, Vector3};
 use std::ops::ControlFlow;
 use std::path::Path;

@@ -1,12 +1,12 @@
 //! What the page shows of a recorded motion.
 
 use super::frame_field::{FrameField, check_frame};
-use crate::scene::{Gauge, Origins};
 use crate::view::{Body, BodyShape, Replay, Scale, TimeSeries};
 use isosheet_collide::{Obstacle, Shape};
 use isosheet_files::DataError;
 use isosheet_formats::{BodyPose, FrameQuantity, HistoryRow, MeasureRow, Motion, Trajectory};
 use isosheet_mesh::Sheet;
+use isosheet_scenes::{Gauge, Origins};
 use nalgebra::Isometry3;
 use std::ops::ControlFlow;
 

@@ -7,10 +7,9 @@ use super::frames::FrameShape;
 use super::steps::{step_count, step_length};
 use super::writer::{Rows, RunWriter, Subject};
 use super::{RunError, StepPart, Tick, Watch};
-use crate::scene::check_positions;
-use crate::scene::{Facts, Kept, SceneError, SceneFile, UnderWay};
 use cpu_time::ThreadTime;
 use isosheet_dynamics::{StepError, StepProgress};
+use isosheet_scenes::{Facts, Kept, SceneError, SceneFile, UnderWay, check_positions};
 use std::time::Instant;
 
 /// What is known of a run before its first step.

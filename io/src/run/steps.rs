@@ -1,6 +1,6 @@
 //! The number of the steps of a run and their lengths.
 
-use crate::scene::Scene;
+use isosheet_scenes::Scene;
 
 /// Part of a step by which the time of a run may differ from a whole number of steps, to allow for round-off.
 pub(super) const ROUND_OFF: f64 = 1e-9;

@@ -27,8 +27,8 @@ pub use variation::Variation;
 pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
-use crate::scene::{Edit, KeyPart, SceneFile, SceneFileError};
 use isosheet_files::{DataError, FileError, input, write_atomically};
+use isosheet_scenes::{Edit, KeyPart, SceneFile, SceneFileError};
 use shell::shell_word;
 use std::io::Write;
 use std::path::{Path, PathBuf};

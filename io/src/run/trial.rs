@@ -2,8 +2,8 @@
 
 use super::passing::Passing;
 use super::steps::step_count;
-use crate::scene::{FoldResidual, FollowedFolds, SceneError, SceneFile};
 use isosheet_dynamics::StepProgress;
+use isosheet_scenes::{FoldResidual, FollowedFolds, SceneError, SceneFile};
 use std::ops::ControlFlow;
 
 /// Most factorisations of a trial times vertices: about a second for each hundred thousand. (Of 40 patterns of
@@ -33,53 +33,51 @@ impl FoldTrial {
     }
 }
 
-impl SceneFile {
-    /// How far the creases are from the angles that the scene folds to at its end. `None` if it cannot start, a step fails,
-    /// or the end takes too much work; the clock has no part in that. `watch` is told the part of the time that is done, and
-    /// ends the trial.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the scene cannot be built.
-    pub(crate) fn folds_to(
-        &self,
-        watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<Option<FoldTrial>, SceneError> {
-        let setup = self.build()?;
-        let targets = setup.targets.folding.clone();
-        let Ok(mut simulation) = setup.start() else {
-            return Ok(None);
+/// How far the creases are from the angles that a scene folds to at its end. `None` if it cannot start, a step fails,
+/// or the end takes too much work; the clock has no part in that. `watch` is told the part of the time that is done, and
+/// ends the trial.
+///
+/// # Errors
+/// [`SceneError`] if the scene cannot be built.
+pub(crate) fn folds_to(
+    file: &SceneFile,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<Option<FoldTrial>, SceneError> {
+    let setup = file.build()?;
+    let targets = setup.targets.folding.clone();
+    let Ok(mut simulation) = setup.start() else {
+        return Ok(None);
+    };
+    let Some(targets) = targets else {
+        return Ok(None);
+    };
+    let topology = simulation.model().topology();
+    let mut folds = FollowedFolds::begin(&targets, topology, &simulation.state().x);
+    let mut passing = Passing::begin(topology, &simulation.state().x);
+    let scene = file.scene();
+    let vertices = simulation.model().topology().vertex_count();
+    let mut left = (MOST_WORK / vertices.max(1)).max(AT_LEAST * step_count(scene) as usize);
+    while simulation.state().t < scene.stop.time {
+        let done = simulation.state().t / scene.stop.time;
+        let mut within = |progress: &StepProgress| match progress.factorisations > left {
+            true => ControlFlow::Break(()),
+            false => watch(done),
         };
-        let Some(targets) = targets else {
-            return Ok(None);
-        };
-        let topology = simulation.model().topology();
-        let mut folds = FollowedFolds::begin(&targets, topology, &simulation.state().x);
-        let mut passing = Passing::begin(topology, &simulation.state().x);
-        let scene = self.scene();
-        let vertices = simulation.model().topology().vertex_count();
-        let mut left = (MOST_WORK / vertices.max(1)).max(AT_LEAST * step_count(scene) as usize);
-        while simulation.state().t < scene.stop.time {
-            let done = simulation.state().t / scene.stop.time;
-            let mut within = |progress: &StepProgress| match progress.factorisations > left {
-                true => ControlFlow::Break(()),
-                false => watch(done),
-            };
-            match simulation.step_watched(scene.method.step, &mut within) {
-                Ok(report) => left = left.saturating_sub(report.factorisations),
-                Err(_) => return Ok(None),
-            }
-            let topology = simulation.model().topology();
-            let state = simulation.state();
-            folds.follow(&targets, topology, &state.x);
-            passing.follow(state.t, &state.x);
+        match simulation.step_watched(scene.method.step, &mut within) {
+            Ok(report) => left = left.saturating_sub(report.factorisations),
+            Err(_) => return Ok(None),
         }
         let topology = simulation.model().topology();
-        let x = &simulation.state().x;
-        let strain = simulation.model().max_strain(x);
-        Ok(Some(FoldTrial {
-            residual: folds.residual(&targets, topology, x),
-            strain,
-            passing: passing.part_of(scene.folding.as_ref()),
-        }))
+        let state = simulation.state();
+        folds.follow(&targets, topology, &state.x);
+        passing.follow(state.t, &state.x);
     }
+    let topology = simulation.model().topology();
+    let x = &simulation.state().x;
+    let strain = simulation.model().max_strain(x);
+    Ok(Some(FoldTrial {
+        residual: folds.residual(&targets, topology, x),
+        strain,
+        passing: passing.part_of(scene.folding.as_ref()),
+    }))
 }

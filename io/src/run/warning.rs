@@ -1,8 +1,8 @@
 //! What to know of a run before its results are used.
 
 use super::{ElasticSummary, Summary};
-use crate::scene::Warning;
 use isosheet_mesh::wording::{brief, given};
+use isosheet_scenes::Warning;
 
 impl Summary {
     /// Part by which the chord of the sharpest bend of an elastic sheet may be shorter than its arc before

@@ -1,6 +1,6 @@
 //! Who watches a run, and what the watcher is told.
 
-use crate::scene::Warning;
+use isosheet_scenes::Warning;
 use std::ops::ControlFlow;
 use std::time::Duration;
 

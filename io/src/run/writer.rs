@@ -15,12 +15,12 @@ use super::row::{row_of_start, row_of_step};
 use super::steps::step_count;
 use super::summary::{EndReason, Measured};
 use super::time_error::TimeError;
-use crate::scene::{CarriedBody, Facts, FollowedFolds, Integrator, Scene, UnderWay};
 use isosheet_dynamics::{Checkpoint, StepReport};
 use isosheet_formats::{
     EventRow, EventWriter, FrameData, HistoryRow, HistoryWriter, LoadKind, LoadRow, LoadWriter,
     MeasureRow, MeasureWriter,
 };
+use isosheet_scenes::{CarriedBody, Facts, FollowedFolds, Integrator, Scene, UnderWay};
 use nalgebra::Vector3;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -104,7 +104,7 @@ impl RunWriter {
                 (!facts.measures.is_empty())
                     .then(|| MeasureWriter::create(&measures))
                     .transpose()?,
-                (scene.periods().next().is_some())
+                (scene.has_periods())
                     .then(|| EventWriter::create(&events))
                     .transpose()?,
                 FrameFile::create(&frames)?,
@@ -377,7 +377,7 @@ impl RunWriter {
         let facts = &under_way.facts;
         let strains = &mut self.progress.sheet_strains;
         // Bodies and obstacles in motion come last.
-        let others = facts.bodies.len() + facts.origins.driven.len();
+        let others = facts.bodies.len() + facts.origins.driven_parts().len();
         strains.resize(facts.parts.len() - others, 0.0);
         let (edges, x) = (
             under_way.simulation.model().edges(),
@@ -422,7 +422,7 @@ impl RunWriter {
         }
         if let Some(rest) = &scene.stop.rest {
             // A sheet at rest is not at its end while a support is about to release it, or a function of time to move it.
-            let is_due = under_way.switches.are_due(scene) || report.t < self.last_change;
+            let is_due = under_way.is_due(scene) || report.t < self.last_change;
             if is_due || largest_speed(under_way) > rest.speed {
                 self.progress.slow_since = None;
             } else {

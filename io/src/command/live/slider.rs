@@ -1,7 +1,7 @@
 //! What of a scene can be changed while it is played: its functions of time.
 
-use crate::scene::{Change, Course, Key, Profile, Scene};
 use crate::view::LiveSlider;
+use isosheet_scenes::{Change, Course, Key, Profile, Scene};
 
 /// By how much the wind can be stronger than the scene has it.
 const STRONGER: f64 = 2.0;
@@ -78,7 +78,7 @@ impl Slider {
     }
 
     /// Notes that the scene goes from its present value to another one between two times, as
-    /// [`LiveScene::drive`](crate::scene::LiveScene::drive) has made it.
+    /// [`LiveScene::drive`](isosheet_scenes::LiveScene::drive) has made it.
     pub(super) fn driven(&mut self, to: f64, begin: f64, end: f64) {
         let from = self.value(begin);
         self.profile = Profile::Course(Course::Ramp(Change {
@@ -102,7 +102,7 @@ fn with_names(called: String, scene: &Scene) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{SceneFile, StartingPoint};
+    use isosheet_scenes::{SceneFile, StartingPoint};
     use std::path::Path;
 
     fn sliders(text: &str) -> Vec<(String, f64, f64)> {

@@ -1,9 +1,9 @@
 //! Why a sweep cannot be made, run or collected.
 
 use super::run::SweepRun;
-use crate::scene::SceneFileError;
 use isosheet_files::{DataError, FileError};
 use isosheet_mesh::Advice;
+use isosheet_scenes::SceneFileError;
 use std::path::PathBuf;
 use thiserror::Error;
 

@@ -1,7 +1,7 @@
 //! A key of a scene and the values that a sweep gives it.
 
-use crate::scene::Key;
 use isosheet_files::DataError;
+use isosheet_scenes::Key;
 use std::fmt;
 use std::str::FromStr;
 
