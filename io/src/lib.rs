@@ -47,7 +47,7 @@ pub use {isosheet_collide as collide, isosheet_coords as coords, isosheet_dynami
 pub mod command;
 
 #[cfg(feature = "picture")]
-pub mod picture;
+pub use isosheet_pictures as picture;
 
 #[cfg(feature = "run")]
 pub mod run;

@@ -43,7 +43,7 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 11] = [
+const LIBRARIES: [&str; 12] = [
     "mesh",
     "coords/linalg",
     "coords",
@@ -53,6 +53,7 @@ const LIBRARIES: [&str; 11] = [
     "io/drawings",
     "io/formats",
     "io/scenes",
+    "io/pictures",
     "io",
     "io/python",
 ];

@@ -2,13 +2,13 @@
 
 use super::quantity::Quantity;
 use super::{Recording, Viewpoint};
-use crate::picture::{
-    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, at_once, render_folded,
-    strip,
-};
 use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Part, VertexId};
+use isosheet_pictures::{
+    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, at_once, render_folded,
+    strip,
+};
 use isosheet_scenes::bounds;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,9 +1,9 @@
 //! Films that ffmpeg encodes, a program that is called where it is installed.
 
 use super::Film;
-use crate::picture::PictureError;
 use isosheet_files::{FileError, prepare_folder};
 use isosheet_mesh::Advice;
+use isosheet_pictures::PictureError;
 use rayon::prelude::*;
 use std::fs;
 use std::io::{self, Read, Write};

@@ -2,10 +2,10 @@
 
 use super::Recording;
 use super::frame_field::FrameField;
-use crate::picture::{ColourMap, ColourScale, Colours, PictureError, Spacing};
 use crate::view::{Centering, Field, Scale};
 use isosheet_files::DataError;
 use isosheet_formats::{Motion, Series, SeriesOptions};
+use isosheet_pictures::{ColourMap, ColourScale, Colours, PictureError, Spacing};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 

@@ -101,7 +101,7 @@ impl ColourScale {
 
     /// The place of a value, 0 and 1 at the ends, less and more beyond. Where both ends are equal all values
     /// are in the middle. On a logarithmic scale zero is at the low end.
-    pub(crate) fn place(&self, value: f64) -> f64 {
+    pub fn place(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         match self.spacing {
             _ if low >= high => 0.5,

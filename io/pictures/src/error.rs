@@ -28,7 +28,7 @@ pub enum PictureError {
 
 impl PictureError {
     /// Pictures of a size (pixels) cannot be made.
-    pub(crate) fn size(width: usize, height: usize) -> Self {
+    pub fn size(width: usize, height: usize) -> Self {
         let message = format!("the picture has {width} x {height} pixels");
         let remedy = "give at least one each way, and no more than memory holds";
         Self::Options(DataError::new(message, remedy))
@@ -45,7 +45,7 @@ impl PictureError {
     }
 
     /// There is no frame to draw.
-    pub(crate) fn no_frames() -> Self {
+    pub fn no_frames() -> Self {
         let remedy = "choose frames that the run has";
         Self::Data(DataError::new("there is no such frame", remedy))
     }

@@ -47,10 +47,7 @@ const SAMPLES: usize = 4;
 /// # Errors
 /// Those of [`ColourScale::validate`], and [`PictureError::Options`] where the strip would take more than
 /// half of the picture.
-pub(crate) fn strip(
-    scale: &ColourScale,
-    [width, height]: [usize; 2],
-) -> Result<Image, PictureError> {
+pub fn strip(scale: &ColourScale, [width, height]: [usize; 2]) -> Result<Image, PictureError> {
     scale.validate()?;
     let letters = (LETTERS * height as f64).max(SMALLEST);
     let needed = (letters * (TITLE + GAP + BAR + TICK + VALUES + BELOW)).ceil() as usize;

@@ -60,8 +60,7 @@ impl Image {
     }
 
     /// This picture with another one of the same width below it.
-    #[cfg(feature = "run")]
-    pub(crate) fn above(&self, other: &Self) -> Self {
+    pub fn above(&self, other: &Self) -> Self {
         let mut both = Self::white(self.width, self.height + other.height);
         both.paste(self, 0, 0);
         both.paste(other, 0, self.height);

@@ -164,7 +164,7 @@ impl Painter<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::sheet::{Look, SheetPicture, render_folded};
-    use crate::picture::Camera;
+    use crate::Camera;
     use isosheet_mesh::generate::{Diagonals, grid};
     use isosheet_mesh::{EdgeId, VertexId};
 

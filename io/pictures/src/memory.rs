@@ -13,7 +13,7 @@ const MEMORY_OF_PIXEL: u64 = (size_of::<Light>() + 2 * 3 + 3 * 3) as u64;
 ///
 /// # Errors
 /// [`PictureError::Options`] where memory holds none.
-pub(crate) fn at_once(size: [usize; 2], most: usize) -> Result<usize, PictureError> {
+pub fn at_once(size: [usize; 2], most: usize) -> Result<usize, PictureError> {
     at_once_within(size, most, memory::free())
 }
 
