@@ -53,7 +53,7 @@ pub use isosheet_pictures as picture;
 pub mod run;
 
 #[cfg(feature = "view")]
-pub mod view;
+pub use isosheet_page as view;
 
 /// The code of the README is compiled and run as a test.
 #[cfg(doctest)]

@@ -11,7 +11,7 @@
 //! | `events.csv` | what was taken up and released ([`EventRow`](isosheet_formats::EventRow)), if anything can be |
 //! | `trajectory.npz` | the frames ([`Trajectory`]), when the run ends, fails or is stopped |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
-//! | `index.html` | the 3D page of the run ([`view`](crate::view)), unless the scene says `page = false` |
+//! | `index.html` | the 3D page of the run ([`view`](isosheet_page)), unless the scene says `page = false` |
 //! | `summary.json` | what came of it ([`Summary`]), last: a folder that has it is complete |
 //! | `frames.bin` | the frames with checksums, from which a lost trajectory is written again |
 //! | `checkpoint.bin` | what is needed to go on |
@@ -116,6 +116,7 @@ pub use intervention::Intervention;
 pub use page::write_page;
 pub use recorder::{ExistingRun, RecordedStepError, Recorder, RecorderOptions, RecordingEnd};
 pub use recording::Recording;
+pub use replay::{measure_series, replay_of};
 #[cfg(feature = "cli")]
 pub(crate) use row::row_of_step;
 pub use rulings::RecordedRulings;
@@ -130,13 +131,13 @@ pub use vibration::Vibration;
 pub use viewpoint::Viewpoint;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
-use crate::view::PageOptions;
 use checkpoint::{RunProgress, StepsBy};
 pub(crate) use folder::Existing;
 use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use isosheet_files::{FileError, read_json, write_json};
 use isosheet_formats::{Motion, MotionError, Row, Trajectory, frame_path, write_obj};
+use isosheet_page::PageOptions;
 use isosheet_scenes::{Kept, SceneFile, Setup, UnderWay};
 use page::write_page_of;
 use recording::RunFrames;

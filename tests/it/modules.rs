@@ -43,7 +43,7 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 12] = [
+const LIBRARIES: [&str; 13] = [
     "mesh",
     "coords/linalg",
     "coords",
@@ -54,6 +54,7 @@ const LIBRARIES: [&str; 12] = [
     "io/formats",
     "io/scenes",
     "io/pictures",
+    "io/page",
     "io",
     "io/python",
 ];

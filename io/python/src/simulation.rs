@@ -11,7 +11,7 @@ use crate::value::{Remade, edits as edits_of, remade, table};
 use isosheet_io::dynamics::{self, Checkpoint, StepProgress};
 use isosheet_io::mesh::VertexId;
 use isosheet_io::run::{
-    ExistingRun, RecordedStepError, Recorder, RecorderOptions, Recording, RecordingEnd,
+    ExistingRun, RecordedStepError, Recorder, RecorderOptions, Recording, RecordingEnd, replay_of,
 };
 use isosheet_io::scene::{FramePose, Key, KeyError, LiveScene, Problem, Target};
 use isosheet_io::view::{PageOptions, Replay};
@@ -99,7 +99,7 @@ impl Simulation {
                 pins: live.pins().iter().map(|v| v.0).collect(),
                 summary: vec![("modelled".into(), live.modelled().join(", "))],
                 scene: live.file().text().text.clone(),
-                ..Replay::of_motion(live.sheet(), live.obstacles(), &trajectory, &[])?
+                ..replay_of(live.sheet(), live.obstacles(), &trajectory, &[])?
             })
         });
         replay.map_err(|e| plain(py, &e))

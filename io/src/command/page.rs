@@ -5,8 +5,8 @@ use super::message::print_result;
 use super::open::open_page;
 use super::write::refuse_other_kind;
 use crate::run::write_page;
-use crate::view::PageOptions;
 use clap::Args;
+use isosheet_page::PageOptions;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

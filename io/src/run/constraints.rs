@@ -1,8 +1,8 @@
 //! Curves and surfaces that hold vertices, as bodies of the page.
 
-use crate::view::{Body, BodyShape};
 use isosheet_dynamics::constraint;
 use isosheet_dynamics::constraint::{Polyline, Spline};
+use isosheet_page::{Body, BodyShape};
 use isosheet_scenes::{Curve, Hold, Scene, Support, Surface, frame_motion};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::TAU;

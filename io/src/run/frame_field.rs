@@ -1,11 +1,11 @@
 //! Fields of a page, frame by frame.
 
-use crate::view::{Centering, Field, Scale, strains};
 use isosheet_collide::Obstacle;
 use isosheet_dynamics::{ElasticDeformation, SheetModel};
 use isosheet_files::DataError;
 use isosheet_formats::{FrameQuantity, MotionFrame};
 use isosheet_mesh::Sheet;
+use isosheet_page::{Centering, Field, Scale, strains};
 use isosheet_scenes::{FoldTargets, Origins, off_target};
 use nalgebra::Point3;
 use std::borrow::Cow;

@@ -3,18 +3,19 @@
 use super::elastic::ElasticSummary;
 use super::frame_field::FrameField;
 use super::recording::{Recording, RunFrames};
+use super::replay::{measure_series, still, with_frames};
 use super::spool::Spool;
 use super::{EndReason, FoldVerdict, RunError, SheetPlace, Summary, constraints};
-use crate::view::{PageOptions, Replay, TimeSeries, no_frames};
 use isosheet_files::{DataError, prepare_folder, write_atomically};
 use isosheet_formats::FrameQuantity;
 use isosheet_mesh::wording::brief;
+use isosheet_page::{PageOptions, Replay, no_frames};
 use isosheet_scenes::{Gauge, Scene, bounds};
 use std::io::Write;
 use std::path::Path;
 
 impl Recording {
-    /// What the page of the run shows: [`Replay::of_motion`] with the measures of the scene, the pins and
+    /// What the page of the run shows: [`replay_of`](super::replay_of) with the measures of the scene, the pins and
     /// immobile vertices, the curves and surfaces that hold vertices, a summary, the scene and how to make
     /// the run again.
     ///
@@ -27,7 +28,7 @@ impl Recording {
         let frames = (0..self.trajectory.len()).filter_map(|k| self.trajectory.frame(k));
         let corners = bounds(frames.flat_map(|x| x.as_chunks::<3>().0));
         let still = self.still(self.trajectory.times().to_vec(), corners);
-        still.with_frames(&self.trajectory, &self.sheet, &self.fields())
+        with_frames(still, &self.trajectory, &self.sheet, &self.fields())
     }
 
     /// The fields of the page.
@@ -56,7 +57,7 @@ impl Recording {
     /// corners.
     fn still(&self, times: Vec<f64>, corners: [[f64; 3]; 2]) -> Replay {
         let ground = self.ground(&times, corners);
-        let mut replay = Replay::still(&self.sheet, &self.obstacles, times, &self.history);
+        let mut replay = still(&self.sheet, &self.obstacles, times, &self.history);
         for (k, body) in replay.bodies.iter_mut().enumerate() {
             body.name = self.origins.obstacle_called(k);
         }
@@ -68,7 +69,7 @@ impl Recording {
         replay.bodies.extend(held);
         replay
             .series
-            .extend(TimeSeries::of_measures(&self.measures, &self.gauges));
+            .extend(measure_series(&self.measures, &self.gauges));
         Replay {
             // How far creases are from their angles, unless they have reached them.
             colour: self

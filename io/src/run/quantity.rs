@@ -2,9 +2,9 @@
 
 use super::Recording;
 use super::frame_field::FrameField;
-use crate::view::{Centering, Field, Scale};
 use isosheet_files::DataError;
 use isosheet_formats::{Motion, Series, SeriesOptions};
+use isosheet_page::{Centering, Field, Scale};
 use isosheet_pictures::{ColourMap, ColourScale, Colours, PictureError, Spacing};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;

@@ -2,10 +2,10 @@
 
 use super::Recording;
 use super::frame_field::FrameField;
-use crate::view::{Centering, Field, Scale};
 use isosheet_dynamics::FaceCurvature;
 use isosheet_formats::{FrameData, FrameQuantity, Motion, MotionFrame};
 use isosheet_mesh::{EdgeId, Part, Sheet, Topology, VertexId};
+use isosheet_page::{Centering, Field, Scale};
 use isosheet_scenes::Facts;
 use std::cell::OnceCell;
 use std::ops::ControlFlow;

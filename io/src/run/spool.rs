@@ -2,10 +2,10 @@
 
 use super::RunError;
 use super::frame_field::{FrameField, check_frame};
-use crate::view::no_frames;
 use isosheet_files::FileError;
 use isosheet_formats::{FrameData, Motion, MotionFrame};
 use isosheet_mesh::Sheet;
+use isosheet_page::no_frames;
 use isosheet_scenes::bounds;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, Write};

@@ -1,9 +1,9 @@
 //! The page of a run that goes on, at its start.
 
 use super::session::Session;
-use crate::view::{Body, LivePage, Replay};
 use isosheet_files::DataError;
 use isosheet_mesh::VertexId;
+use isosheet_page::{Body, LivePage, Replay};
 
 /// The page of a session: that of a run with one frame, and what it is steered by.
 ///

@@ -1,6 +1,6 @@
 //! What of a scene can be changed while it is played: its functions of time.
 
-use crate::view::LiveSlider;
+use isosheet_page::LiveSlider;
 use isosheet_scenes::{Change, Course, Key, Profile, Scene};
 
 /// By how much the wind can be stronger than the scene has it.

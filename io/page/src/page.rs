@@ -11,10 +11,10 @@ use isosheet_files::DataError;
 use isosheet_formats::Motion;
 
 /// The page without title, style, licences, data and program, which belong at the markers, in this order.
-const TEMPLATE: &str = include_str!("../../view/page.html");
-const STYLE: &str = include_str!("../../view/dist/view.css");
-const LICENCES: &str = include_str!("../../view/dist/LICENSES.txt");
-const PROGRAM: &str = include_str!("../../view/dist/view.js");
+const TEMPLATE: &str = include_str!("../view/page.html");
+const STYLE: &str = include_str!("../view/dist/view.css");
+const LICENCES: &str = include_str!("../view/dist/LICENSES.txt");
+const PROGRAM: &str = include_str!("../view/dist/view.js");
 
 /// The program as it is in a page.
 static PACKED_PROGRAM: LazyLock<String> = LazyLock::new(|| pack_text(PROGRAM));
@@ -78,7 +78,7 @@ impl Replay {
 
     /// The page of some frames, which have as many positions as the rest shape and values of all fields; what
     /// this replay has of them is not used. One frame is in memory at a time.
-    pub(crate) fn page_of<M: Motion<Error: From<DataError>>>(
+    pub fn page_of<M: Motion<Error: From<DataError>>>(
         &self,
         frames: &M,
         options: &PageOptions,

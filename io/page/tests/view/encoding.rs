@@ -1,9 +1,10 @@
 //! What a page holds is what the replay holds, to the precision that the documentation states.
 
-use super::decoder::{self, document, doubles, field, frames, indices, positions};
+use super::decoder;
+use super::decoder::{document, doubles, field, frames, indices, positions};
 use super::scenes::{every_body, scattered, waving};
-use isosheet_io::view::{Centering, Field, PageOptions, Replay, Scale};
 use isosheet_mesh::{Topology, generate};
+use isosheet_page::{Centering, Field, PageOptions, Replay, Scale};
 use serde_json::Value;
 
 /// The page's program, style and template: what a page has besides its data.

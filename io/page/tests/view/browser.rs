@@ -5,8 +5,8 @@
 use super::decoder::{checksum, document, field, positions, rows};
 use super::scenes::{every_body, waving};
 use crate::headless::self_test;
-use isosheet_io::view::{BodyShape, Centering, Field, PageOptions, Replay, Scale};
 use isosheet_mesh::{Topology, fold_angle};
+use isosheet_page::{BodyShape, Centering, Field, PageOptions, Replay, Scale};
 use serde_json::Value;
 
 fn number(value: &Value) -> f64 {

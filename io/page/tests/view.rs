@@ -1,11 +1,11 @@
 //! The page of a run: what is in it, read by a decoder of its own, and what a browser makes of it.
 
-#[path = "shared/headless.rs"]
+#[path = "../../tests/shared/headless.rs"]
 mod headless;
-#[path = "shared/skip.rs"]
+#[path = "../../tests/shared/skip.rs"]
 mod skip;
 
-#[path = "shared/devtools.rs"]
+#[path = "../../tests/shared/devtools.rs"]
 mod devtools;
 
 mod view {

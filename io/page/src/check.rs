@@ -98,7 +98,7 @@ pub(super) fn topology(vertices: usize, faces: &[[u32; 3]]) -> Result<Topology, 
 }
 
 /// There is no frame.
-pub(crate) fn no_frames() -> DataError {
+pub fn no_frames() -> DataError {
     let remedy = "give the positions at one time at least";
     DataError::new("the replay has no frames", remedy)
 }

@@ -1,8 +1,9 @@
 //! Bad input is an error that says what is wrong and where.
 
 use super::scenes::every_body;
-use isosheet_io::view::{BodyShape, Replay};
-use isosheet_io::{Advice, DataError};
+use isosheet_files::DataError;
+use isosheet_mesh::Advice;
+use isosheet_page::{BodyShape, Replay};
 
 /// The error that a change of a good replay leads to.
 fn error(change: impl FnOnce(&mut Replay)) -> DataError {

@@ -1,5 +1,5 @@
 // Numbers from the texts of the document: base64, gzip, byte planes, differences in time. This is the inverse
-// of io/src/view/pack.rs and quantise.rs.
+// of io/page/src/pack.rs and quantise.rs.
 
 async function inflate(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));

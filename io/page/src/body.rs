@@ -2,9 +2,11 @@
 
 use super::check;
 use super::pack::{packed_doubles, packed_triangles};
+use isosheet_collide::{Obstacle, Shape};
 use isosheet_files::DataError;
 use isosheet_formats::BodyPose;
 use isosheet_mesh::wording::{brief, given};
+use nalgebra::Isometry3;
 use serde::Serialize;
 
 /// The form of a body in its own frame. Lengths in metres.
@@ -128,5 +130,65 @@ impl Body {
                 check::vertices(&format!("{what}: the triangles"), corners, count)
             }
         }
+    }
+}
+
+impl From<&Shape> for BodyShape {
+    fn from(shape: &Shape) -> Self {
+        match *shape {
+            Shape::HalfSpace => Self::HalfSpace,
+            Shape::Cuboid { half } => Self::Cuboid { half },
+            Shape::Sphere { radius } => Self::Sphere { radius },
+            Shape::Cylinder {
+                radius,
+                half_height,
+            } => Self::Cylinder {
+                radius,
+                half_height,
+            },
+            Shape::Capsule {
+                radius,
+                half_length,
+            } => Self::Capsule {
+                radius,
+                half_length,
+            },
+            Shape::Surface(ref surface) => Self::Mesh {
+                vertices: surface
+                    .positions()
+                    .iter()
+                    .flat_map(|p| [p.x, p.y, p.z])
+                    .collect(),
+                faces: surface.mesh().faces().to_vec(),
+            },
+        }
+    }
+}
+
+impl Body {
+    /// A body that is at `pose(t)` at the times `t` (seconds) of the frames. One that does not move has a
+    /// single pose.
+    pub fn moving(
+        name: &str,
+        shape: BodyShape,
+        times: &[f64],
+        pose: impl Fn(f64) -> Isometry3<f64>,
+    ) -> Self {
+        let mut poses: Vec<BodyPose> = times.iter().map(|&t| pose(t).into()).collect();
+        if poses.windows(2).all(|pair| pair[0] == pair[1]) {
+            poses.truncate(1);
+        }
+        Self {
+            name: name.into(),
+            shape,
+            poses,
+        }
+    }
+
+    /// An obstacle at the times (seconds) of the frames.
+    pub fn of_obstacle(name: &str, obstacle: &Obstacle, times: &[f64]) -> Self {
+        Self::moving(name, obstacle.shape().into(), times, |t| {
+            obstacle.motion().pose(t)
+        })
     }
 }

@@ -60,7 +60,7 @@
 //! packed likewise.
 //!
 //! ```
-//! use isosheet_io::view::{Field, Replay};
+//! use isosheet_page::{Field, Replay};
 //!
 //! let faces = vec![[0, 1, 2], [0, 2, 3]];
 //! let rest = vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
@@ -92,6 +92,7 @@ mod check;
 mod document;
 mod field;
 mod frames;
+mod history;
 mod live;
 mod pack;
 mod page;
@@ -99,10 +100,8 @@ mod quantise;
 mod replay;
 
 pub use body::{Body, BodyShape};
-#[cfg(feature = "run")]
-pub(crate) use check::no_frames;
-#[cfg(feature = "run")]
-pub(crate) use field::strains;
+pub use check::no_frames;
+pub use field::strains;
 pub use field::{Centering, Field, Scale, TimeSeries};
 pub use live::{LivePage, LiveSlider};
 pub use page::PageOptions;

@@ -102,7 +102,7 @@ impl Field {
     }
 
     /// The field of the strains, without values.
-    pub(crate) fn strain() -> Self {
+    pub fn strain() -> Self {
         Self {
             name: "strain".into(),
             unit: String::new(),
@@ -142,7 +142,7 @@ impl Field {
 }
 
 /// What computes the strain of each edge from positions (length 3V).
-pub(crate) fn strains(topology: &Topology, rest: &[f64]) -> impl Fn(&[f64]) -> Vec<f64> + use<> {
+pub fn strains(topology: &Topology, rest: &[f64]) -> impl Fn(&[f64]) -> Vec<f64> + use<> {
     let ends = topology.edges().iter().map(|e| e.map(|v| 3 * v.index()));
     let ends: Vec<[usize; 2]> = ends.collect();
     let length = |x: &[f64], [a, b]: [usize; 2]| {

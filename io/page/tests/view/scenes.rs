@@ -1,8 +1,8 @@
 //! Replays for the tests.
 
-use isosheet_io::BodyPose;
-use isosheet_io::view::{Axis, Body, BodyShape, Centering, Field, Replay, Scale, TimeSeries};
+use isosheet_formats::BodyPose;
 use isosheet_mesh::{Sheet, generate};
+use isosheet_page::{Axis, Body, BodyShape, Centering, Field, Replay, Scale, TimeSeries};
 
 /// Pseudo-random numbers in [0, 1): the low-discrepancy sequence of the golden ratio.
 pub(crate) fn scattered(k: usize) -> f64 {
