@@ -4,6 +4,7 @@
 
 mod acting;
 mod action_scene;
+mod action_verdict;
 #[cfg(test)]
 mod book_tests;
 mod check;

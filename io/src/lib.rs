@@ -49,8 +49,13 @@ pub mod command;
 #[cfg(feature = "picture")]
 pub use isosheet_pictures as picture;
 
+/// Runs, films and galleries.
 #[cfg(feature = "run")]
-pub mod run;
+pub mod run {
+    #[cfg(feature = "picture")]
+    pub use isosheet_films::*;
+    pub use isosheet_runs::*;
+}
 
 #[cfg(feature = "view")]
 pub use isosheet_page as view;

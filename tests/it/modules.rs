@@ -43,7 +43,7 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 13] = [
+const LIBRARIES: [&str; 15] = [
     "mesh",
     "coords/linalg",
     "coords",
@@ -55,6 +55,8 @@ const LIBRARIES: [&str; 13] = [
     "io/scenes",
     "io/pictures",
     "io/page",
+    "io/runs",
+    "io/films",
     "io",
     "io/python",
 ];

@@ -106,3 +106,8 @@ pub use field::{Centering, Field, Scale, TimeSeries};
 pub use live::{LivePage, LiveSlider};
 pub use page::PageOptions;
 pub use replay::{Axis, Replay};
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -498,3 +498,8 @@ impl Scene {
         files
     }
 }
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

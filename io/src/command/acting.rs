@@ -1,10 +1,10 @@
 //! What commands share in which the sheet of a file does one thing.
 
 use super::action_scene::{Action, ActionScene};
+use super::action_verdict::ActionVerdict;
 use super::composing::Composing;
 use super::failure::{Code, Done, Failure};
 use super::given::GivenSheet;
-use crate::run::ActionVerdict;
 use clap::{Args, ValueEnum};
 use isosheet_scenes::UpAxis;
 use std::path::PathBuf;

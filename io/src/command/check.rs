@@ -5,12 +5,12 @@ use super::info::{describe_scene, is_scene, refuse_edits, refuse_folder};
 use super::message::{counted, print_warnings};
 use super::reading::what_reading_did;
 use super::write::{is_same_file, to_stdout};
-use crate::run::Estimate;
 use clap::Args;
 use isosheet_formats::{
     MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_mesh,
 };
 use isosheet_mesh::{Advice, Sheet};
+use isosheet_runs::Estimate;
 use isosheet_scenes::{SceneFile, Warning};
 use std::path::{Path, PathBuf};
 

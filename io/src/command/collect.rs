@@ -3,8 +3,8 @@
 use super::failure::{Code, Done, Failure};
 use super::message::{counted, print_message, print_result};
 use super::write::{bytes_to_stdout, is_same_file, refuse_file_of_run, refuse_other_kind};
-use crate::run::Collection;
 use clap::Args;
+use isosheet_runs::Collection;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

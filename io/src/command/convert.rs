@@ -7,9 +7,9 @@ use super::message::counted;
 use super::one_frame::OneFrame;
 use super::pictures::{self, FrameChoice, PictureFormat, input, wrong};
 use super::write::{is_same_file, refuse_file_of_run, to_stdout};
-use crate::run::{FilmOptions, Marks, Recording};
 use clap::Args;
 use isosheet_drawings::Length;
+use isosheet_films::{FilmOptions, Marks};
 use isosheet_formats::{
     ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem, MeshFormat,
     MeshOptions, Series, SeriesOptions, Trajectory, read_mesh_with, thickened, write_frame,
@@ -17,6 +17,7 @@ use isosheet_formats::{
 };
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
+use isosheet_runs::Recording;
 use isosheet_scenes::Folding;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

@@ -2,8 +2,8 @@
 
 use super::acting::Acting;
 use super::action_scene::Action;
+use super::action_verdict::ActionVerdict;
 use super::failure::Done;
-use crate::run::ActionVerdict;
 use clap::Args;
 
 const EXAMPLES: &str = "\

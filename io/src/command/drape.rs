@@ -2,10 +2,10 @@
 
 use super::acting::Acting;
 use super::action_scene::{Action, Below, DrapedBody, SheetSource};
+use super::action_verdict::ActionVerdict;
 use super::composing::length;
 use super::failure::{Done, Failure};
 use super::given::{Given, GivenSheet, moments, scaled};
-use crate::run::ActionVerdict;
 use clap::Args;
 use isosheet_scenes::{bounds, size as extent};
 use std::path::PathBuf;

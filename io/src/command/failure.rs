@@ -1,8 +1,8 @@
 //! Why a subcommand fails, and the code that the command ends with.
 
-use crate::run::{RunError, SweepError};
 use isosheet_files::FileError;
 use isosheet_mesh::Advice;
+use isosheet_runs::{RunError, SweepError};
 use isosheet_scenes::{SceneError, SceneFileError};
 
 /// A class of failures.

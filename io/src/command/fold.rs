@@ -4,8 +4,8 @@ use super::composing::Composing;
 use super::failure::Done;
 use super::fold_options::FoldOptions;
 use super::panels::{Pattern, text_of};
-use crate::run::{FoldVerdict, Recording};
 use clap::Args;
+use isosheet_runs::{FoldVerdict, Recording};
 use isosheet_scenes::FoldScene;
 use std::path::PathBuf;
 

@@ -1,6 +1,6 @@
 //! Values of options for frames and pictures.
 
-use crate::run::Viewpoint;
+use isosheet_films::Viewpoint;
 use std::str::FromStr;
 
 /// Frames of a run, `A..B`, both included.

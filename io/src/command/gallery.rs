@@ -3,9 +3,9 @@
 use super::failure::{Code, Done, Failure};
 use super::message::{counted, print_message, print_result};
 use super::open::open_page;
-use crate::run::{Gallery, GalleryError};
 use clap::Args;
 use isosheet_files::FileError;
+use isosheet_films::{Gallery, GalleryError};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

@@ -4,13 +4,13 @@ use super::failure::{Code, Done, Failure};
 use super::message::{counted, print_warnings};
 use super::reading::what_reading_did;
 use super::write::to_stdout;
-use crate::run::Recording;
 use clap::Args;
 use isosheet_dynamics::{SheetModel, rod_rank};
 use isosheet_formats::{
     FaceGroups, MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
 };
 use isosheet_mesh::{Dof, MassKind, Sheet, Topology, VertexId};
+use isosheet_runs::Recording;
 use isosheet_scenes::{CarriedBody, SceneFile, Setup, bounds};
 use std::path::{Path, PathBuf};
 

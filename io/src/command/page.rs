@@ -4,9 +4,9 @@ use super::failure::{Done, Failure};
 use super::message::print_result;
 use super::open::open_page;
 use super::write::refuse_other_kind;
-use crate::run::write_page;
 use clap::Args;
 use isosheet_page::PageOptions;
+use isosheet_runs::write_page;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

@@ -6,11 +6,11 @@ use super::message::{counted, print_message, print_result, print_warnings, with_
 use super::open::open_page;
 use super::progress::{Progress, event};
 use super::trace::TraceFile;
-use crate::run::{
-    Existing, Outcome, RunError, Summary, extend_folder, resume_folder, simulate, simulate_anew,
-};
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
+use isosheet_runs::{
+    Existing, Outcome, RunError, Summary, extend_folder, resume_folder, simulate, simulate_anew,
+};
 use isosheet_scenes::SceneFile;
 use serde_json::json;
 use std::path::{Path, PathBuf};

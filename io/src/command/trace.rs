@@ -1,8 +1,8 @@
 //! The file of `--trace`: one line of JSON for each iteration, phase, refusal and accepted part of a step.
 
 use super::failure::{Code, Done, Failure};
-use crate::run::TraceSink;
 use isosheet_dynamics::{TraceEvent, Tuning};
+use isosheet_runs::TraceSink;
 use serde_json::json;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};

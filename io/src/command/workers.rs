@@ -4,8 +4,8 @@
 use super::failure::{Code, Done, Failure};
 use super::interrupt;
 use super::message::{counted, is_verbose, print_message, print_progress, print_result};
-use crate::run::{Sweep, SweepRun};
 use isosheet_files::input;
+use isosheet_runs::{Sweep, SweepRun};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::num::NonZero;

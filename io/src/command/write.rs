@@ -2,7 +2,7 @@
 
 use super::failure::{Code, Done, Failure};
 use super::printable::printable;
-use crate::run::run_of_file;
+use isosheet_runs::run_of_file;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::path::Path;

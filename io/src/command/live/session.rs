@@ -2,13 +2,12 @@
 
 use super::message::{HandFrame, LiveCommand, LiveFrame, Notice, NoticeKind};
 use super::slider::Slider;
-use crate::run::HoldingBody;
-use crate::run::{row_of_start, row_of_step};
 use isosheet_dynamics::{StepError, StepProgress};
 use isosheet_formats::{BodyPose, HistoryRow};
 use isosheet_mesh::wording::brief;
 use isosheet_mesh::{Advice, VertexId};
 use isosheet_page::TimeSeries;
+use isosheet_runs::{HoldingBody, row_of_start, row_of_step};
 use isosheet_scenes::{Key, LiveScene, Profile, SceneError, SceneFile, bounds};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;

@@ -135,7 +135,7 @@ pub(crate) enum FolderState {
 
 /// What becomes of a run that a folder holds at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Existing {
+pub enum Existing {
     /// A run of the same scene is continued, one of another scene is refused.
     Continue,
     /// It is deleted.
@@ -329,6 +329,11 @@ impl RunFolder {
     }
 }
 
+/// Whether a folder holds a run, complete or not.
+pub fn holds_run(folder: &Path) -> bool {
+    RunFolder::holds_run(folder)
+}
+
 /// The folder of the run that has written a file, by whatever links; none of other files.
 ///
 /// What is exported of a run must not be written there: the run could not be read any more.
@@ -350,8 +355,7 @@ pub fn run_of_file(path: &Path) -> Option<PathBuf> {
 ///
 /// # Errors
 /// As [`simulate`](super::simulate) refuses it.
-#[cfg(feature = "cli")]
-pub(crate) fn check_folder(root: &Path) -> Result<(), RunError> {
+pub fn check_folder(root: &Path) -> Result<(), RunError> {
     match root.try_exists() {
         _ if root.as_os_str().is_empty() => Err(RunError::NoFolder),
         Ok(false) => Ok(()),
@@ -364,12 +368,7 @@ pub(crate) fn check_folder(root: &Path) -> Result<(), RunError> {
 ///
 /// # Errors
 /// As [`simulate`](super::simulate) refuses it.
-#[cfg(feature = "cli")]
-pub(crate) fn check_run(
-    root: &Path,
-    scenes: &[SceneFile],
-    existing: Existing,
-) -> Result<(), RunError> {
+pub fn check_run(root: &Path, scenes: &[SceneFile], existing: Existing) -> Result<(), RunError> {
     if !RunFolder::holds_run(root) {
         return Ok(());
     }

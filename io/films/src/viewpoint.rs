@@ -1,7 +1,7 @@
 //! Where the viewer of a film is.
 
-use super::Recording;
 use isosheet_collide::Obstacle;
+use isosheet_runs::Recording;
 use nalgebra::{Point3, Vector3};
 
 /// Where the viewer is as seen from the sheet.

@@ -311,7 +311,7 @@ pub(crate) fn write_page_of(
 
 /// The page of a run. One frame is in memory at a time: while the page is made, what it shows of them is in a file
 /// without a name in a folder.
-pub(super) fn page_of(
+fn page_of(
     recording: &Recording,
     frames: &RunFrames,
     folder: &Path,
@@ -329,4 +329,22 @@ pub(super) fn page_of(
         ..still
     };
     still.page_of(&spool, options)
+}
+
+impl Recording {
+    /// Reads a run, and makes its page; what the page shows is in a file without a name in a folder meanwhile. A
+    /// run that has no page is read all the same.
+    ///
+    /// # Errors
+    /// [`RunError`] if the folder is not that of a run.
+    pub fn read_with_page(
+        folder: &Path,
+        spool: &Path,
+        options: &PageOptions,
+    ) -> Result<(Self, Result<String, RunError>), RunError> {
+        let (mut recording, frames) = Self::open(folder)?;
+        let page = page_of(&recording, &frames, spool, options);
+        recording.load(frames, folder)?;
+        Ok((recording, page))
+    }
 }

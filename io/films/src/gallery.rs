@@ -7,13 +7,12 @@ mod page;
 pub use entry::GalleryEntry;
 pub use error::GalleryError;
 
-use super::folder::{RunFolder, holds_other_files, remove_unfinished};
-use super::page::page_of;
-use super::{Film, FilmOptions, Recording, RunError, Sweep};
+use super::{Film, FilmOptions};
 use entry::RUNS;
 use isosheet_files::{FileError, read_json, write_atomically, write_json};
 use isosheet_page::PageOptions;
 use isosheet_pictures::PictureError;
+use isosheet_runs::{Recording, RunError, Sweep, holds_other_files, holds_run, remove_unfinished};
 use std::collections::HashSet;
 use std::fs;
 use std::io::Write;
@@ -141,7 +140,7 @@ fn files(name: &str) -> [PathBuf; 2] {
 
 /// Adds a folder if it is that of a run, and returns the folders beneath it otherwise.
 fn find(folder: &Path, found: &mut Vec<PathBuf>) -> Result<Vec<PathBuf>, GalleryError> {
-    if RunFolder::holds_run(folder) {
+    if holds_run(folder) {
         found.push(folder.to_owned());
         return Ok(Vec::new());
     }
@@ -173,24 +172,12 @@ fn entry(name: String, folder: PathBuf, recording: &Recording) -> GalleryEntry {
         name,
         title: recording.name.clone(),
         caption: caption(&recording.scene.text().text),
-        values: swept(&folder),
+        values: Sweep::values_of(&folder),
         t: trajectory.times().last().copied().unwrap_or_default(),
         vertices: trajectory.vertex_count(),
         summary: recording.summary.clone(),
         folder,
     }
-}
-
-/// The values of the keys of the sweep that a run belongs to; none if it belongs to none that can be read.
-fn swept(folder: &Path) -> Vec<(String, String)> {
-    let of_sweep = || {
-        let whole = folder.canonicalize().ok()?;
-        let table = Sweep::table_in(whole.parent()?).ok()??;
-        let name = whole.file_name()?.to_str()?;
-        let (_, values) = table.runs.into_iter().find(|(folder, _)| folder == name)?;
-        Some(table.keys.into_iter().zip(values).collect())
-    };
-    of_sweep().unwrap_or_default()
 }
 
 /// A run with its page and its picture.
@@ -204,9 +191,8 @@ impl Shown {
     /// Reads a run and makes both in a folder that is there, or says why that cannot be done.
     fn read(folder: &Path, out: &Path) -> Result<Self, String> {
         let words = |error: RunError| error.to_string();
-        let (mut recording, frames) = Recording::open(folder).map_err(words)?;
-        let page = page_of(&recording, &frames, out, &PageOptions::default());
-        recording.load(frames, folder).map_err(words)?;
+        let (recording, page) =
+            Recording::read_with_page(folder, out, &PageOptions::default()).map_err(words)?;
         let Some(last) = recording.trajectory.len().checked_sub(1) else {
             return Err("it has no frame yet".into());
         };

@@ -83,7 +83,7 @@ impl Advice for RecordedStepError {
 /// [`Summary::control`](super::Summary::control).
 ///
 /// ```
-/// use isosheet_io::run::{Recorder, RecorderOptions, RecordingEnd};
+/// use isosheet_runs::{Recorder, RecorderOptions, RecordingEnd};
 /// use isosheet_scenes::{LiveScene, Mesh, Scene, SceneFile, Sheet};
 /// use std::ops::ControlFlow;
 ///

@@ -1,7 +1,7 @@
 //! Shaded pictures of the frames of a run.
 
+use super::Viewpoint;
 use super::quantity::Quantity;
-use super::{Recording, Viewpoint};
 use isosheet_files::DataError;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Part, VertexId};
@@ -9,6 +9,7 @@ use isosheet_pictures::{
     Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, at_once, render_folded,
     strip,
 };
+use isosheet_runs::Recording;
 use isosheet_scenes::bounds;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -262,7 +263,7 @@ impl<'a> Film<'a> {
     }
 
     /// As many pictures as memory holds at a time, `most` at most.
-    pub(crate) fn at_once(&self, most: usize) -> Result<usize, PictureError> {
+    pub fn at_once(&self, most: usize) -> Result<usize, PictureError> {
         at_once(self.size(), most)
     }
 

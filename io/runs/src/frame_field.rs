@@ -11,9 +11,9 @@ use nalgebra::Point3;
 use std::borrow::Cow;
 
 /// A field whose values are made of each frame of a motion.
-pub(super) struct FrameField<'a> {
+pub struct FrameField<'a> {
     /// The field without values.
-    pub(super) head: Field,
+    pub head: Field,
     values: Box<Values<'a>>,
 }
 
@@ -67,7 +67,7 @@ impl<'a> FrameField<'a> {
     }
 
     /// The values in a frame of a motion.
-    pub(super) fn values(&self, frame: &MotionFrame<'_>) -> Vec<f64> {
+    pub fn values(&self, frame: &MotionFrame<'_>) -> Vec<f64> {
         (self.values)(frame)
     }
 

@@ -1,6 +1,6 @@
 //! One run of a gallery.
 
-use crate::run::Summary;
+use isosheet_runs::Summary;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 

@@ -16,19 +16,19 @@ const AT_LEAST: usize = 4;
 
 /// Where a scene that folds a pattern ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct FoldTrial {
+pub struct FoldTrial {
     /// How far creases are from their angles.
-    pub(crate) residual: FoldResidual,
+    pub residual: FoldResidual,
     /// The largest strain of an edge.
-    pub(crate) strain: f64,
+    pub strain: f64,
     /// The part of the folding that is done when panels first pass through each other.
-    pub(crate) passing: Option<f64>,
+    pub passing: Option<f64>,
 }
 
 impl FoldTrial {
     /// How far the end is from the folded shape of a sheet that does not stretch: the angles (radians, root of the mean
     /// square) and the largest strain together. A strain is an angle by which a face has the wrong form.
-    pub(crate) fn error(&self) -> f64 {
+    pub fn error(&self) -> f64 {
         self.residual.rms.to_radians().hypot(self.strain)
     }
 }
@@ -39,7 +39,7 @@ impl FoldTrial {
 ///
 /// # Errors
 /// [`SceneError`] if the scene cannot be built.
-pub(crate) fn folds_to(
+pub fn folds_to(
     file: &SceneFile,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<FoldTrial>, SceneError> {

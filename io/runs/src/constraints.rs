@@ -34,10 +34,11 @@ pub(super) fn bodies(scene: &Scene, times: &[f64], corners: [[f64; 3]; 2]) -> Ve
 /// A curve or a surface that holds vertices, as it is drawn. Curves are thin tubes; lines, planes and
 /// cylinders, which have no ends, are drawn as far as the sheet comes.
 #[derive(Debug)]
-pub(crate) struct HoldingBody {
+pub struct HoldingBody {
     /// The key of the support.
-    pub(crate) name: String,
-    pub(crate) shape: BodyShape,
+    pub name: String,
+    /// Its form.
+    pub shape: BodyShape,
     /// Where it is while displacements and angle of its motion are zero.
     local: Isometry3<f64>,
     /// The number of the support.
@@ -46,7 +47,7 @@ pub(crate) struct HoldingBody {
 
 impl HoldingBody {
     /// Those of a scene, whose sheet stays in the box between two corners.
-    pub(crate) fn all(scene: &Scene, corners: [[f64; 3]; 2]) -> Vec<Self> {
+    pub fn all(scene: &Scene, corners: [[f64; 3]; 2]) -> Vec<Self> {
         let space = Space::of(corners);
         let body = |(support, entry): (usize, &Support)| {
             let (local, shape) = match &entry.hold {
@@ -75,7 +76,7 @@ impl HoldingBody {
     }
 
     /// Where it is at time `t` (seconds) in its scene, in which its motion may have been changed since.
-    pub(crate) fn pose(&self, scene: &Scene, t: f64) -> Isometry3<f64> {
+    pub fn pose(&self, scene: &Scene, t: f64) -> Isometry3<f64> {
         let hold = scene.support.get(self.support).map(|s| &s.hold);
         let motion = match hold {
             Some(Hold::Curve { motion, .. } | Hold::Surface { motion, .. }) => frame_motion(motion),

@@ -1,7 +1,7 @@
 //! What came of a sheet that drapes, hangs or was crumpled, in words.
 
-use super::{EndReason, Recording, Summary};
 use isosheet_mesh::wording::counted;
+use isosheet_runs::{EndReason, Recording, Summary};
 use isosheet_scenes::bounds;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 

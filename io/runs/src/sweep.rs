@@ -261,6 +261,18 @@ impl Sweep {
         }
         Ok(Some(SweepTable::read(&path)?))
     }
+
+    /// The values of the keys of the sweep that a run belongs to; none if it belongs to none that can be read.
+    pub fn values_of(folder: &Path) -> Vec<(String, String)> {
+        let of_sweep = || {
+            let whole = folder.canonicalize().ok()?;
+            let table = Self::table_in(whole.parent()?).ok()??;
+            let name = whole.file_name()?.to_str()?;
+            let (_, values) = table.runs.into_iter().find(|(folder, _)| folder == name)?;
+            Some(table.keys.into_iter().zip(values).collect())
+        };
+        of_sweep().unwrap_or_default()
+    }
 }
 
 /// A path that does not depend on the current folder, as text for a line of shell.

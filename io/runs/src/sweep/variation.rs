@@ -11,7 +11,7 @@ use std::str::FromStr;
 /// names need no quotes. Commas inside of quotes, brackets and braces belong to a value.
 ///
 /// ```
-/// use isosheet_io::run::Variation;
+/// use isosheet_runs::Variation;
 /// let v: Variation = "forces.gravity=[0, 0, -9.81],[0, 0, -1.62]".parse()?;
 /// assert_eq!(v.key(), "forces.gravity");
 /// assert_eq!(v.values(), ["[0, 0, -9.81]", "[0, 0, -1.62]"]);

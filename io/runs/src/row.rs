@@ -5,7 +5,7 @@ use isosheet_dynamics::{SheetModel, Simulation, StepReport};
 use isosheet_formats::HistoryRow;
 
 /// The row of the state that a simulation starts at.
-pub(crate) fn row_of_start(simulation: &Simulation) -> HistoryRow {
+pub fn row_of_start(simulation: &Simulation) -> HistoryRow {
     let state = simulation.state();
     let kinetic = simulation.model().kinetic_energy(&state.v);
     let total = simulation.energy();
@@ -22,11 +22,7 @@ pub(crate) fn row_of_start(simulation: &Simulation) -> HistoryRow {
 }
 
 /// The row of a step of a model in a run that started at an energy, joules.
-pub(crate) fn row_of_step(
-    report: &StepReport,
-    model: &SheetModel,
-    start_energy: f64,
-) -> HistoryRow {
+pub fn row_of_step(report: &StepReport, model: &SheetModel, start_energy: f64) -> HistoryRow {
     let total = report.hamiltonian();
     HistoryRow {
         t: report.t,

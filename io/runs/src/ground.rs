@@ -18,7 +18,7 @@ impl Recording {
     /// The height of the ground, metres, below all that a run shows at some times: the sheet, which is in the
     /// box between two corners, and its bodies. None where the scene has no gravity along z, and so no side
     /// that is below, or a half-space, which is a floor, a wall or a slope.
-    pub(super) fn ground(&self, times: &[f64], [low, high]: [[f64; 3]; 2]) -> Option<f64> {
+    pub fn ground(&self, times: &[f64], [low, high]: [[f64; 3]; 2]) -> Option<f64> {
         let gravity = self.scene.scene().forces.gravity?;
         let is_down = gravity[0] == 0.0 && gravity[1] == 0.0 && gravity[2] < 0.0;
         let is_plane = |body: &Obstacle| matches!(body.shape(), Shape::HalfSpace);

@@ -26,13 +26,11 @@
 //! A [`Recorder`] writes the same folder of a simulation whose steps a program takes.
 //!
 //! A [`Sweep`] makes many runs of one scene, and [`Collection`] makes one table of their summaries.
-//! With the feature `picture` a `Gallery` is one page of many runs.
 
-#[cfg(feature = "cli")]
-mod action_verdict;
 mod balance;
 mod checkpoint;
 mod collect;
+mod coloured;
 mod commit;
 mod constraints;
 mod control;
@@ -43,18 +41,12 @@ mod error;
 mod estimate;
 mod extend;
 mod extension_error;
-#[cfg(feature = "picture")]
-mod film;
-#[cfg(feature = "picture")]
-mod film_encoder;
 mod flat_vertex;
 mod fold_order;
 mod fold_verdict;
 mod folder;
 mod frame_field;
 mod frames;
-#[cfg(feature = "picture")]
-mod gallery;
 mod ground;
 mod held_open;
 mod incidence;
@@ -62,8 +54,6 @@ mod intervention;
 mod last_change;
 mod page;
 mod passing;
-#[cfg(feature = "picture")]
-mod quantity;
 mod recorder;
 mod recording;
 mod replay;
@@ -76,40 +66,30 @@ mod steps;
 mod summary;
 mod sweep;
 mod time_error;
-#[cfg(feature = "cli")]
 mod trial;
 mod vibration;
-#[cfg(feature = "picture")]
-mod viewpoint;
 mod warning;
 mod watch;
 mod writer;
 
-#[cfg(feature = "cli")]
-pub(crate) use action_verdict::ActionVerdict;
 pub use balance::ForceBalance;
 pub use collect::Collection;
 pub use commit::note_commit;
-#[cfg(feature = "cli")]
-pub(crate) use constraints::HoldingBody;
+pub use constraints::HoldingBody;
 pub use elastic::{Bend, BendAtRest, ElasticSummary};
 pub use energy::EnergySummary;
 pub use error::RunError;
 pub use estimate::Estimate;
 pub use extend::extend_folder;
 pub use extension_error::ExtensionError;
-#[cfg(feature = "picture")]
-pub use film::{Film, FilmOptions, Marks};
-#[cfg(feature = "picture")]
-pub use film_encoder::FilmError;
 pub use flat_vertex::UnfoldableVertex;
 pub use fold_order::{FoldOrder, GroupFold};
 pub use fold_verdict::{FoldVerdict, FoldedCrease};
-pub use folder::{SceneHash, holds_other_files, remove_unfinished, run_of_file};
-#[cfg(feature = "cli")]
-pub(crate) use folder::{check_folder, check_run};
-#[cfg(feature = "picture")]
-pub use gallery::{Gallery, GalleryEntry, GalleryError};
+pub use folder::{
+    Existing, SceneHash, check_folder, check_run, holds_other_files, holds_run, remove_unfinished,
+    run_of_file,
+};
+pub use frame_field::FrameField;
 pub use held_open::TouchingFaces;
 pub use incidence::Incidence;
 pub use intervention::Intervention;
@@ -117,22 +97,17 @@ pub use page::write_page;
 pub use recorder::{ExistingRun, RecordedStepError, Recorder, RecorderOptions, RecordingEnd};
 pub use recording::Recording;
 pub use replay::{measure_series, replay_of};
-#[cfg(feature = "cli")]
-pub(crate) use row::row_of_step;
+pub use row::row_of_step;
 pub use rulings::RecordedRulings;
 pub use series_body::series_body;
 pub use summary::{EndReason, Ending, Measured, SheetPlace, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation};
 pub use time_error::TimeError;
-#[cfg(feature = "cli")]
-pub(crate) use trial::{FoldTrial, folds_to};
+pub use trial::{FoldTrial, folds_to};
 pub use vibration::Vibration;
-#[cfg(feature = "picture")]
-pub use viewpoint::Viewpoint;
 pub use watch::{Beginning, StepPart, Tick, TraceSink, Watch};
 
 use checkpoint::{RunProgress, StepsBy};
-pub(crate) use folder::Existing;
 use folder::{FolderState, RunFolder, RunInputs, stored_scene};
 use frames::{FrameShape, StoredFrames};
 use isosheet_files::{FileError, read_json, write_json};
@@ -141,7 +116,7 @@ use isosheet_page::PageOptions;
 use isosheet_scenes::{Kept, SceneFile, Setup, UnderWay};
 use page::write_page_of;
 use recording::RunFrames;
-pub(crate) use row::row_of_start;
+pub use row::row_of_start;
 use rulings::RuledFrames;
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
@@ -165,7 +140,7 @@ pub enum Outcome {
 /// Runs a scene in a folder, from the last checkpoint if there is one.
 ///
 /// ```
-/// use isosheet_io::run::{Outcome, simulate};
+/// use isosheet_runs::{Outcome, simulate};
 /// use isosheet_scenes::{Mesh, Scene, SceneFile, Sheet};
 /// use std::ops::ControlFlow;
 ///
@@ -552,3 +527,8 @@ fn write_page_before(
         other => other.map(drop),
     }
 }
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
