@@ -71,34 +71,6 @@ const NEXT_PART: f64 = 4.0;
 /// # }
 /// ```
 ///
-/// # In a chart
-/// The explicit methods in a chart, the paper's among them, take the geometry and answer with impulses in
-/// place of the barrier ([`isosheet_dynamics::chart::ChartSimulation::with_contact`]):
-///
-/// ```
-/// # use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
-/// # use isosheet_coords::{CartesianChart, Choice, RodSystem};
-/// # use isosheet_dynamics::chart::ChartOptions;
-/// # use isosheet_dynamics::{SheetModel, Simulation, State};
-/// # use isosheet_mesh::{MassKind, generate};
-/// # use nalgebra::Isometry3;
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let sheet = generate::strip(2, 0.4, 0.2, generate::Diagonals::UnionJack)?;
-/// let model = SheetModel::new(&sheet, 0.01, MassKind::Lumped)?.with_gravity();
-/// let floor = Obstacle::fixed(Shape::HalfSpace, Isometry3::translation(0.0, 0.0, -0.01))?;
-/// let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?
-///     .with_body(floor, Coefficients::equal(0.3))?;
-/// let chart = CartesianChart::new(RodSystem::new(&sheet, &[])?, Choice::Auto, sheet.positions())?;
-/// let options = ChartOptions { restitution: 0.5, ..ChartOptions::default() };
-/// let start = State::at_rest(sheet.positions().to_vec());
-/// let mut simulation =
-///     Simulation::in_chart(model, start, Box::new(chart), options)?.with_contact(contacts)?;
-/// let report = simulation.step(0.1)?;
-/// assert!(report.gap.is_some_and(|gap| gap > 0.0) && report.friction > 0.0);
-/// # Ok(())
-/// # }
-/// ```
-///
 /// # What repels what
 /// Every gap `g`, a distance less the thickness that counts there, has a potential below the activation distance
 /// `d`: `-kappa (1 - z)^2 ln z` with `z = (g / d)^2` and the stiffness `kappa` ([`ContactOptions`]). Gaps are:
@@ -540,11 +512,6 @@ impl Contact for Contacts {
 
     fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>) {
         out.extend(self.bodies.iter().map(|b| b.motion_over(span)));
-    }
-
-    fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64> {
-        let body = &self.bodies[body as usize];
-        body.obstacle().velocity(t, place)
     }
 
     fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {

@@ -2,8 +2,6 @@
 //! and 0.1 kg held at a corner, in mid-fall.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
-use isosheet_coords::{CartesianChart, Choice, RodSystem};
-use isosheet_dynamics::chart::{ChartMethod, ChartOptions, ChartStepControl, MassSolverKind};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use std::f64::consts::PI;
@@ -80,45 +78,6 @@ fn assembly(c: &mut Criterion) {
     group.finish();
 }
 
-/// Explicit steps in a chart of well-chosen Cartesian coordinates. The choice is dense and takes seconds at
-/// the largest size.
-fn chart_steps(c: &mut Criterion) {
-    let mut group = c.benchmark_group("step in a chart");
-    let h = 1e-5;
-    for (level, size) in &SIZES[..3] {
-        let (sheet, state) = falling(*level);
-        for (name, method) in [
-            ("Runge-Kutta 4", ChartMethod::RungeKutta4),
-            ("forward Euler", ChartMethod::ForwardEuler),
-        ] {
-            for (solver, kind) in [
-                ("saddle", MassSolverKind::Saddle),
-                ("dense LU", MassSolverKind::DenseLu),
-                ("Cramer's rule", MassSolverKind::Cramer),
-            ] {
-                let system = RodSystem::new(&sheet, &[corner(*level)]).expect("valid");
-                if kind == MassSolverKind::Cramer && system.dof() > 40 {
-                    continue;
-                }
-                let chart = CartesianChart::new(system, Choice::Auto, &state.x).expect("a chart");
-                let options = ChartOptions {
-                    method,
-                    solver: kind,
-                    control: ChartStepControl::Fixed(h),
-                    ..Default::default()
-                };
-                let model = model(&sheet, *level, MassKind::Lumped);
-                let run = Simulation::in_chart(model, state.clone(), Box::new(chart), options);
-                let mut run = run.expect("a regular state");
-                let id = BenchmarkId::new(format!("{name}, {solver}"), size);
-                // So short that thousands of them stay in mid-fall.
-                group.bench_function(id, |b| b.iter(|| black_box(run.step(h).ok())));
-            }
-        }
-    }
-    group.finish();
-}
-
 fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     for (level, size) in SIZES {
@@ -170,6 +129,6 @@ criterion_group! {
         .sample_size(10)
         .warm_up_time(Duration::from_millis(100))
         .measurement_time(Duration::from_millis(500));
-    targets = assembly, steps, chart_steps
+    targets = assembly, steps
 }
 criterion_main!(benches);

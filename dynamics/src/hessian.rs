@@ -32,14 +32,14 @@ pub trait CouplingSink {
     fn add(&mut self, a: u32, b: u32, block: &Matrix3<f64>);
 }
 
-/// Receives blocks of both kinds.
-pub(crate) trait BlockSink: HessianSink + CouplingSink {}
+/// Receives blocks of both kinds: of edges and named pairs, and of any pair.
+pub trait BlockSink: HessianSink + CouplingSink {}
 
 impl<S: HessianSink + CouplingSink + ?Sized> BlockSink for S {}
 
 /// Which part of second derivatives enters a Hessian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum HessianPart {
+pub enum HessianPart {
     /// All of them.
     Full,
     /// A positive semidefinite part, where there is one.
@@ -48,12 +48,17 @@ pub(crate) enum HessianPart {
     Certain,
 }
 
-/// Adds `scale` times the product of a Hessian and a vector to another vector.
-pub(crate) struct HessianProduct<'a> {
+/// A sink that adds `scale` times the product of a Hessian and a vector to another vector.
+#[derive(Debug)]
+pub struct HessianProduct<'a> {
+    /// The edges of the sheet.
     pub(crate) edges: &'a [[usize; 2]],
-    pub(crate) scale: f64,
-    pub(crate) vector: &'a [f64],
-    pub(crate) product: &'a mut [f64],
+    /// The factor.
+    pub scale: f64,
+    /// The vector, `3V`.
+    pub vector: &'a [f64],
+    /// What the product is added to, `3V`.
+    pub product: &'a mut [f64],
 }
 
 impl HessianProduct<'_> {

@@ -11,7 +11,9 @@
 //! | [`Method::EnergyMomentum`] | 2 | conserved | unloaded ones | LU, `3V + E` unknowns |
 //! | [`Method::Rattle`] | 2 | bounded error | unloaded ones | LU, `3V + E` unknowns |
 //! | [`Method::RattleComposition`] | 4 | bounded error | unloaded ones | LU, `3V + E` unknowns |
-//! | [`Simulation::in_chart`]: the paper's scheme and relatives | 1 or 4 | | no | see [`chart`] |
+//!
+//! The paper's own scheme, in system coordinates, is an [engine](engine::Engine) from outside, in the crate
+//! `isosheet-charts`.
 //!
 //! # Singular states
 //!
@@ -43,24 +45,21 @@
 //!
 //! SI units; positions, velocities and forces are slices of length `3V`; gravity acts along -z. Length
 //! constraints are `c_e = (|x_a - x_b|^2 - l_e^2) / 2` with Jacobian `G`; positive rod multipliers are
-//! tensions in [`chart`], BDF2 and implicit Euler.
+//! tensions in BDF2 and implicit Euler.
 //!
 //! # Contact and supports
 //!
 //! [`Simulation::with_contact`] takes a [`contact::Contact`], a barrier potential, for BDF2 and implicit
-//! Euler; in a chart contact acts by impulses
-//! ([`ChartSimulation::with_contact`](chart::ChartSimulation::with_contact)). Supports are pins, moving pins
+//! Euler. Supports are pins, moving pins
 //! ([`SheetModel::with_moving_pin`]), and curves and surfaces ([`SheetModel::with_constraint`]; one-sided
 //! ones for the damped methods only). Their forces are [`Simulation::reactions`].
-#![doc = include_str!("paper.md")]
 
-pub mod chart;
 mod conservative;
 pub mod constraint;
 pub mod contact;
 mod damped;
 mod diagnosis;
-mod engine;
+pub mod engine;
 mod hessian;
 mod linear;
 mod material;
@@ -74,7 +73,7 @@ mod rigid_body;
 mod run;
 mod state;
 mod step;
-mod term;
+pub mod term;
 mod vectors;
 
 pub use conservative::energy_momentum::EnergyMomentumOptions;
@@ -100,7 +99,6 @@ pub use material::plate_bending::{
 pub use material::stiffening::Stiffening;
 pub use material::{Directions, Isotropic, Material, NamedMaterial, Orthotropic, UnknownMaterial};
 pub use model::air::{Air, AirError, Wind};
-pub use model::attached::{AttachedFlow, AttachedFlowError};
 pub use model::clamps::ClampAcrossMesh;
 pub use model::edge_moment::EdgeMoment;
 pub use model::elastic_deformation::ElasticDeformation;
@@ -121,8 +119,8 @@ pub use motion::{
 };
 pub use options::OptionsError;
 pub use potential::{
-    At, CouplingKind, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape, Reached,
-    Settled,
+    At, CouplingKind, Force, Gravity, Limited, MaterialReport, Memories, PAPER_GRAVITY, Potential,
+    PotentialShape, Reached, Remembering, Settled,
 };
 pub use report::checkpoint_error::CheckpointError;
 pub use report::effort::StepProgress;

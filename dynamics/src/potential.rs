@@ -1,6 +1,8 @@
 //! Potential energies (Liu, Tang and Joneja 2007, Eq. 1).
 
 use crate::hessian::HessianSink;
+use crate::report::checkpoint_error::CheckpointError;
+use crate::report::step_error::StepError;
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
@@ -14,7 +16,7 @@ pub struct At<'a> {
     pub t: f64,
     /// Positions, `3V`, metres.
     pub x: &'a [f64],
-    /// What the potential remembers, see [`Potential::memory`]; empty for most.
+    /// What the potential remembers, see [`Remembering`]; empty for most.
     pub memory: &'a [f64],
 }
 
@@ -92,81 +94,6 @@ pub trait Potential: Debug + Send + Sync {
         false
     }
 
-    /// Adds the energy of bending of each face (joules) to `faces`, for reports that compare it with that of
-    /// stretching ([`ElasticDeformation`](crate::ElasticDeformation)). The default adds none.
-    fn add_bending_energies(&self, _at: At<'_>, _faces: &mut [f64]) {}
-
-    /// What the energy depends on besides time and positions, as it is at the start: plastic deformations, for
-    /// instance. A simulation keeps it, and its length never changes. The default has none.
-    fn memory(&self) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// Whether its memory is that of a material that yields. Such potentials are for methods that minimise
-    /// them (BDF2, implicit Euler).
-    fn can_yield(&self) -> bool {
-        false
-    }
-
-    /// Makes a memory that of a state at which a simulation starts.
-    fn start(&self, _state: Reached<'_>, _memory: &mut [f64]) {}
-
-    /// Makes a memory that of the state at which a step has ended; what that does to the energy. It changes
-    /// no force at the state, and as the energy before it is that of the step, nothing is dissipated where a
-    /// step is refused.
-    fn settle(&self, _state: Reached<'_>, _memory: &mut [f64]) -> Settled {
-        Settled::default()
-    }
-
-    /// The edges at which it can yield, with the plastic angles that stay there by a memory, radians, positive
-    /// for valleys. The default has none.
-    fn plastic_angles(&self, _memory: &[f64]) -> Vec<(EdgeId, f64)> {
-        Vec::new()
-    }
-
-    /// The edges that are creases in a sheet that bends, with the bend of the faces beside each, which its fold
-    /// angle includes, radians, positive for valleys. The default has none.
-    fn bends_at_creases(&self, _at: At<'_>) -> Vec<(EdgeId, f64)> {
-        Vec::new()
-    }
-
-    /// The faces on which it can yield, with the plastic curvature that stays there by a memory, 1/m, the first
-    /// axis along the first edge of the face, positive where the sheet is a valley as seen from the side from
-    /// which faces are counter-clockwise. The default has none.
-    fn plastic_curvatures(&self, _memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
-        Vec::new()
-    }
-
-    /// The moments (newton metres, in space) by which clamps that it knows hold slopes of the sheet, one for each
-    /// of its clamps. The default has none.
-    fn clamp_moments(&self, _at: At<'_>) -> Vec<[f64; 3]> {
-        Vec::new()
-    }
-
-    /// Whether displacements are bounded: whether the energy is infinite beyond a limit.
-    fn has_limit(&self) -> bool {
-        false
-    }
-
-    /// Largest part of the displacement `dx` (`3V`, metres), at most one, that is proven to stay within the
-    /// limit.
-    fn safe_part(&self, _at: At<'_>, _dx: &[f64]) -> f64 {
-        1.0
-    }
-
-    /// Whether the energy at positions `end` is within the limit, of a displacement from where it is, whatever
-    /// the way.
-    fn stays_within(&self, _at: At<'_>, _end: &[f64]) -> bool {
-        true
-    }
-
-    /// Adds `scale` times what is of second order in the displacement `dx` (`3V`, metres) and can be taken
-    /// back by a displacement of second order, such as the strain of faces that turn, to the gradient at its
-    /// start; whether there is any. The steps of potentials that have it are curved.
-    fn add_second_order(&self, _at: At<'_>, _dx: &[f64], _scale: f64, _out: &mut [f64]) -> bool {
-        false
-    }
-
     /// Size of the round-off in an energy (joules) where the coordinates are of the given size (metres),
     /// joules, if it is more than that of the energy itself.
     fn round_off(&self, _size: f64, _energy: f64) -> f64 {
@@ -177,31 +104,143 @@ pub trait Potential: Debug + Send + Sync {
     fn shape(&self) -> PotentialShape {
         PotentialShape::General
     }
+
+    /// The limit beyond which the energy is infinite, of a potential that has one. The default has none.
+    fn limit(&self) -> Option<&dyn Limited> {
+        None
+    }
+
+    /// What the energy depends on besides time and positions, of a potential that remembers. The default does not.
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        None
+    }
+
+    /// What it tells of its material, of a potential that bends or creases. The default tells nothing.
+    fn report(&self) -> Option<&dyn MaterialReport> {
+        None
+    }
 }
 
-/// What each of the potentials of a model remembers ([`Potential::memory`]), in the order of
+/// A potential whose energy is infinite beyond a limit, such as that of the strain of an elastic sheet: the methods keep
+/// every iterate within it. For BDF2 and implicit Euler.
+pub trait Limited {
+    /// Whether what is prescribed leaves a place within the limit at a time and positions, such as lengths that grow by
+    /// themselves. The default says so.
+    ///
+    /// # Errors
+    /// [`StepError`], such as [`StepError::Refused`].
+    fn check(&self, _at: At<'_>) -> Result<(), StepError> {
+        Ok(())
+    }
+
+    /// Largest part of the displacement `dx` (`3V`, metres), at most one, that is proven to stay within the
+    /// limit.
+    fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64;
+
+    /// Whether the energy at positions `end` is within the limit, of a displacement from where it is, whatever
+    /// the way.
+    fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool;
+
+    /// Adds `scale` times what is of second order in the displacement `dx` (`3V`, metres) and can be taken
+    /// back by a displacement of second order, such as the strain of faces that turn, to the gradient at its
+    /// start; whether there is any. The steps of potentials that have it are curved. The default has none.
+    fn add_second_order(&self, _at: At<'_>, _dx: &[f64], _scale: f64, _out: &mut [f64]) -> bool {
+        false
+    }
+}
+
+/// A potential whose energy depends on more than time and positions: on plastic deformations, or on the way of what it
+/// holds. A simulation keeps the memory, and hands it over as [`At::memory`].
+pub trait Remembering {
+    /// The memory before anything has happened. Its length never changes.
+    fn memory(&self) -> Vec<f64>;
+
+    /// Makes a memory that of a state at which a simulation starts. The default leaves it.
+    fn start(&self, _state: Reached<'_>, _memory: &mut [f64]) {}
+
+    /// Makes a memory that of the state at which a step has ended; what that does to the energy. It changes
+    /// no force at the state, and as the energy before it is that of the step, nothing is dissipated where a
+    /// step is refused. The default leaves it.
+    fn settle(&self, _state: Reached<'_>, _memory: &mut [f64]) -> Settled {
+        Settled::default()
+    }
+
+    /// Whether the memory is that of a material that yields. Such potentials are for methods that minimise
+    /// them (BDF2, implicit Euler). The default says no.
+    fn can_yield(&self) -> bool {
+        false
+    }
+
+    /// The vertex that the potential holds, of one that may come and go in the course of a run: then its memory is handed
+    /// on by this vertex, and else by the order of the potentials. The default holds none.
+    fn held_vertex(&self) -> Option<VertexId> {
+        None
+    }
+}
+
+/// What a potential that bends or creases tells of its material, for reports alone. The defaults tell nothing.
+pub trait MaterialReport {
+    /// Adds the energy of bending of each face (joules) to `faces`, for reports that compare it with that of
+    /// stretching ([`ElasticDeformation`](crate::ElasticDeformation)).
+    fn add_bending_energies(&self, _at: At<'_>, _faces: &mut [f64]) {}
+
+    /// The edges that are creases in a sheet that bends, with the bend of the faces beside each, which its fold
+    /// angle includes, radians, positive for valleys.
+    fn bends_at_creases(&self, _at: At<'_>) -> Vec<(EdgeId, f64)> {
+        Vec::new()
+    }
+
+    /// The edges at which it can yield, with the plastic angles that stay there by a memory, radians, positive
+    /// for valleys.
+    fn plastic_angles(&self, _memory: &[f64]) -> Vec<(EdgeId, f64)> {
+        Vec::new()
+    }
+
+    /// The faces on which it can yield, with the plastic curvature that stays there by a memory, 1/m, the first
+    /// axis along the first edge of the face, positive where the sheet is a valley as seen from the side from
+    /// which faces are counter-clockwise.
+    fn plastic_curvatures(&self, _memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
+        Vec::new()
+    }
+
+    /// The moments (newton metres, in space) by which clamps that it knows hold slopes of the sheet, one for each
+    /// of its clamps.
+    fn clamp_moments(&self, _at: At<'_>) -> Vec<[f64; 3]> {
+        Vec::new()
+    }
+}
+
+/// What is counted where a checkpoint does not fit.
+const REMEMBERED: &str = "what potentials remember";
+
+/// What each of the potentials of a model remembers ([`Remembering::memory`]), in the order of
 /// [`SheetModel::potentials`](crate::SheetModel::potentials).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Memories {
     lists: Vec<Vec<f64>>,
-    /// The vertices that hands hold, with the numbers of the potentials of these hands.
-    hands: Vec<(u32, usize)>,
+    /// The vertices that potentials hold which may come and go, with the numbers of these potentials.
+    held: Vec<(u32, usize)>,
 }
 
 impl Memories {
-    pub(crate) fn of(lists: impl Iterator<Item = Vec<f64>>) -> Self {
-        Self {
-            lists: lists.collect(),
-            hands: Vec::new(),
+    /// Of potentials before anything has happened.
+    pub(crate) fn of<'a>(potentials: impl Iterator<Item = &'a dyn Potential>) -> Self {
+        let mut all = Self::default();
+        for (number, potential) in potentials.enumerate() {
+            let remembering = potential.remembering();
+            all.lists
+                .push(remembering.map_or_else(Vec::new, Remembering::memory));
+            let vertex = remembering.and_then(Remembering::held_vertex);
+            all.held.extend(vertex.map(|v| (v.0, number)));
         }
+        all
     }
 
-    /// With hands at these vertices, given with the numbers of their potentials.
-    pub(crate) fn with_hands(self, hands: impl Iterator<Item = (u32, usize)>) -> Self {
-        Self {
-            hands: hands.collect(),
-            ..self
-        }
+    #[cfg(test)]
+    pub(crate) fn of_lists(lists: impl IntoIterator<Item = Vec<f64>>) -> Self {
+        let lists = lists.into_iter().collect();
+        let held = Vec::new();
+        Self { lists, held }
     }
 
     pub(crate) fn lists_mut(&mut self) -> &mut [Vec<f64>] {
@@ -221,47 +260,52 @@ impl Memories {
     /// Takes over other memories of the same model, in place.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.lists.clone_from(&other.lists);
-        self.hands.clone_from(&other.hands);
+        self.held.clone_from(&other.held);
     }
 
-    /// Takes over the memories of another model of the same sheet: of hands by their vertices, which may have
-    /// come and gone, and of other potentials that remember by their order.
+    /// Takes over the memories of another model of the same sheet: of potentials that come and go by the vertices that
+    /// they hold, and of others by their order.
     ///
     /// # Errors
-    /// The numbers of numbers, found and expected, where they are not those of this model.
-    pub(crate) fn take_over(&mut self, other: &Self) -> Result<(), [usize; 2]> {
-        let hands = self
-            .hands
-            .iter()
-            .enumerate()
-            .filter_map(|(k, (vertex, own))| {
-                // The second hand at a vertex goes on from the second one.
-                let rank = self.hands[..k].iter().filter(|(v, _)| v == vertex).count();
-                let (_, theirs) = other.hands.iter().filter(|(v, _)| v == vertex).nth(rank)?;
-                Some((*own, *theirs))
-            });
+    /// [`CheckpointError::Length`] where there are not as many as this model remembers.
+    pub fn take_over(&mut self, other: &Self) -> Result<(), CheckpointError> {
+        let held = self.held.iter().enumerate();
+        let held = held.filter_map(|(k, (vertex, own))| {
+            // The second one at a vertex goes on from the second one.
+            let rank = self.held[..k].iter().filter(|(v, _)| v == vertex).count();
+            let (_, theirs) = other.held.iter().filter(|(v, _)| v == vertex).nth(rank)?;
+            Some((*own, *theirs))
+        });
         let others = self.lasting().zip(other.lasting());
         let [found, expected] = [other, &*self].map(|m| m.lasting().count());
-        let pairs: Vec<(usize, usize)> = hands.chain(others).collect();
+        let pairs: Vec<(usize, usize)> = held.chain(others).collect();
         if found != expected {
-            return Err([found, expected]);
+            return Err(CheckpointError::Length {
+                what: REMEMBERED,
+                found,
+                expected,
+            });
         }
         for (own, theirs) in pairs {
             let kept = other.lists.get(theirs).map_or(&[][..], Vec::as_slice);
             let own = &mut self.lists[own];
             if kept.len() != own.len() {
-                return Err([kept.len(), own.len()]);
+                return Err(CheckpointError::Length {
+                    what: REMEMBERED,
+                    found: kept.len(),
+                    expected: own.len(),
+                });
             }
             own.copy_from_slice(kept);
         }
         Ok(())
     }
 
-    /// The numbers of the potentials that remember, without hands.
+    /// The numbers of the potentials that remember and last.
     fn lasting(&self) -> impl Iterator<Item = usize> {
-        let is_hand = |number: &usize| self.hands.iter().any(|(_, n)| n == number);
+        let goes = |number: &usize| self.held.iter().any(|(_, n)| n == number);
         let remembering = (0..self.lists.len()).filter(|n| !self.lists[*n].is_empty());
-        remembering.filter(move |n| !is_hand(n))
+        remembering.filter(move |n| !goes(n))
     }
 }
 
@@ -295,64 +339,24 @@ impl<P: Potential + ?Sized> Potential for Arc<P> {
         (**self).is_driven()
     }
 
-    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
-        (**self).add_bending_energies(at, faces);
-    }
-
-    fn memory(&self) -> Vec<f64> {
-        (**self).memory()
-    }
-
-    fn can_yield(&self) -> bool {
-        (**self).can_yield()
-    }
-
-    fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
-        (**self).start(state, memory);
-    }
-
-    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
-        (**self).settle(state, memory)
-    }
-
-    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
-        (**self).plastic_angles(memory)
-    }
-
-    fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
-        (**self).bends_at_creases(at)
-    }
-
-    fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
-        (**self).plastic_curvatures(memory)
-    }
-
-    fn clamp_moments(&self, at: At<'_>) -> Vec<[f64; 3]> {
-        (**self).clamp_moments(at)
-    }
-
-    fn has_limit(&self) -> bool {
-        (**self).has_limit()
-    }
-
-    fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
-        (**self).safe_part(at, dx)
-    }
-
-    fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
-        (**self).stays_within(at, end)
-    }
-
-    fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, out: &mut [f64]) -> bool {
-        (**self).add_second_order(at, dx, scale, out)
-    }
-
     fn round_off(&self, size: f64, energy: f64) -> f64 {
         (**self).round_off(size, energy)
     }
 
     fn shape(&self) -> PotentialShape {
         (**self).shape()
+    }
+
+    fn limit(&self) -> Option<&dyn Limited> {
+        (**self).limit()
+    }
+
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        (**self).remembering()
+    }
+
+    fn report(&self) -> Option<&dyn MaterialReport> {
+        (**self).report()
     }
 }
 

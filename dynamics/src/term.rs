@@ -1,24 +1,120 @@
-//! A summand of the objective of a damped step.
+//! The terms of the objective of a step: what BDF2 and implicit Euler minimise.
+//!
+//! A step of these methods minimises
+//!
+//! ```text
+//! Phi(x) = |x - x^|_M^2 / 2 + h^2 sum_k T_k(x)
+//! ```
+//!
+//! over the positions `x` at its end, with the effective step `h` and the positions `x^` where inertia alone leads. A
+//! potential is a term without further ado. Whatever depends on velocities, lags behind, or forbids positions is a
+//! [`Term`] of its own, which an [`ImplicitForce`] of the model makes: the drag of the air, a wake, a barrier.
 
 use crate::State;
-use crate::hessian::{BlockSink, HessianPart, HessianProduct};
+pub use crate::hessian::{BlockSink, CouplingSink, HessianPart, HessianProduct};
 use crate::potential::{Force, Memories};
-use isosheet_coords::linalg::LinalgError;
-use isosheet_mesh::VertexId;
+pub use crate::report::step_error::Refused;
+use crate::report::step_error::StepError;
+use crate::report::trace::Cut;
+use std::any::Any;
 use std::sync::Arc;
 
-/// A summand of what a damped step minimises: inertia, the potentials, contact, the air.
+/// A summand of what a step of BDF2 or implicit Euler minimises.
 ///
-/// A term has its energy with gradient and Hessian, and where it needs them the largest part of a displacement
-/// that it allows, a correction of second order, quantities that lag behind the iterates, and what it
-/// exchanged in the step. It keeps nothing that a later step depends on: [`Term::begin`] forgets the step
-/// before.
-pub(crate) trait Term: Send {
+/// A term has an energy with gradient and Hessian. Where it needs them, it also has the largest part of a displacement
+/// that it allows, a correction of second order, quantities that lag behind the iterates, and the energy that it
+/// exchanged in the step. It keeps nothing that a later step depends on: [`Term::begin`] forgets the step before. What
+/// has to be remembered from step to step is the [memory](crate::potential::Remembering) of a potential.
+///
+/// A velocity force `-c v` of each vertex, for example, has the energy `h |x - y|^2 c / (2 h^2)` with the positions `y`
+/// of [`StepStart::rest`], as `v = (x - y) / h`:
+///
+/// ```
+/// use isosheet_dynamics::nalgebra::Matrix3;
+/// use isosheet_dynamics::term::{
+///     BlockSink, Exchange, HessianPart, ImplicitForce, Iterate, StepStart, Term, Value,
+/// };
+/// use isosheet_dynamics::{Force, StepError};
+/// use isosheet_mesh::VertexId;
+/// use std::sync::Arc;
+///
+/// /// The coefficient `c`, newton seconds per metre.
+/// #[derive(Clone, Debug)]
+/// struct Dashpots(f64);
+///
+/// impl Force for Dashpots {
+///     fn add_force(&self, _t: f64, _x: &[f64], v: &[f64], force: &mut [f64]) {
+///         force.iter_mut().zip(v).for_each(|(f, v)| *f -= self.0 * v);
+///     }
+/// }
+///
+/// impl ImplicitForce for Dashpots {
+///     fn term(&self, free: Arc<[bool]>) -> Box<dyn Term> {
+///         Box::new(InStep { of: self.clone(), free, rest: Vec::new(), h: 1.0 })
+///     }
+/// }
+///
+/// struct InStep {
+///     of: Dashpots,
+///     free: Arc<[bool]>,
+///     rest: Vec<f64>,
+///     h: f64,
+/// }
+///
+/// impl Term for InStep {
+///     fn begin(&mut self, step: &StepStart<'_>) -> Result<(), StepError> {
+///         self.rest = step.rest.to_vec();
+///         self.h = step.h;
+///         Ok(())
+///     }
+///
+///     fn value(&mut self, at: Iterate<'_>) -> Value {
+///         let squares = at.x.iter().zip(&self.rest).map(|(x, y)| (x - y) * (x - y));
+///         Value::of(0.5 * self.of.0 / self.h * squares.sum::<f64>())
+///     }
+///
+///     fn add_gradient(&mut self, at: Iterate<'_>, scale: f64, out: &mut [f64]) {
+///         for (out, (x, y)) in out.iter_mut().zip(at.x.iter().zip(&self.rest)) {
+///             *out += scale * self.of.0 / self.h * (x - y);
+///         }
+///     }
+///
+///     fn add_hessian(&mut self, at: Iterate<'_>, _part: HessianPart, sink: &mut dyn BlockSink) {
+///         let block = Matrix3::identity() * (self.of.0 / self.h);
+///         for v in 0..at.x.len() / 3 {
+///             sink.add_vertex(VertexId::from_index(v), &block);
+///         }
+///     }
+///
+///     fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
+///         let mut end = vec![0.0; at.x.len()];
+///         self.add_gradient(at, -1.0, &mut end);
+///         Ok(step.implicit_work(&self.of, &self.free, at.x, &mut end))
+///     }
+/// }
+/// ```
+pub trait Term: Any + Send {
+    /// Refuses a span of time, from its first second to its last, that cannot be stepped over from positions `x` (`3V`,
+    /// metres). A step asks before it begins, and again with the positions at its end and the time at its start. The
+    /// default takes all.
+    ///
+    /// # Errors
+    /// [`StepError`], such as [`StepError::Refused`].
+    fn check(&mut self, _span: [f64; 2], _x: &[f64]) -> Result<(), StepError> {
+        Ok(())
+    }
+
+    /// Whether what it prescribes rests from the first second to the last: then a sheet that finds no step locks, and has
+    /// not been moved where it cannot go. The default prescribes nothing.
+    fn rests(&mut self, _span: [f64; 2]) -> bool {
+        true
+    }
+
     /// Begins a step, or begins it anew.
     ///
     /// # Errors
-    /// [`Refusal`] if what acts in the step is not finite.
-    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal>;
+    /// [`StepError`], if what acts in the step is not finite for instance.
+    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), StepError>;
 
     /// The energy, infinite where the iterate is forbidden.
     fn value(&mut self, at: Iterate<'_>) -> Value;
@@ -30,10 +126,11 @@ pub(crate) trait Term: Send {
     fn add_hessian(&mut self, at: Iterate<'_>, part: HessianPart, sink: &mut dyn BlockSink);
 
     /// Appends the pairs of vertices, lower number first, that the Hessian couples at the iterate besides edges
-    /// and the pairs that potentials name; may append pairs twice and pairs that are edges.
+    /// and the pairs that potentials name; may append pairs twice and pairs that are edges. The default has none.
     fn append_couplings(&mut self, _at: Iterate<'_>, _out: &mut Vec<[u32; 2]>) {}
 
-    /// What cuts displacements, if anything does.
+    /// What cuts displacements, if anything does. The default has no barrier; a term that has one gives
+    /// [`Term::safe_part`].
     fn barrier(&self) -> Option<Barrier> {
         None
     }
@@ -64,7 +161,7 @@ pub(crate) trait Term: Send {
     }
 
     /// Adds `scale` times what a displacement of second order takes back of the displacement `dx`; whether
-    /// there is any, see [`Potential::add_second_order`](crate::Potential::add_second_order).
+    /// there is any, see [`Limited::add_second_order`](crate::Limited::add_second_order).
     fn add_second_order(
         &mut self,
         _at: Iterate<'_>,
@@ -103,16 +200,18 @@ pub(crate) trait Term: Send {
     /// What the term did in a step that ends at the iterate.
     ///
     /// # Errors
-    /// [`Refusal`] if the step must not end there.
-    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal>;
+    /// [`StepError`] if the step must not end there: it is then divided, or a remedy is looked for.
+    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError>;
 }
 
-/// A force that a damped step takes as a term of its objective, and all other methods as it is.
-pub(crate) trait ImplicitForce: Force {
-    /// The term, in a model with these vertices free.
+/// A force that BDF2 and implicit Euler take as a term of their objective, and all other methods as a [`Force`]. See
+/// [`SheetModel::with_implicit_force`](crate::SheetModel::with_implicit_force).
+pub trait ImplicitForce: Force {
+    /// The term, in a model with these vertices (`V`) free; the others are pinned.
     fn term(&self, free: Arc<[bool]>) -> Box<dyn Term>;
 
-    /// Whether it is the force of its term alone, and no method without such terms has a place for it.
+    /// Whether the force is that of its term alone, so that methods which do not minimise cannot have it. The default says
+    /// no.
     fn needs_minimising(&self) -> bool {
         false
     }
@@ -120,32 +219,35 @@ pub(crate) trait ImplicitForce: Force {
 
 /// What a step starts from: `x1 = y + h v1`, with `x^ = y + h (a v0 - b v_)` where inertia alone leads.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct StepStart<'a> {
-    pub(crate) state: &'a State,
+#[non_exhaustive]
+pub struct StepStart<'a> {
+    /// The state at the start.
+    pub state: &'a State,
     /// What the potentials remember.
-    pub(crate) memories: &'a Memories,
+    pub memories: &'a Memories,
     /// The state before, to which the formula reaches back.
-    pub(crate) before: Option<&'a State>,
+    pub before: Option<&'a State>,
     /// Length of the step, seconds.
-    pub(crate) span: f64,
+    pub span: f64,
     /// Effective step `h`, the root of the factor of the forces, seconds.
-    pub(crate) h: f64,
-    pub(crate) formula: Formula,
+    pub h: f64,
+    /// How far back the formula of the step reaches.
+    pub formula: Formula,
     /// `b` of `y = x0 + b (x0 - x_)` with the positions `x_` of the state before.
-    pub(crate) back: f64,
+    pub back: f64,
     /// `y`, `3V`, metres.
-    pub(crate) rest: &'a [f64],
+    pub rest: &'a [f64],
     /// `x^`, `3V`, metres.
-    pub(crate) prediction: &'a [f64],
+    pub prediction: &'a [f64],
     /// Positions that the velocities at the start lead to, with pins at the ends of their motions; `3V`,
     /// metres.
-    pub(crate) ahead: &'a [f64],
+    pub ahead: &'a [f64],
 }
 
 impl StepStart<'_> {
     /// Adds the velocities that the step is expected to end with (`3V`, metres per second): those at its start, and
     /// of a two-step formula the extrapolation of the last two, whose error is of second order.
-    pub(crate) fn add_velocity_ahead(&self, out: &mut [f64]) {
+    pub fn add_velocity_ahead(&self, out: &mut [f64]) {
         let now = self.state;
         let ratio = self.before.map_or(0.0, |b| self.span / (now.t - b.t));
         let before = self.before.unwrap_or(now);
@@ -155,7 +257,7 @@ impl StepStart<'_> {
     }
 
     /// Time at the end of the step, seconds.
-    pub(crate) fn t(&self) -> f64 {
+    pub fn t(&self) -> f64 {
         self.state.t + self.span
     }
 
@@ -163,7 +265,7 @@ impl StepStart<'_> {
     /// (`3V`, newtons): of implicit Euler with the force at the end, which balances the energy but for what the
     /// method dissipates; of a two-step formula by the trapezoidal rule with the force at the start, at the order
     /// of the formula.
-    pub(crate) fn implicit_work(
+    pub fn implicit_work(
         &self,
         force: &impl Force,
         free: &[bool],
@@ -188,7 +290,7 @@ impl StepStart<'_> {
 
 /// How far back the formula of a step reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Formula {
+pub enum Formula {
     /// To its start: implicit Euler.
     OneStep,
     /// To the step before: BDF2.
@@ -197,26 +299,29 @@ pub(crate) enum Formula {
 
 /// Where a term is evaluated: a time, positions (`3V`, metres), and what potentials remember.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Iterate<'a> {
-    pub(crate) t: f64,
-    pub(crate) x: &'a [f64],
-    pub(crate) memories: &'a Memories,
+pub struct Iterate<'a> {
+    /// Seconds.
+    pub t: f64,
+    /// Positions, `3V`, metres.
+    pub x: &'a [f64],
+    /// What the potentials of the model remember.
+    pub memories: &'a Memories,
 }
 
 /// An energy, and what it says about round-off.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Value {
+pub struct Value {
     /// Joules.
-    pub(crate) energy: f64,
+    pub energy: f64,
     /// Size of what was summed, joules.
-    pub(crate) size: f64,
+    pub size: f64,
     /// Energy that the round-off of positions makes besides, joules.
-    pub(crate) round_off: f64,
+    pub round_off: f64,
 }
 
 impl Value {
     /// An energy without cancellation.
-    pub(crate) fn of(energy: f64) -> Self {
+    pub fn of(energy: f64) -> Self {
         Self {
             energy,
             size: energy.abs(),
@@ -227,52 +332,57 @@ impl Value {
 
 /// What cuts displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Barrier {
+#[non_exhaustive]
+pub enum Barrier {
     /// Contact.
     Contact,
-    /// A limit of the strain.
+    /// A limit of the strain, which need not hold on the way of a displacement as long as it does at its end.
     StrainLimit,
+    /// Another one, by its name in [traces](crate::TraceEvent), that holds on the whole way.
+    Other(&'static str),
 }
 
-/// Why a term refuses a step.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Refusal {
-    /// A force is not finite.
-    NonFiniteForce {
-        vertex: VertexId,
-        value: f64,
-        t: f64,
-    },
-    /// The step would end in contact, with this gap (metres).
-    Contact { gap: f64 },
-    /// Loads that follow the sheet are not those of the end of the step, by so much of the largest.
-    UnsettledLoads { error: f64 },
-    /// A linear system has no solution.
-    Linalg(LinalgError),
+impl Barrier {
+    /// Whether it has to hold on the whole way of a displacement.
+    pub(crate) fn holds_on_the_way(self) -> bool {
+        self != Self::StrainLimit
+    }
+}
+
+impl From<Option<Barrier>> for Cut {
+    fn from(barrier: Option<Barrier>) -> Self {
+        match barrier {
+            None => Self::Nothing,
+            Some(Barrier::Contact) => Self::Contact,
+            Some(Barrier::StrainLimit) => Self::StrainLimit,
+            Some(Barrier::Other(name)) => Self::Barrier(name),
+        }
+    }
 }
 
 /// Energy exchanged in a step, joules.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Exchange {
+#[non_exhaustive]
+pub struct Exchange {
     /// Work of explicit forces.
-    pub(crate) work: f64,
+    pub work: f64,
     /// Work of all that is known to the accuracy of the trapezoidal rule only: bodies, supports, air.
-    pub(crate) driven: f64,
+    pub driven: f64,
     /// Sum of the magnitudes of these.
-    pub(crate) driven_size: f64,
+    pub driven_size: f64,
     /// Energy lost to friction; not negative.
-    pub(crate) friction: f64,
+    pub friction: f64,
     /// The same by the normal forces at the end of the step.
-    pub(crate) settled_friction: f64,
+    pub settled_friction: f64,
     /// Change of the energy of barriers.
-    pub(crate) stored: f64,
+    pub stored: f64,
     /// Energy that the tolerance of the lengths leaves open.
-    pub(crate) length_slack: f64,
+    pub length_slack: f64,
 }
 
 impl Exchange {
     /// Work known to the accuracy of the trapezoidal rule.
-    pub(crate) fn driven(work: f64) -> Self {
+    pub fn driven(work: f64) -> Self {
         Self {
             driven: work,
             driven_size: work.abs(),
@@ -281,7 +391,7 @@ impl Exchange {
     }
 
     /// Adds what others exchanged.
-    pub(crate) fn add(&mut self, other: Self) {
+    pub fn add(&mut self, other: Self) {
         self.work += other.work;
         self.driven += other.driven;
         self.driven_size += other.driven_size;

@@ -1,8 +1,9 @@
 //! Attached flow: flags that flutter, and a wing that glides.
 
+use isosheet_attached_flow::AttachedFlow;
 use isosheet_dynamics::{
-    Air, AttachedFlow, ElasticSheet, Method, PlateBending, PlateStiffness, RattleOptions,
-    SheetModel, Simulation, SimulationError, State,
+    Air, ElasticSheet, Method, PlateBending, PlateStiffness, RattleOptions, SheetModel, Simulation,
+    SimulationError, State,
 };
 use isosheet_mesh::{EdgeId, MassKind, MassMatrix, Sheet, VertexId, generate};
 use isosheet_tests::flag::{Flag, slender_threshold};
@@ -129,7 +130,7 @@ impl Glider {
                     trailing: topology.edge_ids().filter(is_rear).collect(),
                     rows: 40,
                 };
-                model.with_attached_flow(air, &flow).expect("a flow")
+                flow.around(model, air).expect("a flow")
             }
         };
         let v = [-ahead, 0.0, -down].repeat(topology.vertex_count());
@@ -204,10 +205,8 @@ fn methods_that_do_not_minimise_refuse_the_wake() {
         rows: 4,
     };
     let model = SheetModel::new(&sheet, 0.01, MassKind::Lumped).expect("mass");
-    let model = model
-        .with_attached_flow(Air::default(), &flow)
-        .expect("a flow");
+    let model = flow.around(model, Air::default()).expect("a flow");
     let start = State::at_rest(sheet.positions().to_vec());
     let refused = Simulation::new(model, start, Method::Rattle(RattleOptions::default()));
-    assert_eq!(refused.err(), Some(SimulationError::AttachedFlow));
+    assert_eq!(refused.err(), Some(SimulationError::NeedsMinimising));
 }

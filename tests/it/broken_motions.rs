@@ -1,11 +1,11 @@
 //! Prescribed motions whose function returns values that are not finite: the error names the body or pin, the
 //! time and the value.
 
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
-use isosheet_coords::{CartesianChart, Chart, Choice, RodSystem};
-use isosheet_dynamics::chart::{
+use isosheet_charts::{
     ChartDynamicsError, ChartMethod, ChartOptions, ChartSimulation, ChartStepControl,
 };
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_coords::{CartesianChart, Chart, Choice, RodSystem};
 use isosheet_dynamics::contact::{BodyMotionError, ContactError};
 use isosheet_dynamics::{
     Method, RigidMotion, SheetModel, Simulation, SimulationError, State, StepError, Support,
@@ -151,90 +151,6 @@ fn triangle() -> (SheetModel, State, Box<dyn Chart>, ChartOptions) {
         Box::new(chart.expect("regular")),
         options,
     )
-}
-
-#[test]
-fn a_pose_that_is_not_finite_ends_the_step_in_a_chart() {
-    let (model, start, chart, options) = triangle();
-    let contacts = contacts(&model, Shape::HalfSpace, breaking(-0.21, 2, f64::NAN));
-    let mut run = Simulation::in_chart(model, start, chart, options)
-        .and_then(|run| run.with_contact(contacts))
-        .expect("free");
-    let error = (0..10).find_map(|_| run.step(STEP).err());
-    let Some(StepError::Chart { source, t }) = error else {
-        panic!("{error:?}");
-    };
-    let ChartDynamicsError::Body(error) = *source else {
-        panic!("{source}");
-    };
-    assert_eq!((error.body, error.value.is_nan()), (1, true));
-    assert!(t < GOOD_UNTIL && error.t > GOOD_UNTIL && error.t < GOOD_UNTIL + 0.1 * STEP);
-    assert!(is_finite(run.state()));
-}
-
-/// Five-point differences ask for poses after the end of a step.
-#[test]
-fn a_velocity_that_is_not_finite_ends_the_step_in_a_chart() {
-    let (model, start, chart, options) = triangle();
-    // The pose at the end of the third step is the last one that is finite. The gap is within the activation
-    // distance from the start.
-    let last = 0.003;
-    let motion = move |t: f64| {
-        let z = if t > last + 1e-12 { f64::NAN } else { -5e-4 };
-        Isometry3::translation(0.0, 0.0, z)
-    };
-    let contacts = contacts(&model, Shape::HalfSpace, motion.into());
-    let mut run = ChartSimulation::from_state(model, chart, options, &start)
-        .expect("valid")
-        .with_contact(contacts)
-        .expect("free");
-    let error = (0..10).find_map(|_| run.step().err());
-    let Some(ChartDynamicsError::Body(error)) = error else {
-        panic!("{error:?}");
-    };
-    assert_eq!((error.body, error.value.is_nan()), (1, true));
-    assert!((error.t - last).abs() < 1e-12, "{error}");
-    assert!(run.positions().iter().all(|c| c.is_finite()));
-}
-
-/// A floor that rises against a falling triangle: the refused step has moved positions, momenta and contacts
-/// before the velocity of the floor is asked for.
-#[test]
-fn a_step_refused_in_its_impacts_leaves_a_chart_as_it_was() {
-    let (model, start, chart, options) = triangle();
-    let last = 0.003;
-    let motion = move |t: f64| {
-        let z = if t > last + 1e-12 {
-            f64::NAN
-        } else {
-            -5e-4 + 0.05 * t
-        };
-        Isometry3::translation(0.0, 0.0, z)
-    };
-    let contacts = contacts(&model, Shape::HalfSpace, motion.into());
-    let mut run = ChartSimulation::from_state(model, chart, options, &start)
-        .expect("valid")
-        .with_contact(contacts)
-        .expect("free");
-    for _ in 0..2 {
-        run.step().expect("accepted");
-    }
-    let state = |run: &ChartSimulation| {
-        (
-            run.contacts().cloned(),
-            [run.positions(), run.coordinates(), run.momenta()].map(<[f64]>::to_vec),
-            run.impulses().to_vec(),
-            [run.time(), run.hamiltonian()],
-            run.step_range(),
-        )
-    };
-    let before = state(&run);
-    assert!(!before.0.as_ref().expect("contact").list().is_empty());
-    assert!(!before.2.is_empty());
-    for _ in 0..2 {
-        assert!(matches!(run.step(), Err(ChartDynamicsError::Body(_))));
-        assert_eq!(state(&run), before);
-    }
 }
 
 #[test]

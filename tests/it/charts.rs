@@ -1,11 +1,9 @@
 //! Motion in system coordinates against chart-free motion.
 
 use crate::scenes::{bumped, corner, gap, hanging, pinned};
+use isosheet_charts::{ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind};
 use isosheet_coords::{
     AssignmentOptions, CartesianChart, Chart, Choice, FrontChart, RodSystem, assignment::Degenerate,
-};
-use isosheet_dynamics::chart::{
-    ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind,
 };
 use isosheet_dynamics::{Air, At, Method, Potential, Simulation, State, StepControl, StepOutcome};
 use std::sync::Arc;
@@ -31,7 +29,7 @@ fn front(level: u32) -> Box<dyn Chart> {
 
 fn in_chart(level: u32, chart: Box<dyn Chart>, options: ChartOptions) -> Simulation {
     let start = State::at_rest(bumped(level, BUMP).positions().to_vec());
-    Simulation::in_chart(pinned(level, BUMP), start, chart, options).expect("usable")
+    isosheet_charts::in_chart(pinned(level, BUMP), start, chart, options).expect("usable")
 }
 
 /// Positions after a tenth of a second by the fourth-order composition of RATTLE.
@@ -141,7 +139,7 @@ fn a_refused_step_that_has_rebased_leaves_everything_as_it_was() {
         let run = |is_broken: &Arc<AtomicBool>| {
             let model = pinned(1, BUMP).with_potential(Broken(Arc::clone(is_broken)));
             let start = State::at_rest(bumped(1, BUMP).positions().to_vec());
-            Simulation::in_chart(model, start, build(1), options).expect("usable")
+            isosheet_charts::in_chart(model, start, build(1), options).expect("usable")
         };
         let never = Arc::new(AtomicBool::new(false));
         let switch = Arc::new(AtomicBool::new(false));
@@ -180,7 +178,7 @@ fn drag_in_a_chart_is_that_of_damped_methods() {
         ..Default::default()
     };
     let mut run =
-        Simulation::in_chart(windy(), start.clone(), cartesian(1), options).expect("usable");
+        isosheet_charts::in_chart(windy(), start.clone(), cartesian(1), options).expect("usable");
     run.step(0.1).expect("accepted");
     let want = run.state().x.clone();
     // The wind moves the sheet by much more than the errors.

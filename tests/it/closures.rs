@@ -1,13 +1,13 @@
 //! Vertices constrained by closure equations in a chart.
 
 use crate::scenes::{corner, gap};
+use isosheet_charts::{
+    ChartDynamicsError, ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, Equations,
+    PositionUpdate,
+};
 use isosheet_coords::{
     AssignmentOptions, CartesianChart, Chart, ChartError, Choice, FrontChart, RodSystem,
     assignment::Degenerate,
-};
-use isosheet_dynamics::chart::{
-    ChartDynamicsError, ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, Equations,
-    PositionUpdate,
 };
 use isosheet_dynamics::constraint::{Circle, Plane, Side, Sphere};
 use isosheet_dynamics::{
@@ -139,7 +139,7 @@ fn reactions_of_a_hanging_trapezoid() {
     let (model, start) = linkage.trapezoid(angle);
     let chart = cartesian(&model, &[VertexId(0)], &start.x);
     let options = fixed(ChartMethod::RungeKutta4, 1e-3);
-    let mut run = Simulation::in_chart(model, start.clone(), chart, options).expect("valid");
+    let mut run = isosheet_charts::in_chart(model, start.clone(), chart, options).expect("valid");
     for _ in 0..5 {
         run.step(1e-3).expect("at rest");
     }
@@ -211,7 +211,7 @@ fn closures_follow_the_chart_free_motion() {
             _ => front(&bent(), &pins[..1]),
         };
         let options = fixed(ChartMethod::RungeKutta4, end / f64::from(steps));
-        let mut run = Simulation::in_chart(model, start, chart, options).expect("valid");
+        let mut run = isosheet_charts::in_chart(model, start, chart, options).expect("valid");
         let report = run.step(end).expect("accepted");
         assert!(report.violation.expect("constraints") < 1e-12, "{report:?}");
         assert!(report.strain < 1e-11, "{report:?}");
@@ -269,7 +269,7 @@ fn moving_closures_follow_the_chart_free_motion() {
         let (model, start) = scene();
         let chart = cartesian(&model, &[VertexId(0)], &start.x);
         let options = fixed(ChartMethod::RungeKutta4, h);
-        let mut run = Simulation::in_chart(model, start, chart, options).expect("valid");
+        let mut run = isosheet_charts::in_chart(model, start, chart, options).expect("valid");
         let report = run.step(end).expect("accepted");
         assert!(report.violation.expect("a plane") < 1e-12);
         errors.push(gap(&run.state().x, &free.state().x));
@@ -293,19 +293,19 @@ fn closures_that_cannot_be_met_say_so() {
     let model = model.with_moving_pin(far, pull).expect("exists");
     let chart = cartesian(&model, &[VertexId(0)], &start.x);
     let options = fixed(ChartMethod::RungeKutta4, 1e-3);
-    let mut run = Simulation::in_chart(model, start.clone(), chart, options).expect("valid");
+    let mut run = isosheet_charts::in_chart(model, start.clone(), chart, options).expect("valid");
     let error = (0..2000).find_map(|_| run.step(1e-3).err()).expect("taut");
     // The rung between the two pins of that end is pulled apart at once.
     match error {
-        StepError::Chart { source, .. } => match *source {
-            ChartDynamicsError::Closure {
+        StepError::Engine { source, .. } => match source.downcast_ref() {
+            Some(ChartDynamicsError::Closure {
                 support: Support::Pin(_),
                 distance,
                 rank,
                 equations: 9,
                 ..
-            } => assert!(distance > 0.0 && rank < 9),
-            other => panic!("{other}"),
+            }) => assert!(*distance > 0.0 && *rank < 9),
+            _ => panic!("{source}"),
         },
         other => panic!("{other}"),
     }

@@ -2,10 +2,8 @@
 
 use isosheet_collide::distance::{edge_edge, point_triangle};
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
-use isosheet_coords::{CartesianChart, Choice, RodSystem};
-use isosheet_dynamics::chart::{ChartMethod, ChartOptions, ChartStepControl};
 use isosheet_dynamics::{
-    Checkpoint, ElasticSheet, ImplicitOptions, Method, SheetModel, Simulation, State, StepControl,
+    ElasticSheet, ImplicitOptions, Method, SheetModel, Simulation, State, StepControl,
 };
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
@@ -325,60 +323,4 @@ fn gaps_from_a_plane_are_heights_less_the_thickness() {
         assert_eq!(forces[3 * v + 2] > 0.0, *gap < activation, "{v}");
         assert_eq!(forces[3 * v..3 * v + 2], [0.0; 2]);
     }
-}
-
-/// A tilted triangle that falls on a floor, in a chart.
-fn in_chart() -> (SheetModel, State, Box<CartesianChart>, Contacts) {
-    let x = vec![0.0, 0.0, 0.05, 0.3, 0.0, 0.2, 0.1, 0.25, 0.12];
-    let sheet = Sheet::new(x.clone(), &[[0, 1, 2]]).expect("a triangle");
-    let model = SheetModel::new(&sheet, MASS, MassKind::Consistent).expect("valid");
-    let model = model.with_gravity();
-    let system = RodSystem::from_parts(model.topology(), model.rods().lengths(), &model.pins());
-    let chart = CartesianChart::new(system.expect("valid"), Choice::Auto, &x).expect("regular");
-    let floor = Obstacle::fixed(Shape::HalfSpace, Isometry3::identity()).expect("valid");
-    let options = ContactOptions {
-        activation: 1e-4,
-        ..ContactOptions::for_sheet(&model)
-    };
-    let contacts = Contacts::new(&model, options)
-        .and_then(|c| c.with_body(floor, Coefficients::equal(0.4)))
-        .expect("valid");
-    (model, State::at_rest(x), Box::new(chart), contacts)
-}
-
-#[test]
-fn mean_forces_in_a_chart_are_the_change_of_momentum_and_resume_with_it() {
-    let (model, start, chart, contacts) = in_chart();
-    let options = ChartOptions {
-        method: ChartMethod::RungeKutta4,
-        control: ChartStepControl::Fixed(1e-3),
-        restitution: 0.5,
-        ..Default::default()
-    };
-    let mut run = Simulation::in_chart(model, start, chart, options)
-        .and_then(|s| s.with_contact(contacts))
-        .expect("valid");
-    assert_eq!(forces(&run), [0.0; 9], "before the first step");
-    let (h, mut impacts) = (5e-3, 0);
-    for _ in 0..60 {
-        let before = momentum(&run);
-        let report = run.step(h).expect("accepted");
-        let push = (momentum(&run) - before) / h + Vector3::new(0.0, 0.0, MASS * G);
-        let found = forces(&run);
-        // Opened gaps shift positions by a part of the activation distance.
-        assert!(
-            (total(&found) - push).norm() < 1e-3 * MASS * G,
-            "{push} {found:?}"
-        );
-        impacts += usize::from(push.z > 2.0 * MASS * G);
-        assert!(report.substeps >= 5);
-        let (model, _, chart, contacts) = in_chart();
-        let bytes = run.checkpoint().to_bytes().expect("encoded");
-        let kept = Checkpoint::from_bytes(&bytes).expect("decoded");
-        let resumed = Simulation::resume_in_chart(model, chart, Some(Box::new(contacts)), kept);
-        let resumed = resumed.expect("the same scene");
-        assert_eq!(forces(&resumed), found);
-        assert_eq!(resumed.vertex_gaps(), run.vertex_gaps());
-    }
-    assert!(impacts >= 2, "{impacts}");
 }

@@ -1,7 +1,7 @@
 //! Convergence orders of every method under every kind of load that changes in time.
 
+use isosheet_charts::{ChartMethod, ChartOptions, ChartStepControl};
 use isosheet_coords::{CartesianChart, Chart, Choice, RodSystem};
-use isosheet_dynamics::chart::{ChartMethod, ChartOptions, ChartStepControl};
 use isosheet_dynamics::{
     AccelerationField, ElasticSheet, ImplicitOptions, Method, Profile, Simulation, State,
 };
@@ -79,7 +79,7 @@ fn loads_of_time_keep_the_order_in_a_chart() {
                 ..Default::default()
             };
             let chart: Box<dyn Chart> = Box::new(chart);
-            Simulation::in_chart(model(), start(), chart, options).expect("a simulation")
+            isosheet_charts::in_chart(model(), start(), chart, options).expect("a simulation")
         });
     }
 }

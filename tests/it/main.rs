@@ -21,7 +21,6 @@ mod elastic_balance;
 mod flat;
 mod forces;
 mod hard;
-mod impacts;
 mod invariance;
 mod load_orders;
 mod loads;

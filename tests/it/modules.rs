@@ -43,11 +43,13 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 15] = [
+const LIBRARIES: [&str; 17] = [
     "mesh",
     "coords/linalg",
     "coords",
     "dynamics",
+    "dynamics/attached-flow",
+    "dynamics/charts",
     "collide",
     "io/files",
     "io/drawings",

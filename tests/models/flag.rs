@@ -1,8 +1,8 @@
 //! A flag in a wind along it: a clamped elastic plate with attached flow.
 
+use isosheet_attached_flow::AttachedFlow;
 use isosheet_dynamics::{
-    Air, AttachedFlow, ElasticSheet, Method, PlateBending, PlateStiffness, SheetModel, Simulation,
-    State,
+    Air, ElasticSheet, Method, PlateBending, PlateStiffness, SheetModel, Simulation, State,
 };
 use isosheet_mesh::{EdgeId, FaceId, MassKind, MassMatrix, VertexId, generate};
 use nalgebra::{Complex, DMatrix};
@@ -76,9 +76,8 @@ impl Flag {
             .and_then(|m| m.with_pins(&clamp))
             .map(|m| m.with_potential(plate))
             .and_then(|m| m.with_elastic_sheet(elastic))
-            .expect("a model")
-            .with_attached_flow(air, &flow)
-            .expect("a flow");
+            .expect("a model");
+        let model = flow.around(model, air).expect("a flow");
         let push = |v: VertexId| 1e-4 * at(v).max(0.0).powi(2);
         let v = topology.vertex_ids().flat_map(|v| [0.0, 0.0, push(v)]);
         let start = State::moving(sheet.positions().to_vec(), v.collect());

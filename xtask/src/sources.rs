@@ -21,6 +21,8 @@ const SOLVER: &[&str] = &[
     "coords/src",
     "coords/linalg/src",
     "dynamics/src",
+    "dynamics/attached-flow/src",
+    "dynamics/charts/src",
     "collide/src",
     "io/scenes/src",
     "tests/models",

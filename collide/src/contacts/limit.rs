@@ -1,6 +1,6 @@
 //! How far a motion is safe, as pairs are looked at side by side.
 
-use isosheet_coords::linalg::parallel::{Work, in_order};
+use isosheet_linalg::parallel::{Work, in_order};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Nanoseconds for a pair that may come near, estimated: it decides what is shared among threads, and no result.

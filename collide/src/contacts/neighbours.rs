@@ -7,7 +7,7 @@ use super::path::PartOfStep;
 use crate::distance::{edge_edge, point_triangle};
 use crate::vectors::{gather, larger};
 use crate::{BroadPhase, Candidates, ContactMesh, CrossCandidates};
-use isosheet_coords::linalg::parallel::{Work, fill};
+use isosheet_linalg::parallel::{Work, fill};
 
 /// Skin of the lists, in mean edge lengths. With 0.06 and 0.25 a draping disk of 688 vertices takes 12 % and
 /// 25 % more time, a star of 876 vertices as long and 14 % more, tablecloths of 289 vertices as long; with

@@ -11,7 +11,7 @@ use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene
 use crate::step::reaction::Balance;
 use crate::vectors::dot;
 use crate::{SheetModel, State};
-use isosheet_coords::linalg::{LinalgError, norm_inf};
+use isosheet_linalg::{LinalgError, norm_inf};
 use serde::{Deserialize, Serialize};
 
 /// Options of [`Method::EnergyMomentum`](crate::Method::EnergyMomentum).

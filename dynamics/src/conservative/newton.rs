@@ -8,7 +8,7 @@ use crate::report::effort::SolverEffort;
 use crate::report::step_error::{StepError, StepOutcome};
 use crate::step::history::Multipliers;
 use crate::{SheetModel, State};
-use isosheet_coords::linalg::LinalgError;
+use isosheet_linalg::LinalgError;
 
 /// The unknowns of a step of `h` seconds from `x0` to `x1 = x0 + h u`, its residuals and its matrix.
 pub(super) struct Newton {

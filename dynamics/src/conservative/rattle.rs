@@ -12,7 +12,7 @@ use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene
 use crate::step::reaction::{Balance, ForceTime};
 use crate::vectors::dot;
 use crate::{SheetModel, State};
-use isosheet_coords::linalg::{LinalgError, norm_inf};
+use isosheet_linalg::{LinalgError, norm_inf};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 

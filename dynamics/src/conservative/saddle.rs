@@ -8,7 +8,7 @@ use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepOutcome;
 use crate::{HessianSink, SheetModel};
-use isosheet_coords::linalg::{LinalgError, SparseLu};
+use isosheet_linalg::{LinalgError, SparseLu};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector2};
 use std::collections::BTreeMap;

@@ -222,12 +222,12 @@ impl VertexConstraint {
     }
 
     /// Whether the constraint is an inequality: it pushes, and does not pull.
-    pub(crate) fn is_one_sided(&self) -> bool {
+    pub fn is_one_sided(&self) -> bool {
         matches!(self.shape, Locus::Surface(_, Side::Outside | Side::Inside))
     }
 
     /// Number of independent equations: 1 for a surface, 2 for a curve.
-    pub(crate) fn equation_count(&self) -> usize {
+    pub fn equation_count(&self) -> usize {
         match self.shape {
             Locus::Surface(..) => 1,
             Locus::Curve(_) => 2,
@@ -235,7 +235,7 @@ impl VertexConstraint {
     }
 
     /// The equations at a point (metres) and time (seconds).
-    pub(crate) fn at(&self, t: f64, p: &Vector3<f64>) -> LocalEquations {
+    pub fn at(&self, t: f64, p: &Vector3<f64>) -> LocalEquations {
         let Some(motion) = &self.motion else {
             return self.shape.at(p);
         };
@@ -259,7 +259,7 @@ impl VertexConstraint {
     /// metres per second squared: `w^T hessian_i w - J (a + 2 omega x w)`, where `w = u - v` is the velocity
     /// relative to the curve or surface, and `v`, `a` and `omega` are its velocity, acceleration and angular
     /// velocity there.
-    pub(crate) fn second_rate(
+    pub fn second_rate(
         &self,
         t: f64,
         span: f64,
@@ -323,11 +323,11 @@ impl Locus {
 
 /// The equations of a constraint at a point: `value + jacobian dp + (dp^T hessian_i dp)_i / 2`.
 #[derive(Debug, Clone)]
-pub(crate) struct LocalEquations {
+pub struct LocalEquations {
     /// Metres; a surface fills the first entry only.
-    pub(crate) value: Vector3<f64>,
+    pub value: Vector3<f64>,
     /// One equation a row.
-    pub(crate) jacobian: Matrix3<f64>,
+    pub jacobian: Matrix3<f64>,
     curvature: Curvature,
 }
 
@@ -359,7 +359,7 @@ impl LocalEquations {
     }
 
     /// Rows that pick the independent equations: the level, or two directions perpendicular to the curve.
-    pub(crate) fn independent(&self) -> Matrix2x3<f64> {
+    pub fn independent(&self) -> Matrix2x3<f64> {
         match &self.curvature {
             Curvature::Surface(_) => Matrix2x3::new(1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             Curvature::Curve(at, _) => {

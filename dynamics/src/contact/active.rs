@@ -301,8 +301,7 @@ fn nearest_semidefinite(a: f64, b: f64, c: f64) -> [f64; 3] {
 
 /// The contacts at given positions with the bodies in given places.
 ///
-/// Energy, gradient and Hessian of the barrier are functions of this value, and so are friction
-/// and the contacts of impulses ([`super::ContactPoint`]).
+/// Energy, gradient and Hessian of the barrier are functions of this value, and so is friction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ActiveContacts {
     list: Vec<ActiveContact>,

@@ -181,7 +181,7 @@ fn largest_acceleration(model: &SheetModel, state: &State) -> f64 {
     let mut gradient = vec![0.0; state.x.len()];
     let memories = model.memories();
     let potentials = model.potentials_at(state.t, &state.x, &memories);
-    for (p, at) in potentials.take(model.outer_potential_count()) {
+    for (p, at) in potentials.take(model.next_potential()) {
         p.add_gradient(at, &mut gradient);
     }
     model.clear_pinned(&mut gradient);

@@ -13,6 +13,13 @@ pub struct StepSpan {
     pub h: f64,
 }
 
+impl StepSpan {
+    /// From the first time to the last, seconds.
+    pub(crate) fn between([t0, end]: [f64; 2]) -> Self {
+        Self { t0, h: end - t0 }
+    }
+}
+
 /// The motion of a frame over a step: its origin on a straight line at constant speed, its orientation about
 /// a fixed axis at a constant rate, from the pose at the start to that at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -51,10 +51,6 @@ impl Contact for Floor {
         });
     }
 
-    fn body_velocity(&self, _: u32, _: f64, _: &Vector3<f64>) -> Vector3<f64> {
-        Vector3::zeros()
-    }
-
     fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
         let body = &motion.bodies.list()[0].surface;
         let [floor, end] = motion.progress.map(|s| body.pose(s).translation.z);

@@ -103,7 +103,7 @@ impl Advice for ContactError {
             Self::Sheet { .. } => Some("set it up for this sheet"),
             Self::Barrier(error) => error.advice(),
             Self::Friction(error) => error.advice(),
-            Self::Method => Some("use BDF2 or implicit Euler, or a chart simulation with impulses"),
+            Self::Method => Some("use BDF2 or implicit Euler"),
         }
     }
 }

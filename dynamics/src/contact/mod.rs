@@ -17,7 +17,6 @@
 //! | `BarrierPotential` | the laws, the model and the state at the start | the barrier and its stiffness |
 //! | `LaggedFriction` | the active contacts at which friction is lagged | normals and normal forces |
 //! | `ContactTerms` | active contacts, barrier and friction | energy, gradient, Hessian, loads of `B + D` |
-//! | [`ContactPoint`]s | active contacts | contacts for methods that use impulses instead of the barrier |
 //!
 //! The barrier of a gap `g` below the activation distance `d` is `-kappa (1 - z)^2 ln z` with `z = (g / d)^2`
 //! and the stiffness `kappa` of the [laws](ContactLaws), in joules. Its forces are
@@ -33,7 +32,6 @@ mod body;
 pub(crate) mod contact_tests;
 mod error;
 mod friction;
-mod impulse;
 #[doc(hidden)]
 pub mod internals;
 mod lagged;
@@ -53,14 +51,13 @@ pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
 pub use error::{BodyMotionError, ContactError, ContactPair};
 pub use friction::{Coefficients, Friction, FrictionError};
-pub use impulse::ContactPoint;
 pub(crate) use lagged::LaggedFriction;
 pub use laws::{ContactLaws, ObstaclePair, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;
 pub(crate) use set::ContactSet;
 pub use set::{ContactKey, ContactKind, JointMotion};
 pub use surface_points::{CarriedPoint, SurfacePoints, SurfacePointsError};
-pub(crate) use term::{ContactTerm, check_start};
+pub(crate) use term::ContactTerm;
 pub use terms::BodyLoad;
 pub(crate) use terms::{ContactState, ContactTerms};
 
@@ -85,10 +82,6 @@ pub trait Contact: Send + Sync {
 
     /// Appends the motions of the bodies over a span of time, in the order of the bodies.
     fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>);
-
-    /// Velocity (metres per second) of the material of a body that is at `place` (metres, in space) at time
-    /// `t`.
-    fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64>;
 
     /// Returns the largest fraction `a <= 1` of a motion that is proven to bring nothing into contact, and
     /// appends all pairs whose gap is below the activation distance at any time of that part of the motion,

@@ -2,13 +2,12 @@
 
 use super::surface_points::CarriedSink;
 use super::{
-    ActiveContacts, BarrierPotential, BodyMotionError, BodyMotions, Contact, ContactError,
-    ContactSet, ContactState, ContactTerms, JointMotion, LaggedFriction, StepSpan, SurfacePoints,
-    advanced,
+    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactError, ContactSet, ContactState,
+    ContactTerms, JointMotion, LaggedFriction, StepSpan, SurfacePoints, advanced,
 };
 use crate::hessian::{BlockSink, HessianPart, HessianProduct};
-use crate::term::{Barrier, Exchange, Iterate, Refusal, StepStart, Term, Value};
-use crate::{SheetModel, State};
+use crate::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
+use crate::{SheetModel, State, StepError};
 use std::sync::Arc;
 
 /// Barrier and lagged friction, `B(x) + D(x - x0)`.
@@ -126,11 +125,6 @@ impl ContactTerm {
     /// The points that contact acts between, where these are not the vertices.
     pub(crate) fn points(&self) -> Option<&SurfacePoints> {
         self.points.as_deref()
-    }
-
-    /// Refuses a span of time if the pose of a body is not finite at its start or end.
-    pub(crate) fn check_bodies(&mut self, span: StepSpan) -> Result<(), BodyMotionError> {
-        self.motions(span).check()
     }
 
     /// The motions of the bodies over a span of time.
@@ -276,8 +270,18 @@ fn at_rest<'a>(bodies: &'a BodyMotions, s: f64, x: &'a [f64], zeros: &'a [f64]) 
 }
 
 impl Term for ContactTerm {
+    /// Refuses a span of time if the pose of a body is not finite at its start or end.
+    fn check(&mut self, span: [f64; 2], _x: &[f64]) -> Result<(), StepError> {
+        Ok(self.motions(StepSpan::between(span)).check()?)
+    }
+
+    /// Whether the bodies rest.
+    fn rests(&mut self, span: [f64; 2]) -> bool {
+        !self.motions(StepSpan::between(span)).any_moves()
+    }
+
     /// Puts sheet and bodies where the step starts, and lags friction there.
-    fn begin(&mut self, start: &StepStart<'_>) -> Result<(), Refusal> {
+    fn begin(&mut self, start: &StepStart<'_>) -> Result<(), StepError> {
         let geometry = self.geometry.as_mut();
         match &mut self.step {
             Some(step) => step.restart(geometry, start),
@@ -419,12 +423,16 @@ impl Term for ContactTerm {
     }
 
     /// Work of the bodies (trapezoidal rule), friction, and the change of the energy of the barrier.
-    fn finish(&mut self, _start: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
+    fn finish(&mut self, start: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         self.at(at.x);
         let step = self.step.as_mut().expect("a step has begun");
         let gap = step.state.active.gap();
         if gap <= 0.0 || gap.is_nan() {
-            return Err(Refusal::Contact { gap });
+            return Err(StepError::Contact {
+                t: start.state.t,
+                h: start.span,
+                gap,
+            });
         }
         let mut settled = std::mem::take(&mut step.friction_before);
         let terms = step.terms();
@@ -448,7 +456,7 @@ impl Term for ContactTerm {
 ///
 /// # Errors
 /// [`ContactError::Motion`] if the pose of a body is not finite, and as [`Contact::check_start`].
-pub(crate) fn check_start(
+fn check_start(
     geometry: &mut dyn Contact,
     model: &SheetModel,
     state: &State,

@@ -12,7 +12,7 @@ use crate::step::local_error::LocalError;
 use crate::step::tuning::Tuning;
 use crate::term::{Formula, StepStart};
 use crate::{ImplicitOptions, SheetModel, State};
-use isosheet_coords::linalg::LinalgError;
+use isosheet_linalg::LinalgError;
 
 /// Largest growth of the step that the two-step formula is used over: variable-step BDF2 is
 /// unstable from 1 + sqrt 2 on.
@@ -87,7 +87,7 @@ impl Integrator for Implicit {
             let error = LocalError::of(model, previous, state, &proposal.motion.state);
             proposal.account.error = Some(error);
         }
-        let points = objective.contact.as_ref().and_then(ContactTerm::points);
+        let points = objective.get().and_then(ContactTerm::points);
         let outcome = match (points, attempt.contacts, &proposal.motion.contacts) {
             (Some(points), Some(before), Some(after)) => FormulaStep {
                 model,
@@ -223,7 +223,7 @@ fn minimised(
     motion.state.x.copy_from_slice(minimiser.x());
     motion.state.t = state.t + h;
     motion.balance.copy_from(minimiser.balance());
-    motion.set_contacts(scene.objective.contacts());
+    motion.set_contacts(scene.objective.get().and_then(ContactTerm::state));
     minimiser.remember(k * h, &mut motion.history);
     proposal.account = StepAccount {
         residual: minimum.residual,

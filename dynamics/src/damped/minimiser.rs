@@ -19,8 +19,8 @@ use crate::step::reaction::Balance;
 use crate::step::tuning::Tuning;
 use crate::term::Exchange;
 use crate::{ImplicitOptions, SheetModel};
-use isosheet_coords::linalg::LinalgError;
-use isosheet_coords::linalg::parallel::Awake;
+use isosheet_linalg::LinalgError;
+use isosheet_linalg::parallel::Awake;
 use lagrangian::{Merit, OPERATIONS};
 use newton::{Failure, Minimum, Newton};
 use phase::{Faces, MultiplierUpdate, Phase};
@@ -171,8 +171,7 @@ impl Minimiser {
         })?;
         let start = problem.start;
         let (objective, at) = problem.objective_at(&self.work.lagrangian.x);
-        let finished = objective.finish(&start, at);
-        let mut exchange = finished.map_err(|refusal| problem.error(refusal, effort.iterations))?;
+        let mut exchange = objective.finish(&start, at)?;
         exchange.length_slack = self.length_slack(problem);
         Ok((minimum, exchange))
     }

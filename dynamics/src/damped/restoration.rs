@@ -14,7 +14,7 @@ use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::step::tuning::Tuning;
-use crate::term::{Barrier, Iterate};
+use crate::term::Iterate;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -88,9 +88,7 @@ pub(crate) struct Barriers<'a> {
 
 impl Barriers<'_> {
     fn are_there(&self) -> bool {
-        [Barrier::Contact, Barrier::StrainLimit]
-            .into_iter()
-            .any(|barrier| self.objective.has(barrier))
+        self.objective.has_barrier()
     }
 
     /// The objective, and where it is evaluated at positions `x` at time `t`.

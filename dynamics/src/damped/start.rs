@@ -4,7 +4,7 @@ use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::linear::primal::PrimalMatrix;
 use crate::model::support::Support;
 use crate::options::OptionsError;
-use crate::potential::{At, Potential};
+use crate::potential::At;
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
 use crate::step::tuning::Tuning;
@@ -175,24 +175,10 @@ pub(crate) fn check_motions(model: &SheetModel, state: &State) -> Result<(), Ste
 }
 
 /// Refuses times at which a sheet would swell or shrink by too much.
-pub(crate) fn check_swelling(model: &SheetModel, t: f64) -> Result<(), StepError> {
+fn check_swelling(model: &SheetModel, t: f64) -> Result<(), StepError> {
     let elastic = model.elastic_sheet();
     match elastic.and_then(|elastic| elastic.swollen_too_much(t)) {
         Some(part) => Err(StepError::Swelling { part, t }),
-        None => Ok(()),
-    }
-}
-
-/// Refuses a time and positions at which lengths that change by themselves leave strains beyond the limit.
-pub(crate) fn check_swollen(model: &SheetModel, at: At<'_>) -> Result<(), StepError> {
-    let swelling = model.elastic_sheet().filter(|elastic| elastic.is_driven());
-    match swelling.and_then(|elastic| elastic.beyond_limit(at)) {
-        Some(worst) => Err(StepError::SwellingBeyondLimit {
-            face: worst.face,
-            strain: worst.strain,
-            limit: worst.limit,
-            t: at.t,
-        }),
         None => Ok(()),
     }
 }

@@ -4,7 +4,7 @@ use crate::linear::rod_least_squares::RodLeastSquares;
 use crate::potential::Memories;
 use crate::vectors::point;
 use crate::{SheetModel, State};
-use isosheet_coords::linalg::norm_inf;
+use isosheet_linalg::norm_inf;
 use isosheet_mesh::VertexId;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

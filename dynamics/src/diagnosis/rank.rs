@@ -2,7 +2,7 @@
 
 use crate::SheetModel;
 use crate::model::PINNED;
-use isosheet_coords::linalg::{Ordering, Pattern, SparseLdlt, elimination_order};
+use isosheet_linalg::{Ordering, Pattern, SparseLdlt, elimination_order};
 use nalgebra::{DMatrix, Vector3};
 
 /// Rank of the length constraints at a state.

@@ -4,7 +4,6 @@ mod held;
 
 use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan, SurfacePoints};
 use crate::damped::implicit::Implicit;
-use crate::damped::start::{check_swelling, check_swollen};
 use crate::diagnosis::blocked::{blocked_vertices, dependent_vertices};
 use crate::diagnosis::infeasibility::infeasibility;
 use crate::diagnosis::pressing::pressing;
@@ -14,13 +13,12 @@ use crate::engine::subdivision::Subdivision;
 use crate::model::breaks::{Breaks, Start};
 use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
-use crate::potential::{At, Memories};
+use crate::potential::Memories;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::infeasibility::Infeasibility;
 use crate::report::pressing::Pressing;
 use crate::report::step_error::{StepError, StepOutcome, StepTotals};
 use crate::report::trace::TraceEvent;
-use crate::step::control::{Decision, Stepping, take_substep};
 use crate::step::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
 };
@@ -37,7 +35,7 @@ use std::sync::Arc;
 
 /// What a checkpoint keeps of a simulation without a chart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct WithoutChart {
+pub(crate) struct ByMethod {
     pub(crate) method: Method,
     pub(crate) control: StepControl,
     pub(crate) motion: Motion,
@@ -87,14 +85,14 @@ impl Engine {
         state: State,
         fixed: Vec<VertexId>,
     ) -> Result<Self, SimulationError> {
-        if model.potentials().any(|p| p.has_limit()) && !method.is_minimising() {
+        if model.has_limit() && !method.is_minimising() {
             return Err(SimulationError::Elastic);
         }
         if model.can_yield() && !method.is_minimising() {
             return Err(SimulationError::Plastic);
         }
         if model.needs_minimising() && !method.is_minimising() {
-            return Err(SimulationError::AttachedFlow);
+            return Err(SimulationError::NeedsMinimising);
         }
         let model = Arc::new(model);
         let tuning = Tuning::default();
@@ -122,8 +120,8 @@ impl Engine {
     }
 
     /// What a checkpoint keeps.
-    pub(crate) fn kept(&self) -> WithoutChart {
-        WithoutChart {
+    pub(crate) fn kept(&self) -> ByMethod {
+        ByMethod {
             method: self.method.clone(),
             control: self.control.clone(),
             motion: self.motion.compact(),
@@ -135,16 +133,11 @@ impl Engine {
     pub(crate) fn resume(
         mut model: SheetModel,
         contact: Option<Box<dyn Contact>>,
-        kept: WithoutChart,
+        kept: ByMethod,
     ) -> Result<Self, SimulationError> {
         let mut motion = kept.motion;
         let mut memories = model.memories();
-        let taken = memories.take_over(&motion.memories);
-        taken.map_err(|[found, expected]| CheckpointError::Length {
-            what: "what potentials remember",
-            found,
-            expected,
-        })?;
+        memories.take_over(&motion.memories)?;
         motion.memories = memories;
         motion.check(&model, &kept.fixed)?;
         let fixed: Vec<VertexId> = kept.fixed.iter().copied().map(VertexId).collect();
@@ -156,18 +149,18 @@ impl Engine {
         engine.set_control(kept.control)?;
         engine.motion.copy_from(&motion);
         let barrier = motion.contacts.map(|contacts| contacts.barrier);
-        engine.objective.contact = match (contact, barrier) {
-            (None, None) => None,
+        match (contact, barrier) {
+            (None, None) => {}
             (Some(contact), Some(barrier)) => {
                 let state = &engine.motion.state;
                 let term = ContactTerm::resume(contact, barrier, &engine.model, state)?;
-                Some(term)
+                engine.objective.set(term);
             }
             (_, barrier) => {
                 let expected = barrier.is_some();
                 return Err(CheckpointError::Contact { expected }.into());
             }
-        };
+        }
         Ok(engine)
     }
 
@@ -178,10 +171,7 @@ impl Engine {
 
     /// The points between which contact acts, where these are not the vertices.
     pub(crate) fn surface_points(&self) -> Option<&SurfacePoints> {
-        self.objective
-            .contact
-            .as_ref()
-            .and_then(ContactTerm::points)
+        self.objective.get().and_then(ContactTerm::points)
     }
 
     /// Forces of the rods in the last accepted sub-step; `None` where the method does not solve for them.
@@ -232,7 +222,7 @@ impl Engine {
             return Err(ContactError::Method.into());
         }
         let (term, contacts) = ContactTerm::new(contact, &self.model, &self.motion.state)?;
-        self.objective.contact = Some(term);
+        self.objective.set(term);
         self.motion.contacts = Some(contacts);
         Ok(())
     }
@@ -310,7 +300,7 @@ impl Engine {
         run.totals.effort.begin(run.limit);
         while !run.lengths.is_finished() {
             let h = run.lengths.length();
-            match take_substep(&mut run, h) {
+            match run.take(h) {
                 Ok(()) => (),
                 Err(Stop::Taut(infeasibility)) => {
                     run.totals.taut = Some(infeasibility);
@@ -344,24 +334,22 @@ impl Engine {
         let Motion {
             state, contacts, ..
         } = &self.motion;
-        let contact = self.objective.contact.as_mut().zip(contacts.as_ref());
+        let contact = self.objective.get_mut().zip(contacts.as_ref());
         infeasibility(&self.model, contact, state, t)
     }
 
     /// The body that presses the sheet most while it moves on until time `end`, seconds, if one does.
     fn pressing(&mut self, end: f64) -> Option<Pressing> {
         let t0 = self.state().t;
-        let contact = self.objective.contact.as_mut();
+        let contact = self.objective.get_mut();
         let (contact, contacts) = contact.zip(self.motion.contacts.as_ref())?;
         pressing(contact, contacts, StepSpan { t0, h: end - t0 })
     }
 
     /// Whether supports and bodies rest until time `end`, seconds.
     fn surroundings_rest(&mut self, end: f64) -> bool {
-        let t0 = self.state().t;
-        let span = StepSpan { t0, h: end - t0 };
-        let contact = self.objective.contact.as_mut();
-        !self.model.has_drives() && contact.is_none_or(|contact| !contact.motions(span).any_moves())
+        let span = [self.state().t, end];
+        !self.model.has_drives() && self.objective.rests(span)
     }
 
     /// The error of dependent rods, if there are any and the method needs independent ones.
@@ -481,15 +469,11 @@ impl Substeps<'_, '_> {
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
         }
-        check_swelling(model, t)?;
-        check_swollen(model, At::new(t, &motion.state.x))?;
-        if let Some(contact) = &mut objective.contact {
-            contact.check_bodies(StepSpan {
-                t0: motion.state.t,
-                h,
-            })?;
-        }
-        let scene = Scene { model, objective };
+        objective.check([motion.state.t, t], &motion.state.x)?;
+        let scene = Scene {
+            model,
+            objective: &mut *objective,
+        };
         let attempt = Attempt::new(motion, h, self.memory).with(phases);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
@@ -503,8 +487,7 @@ impl Substeps<'_, '_> {
         }
         proposed?;
         let (before, after) = (&motion.state, &proposal.motion.state);
-        // For the work of swelling, which is measured at both ends.
-        check_swollen(model, At::new(before.t, &after.x))?;
+        objective.check_end(before.t, &after.x)?;
         let mut exchange = proposal.account.exchange;
         if model.has_drives() {
             let kept = motion.has_moved.then_some(&motion.balance);
@@ -560,7 +543,7 @@ impl Substeps<'_, '_> {
     /// | for any other reason | halve | halve | stop |
     ///
     /// Where the step is not to be halved any more, the fallback takes it if there is one.
-    fn follow(&mut self, refusal: StepError) -> Decision<Stop> {
+    fn follow(&mut self, refusal: StepError) -> Decision {
         let looks_back = self.memory > Memory::Restart && self.engine.motion.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         if self.proposer == Proposer::Fallback {
@@ -581,12 +564,52 @@ impl Substeps<'_, '_> {
     }
 }
 
-impl Stepping for Substeps<'_, '_> {
-    type Refusal = StepError;
-    type Error = Stop;
-    type Report = ();
+/// What follows from a refusal.
+enum Decision {
+    /// The sub-step is proposed again without history.
+    Restart,
+    /// One of this length, seconds.
+    Shorten(f64),
+    /// One of this length, seconds, by the fallback.
+    FallBack(f64),
+    /// There is none.
+    Stop(Stop),
+}
 
-    /// An attempt that the limit ends is made again without a limit, unless the sheet locks, or has nowhere to
+impl Decision {
+    /// Its name in a trace.
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Restart => "restart",
+            Self::Shorten(_) => "shorten",
+            Self::FallBack(_) => "fall back",
+            Self::Stop(_) => "stop",
+        }
+    }
+}
+
+impl Substeps<'_, '_> {
+    /// Takes a sub-step of at most `h` seconds.
+    fn take(&mut self, mut h: f64) -> Result<(), Stop> {
+        loop {
+            let Err(refusal) = self.propose(h) else {
+                self.commit(h);
+                return Ok(());
+            };
+            match self.decide(refusal, h) {
+                Decision::Restart => self.memory = Memory::Restart,
+                Decision::Shorten(shorter) => h = shorter,
+                Decision::FallBack(length) => {
+                    h = length;
+                    self.memory = Memory::Restart;
+                    self.proposer = Proposer::Fallback;
+                }
+                Decision::Stop(stop) => return Err(stop),
+            }
+        }
+    }
+
+    /// Proposes a sub-step of `h` seconds; the state does not change. An attempt that the limit ends is made again without a limit, unless the sheet locks, or has nowhere to
     /// go: what is accepted does not depend on the effort.
     fn propose(&mut self, h: f64) -> Result<(), StepError> {
         let proposed = self.attempt(h);
@@ -610,7 +633,8 @@ impl Stepping for Substeps<'_, '_> {
         self.attempt(h)
     }
 
-    fn decide(&mut self, refusal: StepError, h: f64) -> Decision<Stop> {
+    /// Decides what follows from the refusal of a sub-step of `h` seconds.
+    fn decide(&mut self, refusal: StepError, h: f64) -> Decision {
         if matches!(
             refusal,
             StepError::NonFiniteMotion { .. }
@@ -637,17 +661,8 @@ impl Stepping for Substeps<'_, '_> {
         decision
     }
 
-    fn restart(&mut self) -> Result<(), Stop> {
-        self.memory = Memory::Restart;
-        Ok(())
-    }
-
-    fn fall_back(&mut self) {
-        self.memory = Memory::Restart;
-        self.proposer = Proposer::Fallback;
-    }
-
-    fn commit(&mut self, h: f64) -> Result<(), Stop> {
+    /// Makes the proposal of `h` seconds the state.
+    fn commit(&mut self, h: f64) {
         let engine = &mut *self.engine;
         let (step, exchange) = (engine.proposal.account, self.exchange);
         std::mem::swap(&mut engine.motion, &mut engine.proposal.motion);
@@ -698,7 +713,6 @@ impl Stepping for Substeps<'_, '_> {
         });
         totals.effort.begin(self.limit);
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
-        Ok(())
     }
 }
 

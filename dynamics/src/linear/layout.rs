@@ -1,6 +1,6 @@
 //! Layout of a sparse matrix: entries are named once, and found again as slots of the pattern.
 
-use isosheet_coords::linalg::Pattern;
+use isosheet_linalg::Pattern;
 
 /// Collects the entries of a matrix. What [`Layout::entry`] returns is a place-holder until
 /// [`Layout::finish`] gives the slots that place-holders stand for.

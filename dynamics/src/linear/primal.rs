@@ -15,7 +15,7 @@ use crate::vectors::add;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
 use far::{FarCouplings, stiff_pairs};
-use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt};
+use isosheet_linalg::{LinalgError, Pattern, SparseLlt};
 use isosheet_mesh::{EdgeId, VertexId};
 use iterative::{ConjugateGradients, Ending, Goal};
 use low_rank::LowRank;

@@ -6,7 +6,7 @@ use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRo
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::vectors::{add, point};
-use isosheet_coords::linalg::norm_inf;
+use isosheet_linalg::norm_inf;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 

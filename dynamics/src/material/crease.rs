@@ -9,9 +9,7 @@ mod rest_angle;
 #[cfg(test)]
 mod tests;
 
-use crate::potential::At;
-use crate::potential::Reached;
-use crate::potential::Settled;
+use crate::potential::{At, MaterialReport, Reached, Remembering, Settled};
 pub use from_flat::FLAT;
 pub(crate) use from_flat::folding_from_flat;
 pub use rest_angle::RestAngle;
@@ -186,7 +184,7 @@ impl Advice for CreaseError {
 /// their Jacobians* (2013); the semidefinite part of the Hessian is `k grad theta grad theta^T`.
 ///
 /// Springs that [yield](Yield) remember plastic angles `p_e` besides (radians, one for each layer, in
-/// [`Potential::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a
+/// [`Remembering::memory`]): their energy is that of `theta_e - rest_e - p_e`, with that of hardening, and in a
 /// step what they dissipate in it.
 #[derive(Debug)]
 pub struct CreaseSprings {
@@ -573,18 +571,6 @@ impl Potential for CreaseSprings {
         }
     }
 
-    /// Half the elastic energy of a hinge goes to each of its faces: where a mesh has exactly the energy of a bend
-    /// ([`CreaseSprings::bending`]), so has each face inside.
-    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
-        for ((h, p), beside) in self.with_plastic(at.memory).zip(&self.bent) {
-            let angle = Fold::at(at.x, &h.vertices).angle();
-            let elastic = h.respond(at.t, angle, p).elastic;
-            for face in beside {
-                faces[face.index()] += 0.25 * h.stiffness * elastic * elastic;
-            }
-        }
-    }
-
     fn couplings(&self) -> Vec<[VertexId; 2]> {
         let pairs = |h: &Hinge| {
             let vertices = h.vertices;
@@ -599,17 +585,16 @@ impl Potential for CreaseSprings {
         self.hinges.iter().any(|h| h.rest.is_driven())
     }
 
-    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
-        let yielding = self
-            .with_plastic(memory)
-            .filter(|(h, _)| h.yields.is_some());
-        yielding.map(|(h, p)| (h.edge, h.plastic(p))).collect()
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        Some(self)
     }
 
-    fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
-        self.bends_beside(at)
+    fn report(&self) -> Option<&dyn MaterialReport> {
+        Some(self)
     }
+}
 
+impl Remembering for CreaseSprings {
     fn memory(&self) -> Vec<f64> {
         vec![0.0; self.hinges.iter().map(Hinge::layers).sum()]
     }
@@ -632,5 +617,30 @@ impl Potential for CreaseSprings {
         }
         let work = 0.0;
         Settled { dissipated, work }
+    }
+}
+
+impl MaterialReport for CreaseSprings {
+    /// Half the elastic energy of a hinge goes to each of its faces: where a mesh has exactly the energy of a bend
+    /// ([`CreaseSprings::bending`]), so has each face inside.
+    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
+        for ((h, p), beside) in self.with_plastic(at.memory).zip(&self.bent) {
+            let angle = Fold::at(at.x, &h.vertices).angle();
+            let elastic = h.respond(at.t, angle, p).elastic;
+            for face in beside {
+                faces[face.index()] += 0.25 * h.stiffness * elastic * elastic;
+            }
+        }
+    }
+
+    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
+        let yielding = self
+            .with_plastic(memory)
+            .filter(|(h, _)| h.yields.is_some());
+        yielding.map(|(h, p)| (h.edge, h.plastic(p))).collect()
+    }
+
+    fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
+        self.bends_beside(at)
     }
 }

@@ -23,7 +23,8 @@ mod swelling_tests;
 mod tests;
 
 use crate::motion::profile::Profile;
-use crate::potential::{At, Reached, Settled};
+use crate::potential::{At, Limited, Reached, Remembering, Settled};
+use crate::report::step_error::StepError;
 use crate::{HessianSink, Potential};
 
 use super::patched::Patched;
@@ -444,8 +445,39 @@ impl Potential for ElasticSheet {
         self.faces.iter().any(|face| face.swelling().is_driven())
     }
 
-    fn has_limit(&self) -> bool {
-        true
+    /// What the round-off of positions makes of a sheet: strains `d` beside those `e` that it has change the
+    /// energy `K e^2 / 2` by `K d^2 / 2`, and by at most twice the root of the product of the two.
+    fn round_off(&self, size: f64, energy: f64) -> f64 {
+        let unstrained: f64 = self.faces.iter().map(|face| face.round_off(size)).sum();
+        unstrained + 2.0 * (energy * unstrained).sqrt()
+    }
+
+    fn limit(&self) -> Option<&dyn Limited> {
+        Some(self)
+    }
+
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        Some(self)
+    }
+}
+
+impl Limited for ElasticSheet {
+    /// Whether it swells or shrinks within bounds, and leaves the strains within the limit.
+    fn check(&self, at: At<'_>) -> Result<(), StepError> {
+        if let Some(part) = self.swollen_too_much(at.t) {
+            return Err(StepError::Swelling { part, t: at.t });
+        }
+        if self.is_driven()
+            && let Some(worst) = self.beyond_limit(at)
+        {
+            return Err(StepError::SwellingBeyondLimit {
+                face: worst.face,
+                strain: worst.strain,
+                limit: worst.limit,
+                t: at.t,
+            });
+        }
+        Ok(())
     }
 
     /// Along the part every face keeps a part of its distance from the limit.
@@ -469,14 +501,9 @@ impl Potential for ElasticSheet {
         });
         true
     }
+}
 
-    /// What the round-off of positions makes of a sheet: strains `d` beside those `e` that it has change the
-    /// energy `K e^2 / 2` by `K d^2 / 2`, and by at most twice the root of the product of the two.
-    fn round_off(&self, size: f64, energy: f64) -> f64 {
-        let unstrained: f64 = self.faces.iter().map(|face| face.round_off(size)).sum();
-        unstrained + 2.0 * (energy * unstrained).sqrt()
-    }
-
+impl Remembering for ElasticSheet {
     /// The stiffness of the barrier, joules per square metre, and the bend of each face.
     fn memory(&self) -> Vec<f64> {
         vec![0.0; 1 + NUMBERS * self.faces.len()]

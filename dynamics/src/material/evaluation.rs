@@ -1,7 +1,7 @@
 //! What a potential computes of each of its parts where it is evaluated.
 
 use crate::potential::At;
-use isosheet_coords::linalg::parallel::{Work, fill};
+use isosheet_linalg::parallel::{Work, fill};
 use std::sync::Mutex;
 
 /// Working memory that one caller at a time reuses; another one gets memory of its own, and so does a thread that

@@ -25,9 +25,7 @@ mod tests;
 use super::patched::Patched;
 use super::plasticity::Yield;
 use crate::motion::profile::Profile;
-use crate::potential::At;
-use crate::potential::Reached;
-use crate::potential::Settled;
+use crate::potential::{At, MaterialReport, Reached, Remembering, Settled};
 use crate::{HessianSink, Potential};
 pub use error::{CurlError, PlateBendingError};
 pub use face_curvature::FaceCurvature;
@@ -397,12 +395,6 @@ impl Potential for PlateBending {
         }
     }
 
-    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
-        for (k, stencil) in self.stencils.iter().enumerate() {
-            faces[face_of(k)] += 0.5 * self.elastic(k, &stencil, at).norm_squared();
-        }
-    }
-
     fn add_gradient(&self, at: At<'_>, gradient: &mut [f64]) {
         let stencils = &self.stencils;
         match &self.stress_free {
@@ -440,13 +432,25 @@ impl Potential for PlateBending {
         self.at_pairs.iter().map(|(pair, _)| *pair).collect()
     }
 
-    fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
-        let plastic = self.stress_free.iter();
-        let matrices = plastic.flat_map(|plastic| plastic.matrices(memory));
-        let faces = (0..).map(FaceId::from_index);
-        faces.zip(matrices).collect()
+    fn is_driven(&self) -> bool {
+        let turns = self.stencils.is_driven();
+        turns
+            || self
+                .stress_free
+                .as_ref()
+                .is_some_and(StressFreeCurvature::is_driven)
     }
 
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        Some(self)
+    }
+
+    fn report(&self) -> Option<&dyn MaterialReport> {
+        Some(self)
+    }
+}
+
+impl Remembering for PlateBending {
     fn memory(&self) -> Vec<f64> {
         let plastic = self.stress_free.as_ref();
         plastic.map_or_else(Vec::new, StressFreeCurvature::memory)
@@ -456,6 +460,31 @@ impl Potential for PlateBending {
         self.stress_free
             .as_ref()
             .is_some_and(StressFreeCurvature::yields)
+    }
+
+    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
+        let settle = |curvature: &StressFreeCurvature| {
+            curvature.settle(&self.stencils, (state.t, state.x), memory)
+        };
+        Settled {
+            dissipated: self.stress_free.as_ref().map_or(0.0, settle),
+            work: 0.0,
+        }
+    }
+}
+
+impl MaterialReport for PlateBending {
+    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
+        for (k, stencil) in self.stencils.iter().enumerate() {
+            faces[face_of(k)] += 0.5 * self.elastic(k, &stencil, at).norm_squared();
+        }
+    }
+
+    fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
+        let plastic = self.stress_free.iter();
+        let matrices = plastic.flat_map(|plastic| plastic.matrices(memory));
+        let faces = (0..).map(FaceId::from_index);
+        faces.zip(matrices).collect()
     }
 
     /// With the slopes `d_e` that clamps hold and their forces `f_e = dV/dd_e` it is `sum_e d_e x f_e`.
@@ -471,24 +500,5 @@ impl Potential for PlateBending {
             }
         }
         moments.into_iter().map(Into::into).collect()
-    }
-
-    fn is_driven(&self) -> bool {
-        let turns = self.stencils.is_driven();
-        turns
-            || self
-                .stress_free
-                .as_ref()
-                .is_some_and(StressFreeCurvature::is_driven)
-    }
-
-    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
-        let settle = |curvature: &StressFreeCurvature| {
-            curvature.settle(&self.stencils, (state.t, state.x), memory)
-        };
-        Settled {
-            dissipated: self.stress_free.as_ref().map_or(0.0, settle),
-            work: 0.0,
-        }
     }
 }

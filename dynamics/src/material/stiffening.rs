@@ -2,7 +2,9 @@
 
 use crate::hessian::HessianSink;
 use crate::motion::profile::{Profile, ProfileError};
-use crate::potential::{At, CouplingKind, Potential, Reached, Settled};
+use crate::potential::{
+    At, CouplingKind, Limited, MaterialReport, Potential, Reached, Remembering, Settled,
+};
 use isosheet_mesh::{EdgeId, FaceId, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
@@ -79,58 +81,78 @@ impl<P: Potential> Potential for Stiffening<P> {
         self.potential.is_driven() || !self.factor.is_constant()
     }
 
-    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
-        let mut own = vec![0.0; faces.len()];
-        self.potential.add_bending_energies(at, &mut own);
-        add_scaled(faces, self.factor.value(at.t), &own);
+    fn limit(&self) -> Option<&dyn Limited> {
+        self.potential.limit()
     }
 
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        self.potential.remembering().map(|_| self as _)
+    }
+
+    fn report(&self) -> Option<&dyn MaterialReport> {
+        self.potential.report().map(|_| self as _)
+    }
+}
+
+impl<P: Potential> Stiffening<P> {
+    fn remembers(&self) -> &dyn Remembering {
+        let own = self.potential.remembering();
+        own.expect("it remembers where its potential does")
+    }
+
+    fn reports(&self) -> &dyn MaterialReport {
+        let own = self.potential.report();
+        own.expect("it reports where its potential does")
+    }
+}
+
+impl<P: Potential> Remembering for Stiffening<P> {
     fn memory(&self) -> Vec<f64> {
-        self.potential.memory()
-    }
-
-    fn can_yield(&self) -> bool {
-        self.potential.can_yield()
+        self.remembers().memory()
     }
 
     fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
-        self.potential.start(state, memory);
+        self.remembers().start(state, memory);
     }
 
     fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
-        let Settled { dissipated, work } = self.potential.settle(state, memory);
+        let Settled { dissipated, work } = self.remembers().settle(state, memory);
         let [dissipated, work] = [dissipated, work].map(|part| self.factor.value(state.t) * part);
         Settled { dissipated, work }
     }
 
-    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
-        self.potential.plastic_angles(memory)
+    fn can_yield(&self) -> bool {
+        self.remembers().can_yield()
+    }
+
+    fn held_vertex(&self) -> Option<VertexId> {
+        self.remembers().held_vertex()
+    }
+}
+
+impl<P: Potential> MaterialReport for Stiffening<P> {
+    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
+        let mut own = vec![0.0; faces.len()];
+        self.reports().add_bending_energies(at, &mut own);
+        add_scaled(faces, self.factor.value(at.t), &own);
     }
 
     fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
-        self.potential.bends_at_creases(at)
+        self.reports().bends_at_creases(at)
+    }
+
+    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
+        self.reports().plastic_angles(memory)
     }
 
     fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
-        self.potential.plastic_curvatures(memory)
+        self.reports().plastic_curvatures(memory)
     }
 
     fn clamp_moments(&self, at: At<'_>) -> Vec<[f64; 3]> {
         let factor = self.factor.value(at.t);
-        let moments = self.potential.clamp_moments(at).into_iter();
+        let moments = self.reports().clamp_moments(at).into_iter();
         moments.map(|m| m.map(|part| factor * part)).collect()
-    }
-
-    fn has_limit(&self) -> bool {
-        self.potential.has_limit()
-    }
-
-    fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
-        self.potential.safe_part(at, dx)
-    }
-
-    fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
-        self.potential.stays_within(at, end)
     }
 }
 

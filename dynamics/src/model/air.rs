@@ -5,12 +5,12 @@ mod step_tests;
 #[cfg(test)]
 mod tests;
 
-use crate::SheetModel;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::motion::profile::{Profile, ProfileError};
 use crate::potential::Force;
-use crate::term::{Exchange, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
+use crate::term::{Exchange, ImplicitForce, Iterate, StepStart, Term, Value};
 use crate::vectors::{add, point};
+use crate::{SheetModel, StepError};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Topology, VertexId, area_from_lengths};
 use nalgebra::{Matrix3, Vector3};
@@ -386,7 +386,7 @@ impl AirStep {
 }
 
 impl Term for AirStep {
-    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
+    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), StepError> {
         let (t, ahead) = (step.t(), step.ahead);
         self.h = step.h;
         self.rest.clear();
@@ -397,7 +397,7 @@ impl Term for AirStep {
             let wind = on_faces.wind_at(face, t, ahead);
             if let Some(&value) = wind.iter().find(|w| !w.is_finite()) {
                 let vertex = face.vertices[0];
-                return Err(Refusal::NonFiniteForce { vertex, value, t });
+                return Err(StepError::NonFiniteForce { vertex, value, t });
             }
             self.faces.push(FaceInStep {
                 face: *face,
@@ -437,7 +437,7 @@ impl Term for AirStep {
         }
     }
 
-    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
+    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         let mut force = std::mem::take(&mut self.force);
         force.clear();
         force.resize(at.x.len(), 0.0);

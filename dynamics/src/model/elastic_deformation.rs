@@ -60,7 +60,7 @@ fn share(energy: f64, others: f64) -> f64 {
 impl SheetModel {
     /// How an elastic sheet is deformed at a time `t` (seconds) and positions `x` (`3V`, metres) by what its
     /// potentials remember; nothing for a sheet of rods. Bending is that of the potentials that know it by face
-    /// ([`Potential::add_bending_energies`](crate::Potential)), and has an angle if the sheet was told its plate
+    /// ([`MaterialReport`](crate::MaterialReport)), and has an angle if the sheet was told its plate
     /// ([`ElasticSheet::beside`](crate::ElasticSheet::beside)).
     ///
     /// # Panics
@@ -75,7 +75,9 @@ impl SheetModel {
         let mut bending = vec![0.0; elastic.face_count()];
         let mut own = At::new(t, x);
         for (potential, at) in self.potentials_at(t, x, memories) {
-            potential.add_bending_energies(at, &mut bending);
+            if let Some(report) = potential.report() {
+                report.add_bending_energies(at, &mut bending);
+            }
             // That of the elastic sheet is the last one.
             own = at;
         }

@@ -4,9 +4,10 @@
 pub(super) mod tests;
 
 use super::loaded_faces::Corners;
+use crate::StepError;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::potential::Force;
-use crate::term::{Exchange, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
+use crate::term::{Exchange, ImplicitForce, Iterate, StepStart, Term, Value};
 use crate::vectors::{add, point};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use std::fmt::Debug;
@@ -182,14 +183,14 @@ impl<L: FaceLoad> FollowerStep<L> {
 }
 
 impl<L: FaceLoad> Term for FollowerStep<L> {
-    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
+    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), StepError> {
         self.start.clear();
         self.start.extend_from_slice(&step.state.x);
         self.lag(step.t(), step.ahead);
         for lagged in &self.lagged {
             if let Some(i) = lagged.force.iter().position(|f| !f.is_finite()) {
                 let (vertex, value, t) = (lagged.face.vertices[i / 3], lagged.force[i], step.t());
-                return Err(Refusal::NonFiniteForce { vertex, value, t });
+                return Err(StepError::NonFiniteForce { vertex, value, t });
             }
         }
         Ok(())
@@ -241,10 +242,14 @@ impl<L: FaceLoad> Term for FollowerStep<L> {
         true
     }
 
-    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
+    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         let error = self.error(at);
         if error.is_nan() || error > UNSETTLED {
-            return Err(Refusal::UnsettledLoads { error });
+            return Err(StepError::UnsettledLoads {
+                t: step.state.t,
+                h: step.span,
+                error,
+            });
         }
         let mut force = std::mem::take(&mut self.force);
         force.fill(0.0);

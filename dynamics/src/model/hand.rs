@@ -1,7 +1,7 @@
 //! A spring by which somebody pulls at a vertex while the simulation runs.
 
 use crate::hessian::HessianSink;
-use crate::potential::{At, Potential};
+use crate::potential::{At, Potential, Remembering};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, Topology, VertexId};
 use nalgebra::{Matrix3, Vector3};
@@ -241,9 +241,19 @@ impl Potential for Hand {
         true
     }
 
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        Some(self)
+    }
+}
+
+impl Remembering for Hand {
     /// The way that it is led.
     fn memory(&self) -> Vec<f64> {
         self.way(&[]).numbers().to_vec()
+    }
+
+    fn held_vertex(&self) -> Option<VertexId> {
+        Some(self.vertex)
     }
 }
 

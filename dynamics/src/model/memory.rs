@@ -1,6 +1,6 @@
 //! What the potentials of a model remember.
 
-use crate::potential::{At, Memories, Potential, Reached, Settled};
+use crate::potential::{At, MaterialReport, Memories, Potential, Reached, Remembering, Settled};
 use crate::{SheetModel, State};
 use isosheet_mesh::{EdgeId, FaceId, principal_values};
 use nalgebra::Matrix2;
@@ -8,11 +8,7 @@ use nalgebra::Matrix2;
 impl SheetModel {
     /// What the potentials remember before anything has happened.
     pub fn memories(&self) -> Memories {
-        let hands = self
-            .hands
-            .iter()
-            .map(|(number, hand)| (hand.vertex().0, *number));
-        Memories::of(self.potentials().map(Potential::memory)).with_hands(hands)
+        Memories::of(self.potentials())
     }
 
     /// The potentials, each with where it is evaluated.
@@ -33,10 +29,12 @@ impl SheetModel {
     }
 
     /// What the potentials remember at the start of a simulation.
-    pub(crate) fn memories_at_start(&self, state: &State) -> Memories {
+    pub fn memories_at_start(&self, state: &State) -> Memories {
         let mut memories = self.memories();
         for (p, memory) in self.potentials().zip(memories.lists_mut()) {
-            p.start(reached(state), memory);
+            if let Some(p) = p.remembering() {
+                p.start(reached(state), memory);
+            }
         }
         memories
     }
@@ -45,6 +43,9 @@ impl SheetModel {
     pub(crate) fn settle(&self, state: &State, memories: &mut Memories) -> Settled {
         let mut sum = Settled::default();
         for (p, memory) in self.potentials().zip(memories.lists_mut()) {
+            let Some(p) = p.remembering() else {
+                continue;
+            };
             let Settled { dissipated, work } = p.settle(reached(state), memory);
             sum.dissipated += dissipated;
             sum.work += work;
@@ -52,15 +53,26 @@ impl SheetModel {
         sum
     }
 
+    /// The potentials that tell of their material, each with what it remembers.
+    pub(crate) fn reports<'a>(
+        &'a self,
+        memories: &'a Memories,
+    ) -> impl Iterator<Item = (&'a dyn MaterialReport, &'a [f64])> {
+        let all = self.potentials().zip(memories.lists());
+        all.filter_map(|(p, memory)| Some((p.report()?, &memory[..])))
+    }
+
     /// Whether bends or creases can yield.
     pub fn can_yield(&self) -> bool {
-        self.potentials().any(|p| p.can_yield())
+        self.potentials()
+            .filter_map(Potential::remembering)
+            .any(Remembering::can_yield)
     }
 
     /// The plastic angle of each edge (length E, radians, positive for valleys), 0 where nothing yields;
     /// `None` where no edge can yield. It is what stays of a fold angle where the moment is zero.
     pub fn plastic_angles(&self, memories: &Memories) -> Option<Vec<f64>> {
-        let all = self.potentials().zip(memories.lists());
+        let all = self.reports(memories);
         let known: Vec<(EdgeId, f64)> = all.flat_map(|(p, m)| p.plastic_angles(m)).collect();
         if known.is_empty() {
             return None;
@@ -77,8 +89,11 @@ impl SheetModel {
     /// The fold angle of the two faces at a crease ([`isosheet_mesh::fold_angle`]) is the kink of the crease
     /// and this bend ([`CreaseSprings::bends_beside`](crate::CreaseSprings::bends_beside)).
     pub fn bends_at_creases(&self, t: f64, x: &[f64], memories: &Memories) -> Option<Vec<f64>> {
-        let all = self.potentials_at(t, x, memories);
-        let known: Vec<(EdgeId, f64)> = all.flat_map(|(p, at)| p.bends_at_creases(at)).collect();
+        let all = self.reports(memories);
+        let at = |memory| At::new(t, x).with_memory(memory);
+        let known: Vec<(EdgeId, f64)> = all
+            .flat_map(|(p, memory)| p.bends_at_creases(at(memory)))
+            .collect();
         if known.is_empty() {
             return None;
         }
@@ -94,7 +109,7 @@ impl SheetModel {
     /// counter-clockwise; `None` where no face can yield. They are what stays of the curvature where the
     /// moment is zero.
     pub fn plastic_curvatures(&self, memories: &Memories) -> Option<Vec<[f64; 2]>> {
-        let all = self.potentials().zip(memories.lists());
+        let all = self.reports(memories);
         let known: Vec<(FaceId, Matrix2<f64>)> =
             all.flat_map(|(p, m)| p.plastic_curvatures(m)).collect();
         if known.is_empty() {

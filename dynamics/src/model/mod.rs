@@ -1,7 +1,6 @@
 //! The mechanical system: rods, masses, pins, potentials and forces.
 
 pub(crate) mod air;
-pub(crate) mod attached;
 pub(crate) mod breaks;
 pub(crate) mod clamps;
 mod damped_range;
@@ -237,8 +236,10 @@ impl SheetModel {
         self
     }
 
-    /// Adds a force that damped steps take as a term of their objective.
-    pub(crate) fn with_implicit_force(mut self, force: impl ImplicitForce + 'static) -> Self {
+    /// Adds a force that BDF2 and implicit Euler take as a [term](crate::term::Term) of their objective, and other
+    /// methods as it is: one that is too stiff to be taken as it is expected at the end of a step, or has a barrier.
+    #[must_use]
+    pub fn with_implicit_force(mut self, force: impl ImplicitForce + 'static) -> Self {
         self.implicit.push(Box::new(force));
         self
     }
@@ -257,8 +258,13 @@ impl SheetModel {
         self
     }
 
+    /// Whether a potential has a limit.
+    pub fn has_limit(&self) -> bool {
+        self.potentials().any(|p| p.limit().is_some())
+    }
+
     /// Whether there are forces that only steps which minimise have.
-    pub(crate) fn needs_minimising(&self) -> bool {
+    pub fn needs_minimising(&self) -> bool {
         self.implicit.iter().any(|force| force.needs_minimising())
     }
 
@@ -351,8 +357,9 @@ impl SheetModel {
         self.potentials.iter().map(Box::as_ref).chain(elastic)
     }
 
-    /// The number of potentials without that of an elastic sheet, which is the last one.
-    pub(crate) fn outer_potential_count(&self) -> usize {
+    /// The place in [`Memories::lists`](crate::Memories::lists) of the potential that is added next: that of an elastic
+    /// sheet stays the last one.
+    pub fn next_potential(&self) -> usize {
         self.potentials.len()
     }
 
@@ -393,7 +400,7 @@ impl SheetModel {
 
     /// Length of the shortest edge at a vertex, metres: the scale of displacements that must not
     /// turn a face over.
-    pub(crate) fn shortest_edge(&self, vertex: usize) -> f64 {
+    pub fn shortest_edge(&self, vertex: usize) -> f64 {
         self.shortest_edges[vertex]
     }
 
@@ -408,7 +415,7 @@ impl SheetModel {
     }
 
     /// Total potential energy with memories, joules.
-    pub(crate) fn energy_with(&self, memories: &Memories, t: f64, x: &[f64]) -> f64 {
+    pub fn energy_with(&self, memories: &Memories, t: f64, x: &[f64]) -> f64 {
         let potentials = self.potentials_at(t, x, memories);
         potentials.map(|(p, at)| p.energy(at)).sum()
     }
@@ -460,7 +467,7 @@ impl SheetModel {
     }
 
     /// Conservative force with memories, overwriting `f`, at pinned vertices too.
-    pub(crate) fn force_with(&self, memories: &Memories, t: f64, x: &[f64], f: &mut [f64]) {
+    pub fn force_with(&self, memories: &Memories, t: f64, x: &[f64], f: &mut [f64]) {
         f.fill(0.0);
         for (p, at) in self.potentials_at(t, x, memories) {
             p.add_gradient(at, f);
@@ -477,7 +484,7 @@ impl SheetModel {
     }
 
     /// Adds the non-conservative forces, at pinned vertices too.
-    pub(crate) fn add_applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+    pub fn add_applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.add_explicit_force(t, x, v, f);
         for force in self.implicit_forces() {
             force.add_force(t, x, v, f);
@@ -493,7 +500,7 @@ impl SheetModel {
     }
 
     /// Whether anything but potentials acts on the sheet.
-    pub(crate) fn has_applied_forces(&self) -> bool {
+    pub fn has_applied_forces(&self) -> bool {
         !self.forces.is_empty() || !self.implicit.is_empty()
     }
 
@@ -510,7 +517,7 @@ impl SheetModel {
     }
 
     /// Sets the entries of pinned vertices to zero.
-    pub(crate) fn clear_pinned(&self, f: &mut [f64]) {
+    pub fn clear_pinned(&self, f: &mut [f64]) {
         if self.free_count == self.free_index.len() {
             return;
         }

@@ -1,7 +1,11 @@
 //! Potentials of one of several sheets.
 
+use crate::StepError;
 use crate::hessian::HessianSink;
-use crate::potential::{At, CouplingKind, Potential, PotentialShape, Reached, Settled};
+use crate::potential::{
+    At, CouplingKind, Limited, MaterialReport, Potential, PotentialShape, Reached, Remembering,
+    Settled,
+};
 use isosheet_mesh::{EdgeId, FaceId, Part, VertexId};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
@@ -92,75 +96,113 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
         self.potential.is_driven()
     }
 
-    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
-        let own = &mut faces[self.part.faces.clone()];
-        self.potential.add_bending_energies(self.own(at), own);
-    }
-
-    fn memory(&self) -> Vec<f64> {
-        self.potential.memory()
-    }
-
-    fn can_yield(&self) -> bool {
-        self.potential.can_yield()
-    }
-
-    fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
-        self.potential.start(self.reached(state), memory);
-    }
-
-    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
-        self.potential.settle(self.reached(state), memory)
-    }
-
-    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
-        let own = self.potential.plastic_angles(memory).into_iter();
-        own.map(|(e, angle)| (self.part.edge(e), angle)).collect()
-    }
-
-    fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
-        let own = self.potential.bends_at_creases(self.own(at)).into_iter();
-        own.map(|(e, bend)| (self.part.edge(e), bend)).collect()
-    }
-
-    fn clamp_moments(&self, at: At<'_>) -> Vec<[f64; 3]> {
-        self.potential.clamp_moments(self.own(at))
-    }
-
-    fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
-        let first = self.part.faces.start;
-        let own = self.potential.plastic_curvatures(memory).into_iter();
-        own.map(|(f, curvature)| (FaceId::from_index(first + f.index()), curvature))
-            .collect()
-    }
-
-    fn has_limit(&self) -> bool {
-        self.potential.has_limit()
-    }
-
-    fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
-        let dx = &dx[self.part.coordinates()];
-        self.potential.safe_part(self.own(at), dx)
-    }
-
-    fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
-        let end = &end[self.part.coordinates()];
-        self.potential.stays_within(self.own(at), end)
-    }
-
-    fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, out: &mut [f64]) -> bool {
-        let own = self.part.coordinates();
-        let (dx, out) = (&dx[own.clone()], &mut out[own]);
-        self.potential
-            .add_second_order(self.own(at), dx, scale, out)
-    }
-
     fn round_off(&self, size: f64, energy: f64) -> f64 {
         self.potential.round_off(size, energy)
     }
 
     fn shape(&self) -> PotentialShape {
         self.potential.shape()
+    }
+
+    fn limit(&self) -> Option<&dyn Limited> {
+        self.potential.limit().map(|_| self as _)
+    }
+
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        self.potential.remembering().map(|_| self as _)
+    }
+
+    fn report(&self) -> Option<&dyn MaterialReport> {
+        self.potential.report().map(|_| self as _)
+    }
+}
+
+/// Why the wrapped potential has what the wrapper is asked for.
+const ASKED: &str = "a wrapper has what its potential has";
+
+impl<P: Potential> Limited for PotentialOfPart<P> {
+    fn check(&self, at: At<'_>) -> Result<(), StepError> {
+        self.potential.limit().expect(ASKED).check(self.own(at))
+    }
+
+    fn safe_part(&self, at: At<'_>, dx: &[f64]) -> f64 {
+        let dx = &dx[self.part.coordinates()];
+        let limit = self.potential.limit().expect(ASKED);
+        limit.safe_part(self.own(at), dx)
+    }
+
+    fn stays_within(&self, at: At<'_>, end: &[f64]) -> bool {
+        let end = &end[self.part.coordinates()];
+        let limit = self.potential.limit().expect(ASKED);
+        limit.stays_within(self.own(at), end)
+    }
+
+    fn add_second_order(&self, at: At<'_>, dx: &[f64], scale: f64, out: &mut [f64]) -> bool {
+        let own = self.part.coordinates();
+        let (dx, out) = (&dx[own.clone()], &mut out[own]);
+        let limit = self.potential.limit().expect(ASKED);
+        limit.add_second_order(self.own(at), dx, scale, out)
+    }
+}
+
+impl<P: Potential> PotentialOfPart<P> {
+    fn remembers(&self) -> &dyn Remembering {
+        self.potential.remembering().expect(ASKED)
+    }
+
+    fn reports(&self) -> &dyn MaterialReport {
+        self.potential.report().expect(ASKED)
+    }
+}
+
+impl<P: Potential> Remembering for PotentialOfPart<P> {
+    fn memory(&self) -> Vec<f64> {
+        self.remembers().memory()
+    }
+
+    fn start(&self, state: Reached<'_>, memory: &mut [f64]) {
+        self.remembers().start(self.reached(state), memory);
+    }
+
+    fn settle(&self, state: Reached<'_>, memory: &mut [f64]) -> Settled {
+        self.remembers().settle(self.reached(state), memory)
+    }
+
+    fn can_yield(&self) -> bool {
+        self.remembers().can_yield()
+    }
+
+    fn held_vertex(&self) -> Option<VertexId> {
+        let vertex = self.remembers().held_vertex();
+        vertex.map(|v| self.part.vertex(v))
+    }
+}
+
+impl<P: Potential> MaterialReport for PotentialOfPart<P> {
+    fn add_bending_energies(&self, at: At<'_>, faces: &mut [f64]) {
+        let own = &mut faces[self.part.faces.clone()];
+        self.reports().add_bending_energies(self.own(at), own);
+    }
+
+    fn bends_at_creases(&self, at: At<'_>) -> Vec<(EdgeId, f64)> {
+        let own = self.reports().bends_at_creases(self.own(at)).into_iter();
+        own.map(|(e, bend)| (self.part.edge(e), bend)).collect()
+    }
+
+    fn plastic_angles(&self, memory: &[f64]) -> Vec<(EdgeId, f64)> {
+        let own = self.reports().plastic_angles(memory).into_iter();
+        own.map(|(e, angle)| (self.part.edge(e), angle)).collect()
+    }
+
+    fn plastic_curvatures(&self, memory: &[f64]) -> Vec<(FaceId, Matrix2<f64>)> {
+        let first = self.part.faces.start;
+        let own = self.reports().plastic_curvatures(memory).into_iter();
+        own.map(|(f, curvature)| (FaceId::from_index(first + f.index()), curvature))
+            .collect()
+    }
+
+    fn clamp_moments(&self, at: At<'_>) -> Vec<[f64; 3]> {
+        self.reports().clamp_moments(self.own(at))
     }
 }
 

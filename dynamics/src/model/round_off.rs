@@ -1,7 +1,7 @@
 //! What round-off of the coordinates allows to ask for.
 
 use crate::{SheetModel, State};
-use isosheet_coords::linalg::norm_inf;
+use isosheet_linalg::norm_inf;
 
 /// Smallest edge strain that round-off in the coordinates allows to ask for.
 pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {

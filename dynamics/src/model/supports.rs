@@ -147,7 +147,7 @@ impl SheetModel {
     }
 
     /// The first support whose motion is not finite at time `t`, and the value.
-    pub(crate) fn find_bad_motion(&self, t: f64) -> Option<(Support, f64)> {
+    pub fn find_bad_motion(&self, t: f64) -> Option<(Support, f64)> {
         let pins = self.moving_pins.iter().flat_map(|pin| {
             let at = pin.motion.position(t);
             at.map(|c| (Support::Pin(VertexId(pin.vertex as u32)), c))
@@ -161,18 +161,18 @@ impl SheetModel {
     }
 
     /// Whether pins or vertex constraints move.
-    pub(crate) fn has_drives(&self) -> bool {
+    pub fn has_drives(&self) -> bool {
         !self.moving_pins.is_empty() || self.constraints.iter().any(VertexConstraint::moves)
     }
 
     /// Whether anything holds the sheet.
-    pub(crate) fn has_supports(&self) -> bool {
+    pub fn has_supports(&self) -> bool {
         self.free_count < self.free_index.len() || !self.constraints.is_empty()
     }
 
     /// Sets the velocities of pins in prescribed motion at time `t`; of functions by differences over a part
     /// of the time `span`.
-    pub(crate) fn set_pin_velocities(&self, t: f64, span: f64, v: &mut [f64]) {
+    pub fn set_pin_velocities(&self, t: f64, span: f64, v: &mut [f64]) {
         for pin in &self.moving_pins {
             let rate = pin.motion.velocity(t, span);
             v[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(rate.as_slice());
@@ -180,7 +180,7 @@ impl SheetModel {
     }
 
     /// Rates `dc/dt` of the vertex constraints at fixed positions, metres per second.
-    pub(crate) fn constraint_rates(&self, t: f64, span: f64, x: &[f64]) -> Vec<Vector3<f64>> {
+    pub fn constraint_rates(&self, t: f64, span: f64, x: &[f64]) -> Vec<Vector3<f64>> {
         let constraints = self.constraints.iter();
         constraints
             .map(|c| c.rate(t, span, &point(x, c.vertex())))
@@ -210,7 +210,7 @@ impl SheetModel {
     }
 
     /// The motion of a pin, if one is prescribed.
-    pub(crate) fn pin_motion(&self, v: VertexId) -> Option<&PointMotion> {
+    pub fn pin_motion(&self, v: VertexId) -> Option<&PointMotion> {
         let pin = self.moving_pins.iter().find(|p| p.vertex == v.index())?;
         Some(&pin.motion)
     }

@@ -1,10 +1,11 @@
 //! Potentials and explicit forces in a step.
 
-use crate::SheetModel;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::model::PINNED;
-use crate::term::{Barrier, Exchange, Formula, Iterate, Refusal, StepStart, Term, Value};
-use isosheet_coords::linalg::norm_inf;
+use crate::potential::{At, Limited};
+use crate::term::{Barrier, Exchange, Formula, Iterate, StepStart, Term, Value};
+use crate::{SheetModel, StepError};
+use isosheet_linalg::norm_inf;
 use isosheet_mesh::VertexId;
 use std::sync::Arc;
 
@@ -68,7 +69,7 @@ impl Acting {
         let scratch = if model.forces().is_empty() { 0 } else { n };
         Self {
             scratch: vec![0.0; scratch],
-            has_limit: model.potentials().any(|p| p.has_limit()),
+            has_limit: model.has_limit(),
             model: Arc::clone(model),
             prediction: vec![0.0; n],
             applied: vec![0.0; n],
@@ -90,6 +91,21 @@ impl Acting {
         free.flat_map(|(row, _)| row).map(|f| f.abs()).sum()
     }
 
+    /// The potentials with limits, each with where it is evaluated.
+    fn limits<'a>(&'a self, at: Iterate<'a>) -> impl Iterator<Item = (&'a dyn Limited, At<'a>)> {
+        let all = self.model.potentials_at(at.t, at.x, at.memories);
+        all.filter_map(|(p, here)| Some((p.limit()?, here)))
+    }
+
+    /// Whether the limits leave a place at a time and positions.
+    ///
+    /// # Errors
+    /// As [`Limited::check`].
+    pub(super) fn check_at(&self, at: At<'_>) -> Result<(), StepError> {
+        let mut limits = self.model.potentials().filter_map(|p| p.limit());
+        limits.try_for_each(|limit| limit.check(at))
+    }
+
     /// Work of the explicit forces at the free vertices over displacements, joules.
     fn work(&self, moved: impl Iterator<Item = f64>) -> f64 {
         self.applied_free
@@ -101,7 +117,11 @@ impl Acting {
 }
 
 impl Term for Acting {
-    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
+    fn check(&mut self, [_, end]: [f64; 2], x: &[f64]) -> Result<(), StepError> {
+        self.check_at(At::new(end, x))
+    }
+
+    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), StepError> {
         let model = &self.model;
         self.prediction.copy_from_slice(step.prediction);
         if !model.forces().is_empty() {
@@ -112,7 +132,7 @@ impl Term for Acting {
             if let Some(i) = self.applied.iter().position(|f| !f.is_finite()) {
                 let (vertex, value) = (VertexId::from_index(i / 3), self.applied[i]);
                 let t = step.t();
-                return Err(Refusal::NonFiniteForce { vertex, value, t });
+                return Err(StepError::NonFiniteForce { vertex, value, t });
             }
             self.applied_free.copy_from_slice(&self.applied);
             model.clear_pinned(&mut self.applied_free);
@@ -168,13 +188,13 @@ impl Term for Acting {
     }
 
     fn safe_part(&mut self, at: Iterate<'_>, dx: &[f64]) -> f64 {
-        let potentials = self.model.potentials_at(at.t, at.x, at.memories);
-        potentials.fold(1.0, |part, (p, here)| p.safe_part(here, dx).min(part))
+        let limits = self.limits(at);
+        limits.fold(1.0, |part, (p, here)| p.safe_part(here, dx).min(part))
     }
 
     fn stays_within(&mut self, at: Iterate<'_>, end: &[f64]) -> bool {
-        let mut potentials = self.model.potentials_at(at.t, at.x, at.memories);
-        potentials.all(|(p, here)| p.stays_within(here, end))
+        let mut limits = self.limits(at);
+        limits.all(|(p, here)| p.stays_within(here, end))
     }
 
     fn add_second_order(
@@ -184,9 +204,8 @@ impl Term for Acting {
         scale: f64,
         out: &mut [f64],
     ) -> bool {
-        let potentials = self.model.potentials_at(at.t, at.x, at.memories);
         let mut any = false;
-        for (p, here) in potentials {
+        for (p, here) in self.limits(at) {
             any |= p.add_second_order(here, dx, scale, out);
         }
         any
@@ -194,7 +213,7 @@ impl Term for Acting {
 
     /// The work of the explicit forces: of implicit Euler that of the forces at the end, and of a two-step formula
     /// that of their mean at both ends, which may err by the difference of the two.
-    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
+    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         let start = step.state;
         if self.model.forces().is_empty() {
             return Ok(Exchange::default());

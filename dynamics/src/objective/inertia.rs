@@ -1,11 +1,11 @@
 //! The inertia of a step.
 
 use crate::PotentialShape;
-use crate::SheetModel;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::model::PINNED;
 use crate::potential::At;
-use crate::term::{Exchange, Iterate, Refusal, StepStart, Term, Value};
+use crate::term::{Exchange, Iterate, StepStart, Term, Value};
+use crate::{SheetModel, StepError};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
@@ -136,7 +136,7 @@ impl Inertia {
 }
 
 impl Term for Inertia {
-    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
+    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), StepError> {
         self.prediction.copy_from_slice(step.prediction);
         self.falling.begin(&self.model, step, &mut self.product);
         Ok(())
@@ -166,7 +166,7 @@ impl Term for Inertia {
         }
     }
 
-    fn finish(&mut self, _: &StepStart<'_>, _: Iterate<'_>) -> Result<Exchange, Refusal> {
+    fn finish(&mut self, _: &StepStart<'_>, _: Iterate<'_>) -> Result<Exchange, StepError> {
         Ok(Exchange::default())
     }
 }

@@ -5,16 +5,17 @@ mod inertia;
 #[cfg(test)]
 mod spring_tests;
 
-use crate::SheetModel;
-use crate::contact::{ContactState, ContactTerm};
 use crate::hessian::HessianProduct;
 use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
-use crate::term::{Barrier, Exchange, Iterate, Refusal, StepStart, Term, Value};
+use crate::potential::At;
+use crate::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
+use crate::{SheetModel, StepError};
 use acting::Acting;
 use inertia::Inertia;
-use isosheet_coords::linalg::LinalgError;
-use isosheet_coords::linalg::parallel::both;
+use isosheet_linalg::LinalgError;
+use isosheet_linalg::parallel::both;
+use std::any::Any;
 use std::sync::Arc;
 
 pub(crate) use crate::hessian::HessianPart;
@@ -25,15 +26,13 @@ pub(crate) use crate::hessian::HessianPart;
 /// Phi(x) = |x - x^|_M^2 / 2 + h^2 sum_k T_k(x),
 /// ```
 ///
-/// the inertia and the other terms. A term is registered in [`Objective::new`], or belongs to a force of the
-/// model.
+/// the inertia, the potentials with the explicit forces, and further terms: those of implicit forces of the model,
+/// and contact where a scene names it.
 pub(crate) struct Objective {
     inertia: Inertia,
     /// Potentials and explicit forces.
     acting: Acting,
-    /// Contact, in scenes that name it.
-    pub(crate) contact: Option<ContactTerm>,
-    /// Those of implicit forces.
+    /// Further terms, of which it knows nothing else.
     others: Vec<Box<dyn Term>>,
     model: Arc<SheetModel>,
     couplings: Vec<[u32; 2]>,
@@ -61,19 +60,36 @@ impl Objective {
         Self {
             inertia: Inertia::new(model),
             acting: Acting::new(model),
-            contact: None,
             others: others.map(|f| f.term(Arc::clone(&free))).collect(),
             model: Arc::clone(model),
             couplings: Vec::new(),
         }
     }
 
+    /// Adds a term before those of implicit forces, or puts it in the place of the one of its type.
+    pub(crate) fn set<T: Term>(&mut self, term: T) {
+        self.others.retain(|other| !is::<T>(&**other));
+        self.others.insert(0, Box::new(term));
+    }
+
+    /// The term of a type, if there is one.
+    pub(crate) fn get<T: Term>(&self) -> Option<&T> {
+        self.others
+            .iter()
+            .find_map(|term| (&**term as &dyn Any).downcast_ref())
+    }
+
+    /// The term of a type, if there is one.
+    pub(crate) fn get_mut<T: Term>(&mut self) -> Option<&mut T> {
+        let mut others = self.others.iter_mut();
+        others.find_map(|term| (&mut **term as &mut dyn Any).downcast_mut())
+    }
+
     /// All terms, each with its factor.
     fn weighted(&mut self, h: f64) -> impl Iterator<Item = (&mut dyn Term, f64)> {
-        let contact = self.contact.as_mut().map(|term| term as &mut dyn Term);
         let others = self.others.iter_mut().map(|term| &mut **term as _);
         let acting = std::iter::once(&mut self.acting as &mut dyn Term);
-        let terms = acting.chain(contact).chain(others);
+        let terms = acting.chain(others);
         let inertia = std::iter::once((&mut self.inertia as &mut dyn Term, 1.0));
         inertia.chain(terms.map(move |term| (term, h * h)))
     }
@@ -88,20 +104,49 @@ impl Objective {
         self.terms().filter(|term| term.barrier().is_some())
     }
 
-    /// Whether there is a barrier of this kind.
-    pub(crate) fn has(&self, barrier: Barrier) -> bool {
-        let others = self.others.iter().map(|term| term.barrier());
-        let contact = self.contact.as_ref().map(|term| term.barrier());
-        let own = [Some(self.acting.barrier()), contact];
-        let mut all = own.into_iter().flatten().chain(others);
-        all.any(|found| found == Some(barrier))
+    /// What may cut displacements.
+    fn barrier_kinds(&self) -> impl Iterator<Item = Barrier> {
+        let others = self.others.iter().filter_map(|term| term.barrier());
+        self.acting.barrier().into_iter().chain(others)
+    }
+
+    /// Whether displacements are bounded.
+    pub(crate) fn has_barrier(&self) -> bool {
+        self.barrier_kinds().next().is_some()
+    }
+
+    /// Whether there is a barrier that holds on the whole way of a displacement, such as contact.
+    pub(crate) fn has_barrier_on_the_way(&self) -> bool {
+        self.barrier_kinds().any(Barrier::holds_on_the_way)
+    }
+
+    /// Whether nothing that a term prescribes moves in a span of time.
+    pub(crate) fn rests(&mut self, span: [f64; 2]) -> bool {
+        self.terms().all(|term| term.rests(span))
+    }
+
+    /// Refuses a span of time that cannot be stepped over from positions `x`.
+    ///
+    /// # Errors
+    /// As [`Term::check`].
+    pub(crate) fn check(&mut self, span: [f64; 2], x: &[f64]) -> Result<(), StepError> {
+        self.terms().try_for_each(|term| term.check(span, x))
+    }
+
+    /// Refuses positions at the end of a step where the limits of the potentials leave no place at the time of its
+    /// start: the work of what is prescribed is measured there, too.
+    ///
+    /// # Errors
+    /// As [`Limited::check`](crate::Limited::check).
+    pub(crate) fn check_end(&self, start: f64, x: &[f64]) -> Result<(), StepError> {
+        self.acting.check_at(At::new(start, x))
     }
 
     /// Begins a step, or begins it anew.
     ///
     /// # Errors
-    /// [`Refusal`].
-    pub(crate) fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
+    /// [`StepError`].
+    pub(crate) fn begin(&mut self, step: &StepStart<'_>) -> Result<(), StepError> {
         self.inertia.begin(step)?;
         self.terms().try_for_each(|term| term.begin(step))
     }
@@ -215,35 +260,27 @@ impl Objective {
 
     /// Largest part of a displacement that all terms allow, and what cut it; see [`Term::safe_part`].
     pub(crate) fn safe_part(&mut self, at: Iterate<'_>, dx: &[f64]) -> (f64, Option<Barrier>) {
-        let Self {
-            acting,
-            contact,
-            others,
-            ..
-        } = self;
+        let Self { acting, others, .. } = self;
         let part = |term: &mut dyn Term| {
             let barrier = term.barrier();
             (barrier.map_or(1.0, |_| term.safe_part(at, dx)), barrier)
         };
-        let (of_contact, own) = match contact {
-            None => (None, part(acting)),
-            Some(contact) => both(|| Some(part(contact)), || part(acting)),
+        let of_others = |others: &mut Vec<Box<dyn Term>>| {
+            let parts = others.iter_mut().map(|term| part(&mut **term));
+            parts.fold((1.0, None), shorter)
         };
-        let others = others.iter_mut().map(|term| part(&mut **term));
-        let all = [own].into_iter().chain(of_contact).chain(others);
-        all.fold((1.0, None), |(least, by), (part, barrier)| {
-            match part < 1.0 && part <= least {
-                true => (part, barrier),
-                false => (least, by),
-            }
-        })
+        let (further, own) = match others.iter().any(|term| term.barrier().is_some()) {
+            false => ((1.0, None), part(acting)),
+            true => both(|| of_others(others), || part(acting)),
+        };
+        shorter(own, further)
     }
 
     /// Largest part of the chord of a curved way that is allowed but for limits of the strain, which are
     /// checked at its end, see [`Objective::stays_within`].
     pub(crate) fn safe_chord(&mut self, at: Iterate<'_>, dx: &[f64]) -> f64 {
         self.barriers()
-            .filter(|term| term.barrier() != Some(Barrier::StrainLimit))
+            .filter(|term| term.barrier().is_some_and(Barrier::holds_on_the_way))
             .map(|term| term.safe_part(at, dx))
             .fold(1.0, f64::min)
     }
@@ -306,24 +343,32 @@ impl Objective {
         self.acting.force_sum()
     }
 
-    /// The contacts that were evaluated last, with friction.
-    pub(crate) fn contacts(&self) -> Option<&ContactState> {
-        self.contact.as_ref().and_then(ContactTerm::state)
-    }
-
     /// What all terms did in a step that ends at an iterate.
     ///
     /// # Errors
-    /// [`Refusal`].
+    /// [`StepError`].
     pub(crate) fn finish(
         &mut self,
         step: &StepStart<'_>,
         at: Iterate<'_>,
-    ) -> Result<Exchange, Refusal> {
+    ) -> Result<Exchange, StepError> {
         let mut sum = Exchange::default();
         for term in self.terms() {
             sum.add(term.finish(step, at)?);
         }
         Ok(sum)
+    }
+}
+
+/// Whether a term is of a type.
+fn is<T: Term>(term: &dyn Term) -> bool {
+    (term as &dyn Any).is::<T>()
+}
+
+/// The shorter of two parts of a displacement, with what cut it, the second one of equal ones.
+fn shorter(a: (f64, Option<Barrier>), b: (f64, Option<Barrier>)) -> (f64, Option<Barrier>) {
+    match b.0 < 1.0 && b.0 <= a.0 {
+        true => b,
+        false => a,
     }
 }

@@ -3,9 +3,9 @@
 
 use crate::hessian::{BlockSink, HessianPart, HessianSink};
 use crate::potential::{At, CouplingKind, Force, Potential};
-use crate::term::{Exchange, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
+use crate::term::{Exchange, ImplicitForce, Iterate, StepStart, Term, Value};
 use crate::vectors::{add, point};
-use crate::{ImplicitOptions, Method, SheetModel, Simulation, State, leave_flat};
+use crate::{ImplicitOptions, Method, SheetModel, Simulation, State, StepError, leave_flat};
 use isosheet_mesh::{MassKind, VertexId, generate};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
@@ -83,7 +83,7 @@ impl ImplicitForce for AsTerm {
 }
 
 impl Term for Spring {
-    fn begin(&mut self, _step: &StepStart<'_>) -> Result<(), Refusal> {
+    fn begin(&mut self, _step: &StepStart<'_>) -> Result<(), StepError> {
         Ok(())
     }
 
@@ -106,7 +106,7 @@ impl Term for Spring {
         out.push(self.ends.map(|v| v.0));
     }
 
-    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
+    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         Ok(Exchange {
             stored: self.stored(at.x) - self.stored(&step.state.x),
             ..Exchange::default()

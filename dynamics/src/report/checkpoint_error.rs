@@ -96,13 +96,23 @@ pub enum CheckpointError {
         /// Whether the checkpoint has contact.
         expected: bool,
     },
-    /// A chart is missing or not expected.
-    #[error("the checkpoint is of a simulation {}",
-        if *.in_chart { "in a chart" } else { "without a chart" })]
-    Chart {
-        /// Whether the checkpoint is in a chart.
-        in_chart: bool,
+    /// The checkpoint is of another engine.
+    #[error("the checkpoint is of a simulation by {found}")]
+    Engine {
+        /// What moved the sheet.
+        found: String,
     },
+}
+
+impl CheckpointError {
+    /// Refuses numbers that are not as many as expected, or not finite; `what` they are, in the plural.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Length`], [`CheckpointError::NotFinite`].
+    pub fn check_numbers(what: &'static str, values: &[f64], expected: usize) -> Result<(), Self> {
+        check_length(what, values.len(), expected)?;
+        check_finite(what, values)
+    }
 }
 
 impl Advice for CheckpointError {
@@ -117,8 +127,7 @@ impl Advice for CheckpointError {
                 Some("supply the model that the checkpoint was made with")
             }
             Self::Contact { .. } => Some("supply the contact that the checkpoint was made with"),
-            Self::Chart { in_chart: true } => Some("use `Simulation::resume_in_chart`"),
-            Self::Chart { in_chart: false } => Some("use `Simulation::resume`"),
+            Self::Engine { .. } => Some("resume it with what moved the sheet before"),
             Self::Decode(..) | Self::Encode(..) | Self::Length { .. } => None,
         }
     }

@@ -1,8 +1,8 @@
 //! What steps tell: reports, errors, traces, and the effort that they took.
 
-pub(crate) mod chart_error;
 pub(crate) mod checkpoint_error;
 pub(crate) mod effort;
+pub(crate) mod engine_error;
 pub(crate) mod infeasibility;
 pub(crate) mod pressing;
 pub(crate) mod reason;

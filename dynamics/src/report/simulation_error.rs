@@ -2,10 +2,10 @@
 
 use crate::contact::ContactError;
 use crate::options::OptionsError;
-use crate::report::chart_error::ChartDynamicsError;
 use crate::report::checkpoint_error::CheckpointError;
+use crate::report::engine_error::EngineError;
 use crate::report::step_error::StepError;
-use isosheet_coords::linalg::LinalgError;
+use isosheet_linalg::LinalgError;
 use isosheet_mesh::Advice;
 
 /// Errors of the start of a simulation.
@@ -44,9 +44,9 @@ pub enum SimulationError {
     /// Linear algebra failed.
     #[error(transparent)]
     Linalg(#[from] LinalgError),
-    /// The chart is invalid.
+    /// An [engine](crate::engine::Engine) from outside cannot start.
     #[error(transparent)]
-    Chart(#[from] ChartDynamicsError),
+    Engine(#[from] EngineError),
     /// The start state is in contact, or the method does not support contact.
     #[error(transparent)]
     Contact(#[from] ContactError),
@@ -67,9 +67,9 @@ pub enum SimulationError {
         "the sheet yields (its bends or creases stay), and the method has no place for what yielding loses"
     )]
     Plastic,
-    /// The method does not support attached flow.
-    #[error("the flow of the air is attached, and the method has no place for its wake")]
-    AttachedFlow,
+    /// A force of the sheet acts in steps that minimise alone, such as that of attached flow.
+    #[error("a force of the sheet, such as attached flow, acts in steps that minimise alone")]
+    NeedsMinimising,
     /// The method has no estimate of its error, and an accuracy was asked for.
     #[error("an accuracy is asked for, and the method does not estimate the errors of its steps")]
     Accuracy,
@@ -92,10 +92,10 @@ impl Advice for SimulationError {
         match self {
             Self::Options(error) => error.advice(),
             Self::Start(error) => error.advice(),
-            Self::Chart(error) => error.advice(),
+            Self::Engine(error) => error.advice(),
             Self::Contact(error) => error.advice(),
             Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
-            Self::Elastic | Self::Plastic | Self::AttachedFlow | Self::Held | Self::Accuracy => {
+            Self::Elastic | Self::Plastic | Self::NeedsMinimising | Self::Held | Self::Accuracy => {
                 Some("use BDF2 or implicit Euler")
             }
             Self::Checkpoint(error) => error.advice(),

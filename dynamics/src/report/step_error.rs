@@ -2,12 +2,12 @@
 
 use crate::contact::BodyMotionError;
 use crate::model::support::Support;
-use crate::report::chart_error::ChartDynamicsError;
 use crate::report::effort::SolverEffort;
+use crate::report::engine_error::EngineError;
 use crate::report::infeasibility::Infeasibility;
 use crate::report::pressing::Pressing;
 use crate::report::reason::Reason;
-use isosheet_coords::linalg::LinalgError;
+use isosheet_linalg::LinalgError;
 use isosheet_mesh::wording::{brief, counted, given, listed};
 use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
 
@@ -63,7 +63,7 @@ pub struct StepReport {
     pub work: f64,
     /// Energy dissipated by velocity damping since the start, joules.
     pub dissipated: f64,
-    /// Energy lost to friction, in charts to impacts, since the start, joules.
+    /// Energy lost to friction since the start, joules.
     pub friction: f64,
     /// Energy dissipated by plastic bending ([`Yield`](crate::Yield)) since the start, joules.
     pub plastic: f64,
@@ -268,6 +268,28 @@ pub enum StepError {
         /// Why.
         reason: Reason,
     },
+    /// Loads that follow the sheet do not come to rest in a step.
+    #[error(
+        "loads that follow the sheet have not settled in a step of {h} s at t = {t} s: they differ from those at its end \
+         by the part {error} of the largest",
+        h = brief(*h), t = brief(*t), error = brief(*error)
+    )]
+    UnsettledLoads {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// The difference, as a part of the largest load.
+        error: f64,
+    },
+    /// A [term](crate::term::Term) refuses a step for a reason of its own.
+    #[error("{} refuses a step at t = {t} s: {}", .refused.by, .refused.why, t = brief(*t))]
+    Refused {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// What refuses, and why.
+        refused: Box<Refused>,
+    },
     /// A step of a damped method gains energy.
     #[error(
         "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
@@ -390,13 +412,13 @@ pub enum StepError {
         /// Time of the last accepted sub-step, seconds.
         t: f64,
     },
-    /// Motion in a chart failed.
+    /// An [engine](crate::engine::Engine) from outside failed.
     #[error("at t = {t} s: {source}", t = brief(*t))]
-    Chart {
+    Engine {
         /// Time, seconds.
         t: f64,
         /// The reason.
-        source: Box<ChartDynamicsError>,
+        source: EngineError,
     },
     /// The linear algebra failed.
     #[error("linear solve failed at t = {t} s: {source}", t = brief(*t))]
@@ -433,10 +455,12 @@ impl Advice for StepError {
             ),
             Self::Swelling { .. } => Some("give a function of time from -0.2 to 0.2"),
             Self::NotConverged { .. }
+            | Self::UnsettledLoads { .. }
             | Self::EnergyGain { .. }
             | Self::Inaccurate { .. }
             | Self::Friction { .. }
             | Self::Contact { .. } => Some("take a smaller step"),
+            Self::Refused { refused, .. } => refused.remedy,
             Self::RankDeficient { .. } => Some(
                 "start from a folded state, displace the sheet with `leave_flat`, allow a `Fallback`, or use \
                  BDF2",
@@ -453,10 +477,21 @@ impl Advice for StepError {
             Self::Interrupted { .. } => {
                 Some("the state is that of the last accepted sub-step: step on from there")
             }
-            Self::Chart { source, .. } => source.advice(),
+            Self::Engine { source, .. } => source.advice(),
             Self::Linalg { .. } => None,
         }
     }
+}
+
+/// What a [term](crate::term::Term) says where it refuses a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refused {
+    /// What refuses, such as "the drag of the water".
+    pub by: String,
+    /// Why, in a clause.
+    pub why: String,
+    /// What to do, in the imperative.
+    pub remedy: Option<&'static str>,
 }
 
 /// What was done on the way to the end of a step, kept also if the step fails half-way.

@@ -1,7 +1,6 @@
 //! What a simulation tells about its steps while it takes them.
 
 use crate::report::reason::Reason;
-use crate::term::Barrier;
 use serde::Serialize;
 
 /// A line of a trace, see [`Simulation::with_trace`](crate::Simulation::with_trace).
@@ -86,22 +85,14 @@ pub enum Cut {
     Contact,
     /// The limit of the strain of an elastic sheet.
     StrainLimit,
+    /// A barrier of another term, by its name.
+    Barrier(&'static str),
     /// The merit function.
     Merit,
     /// Bodies or pins were on their way: the iteration moved them.
     Driven,
     /// The direction would have raised the potential to mend the lengths, which were restored instead.
     Lengths,
-}
-
-impl From<Option<Barrier>> for Cut {
-    fn from(barrier: Option<Barrier>) -> Self {
-        match barrier {
-            None => Self::Nothing,
-            Some(Barrier::Contact) => Self::Contact,
-            Some(Barrier::StrainLimit) => Self::StrainLimit,
-        }
-    }
 }
 
 /// Why an iteration goes on from a point where it has converged.

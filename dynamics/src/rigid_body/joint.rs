@@ -1,11 +1,12 @@
 //! What joints of rigid bodies leave free, and springs and dampers there.
 
 use crate::HessianSink;
+use crate::StepError;
 use crate::hessian::{BlockSink, HessianPart};
 use crate::model::SheetModel;
 use crate::motion::profile::{Profile, ProfileError};
-use crate::potential::{At, Force, Potential, Reached, Settled};
-use crate::term::{Exchange, Formula, ImplicitForce, Iterate, Refusal, StepStart, Term, Value};
+use crate::potential::{At, Force, Potential, Reached, Remembering, Settled};
+use crate::term::{Exchange, Formula, ImplicitForce, Iterate, StepStart, Term, Value};
 use crate::vectors::{add, point};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, VertexId, angle_near};
@@ -196,6 +197,12 @@ impl Potential for JointSpring {
         !self.rest.is_constant()
     }
 
+    fn remembering(&self) -> Option<&dyn Remembering> {
+        Some(self)
+    }
+}
+
+impl Remembering for JointSpring {
     /// The angle that was reached, by which turns are counted.
     fn memory(&self) -> Vec<f64> {
         vec![0.0]
@@ -285,7 +292,7 @@ impl DamperStep {
 }
 
 impl Term for DamperStep {
-    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), Refusal> {
+    fn begin(&mut self, step: &StepStart<'_>) -> Result<(), StepError> {
         self.h = step.h;
         self.rest.clear();
         self.rest.extend_from_slice(step.rest);
@@ -309,7 +316,7 @@ impl Term for DamperStep {
 
     /// The work on the free vertices: by the force at the end, or of a two-step formula by the mean of those at
     /// both ends.
-    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, Refusal> {
+    fn finish(&mut self, step: &StepStart<'_>, at: Iterate<'_>) -> Result<Exchange, StepError> {
         let start = step.state;
         let mut force = vec![0.0; at.x.len()];
         self.add_gradient(at, -1.0, &mut force);

@@ -1,14 +1,13 @@
 //! Checkpoints.
 
 use crate::SheetModel;
-use crate::chart::engine::InChart;
-use crate::engine::substeps::WithoutChart;
+use crate::engine::substeps::ByMethod;
 use crate::report::checkpoint_error::{CheckpointError, check_finite};
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use serde::{Deserialize, Serialize};
 
 /// Format version; it grows with every change of the fields.
-const VERSION: u32 = 19;
+const VERSION: u32 = 20;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
@@ -53,10 +52,10 @@ pub struct Checkpoint {
 /// State of the engine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum EngineState {
-    /// A chart-free method.
-    Free(Box<WithoutChart>),
-    /// A method in a chart.
-    Chart(Box<InChart>),
+    /// A method of this crate.
+    Method(Box<ByMethod>),
+    /// An engine from outside: its name, and what it keeps.
+    Other { name: String, bytes: Vec<u8> },
 }
 
 /// Sums of the energy balance since the start.
@@ -287,7 +286,7 @@ mod tests {
     fn what_was_changed_from_outside_is_refused() {
         let good = checkpoint();
         assert!(Simulation::resume(model(), None, good.clone()).is_ok());
-        let changes: [fn(&mut crate::engine::substeps::WithoutChart); 6] = [
+        let changes: [fn(&mut crate::engine::substeps::ByMethod); 6] = [
             |m| m.motion.state.t = f64::INFINITY,
             |m| m.motion.state.x[4] = f64::NAN,
             |m| m.motion.state.v[26] = f64::NEG_INFINITY,
@@ -297,8 +296,8 @@ mod tests {
         ];
         for (k, change) in changes.into_iter().enumerate() {
             let mut changed = good.clone();
-            let EngineState::Free(motion) = &mut changed.motion else {
-                unreachable!("the method needs no chart");
+            let EngineState::Method(motion) = &mut changed.motion else {
+                unreachable!("it is a method of this crate");
             };
             change(motion);
             let refused = Simulation::resume(model(), None, changed);

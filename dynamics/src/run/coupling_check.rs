@@ -24,7 +24,9 @@ pub(super) fn check_couplings(model: &SheetModel, state: &State) -> Result<(), S
             edges: topology.edge_count(),
             unknown: None,
         };
-        let memory = potential.memory();
+        let memory = potential
+            .remembering()
+            .map_or_else(Vec::new, |p| p.memory());
         potential.add_hessian(At::new(state.t, &state.x).with_memory(&memory), &mut blocks);
         let out_of_range = blocks
             .named

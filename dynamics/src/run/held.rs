@@ -5,7 +5,7 @@ use crate::contact::Contact;
 use crate::damped::start::{check_motions, check_state};
 use crate::report::simulation_error::SimulationError;
 use crate::run::checkpoint::SheetFingerprint;
-use crate::run::simulation::{Engine, MOTION_SPAN, Simulation};
+use crate::run::simulation::{MOTION_SPAN, Moved, Simulation};
 
 impl Simulation {
     /// Goes on from the present state with another model and contact of the same sheet: its supports, its glue
@@ -48,7 +48,7 @@ impl Simulation {
     ) -> Result<(), SimulationError> {
         let sheet = SheetFingerprint::of(&model);
         self.sheet.check_sheet(&sheet)?;
-        let Engine::Free(engine) = &self.engine else {
+        let Moved::ByMethod(engine) = &self.engine else {
             return Err(SimulationError::Held);
         };
         if !engine.is_minimising() {
@@ -58,7 +58,7 @@ impl Simulation {
         check_state(&model, self.state())?;
         let next = engine.held_by(model, contact, MOTION_SPAN)?;
         let before = self.energy();
-        self.engine = Engine::Free(Box::new(next));
+        self.engine = Moved::ByMethod(Box::new(next));
         self.sheet = sheet;
         self.count_work(self.energy() - before);
         Ok(())

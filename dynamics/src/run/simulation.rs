@@ -1,13 +1,13 @@
 //! Simulations.
 
-use crate::chart::engine::ChartEngine;
-use crate::chart::{ChartOptions, ChartSimulation};
 use crate::contact::{
-    ActiveContacts, BodyLoad, Contact, ContactState, ContactTerms, SurfacePoints,
+    ActiveContacts, BodyLoad, Contact, ContactError, ContactState, ContactTerms, SurfacePoints,
 };
 use crate::damped::start::{check_finite, check_motions, check_state};
-use crate::engine::substeps::Engine as FreeEngine;
+use crate::engine::substeps::Engine as MethodEngine;
+use crate::engine::{Engine, Progress};
 use crate::model::breaks::Breaks;
+use crate::potential::At;
 use crate::potential::Memories;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::effort::{SolverEffort, StepProgress, TraceSink, Watch};
@@ -19,8 +19,8 @@ use crate::run::coupling_check::check_couplings;
 use crate::step::reaction::{Imbalance, Reaction};
 use crate::step::tuning::Tuning;
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
-use isosheet_coords::Chart;
 use isosheet_mesh::VertexId;
+use std::any::Any;
 use std::ops::ControlFlow;
 
 /// A simulation: model, state, integrator, step control and energy balance.
@@ -42,7 +42,7 @@ use std::ops::ControlFlow;
 /// # }
 /// ```
 pub struct Simulation {
-    pub(super) engine: Engine,
+    pub(super) engine: Moved,
     /// Identifies the model that its user built.
     pub(super) sheet: SheetFingerprint,
     energy: EnergySums,
@@ -60,9 +60,12 @@ const _: fn() = || {
     is_send::<Simulation>();
 };
 
-pub(super) enum Engine {
-    Free(Box<FreeEngine>),
-    Chart(Box<ChartEngine>),
+/// What moves a sheet.
+pub(super) enum Moved {
+    /// A method of this crate.
+    ByMethod(Box<MethodEngine>),
+    /// An engine from outside.
+    ByEngine(Box<dyn Engine>),
 }
 
 impl Simulation {
@@ -86,35 +89,27 @@ impl Simulation {
         model.set_pin_velocities(state.t, MOTION_SPAN, &mut state.v);
         check_state(&model, &state)?;
         check_couplings(&model, &state)?;
-        let engine = Engine::Free(Box::new(FreeEngine::new(model, method, state)?));
+        let engine = Moved::ByMethod(Box::new(MethodEngine::new(model, method, state)?));
         Ok(Self::start(engine, sheet))
     }
 
-    /// A simulation of `model` from `state` in system coordinates (see [`chart`](crate::chart)).
-    ///
-    /// Velocities are projected onto those that keep the lengths. Supports that the chart does not eliminate
-    /// are closure equations, see [`ChartSimulation::from_state`].
+    /// A simulation of `model` from `state` that an engine from outside moves, which `build` makes of the two.
     ///
     /// # Errors
-    /// [`SimulationError`] if options or state are invalid, or the chart is singular or too ill-conditioned
-    /// at the state.
-    pub fn in_chart(
+    /// [`SimulationError`] if the state is invalid, and those of `build`.
+    pub fn with_engine(
         model: SheetModel,
-        mut state: State,
-        chart: Box<dyn Chart>,
-        options: ChartOptions,
+        state: State,
+        build: impl FnOnce(SheetModel, State) -> Result<Box<dyn Engine>, SimulationError>,
     ) -> Result<Self, SimulationError> {
         check_length(&model, &state)?;
         check_motions(&model, &state)?;
         check_state(&model, &state)?;
         let sheet = SheetFingerprint::of(&model);
-        let mut simulation = ChartSimulation::from_state(model, chart, options, &state)?;
-        state.v = simulation.velocities()?;
-        let engine = Engine::Chart(Box::new(ChartEngine::new(simulation, state)));
-        Ok(Self::start(engine, sheet))
+        Ok(Self::start(Moved::ByEngine(build(model, state)?), sheet))
     }
 
-    fn start(engine: Engine, sheet: SheetFingerprint) -> Self {
+    fn start(engine: Moved, sheet: SheetFingerprint) -> Self {
         let mut simulation = Self {
             engine,
             sheet,
@@ -131,8 +126,11 @@ impl Simulation {
     /// The checkpoint of the present state.
     pub fn checkpoint(&self) -> Checkpoint {
         let motion = match &self.engine {
-            Engine::Free(engine) => EngineState::Free(Box::new(engine.kept())),
-            Engine::Chart(chart) => EngineState::Chart(Box::new(chart.motion())),
+            Moved::ByMethod(engine) => EngineState::Method(Box::new(engine.kept())),
+            Moved::ByEngine(engine) => EngineState::Other {
+                name: engine.name().to_owned(),
+                bytes: engine.kept(),
+            },
         };
         Checkpoint::new(self.sheet, self.energy, motion, self.note.clone())
     }
@@ -156,11 +154,13 @@ impl Simulation {
     ) -> Result<Self, SimulationError> {
         checkpoint.check_model(&model)?;
         checkpoint.energy.check()?;
-        let EngineState::Free(kept) = checkpoint.motion else {
-            return Err(CheckpointError::Chart { in_chart: true }.into());
+        let kept = match checkpoint.motion {
+            EngineState::Method(kept) => kept,
+            EngineState::Other { name: found, .. } => {
+                return Err(CheckpointError::Engine { found }.into());
+            }
         };
-        let engine = FreeEngine::resume(model, contact, *kept)?;
-        let engine = Engine::Free(Box::new(engine));
+        let engine = Moved::ByMethod(Box::new(MethodEngine::resume(model, contact, *kept)?));
         let Checkpoint {
             sheet,
             energy,
@@ -170,25 +170,30 @@ impl Simulation {
         Ok(Self::resumed(engine, sheet, energy, note))
     }
 
-    /// Resumes a simulation in a chart from a checkpoint bit for bit, with the model, the chart and the
-    /// contact of its start.
+    /// Resumes a simulation that an engine from outside moves, bit for bit, with the model of its start. The engine is of
+    /// this [name](Engine::name), and `build` makes it of the model and of what it [kept](Engine::kept).
     ///
     /// # Errors
-    /// [`SimulationError::Checkpoint`] if the checkpoint is invalid, or of another model or kind of
-    /// simulation.
-    pub fn resume_in_chart(
+    /// [`SimulationError::Checkpoint`] if the checkpoint is invalid, or of another model or engine; those of `build`.
+    pub fn resume_with_engine(
         model: SheetModel,
-        chart: Box<dyn Chart>,
-        contact: Option<Box<dyn Contact>>,
         checkpoint: Checkpoint,
+        name: &str,
+        build: impl FnOnce(SheetModel, &[u8]) -> Result<Box<dyn Engine>, SimulationError>,
     ) -> Result<Self, SimulationError> {
         checkpoint.check_model(&model)?;
         checkpoint.energy.check()?;
-        let EngineState::Chart(motion) = checkpoint.motion else {
-            return Err(CheckpointError::Chart { in_chart: false }.into());
+        let bytes = match checkpoint.motion {
+            EngineState::Other { name: found, bytes } if found == name => bytes,
+            EngineState::Other { name: found, .. } => {
+                return Err(CheckpointError::Engine { found }.into());
+            }
+            EngineState::Method(_) => {
+                let found = "a method without a chart".to_owned();
+                return Err(CheckpointError::Engine { found }.into());
+            }
         };
-        let engine = ChartEngine::resume(model, chart, contact, *motion)?;
-        let engine = Engine::Chart(Box::new(engine));
+        let engine = Moved::ByEngine(build(model, &bytes)?);
         let Checkpoint {
             sheet,
             energy,
@@ -198,7 +203,7 @@ impl Simulation {
         Ok(Self::resumed(engine, sheet, energy, note))
     }
 
-    fn resumed(engine: Engine, sheet: SheetFingerprint, energy: EnergySums, note: Vec<u8>) -> Self {
+    fn resumed(engine: Moved, sheet: SheetFingerprint, energy: EnergySums, note: Vec<u8>) -> Self {
         let mut simulation = Self {
             engine,
             sheet,
@@ -217,8 +222,8 @@ impl Simulation {
     /// [`SimulationError::Options`], [`SimulationError::ChartControl`].
     pub fn with_control(mut self, control: StepControl) -> Result<Self, SimulationError> {
         match &mut self.engine {
-            Engine::Free(engine) => engine.set_control(control)?,
-            Engine::Chart(_) => return Err(SimulationError::ChartControl),
+            Moved::ByMethod(engine) => engine.set_control(control)?,
+            Moved::ByEngine(_) => return Err(SimulationError::ChartControl),
         }
         Ok(self)
     }
@@ -230,8 +235,8 @@ impl Simulation {
     #[doc(hidden)]
     pub fn with_tuning(mut self, tuning: Tuning) -> Result<Self, SimulationError> {
         match &mut self.engine {
-            Engine::Free(engine) => engine.set_tuning(tuning)?,
-            Engine::Chart(_) => return Err(SimulationError::ChartControl),
+            Moved::ByMethod(engine) => engine.set_tuning(tuning)?,
+            Moved::ByEngine(_) => return Err(SimulationError::ChartControl),
         }
         Ok(self)
     }
@@ -269,8 +274,7 @@ impl Simulation {
         self.trace = Some(Box::new(sink));
     }
 
-    /// Adds contact: a barrier potential that keeps every gap positive, in a chart impulses
-    /// ([`ChartSimulation::with_contact`]).
+    /// Adds contact: a barrier potential that keeps every gap positive.
     ///
     /// # Errors
     /// [`SimulationError::Contact`] if the method does not support contact or the state is in contact.
@@ -279,8 +283,8 @@ impl Simulation {
         contact: impl Contact + 'static,
     ) -> Result<Self, SimulationError> {
         match &mut self.engine {
-            Engine::Free(engine) => engine.set_contact(Box::new(contact))?,
-            Engine::Chart(chart) => chart.simulation.set_contact(Box::new(contact))?,
+            Moved::ByMethod(engine) => engine.set_contact(Box::new(contact))?,
+            Moved::ByEngine(_) => return Err(ContactError::Method.into()),
         }
         self.energy.start = self.energy();
         Ok(self)
@@ -290,21 +294,20 @@ impl Simulation {
     /// [`immobile_vertices`](crate::immobile_vertices)). Empty in charts.
     pub fn immobile_vertices(&self) -> &[VertexId] {
         match &self.engine {
-            Engine::Free(engine) => engine.immobile(),
-            Engine::Chart(_) => &[],
+            Moved::ByMethod(engine) => engine.immobile(),
+            Moved::ByEngine(_) => &[],
         }
     }
 
     /// The contacts of the present state; `None` without contact.
     pub fn contacts(&self) -> Option<&ActiveContacts> {
         match &self.engine {
-            Engine::Free(engine) => engine.contacts().map(|contacts| &contacts.active),
-            Engine::Chart(chart) => chart.simulation.contacts(),
+            Moved::ByMethod(engine) => engine.contacts().map(|contacts| &contacts.active),
+            Moved::ByEngine(_) => None,
         }
     }
 
-    /// Loads of the sheet on the bodies, in order of addition; empty without contact and in charts, where
-    /// impulses act ([`ChartSimulation::impulses`]).
+    /// Loads of the sheet on the bodies, in order of addition; empty without contact.
     pub fn body_loads(&self) -> Vec<BodyLoad> {
         self.barrier().map_or_else(Vec::new, |contacts| {
             let x = SurfacePoints::placed(self.surface_points(), &self.state().x);
@@ -316,20 +319,19 @@ impl Simulation {
     /// with itself; `None` without contact.
     ///
     /// BDF2 and implicit Euler: `-d(B + D)/dx` at the end of the last accepted sub-step, with the barrier
-    /// potential `B` and the potential `D` of lagged friction. Charts: impulses of the last step over its
-    /// duration. Forces on edges and faces are distributed to their corners by the weights of the closest
+    /// potential `B` and the potential `D` of lagged friction. Forces on edges and faces are distributed to their corners by the weights of the closest
     /// point. The sum over the vertices is minus that of [`Simulation::body_loads`].
     ///
-    /// Before the first step there is no friction, and in charts no force. With rigid rods the final
+    /// Before the first step there is no friction. With rigid rods the final
     /// projection changes the forces to second order, about a percent for a flat sheet at rest.
     pub fn contact_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
-            Engine::Free(engine) => {
+            Moved::ByMethod(engine) => {
                 let points = self.surface_points();
                 let x = SurfacePoints::placed(points, &self.state().x);
                 Some(ContactTerms::of(engine.contacts()?, &x).vertex_forces(points))
             }
-            Engine::Chart(chart) => chart.contact_forces(),
+            Moved::ByEngine(_) => None,
         }
     }
 
@@ -337,11 +339,11 @@ impl Simulation {
     /// for each point.
     pub fn surface_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
-            Engine::Free(engine) => {
+            Moved::ByMethod(engine) => {
                 let x = SurfacePoints::placed(self.surface_points(), &self.state().x);
                 Some(ContactTerms::of(engine.contacts()?, &x).vertex_forces(None))
             }
-            Engine::Chart(chart) => chart.contact_forces(),
+            Moved::ByEngine(_) => None,
         }
     }
 
@@ -351,8 +353,8 @@ impl Simulation {
     /// without contact.
     pub fn vertex_gaps(&self) -> Option<Vec<f64>> {
         let reach = match &self.engine {
-            Engine::Free(engine) => engine.contacts()?.barrier.activation(),
-            Engine::Chart(chart) => chart.simulation.activation()?,
+            Moved::ByMethod(engine) => engine.contacts()?.barrier.activation(),
+            Moved::ByEngine(_) => return None,
         };
         let count = match self.surface_points() {
             None => self.model().topology().vertex_count(),
@@ -364,16 +366,16 @@ impl Simulation {
     /// The points between which contact acts, where these are not the vertices.
     fn surface_points(&self) -> Option<&SurfacePoints> {
         match &self.engine {
-            Engine::Free(engine) => engine.surface_points(),
-            Engine::Chart(_) => None,
+            Moved::ByMethod(engine) => engine.surface_points(),
+            Moved::ByEngine(_) => None,
         }
     }
 
     /// Contact by a barrier.
     fn barrier(&self) -> Option<&ContactState> {
         match &self.engine {
-            Engine::Free(engine) => engine.contacts(),
-            Engine::Chart(_) => None,
+            Moved::ByMethod(engine) => engine.contacts(),
+            Moved::ByEngine(_) => None,
         }
     }
 
@@ -397,18 +399,18 @@ impl Simulation {
     /// With damped methods a call costs one factorisation per iteration of the last projection.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
-            Engine::Free(engine) => {
+            Moved::ByMethod(engine) => {
                 let balance = engine.balance();
                 balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, engine.state().t))
             }
-            Engine::Chart(chart) => chart.reactions.clone(),
+            Moved::ByEngine(engine) => engine.reactions(),
         }
     }
 
     /// Says anew when what is prescribed changes abruptly (seconds), as [`SheetModel::with_breaks`] does, where a motion
     /// is led otherwise than it was foreseen.
     pub fn set_breaks(&mut self, times: impl IntoIterator<Item = f64>) {
-        if let Engine::Free(engine) = &mut self.engine {
+        if let Moved::ByMethod(engine) = &mut self.engine {
             engine.breaks = Breaks::at(times);
         }
     }
@@ -419,8 +421,8 @@ impl Simulation {
     /// Of sheets without rods it costs next to nothing, of others as much as [`Simulation::reactions`].
     pub fn imbalance(&self) -> Option<Imbalance> {
         match &self.engine {
-            Engine::Free(engine) => engine.balance()?.imbalance(&engine.model, engine.state()),
-            Engine::Chart(_) => None,
+            Moved::ByMethod(engine) => engine.balance()?.imbalance(&engine.model, engine.state()),
+            Moved::ByEngine(_) => None,
         }
     }
 
@@ -429,8 +431,11 @@ impl Simulation {
     /// forces of the pins ([`Simulation::reactions`]) they are all that such a clamp does.
     pub fn clamp_moments(&self) -> Vec<[f64; 3]> {
         let State { t, x, .. } = self.state();
-        let potentials = self.model().potentials_at(*t, x, self.memories());
-        potentials.flat_map(|(p, at)| p.clamp_moments(at)).collect()
+        let at = |memory| At::new(*t, x).with_memory(memory);
+        let reports = self.model().reports(self.memories());
+        reports
+            .flat_map(|(p, memory)| p.clamp_moments(at(memory)))
+            .collect()
     }
 
     /// Forces of the rods in the last accepted sub-step, newtons, tension positive, in the order of the
@@ -449,40 +454,40 @@ impl Simulation {
     /// arithmetic can take, they give one of the sets of forces with these loads.)
     pub fn rod_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
-            Engine::Free(engine) => engine.rod_forces(),
-            Engine::Chart(_) => None,
+            Moved::ByMethod(engine) => engine.rod_forces(),
+            Moved::ByEngine(_) => None,
         }
     }
 
     /// The model.
     pub fn model(&self) -> &SheetModel {
         match &self.engine {
-            Engine::Free(engine) => &engine.model,
-            Engine::Chart(chart) => chart.simulation.mechanics().model(),
+            Moved::ByMethod(engine) => &engine.model,
+            Moved::ByEngine(engine) => engine.model(),
         }
     }
 
-    /// The simulation in system coordinates, if it is one.
-    pub fn chart(&self) -> Option<&ChartSimulation> {
+    /// The engine from outside, if it is of this type.
+    pub fn engine<T: Engine>(&self) -> Option<&T> {
         match &self.engine {
-            Engine::Free(_) => None,
-            Engine::Chart(chart) => Some(&chart.simulation),
+            Moved::ByMethod(_) => None,
+            Moved::ByEngine(engine) => (&**engine as &dyn Any).downcast_ref(),
         }
     }
 
     /// Time, positions and velocities.
     pub fn state(&self) -> &State {
         match &self.engine {
-            Engine::Free(engine) => engine.state(),
-            Engine::Chart(chart) => &chart.state,
+            Moved::ByMethod(engine) => engine.state(),
+            Moved::ByEngine(engine) => engine.state(),
         }
     }
 
-    /// What the potentials of the model remember ([`Potential::memory`](crate::Potential::memory)).
+    /// What the potentials of the model remember ([`Remembering`](crate::Remembering)).
     pub fn memories(&self) -> &Memories {
         match &self.engine {
-            Engine::Free(engine) => engine.memories(),
-            Engine::Chart(chart) => chart.simulation.memories(),
+            Moved::ByMethod(engine) => engine.memories(),
+            Moved::ByEngine(engine) => engine.memories(),
         }
     }
 
@@ -493,8 +498,14 @@ impl Simulation {
     /// [`HandError`] if there is no such hand, or the point is not finite; then nothing has changed.
     pub fn lead_hand(&mut self, vertex: VertexId, to: [f64; 3], end: f64) -> Result<(), HandError> {
         match &mut self.engine {
-            Engine::Free(engine) => engine.lead_hand(vertex, to, end),
-            Engine::Chart(chart) => chart.simulation.lead_hand(vertex, to, end),
+            Moved::ByMethod(engine) => engine.lead_hand(vertex, to, end),
+            Moved::ByEngine(engine) => {
+                let mut memories = engine.memories().clone();
+                let (number, hand) = engine.model().hand(vertex)?;
+                hand.lead(to, [engine.state().t, end], memories.list_mut(number))?;
+                *engine.memories_mut() = memories;
+                Ok(())
+            }
         }
     }
 
@@ -618,8 +629,8 @@ impl Simulation {
         self.check_forces()?;
         let end = start + h;
         let done = match &mut self.engine {
-            Engine::Free(engine) => engine.advance(h, &mut totals),
-            Engine::Chart(chart) => chart.advance(end, &mut totals),
+            Moved::ByMethod(engine) => engine.advance(h, &mut totals),
+            Moved::ByEngine(engine) => engine.advance(end, &mut Progress(&mut totals)),
         };
         self.energy.work += totals.work;
         self.energy.dissipated += totals.dissipated;

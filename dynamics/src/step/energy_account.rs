@@ -3,7 +3,7 @@
 use crate::report::step_error::StepError;
 use crate::term::Exchange;
 use crate::{SheetModel, State};
-use isosheet_coords::linalg::norm_inf;
+use isosheet_linalg::norm_inf;
 use serde::{Deserialize, Serialize};
 
 /// Part of the energy that friction takes by which it may differ from that by the normal forces at the end of the

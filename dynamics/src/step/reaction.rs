@@ -35,7 +35,7 @@ pub struct Imbalance {
 }
 
 /// The supports of a model in the order of their reactions: pins, then vertex constraints.
-pub(crate) fn supports(model: &SheetModel) -> impl Iterator<Item = Support> + '_ {
+pub fn supports(model: &SheetModel) -> impl Iterator<Item = Support> + '_ {
     let constraints = model.constraints().iter().enumerate();
     let constraints = constraints.map(|(index, c)| Support::Constraint {
         index,
@@ -50,7 +50,7 @@ pub(crate) fn supports(model: &SheetModel) -> impl Iterator<Item = Support> + '_
 
 /// Time at which forces are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum ForceTime {
+pub enum ForceTime {
     /// The end of the step.
     End,
     /// The mean over the step.
@@ -61,16 +61,16 @@ pub(crate) enum ForceTime {
 /// discrete acceleration `a` and the multipliers `lambda` (tension positive), at a vertex constraint
 /// `R = -J^T mu`; see [`Simulation::reactions`](crate::Simulation::reactions).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Balance {
+pub struct Balance {
     /// Forces of pins, zero at other vertices; `3V`, newtons.
-    pub pins: Vec<f64>,
+    pub(crate) pins: Vec<f64>,
     /// Multipliers of the vertex constraints, newtons. In the damped methods no field contains the share of
     /// projections.
-    pub multipliers: Vec<Vector3<f64>>,
+    pub(crate) multipliers: Vec<Vector3<f64>>,
     /// Forces of the vertex constraints, newtons.
-    pub constraints: Vec<Vector3<f64>>,
+    pub(crate) constraints: Vec<Vector3<f64>>,
     /// Time of the forces.
-    pub time: ForceTime,
+    pub(crate) time: ForceTime,
     /// Newtons not yet distributed to the supports.
     pub(crate) residual_momentum: ResidualMomentum,
     /// Scratch, `3V`.
@@ -79,7 +79,8 @@ pub(crate) struct Balance {
 }
 
 impl Balance {
-    pub(crate) fn new(model: &SheetModel, time: ForceTime) -> Self {
+    /// No forces.
+    pub fn new(model: &SheetModel, time: ForceTime) -> Self {
         let n = if model.has_supports() {
             model.coordinate_count()
         } else {
@@ -105,7 +106,7 @@ impl Balance {
     }
 
     /// Sets the inertia `M a`; false if there are no supports.
-    pub(crate) fn begin(&mut self, model: &SheetModel, a: impl Fn(usize) -> f64) -> bool {
+    pub fn begin(&mut self, model: &SheetModel, a: impl Fn(usize) -> f64) -> bool {
         for (i, w) in self.work.iter_mut().enumerate() {
             *w = a(i);
         }
@@ -150,7 +151,7 @@ impl Balance {
     }
 
     /// Takes over the forces of another balance, in place.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
+    pub fn copy_from(&mut self, other: &Self) {
         self.pins.clone_from(&other.pins);
         self.multipliers.clone_from(&other.multipliers);
         self.constraints.clone_from(&other.constraints);
@@ -174,7 +175,7 @@ impl Balance {
     }
 
     /// The forces without scratch.
-    pub(crate) fn compact(&self) -> Self {
+    pub fn compact(&self) -> Self {
         Self {
             pins: self.pins.clone(),
             multipliers: self.multipliers.clone(),
@@ -206,7 +207,7 @@ impl Balance {
     }
 
     /// Subtracts `share` of the potential forces.
-    pub(crate) fn add_potentials(
+    pub fn add_potentials(
         &mut self,
         model: &SheetModel,
         memories: &Memories,
@@ -221,27 +222,14 @@ impl Balance {
     }
 
     /// Subtracts `share` of the non-conservative forces.
-    pub(crate) fn add_applied(
-        &mut self,
-        model: &SheetModel,
-        t: f64,
-        x: &[f64],
-        v: &[f64],
-        share: f64,
-    ) {
+    pub fn add_applied(&mut self, model: &SheetModel, t: f64, x: &[f64], v: &[f64], share: f64) {
         self.work.fill(0.0);
         model.add_applied_force(t, x, v, &mut self.work);
         self.add_work(-share);
     }
 
     /// Subtracts the rod forces `-share G(x)^T multipliers`.
-    pub(crate) fn add_rods(
-        &mut self,
-        model: &SheetModel,
-        x: &[f64],
-        multipliers: &[f64],
-        share: f64,
-    ) {
+    pub fn add_rods(&mut self, model: &SheetModel, x: &[f64], multipliers: &[f64], share: f64) {
         self.work.fill(0.0);
         model
             .rods()
@@ -262,8 +250,8 @@ impl Balance {
         }
     }
 
-    /// Adds multipliers and forces of vertex constraints.
-    pub(crate) fn add_loads(&mut self, loads: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>) {
+    /// Adds multipliers and forces of vertex constraints, a pair (newtons) for each.
+    pub fn add_loads(&mut self, loads: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>) {
         for (i, (multiplier, force)) in loads.enumerate() {
             self.multipliers[i] += multiplier;
             self.constraints[i] += force;
@@ -290,7 +278,7 @@ impl Balance {
     }
 
     /// Keeps the forces at pins.
-    pub(crate) fn finish(&mut self, model: &SheetModel) {
+    pub fn finish(&mut self, model: &SheetModel) {
         for v in model
             .topology()
             .vertex_ids()
@@ -301,7 +289,7 @@ impl Balance {
     }
 
     /// The reactions, with the distributed residual momentum of a step that ended at time `t`.
-    pub(crate) fn reactions(&self, model: &SheetModel, t: f64) -> Vec<Reaction> {
+    pub fn reactions(&self, model: &SheetModel, t: f64) -> Vec<Reaction> {
         let shares = self.residual_momentum.shares(model, t);
         let pins = model.pins().into_iter().map(|v| Reaction {
             support: Support::Pin(v),
@@ -354,7 +342,7 @@ impl Balance {
 
     /// Work of moving pins and vertex constraints in a step from `x0` at `t0` to `x1` at `t1`, joules: with
     /// mean forces or, for forces at the end, by the trapezoidal rule with those of the step before.
-    pub(crate) fn drive_work(
+    pub fn drive_work(
         &self,
         model: &SheetModel,
         before: Option<&Balance>,

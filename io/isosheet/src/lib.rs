@@ -11,11 +11,12 @@
 //! - Friction of each obstacle, thickness of the sheet: [`collide::Contacts::new`], [`collide::ContactOptions`].
 //! - Loads, air, potentials and forces of one's own: [`dynamics::SheetModel`], [`dynamics::Potential`],
 //!   [`dynamics::Force`].
+//! - Lift and a wake: [`attached_flow::AttachedFlow`].
 //! - Energies, strain and gap of each step, frames: [`dynamics::StepReport`], [`dynamics::History`],
 //!   [`dynamics::Frames`].
 //! - Torques on obstacles, forces of contact at vertices: [`dynamics::Simulation::body_loads`],
 //!   [`dynamics::Simulation::contact_forces`].
-//! - Other methods, and the paper's coordinates: [`dynamics::Method`], [`coords`], [`dynamics::chart`].
+//! - Other methods, and the paper's coordinates: [`dynamics::Method`], [`coords`], [`charts`].
 //! - Meshes and series of frames as files: [`io::write_mesh`], [`io::write_series`].
 //! - Scene files, runs and the command: the features `scene`, `run` and `cli`, with `io::scene`, `io::run` and
 //!   `io::command`.
@@ -23,6 +24,8 @@
 //! All numbers are in SI units. Functions that take vectors of `nalgebra` exist beside those that take arrays;
 //! its version is re-exported as [`nalgebra`].
 
+pub use isosheet_attached_flow as attached_flow;
+pub use isosheet_charts as charts;
 pub use isosheet_collide as collide;
 pub use isosheet_coords as coords;
 pub use isosheet_dynamics as dynamics;

@@ -22,6 +22,8 @@ fn what_is_public_is_in_the_lists() {
         "coords/linalg",
         "coords",
         "dynamics",
+        "dynamics/attached-flow",
+        "dynamics/charts",
         "collide",
         "io",
         "io/isosheet",

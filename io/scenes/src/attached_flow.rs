@@ -5,7 +5,6 @@ use super::key::Key;
 use super::problem::Checks;
 use super::selection::Selection;
 use super::sheets;
-use isosheet_dynamics as engine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +37,7 @@ pub struct AttachedFlow {
 }
 
 fn rows() -> usize {
-    engine::AttachedFlow::ROWS
+    isosheet_attached_flow::AttachedFlow::ROWS
 }
 
 impl AttachedFlow {

@@ -3,12 +3,12 @@
 use super::key::Key;
 use super::problem::Checks;
 use super::unit::Unit;
+use isosheet_charts::{
+    ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind, PositionUpdate, Rebase,
+};
 use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::{
     AssignmentOptions, CartesianChart, ChartError, Choice, FrontChart, RodSystem,
-};
-use isosheet_dynamics::chart::{
-    ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind, PositionUpdate, Rebase,
 };
 use isosheet_mesh::VertexId;
 use schemars::JsonSchema;

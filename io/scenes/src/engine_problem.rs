@@ -371,11 +371,11 @@ impl Origins {
                 Problem::from_error(key, error)
             }
             SimulationError::Elastic => Problem::from_error(root.name("sheet.isometry"), error),
-            SimulationError::Plastic | SimulationError::AttachedFlow => {
+            SimulationError::Plastic | SimulationError::NeedsMinimising => {
                 Problem::from_error(root.name("method"), error)
             }
             SimulationError::Options(_) => Problem::from_error(root.name("method"), error),
-            SimulationError::Chart(_) => Problem::from_error(root.name("method.chart"), error),
+            SimulationError::Engine(_) => Problem::from_error(root.name("method.chart"), error),
             _ => Problem::from_error(root, error),
         }
     }

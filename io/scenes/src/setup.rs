@@ -280,7 +280,7 @@ impl Setup {
             Integration::InChart(settings) => {
                 let chart = settings.build(&sheet, &model.pins(), &start.x);
                 let chart = chart.map_err(|e| no_chart(&e, text.as_ref()))?;
-                Simulation::in_chart(model, start, chart, settings.options())
+                isosheet_charts::in_chart(model, start, chart, settings.options())
             }
         };
         let simulation = simulation.map_err(place)?;
@@ -325,7 +325,7 @@ impl Setup {
             Integration::InChart(settings) => {
                 let chart = settings.build(&self.sheet, &self.model.pins(), &self.start.x);
                 let chart = chart.map_err(|e| no_chart(&e, self.text.as_ref()))?;
-                Simulation::resume_in_chart(self.model, chart, contact, checkpoint)
+                isosheet_charts::resume_in_chart(self.model, chart, checkpoint)
             }
         };
         resumed.map_err(|e| placed(problem(&self.origins, &e), self.text.as_ref()))

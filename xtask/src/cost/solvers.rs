@@ -6,8 +6,8 @@ use crate::report::{Bound, Effort, Finding, Part, Record, Table, columns, expone
 use crate::store::Files;
 use anyhow::Result;
 use cpu_time::ThreadTime;
+use isosheet_charts::{ChartDynamicsError, MassSolverKind};
 use isosheet_coords::{CartesianChart, Chart, Choice, Linearised, RodSystem, mass_matrix};
-use isosheet_dynamics::chart::{ChartDynamicsError, MassSolverKind};
 use isosheet_mesh::{MassKind, MassMatrix};
 use isosheet_tests::{bumped, corner};
 use maud::html;

@@ -205,7 +205,7 @@ mod tests {
     use super::super::disks::Disk;
     use super::*;
     use isosheet_dynamics::At;
-    use isosheet_dynamics::{PlateBending, Potential};
+    use isosheet_dynamics::{MaterialReport as _, PlateBending, Potential};
 
     /// The angles about the centre are those of the disk and of the wedge, those about all other vertices
     /// inside are 2 pi, and the pyramid is folded along four edges alone.

@@ -6,7 +6,7 @@ use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
-use isosheet_dynamics::chart::{ChartDynamicsError, ChartSimulation};
+use isosheet_charts::{ChartDynamicsError, ChartSimulation};
 use std::time::Instant;
 
 /// What a run of the paper's scheme did.

@@ -104,7 +104,9 @@ pub(super) fn stiffness(model: &SheetModel, x: &[f64]) -> Symmetric {
         entries: Vec::new(),
     };
     for potential in model.potentials() {
-        let memory = potential.memory();
+        let memory = potential
+            .remembering()
+            .map_or_else(Vec::new, |p| p.memory());
         potential.add_hessian(At::new(0.0, x).with_memory(&memory), &mut upwards);
     }
     Symmetric {

@@ -85,10 +85,6 @@ impl Contact for One<'_> {
         self.contacts.body_motions(span, out);
     }
 
-    fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64> {
-        self.contacts.body_velocity(body, t, place)
-    }
-
     fn query(&mut self, _: JointMotion<'_>, _: &mut Vec<ContactKey>) -> f64 {
         unreachable!("the set is known")
     }

@@ -15,7 +15,7 @@ use crate::report::step_error::StepError;
 use crate::report::trace::Cut;
 use crate::step::tuning::Tuning;
 use crate::vectors::dot;
-use isosheet_coords::linalg::{LinalgError, norm_inf};
+use isosheet_linalg::{LinalgError, norm_inf};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -141,8 +141,7 @@ impl Lagrangian {
         self.x.copy_from_slice(start);
         self.end.copy_from_slice(start);
         problem.model.place_pins(problem.t(), &mut self.end);
-        let begun = problem.objective.begin(&problem.start);
-        begun.map_err(|refusal| problem.error(refusal, 0))
+        problem.objective.begin(&problem.start)
     }
 
     /// Sets the penalties of rods and of vertex constraints: so many times as stiff as the masses.

@@ -2,10 +2,8 @@
 
 use crate::objective::Objective;
 use crate::potential::Memories;
-use crate::report::reason::Reason;
-use crate::report::step_error::StepError;
 use crate::step::integrator::Phases;
-use crate::term::{Barrier, Iterate, Refusal, StepStart};
+use crate::term::{Iterate, StepStart};
 use crate::{SheetModel, State};
 
 /// Minimise the [`Objective`] over the positions with the rest lengths and with the vertex constraints kept at
@@ -43,39 +41,14 @@ impl<'a> StepProblem<'a> {
         (self.objective, Iterate { t, x, memories })
     }
 
+    /// Whether there is contact, or another barrier that holds on the whole way of a displacement.
     pub(crate) fn has_contact(&self) -> bool {
-        self.objective.has(Barrier::Contact)
+        self.objective.has_barrier_on_the_way()
     }
 
     /// Whether displacements are bounded. Then pins in motion start where they were, and advance with the
     /// iterates.
     pub(crate) fn is_bounded(&self) -> bool {
-        self.has_contact() || self.objective.has(Barrier::StrainLimit)
-    }
-
-    /// The error of a refusal by a term after some iterations.
-    pub(crate) fn error(&self, refusal: Refusal, iterations: usize) -> StepError {
-        match refusal {
-            Refusal::NonFiniteForce { vertex, value, t } => {
-                StepError::NonFiniteForce { vertex, value, t }
-            }
-            Refusal::Contact { gap } => StepError::Contact {
-                t: self.state().t,
-                h: self.start.span,
-                gap,
-            },
-            Refusal::Linalg(source) => StepError::Linalg {
-                t: self.state().t,
-                source,
-            },
-            Refusal::UnsettledLoads { error } => StepError::NotConverged {
-                t: self.state().t,
-                h: self.start.span,
-                iterations,
-                residual: error,
-                strain: 0.0,
-                reason: Reason::UnsettledLoads,
-            },
-        }
+        self.objective.has_barrier()
     }
 }

@@ -8,7 +8,7 @@ use crate::report::effort::SolverEffort;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel};
-use isosheet_coords::linalg::LinalgError;
+use isosheet_linalg::LinalgError;
 
 /// The Lagrangian at the iterate, the restoration of the lengths, and what one step leaves to the next.
 pub(crate) struct Workspace {

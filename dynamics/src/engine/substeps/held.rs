@@ -17,12 +17,7 @@ impl Engine {
     ) -> Result<Self, SimulationError> {
         let mut state = self.motion.state.clone();
         let mut memories = model.memories();
-        let taken = memories.take_over(&self.motion.memories);
-        taken.map_err(|[found, expected]| CheckpointError::Length {
-            what: "what potentials remember",
-            found,
-            expected,
-        })?;
+        memories.take_over(&self.motion.memories)?;
         model.clear_pinned(&mut state.v);
         model.set_pin_velocities(state.t, span, &mut state.v);
         let fixed = immobile_vertices(&model, &state.x);
@@ -40,7 +35,7 @@ impl Engine {
             (Some(contact), Some(barrier)) => {
                 let state = &engine.motion.state;
                 let (term, contacts) = ContactTerm::anew(contact, barrier, &engine.model, state)?;
-                engine.objective.contact = Some(term);
+                engine.objective.set(term);
                 engine.motion.contacts = Some(contacts);
             }
             (_, barrier) => {

@@ -1,6 +1,6 @@
 //! What the ways of solving with the whole matrix cost, in multiplications of a factorisation.
 
-use isosheet_coords::linalg::SparseLlt;
+use isosheet_linalg::SparseLlt;
 use std::ops::{Add, Sub};
 
 /// A multiplication of a solve takes as long as so many of a factorisation, whose dense kernels use each

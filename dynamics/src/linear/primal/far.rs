@@ -2,7 +2,7 @@
 
 use crate::model::PINNED;
 use crate::{CouplingKind, SheetModel};
-use isosheet_coords::linalg::parallel::pieces;
+use isosheet_linalg::parallel::pieces;
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, Vector3};
 

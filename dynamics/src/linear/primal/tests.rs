@@ -4,7 +4,7 @@ use crate::hessian::HessianPart;
 use crate::linear::free::penalties;
 use crate::vectors::dot;
 use crate::{CreaseSprings, ElasticSheet, PlateBending};
-use isosheet_coords::linalg::norm_inf;
+use isosheet_linalg::norm_inf;
 use isosheet_mesh::{MassKind, Sheet, generate};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

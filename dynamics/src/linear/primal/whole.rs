@@ -3,7 +3,7 @@
 use super::cost::Direct;
 use super::far::FarCouplings;
 use crate::linear::layout::FULL;
-use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt};
+use isosheet_linalg::{LinalgError, Pattern, SparseLlt};
 
 pub(super) struct WholeMatrix {
     llt: SparseLlt,

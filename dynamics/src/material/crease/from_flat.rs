@@ -1,7 +1,7 @@
 //! The direction in which a flat crease pattern folds.
 
 use super::fold::Fold;
-use isosheet_coords::linalg::{Pattern, SparseLlt};
+use isosheet_linalg::{Pattern, SparseLlt};
 use isosheet_mesh::{EdgeId, Topology, VertexId, fold_angle};
 use nalgebra::Vector3;
 

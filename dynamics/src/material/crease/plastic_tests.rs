@@ -119,7 +119,7 @@ fn the_hessian_matches_differences_where_springs_yield() {
     let model = SheetModel::new(&sheet, 1e-9, MassKind::Lumped).expect("valid");
     let model = model.with_potential(springs);
     // In the flat state the moment that yields comes from the plastic angle of before.
-    let bent = Memories::of([vec![-0.5]].into_iter());
+    let bent = Memories::of_lists([vec![-0.5]]);
     let x = sheet.positions();
     let mut d = vec![0.0; x.len()];
     (d[2], d[11]) = (0.3, -0.8);

@@ -108,7 +108,7 @@ fn gradient_and_hessian_of_a_bent_sheet_are_derivatives_of_its_energy() {
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).unwrap();
         let model = model.with_elastic_sheet(elastic.clone()).unwrap();
         let none = vec![0.0; model.rods().len()];
-        let memories = Memories::of([memory.clone()].into_iter());
+        let memories = Memories::of_lists([memory.clone()]);
         let mut matrix = PrimalMatrix::new(&model).unwrap();
         matrix.assemble(&model, &x, &none, &none);
         add_potentials_with(

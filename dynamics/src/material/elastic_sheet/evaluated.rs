@@ -5,7 +5,7 @@ use super::face::{Blocks, Course, Face, Strained};
 use crate::HessianSink;
 use crate::material::evaluation::{Evaluation, Room};
 use crate::potential::At;
-use isosheet_coords::linalg::parallel::{Work, in_order};
+use isosheet_linalg::parallel::{Work, in_order};
 
 /// Nanoseconds for the state of a face with its energy, as for its part of a Hessian, by a profile of a drape of 2437
 /// vertices on one core at 2.4 GHz. It decides what is shared among threads, and no result.

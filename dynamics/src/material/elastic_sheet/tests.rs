@@ -111,7 +111,7 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
     let none = vec![0.0; model.rods().len()];
     let mut matrix = PrimalMatrix::new(&model).unwrap();
     let mut products = Vec::new();
-    let memories = Memories::of([barrier.to_vec()].into_iter());
+    let memories = Memories::of_lists([barrier.to_vec()]);
     for part in [HessianPart::Full, HessianPart::PositiveSemidefinite] {
         matrix.assemble(&model, &x, &none, &none);
         add_potentials_with(&mut matrix, &model, (0.0, &x, &memories), part, 1.0);

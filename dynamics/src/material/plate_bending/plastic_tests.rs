@@ -92,7 +92,7 @@ fn product(
     let mut matrix = PrimalMatrix::new(&model).expect("pattern");
     let none = vec![0.0; model.rods().len()];
     matrix.assemble(&model, x, &none, &none);
-    let memories = Memories::of([memory].into_iter());
+    let memories = Memories::of_lists([memory]);
     let at = (0.0, x, &memories);
     add_potentials_with(&mut matrix, &model, at, HessianPart::Full, 1.0);
     matrix.product(&model, d)

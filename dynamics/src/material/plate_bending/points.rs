@@ -3,7 +3,7 @@
 use super::stencil::Stencils;
 use crate::material::evaluation::Evaluation;
 use crate::potential::At;
-use isosheet_coords::linalg::parallel::{Work, pieces};
+use isosheet_linalg::parallel::{Work, pieces};
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, Vector3};
 

@@ -71,7 +71,9 @@ impl Cantilever {
             components,
             matrix: DMatrix::zeros(count, count),
         };
-        let memory = potential.memory();
+        let memory = potential
+            .remembering()
+            .map_or_else(Vec::new, |p| p.memory());
         potential.add_hessian(At::new(0.0, x).with_memory(&memory), &mut entries);
         let free = self
             .free

@@ -5,9 +5,8 @@ use crate::error::SceneError;
 use crate::key::Key;
 use crate::problem::Problem;
 use crate::{Air, Frame, Selection, sheets};
-use isosheet_dynamics::{
-    AccelerationField, AttachedFlow, SimulationError, TurningLoad, VertexLoad,
-};
+use isosheet_attached_flow::AttachedFlow;
+use isosheet_dynamics::{AccelerationField, SimulationError, TurningLoad, VertexLoad};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 
@@ -90,7 +89,7 @@ impl Builder<'_> {
                 .collect(),
             rows: attached.rows,
         };
-        self.change(|m| m.with_attached_flow(air.as_engine(), &flow), at(&key))?;
+        self.change(|m| flow.around(m, air.as_engine()), at(&key))?;
         self.modelled.push("air with attached flow".into());
         Ok(())
     }

@@ -1,9 +1,9 @@
 //! Scenes whose motion is computed in a chart.
 
 use crate::parse;
+use isosheet_charts::{ChartOptions, ChartStepControl};
 use isosheet_coords::{CartesianChart, Choice, RodSystem};
 use isosheet_dynamics::Simulation;
-use isosheet_dynamics::chart::{ChartOptions, ChartStepControl};
 use isosheet_scenes::SceneFile;
 use std::path::Path;
 
@@ -36,12 +36,12 @@ fn a_scene_in_a_chart_is_the_simulation_that_it_says() {
     let system = RodSystem::new(&made.sheet, &made.model.pins()).unwrap();
     let chart = CartesianChart::new(system, Choice::Auto, &made.start.x).unwrap();
     let options = ChartOptions {
-        method: isosheet_dynamics::chart::ChartMethod::RungeKutta4,
+        method: isosheet_charts::ChartMethod::RungeKutta4,
         control: ChartStepControl::Fixed(5e-4),
         ..ChartOptions::default()
     };
     let mut by_hand =
-        Simulation::in_chart(made.model, made.start, Box::new(chart), options).unwrap();
+        isosheet_charts::in_chart(made.model, made.start, Box::new(chart), options).unwrap();
     let mut resumed = None;
     for k in 0..10 {
         let report = of_scene.step(0.01).unwrap();

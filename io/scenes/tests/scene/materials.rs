@@ -1,7 +1,7 @@
 //! Materials by name and by their numbers, and what is written beside them.
 
 use crate::parse;
-use isosheet_dynamics as dynamics;
+use isosheet_dynamics::{self as dynamics, Potential};
 use isosheet_scenes::{Bending, Elasticity, Isometry, Material, Plate, Scene, SceneFile};
 use std::path::Path;
 
@@ -211,7 +211,8 @@ fn plates_hinges_and_creases_of_a_scene_remember() {
     let remembered = |lines: &str, rest: &str| {
         let file = parse(&format!("{}{rest}", with(lines))).unwrap();
         let setup = file.build().unwrap();
-        let yielding = setup.model.potentials().filter(|p| p.can_yield());
+        let yielding = setup.model.potentials().filter_map(Potential::remembering);
+        let yielding = yielding.filter(|p| p.can_yield());
         let counts = yielding.map(|p| p.memory().len());
         counts.sum::<usize>()
     };
