@@ -6,10 +6,10 @@ use crate::report::Effort;
 use crate::runs::{Run, RunSummary};
 use anyhow::Result;
 use isosheet_dynamics::immobile_vertices;
-use isosheet_io::picture::Solid;
-use isosheet_io::run::replay_of;
-use isosheet_io::view::Replay;
 use isosheet_mesh::VertexId;
+use isosheet_page::Replay;
+use isosheet_pictures::Solid;
+use isosheet_runs::replay_of;
 
 /// How a run is shown.
 #[derive(Clone, Debug)]

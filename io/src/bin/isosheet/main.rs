@@ -1,4 +1,4 @@
-//! The program `isosheet`, see [`isosheet_io::command`].
+//! The program `isosheet`, see [`isosheet_io`].
 
 mod commit;
 
@@ -10,5 +10,5 @@ fn main() -> ExitCode {
         isosheet_runs::note_commit(commit);
     }
     let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("isosheet"));
-    isosheet_io::command::run(std::env::args_os(), &program).into()
+    isosheet_io::run(std::env::args_os(), &program).into()
 }

@@ -1,8 +1,8 @@
 //! A scene made in a program: a sheet that hangs by one corner, run in the folder that the first argument
 //! names.
 
-use isosheet_io::run::simulate;
-use isosheet_io::scene::{Mesh, Scene, SceneFile, Selection, Sheet, Support};
+use isosheet_runs::simulate;
+use isosheet_scenes::{Mesh, Scene, SceneFile, Selection, Sheet, Support};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
