@@ -1,5 +1,6 @@
 //! Contact of the sheet with itself and with obstacles.
 
+use super::friction::Friction;
 use super::key::Key;
 use super::obstacles::Shape;
 use super::problem::Checks;
@@ -23,9 +24,9 @@ use serde::{Deserialize, Serialize};
 pub struct Contact {
     /// Whether the sheet meets itself; of several sheets, whether they meet themselves and one another.
     pub self_contact: bool,
-    /// Coefficient of friction of sheets and bodies with themselves and one another. (That of an obstacle is
-    /// given with the obstacle.)
-    pub friction: f64,
+    /// Friction of sheets and bodies with themselves and one another. (That of an obstacle is given with the
+    /// obstacle.)
+    pub friction: Friction,
     /// Friction between two of several sheets, bodies and obstacles, where it is another.
     pub pair: Vec<SheetPair>,
     /// Gap below which contact acts, metres; if left out, 1 % of the mean edge length and at most half the
@@ -61,8 +62,8 @@ pub struct Contact {
 pub struct SheetPair {
     /// The names of the two: sheets, bodies, and at most one obstacle.
     pub sheets: [String; 2],
-    /// Coefficient of friction.
-    pub friction: f64,
+    /// Friction between the two.
+    pub friction: Friction,
     /// When they begin to meet; if left out, at the start. Before, they pass through each other. They must not touch
     /// at that moment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -80,7 +81,7 @@ impl Contact {
         key: &Key,
         checks: &mut Checks,
     ) {
-        checks.not_negative(key.name("friction"), self.friction, Unit::One);
+        self.friction.check(&key.name("friction"), checks);
         for (k, (key, pair)) in key.name("pair").entries(&self.pair).enumerate() {
             let is_same = |other: &SheetPair| {
                 let [first, second] = &pair.sheets;
@@ -91,7 +92,7 @@ impl Contact {
                 let remedy = "describe how two of them meet in one entry";
                 checks.report(key.name("sheets"), message, remedy);
             }
-            checks.not_negative(key.name("friction"), pair.friction, Unit::One);
+            pair.friction.check(&key.name("friction"), checks);
             let is_body = |name: &String| bodies::number_of(bodies, name).is_some();
             let is_obstacle = |name: &String| obstacle_names::number_of(obstacles, name).is_some();
             let switch = match (&pair.from, &pair.until) {

@@ -17,8 +17,8 @@
 //! cloth.placement = Pose::at([-0.25, -0.25, 0.0]);
 //! let table = Obstacle::new(Shape::Cylinder { radius: 0.15, height: 0.2 });
 //! let mut scene = Scene::new(cloth);
-//! scene.obstacle = vec![Obstacle { pose: Pose::at([0.0, 0.0, -0.11]), friction: 0.3, ..table }];
-//! scene.contact = Contact { self_contact: true, friction: 0.3, ..Contact::default() };
+//! scene.obstacle = vec![Obstacle { pose: Pose::at([0.0, 0.0, -0.11]), friction: 0.3.into(), ..table }];
+//! scene.contact = Contact { self_contact: true, friction: 0.3.into(), ..Contact::default() };
 //! scene.forces.gravity = Some([0.0, 0.0, -9.81]);
 //! scene.stop.time = 1.0;
 //! # let file = SceneFile::parse(StartingPoint::Drape.text().into(), Path::new("cloth.toml"), &[])?;
@@ -57,6 +57,7 @@ mod foreign;
 mod form;
 #[cfg(test)]
 mod found_tests;
+mod friction;
 mod functions;
 mod glue;
 mod guides;
@@ -144,6 +145,7 @@ pub use folding::off_target;
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use follower_loads::{Gas, Moment, Pressure};
 pub use forces::{Acceleration, Forces, Frame, Load};
+pub use friction::{Friction, FrictionCoefficients};
 pub use glue::{Glue, SeamBend, SeamSide};
 pub use guides::{BodyForce, BodyTorque, Guide};
 pub use integration::Integration;

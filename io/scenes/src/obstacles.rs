@@ -1,5 +1,6 @@
 //! Bodies that the sheet meets.
 
+use super::friction::Friction;
 use super::key::Key;
 use super::mesh_file::{Files, MeshFile};
 use super::named_file::NamedFile;
@@ -37,9 +38,9 @@ pub struct Obstacle {
     /// How it moves.
     #[serde(default)]
     pub motion: Motion,
-    /// Coefficient of friction with the sheet.
+    /// Friction with the sheet.
     #[serde(default)]
-    pub friction: f64,
+    pub friction: Friction,
 }
 
 /// The form of a body in its own frame.
@@ -153,7 +154,7 @@ impl Obstacle {
             shape,
             pose: Pose::default(),
             motion: Motion::default(),
-            friction: 0.0,
+            friction: Friction::default(),
         }
     }
 
@@ -172,7 +173,7 @@ impl Obstacle {
             let remedy = "leave out `motion`, and place the mesh by `pose`";
             checks.report(key.name("motion"), message, remedy);
         }
-        checks.not_negative(key.name("friction"), self.friction, Unit::One);
+        self.friction.check(&key.name("friction"), checks);
     }
 }
 

@@ -10,7 +10,7 @@ use crate::placed::PlacedSheet;
 use crate::placed_bodies::Surface;
 use crate::problem::Problem;
 use crate::switch::Holder;
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, ContactsError, Obstacle};
+use isosheet_collide::{ContactOptions, Contacts, ContactsError, Obstacle};
 use isosheet_mesh::wording::place;
 use isosheet_mesh::{Sheet, VertexId};
 use std::collections::HashMap;
@@ -117,20 +117,20 @@ impl Builder<'_> {
             let body =
                 Obstacle::new(shape?, motion).map_err(|e| Problem::from_error(key.clone(), &e))?;
             obstacles.push(body.clone());
-            let coefficients = Coefficients::equal(obstacle.friction);
+            let coefficients = obstacle.friction.coefficients();
             contacts = contacts.with_body(body, coefficients).map_err(at(&key))?;
         }
         self.count(scene.obstacle.len(), "obstacle", "obstacles");
         self.bodies.check_empty(&self.sheets, &obstacles)?;
         if scene.contact.self_contact || self.surface.is_some() {
-            let coefficients = Coefficients::equal(scene.contact.friction);
+            let coefficients = scene.contact.friction.coefficients();
             let surface = self.surface.as_ref();
             let surface = surface.map_or(&self.sheets.union, |surface| &surface.sheet);
             contacts = contacts
                 .with_self_contact(coefficients)
                 .map_err(|e| SceneError::from(self_contact_problem(&e, surface)))?;
             for DrivenSurface { number, part, .. } in &self.origins.driven {
-                let coefficients = Coefficients::equal(scene.obstacle[*number].friction);
+                let coefficients = scene.obstacle[*number].friction.coefficients();
                 let others = 0..self.driven.first_point().unwrap_or_default();
                 contacts = contacts
                     .with_friction_between([others, part.vertices.clone()], coefficients)
@@ -140,7 +140,7 @@ impl Builder<'_> {
         for (k, (key, pair)) in (0..).zip(key.name("contact.pair").entries(&scene.contact.pair)) {
             let [first, second] = [0, 1].map(|side| self.meeting(&pair.sheets[side], &key));
             let holds = self.switches.holds(Holder::Contact(k));
-            let coefficients = Coefficients::equal(pair.friction);
+            let coefficients = pair.friction.coefficients();
             let with_pair = match (first?, second?) {
                 (Meeting::Points(first), Meeting::Points(second)) if !holds => {
                     Ok(contacts.without_contact_between([first, second]))

@@ -4,6 +4,7 @@ use crate::parse;
 use isosheet_dynamics::Memories;
 use isosheet_scenes::{LiveScene, SceneError, SceneFile, SceneFileError};
 use nalgebra::{Matrix3, Rotation3, Vector3};
+use std::fmt::Display;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -167,7 +168,7 @@ fn a_corner_piece_falls_and_tumbles() {
 }
 
 /// A scene of bodies on an inclined plane through the origin, down along x.
-fn on_plane(slope: f64, friction: f64, body: &str) -> LiveScene {
+fn on_plane(slope: f64, friction: impl Display, body: &str) -> LiveScene {
     let degrees = slope.to_degrees();
     live(&format!(
         "{ASIDE}
@@ -230,6 +231,30 @@ fn a_box_slides_down_an_inclined_plane() {
         (load - carried).norm() < 5e-3 * carried.norm(),
         "{load} {carried}"
     );
+}
+
+/// A box rests on a plane that is steeper than its kinetic coefficient and less steep than the static one, and slides on
+/// one that is steeper than both.
+#[test]
+fn the_static_coefficient_holds_what_the_kinetic_one_lets_slide() {
+    let speed = |slope: f64| {
+        let body = format!(
+            "[[body]]
+            shape = {{ box = {{ size = [0.1, 0.08, 0.05] }} }}
+            mass = 0.5
+            {}",
+            lying(slope, 0.025)
+        );
+        let mut live = on_plane(slope, "{ static = 0.5, kinetic = 0.2 }", &body);
+        play(&mut live, 0.4);
+        velocity(&live, 0).norm()
+    };
+    // Sticking creeps by the speed that counts as rest.
+    assert!(speed(0.35) < 0.02, "{}", speed(0.35));
+    let slope = 0.6_f64;
+    let sliding = 0.4 * G * (slope.sin() - 0.2 * slope.cos());
+    let found = speed(slope);
+    assert!((found / sliding - 1.0).abs() < 0.05, "{found} {sliding}");
 }
 
 /// A ball and a cylinder roll without sliding: `g sin a / (1 + I / m r^2)`. A cylinder is a prism, which rolls over its edges.
