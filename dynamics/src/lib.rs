@@ -81,6 +81,7 @@ pub use conservative::rattle::RattleOptions;
 pub use constraint::VertexConstraint;
 pub use damped::options::ImplicitOptions;
 pub use damped::start::{leave_flat, leave_flat_in, project_positions};
+pub use diagnosis::derivatives::{DerivativeErrors, check_derivatives};
 pub use diagnosis::rank::{RodRank, rod_rank};
 pub use engine::method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use hessian::HessianSink;
@@ -109,7 +110,6 @@ pub use model::load::{AccelerationField, LoadError, VertexLoad};
 pub use model::loaded_faces::{LoadedFaces, LoadedFacesError};
 pub use model::of_material::{SheetOfMaterial, SheetOfMaterialError};
 pub use model::part::PotentialOfPart;
-pub use model::support::Support;
 pub use model::turning_load::TurningLoad;
 pub use model::{Isometry, ModelError, SheetModel};
 pub use motion::profile::{Interpolation, Profile, ProfileError};
@@ -125,10 +125,12 @@ pub use potential::{
 pub use report::checkpoint_error::CheckpointError;
 pub use report::effort::StepProgress;
 pub use report::infeasibility::{Driver, Infeasibility};
+pub use report::potential_fault::{BadPotential, PotentialFault};
 pub use report::pressing::Pressing;
 pub use report::reason::Reason;
 pub use report::simulation_error::SimulationError;
 pub use report::step_error::{StepError, StepOutcome, StepReport};
+pub use report::support::Support;
 pub use report::trace::{Continuation, Cut, TraceEvent};
 pub use rigid_body::{
     Attachment, BodyForce, BodyTorque, JointCoordinate, JointError, JointSpring, RigidBody,
@@ -141,7 +143,7 @@ pub use run::simulation::Simulation;
 pub use state::State;
 pub use step::reaction::{Imbalance, Reaction};
 #[doc(hidden)]
-pub use step::tuning::{Constant, Tuning};
+pub use step::tuning::Tuning;
 
 pub use nalgebra;
 

@@ -434,7 +434,9 @@ impl Potential for Gravity {
 ///
 /// BDF2 and implicit Euler ask for it once in a step: at the time of its end, which is exact for forces of time alone,
 /// and at positions and velocities extrapolated to it, at the order of the method. A force of velocities that takes more
-/// than about `4/3` of the momentum in a step is too stiff for that, and the steps explode. Energy-momentum asks for it
+/// than about `4/3` of the momentum in a step is too stiff for that: the step is refused
+/// ([`StepError::StiffForce`]) and divided. As an [`ImplicitForce`](crate::term::ImplicitForce) it may be as stiff as
+/// it likes. Energy-momentum asks for it
 /// at the middle of a step, RATTLE at both ends, charts at their stages.
 pub trait Force: Debug + Send + Sync {
     /// Adds the force (`3V`, newtons) at time `t`, positions `x` and velocities `v` to `force`.

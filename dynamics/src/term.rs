@@ -378,6 +378,9 @@ pub struct Exchange {
     pub stored: f64,
     /// Energy that the tolerance of the lengths leaves open.
     pub length_slack: f64,
+    /// Work by which forces that were expected of the end of the step differ from those that are there, where they are
+    /// too stiff to be expected; not negative.
+    pub misjudged: f64,
 }
 
 impl Exchange {
@@ -399,5 +402,6 @@ impl Exchange {
         self.settled_friction += other.settled_friction;
         self.stored += other.stored;
         self.length_slack += other.length_slack;
+        self.misjudged += other.misjudged;
     }
 }

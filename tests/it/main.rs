@@ -35,4 +35,5 @@ mod robust;
 mod scenes;
 mod statics;
 mod stress;
+mod terms;
 mod watch;

@@ -11,7 +11,6 @@ use crate::measured::{self, MeasuredArgs};
 use crate::reference::{self, ReferenceArgs};
 use crate::reproduce::{self, ReproduceArgs};
 use crate::soak::{self, SoakArgs};
-use crate::tuning::{self, TuningArgs};
 use crate::validation::{self, ValidationArgs};
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
@@ -61,12 +60,6 @@ pub(crate) enum Command {
     /// findings. Finished experiments are kept, as in `reproduce-figures`. The exit code is 0 unless an error is
     /// larger than the documentation says and not declared an open limitation.
     Validation(ValidationArgs),
-    /// Measure what each constant of a damped step is worth: halve and double it over eight starts of
-    /// fifteen kinds of scene, and count factorisations, CPU seconds and failures
-    ///
-    /// Writes DIR/index.html, DIR/kinds.csv and DIR/constants.csv and prints the tables. What was measured is
-    /// kept.
-    Tuning(TuningArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
     /// Writes DIR/index.html (self-contained) and DIR/findings.csv, and prints a table. The exit code is 0 unless
@@ -107,7 +100,6 @@ impl Command {
             Self::Cost(args) => cost::run(args),
             Self::Locking(args) => locking::run(args),
             Self::Validation(args) => validation::run(args),
-            Self::Tuning(args) => tuning::run(args),
             Self::HardCases(args) => hard_cases::run(args),
             Self::All(args) => args.run(),
             Self::Measured(args) => measured::run(args),
@@ -131,13 +123,12 @@ pub(crate) struct AllArgs {
 }
 
 /// The reports, with their options for short runs.
-const REPORTS: [(&str, &[&str]); 7] = [
+const REPORTS: [(&str, &[&str]); 6] = [
     ("reproduce-figures", &["--quick"]),
     ("condition-table", &["--level", "2"]),
     ("hard-cases", &["--quick"]),
     ("locking", &["--quick"]),
     ("validation", &["--quick"]),
-    ("tuning", &["--quick"]),
     ("cost", &["--quick"]),
 ];
 

@@ -33,7 +33,6 @@ mod soak;
 mod sources;
 mod store;
 mod threads;
-mod tuning;
 mod validation;
 
 use clap::Parser;

@@ -414,7 +414,6 @@ fn a_report_that_fails_does_not_keep_the_others() {
         "hard-cases",
         "locking",
         "validation",
-        "tuning",
         "cost",
     ] {
         fs::create_dir_all(out.join(report)).unwrap();
@@ -427,7 +426,7 @@ fn a_report_that_fails_does_not_keep_the_others() {
         "{said}"
     );
     assert!(
-        said.contains("reproduce-figures, hard-cases, locking, validation, tuning, cost"),
+        said.contains("reproduce-figures, hard-cases, locking, validation, cost"),
         "{said}"
     );
 }

@@ -1,13 +1,11 @@
 //! The barrier as a function of the gap.
 
-use super::{ContactLaws, Stiffness};
+use super::{BarrierError, ContactLaws, Stiffness};
 use crate::model::load_scale::{LoadScale, constant_acceleration};
 use crate::vectors::diameter;
 use crate::{SheetModel, State};
-use isosheet_mesh::Advice;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// Part of the activation distance that a loaded contact keeps.
 const GAP_UNDER_LOAD: f64 = 0.5;
@@ -31,31 +29,6 @@ const VERTICES_CARRIED: f64 = 100.0;
 pub struct BarrierPotential {
     activation: f64,
     stiffness: f64,
-}
-
-/// A barrier that makes no sense.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum BarrierError {
-    /// The activation distance is not a positive length.
-    #[error("the activation distance is {0} m")]
-    Activation(f64),
-    /// Powers of the activation distance are too small (or too large) for floating-point numbers.
-    #[error("the fourth power of the activation distance {0} m cannot be represented")]
-    Range(f64),
-    /// The stiffness is not a positive energy.
-    #[error("the stiffness of the barrier is {0} J")]
-    Stiffness(f64),
-}
-
-impl Advice for BarrierError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::Activation(..) => Some("give a positive length, for instance 1e-3 of the sheet"),
-            Self::Range(..) => Some("give a larger one"),
-            Self::Stiffness(..) => Some("give a positive energy, or `Stiffness::Automatic`"),
-        }
-    }
 }
 
 impl BarrierPotential {

@@ -1,9 +1,7 @@
 //! Smoothed Coulomb friction.
 
-use isosheet_mesh::Advice;
-use isosheet_mesh::wording::given;
+use super::FrictionError;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// Coefficients of Coulomb friction, see [`Friction`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,50 +65,6 @@ pub struct Friction {
 /// Width of the passage from the static to the kinetic coefficient in smoothing distances: as wide
 /// as keeps its steepest descent (0.75 of the jump per `e`) below the ascent before it.
 const TRANSITION_WIDTH: f64 = 2.0;
-
-/// Coefficients that make no sense.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum FrictionError {
-    /// A coefficient is negative or not a number.
-    #[error(
-        "the friction coefficients {rest} (static) and {sliding} (kinetic) are not both numbers of \
-         at least 0",
-        rest = given(*rest), sliding = given(*sliding)
-    )]
-    Coefficient {
-        /// Static coefficient.
-        rest: f64,
-        /// Kinetic coefficient.
-        sliding: f64,
-    },
-    /// The kinetic coefficient exceeds the static one.
-    #[error(
-        "the kinetic coefficient {sliding} is above the static coefficient {rest}",
-        sliding = given(*sliding), rest = given(*rest)
-    )]
-    Order {
-        /// Static coefficient.
-        rest: f64,
-        /// Kinetic coefficient.
-        sliding: f64,
-    },
-    /// The smoothing distance is not positive.
-    #[error("the smoothing distance is {0} m")]
-    Smoothing(f64),
-}
-
-impl Advice for FrictionError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::Coefficient { .. } => Some("give numbers of at least 0"),
-            Self::Order { .. } => Some("swap them"),
-            Self::Smoothing(..) => {
-                Some("give a positive length, the speed that counts as rest times the step")
-            }
-        }
-    }
-}
 
 impl Friction {
     /// With the static coefficient `rest`, the kinetic coefficient `sliding` and the smoothing

@@ -30,7 +30,6 @@ mod barrier;
 mod body;
 #[cfg(test)]
 pub(crate) mod contact_tests;
-mod error;
 mod friction;
 #[doc(hidden)]
 pub mod internals;
@@ -44,13 +43,14 @@ mod term;
 mod terms;
 mod vertex_data;
 
+pub use crate::report::contact_error::{
+    BarrierError, BodyMotionError, ContactError, ContactPair, FrictionError,
+};
 pub use active::{ActiveContact, ActiveContacts, Rolling, Round};
-pub use barrier::BarrierError;
 pub(crate) use barrier::BarrierPotential;
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
-pub use error::{BodyMotionError, ContactError, ContactPair};
-pub use friction::{Coefficients, Friction, FrictionError};
+pub use friction::{Coefficients, Friction};
 pub(crate) use lagged::LaggedFriction;
 pub use laws::{ContactLaws, ObstaclePair, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;

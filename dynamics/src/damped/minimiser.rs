@@ -131,6 +131,7 @@ impl Minimiser {
         let problem = &mut problem;
         // An iteration has many short pieces between the factorisations that are shared.
         let _awake = self.work.lagrangian.matrix.is_shared().then(Awake::new);
+        self.work.refusal = None;
         self.work.lagrangian.begin(problem)?;
         let is_driven = self.work.lagrangian.is_driven(problem) || problem.model.has_drives();
         let bound = (!is_driven).then(|| self.work.lagrangian.merit(problem));
@@ -167,7 +168,8 @@ impl Minimiser {
         let minimum = found.map_err(|Failure { reason, residual }| {
             let strain = problem.model.constrained_strain(self.x());
             let (t, h) = (problem.state().t, problem.start.span);
-            not_converged(t, h, effort, reason, residual, strain)
+            let refusal = self.work.refusal.take();
+            refusal.unwrap_or_else(|| not_converged(t, h, effort, reason, residual, strain))
         })?;
         let start = problem.start;
         let (objective, at) = problem.objective_at(&self.work.lagrangian.x);

@@ -1,12 +1,13 @@
 //! Making and checking states to start from.
 
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
+use crate::diagnosis::potentials::{Differences, find_fault};
 use crate::linear::primal::PrimalMatrix;
-use crate::model::support::Support;
 use crate::options::OptionsError;
-use crate::potential::At;
+use crate::potential::{At, Memories};
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::StepError;
+use crate::report::support::Support;
 use crate::step::tuning::Tuning;
 use crate::vectors::point;
 use crate::{SheetModel, SimulationError, State};
@@ -180,6 +181,21 @@ fn check_swelling(model: &SheetModel, t: f64) -> Result<(), StepError> {
     match elastic.and_then(|elastic| elastic.swollen_too_much(t)) {
         Some(part) => Err(StepError::Swelling { part, t }),
         None => Ok(()),
+    }
+}
+
+/// Refuses potentials that cannot be used at a state.
+pub(crate) fn check_potentials(
+    model: &SheetModel,
+    memories: &Memories,
+    State { t, x, .. }: &State,
+) -> Result<(), StepError> {
+    match find_fault(model, memories, (*t, x), Differences::Skip) {
+        None => Ok(()),
+        Some(bad) => Err(StepError::Potential {
+            t: *t,
+            bad: Box::new(bad),
+        }),
     }
 }
 

@@ -6,6 +6,7 @@ use crate::contact::{Contact, ContactError, ContactState, ContactTerm, StepSpan,
 use crate::damped::implicit::Implicit;
 use crate::diagnosis::blocked::{blocked_vertices, dependent_vertices};
 use crate::diagnosis::infeasibility::infeasibility;
+use crate::diagnosis::potentials::{Differences, find_fault};
 use crate::diagnosis::pressing::pressing;
 use crate::diagnosis::rank::rod_rank;
 use crate::engine::rod_forces::rod_forces;
@@ -237,14 +238,6 @@ impl Engine {
         Ok(())
     }
 
-    /// Replaces the constants of the damped methods.
-    pub(crate) fn set_tuning(&mut self, tuning: Tuning) -> Result<(), SimulationError> {
-        self.tuning = tuning;
-        self.integrator = self.method.build(&self.model, &tuning)?;
-        self.fallback = fallback(&self.model, &self.control, &tuning)?;
-        Ok(())
-    }
-
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     ///
     /// A step that something prescribed breaks ends a sub-step there ([`SheetModel::with_breaks`]).
@@ -401,8 +394,14 @@ impl Substeps<'_, '_> {
     /// Why no sub-step was found: supports or bodies that ask for too much, rods that lock or depend on each other, or
     /// as the integrator said.
     fn stop(&mut self, cause: StepError) -> Stop {
-        if matches!(cause, StepError::NonFiniteForce { .. }) {
+        if matches!(
+            cause,
+            StepError::NonFiniteForce { .. } | StepError::Potential { .. }
+        ) {
             return Stop::Error(cause);
+        }
+        if let Some(bad) = self.wrong_potential() {
+            return Stop::Error(bad);
         }
         let t = self.engine.state().t;
         let ends = [self.lengths.end(), t + self.lengths.length()];
@@ -425,6 +424,20 @@ impl Substeps<'_, '_> {
             pressing: self.engine.pressing(self.lengths.end()).map(Box::new),
             cause: Box::new(cause),
         }))
+    }
+
+    /// The error of a potential whose gradient is not the derivative of its energy, if there is one: no search can
+    /// succeed with it.
+    fn wrong_potential(&self) -> Option<StepError> {
+        let Motion {
+            state, memories, ..
+        } = &self.engine.motion;
+        let here = (state.t, &state.x[..]);
+        let bad = find_fault(&self.engine.model, memories, here, Differences::Compare)?;
+        Some(StepError::Potential {
+            t: state.t,
+            bad: Box::new(bad),
+        })
     }
 
     /// The error of a sheet that may lock, if rods block its motion, or depend on each other while supports

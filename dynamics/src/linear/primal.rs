@@ -14,7 +14,7 @@ use crate::report::effort::SolverEffort;
 use crate::vectors::add;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
-use far::{FarCouplings, stiff_pairs};
+use far::{FarCouplings, NotNamed, stiff_pairs};
 use isosheet_linalg::{LinalgError, Pattern, SparseLlt};
 use isosheet_mesh::{EdgeId, VertexId};
 use iterative::{ConjugateGradients, Ending, Goal};
@@ -76,6 +76,8 @@ pub(crate) struct PrimalMatrix {
     x: Vec<f64>,
     axial: Vec<f64>,
     factorised: Factorised,
+    /// Whether a block had no place since the matrix was last set to zero.
+    has_misplaced: bool,
 }
 
 /// What is factorised of the matrix assembled last.
@@ -173,6 +175,7 @@ impl PrimalMatrix {
             x: vec![0.0; model.coordinate_count()],
             axial: vec![0.0; model.rods().len()],
             factorised: Factorised::Nothing,
+            has_misplaced: false,
         })
     }
 
@@ -251,6 +254,7 @@ impl PrimalMatrix {
     /// Sets the matrix to zero.
     pub(crate) fn clear(&mut self) {
         self.factorised = Factorised::Nothing;
+        self.has_misplaced = false;
         self.far.clear();
         self.low_rank.clear();
         self.near.values_mut().fill(0.0);
@@ -384,6 +388,11 @@ impl PrimalMatrix {
         let expected = expected_iterations(substitutes, self.masses, GRADIENT_ACCURACY);
         // (A substitute that is not a number is left to the factorisation of the whole matrix.)
         expected <= self.iterations_worth() as f64
+    }
+
+    /// Whether a block had no place: one of a pair that nothing has named, or of a vertex or an edge that there is not.
+    pub(crate) fn has_misplaced(&self) -> bool {
+        self.has_misplaced
     }
 
     /// Whether its factorisations are shared among threads, where there are several.
@@ -521,7 +530,9 @@ struct Sink<'a> {
 
 impl HessianSink for Sink<'_> {
     fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
-        let Some(slots) = self.matrix.vertex_slots[v.index()] else {
+        let slots = self.matrix.vertex_slots.get(v.index());
+        self.matrix.has_misplaced |= slots.is_none();
+        let Some(slots) = slots.copied().flatten() else {
             return;
         };
         let values = self.matrix.near.values_mut();
@@ -536,7 +547,9 @@ impl HessianSink for Sink<'_> {
 
     fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>) {
         // `block` is d2V/dx_a dx_b, rows at a; the stored block has the rows of the later vertex.
-        if let Some((slots, rows_at_b)) = self.matrix.edge_slots[e.index()] {
+        let slots = self.matrix.edge_slots.get(e.index());
+        self.matrix.has_misplaced |= slots.is_none();
+        if let Some((slots, rows_at_b)) = slots.copied().flatten() {
             let values = self.matrix.near.values_mut();
             for r in 0..3 {
                 for c in 0..3 {
@@ -552,23 +565,29 @@ impl HessianSink for Sink<'_> {
     }
 
     fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
-        if self.matrix.stiff.is_empty() {
-            self.matrix.far.add(self.model, [a, b], block, self.scale);
+        let free = self.model.free_index();
+        let [Some(&i), Some(&j)] = [a, b].map(|v| free.get(v.index())) else {
+            self.matrix.has_misplaced = true;
+            return;
+        };
+        let stiff = &self.matrix.stiff;
+        if !stiff.is_empty() && stiff.binary_search(&[i.max(j), i.min(j)]).is_ok() {
+            self.add(a.0, b.0, block);
             return;
         }
-        let [i, j] = [a, b].map(|v| self.model.free_index()[v.index()]);
-        match self.matrix.stiff.binary_search(&[i.max(j), i.min(j)]) {
-            Ok(_) => self.add(a.0, b.0, block),
-            Err(_) => self.matrix.far.add(self.model, [a, b], block, self.scale),
+        let far = &mut self.matrix.far;
+        if let Err(NotNamed) = far.add(self.model, [a, b], block, self.scale) {
+            self.matrix.has_misplaced = true;
         }
     }
 
     fn add_square(&mut self, factor: f64, gradient: &[(VertexId, Vector3<f64>)]) {
         let mut packed = vec![0.0; self.matrix.rhs.len()];
         for (v, g) in gradient {
-            let i = self.model.free_index()[v.index()];
-            if i != PINNED {
-                add(&mut packed, VertexId(i), g);
+            match self.model.free_index().get(v.index()) {
+                None => self.matrix.has_misplaced = true,
+                Some(&PINNED) => {}
+                Some(&i) => add(&mut packed, VertexId(i), g),
             }
         }
         self.matrix.low_rank.add(self.scale * factor, packed);
@@ -582,13 +601,19 @@ impl CouplingSink for Sink<'_> {
             return;
         }
         let free = self.model.free_index();
-        let (i, j) = (free[a as usize], free[b as usize]);
-        if i == PINNED || j == PINNED {
+        let places = [a, b].map(|v| free.get(v as usize).copied());
+        if places.contains(&Some(PINNED)) {
             return;
         }
         let near = &mut self.matrix.near;
-        let start = block_start(near.pattern(), i.max(j), i.min(j))
-            .expect("the pair has been named in make_room");
+        let [Some(i), Some(j)] = places else {
+            self.matrix.has_misplaced = true;
+            return;
+        };
+        let Some(start) = block_start(near.pattern(), i.max(j), i.min(j)) else {
+            self.matrix.has_misplaced = true;
+            return;
+        };
         let values = near.values_mut();
         for c in 0..3 {
             for r in 0..3 {

@@ -20,11 +20,11 @@ pub(crate) mod load;
 pub(crate) mod load_scale;
 pub(crate) mod loaded_faces;
 mod memory;
+mod moving_pin;
 pub(crate) mod of_material;
 pub(crate) mod part;
 mod pressure;
 pub(crate) mod round_off;
-pub(crate) mod support;
 mod supports;
 pub(crate) mod turning_load;
 mod volume;
@@ -36,7 +36,7 @@ use crate::term::ImplicitForce;
 use damped_range::Damping;
 pub use error::ModelError;
 use isosheet_mesh::{EdgeId, LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
-use support::MovingPin;
+use moving_pin::MovingPin;
 
 /// What keeps the lengths of a sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,10 +1,11 @@
 //! Pins and vertex constraints of a model, and their motions.
 
+use super::moving_pin::MovingPin;
 use super::{ModelError, PINNED, SheetModel};
 use crate::State;
 use crate::constraint::{ConstrainedVertex, VertexConstraint};
-use crate::model::support::{MovingPin, Support};
 use crate::motion::PointMotion;
+use crate::report::support::Support;
 use crate::vectors::point;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;

@@ -26,6 +26,8 @@ pub(super) struct Acting {
     applied_free: Vec<f64>,
     /// Work arrays, `3V`; empty without explicit forces.
     scratch: Vec<f64>,
+    /// Masses of the vertices, kilograms; empty without explicit forces.
+    masses: Vec<f64>,
     /// Energy of the potentials where it was evaluated last, and its round-off, joules.
     energy: f64,
     round_off: f64,
@@ -66,9 +68,13 @@ impl Evaluated {
 impl Acting {
     pub(super) fn new(model: &Arc<SheetModel>) -> Self {
         let n = model.coordinate_count();
-        let scratch = if model.forces().is_empty() { 0 } else { n };
+        let (scratch, masses) = match model.forces().is_empty() {
+            true => (0, Vec::new()),
+            false => (n, model.mass().row_sums(model.topology())),
+        };
         Self {
             scratch: vec![0.0; scratch],
+            masses,
             has_limit: model.has_limit(),
             model: Arc::clone(model),
             prediction: vec![0.0; n],
@@ -104,6 +110,38 @@ impl Acting {
     pub(super) fn check_at(&self, at: At<'_>) -> Result<(), StepError> {
         let mut limits = self.model.potentials().filter_map(|p| p.limit());
         limits.try_for_each(|limit| limit.check(at))
+    }
+
+    /// By how much the work of the explicit forces, as they were expected of the end of a step, differs from that of the
+    /// forces there, if they are too stiff to be expected: if with the motion `z` at the end and the expected one `y`
+    /// `|h^2 M^-1 (f(z) - f(y))| > |z - y|` in the norm of the masses, so that the iteration `y <- z(y)` diverges.
+    fn misjudged(&mut self, step: &StepStart<'_>, x: &[f64]) -> f64 {
+        let h = step.h;
+        let v = x.iter().zip(step.rest).map(|(x, y)| (x - y) / h);
+        let v: Vec<f64> = v.collect();
+        let mut expected = vec![0.0; x.len()];
+        step.add_velocity_ahead(&mut expected);
+        self.scratch.fill(0.0);
+        self.model
+            .add_explicit_force(step.t(), x, &v, &mut self.scratch);
+        self.model.clear_pinned(&mut self.scratch);
+        let (mut work, mut response, mut error) = (0.0_f64, 0.0, 0.0);
+        let rows = self.masses.iter().zip(self.model.free_index());
+        let free = rows
+            .enumerate()
+            .filter(|(_, (mass, free))| **free != PINNED && **mass > 0.0);
+        for (vertex, (mass, _)) in free {
+            for i in 3 * vertex..3 * vertex + 3 {
+                let change = self.scratch[i] - self.applied_free[i];
+                work += change * (x[i] - step.state.x[i]);
+                response += (h * h * change).powi(2) / mass;
+                let off = (x[i] - step.ahead[i])
+                    .abs()
+                    .max(h * (v[i] - expected[i]).abs());
+                error += mass * off * off;
+            }
+        }
+        if response > error { work.abs() } else { 0.0 }
     }
 
     /// Work of the explicit forces at the free vertices over displacements, joules.
@@ -218,6 +256,7 @@ impl Term for Acting {
         if self.model.forces().is_empty() {
             return Ok(Exchange::default());
         }
+        let misjudged = self.misjudged(step, at.x);
         let moved = || at.x.iter().zip(&start.x).map(|(x, x0)| x - x0);
         let end = self.work(moved());
         let mut difference = 0.0;
@@ -235,6 +274,7 @@ impl Term for Acting {
         Ok(Exchange {
             work: end - 0.5 * difference,
             driven_size: difference.abs(),
+            misjudged,
             ..Exchange::default()
         })
     }

@@ -265,15 +265,16 @@ impl Objective {
             let barrier = term.barrier();
             (barrier.map_or(1.0, |_| term.safe_part(at, dx)), barrier)
         };
+        let whole = (1.0, None);
         let of_others = |others: &mut Vec<Box<dyn Term>>| {
             let parts = others.iter_mut().map(|term| part(&mut **term));
-            parts.fold((1.0, None), shorter)
+            parts.fold(whole, shorter)
         };
         let (further, own) = match others.iter().any(|term| term.barrier().is_some()) {
-            false => ((1.0, None), part(acting)),
+            false => (whole, part(acting)),
             true => both(|| of_others(others), || part(acting)),
         };
-        shorter(own, further)
+        shorter(shorter(whole, own), further)
     }
 
     /// Largest part of the chord of a curved way that is allowed but for limits of the strain, which are

@@ -1,6 +1,6 @@
 //! Supports and bodies that ask for more than the lengths allow.
 
-use crate::model::support::Support;
+use crate::report::support::Support;
 use isosheet_mesh::VertexId;
 use isosheet_mesh::wording::{brief, given, listed};
 use std::fmt;

@@ -1,8 +1,8 @@
 //! Errors of the start of a simulation.
 
-use crate::contact::ContactError;
 use crate::options::OptionsError;
 use crate::report::checkpoint_error::CheckpointError;
+use crate::report::contact_error::ContactError;
 use crate::report::engine_error::EngineError;
 use crate::report::step_error::StepError;
 use isosheet_linalg::LinalgError;
@@ -31,16 +31,6 @@ pub enum SimulationError {
     /// The start state is invalid.
     #[error(transparent)]
     Start(#[from] StepError),
-    /// A potential has a block of its Hessian that has no place in the matrix of a step.
-    #[error(
-        "potential {index} adds a block of {block} to its Hessian, which it does not name or the sheet has not"
-    )]
-    Coupling {
-        /// Index in the order of addition, an elastic sheet last.
-        index: usize,
-        /// The block, in words.
-        block: String,
-    },
     /// Linear algebra failed.
     #[error(transparent)]
     Linalg(#[from] LinalgError),
@@ -99,9 +89,6 @@ impl Advice for SimulationError {
                 Some("use BDF2 or implicit Euler")
             }
             Self::Checkpoint(error) => error.advice(),
-            Self::Coupling { .. } => Some(
-                "name all pairs without a common edge in `Potential::couplings`, or leave the block out, which costs iterations",
-            ),
             Self::ChartControl => Some("leave `StepControl` out"),
             Self::StateLength { .. } | Self::Linalg(..) => None,
         }

@@ -1,12 +1,13 @@
 //! Reports and errors of steps.
 
-use crate::contact::BodyMotionError;
-use crate::model::support::Support;
+use crate::report::contact_error::BodyMotionError;
 use crate::report::effort::SolverEffort;
 use crate::report::engine_error::EngineError;
 use crate::report::infeasibility::Infeasibility;
+use crate::report::potential_fault::BadPotential;
 use crate::report::pressing::Pressing;
 use crate::report::reason::Reason;
+use crate::report::support::Support;
 use isosheet_linalg::LinalgError;
 use isosheet_mesh::wording::{brief, counted, given, listed};
 use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
@@ -290,6 +291,30 @@ pub enum StepError {
         /// What refuses, and why.
         refused: Box<Refused>,
     },
+    /// A force of velocities or positions is too stiff to be taken as it is expected at the end of a step.
+    #[error(
+        "a force of the sheet is too stiff for a step of {h} s at t = {t} s: its work in it is {misjudged} J off, and the \
+         kinetic energy is {kinetic} J",
+        h = brief(*h), t = brief(*t), misjudged = brief(*misjudged), kinetic = brief(*kinetic)
+    )]
+    StiffForce {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// Work by which the forces that were expected of the end differ from those there, joules.
+        misjudged: f64,
+        /// Kinetic energy, joules.
+        kinetic: f64,
+    },
+    /// A potential cannot be used.
+    #[error("at t = {t} s {bad}", t = brief(*t))]
+    Potential {
+        /// Time, seconds.
+        t: f64,
+        /// Which one, and why.
+        bad: Box<BadPotential>,
+    },
     /// A step of a damped method gains energy.
     #[error(
         "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
@@ -461,6 +486,10 @@ impl Advice for StepError {
             | Self::Friction { .. }
             | Self::Contact { .. } => Some("take a smaller step"),
             Self::Refused { refused, .. } => refused.remedy,
+            Self::Potential { bad, .. } => bad.advice(),
+            Self::StiffForce { .. } => Some(
+                "take a smaller step, or make it an `ImplicitForce`, which is part of the search",
+            ),
             Self::RankDeficient { .. } => Some(
                 "start from a folded state, displace the sheet with `leave_flat`, allow a `Fallback`, or use \
                  BDF2",

@@ -3,7 +3,6 @@
 mod arrays;
 mod change;
 pub(crate) mod checkpoint;
-mod coupling_check;
 pub(crate) mod fold_start;
 mod held;
 pub(crate) mod observe;

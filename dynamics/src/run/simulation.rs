@@ -3,7 +3,7 @@
 use crate::contact::{
     ActiveContacts, BodyLoad, Contact, ContactError, ContactState, ContactTerms, SurfacePoints,
 };
-use crate::damped::start::{check_finite, check_motions, check_state};
+use crate::damped::start::{check_finite, check_motions, check_potentials, check_state};
 use crate::engine::substeps::Engine as MethodEngine;
 use crate::engine::{Engine, Progress};
 use crate::model::breaks::Breaks;
@@ -15,9 +15,7 @@ use crate::report::simulation_error::SimulationError;
 use crate::report::step_error::{StepError, StepReport, StepTotals};
 use crate::report::trace::TraceEvent;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
-use crate::run::coupling_check::check_couplings;
 use crate::step::reaction::{Imbalance, Reaction};
-use crate::step::tuning::Tuning;
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
 use isosheet_mesh::VertexId;
 use std::any::Any;
@@ -88,7 +86,7 @@ impl Simulation {
         model.clear_pinned(&mut state.v);
         model.set_pin_velocities(state.t, MOTION_SPAN, &mut state.v);
         check_state(&model, &state)?;
-        check_couplings(&model, &state)?;
+        check_potentials(&model, &model.memories(), &state)?;
         let engine = Moved::ByMethod(Box::new(MethodEngine::new(model, method, state)?));
         Ok(Self::start(engine, sheet))
     }
@@ -223,19 +221,6 @@ impl Simulation {
     pub fn with_control(mut self, control: StepControl) -> Result<Self, SimulationError> {
         match &mut self.engine {
             Moved::ByMethod(engine) => engine.set_control(control)?,
-            Moved::ByEngine(_) => return Err(SimulationError::ChartControl),
-        }
-        Ok(self)
-    }
-
-    /// Sets the constants of the damped methods, for measurements.
-    ///
-    /// # Errors
-    /// [`SimulationError::ChartControl`] in charts, [`SimulationError::Linalg`] if memory runs out.
-    #[doc(hidden)]
-    pub fn with_tuning(mut self, tuning: Tuning) -> Result<Self, SimulationError> {
-        match &mut self.engine {
-            Moved::ByMethod(engine) => engine.set_tuning(tuning)?,
             Moved::ByEngine(_) => return Err(SimulationError::ChartControl),
         }
         Ok(self)

@@ -43,7 +43,7 @@ impl EnergyAccount {
     /// (joules) and the sum of the magnitudes of the components of the conservative forces there (newtons).
     ///
     /// # Errors
-    /// [`StepError::EnergyGain`], [`StepError::Friction`], [`StepError::NonFiniteEnergy`].
+    /// [`StepError::EnergyGain`], [`StepError::Friction`], [`StepError::StiffForce`], [`StepError::NonFiniteEnergy`].
     pub(crate) fn after(
         &self,
         model: &SheetModel,
@@ -84,7 +84,16 @@ impl EnergyAccount {
                 settled: exchange.settled_friction,
             });
         }
-        let share = kinetic[0].max(kinetic[1]) + DRIVEN * drives / GAIN;
+        let most = kinetic[0].max(kinetic[1]);
+        if exchange.misjudged > GAIN * most + round_off {
+            return Err(StepError::StiffForce {
+                t: before.t,
+                h: after.t - before.t,
+                misjudged: exchange.misjudged,
+                kinetic: most,
+            });
+        }
+        let share = most + DRIVEN * drives / GAIN;
         let net = self.net + gain;
         let largest = self.kinetic.max(kinetic[0]);
         let unknown = |round_off| self.unknown + round_off + DRIVEN * drives;

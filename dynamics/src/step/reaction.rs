@@ -1,9 +1,9 @@
 //! Forces of supports on the sheet.
 
 use crate::constraint::rows::VertexRows;
-use crate::model::support::Support;
 use crate::potential::Memories;
 use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
+use crate::report::support::Support;
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::vectors::{add, point};
 use crate::{SheetModel, State};

@@ -3,6 +3,7 @@
 use super::problem::StepProblem;
 use crate::SheetModel;
 use crate::constraint::rows::{RowLoad, VertexRows};
+use crate::diagnosis::potentials::{Differences, find_fault};
 use crate::hessian::HessianPart;
 use crate::linear::constrained::{
     ConstrainedSolver, ConstrainedSystem, MultiplierGoal, RowValues, SupportRows,
@@ -11,7 +12,7 @@ use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::StepError;
+use crate::report::step_error::{Refused, StepError};
 use crate::report::trace::Cut;
 use crate::step::tuning::Tuning;
 use crate::vectors::dot;
@@ -277,6 +278,7 @@ impl Lagrangian {
         if part == HessianPart::Full {
             count()?;
             self.assemble(problem, HessianPart::Full, load);
+            self.check_blocks(problem)?;
             if self.matrix.factorize().is_ok() {
                 return Ok(Definiteness::Definite);
             }
@@ -284,12 +286,50 @@ impl Lagrangian {
         self.project_rods(problem.model, load);
         count()?;
         self.assemble(problem, HessianPart::PositiveSemidefinite, load);
+        self.check_blocks(problem)?;
         if self.matrix.factorize().is_err() {
+            // A Hessian that is not a number is no reason to go on without one.
+            self.check_potentials(problem)?;
             count()?;
             self.assemble(problem, HessianPart::Certain, load);
             self.matrix.factorize().map_err(failed)?;
         }
         Ok(Definiteness::Modified)
+    }
+
+    /// Refuses blocks for which the matrix has no place.
+    ///
+    /// # Errors
+    /// [`StepError::Potential`], or [`StepError::Refused`] for a term.
+    fn check_blocks(&self, problem: &StepProblem<'_>) -> Result<(), StepError> {
+        if !self.matrix.has_misplaced() {
+            return Ok(());
+        }
+        self.check_potentials(problem)?;
+        let refused = Refused {
+            by: "the matrix of the step".into(),
+            why: "a term gives a block of its Hessian of a pair that it has not named, or of a vertex that there is not".into(),
+            remedy: Some("name all pairs in `Term::append_couplings`"),
+        };
+        Err(StepError::Refused {
+            t: problem.state().t,
+            refused: Box::new(refused),
+        })
+    }
+
+    /// Refuses potentials that cannot be used at the iterate.
+    ///
+    /// # Errors
+    /// [`StepError::Potential`].
+    fn check_potentials(&self, problem: &StepProblem<'_>) -> Result<(), StepError> {
+        let here = (problem.t(), &self.x[..]);
+        match find_fault(problem.model, problem.memories, here, Differences::Skip) {
+            None => Ok(()),
+            Some(bad) => Err(StepError::Potential {
+                t: problem.state().t,
+                bad: Box::new(bad),
+            }),
+        }
     }
 
     /// Replaces each rod's own Hessian, with eigenvalues `p` across and `p + r |d|^2` along the rod, by its

@@ -11,7 +11,7 @@ use crate::hessian::HessianPart;
 use crate::linear::constrained::MultiplierGoal;
 use crate::report::effort::SolverEffort;
 use crate::report::reason::Reason;
-use crate::report::step_error::StepOutcome;
+use crate::report::step_error::{StepError, StepOutcome};
 use crate::report::trace::{Continuation, Cut, TraceEvent};
 
 /// How a minimisation ended.
@@ -264,7 +264,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             lagrangian.set_gradient(self.problem);
             let hessian = lagrangian
                 .factorize(self.problem, RowLoad::Estimates, self.hessian, self.effort)
-                .map_err(|_| self.effort.failed(Reason::LinearAlgebra))?;
+                .map_err(|error| failed(self.effort, &mut self.work.refusal, error))?;
             match lagrangian.solve(self.problem.model, self.effort) {
                 Ok(_) => {
                     if hessian == Definiteness::Modified && self.phase.stays_semidefinite {
@@ -291,6 +291,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             options,
             tolerance,
             tuning,
+            refusal,
             ..
         } = &mut *self.work;
         loop {
@@ -302,7 +303,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                     self.hessian,
                     self.effort,
                 )
-                .map_err(|_| self.effort.failed(Reason::LinearAlgebra))?;
+                .map_err(|error| failed(self.effort, refusal, error))?;
             if hessian == Definiteness::Modified && self.phase.stays_semidefinite {
                 self.hessian = HessianPart::PositiveSemidefinite;
             }
@@ -684,4 +685,15 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         };
         self.effort.trace(|| event);
     }
+}
+
+/// The reason of a failed factorisation; a refusal is kept.
+fn failed(effort: &SolverEffort<'_>, refusal: &mut Option<StepError>, error: StepError) -> Reason {
+    if matches!(
+        error,
+        StepError::Potential { .. } | StepError::Refused { .. }
+    ) {
+        *refusal = Some(error);
+    }
+    effort.failed(Reason::LinearAlgebra)
 }

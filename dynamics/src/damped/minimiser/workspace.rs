@@ -5,6 +5,7 @@ use super::problem::StepProblem;
 use crate::damped::restoration::{Barriers, FirstMatrix, Restoration, RestorationGoal};
 use crate::model::round_off::strain_floor;
 use crate::report::effort::SolverEffort;
+use crate::report::step_error::StepError;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel};
@@ -18,6 +19,8 @@ pub(crate) struct Workspace {
     pub(super) tuning: Tuning,
     pub(super) lagrangian: Lagrangian,
     pub(super) restoration: Restoration,
+    /// What a term or a potential refused in the present step.
+    pub(super) refusal: Option<StepError>,
     /// Forces of the supports at the result.
     pub(crate) balance: Balance,
     /// Multipliers of the step before, scaled to this one; zero where there are none.
@@ -45,6 +48,7 @@ impl Workspace {
         Ok(Self {
             lagrangian: Lagrangian::new(model, tuning)?,
             restoration: Restoration::new(model, tuning),
+            refusal: None,
             balance: Balance::with_residual(model, ForceTime::End),
             remembered: vec![0.0; model.rods().len()],
             rod_stiffness: 0.0,

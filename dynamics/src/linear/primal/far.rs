@@ -69,6 +69,10 @@ enum Rows {
     Second,
 }
 
+/// No potential has named a pair that one gives a block of.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NotNamed;
+
 impl FarCouplings {
     /// Of the potentials of a model.
     pub(super) fn of(model: &SheetModel) -> Self {
@@ -137,17 +141,17 @@ impl FarCouplings {
 
     /// Adds `scale` times a block, rows at the first of the two vertices.
     ///
-    /// # Panics
-    /// If no potential has named the pair.
+    /// # Errors
+    /// [`NotNamed`] if no potential has named the pair.
     pub(super) fn add(
         &mut self,
         model: &SheetModel,
         vertices: [VertexId; 2],
         block: &Matrix3<f64>,
         scale: f64,
-    ) {
-        let Some(OrientedPair { pair, rows }) = self.find(model, vertices) else {
-            return;
+    ) -> Result<(), NotNamed> {
+        let Some(OrientedPair { pair, rows }) = self.find(model, vertices)? else {
+            return Ok(());
         };
         let pair = pair as usize;
         let [i, j] = self.pairs[pair].map(|i| i as usize);
@@ -157,7 +161,7 @@ impl FarCouplings {
             self.substitute_multiples[i] += value.abs();
             self.substitute_multiples[j] += value.abs();
             self.has_multiples = true;
-            return;
+            return Ok(());
         }
         if self.blocks.is_empty() {
             self.blocks = vec![Matrix3::zeros(); self.pairs.len()];
@@ -172,20 +176,26 @@ impl FarCouplings {
         self.substitutes[i] += first;
         self.substitutes[j] += second;
         self.has_blocks = true;
+        Ok(())
     }
 
-    /// The place of a block. Potentials give blocks in the order in which they name pairs, as a rule.
-    fn find(&mut self, model: &SheetModel, vertices: [VertexId; 2]) -> Option<OrientedPair> {
+    /// The place of a block; none for a pinned vertex. Potentials give blocks in the order in which they name pairs, as a rule.
+    fn find(
+        &mut self,
+        model: &SheetModel,
+        vertices: [VertexId; 2],
+    ) -> Result<Option<OrientedPair>, NotNamed> {
         let expected = self.named.get(self.next);
         if let Some(named) = expected.filter(|named| named.vertices == vertices) {
             self.next += 1;
-            return named.place;
+            return Ok(named.place);
         }
-        pair_of(model, vertices)?;
-        let place = place_of(model, &self.pairs, vertices);
-        let place = place.expect("a potential names the pairs that it couples");
+        if pair_of(model, vertices).is_none() {
+            return Ok(None);
+        }
+        let place = place_of(model, &self.pairs, vertices).ok_or(NotNamed)?;
         self.next = self.first_named[place.pair as usize] as usize + 1;
-        Some(place)
+        Ok(Some(place))
     }
 
     /// Hands the substitute of each free vertex to `add`.

@@ -1,8 +1,7 @@
-//! Why contact cannot start.
+//! Why contact cannot start or go on.
 
-use super::{BarrierError, FrictionError};
 use isosheet_mesh::Advice;
-use isosheet_mesh::wording::brief;
+use isosheet_mesh::wording::{brief, given};
 use std::fmt;
 
 /// Two things that touch, by name.
@@ -104,6 +103,75 @@ impl Advice for ContactError {
             Self::Barrier(error) => error.advice(),
             Self::Friction(error) => error.advice(),
             Self::Method => Some("use BDF2 or implicit Euler"),
+        }
+    }
+}
+
+/// A barrier that makes no sense.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BarrierError {
+    /// The activation distance is not a positive length.
+    #[error("the activation distance is {0} m")]
+    Activation(f64),
+    /// Powers of the activation distance are too small (or too large) for floating-point numbers.
+    #[error("the fourth power of the activation distance {0} m cannot be represented")]
+    Range(f64),
+    /// The stiffness is not a positive energy.
+    #[error("the stiffness of the barrier is {0} J")]
+    Stiffness(f64),
+}
+
+impl Advice for BarrierError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Activation(..) => Some("give a positive length, for instance 1e-3 of the sheet"),
+            Self::Range(..) => Some("give a larger one"),
+            Self::Stiffness(..) => Some("give a positive energy, or `Stiffness::Automatic`"),
+        }
+    }
+}
+
+/// Coefficients that make no sense.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FrictionError {
+    /// A coefficient is negative or not a number.
+    #[error(
+        "the friction coefficients {rest} (static) and {sliding} (kinetic) are not both numbers of \
+         at least 0",
+        rest = given(*rest), sliding = given(*sliding)
+    )]
+    Coefficient {
+        /// Static coefficient.
+        rest: f64,
+        /// Kinetic coefficient.
+        sliding: f64,
+    },
+    /// The kinetic coefficient exceeds the static one.
+    #[error(
+        "the kinetic coefficient {sliding} is above the static coefficient {rest}",
+        sliding = given(*sliding), rest = given(*rest)
+    )]
+    Order {
+        /// Static coefficient.
+        rest: f64,
+        /// Kinetic coefficient.
+        sliding: f64,
+    },
+    /// The smoothing distance is not positive.
+    #[error("the smoothing distance is {0} m")]
+    Smoothing(f64),
+}
+
+impl Advice for FrictionError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Coefficient { .. } => Some("give numbers of at least 0"),
+            Self::Order { .. } => Some("swap them"),
+            Self::Smoothing(..) => {
+                Some("give a positive length, the speed that counts as rest times the step")
+            }
         }
     }
 }

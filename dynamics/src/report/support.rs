@@ -1,6 +1,5 @@
 //! Supports of the sheet, by name.
 
-use crate::motion::PointMotion;
 use isosheet_mesh::VertexId;
 use serde::Serialize;
 use std::fmt;
@@ -40,11 +39,4 @@ impl fmt::Display for Support {
             Self::Constraint { index, vertex } => write!(f, "constraint {index} at {vertex}"),
         }
     }
-}
-
-/// A pinned vertex in prescribed motion.
-#[derive(Debug)]
-pub(super) struct MovingPin {
-    pub(super) vertex: usize,
-    pub(super) motion: PointMotion,
 }

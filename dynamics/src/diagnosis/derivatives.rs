@@ -1,0 +1,154 @@
+//! Derivatives against differences.
+
+use crate::hessian::HessianProduct;
+use crate::potential::{At, Potential};
+use isosheet_mesh::Topology;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Displacements of central differences, as parts of the size of the positions. The error of a difference of smooth
+/// energies falls by the square of the displacement until round-off takes over; the best of these is that of neither.
+const DISPLACEMENTS: [f64; 6] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
+
+/// By how much derivatives differ from central differences, as parts of their size: zero where the differences do not
+/// resolve it, since the energy is large against its change or near a limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DerivativeErrors {
+    /// Of the gradient against the energy.
+    pub gradient: f64,
+    /// Of the Hessian against the gradient. A Hessian may leave blocks out, which costs iterations and no accuracy: then
+    /// it differs.
+    pub hessian: f64,
+}
+
+/// Compares gradient and Hessian of a potential of a sheet of this topology with central differences at a place, along its
+/// gradient and along two directions that are random with a fixed seed.
+///
+/// ```
+/// use isosheet_dynamics::{At, CreaseSprings, check_derivatives};
+/// use isosheet_mesh::generate;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let sheet = generate::isotropic_square(1, 0.2)?;
+/// let bending = CreaseSprings::bending(&sheet, 5e-4)?;
+/// // A shape that is bent: in a flat one the gradient is zero.
+/// let bent = sheet.map_positions(|[x, y, _]| [x, y, x * x + 0.3 * x * y])?;
+/// let errors = check_derivatives(&bending, sheet.topology(), At::new(0.0, bent.positions()));
+/// assert!(errors.gradient < 1e-6 && errors.hessian < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Panics
+/// If the positions are not `3V`.
+pub fn check_derivatives(
+    potential: &dyn Potential,
+    topology: &Topology,
+    at: At<'_>,
+) -> DerivativeErrors {
+    let edges: Vec<[usize; 2]> = topology
+        .edges()
+        .iter()
+        .map(|ends| ends.map(|v| v.index()))
+        .collect();
+    let at_x = |x: &[f64], f: &mut dyn FnMut(At<'_>)| f(At { x, ..at });
+    let mut energy = |x: &[f64]| {
+        let mut value = 0.0;
+        at_x(x, &mut |at| value = potential.energy(at));
+        value
+    };
+    let mut gradient = |x: &[f64]| {
+        let mut sum = vec![0.0; x.len()];
+        at_x(x, &mut |at| potential.add_gradient(at, &mut sum));
+        sum
+    };
+    let mut product = |d: &[f64]| {
+        let mut sum = vec![0.0; d.len()];
+        let mut sink = HessianProduct {
+            edges: &edges,
+            scale: 1.0,
+            vector: d,
+            product: &mut sum,
+        };
+        potential.add_hessian(at, &mut sink);
+        sum
+    };
+    errors(at.x, &mut energy, &mut gradient, &mut product)
+}
+
+/// The errors of a gradient and a Hessian, which is given by its products.
+pub(super) fn errors(
+    x: &[f64],
+    energy: &mut dyn FnMut(&[f64]) -> f64,
+    gradient: &mut dyn FnMut(&[f64]) -> Vec<f64>,
+    product: &mut dyn FnMut(&[f64]) -> Vec<f64>,
+) -> DerivativeErrors {
+    let size = x
+        .iter()
+        .fold(0.0_f64, |m, x| m.max(x.abs()))
+        .max(f64::MIN_POSITIVE);
+    let own = gradient(x);
+    let largest = norm(&own);
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut directions: Vec<Vec<f64>> = (0..2)
+        .map(|_| x.iter().map(|_| random.random_range(-1.0..1.0)).collect())
+        .collect();
+    if largest > 0.0 {
+        directions.push(own.iter().map(|g| g / largest).collect());
+    }
+    let mut errors = DerivativeErrors {
+        gradient: 0.0,
+        hessian: 0.0,
+    };
+    for direction in &directions {
+        let along = norm(direction);
+        let slope = dot(&own, direction);
+        let second = product(direction);
+        let mut slopes = Vec::new();
+        let mut best_second = f64::INFINITY;
+        for part in DISPLACEMENTS {
+            let h = part * size / along;
+            let moved = |sign: f64| -> Vec<f64> {
+                let pairs = x.iter().zip(direction);
+                pairs.map(|(x, d)| x + sign * h * d).collect()
+            };
+            let [ahead, behind] = [moved(1.0), moved(-1.0)];
+            slopes.push((energy(&ahead) - energy(&behind)) / (2.0 * h));
+            let [ahead, behind] = [gradient(&ahead), gradient(&behind)];
+            let pairs = ahead.iter().zip(&behind);
+            let change: Vec<f64> = pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect();
+            let off: Vec<f64> = change.iter().zip(&second).map(|(a, b)| a - b).collect();
+            best_second = best_second.min(norm(&off) / norm(&change).max(norm(&second)));
+        }
+        if let Some((found, uncertainty)) = settled(&slopes)
+            && largest > 0.0
+        {
+            let off = (found - slope).abs();
+            // What the differences do not resolve says nothing.
+            if off > 10.0 * uncertainty {
+                errors.gradient = errors.gradient.max(off / (largest * along));
+            }
+        }
+        if best_second.is_finite() {
+            errors.hessian = errors.hessian.max(best_second);
+        }
+    }
+    errors
+}
+
+/// The value of a sequence where it changes least, and by how much it changes there.
+fn settled(values: &[f64]) -> Option<(f64, f64)> {
+    let changes = values
+        .windows(2)
+        .map(|pair| (pair[1], (pair[1] - pair[0]).abs()));
+    let finite = changes.filter(|(value, change)| value.is_finite() && change.is_finite());
+    finite.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn norm(v: &[f64]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
