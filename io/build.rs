@@ -10,9 +10,6 @@ use std::process::Command;
 pub(crate) fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rustc-check-cfg=cfg(isosheet_log_of_head)");
-    if std::env::var_os("CARGO_FEATURE_CLI").is_none() {
-        return;
-    }
     let git = |arguments: &[&str]| {
         let output = Command::new("git").args(arguments).output().ok()?;
         let text = String::from_utf8(output.stdout).ok()?;

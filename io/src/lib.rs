@@ -1,58 +1,186 @@
-//! Files, scenes and runs of isosheet: the crate on top of all others.
+//! The command `isosheet`: simulates scenes, checks and repairs what they are made of.
 //!
-//! Without features the crate has the formats of files and needs the mesh alone. The feature `scene` adds
-//! scene files, `run` runs that survive being killed, and `cli` the command `isosheet`; each implies the ones
-//! before it. With them the crate re-exports all others, so that a program needs to name this one alone. The
-//! feature `picture`, which implies `scene`, draws shaded pictures, and `labels` puts many with labels into one.
-//!
-//! # Formats
-//!
-//! | file | read | written |
-//! |---|---|---|
-//! | meshes: OBJ, OFF, STL, PLY, FOLD, glTF, VTK | [`read_mesh`], [`read_sheet`] | [`write_mesh`], [`write_obj`] |
-//! | series: FOLD, glTF, USD, PC2, VTK, OBJ, CSV | | [`write_series`] |
-//! | history CSV, see [`HistoryRow`] | [`read_history`] | [`HistoryWriter`], row by row |
-//! | trajectory npz, see [`Trajectory`] | [`Trajectory::read`] | [`Trajectory::write`] |
-//! | summary JSON | [`read_json`] | [`write_json`] |
-//! | 3D page of a run (feature `view`) | | `view::Replay` |
-//! | shaded PNG pictures (feature `picture`) | | `picture::render`, `run::Film` |
-//!
-//! Two rules hold for everything that is written: no number that is not finite gets into a file (a typed
-//! error says which one it was), and a file appears under its name only when it is complete
-//! ([`write_atomically`]). The one exception is the history, which grows by whole rows, so that what an
-//! interrupted run leaves behind can be read.
+//! The program `isosheet` and the Python module of the same name are thin shells around [`run`].
 
-mod format;
+mod acting;
+mod action_scene;
+mod action_verdict;
+#[cfg(test)]
+mod book_tests;
+mod check;
+mod collect;
+mod composing;
+mod convert;
+mod crumple;
+mod drape;
+mod exit;
+mod face_moments;
+mod failure;
+mod fold;
+mod fold_options;
+mod frames;
+mod gallery;
+mod given;
+mod hang;
+mod info;
+mod interrupt;
+mod live;
+mod mesh;
+mod message;
+mod one_frame;
+mod open;
+mod page;
+mod panels;
+mod pictures;
+mod printable;
+mod progress;
+mod reading;
+mod simulate;
+mod start;
+mod sweep;
+mod trace;
+mod workers;
+mod write;
 
-pub use format::*;
-pub use isosheet_mesh as mesh;
-pub use isosheet_mesh::Advice;
+use clap::{CommandFactory, Parser, Subcommand};
+use exit::EXIT_CODES;
+use message::Verbosity;
+use std::ffi::OsString;
+use std::path::Path;
 
-#[cfg(feature = "scene")]
-mod turning_back;
+const EXAMPLES: &str = "\
+Examples:
+  isosheet new cloth --kind drape              write a scene to start from: cloth.toml
+  isosheet fold crane.svg --open               fold a crease pattern, and look at it
+  isosheet drape cloth.obj --on vase.obj       let a sheet fall on a body; also `hang` and `crumple`
+  isosheet simulate cloth.toml --open          run it in the folder cloth-run, and open its 3D page
+  isosheet info cloth-run                      say what came of it
+  isosheet convert cloth-run cloth.usda        write it for Blender; .pvd for ParaView, .apng as a film ...
+  isosheet sweep cloth.toml --over sheet.density=0.1,0.2
+                                               run the scene with both values
+  isosheet mesh box.svg -o box.fold --spacing 5mm
+                                               make a mesh of a drawing, with its creases and cuts
+  isosheet check cloth.toml                    say what is wrong with a scene or a mesh file";
 
-#[cfg(feature = "scene")]
-pub mod scene;
+/// Simulates sheets that bend and crease and do not stretch.
+#[derive(Debug, Parser)]
+#[command(name = "isosheet", version, before_help = EXAMPLES, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(flatten)]
+    verbosity: Verbosity,
+    #[command(subcommand)]
+    command: Command,
+}
 
-#[cfg(feature = "scene")]
-pub use {
-    isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics,
-    isosheet_geometry as geometry,
-};
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene; continue it if a part of it is done, do nothing if it is complete
+    Simulate(simulate::Simulate),
+    /// Fold a crease pattern (FOLD, SVG, CP, OPX) without a scene file
+    Fold(fold::Fold),
+    /// Let the sheet of a mesh or a drawing fall on a table or a body, without a scene file
+    Drape(drape::Drape),
+    /// Hang the sheet of a mesh or a drawing by its corners, without a scene file
+    Hang(hang::Hang),
+    /// Crumple the sheet of a mesh or a drawing, without a scene file
+    Crumple(crumple::Crumple),
+    /// Play a scene in the browser while it is computed, and pull at its sheet
+    Live(live::Live),
+    /// Continue the run in a folder, with the scene that is stored there
+    Resume(simulate::Resume),
+    /// Run a scene with all combinations of some values, on all cores or by GNU parallel, Slurm or Snakemake
+    Sweep(sweep::SweepArgs),
+    /// Make one table of the summaries of runs and sweeps
+    Collect(collect::Collect),
+    /// Make the 3D page of a run, complete or not
+    Page(page::Page),
+    /// Make one page of many runs: pictures, key numbers and links to the pages that play them
+    Gallery(gallery::GalleryArgs),
+    /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
+    Check(check::Check),
+    /// Say what came of a run, or what the sheet of a scene or a mesh file is like
+    Info(info::Info),
+    /// Convert a mesh file to another format, or a run to files of other programs
+    Convert(convert::Convert),
+    /// Make a triangle mesh of a drawing, with its creases, cuts and holes
+    Mesh(mesh::MeshArgs),
+    /// Write a commented scene to start from
+    New(start::New),
+    /// Print the completion script of a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}
 
-#[cfg(feature = "cli")]
-pub mod command;
+/// Does what a command line says, whose first word names the command, and returns the exit code. A sweep
+/// starts `program`, which has to be this command too, for each of its runs.
+///
+/// Results go to standard output, everything else to standard error. Of what a process has only once, a call
+/// takes over Ctrl-C and keeps how much is said: one command line is meant for one process.
+///
+/// ```
+/// let words = ["isosheet", "info", "no-such-run"].map(Into::into);
+/// assert_eq!(isosheet_io::run(words, "isosheet".as_ref()), 3); // a file cannot be read
+/// ```
+pub fn run(words: impl IntoIterator<Item = OsString>, program: &Path) -> u8 {
+    let cli = match Cli::try_parse_from(words) {
+        Ok(cli) => cli,
+        Err(answer) => {
+            // Nobody is left to be told that stdout is closed.
+            let _ = answer.print();
+            return answer.exit_code() as u8;
+        }
+    };
+    cli.verbosity.choose();
+    let done = match cli.command {
+        Command::Simulate(simulate) => simulate.run(),
+        Command::Fold(fold) => fold.run(),
+        Command::Drape(drape) => drape.run(),
+        Command::Hang(hang) => hang.run(),
+        Command::Crumple(crumple) => crumple.run(),
+        Command::Live(live) => live.run(),
+        Command::Resume(resume) => resume.run(),
+        Command::Sweep(sweep) => sweep.run(program),
+        Command::Collect(collect) => collect.run(),
+        Command::Page(page) => page.run(),
+        Command::Gallery(gallery) => gallery.run(),
+        Command::Check(check) => check.run(),
+        Command::Info(info) => info.run(),
+        Command::Convert(convert) => convert.run(),
+        Command::Mesh(mesh) => mesh.run(),
+        Command::New(new) => new.run(),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "isosheet", &mut script);
+            write::to_stdout(&String::from_utf8_lossy(&script))
+        }
+    };
+    done.map_or_else(|failure| exit::report(&failure), |()| 0)
+}
 
-#[cfg(feature = "picture")]
-pub mod picture;
+#[cfg(test)]
+mod tests {
+    use super::Cli;
+    use clap::CommandFactory;
 
-#[cfg(feature = "run")]
-pub mod run;
-
-#[cfg(feature = "view")]
-pub mod view;
-
-/// The code of the README is compiled and run as a test.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
+    /// `-o, --out` is the one way to say where to write. `convert` has the file as its second word besides, as all
+    /// converters have it.
+    #[test]
+    fn outputs_are_given_by_one_option() {
+        for command in Cli::command().get_subcommands() {
+            let name = command.get_name();
+            for argument in command.get_arguments() {
+                let is_out = argument.get_long() == Some("out");
+                assert_eq!(
+                    argument.get_short() == Some('o'),
+                    is_out,
+                    "{name}: {argument}"
+                );
+            }
+            let words = command.get_positionals().filter(|word| !word.is_hide_set());
+            let most = if name == "convert" { 2 } else { 1 };
+            assert!(words.count() <= most, "{name}");
+        }
+    }
+}

@@ -2,9 +2,8 @@
 
 use crate::scenes::{bumped, corner, gap, hanging, pinned};
 use isosheet_charts::{ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind};
-use isosheet_coords::{
-    AssignmentOptions, CartesianChart, Chart, Choice, FrontChart, RodSystem, assignment::Degenerate,
-};
+use isosheet_coords::assignment::Degenerate;
+use isosheet_coords::{AssignmentOptions, CartesianChart, Chart, Choice, FrontChart, RodSystem};
 use isosheet_dynamics::{Air, At, Method, Potential, Simulation, State, StepControl, StepOutcome};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -5,9 +5,9 @@ use isosheet_charts::{
     ChartDynamicsError, ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, Equations,
     PositionUpdate,
 };
+use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::{
     AssignmentOptions, CartesianChart, Chart, ChartError, Choice, FrontChart, RodSystem,
-    assignment::Degenerate,
 };
 use isosheet_dynamics::constraint::{Circle, Plane, Side, Sphere};
 use isosheet_dynamics::{

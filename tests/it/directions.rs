@@ -3,8 +3,8 @@
 use isosheet_dynamics::{
     Material, MaterialDirection, OrthotropicPlate, PlateLaw, SheetModel, Simulation, State,
 };
-use isosheet_io::scene::SceneFile;
 use isosheet_mesh::{VertexId, generate};
+use isosheet_scenes::SceneFile;
 use isosheet_tests::{Elastica, implicit_euler};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;

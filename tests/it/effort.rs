@@ -8,8 +8,8 @@ use isosheet_dynamics::{
     CreaseSpring, CreaseSprings, ElasticSheet, Interpolation, Method, PlateBending, Profile,
     SheetModel, Simulation, State, leave_flat,
 };
-use isosheet_mesh::generate::{self, FoldAssignment};
-use isosheet_mesh::{MassKind, Sheet, VertexId};
+use isosheet_mesh::generate::FoldAssignment;
+use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::Isometry3;
 
 /// Starts over which is averaged.

@@ -1,7 +1,7 @@
 //! A scene of five lines with a material: a clamped strip on an irregular mesh is the heavy elastica.
 
 use isosheet_dynamics::Material;
-use isosheet_io::scene::SceneFile;
+use isosheet_scenes::SceneFile;
 use isosheet_tests::Elastica;
 use std::path::Path;
 

@@ -43,7 +43,7 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 10] = [
+const LIBRARIES: [&str; 18] = [
     "mesh",
     "coords/linalg",
     "coords",
@@ -52,6 +52,14 @@ const LIBRARIES: [&str; 10] = [
     "dynamics/charts",
     "collide/geometry",
     "collide",
+    "io/files",
+    "io/drawings",
+    "io/formats",
+    "io/scenes",
+    "io/pictures",
+    "io/page",
+    "io/runs",
+    "io/films",
     "io",
     "io/python",
 ];

@@ -4,8 +4,8 @@ use isosheet_dynamics::{
     At, Checkpoint, CheckpointError, CreaseSprings, ElasticSheet, HessianSink, Method,
     PlateBending, Potential, SheetModel, Simulation, SimulationError, State, StepControl, Yield,
 };
-use isosheet_mesh::generate::{self, Diagonals};
-use isosheet_mesh::{MassKind, Sheet, VertexId};
+use isosheet_mesh::generate::Diagonals;
+use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::{Matrix3, Vector3};
 
 const LENGTH: f64 = 0.1;

@@ -5,10 +5,12 @@ use crate::threads::ThreadsError;
 use anyhow::Error;
 use isosheet_coords::ChartError;
 use isosheet_dynamics::{ModelError, SimulationError, StepError};
-use isosheet_io::picture::PictureError;
-use isosheet_io::run::RunError;
-use isosheet_io::scene::{SceneError, SceneFileError};
-use isosheet_io::{Advice, DataError, ExportError, FileError};
+use isosheet_files::{DataError, FileError};
+use isosheet_formats::ExportError;
+use isosheet_mesh::Advice;
+use isosheet_pictures::PictureError;
+use isosheet_runs::RunError;
+use isosheet_scenes::{SceneError, SceneFileError};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -147,7 +149,7 @@ mod tests {
     #[test]
     fn causes_are_told_once_with_advice_and_code() {
         let full = || std::io::Error::other("disk full");
-        let error = Error::from(FileError::from(isosheet_io::WriteError::Write {
+        let error = Error::from(FileError::from(isosheet_files::WriteError::Write {
             path: "a".into(),
             source: full(),
         }));

@@ -9,8 +9,9 @@ use crate::runs::{FigureScene, recorded};
 use crate::store::Store;
 use anyhow::{Context, Result};
 use clap::Args;
-use isosheet_io::picture::{Labelled, montage};
-use isosheet_io::run::{Film, FilmOptions, Recording, Viewpoint};
+use isosheet_films::{Film, FilmOptions, Viewpoint};
+use isosheet_pictures::{Labelled, montage};
+use isosheet_runs::Recording;
 use serde::Deserialize;
 use std::fs;
 

@@ -2,9 +2,10 @@
 
 use anyhow::{Context, Result};
 use isosheet_dynamics::{Simulation, StepReport};
-use isosheet_io::Advice;
-use isosheet_io::run::{self, Outcome, RunError, StepPart, Summary, Tick, Watch};
-use isosheet_io::scene::SceneFile;
+use isosheet_mesh::Advice;
+use isosheet_runs as run;
+use isosheet_runs::{Outcome, RunError, StepPart, Summary, Tick, Watch};
+use isosheet_scenes::SceneFile;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};

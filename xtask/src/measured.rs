@@ -10,7 +10,7 @@ use crate::report::excerpt::{self, Measurement, comment};
 use crate::sources::{REPORTS, fingerprint, root};
 use anyhow::{Context, Result};
 use clap::Args;
-use isosheet_io::write_atomically;
+use isosheet_files::write_atomically;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -5,9 +5,9 @@ mod materials;
 
 use anyhow::Result;
 use clap::Args;
-use isosheet_io::scene::{StartingPoint, UnitRange, as_written, documented_schema, schema};
-use isosheet_io::{write_atomically, write_json};
+use isosheet_files::{write_atomically, write_json};
 use isosheet_mesh::wording::given;
+use isosheet_scenes::{StartingPoint, UnitRange, as_written, documented_schema, schema};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 use std::io::Write;

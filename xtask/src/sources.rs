@@ -25,7 +25,7 @@ const SOLVER: &[&str] = &[
     "dynamics/charts/src",
     "collide/geometry/src",
     "collide/src",
-    "io/src/scene",
+    "io/scenes/src",
     "tests/models",
 ];
 

@@ -1,6 +1,6 @@
 //! Pools of a given number of threads.
 
-use isosheet_io::Advice;
+use isosheet_mesh::Advice;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 /// The operating system refused to start threads.

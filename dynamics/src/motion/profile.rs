@@ -9,7 +9,7 @@ pub(crate) mod tests;
 
 /// A scalar function of time (seconds). Its unit is that of what it drives: metres for a displacement,
 /// radians for an angle, newtons for a load. (Files have profiles as scenes have them, in
-/// `isosheet_io::scene`.)
+/// `isosheet_scenes`.)
 ///
 /// The derivatives are exact. Where one of them jumps, which is at the ends of a ramp and at keyframes, it is
 /// the value to the right: that of the motion that begins there.

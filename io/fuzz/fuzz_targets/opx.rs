@@ -1,6 +1,6 @@
 #![no_main]
 
-#[path = "../../tests/fuzzing/targets.rs"]
+#[path = "../../scenes/tests/fuzzing/targets.rs"]
 mod targets;
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| targets::target("opx")(data));

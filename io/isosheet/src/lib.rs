@@ -25,6 +25,8 @@
 //! All numbers are in SI units. Functions that take vectors of `nalgebra` exist beside those that take arrays;
 //! its version is re-exported as [`nalgebra`].
 
+pub mod io;
+
 pub use isosheet_attached_flow as attached_flow;
 pub use isosheet_charts as charts;
 pub use isosheet_collide as collide;
@@ -32,7 +34,6 @@ pub use isosheet_coords as coords;
 pub use isosheet_dynamics as dynamics;
 pub use isosheet_dynamics::nalgebra;
 pub use isosheet_geometry as geometry;
-pub use isosheet_io as io;
 pub use isosheet_linalg as linalg;
 pub use isosheet_mesh as mesh;
 
@@ -44,6 +45,6 @@ pub mod prelude {
         PointProfile, Profile, RigidDisplacement, SheetModel, Simulation, State, StepError,
         StepReport, Support, VertexLoad,
     };
-    pub use isosheet_io::{read_sheet, write_mesh, write_series};
+    pub use isosheet_formats::{read_sheet, write_mesh, write_series};
     pub use isosheet_mesh::{Advice, EdgeId, FaceId, MassKind, Sheet, VertexId, generate};
 }

@@ -1,6 +1,6 @@
 //! Numpy arrays of what Rust has as slices, and slices of them.
 
-use isosheet_io::mesh::Part;
+use isosheet_mesh::Part;
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;

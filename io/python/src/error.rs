@@ -1,9 +1,10 @@
 //! Exceptions: each has advice, and key and time where the error has them.
 
-use isosheet_io::Advice;
-use isosheet_io::dynamics::StepError;
-use isosheet_io::run::RunError;
-use isosheet_io::scene::{self, FailedStep, SceneFileError};
+use isosheet_dynamics::StepError;
+use isosheet_mesh::Advice;
+use isosheet_runs::RunError;
+use isosheet_scenes as scene;
+use isosheet_scenes::{FailedStep, SceneFileError};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt};
 use pyo3::prelude::*;

@@ -1,4 +1,4 @@
-//! The Python module `isosheet`: a thin layer over the public interface of `isosheet-io`.
+//! The Python module `isosheet`: a thin layer over scenes, simulations and runs.
 //!
 //! | file | what |
 //! |---|---|
@@ -43,7 +43,7 @@ fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
         .first()
         .map_or_else(|| "isosheet".into(), PathBuf::from);
     py.detach(|| {
-        let code = isosheet_io::command::run(words, &program);
+        let code = isosheet_io::run(words, &program);
         // Python does not end the process as a program of Rust does. Nobody is left to be told that stdout is
         // closed.
         let _ = std::io::stdout().flush();
@@ -54,7 +54,7 @@ fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
 #[pymodule]
 fn _isosheet(module: &Bound<'_, PyModule>) -> PyResult<()> {
     if let Some(commit) = commit::commit() {
-        isosheet_io::run::note_commit(commit);
+        isosheet_runs::note_commit(commit);
     }
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<mesh::Mesh>()?;

@@ -1,6 +1,6 @@
 //! The catalogue of materials.
 
-use isosheet_io::dynamics::Material;
+use isosheet_dynamics::Material;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

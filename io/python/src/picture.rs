@@ -1,9 +1,10 @@
 //! Pictures and films of runs, and pages in notebooks.
 
 use crate::error::plain;
-use isosheet_io::picture::PictureError;
-use isosheet_io::run::{Film, FilmError, FilmOptions, Recording, Viewpoint};
-use isosheet_io::write_atomically;
+use isosheet_files::write_atomically;
+use isosheet_films::{Film, FilmError, FilmOptions, Viewpoint};
+use isosheet_pictures::PictureError;
+use isosheet_runs::Recording;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::io::Write;

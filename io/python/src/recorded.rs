@@ -1,6 +1,6 @@
 //! A run with what it recorded; its methods are in `run.rs`.
 
-use isosheet_io::run::Recording;
+use isosheet_runs::Recording;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 

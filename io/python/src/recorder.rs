@@ -1,7 +1,7 @@
 //! Recordings of simulations.
 
 use crate::recorded::Run;
-use isosheet_io::run::{Recording, RecordingEnd};
+use isosheet_runs::{Recording, RecordingEnd};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::PathBuf;

@@ -1,7 +1,8 @@
 //! What a step reports.
 
 use crate::value::{Remade, remade};
-use isosheet_io::dynamics::{self, StepOutcome};
+use isosheet_dynamics as dynamics;
+use isosheet_dynamics::StepOutcome;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

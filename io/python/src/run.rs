@@ -6,9 +6,10 @@ use crate::picture::{Kind, Shown, framed, options};
 use crate::recorded::Run;
 use crate::scene::Scene;
 use crate::value::to_python;
-use isosheet_io::run::{self, Recording};
-use isosheet_io::view::{PageOptions, TimeSeries};
-use isosheet_io::{HistoryRow, LoadKind, LoadRow, SeriesOptions, write_frame, write_series};
+use isosheet_formats::{HistoryRow, LoadKind, LoadRow, SeriesOptions, write_frame, write_series};
+use isosheet_page::PageOptions;
+use isosheet_runs as run;
+use isosheet_runs::Recording;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -333,7 +334,7 @@ impl Run {
     #[getter]
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
-        for series in TimeSeries::of_measures(&self.recording.measures, &self.recording.gauges) {
+        for series in run::measure_series(&self.recording.measures, &self.recording.gauges) {
             columns.set_item(series.name, array(py, &series.values))?;
         }
         Ok(columns)

@@ -4,8 +4,9 @@ use crate::error::{of_file, of_run};
 use crate::mesh::Mesh;
 use crate::recorded::Run;
 use crate::value::{Remade, edits_as_texts, remade, table, to_python};
-use isosheet_io::run::{self, StepPart, Tick, Watch};
-use isosheet_io::scene::{Key, SceneFile, SceneFileError, StartingPoint};
+use isosheet_runs as run;
+use isosheet_runs::{StepPart, Tick, Watch};
+use isosheet_scenes::{Key, SceneFile, SceneFileError, StartingPoint};
 use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -60,7 +61,7 @@ impl Scene {
     /// The scene of a dictionary.
     fn of_keys(py: Python<'_>, scene: &Bound<'_, PyDict>, folder: &Path) -> PyResult<Self> {
         let mut scene = table(scene, Mesh::value_of)?;
-        let version = Value::Integer(isosheet_io::scene::VERSION.into());
+        let version = Value::Integer(isosheet_scenes::VERSION.into());
         scene.entry("version").or_insert(version);
         let file = parse(scene.to_string(), folder);
         file.map(Self::of).map_err(|e| of_file(py, &e))

@@ -8,14 +8,16 @@ use crate::recorder;
 use crate::report::StepReport;
 use crate::scene::{Scene, Signals};
 use crate::value::{Remade, edits as edits_of, remade, table};
-use isosheet_io::dynamics::{self, Checkpoint, StepProgress};
-use isosheet_io::mesh::VertexId;
-use isosheet_io::run::{
-    ExistingRun, RecordedStepError, Recorder, RecorderOptions, Recording, RecordingEnd,
+use isosheet_dynamics as dynamics;
+use isosheet_dynamics::{Checkpoint, StepProgress};
+use isosheet_files::DataError;
+use isosheet_formats::Trajectory;
+use isosheet_mesh::VertexId;
+use isosheet_page::{PageOptions, Replay};
+use isosheet_runs::{
+    ExistingRun, RecordedStepError, Recorder, RecorderOptions, Recording, RecordingEnd, replay_of,
 };
-use isosheet_io::scene::{FramePose, Key, KeyError, LiveScene, Problem, Target};
-use isosheet_io::view::{PageOptions, Replay};
-use isosheet_io::{DataError, Trajectory};
+use isosheet_scenes::{FramePose, Key, KeyError, LiveScene, Problem, Target};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -99,7 +101,7 @@ impl Simulation {
                 pins: live.pins().iter().map(|v| v.0).collect(),
                 summary: vec![("modelled".into(), live.modelled().join(", "))],
                 scene: live.file().text().text.clone(),
-                ..Replay::of_motion(live.sheet(), live.obstacles(), &trajectory, &[])?
+                ..replay_of(live.sheet(), live.obstacles(), &trajectory, &[])?
             })
         });
         replay.map_err(|e| plain(py, &e))

@@ -2,7 +2,7 @@
 
 use crate::arrays::refuse_array;
 use crate::error::of_file;
-use isosheet_io::scene::{Edit, EditError, SceneFileError};
+use isosheet_scenes::{Edit, EditError, SceneFileError};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;

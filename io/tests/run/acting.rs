@@ -1,8 +1,8 @@
 //! `isosheet drape`, `hang` and `crumple`.
 
 use crate::{code, run, stderr};
-use isosheet_io::read_mesh;
-use isosheet_io::run::Recording;
+use isosheet_formats::read_mesh;
+use isosheet_runs::Recording;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;

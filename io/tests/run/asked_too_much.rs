@@ -1,8 +1,8 @@
 //! What a scene asks for and its sheet cannot do is told: where, by what, how much.
 
 use crate::{code, run, stderr, stdout, summary};
-use isosheet_io::run::EndReason;
-use isosheet_io::{Trajectory, read_history};
+use isosheet_formats::{Trajectory, read_history};
+use isosheet_runs::EndReason;
 use nalgebra::Vector3;
 use serde_json::Value;
 use std::f64::consts::TAU;

@@ -1,8 +1,8 @@
 //! Rigid bodies that respond in what a run leaves.
 
 use crate::{assert_same, code, killed, run, stderr, stdout};
-use isosheet_io::run::Recording;
-use isosheet_io::{LoadKind, read_mesh};
+use isosheet_formats::{LoadKind, read_mesh};
+use isosheet_runs::Recording;
 use std::fs;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The command line by the usual conventions: what is misuse, what goes where, what is said.
 
 use crate::{code, isosheet, run, stderr, stdout, with_scene};
-use isosheet_io::scene::StartingPoint;
+use isosheet_scenes::StartingPoint;
 use std::fs;
 
 /// A folder with a scene, its run of 0.1 s, and a mesh.

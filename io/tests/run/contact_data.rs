@@ -2,9 +2,9 @@
 
 use crate::headless::self_test;
 use crate::{code, killed, run, stderr};
-use isosheet_io::run::Recording;
-use isosheet_io::view::{Field, Scale};
-use isosheet_io::{LoadKind, read_loads};
+use isosheet_formats::{LoadKind, read_loads};
+use isosheet_page::{Field, Scale};
+use isosheet_runs::Recording;
 use std::fs;
 use std::path::Path;
 

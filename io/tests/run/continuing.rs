@@ -1,9 +1,9 @@
 //! Runs that are stopped and continued.
 
 use crate::{assert_same, code, killed, run, started, stderr, with_scene};
-use isosheet_io::run::{Outcome, Recording, StepPart, Tick, Watch, simulate};
-use isosheet_io::scene::{SceneFile, StartingPoint};
-use isosheet_io::{Trajectory, read_history};
+use isosheet_formats::{Trajectory, read_history};
+use isosheet_runs::{Outcome, Recording, StepPart, Tick, Watch, simulate};
+use isosheet_scenes::{SceneFile, StartingPoint};
 use std::ops::ControlFlow;
 #[cfg(unix)]
 use std::process::Command;

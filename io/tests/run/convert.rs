@@ -1,12 +1,12 @@
 //! `isosheet convert`.
 
 use crate::{code, isosheet, run, stderr, with_scene, with_short_run};
-use isosheet_io::run::Recording;
-use isosheet_io::scene::{SceneFile, StartingPoint};
-use isosheet_io::{
+use isosheet_formats::{
     EdgeAssignment, ExportMeshFormat, FoldFrame, MeshFile, MeshFormat, MeshOptions, SeriesFormat,
     Trajectory, read_mesh, read_mesh_with,
 };
+use isosheet_runs::Recording;
+use isosheet_scenes::{SceneFile, StartingPoint};
 use std::fs;
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! Angles and moments of creases as measures.
 
 use crate::{code, run, stderr, summary};
-use isosheet_io::mesh::{EdgeId, fold_angle};
-use isosheet_io::run::Recording;
-use isosheet_io::{MeasureRow, SeriesOptions, read_measures};
+use isosheet_formats::{MeasureRow, SeriesOptions, read_measures};
+use isosheet_mesh::{EdgeId, fold_angle};
+use isosheet_runs::Recording;
 use std::fs;
 
 /// Stiffness of the crease, N, and its length, m.

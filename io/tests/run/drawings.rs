@@ -1,8 +1,8 @@
 //! `isosheet mesh`.
 
 use crate::{code, run, stderr};
-use isosheet_io::run::Recording;
-use isosheet_io::{EdgeAssignment, MeshFile, read_mesh};
+use isosheet_formats::{EdgeAssignment, MeshFile, read_mesh};
+use isosheet_runs::Recording;
 use std::fs;
 use std::path::Path;
 

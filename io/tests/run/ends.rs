@@ -1,9 +1,9 @@
 //! How runs end.
 
 use crate::{code, isosheet, run, stderr, summary, with_scene};
-use isosheet_io::run::EndReason;
-use isosheet_io::scene::StartingPoint;
-use isosheet_io::{frame_path, read_sheet};
+use isosheet_formats::{frame_path, read_sheet};
+use isosheet_runs::EndReason;
+use isosheet_scenes::StartingPoint;
 use serde_json::Value;
 use std::fs;
 use std::process::Stdio;

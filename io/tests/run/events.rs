@@ -1,7 +1,7 @@
 //! Supports, seams and contacts that are taken up and released in the course of a run.
 
 use crate::{assert_same, code, killed, run, stderr, summary};
-use isosheet_io::{
+use isosheet_formats::{
     EventChange, EventKind, EventRow, LoadKind, read_events, read_history, read_loads,
 };
 use std::fs;
@@ -50,7 +50,8 @@ fn supports_are_released_and_taken_up_in_time() {
     let events = read_events(&dir.join("whole/events.csv")).unwrap();
     let loads = read_loads(&dir.join("whole/loads.csv")).unwrap();
     let force = |number: usize, step: usize| {
-        let of = |row: &&isosheet_io::LoadRow| row.on == LoadKind::Support && row.number == number;
+        let of =
+            |row: &&isosheet_formats::LoadRow| row.on == LoadKind::Support && row.number == number;
         let [x, y, z] = loads.iter().filter(of).nth(step - 1).unwrap().force;
         (x * x + y * y + z * z).sqrt()
     };

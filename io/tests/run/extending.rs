@@ -2,9 +2,9 @@
 
 use crate::events::{LETS_GO, with_text};
 use crate::{assert_same, code, run, stderr, stdout, summary};
-use isosheet_io::read_events;
-use isosheet_io::run::{Outcome, Tick, extend_folder, simulate};
-use isosheet_io::scene::SceneFile;
+use isosheet_formats::read_events;
+use isosheet_runs::{Outcome, Tick, extend_folder, simulate};
+use isosheet_scenes::SceneFile;
 use std::fs;
 use std::ops::ControlFlow;
 

@@ -2,9 +2,9 @@
 
 use crate::skip::data_folder;
 use crate::{code, run, stderr};
-use isosheet_io::mesh::{EdgeId, FlatFoldingLaw, fold_angle};
-use isosheet_io::read_json;
-use isosheet_io::run::{FoldVerdict, Recording, Summary};
+use isosheet_files::read_json;
+use isosheet_mesh::{EdgeId, FlatFoldingLaw, fold_angle};
+use isosheet_runs::{FoldVerdict, Recording, Summary};
 use std::fs;
 use std::path::Path;
 

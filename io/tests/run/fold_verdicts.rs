@@ -2,9 +2,9 @@
 
 use crate::fold::{VERTEX, folded};
 use crate::{code, run, stderr};
-use isosheet_io::mesh::FlatFoldingLaw;
-use isosheet_io::read_json;
-use isosheet_io::run::{FoldVerdict, Recording, Summary};
+use isosheet_files::read_json;
+use isosheet_mesh::FlatFoldingLaw;
+use isosheet_runs::{FoldVerdict, Recording, Summary};
 use std::fs;
 
 /// A vertex of four creases for which Kawasaki's and Maekawa's theorems hold, with its smallest angle between

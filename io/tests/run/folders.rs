@@ -1,8 +1,8 @@
 //! Folders that are in use, complete, foreign, damaged, full or not to be written.
 
 use crate::{assert_same, code, killed, run, started, stderr, summary, with_scene};
-use isosheet_io::run::{EndReason, Recording};
-use isosheet_io::scene::StartingPoint;
+use isosheet_runs::{EndReason, Recording};
+use isosheet_scenes::StartingPoint;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

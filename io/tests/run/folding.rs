@@ -3,7 +3,7 @@
 use crate::headless::self_test;
 use crate::skip::data_folder;
 use crate::{code, run, stderr, summary};
-use isosheet_io::run::Recording;
+use isosheet_runs::Recording;
 use std::fs;
 use std::path::Path;
 

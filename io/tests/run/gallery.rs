@@ -1,9 +1,9 @@
 //! Galleries of runs.
 
 use crate::{code, isosheet, killed, run, stderr, stdout};
-use isosheet_io::read_json;
-use isosheet_io::run::GalleryEntry;
-use isosheet_io::scene::StartingPoint;
+use isosheet_files::read_json;
+use isosheet_films::GalleryEntry;
+use isosheet_scenes::StartingPoint;
 use std::fs;
 use std::path::Path;
 

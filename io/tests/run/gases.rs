@@ -1,8 +1,8 @@
 //! Pressure and volume of gases and of closed surfaces as measures.
 
 use crate::{code, run, stderr, summary};
-use isosheet_io::read_measures;
-use isosheet_io::run::Recording;
+use isosheet_formats::read_measures;
+use isosheet_runs::Recording;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;

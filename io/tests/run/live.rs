@@ -3,8 +3,8 @@
 use crate::{code, isosheet, run, stderr, with_scene};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use isosheet_io::Trajectory;
-use isosheet_io::scene::StartingPoint;
+use isosheet_formats::Trajectory;
+use isosheet_scenes::StartingPoint;
 use serde_json::{Value, json};
 use std::cell::Cell;
 use std::fs;

@@ -6,7 +6,7 @@
 use crate::devtools::{Driven, Pointer};
 use crate::live::{Served, time, vertex};
 use crate::with_scene;
-use isosheet_io::scene::StartingPoint;
+use isosheet_scenes::StartingPoint;
 use serde_json::{Value, json};
 
 /// Keeps a picture for a look.

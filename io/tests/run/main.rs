@@ -43,9 +43,9 @@ mod trajectories;
 mod what_drawings_say;
 mod yielding;
 
-use isosheet_io::read_json;
-use isosheet_io::run::Summary;
-use isosheet_io::scene::StartingPoint;
+use isosheet_files::read_json;
+use isosheet_runs::Summary;
+use isosheet_scenes::StartingPoint;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};

@@ -1,9 +1,9 @@
 //! Measures of a scene in what a run leaves.
 
 use crate::{assert_same, code, killed, run, stderr, summary, with_scene};
-use isosheet_io::read_measures;
-use isosheet_io::run::{EnergySummary, Measured, Recording};
-use isosheet_io::scene::StartingPoint;
+use isosheet_formats::read_measures;
+use isosheet_runs::{EnergySummary, Measured, Recording};
+use isosheet_scenes::StartingPoint;
 use std::fs;
 
 /// A triangle that falls freely: its motion by RATTLE is exact.

@@ -3,11 +3,11 @@
 use crate::headless::self_test;
 use crate::skip::data_folder;
 use crate::{code, killed, run, stderr, stdout, summary, with_scene};
-use isosheet_io::mesh::generate;
-use isosheet_io::run::{Recording, Tick, simulate_recorded};
-use isosheet_io::scene::{SceneFile, StartingPoint};
-use isosheet_io::view::{BodyShape, Replay};
-use isosheet_io::write_obj;
+use isosheet_formats::write_obj;
+use isosheet_mesh::generate;
+use isosheet_page::{BodyShape, Replay};
+use isosheet_runs::{Recording, Tick, simulate_recorded};
+use isosheet_scenes::{SceneFile, StartingPoint};
 use serde_json::Value;
 use std::fs;
 use std::ops::ControlFlow;

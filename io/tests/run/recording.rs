@@ -1,12 +1,12 @@
 //! Recordings of simulations whose steps a program takes.
 
-use isosheet_io::LoadKind;
-use isosheet_io::mesh::VertexId;
-use isosheet_io::run::{
+use isosheet_formats::LoadKind;
+use isosheet_mesh::VertexId;
+use isosheet_runs::{
     EndReason, ExistingRun, Recorder, RecorderOptions, Recording, RecordingEnd, RunError,
     extend_folder, resume_folder, simulate,
 };
-use isosheet_io::scene::{FramePose, Key, LiveScene, SceneFile, Target};
+use isosheet_scenes::{FramePose, Key, LiveScene, SceneFile, Target};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! Forces of the rods in what a run leaves.
 
 use crate::{code, killed, run, stderr};
-use isosheet_io::run::Recording;
-use isosheet_io::view::Scale;
+use isosheet_page::Scale;
+use isosheet_runs::Recording;
 use std::fs;
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! Rulings and Gauss curvature of runs: in files of other programs, pictures and pages.
 
 use crate::{code, run, stderr, summary};
-use isosheet_io::Trajectory;
-use isosheet_io::run::Recording;
+use isosheet_formats::Trajectory;
+use isosheet_runs::Recording;
 use std::fs;
 
 /// A strip of office paper, clamped at its left end, that a moment rolls up to the curvature `M / (D w) = 8 / m` towards

@@ -1,7 +1,7 @@
 //! Runs whose obstacles and supports follow meshes in motion.
 
 use crate::{assert_same, code, killed, run, stderr, stdout};
-use isosheet_io::{LoadKind, Trajectory, read_loads};
+use isosheet_formats::{LoadKind, Trajectory, read_loads};
 use std::fs;
 
 /// A run whose trajectory is the obstacle of a second one, and leads its supports, beside a fixed obstacle: it is

@@ -2,7 +2,7 @@
 //! waited for.
 
 use crate::{code, run, stderr, stdout, with_scene};
-use isosheet_io::scene::StartingPoint;
+use isosheet_scenes::StartingPoint;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 use std::fs;
 use std::os::unix::fs::symlink;

@@ -2,8 +2,8 @@
 
 use crate::skip::skipped;
 use crate::{code, isosheet, run, stderr, stdout, with_scene};
-use isosheet_io::run::{Sweep, Variation};
-use isosheet_io::scene::StartingPoint;
+use isosheet_runs::{Sweep, Variation};
+use isosheet_scenes::StartingPoint;
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;

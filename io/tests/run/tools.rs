@@ -1,9 +1,10 @@
 //! The subcommands around runs.
 
 use crate::{code, run, stderr, with_scene};
-use isosheet_io::run::Summary;
-use isosheet_io::scene::StartingPoint;
-use isosheet_io::{read_json, read_sheet};
+use isosheet_files::read_json;
+use isosheet_formats::read_sheet;
+use isosheet_runs::Summary;
+use isosheet_scenes::StartingPoint;
 use std::fs;
 use std::path::Path;
 use std::process::Command;

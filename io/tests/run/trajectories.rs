@@ -1,9 +1,9 @@
 //! The trajectory of a run: written however the run ends, and again when it is lost; damage is noticed.
 
 use crate::{code, killed, run, stderr, summary, with_scene, with_short_run};
-use isosheet_io::Trajectory;
-use isosheet_io::run::Recording;
-use isosheet_io::scene::StartingPoint;
+use isosheet_formats::Trajectory;
+use isosheet_runs::Recording;
+use isosheet_scenes::StartingPoint;
 use std::fs;
 
 /// Moving pins ask for more than the lengths allow after some steps.

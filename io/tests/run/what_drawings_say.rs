@@ -1,7 +1,7 @@
 //! What drawings of other programs say: names, blocks, dashes, outlines that are creases, several pieces.
 
 use crate::drawings::{area, length, meshed, refused, svg};
-use isosheet_io::{EdgeAssignment, MeshFile};
+use isosheet_formats::{EdgeAssignment, MeshFile};
 use std::fs;
 
 const MM: f64 = 1e-3;

@@ -1,9 +1,9 @@
 //! What runs of sheets that yield leave.
 
 use crate::{code, killed, run, stderr};
-use isosheet_io::run::Recording;
-use isosheet_io::view::{Centering, Scale};
-use isosheet_io::{Series, SeriesOptions, read_history};
+use isosheet_formats::{Series, SeriesOptions, read_history};
+use isosheet_page::{Centering, Scale};
+use isosheet_runs::Recording;
 use std::fs;
 use std::path::Path;
 
@@ -148,7 +148,7 @@ fn the_curvature_that_stays_is_in_the_frames() {
     }
     assert_eq!(compared, 2 * 2 * 14);
     let replay = recording.replay().unwrap();
-    let field = |f: &&isosheet_io::view::Field| f.name == "curvature that stays (valley +)";
+    let field = |f: &&isosheet_page::Field| f.name == "curvature that stays (valley +)";
     let field = replay.fields.iter().find(field).unwrap();
     assert_eq!((field.place, field.scale), (Centering::Face, Scale::Signed));
     assert_eq!(field.values[last][40], values[40][0]);

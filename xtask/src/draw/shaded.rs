@@ -1,8 +1,8 @@
 //! Shaded pictures of sheets and bodies, seen by one camera that has all of them in view.
 
 use anyhow::Result;
-use isosheet_io::picture::{Camera, Image, Labelled, Look, SheetPicture, Solid, montage, render};
 use isosheet_mesh::{Sheet, VertexId};
+use isosheet_pictures::{Camera, Image, Labelled, Look, SheetPicture, Solid, montage, render};
 
 /// What one picture shows.
 #[derive(Debug)]

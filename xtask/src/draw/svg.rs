@@ -3,7 +3,7 @@
 use super::drawing::{Anchor, Drawing, Item};
 use super::{Colour, palette};
 use anyhow::Result;
-use isosheet_io::picture::svg_to_png;
+use isosheet_pictures::svg_to_png;
 use maud::{Markup, html};
 
 /// Free space around the drawing, points.

@@ -4,7 +4,7 @@ use super::Effort;
 use super::folds::Outline;
 use crate::runs::FigureScene;
 use anyhow::{Context as _, Result, bail};
-use isosheet_io::scene;
+use isosheet_scenes as scene;
 
 /// A scene of a cloth, cut short where the effort is small.
 fn cloth(file: &str, name: &str, edits: Vec<String>, effort: Effort) -> Result<FigureScene> {

@@ -8,7 +8,7 @@ use crate::runs::{
 use crate::store::Store;
 use anyhow::{Result, ensure};
 use isosheet_coords::condition_table;
-use isosheet_io::scene::Coordinates;
+use isosheet_scenes::Coordinates;
 
 /// A row of the paper's table.
 type Published = (u8, Option<u32>, [&'static str; 3]);

@@ -6,9 +6,10 @@ use crate::report::Effort;
 use crate::runs::{Run, RunSummary};
 use anyhow::Result;
 use isosheet_dynamics::immobile_vertices;
-use isosheet_io::picture::Solid;
-use isosheet_io::view::Replay;
 use isosheet_mesh::VertexId;
+use isosheet_page::Replay;
+use isosheet_pictures::Solid;
+use isosheet_runs::replay_of;
 
 /// How a run is shown.
 #[derive(Clone, Debug)]
@@ -118,7 +119,7 @@ impl View {
             summary: rows(&run.summary),
             scene: scene.text().to_owned(),
             reproduce: format!("cargo xtask reproduce-figures --figures {figure}{quick}"),
-            ..Replay::of_motion(&setup.sheet, &bodies, trajectory, &run.history)?
+            ..replay_of(&setup.sheet, &bodies, trajectory, &run.history)?
         };
         let name = format!("fig{figure:02}-{}", scene.name());
         // Where the figure leaves bodies out, they would hide the sheet.

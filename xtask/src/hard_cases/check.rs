@@ -4,7 +4,7 @@ use super::case::CaseRun;
 use super::variants::Variants;
 use crate::report::{Bound, Finding, Limitation, Shortfall};
 use anyhow::{Result, bail, ensure};
-use isosheet_io::run::Summary;
+use isosheet_runs::Summary;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

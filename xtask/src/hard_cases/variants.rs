@@ -2,7 +2,7 @@
 
 use crate::report::Effort;
 use anyhow::Result;
-use isosheet_io::run::{Sweep, Variation};
+use isosheet_runs::{Sweep, Variation};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use crate::report::Effort;
 use anyhow::Result;
-use isosheet_mesh::generate::{self, Diagonals};
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_mesh::generate::Diagonals;
+use isosheet_mesh::{Sheet, VertexId, generate};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 

@@ -204,8 +204,7 @@ pub(super) fn runs(records: &Records<'_>) -> Result<Table> {
 mod tests {
     use super::super::disks::Disk;
     use super::*;
-    use isosheet_dynamics::At;
-    use isosheet_dynamics::{MaterialReport as _, PlateBending, Potential};
+    use isosheet_dynamics::{At, MaterialReport as _, PlateBending, Potential};
 
     /// The angles about the centre are those of the disk and of the wedge, those about all other vertices
     /// inside are 2 pi, and the pyramid is folded along four edges alone.

@@ -1,8 +1,7 @@
 //! The models of a sheet that are compared, and what sheets are made of.
 
 use anyhow::Result;
-use isosheet_dynamics::At;
-use isosheet_dynamics::{CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
+use isosheet_dynamics::{At, CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
 use std::fmt;

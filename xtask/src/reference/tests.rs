@@ -1,7 +1,7 @@
 //! The reference in the repository is current, and follows a scene.
 
 use super::{materials, page};
-use isosheet_io::scene::schema;
+use isosheet_scenes::schema;
 use serde_json::Value;
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use crate::store::Files;
 use anyhow::Result;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use isosheet_io::picture::Image;
+use isosheet_pictures::Image;
 use maud::{Markup, html};
 
 /// Size of drawings in the page relative to their own: their text is as large as that of the page then.

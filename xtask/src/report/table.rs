@@ -3,7 +3,7 @@
 use super::number::number;
 use crate::store::Files;
 use anyhow::Result;
-use isosheet_io::write_atomically;
+use isosheet_files::write_atomically;
 use maud::{Markup, Render, html};
 use serde::Serialize;
 use std::io::Write;

@@ -2,8 +2,8 @@
 
 use super::FigureScene;
 use anyhow::{Result, bail};
-use isosheet_io::scene::Mesh;
 use isosheet_mesh::{Sheet, VertexId};
+use isosheet_scenes::Mesh;
 
 /// A square sheet that is held at one vertex, as Figs. 11 and 12 have it.
 #[derive(Clone, Debug)]

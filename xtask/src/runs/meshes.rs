@@ -1,8 +1,8 @@
 //! Flat rectangles on grids turned against their outline and on irregular meshes, and cuts along lines.
 
 use anyhow::Result;
-use isosheet_mesh::generate::{self, Diagonals};
-use isosheet_mesh::{FlatCut, Sheet, VertexId};
+use isosheet_mesh::generate::Diagonals;
+use isosheet_mesh::{FlatCut, Sheet, VertexId, generate};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 

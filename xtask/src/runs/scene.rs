@@ -1,8 +1,8 @@
 //! The scenes of the figures: files of the folder `xtask/scenes`, which `isosheet simulate` runs too.
 
 use anyhow::{Context, Result};
-use isosheet_io::scene::{Material, Scene, SceneFile, Setup, StartingPoint};
 use isosheet_mesh::Sheet;
+use isosheet_scenes::{Material, Scene, SceneFile, Setup, StartingPoint};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::de::DeserializeOwned;

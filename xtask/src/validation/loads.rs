@@ -5,8 +5,8 @@ use anyhow::Result;
 use cpu_time::ThreadTime;
 use isosheet_dynamics::{Method, Simulation, State};
 use isosheet_tests::held_strip::{G, HELD, STEP, STEPS, held_strip, strip};
-use isosheet_tests::pushed::{self, END, exact};
-use isosheet_tests::{damped, methods};
+use isosheet_tests::pushed::{END, exact};
+use isosheet_tests::{damped, methods, pushed};
 use nalgebra::Vector3;
 
 /// Positions under loads of all kinds, by all methods.

@@ -3,7 +3,7 @@
 use super::experiment::{Experiment, Job, Measured, Quantity};
 use anyhow::Result;
 use cpu_time::ThreadTime;
-use isosheet_io::scene::{LiveScene, SceneFile};
+use isosheet_scenes::{LiveScene, SceneFile};
 use std::path::Path;
 
 /// Balls, capsules and cylinders.

@@ -1,4 +1,4 @@
-//! The program `isosheet`, see [`isosheet_io::command`].
+//! The program `isosheet`, see [`isosheet_io`].
 
 mod commit;
 
@@ -7,8 +7,8 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     if let Some(commit) = commit::commit() {
-        isosheet_io::run::note_commit(commit);
+        isosheet_runs::note_commit(commit);
     }
     let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("isosheet"));
-    isosheet_io::command::run(std::env::args_os(), &program).into()
+    isosheet_io::run(std::env::args_os(), &program).into()
 }

@@ -5,7 +5,7 @@ use crate::report::Effort;
 use crate::runs::{Bumped, FigureScene, Plan, STEP, displaced};
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method, Simulation};
-use isosheet_io::scene::SupportForces;
+use isosheet_scenes::SupportForces;
 use isosheet_tests::{Named, energy_momentum, implicit_euler};
 use serde::Deserialize;
 use std::path::Path;

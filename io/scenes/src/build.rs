@@ -1,0 +1,145 @@
+//! From a scene to a simulation.
+
+mod bends;
+mod builder;
+mod contacts;
+mod follow;
+mod follower_loads;
+mod forces;
+mod glue;
+mod guides;
+mod start;
+mod supports;
+
+use super::error::SceneError;
+use super::in_words::materials_in_words;
+use super::key::Key;
+use super::measure::Measurable;
+use super::placed::PlacedSheet;
+use super::placed_bodies::Surface;
+use super::step_path::check_step;
+use super::switches::Switches;
+use super::{Gauge, Measure, Scene, Setup};
+use builder::Builder;
+pub use builder::Kept;
+use isosheet_collide::{Contacts, Obstacle};
+use std::path::Path;
+
+impl Scene {
+    /// Makes everything that a simulation needs. Masses are lumped: a third of that of each face at each of
+    /// its corners. Paths are relative to `folder`.
+    ///
+    /// # Errors
+    /// [`SceneError`], with all problems of the values or the first one of what is made of them.
+    pub fn build(&self, folder: &Path) -> Result<Setup, SceneError> {
+        self.validate()?;
+        self.build_with(&mut Kept::in_folder(folder))
+    }
+
+    /// The same for a scene that has been checked, with what is kept of it.
+    pub(super) fn build_with(&self, kept: &mut Kept) -> Result<Setup, SceneError> {
+        self.build_held(kept, &Switches::at_start(self))
+    }
+
+    /// The same for a simulation that is under way, in which something has been taken up or released.
+    pub(super) fn build_switched(
+        &self,
+        kept: &mut Kept,
+        switches: &Switches,
+    ) -> Result<Setup, SceneError> {
+        if kept.start.is_none() {
+            self.build_with(kept)?;
+        }
+        self.build_held(kept, switches)
+    }
+
+    fn build_held(&self, kept: &mut Kept, switches: &Switches) -> Result<Setup, SceneError> {
+        let mut builder = Builder::new(self, kept, switches)?;
+        switches.check(builder.x.len())?;
+        builder.add_forces()?;
+        builder.add_supports()?;
+        builder.add_guides()?;
+        builder.add_body_forces()?;
+        builder.mend_start()?;
+        builder.add_folds()?;
+        builder.add_isometry()?;
+        builder.perturb_start()?;
+        builder.add_glue()?;
+        builder.add_follower_loads()?;
+        let (contacts, obstacles) = builder.contacts()?;
+        let gauge = |(k, measure): (usize, &Measure)| {
+            let key = Key::root().name("measure").entry(k);
+            let things = Measurable {
+                creases: &builder.creases,
+                enclosed: &builder.enclosed,
+            };
+            measure.gauge(&key, &builder.sheets, &builder.bodies, things)
+        };
+        let measures = self.measure.iter().enumerate().map(gauge);
+        let mut measures: Vec<Gauge> = measures.collect::<Result<_, _>>()?;
+        let of_gas = |(name, gas): &(String, _)| Gauge::of_gas(name, gas);
+        measures.extend(builder.gases.iter().flat_map(of_gas));
+        let setup = builder.finish(contacts, obstacles);
+        check_step(self, &setup.model, setup.sheet.area(), &setup.start.v)?;
+        Ok(Setup { measures, ..setup })
+    }
+}
+
+impl Builder<'_> {
+    fn finish(mut self, contacts: Option<Contacts>, obstacles: Vec<Obstacle>) -> Setup {
+        let start = self.start();
+        let model = self.model.take();
+        let sheets = &self.sheets.list;
+        let part = |sheet: &PlacedSheet<'_>| {
+            let name = sheet.of.name.clone();
+            (name.unwrap_or_else(|| "sheet".into()), sheet.part.clone())
+        };
+        let of_bodies = self.bodies.list.iter().enumerate();
+        let of_bodies = of_bodies.map(|(k, body)| (body.of.name(k), body.part.clone()));
+        let of_obstacles = self.origins.driven.iter();
+        let of_obstacles = of_obstacles.map(|o| (format!("obstacle_{}", o.number), o.part.clone()));
+        let parts: Vec<_> = match &sheets[..] {
+            [_] if self.surface.is_none() => Vec::new(),
+            several => several
+                .iter()
+                .map(part)
+                .chain(of_bodies)
+                .chain(of_obstacles)
+                .collect(),
+        };
+        let of_sheets = self.sheets.warnings(self.scene);
+        let mut fold_assignments = self.sheets.fold_assignments();
+        let (sheet, points) = match self.surface {
+            None => (self.sheets.union, None),
+            Some(Surface { sheet, points }) => (sheet, Some(points)),
+        };
+        if let Some(of_edges) = &mut fold_assignments {
+            of_edges.resize(sheet.topology().edge_count(), None);
+        }
+        Setup {
+            start,
+            parts,
+            material: materials_in_words(sheets),
+            sheet,
+            points,
+            bodies: self.bodies.carried(),
+            model: model
+                .expect("a change that fails ends the building")
+                .with_breaks(self.scene.breaks()),
+            contacts,
+            obstacles,
+            integration: self.scene.method.build(),
+            modelled: self.modelled,
+            targets: self.targets,
+            measures: Vec::new(),
+            creased: self.creased,
+            bonds: self.bonds,
+            switches: self.switches.clone(),
+            led: self.led.into_list(),
+            fold_assignments,
+            of_sheets,
+            origins: self.origins,
+            text: None,
+        }
+    }
+}
