@@ -1,43 +1,29 @@
 //! Vertices constrained to bodies, or to one side of them.
 
-use crate::{Obstacle, Shape, SignedDistance, TriangleSurface};
+use crate::Obstacle;
 use isosheet_dynamics::VertexConstraint;
 use isosheet_dynamics::constraint::{Side, Surface, SurfacePoint};
+use isosheet_geometry::Shape;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 
 #[cfg(test)]
 mod tests;
 
-impl From<SignedDistance> for SurfacePoint {
-    fn from(d: SignedDistance) -> Self {
-        Self {
-            level: d.value,
-            gradient: d.normal,
-            hessian: d.hessian,
-        }
-    }
-}
+/// The surface of a body in its own frame; its level is [`Shape::oriented_distance`]. Outside a body the
+/// gradient is continuous, and the second derivative jumps where the closest point passes from one face, edge
+/// or corner to another; on the sharp edges of a box, a cylinder or triangles the gradient jumps too.
+#[derive(Debug)]
+struct Level(Shape);
 
-/// The level is [`Shape::signed_distance`], in the body's own frame. Outside a body its gradient is
-/// continuous, and the second derivative jumps where the closest point passes from one face, edge or corner
-/// to another; on the sharp edges of a box, a cylinder or triangles the gradient jumps too.
-impl Surface for Shape {
+impl Surface for Level {
     fn at(&self, p: &Vector3<f64>) -> SurfacePoint {
-        match self {
-            Self::Surface(surface) => surface.at(p),
-            _ => self.signed_distance(p).into(),
+        let distance = self.0.oriented_distance(p);
+        SurfacePoint {
+            level: distance.value,
+            gradient: distance.normal,
+            hessian: distance.hessian,
         }
-    }
-}
-
-/// The level is [`TriangleSurface::signed_distance`] if the surface is closed. Of an open surface the level
-/// is the distance with the sign of the side, negative on the side that the face normals point away from:
-/// the distance alone has a kink on the surface, where a constraint needs its gradient. Beyond the rim of an
-/// open surface the level is the distance from the rim, and its sign jumps where the surface would go on.
-impl Surface for TriangleSurface {
-    fn at(&self, p: &Vector3<f64>) -> SurfacePoint {
-        self.oriented_distance(p).into()
     }
 }
 
@@ -64,7 +50,7 @@ impl Obstacle {
     /// # }
     /// ```
     pub fn constraint(&self, vertex: VertexId, side: Side) -> VertexConstraint {
-        let surface = VertexConstraint::on_surface(vertex, self.shape().clone(), side);
+        let surface = VertexConstraint::on_surface(vertex, Level(self.shape().clone()), side);
         surface.moving(self.motion().clone())
     }
 }

@@ -9,7 +9,6 @@ mod limit;
 mod motion;
 mod neighbours;
 mod options;
-mod path;
 mod rolling;
 mod round;
 mod sheet;
@@ -22,22 +21,22 @@ pub use options::{ContactOptions, ContactsError};
 pub use round::RoundBody;
 use round::Rounds;
 
-use crate::{CcdOptions, ContactMesh, Obstacle};
+use crate::Obstacle;
 use body::Body;
 use evaluate::{Placed, Sheet};
 use isosheet_dynamics::contact::{
     ActiveContact, ActiveContacts, BodyMotion, BodyPlace, CarriedPoint, Coefficients, Contact,
-    ContactError, ContactKey, ContactLaws, JointMotion, ObstaclePair, SheetPair, StepSpan,
-    SurfacePoints,
+    ContactError, ContactKey, ContactLaws, JointMotion, ObstaclePair, SheetPair, StepMotion,
+    StepSpan, SurfacePoints,
 };
 use isosheet_dynamics::{SheetModel, State};
+use isosheet_geometry::{CcdOptions, ContactMesh, RigidPath};
 use isosheet_mesh::{Topology, VertexId};
 use limit::Limit;
 use motion::SheetMotion;
 use nalgebra::Vector3;
 use neighbours::{Neighbours, SelfPairs};
 use options::smallest_heights;
-use path::PartOfStep;
 use std::ops::Range;
 use thickness::{Clearance, Thickness};
 
@@ -72,17 +71,19 @@ const NEXT_PART: f64 = 4.0;
 /// ```
 ///
 /// # What repels what
-/// Every gap `g`, a distance less the thickness that counts there, has a potential below the activation distance
-/// `d`: `-kappa (1 - z)^2 ln z` with `z = (g / d)^2` and the stiffness `kappa` ([`ContactOptions`]). Gaps are:
+/// Every gap `g`, a distance less the thickness that counts there, has a potential below the activation
+/// distance `d`: `-kappa (1 - z)^2 ln z` with `z = (g / d)^2` and the stiffness `kappa` ([`ContactOptions`]).
+/// Gaps are:
 ///
 /// * half-space: that of every vertex. A flat face is away if its corners are.
-/// * box, ball, cylinder, capsule: the signed distance of every vertex, and the distances of faces
-///   from the body's corners and of edges from its edges ([`crate::Shape::contact_geometry`], without edges
-///   inside a flat facet); for a ball and a capsule these are their centre and axis, and the radius is
-///   taken off. A cylinder meets edges and faces as a prism inside it: they, unlike vertices, may come
-///   closer than the true cylinder by up to `radius (1 - cos(pi / segments))`.
-/// * triangle surface, open or closed: vertices and its faces, faces and its vertices, edges and its
-///   edges. An open one has two sides.
+/// * box, ball, cylinder, capsule, and whatever else is [convex](crate::Shape::is_convex): the signed
+///   distance of every vertex, and the distances of faces from the body's corners and of edges from its edges
+///   ([`crate::Shape::contact_geometry`], without edges inside a flat facet); for a ball and a capsule these
+///   are their centre and axis, and the radius is taken off. A cylinder meets edges and faces as a prism
+///   inside it: they, unlike vertices, may come closer than the true cylinder by up to `radius (1 - cos(pi /
+///   segments))`.
+/// * triangle surface, open or closed, and the triangles of a form that is not convex: vertices and its
+///   faces, faces and its vertices, edges and its edges. An open one has two sides.
 /// * the sheet itself: vertices and faces, edges and edges without a common vertex.
 ///
 /// Two edges have the factor of [`isosheet_dynamics::contact::ParallelEdges`], without which their energy has
@@ -111,6 +112,8 @@ pub struct Contacts {
     laws: ContactLaws,
     ccd: CcdOptions,
     mesh: ContactMesh,
+    /// The vertices that move in a prescribed way, and do not meet bodies.
+    driven: Range<u32>,
     /// The points of the mesh, where these are not the vertices of the model.
     points: Option<SurfacePoints>,
     /// Squared rest lengths of the edges.
@@ -125,8 +128,9 @@ pub struct Contacts {
     rounds: Rounds,
     /// Made at the first positions, in scenes that need them.
     neighbours: Option<Neighbours>,
-    /// Working memory: the motions of the bodies, displacements of a part of a long motion, and which candidates are near.
-    parts: Vec<PartOfStep>,
+    /// Working memory: the motions of the bodies, displacements of a part of a long motion, and which
+    /// candidates are near.
+    parts: Vec<RigidPath>,
     part_of_motion: Vec<f64>,
     near: Vec<bool>,
 }
@@ -141,10 +145,10 @@ impl Contacts {
         Self::between(topology, lengths, topology.vertex_count(), options)
     }
 
-    /// Contact of a surface whose points are combinations of the vertices of a model, with nothing yet: sheets
-    /// whose vertices these are, and surfaces of [rigid bodies](isosheet_dynamics::RigidBody). The `points`
-    /// are the vertices of `surface`, in this order. What belongs to one body does not touch itself if it is
-    /// [named](Contacts::with_parts).
+    /// Contact of a surface whose points are combinations of the vertices of a model, with nothing yet:
+    /// sheets whose vertices these are, and surfaces of [rigid bodies](isosheet_dynamics::RigidBody). The
+    /// `points` are the vertices of `surface`, in this order. What belongs to one body does not touch itself
+    /// if it is [named](Contacts::with_parts).
     ///
     /// # Errors
     /// [`ContactsError`] naming the option that makes no sense.
@@ -177,6 +181,7 @@ impl Contacts {
             laws: options.laws(),
             ccd: options.ccd(),
             mesh: ContactMesh::from_topology(topology),
+            driven: 0..0,
             points: None,
             lengths2: lengths.iter().map(|l| l * l).collect(),
             thickness: Thickness::new(options.thickness, own),
@@ -193,8 +198,8 @@ impl Contacts {
     }
 
     /// Contact of a sheet with obstacles and with itself, with the default options and the same friction
-    /// everywhere. For options or friction of each of them, see [`Contacts::new`], [`Contacts::with_body`] and
-    /// [`Contacts::with_self_contact`].
+    /// everywhere. For options or friction of each of them, see [`Contacts::new`], [`Contacts::with_body`]
+    /// and [`Contacts::with_self_contact`].
     ///
     /// # Errors
     /// [`ContactsError`]: friction that makes no sense, or a sheet too small for a barrier.
@@ -274,8 +279,8 @@ impl Contacts {
     }
 
     /// Tells of parts of the surface, by ranges of their points, that do not touch themselves, such as rigid
-    /// bodies; and of points outside of a part that are attached to it, each with the number of the part: what
-    /// has them as corners does not touch the part. Comes before [`Contacts::with_self_contact`].
+    /// bodies; and of points outside of a part that are attached to it, each with the number of the part:
+    /// what has them as corners does not touch the part. Comes before [`Contacts::with_self_contact`].
     ///
     /// # Panics
     /// If a point does not exist.
@@ -297,22 +302,22 @@ impl Contacts {
         self
     }
 
-    /// Tells of the points from this one on that they move in a prescribed way, as bodies do: they belong to one
-    /// [part](Contacts::with_parts), and meet no body.
+    /// Tells of the points from this one on that they move in a prescribed way, as bodies do: they belong to
+    /// one [part](Contacts::with_parts), and meet no body.
     #[must_use]
     pub fn with_driven_from(mut self, first: VertexId) -> Self {
-        self.mesh = self.mesh.with_driven_from(first.0);
-        self.neighbours = None;
+        let count = self.mesh.vertex_count();
+        self.driven = first.0..u32::try_from(count).expect("vertices are numbered with 32 bits");
         self
     }
 
-    /// Puts a round body in the place of a polyhedron: the points of a range, with all that they are corners of,
-    /// take part in contact no more, and the round body does, by its true surface. It belongs to the
+    /// Puts a round body in the place of a polyhedron: the points of a range, with all that they are corners
+    /// of, take part in contact no more, and the round body does, by its true surface. It belongs to the
     /// [part](Contacts::with_parts) of this number. `carried` says how the model carries a point of it, as
     /// [`RigidBody::carried`](isosheet_dynamics::RigidBody::carried) does.
     ///
-    /// Its points come after all others. Whatever is said of the range that it replaces afterwards, such as friction,
-    /// is said of it. Comes after [`Contacts::with_parts`] and [`Contacts::with_driven_from`].
+    /// Its points come after all others. Whatever is said of the range that it replaces afterwards, such as
+    /// friction, is said of it. Comes after [`Contacts::with_parts`] and [`Contacts::with_driven_from`].
     ///
     /// # Errors
     /// [`ContactsError::Radius`], and [`ContactsError::Points`] if the points cannot be carried.
@@ -331,18 +336,19 @@ impl Contacts {
         let points = self.points.take().expect("contact on a surface");
         let first = points.count();
         self.points = Some(points.with_carried(places.iter().map(|p| carried(*p)))?);
-        let (vertices, edges, round) = body.primitives();
+        let (vertices, edges) = body.primitives();
         let place = |v: u32| Vector3::from(places[v as usize]);
         let squares = edges
             .iter()
             .map(|&[a, b]| (place(b) - place(a)).norm_squared());
         self.lengths2.extend(squares);
         self.rounds.add(&body, replaced.clone(), first);
-        self.mesh = self.mesh.with_round(replaced, part, vertices, edges, round);
+        self.mesh = self
+            .mesh
+            .with_round(replaced, part, vertices, edges, body.radius);
         let flat = self.mesh.edges().iter().zip(&self.lengths2);
-        let flat = flat.filter(|([v, _], _)| {
-            self.mesh.round(*v).is_none() && !self.rounds.replace(*v as usize)
-        });
+        let flat =
+            flat.filter(|([v, _], _)| !self.mesh.is_round(*v) && !self.rounds.replace(*v as usize));
         let lengths: Vec<f64> = flat.map(|(_, squared)| squared.sqrt()).collect();
         if !lengths.is_empty() {
             self.mean_length = lengths.iter().sum::<f64>() / lengths.len() as f64;
@@ -355,9 +361,10 @@ impl Contacts {
         Ok(self)
     }
 
-    /// Gives one of several sheets, whose vertices these are, its own thickness in place of that of the options,
-    /// metres. Two sheets of thickness `a` and `b` keep the distance `(a + b) / 2` of their middle surfaces, and each
-    /// keeps its own thickness from bodies, as from itself. Comes before [`Contacts::with_self_contact`].
+    /// Gives one of several sheets, whose vertices these are, its own thickness in place of that of the
+    /// options, metres. Two sheets of thickness `a` and `b` keep the distance `(a + b) / 2` of their middle
+    /// surfaces, and each keeps its own thickness from bodies, as from itself. Comes before
+    /// [`Contacts::with_self_contact`].
     ///
     /// # Errors
     /// [`ContactsError`] if it makes no sense.
@@ -402,7 +409,8 @@ impl Contacts {
         Ok(self)
     }
 
-    /// Lets two of several sheets, whose vertices these are, or one of them and itself, pass through each other.
+    /// Lets two of several sheets, whose vertices these are, or one of them and itself, pass through each
+    /// other.
     #[must_use]
     pub fn without_contact_between(mut self, vertices: [Range<usize>; 2]) -> Self {
         let [first, second] = vertices
@@ -467,6 +475,7 @@ impl Contacts {
         } = motion;
         let sheet = SheetMotion {
             mesh: &self.mesh,
+            driven: &self.driven,
             x,
             dx,
             thickness: &self.thickness,
@@ -477,7 +486,7 @@ impl Contacts {
         self.parts.clear();
         let motions = motion.bodies.list().iter();
         self.parts
-            .extend(motions.map(|m| PartOfStep::new(&m.surface, progress)));
+            .extend(motions.map(|m| path(&m.surface, progress)));
         if self.needs_boxes() {
             let own = if self.has_self_contact {
                 SelfPairs::Listed
@@ -499,6 +508,16 @@ impl Contacts {
         }
         limit.part()
     }
+}
+
+/// The way of a body from one progress of its motion over a step to another.
+fn path(motion: &StepMotion, [from, to]: [f64; 2]) -> RigidPath {
+    let part = to - from;
+    RigidPath::new(
+        &motion.pose(from),
+        part * motion.shift(),
+        part * motion.turn(),
+    )
 }
 
 impl Contact for Contacts {
@@ -554,6 +573,7 @@ impl Contact for Contacts {
     ) {
         let sheet = Sheet {
             mesh: &self.mesh,
+            rounds: &self.rounds,
             x,
             lengths2: &self.lengths2,
             thickness: &self.thickness,
@@ -593,6 +613,8 @@ impl Contact for Contacts {
             return Ok(());
         };
         let boxes = neighbours.at_rest(x, reach);
+        let (mesh, driven) = (&self.mesh, &self.driven);
+        let meets_bodies = |v: u32| !driven.contains(&v) && mesh.takes_part(v);
         let places = active.bodies().iter();
         for (number, (body, place)) in self.bodies.iter().zip(places).enumerate() {
             start::check_body(
@@ -601,6 +623,7 @@ impl Contact for Contacts {
                 self.options.segments,
                 boxes,
                 x,
+                meets_bodies,
             )
             .map_err(|(pair, gap)| ContactError::Touching { pair, gap, t })?;
         }

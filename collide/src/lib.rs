@@ -1,15 +1,12 @@
-//! The geometry of contact: distances, collision times, candidate pairs and obstacles.
+//! Contact of sheets with obstacles and with themselves.
 //!
-//! * [`distance`]: squared distances of points, edges and triangles with closest points, gradients
-//!   and Hessians.
-//! * [`CcdOptions`]: how far a motion may go before two primitives touch.
-//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle.
-//! * [`crossings`]: edges that pass through faces, as a check without a tree or a distance.
 //! * [`Contacts`]: all of it together, as a step of [`isosheet_dynamics::contact`] asks for it, where barrier
-//!   and friction are functions of these distances.
-//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
-//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
-//! * [`BodyMesh`]: a shape as triangles, for pictures and files.
+//!   and friction are functions of distances.
+//! * [`Obstacle`]: a [`Shape`], such as a half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at
+//!   rest or in a prescribed [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
+//!
+//! Distances, continuous collision detection, the broad phase and all else that shapes are is in
+//! [`isosheet_geometry`], which needs no mechanics.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!
@@ -38,36 +35,21 @@
 //! Everything is free of absolute tolerances: a sheet of a micrometre and one of a kilometre are
 //! treated alike. SI units and `f64` throughout.
 
-mod body_mesh;
-mod broad_phase;
-mod ccd;
 mod constraint;
-mod contact_mesh;
 mod contacts;
-mod crossings;
-pub mod distance;
 mod obstacle;
-mod signed_distance;
-mod surface;
-#[cfg(test)]
-mod testing;
-mod vectors;
 
-pub use body_mesh::BodyMesh;
-pub use broad_phase::{BroadPhase, Candidates, CrossCandidates};
-pub use ccd::{CcdOptions, CcdOptionsError};
-pub use contact_mesh::{ContactMesh, ContactMeshError};
 pub use contacts::{ContactOptions, Contacts, ContactsError, RoundBody};
-pub use crossings::{crossings, crossings_between};
-pub use distance::{Closest, Feature, Jet};
 pub use isosheet_dynamics::contact::{Coefficients, FrictionError, Stiffness};
 pub use nalgebra;
-pub use obstacle::{ContactGeometry, Obstacle, ObstacleError, Shape};
-pub use signed_distance::SignedDistance;
-pub use surface::{SurfaceError, TriangleSurface, rounded_line};
+pub use obstacle::{Obstacle, ObstacleError};
 
 #[doc(no_inline)]
 pub use isosheet_dynamics::{Keyframe, MotionError, RigidMotion};
+#[doc(no_inline)]
+pub use isosheet_geometry::{
+    CcdOptionsError, Shape, ShapeError, SignedDistance, SurfaceError, TriangleSurface,
+};
 
 /// The code of the README is compiled and run as a test.
 #[cfg(doctest)]

@@ -1,10 +1,10 @@
 //! Forces of contact and gaps at the vertices, against statics, balances of momentum and distances.
 
-use isosheet_collide::distance::{edge_edge, point_triangle};
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{
     ElasticSheet, ImplicitOptions, Method, SheetModel, Simulation, State, StepControl,
 };
+use isosheet_geometry::distance::{edge_edge, point_triangle};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 

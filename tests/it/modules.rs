@@ -43,13 +43,14 @@ fn circles_among(uses: &Uses, root: &Path) -> Vec<String> {
 }
 
 /// The library crates, by their folders.
-const LIBRARIES: [&str; 17] = [
+const LIBRARIES: [&str; 18] = [
     "mesh",
     "coords/linalg",
     "coords",
     "dynamics",
     "dynamics/attached-flow",
     "dynamics/charts",
+    "collide/geometry",
     "collide",
     "io/files",
     "io/drawings",

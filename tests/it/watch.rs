@@ -1,10 +1,9 @@
 //! Brute-force checks of scenes with contact, frame by frame.
 
-use isosheet_collide::distance::{edge_edge, point_triangle};
-use isosheet_collide::{
-    ContactGeometry, ContactMesh, Contacts, Obstacle, Shape, crossings, crossings_between,
-};
+use isosheet_collide::{Contacts, Obstacle, Shape};
 use isosheet_dynamics::{SheetModel, Simulation, StepReport};
+use isosheet_geometry::distance::{edge_edge, point_triangle};
+use isosheet_geometry::{ContactGeometry, ContactMesh, crossings, crossings_between};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 

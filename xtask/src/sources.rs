@@ -23,6 +23,7 @@ const SOLVER: &[&str] = &[
     "dynamics/src",
     "dynamics/attached-flow/src",
     "dynamics/charts/src",
+    "collide/geometry/src",
     "collide/src",
     "io/scenes/src",
     "tests/models",

@@ -1,6 +1,7 @@
 use super::*;
 use crate::{Coefficients, ContactOptions, Contacts, Keyframe};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, Support};
+use isosheet_geometry::TriangleSurface;
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::Isometry3;
 use std::f64::consts::PI;
@@ -53,6 +54,7 @@ fn shapes() -> Vec<Shape> {
 fn derivatives_of_levels_are_those_of_their_differences() {
     let h = 1e-6;
     for shape in shapes() {
+        let shape = Level(shape);
         for i in 0..200 {
             let a = f64::from(i);
             let p = Vector3::new((1.3 * a).sin(), (2.1 * a).cos(), (0.7 * a).sin()) * 0.6;

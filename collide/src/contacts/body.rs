@@ -1,8 +1,9 @@
 //! The bodies of a scene.
 
 use super::features::{Ends, Features};
-use crate::{Obstacle, ObstacleError, Shape};
+use crate::Obstacle;
 use isosheet_dynamics::contact::{BodyMotion, ContactKey, ContactKind, StepMotion, StepSpan};
+use isosheet_geometry::{ShapeError, Symmetry};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 /// Directions of an axis closer than this are the same but for the round-off of a quaternion.
@@ -22,7 +23,7 @@ impl Body {
         number: u32,
         segments: usize,
         ends: Ends,
-    ) -> Result<Self, ObstacleError> {
+    ) -> Result<Self, ShapeError> {
         Ok(Self {
             features: Features::new(obstacle.shape(), segments, ends)?,
             obstacle,
@@ -56,12 +57,12 @@ impl Body {
 
     /// A pose with the same place of the surface: for a body that is round about its z axis the
     /// orientation that the shortest turn of the axis from the pose at time zero leads to, so that it
-    /// stays while the body spins; for a ball none.
+    /// stays while the body spins; for a ball always the same.
     fn without_spin(&self, pose: Isometry3<f64>) -> Isometry3<f64> {
-        let rotation = match self.obstacle.shape() {
-            Shape::Cuboid { .. } | Shape::Surface(_) => pose.rotation,
-            Shape::Sphere { .. } => UnitQuaternion::identity(),
-            Shape::HalfSpace | Shape::Cylinder { .. } | Shape::Capsule { .. } => {
+        let rotation = match self.obstacle.shape().symmetry() {
+            Symmetry::None => pose.rotation,
+            Symmetry::Full => UnitQuaternion::identity(),
+            Symmetry::Axis => {
                 let first = self.obstacle.motion().pose(0.0).rotation;
                 let (before, after) = (first * Vector3::z(), pose.rotation * Vector3::z());
                 if (after - before).amax() <= SAME_AXIS {

@@ -5,22 +5,21 @@ use super::features::Features;
 use super::limit::{Limit, for_each_near};
 use super::motion::SheetMotion;
 use super::neighbours::Neighbours;
-use super::path::{Course, PartOfStep};
-use crate::Shape;
-use crate::distance::{Closest, edge_edge, point_triangle};
-use crate::vectors::{gather, smaller};
 use isosheet_dynamics::contact::{ContactKey, ContactKind};
+use isosheet_geometry::distance::{Closest, edge_edge, point_triangle};
+use isosheet_geometry::vectors::{gather, smaller};
+use isosheet_geometry::{Course, RigidPath};
 use nalgebra::Vector3;
 
 impl Body {
-    /// Appends the pairs within reach on the motion of the sheet and the given part of the body's,
-    /// and shortens the part of it that brings nothing into contact. `neighbours` are those of the motion; `near` is
-    /// room.
+    /// Appends the pairs within reach on the motion of the sheet and the given part of the body's, and
+    /// shortens the part of it that brings nothing into contact. `neighbours` are those of the motion; `near`
+    /// is room.
     pub(super) fn query(
         &self,
         sheet: SheetMotion<'_>,
         neighbours: Option<&Neighbours>,
-        part: &PartOfStep,
+        part: &RigidPath,
         limit: &Limit,
         near: &mut Vec<bool>,
         pairs: &mut Vec<ContactKey>,
@@ -35,18 +34,18 @@ impl Body {
     fn query_vertices(
         &self,
         sheet: SheetMotion<'_>,
-        part: &PartOfStep,
+        part: &RigidPath,
         limit: &Limit,
         pairs: &mut Vec<ContactKey>,
     ) {
         let shape = self.obstacle().shape();
-        if matches!(shape, Shape::Surface(_)) {
+        if !shape.is_convex() {
             return;
         }
         let places = sheet.x.as_chunks::<3>().0.iter();
         let steps = sheet.dx.as_chunks::<3>().0.iter();
         let vertices = (0..).zip(places.zip(steps));
-        for (v, (x, dx)) in vertices.filter(|(v, _)| sheet.mesh.meets_bodies(*v)) {
+        for (v, (x, dx)) in vertices.filter(|(v, _)| sheet.meets_bodies(*v)) {
             let course = part.course(&Vector3::from(*x), &Vector3::from(*dx));
             let clearance = sheet.of_obstacle(v);
             let distance = shape.signed_distance(&part.now(&course)).value;
@@ -84,7 +83,7 @@ impl Body {
         };
         let mut take = |kind, pair| pairs.push(self.key(kind, pair));
         let is_near = |[v, f]: [u32; 2]| {
-            if !sheet.mesh.meets_bodies(v) || !own.vertex_meets_face(others, [v, f]) {
+            if !sheet.meets_bodies(v) || !own.vertex_meets_face(others, [v, f]) {
                 return false;
             }
             let corners = features.face(f);
@@ -100,7 +99,7 @@ impl Body {
         let is_near = |[f, v]: [u32; 2]| {
             let corners = sheet.mesh.faces()[f as usize];
             if features.is_flat_vertex(v)
-                || !sheet.mesh.meets_bodies(corners[0])
+                || !sheet.meets_bodies(corners[0])
                 || !others.vertex_meets_face(own, [v, f])
             {
                 return false;
@@ -120,7 +119,7 @@ impl Body {
             if features.is_flat_edge(g)
                 || sheet.mesh.is_point(e)
                 || features.is_point(g) && !sheet.mesh.is_axis(e)
-                || !sheet.mesh.meets_bodies(own_ends[0])
+                || !sheet.meets_bodies(own_ends[0])
                 || !own.edge_meets_edge(others, [e, g])
             {
                 return false;
@@ -156,13 +155,13 @@ fn support<const N: usize>(
 #[derive(Clone, Copy)]
 struct Check<'a> {
     sheet: SheetMotion<'a>,
-    part: &'a PartOfStep,
+    part: &'a RigidPath,
     limit: &'a Limit,
 }
 
 impl Check<'_> {
-    /// Whether the pair of a primitive with this vertex may come within reach. Shortens the motion to what is safe
-    /// for it.
+    /// Whether the pair of a primitive with this vertex may come within reach. Shortens the motion to what is
+    /// safe for it.
     fn is_near<const N: usize>(
         &self,
         vertex: u32,

@@ -1,6 +1,6 @@
 //! How far sets of points have moved.
 
-use crate::vectors::larger;
+use isosheet_geometry::vectors::larger;
 
 /// Displacements of points beyond boxes: the least of their lower sides and the largest of their upper sides
 /// along each axis, metres. Where the boxes are points, these are the least and the largest displacement.

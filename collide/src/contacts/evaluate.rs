@@ -2,21 +2,22 @@
 
 use super::body::Body;
 use super::features::Features;
-use super::motion::{two_edges, vertex_face};
 use super::rolling::{edge_gradient, face_gradients};
+use super::round::Rounds;
 use super::thickness::{Clearance, Thickness};
-use crate::ContactMesh;
-use crate::distance::{Closest, edge_edge, point_triangle};
-use crate::vectors::gather;
 use isosheet_dynamics::contact::{
     ActiveContact, BodyPlace, ContactKey, ContactKind, ParallelEdges, Rolling, Round,
 };
+use isosheet_geometry::ContactMesh;
+use isosheet_geometry::distance::{Closest, edge_edge, point_triangle};
+use isosheet_geometry::vectors::gather;
 use nalgebra::Vector3;
 
 /// The sheet at given positions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sheet<'a> {
     pub(super) mesh: &'a ContactMesh,
+    pub(super) rounds: &'a Rounds,
     pub(super) x: &'a [f64],
     /// Squared rest lengths of the edges.
     pub(super) lengths2: &'a [f64],
@@ -36,7 +37,7 @@ impl Sheet<'_> {
     /// The contact of a pair of the sheet with itself; `None` out of reach.
     pub(super) fn with_itself(&self, key: ContactKey) -> Option<ActiveContact> {
         if key.kind == ContactKind::EdgeEdge {
-            let vertices = two_edges(self.mesh, key.pair);
+            let vertices = self.mesh.edge_edge(key.pair);
             let places = gather(self.x, vertices);
             let closest = edge_edge(&places);
             let contact = self.own_contact(key, vertices, &closest)?;
@@ -63,7 +64,7 @@ impl Sheet<'_> {
                 ..contact
             })
         } else {
-            let vertices = vertex_face(self.mesh, key.pair);
+            let vertices = self.mesh.vertex_face(key.pair);
             let places = gather(self.x, vertices);
             let closest = point_triangle(&places);
             let contact = self.own_contact(key, vertices, &closest)?;
@@ -102,7 +103,7 @@ impl Sheet<'_> {
             closest: Vector3::zeros(),
             parallel: None,
             rolling: None,
-            round: ends.map(|v| self.mesh.round(v).copied()),
+            round: ends.map(|v| self.rounds.of(v)),
         })
     }
 
@@ -128,11 +129,11 @@ impl Sheet<'_> {
 
     /// What is round where a primitive with this vertex meets an obstacle.
     fn against(&self, vertex: u32) -> [Option<Round>; 2] {
-        [self.mesh.round(vertex).copied(), None]
+        [self.rounds.of(vertex), None]
     }
 
-    /// The gap for a distance of a primitive with this vertex from an obstacle; `None` out of reach, but not if it is
-    /// not a number.
+    /// The gap for a distance of a primitive with this vertex from an obstacle; `None` out of reach, but not
+    /// if it is not a number.
     fn gap(&self, vertex: u32, distance: f64) -> Option<f64> {
         let clearance = self
             .thickness

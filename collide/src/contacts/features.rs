@@ -1,8 +1,7 @@
 //! The corners, edges and faces of a body, as edges and faces of a sheet meet them.
 
 use super::displacements::Displacements;
-use super::path::PartOfStep;
-use crate::{BroadPhase, ContactGeometry, ContactMesh, ObstacleError, Shape};
+use isosheet_geometry::{BroadPhase, ContactGeometry, ContactMesh, RigidPath, Shape, ShapeError};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::HashMap;
 
@@ -10,7 +9,7 @@ use std::collections::HashMap;
 /// the round-off of unit normals, and a ridge too low to matter.
 const FLAT_SINE: f64 = 1e-12;
 
-/// What of a body meets edges and faces of the sheet; of a triangle surface vertices as well.
+/// What of a body meets edges and faces of the sheet; of one that is not convex vertices as well.
 #[derive(Debug, Clone)]
 pub(super) struct Features {
     phase: BroadPhase,
@@ -39,8 +38,8 @@ pub(super) struct Features {
     displacements: Displacements,
 }
 
-/// Whether the centre of a ball and the ends of the axis of a capsule are edges without length besides: what meets the
-/// axes of capsules that respond, which have neither faces nor other edges beside them.
+/// Whether the centre of a ball and the ends of the axis of a capsule are edges without length besides: what
+/// meets the axes of capsules that respond, which have neither faces nor other edges beside them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ends {
     /// They are points alone.
@@ -54,11 +53,11 @@ impl Features {
         shape: &Shape,
         segments: usize,
         ends: Ends,
-    ) -> Result<Option<Self>, ObstacleError> {
+    ) -> Result<Option<Self>, ShapeError> {
         let Some(mut geometry) = shape.contact_geometry(segments)? else {
             return Ok(None);
         };
-        if ends == Ends::Edges && matches!(shape, Shape::Sphere { .. } | Shape::Capsule { .. }) {
+        if ends == Ends::Edges && geometry.radius > 0.0 {
             geometry.mesh = geometry.mesh.with_points_as_edges();
         }
         let ContactGeometry {
@@ -79,13 +78,13 @@ impl Features {
             }
         }
         // The faces of a convex body are looked after by its signed distance.
-        let (mesh, flat_edges) = if matches!(shape, Shape::Surface(_)) {
-            (mesh, flat_edges)
-        } else {
+        let (mesh, flat_edges) = if shape.is_convex() {
             let mut flat = flat_edges.iter();
             let mesh = mesh.without_faces(|_| flat.next() == Some(&false));
             let kept = mesh.edges().len();
             (mesh, vec![false; kept])
+        } else {
+            (mesh, flat_edges)
         };
         Ok(Some(Self {
             phase: BroadPhase::new(mesh, &positions),
@@ -107,7 +106,7 @@ impl Features {
 
     /// Sets the boxes to those of a motion, for pairs with a sheet within `reach`, metres; those of a resting
     /// body stay.
-    pub(super) fn place(&mut self, part: &PartOfStep, reach: f64) {
+    pub(super) fn place(&mut self, part: &RigidPath, reach: f64) {
         // Half of the reach, the radius, and the bulge of the paths of a turning body.
         let inflation = 0.5 * reach + self.radius + part.sagitta(self.extent);
         let pose = part.pose_at(0.0);

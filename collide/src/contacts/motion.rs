@@ -1,12 +1,15 @@
 //! A motion of the sheet that is searched for pairs.
 
 use super::thickness::{Clearance, Thickness};
-use crate::{CcdOptions, ContactMesh};
+use isosheet_geometry::{CcdOptions, ContactMesh};
+use std::ops::Range;
 
 /// A motion of the sheet and what the search for pairs needs to know about it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SheetMotion<'a> {
     pub(super) mesh: &'a ContactMesh,
+    /// The vertices that move in a prescribed way.
+    pub(super) driven: &'a Range<u32>,
     pub(super) x: &'a [f64],
     pub(super) dx: &'a [f64],
     pub(super) thickness: &'a Thickness,
@@ -18,8 +21,14 @@ pub(super) struct SheetMotion<'a> {
 }
 
 impl SheetMotion<'_> {
-    /// Of the pair of two primitives, the first one of which has the first and the second one the last of these
-    /// vertices.
+    /// Whether a primitive meets bodies, by one of its vertices: one that moves in a prescribed way does not,
+    /// as bodies do so too.
+    pub(super) fn meets_bodies(&self, vertex: u32) -> bool {
+        !self.driven.contains(&vertex) && self.mesh.takes_part(vertex)
+    }
+
+    /// Of the pair of two primitives, the first one of which has the first and the second one the last of
+    /// these vertices.
     pub(super) fn of_pair(&self, [first, .., last]: [u32; 4]) -> Clearance {
         self.thickness
             .clearance(self.mesh, [first, last], self.activation)
@@ -30,16 +39,4 @@ impl SheetMotion<'_> {
         self.thickness
             .obstacle_clearance(self.mesh, vertex, self.activation)
     }
-}
-
-/// The vertices of the pair of a vertex and a face.
-pub(super) fn vertex_face(mesh: &ContactMesh, [v, f]: [u32; 2]) -> [u32; 4] {
-    let [a, b, c] = mesh.faces()[f as usize];
-    [v, a, b, c]
-}
-
-/// The vertices of the pair of two edges.
-pub(super) fn two_edges(mesh: &ContactMesh, [e, g]: [u32; 2]) -> [u32; 4] {
-    let ([a, b], [c, d]) = (mesh.edges()[e as usize], mesh.edges()[g as usize]);
-    [a, b, c, d]
 }

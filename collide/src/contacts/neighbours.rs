@@ -2,11 +2,10 @@
 
 use super::body::Body;
 use super::displacements::Displacements;
-use super::motion::{self, SheetMotion};
-use super::path::PartOfStep;
-use crate::distance::{edge_edge, point_triangle};
-use crate::vectors::{gather, larger};
-use crate::{BroadPhase, Candidates, ContactMesh, CrossCandidates};
+use super::motion::SheetMotion;
+use isosheet_geometry::distance::{edge_edge, point_triangle};
+use isosheet_geometry::vectors::{gather, larger};
+use isosheet_geometry::{BroadPhase, Candidates, ContactMesh, CrossCandidates, RigidPath};
 use isosheet_linalg::parallel::{Work, fill};
 
 /// Skin of the lists, in mean edge lengths. With 0.06 and 0.25 a draping disk of 688 vertices takes 12 % and
@@ -93,8 +92,8 @@ impl Neighbours {
         &self.boxes
     }
 
-    /// Pairs of a vertex and a face of the sheet that may come within reach, with their distances in the middle of the
-    /// listed motion.
+    /// Pairs of a vertex and a face of the sheet that may come within reach, with their distances in the
+    /// middle of the listed motion.
     pub(super) fn vertex_face(&self) -> &[(f64, [u32; 2])] {
         self.vertex_face.below(self.far)
     }
@@ -122,7 +121,7 @@ impl Neighbours {
         &mut self,
         sheet: SheetMotion<'_>,
         bodies: &mut [Body],
-        parts: &[PartOfStep],
+        parts: &[RigidPath],
     ) {
         let SheetMotion { x, dx, reach, .. } = sheet;
         for (end, (x, dx)) in self.end.iter_mut().zip(x.iter().zip(dx)) {
@@ -191,11 +190,11 @@ impl Neighbours {
             } = &self.candidates;
             let [.., at] = &self.listed;
             self.vertex_face.set(vertex_face, |pair| {
-                let vertices = motion::vertex_face(mesh, pair);
+                let vertices = mesh.vertex_face(pair);
                 point_triangle(&gather(at, vertices)).distance() - radii(mesh, vertices)
             });
             self.edge_edge.set(two_edges, |pair| {
-                let vertices = motion::two_edges(mesh, pair);
+                let vertices = mesh.edge_edge(pair);
                 edge_edge(&gather(at, vertices)).distance() - radii(mesh, vertices)
             });
         }
@@ -207,12 +206,14 @@ impl Neighbours {
     }
 }
 
-/// The radii of two primitives, the first of which has the first and the second one the last of these vertices, metres.
+/// The radii of two primitives, the first of which has the first and the second one the last of these
+/// vertices, metres.
 fn radii(mesh: &ContactMesh, [first, .., last]: [u32; 4]) -> f64 {
     mesh.radius(first) + mesh.radius(last)
 }
 
-/// Pairs in the order of their distances, less the radii of what is round, in the middle of the listed motion, metres.
+/// Pairs in the order of their distances, less the radii of what is round, in the middle of the listed
+/// motion, metres.
 #[derive(Debug, Default)]
 struct ByDistance(Vec<(f64, [u32; 2])>);
 

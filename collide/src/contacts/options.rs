@@ -1,11 +1,12 @@
 //! What a user chooses about contact.
 
-use crate::{CcdOptions, CcdOptionsError, ObstacleError};
+use crate::ObstacleError;
 use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::contact::internals::BarrierPotential;
 use isosheet_dynamics::contact::{
     BarrierError, ContactLaws, FrictionError, Stiffness, SurfacePoints, SurfacePointsError,
 };
+use isosheet_geometry::{CcdOptions, CcdOptionsError, ShapeError};
 use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, FaceId, Sheet, Topology, VertexId, area_from_lengths};
 use std::ops::Range;
@@ -95,6 +96,12 @@ pub enum ContactsError {
     },
 }
 
+impl From<ShapeError> for ContactsError {
+    fn from(error: ShapeError) -> Self {
+        Self::Obstacle(error.into())
+    }
+}
+
 impl Advice for ContactsError {
     fn advice(&self) -> Option<&'static str> {
         match self {
@@ -135,14 +142,14 @@ impl ContactOptions {
     }
 
     /// The defaults for a surface that is not that of the model, see
-    /// [`Contacts::on_surface`](crate::Contacts::on_surface). The faces of bodies may be as narrow as they are:
-    /// a body does not touch itself.
+    /// [`Contacts::on_surface`](crate::Contacts::on_surface). The faces of bodies may be as narrow as they
+    /// are: a body does not touch itself.
     pub fn for_surface(surface: &Sheet, points: &SurfacePoints) -> Self {
         Self::for_surface_without(surface, points, &[])
     }
 
-    /// The defaults for a surface of which some ranges of points do not count, such as those in the place of which
-    /// there are [round bodies](crate::Contacts::with_round_body).
+    /// The defaults for a surface of which some ranges of points do not count, such as those in the place of
+    /// which there are [round bodies](crate::Contacts::with_round_body).
     pub fn for_surface_without(
         surface: &Sheet,
         points: &SurfacePoints,
@@ -225,9 +232,9 @@ impl ContactOptions {
     }
 }
 
-/// The smallest height of each face between the first `own` vertices, metres, and infinity of the others. In the flat
-/// sheet no vertex is closer than this to an edge or face that it does not belong to, nor are two edges without a
-/// common end, except across slits and at re-entrant corners of the outline.
+/// The smallest height of each face between the first `own` vertices, metres, and infinity of the others. In
+/// the flat sheet no vertex is closer than this to an edge or face that it does not belong to, nor are two
+/// edges without a common end, except across slits and at re-entrant corners of the outline.
 pub(super) fn smallest_heights<'a>(
     topology: &'a Topology,
     lengths: &'a [f64],

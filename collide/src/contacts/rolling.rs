@@ -51,7 +51,7 @@ pub(super) fn edge_gradient(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distance::{edge_edge, point_triangle};
+    use isosheet_geometry::distance::{edge_edge, point_triangle};
     use proptest::prelude::*;
 
     fn point() -> impl Strategy<Value = Vector3<f64>> {

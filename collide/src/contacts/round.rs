@@ -6,7 +6,8 @@ use isosheet_dynamics::contact::Round;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-/// A round body where it is at the start: all points within a radius of a segment, whose ends are the same of a ball.
+/// A round body where it is at the start: all points within a radius of a segment, whose ends are the same of
+/// a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoundBody {
     /// The ends of the segment, metres.
@@ -16,11 +17,12 @@ pub struct RoundBody {
 }
 
 /// The points of a round body in the place of those of a polyhedron.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 struct InPlace {
     /// Those of the polyhedron.
     replaced: Range<usize>,
     points: Range<usize>,
+    round: Round,
     /// Whether it has an axis.
     has_axis: bool,
 }
@@ -41,7 +43,8 @@ impl RoundBody {
         a == b
     }
 
-    /// Points that the body carries: each end twice, and three beside the first, which lie with it in no plane.
+    /// Points that the body carries: each end twice, and three beside the first, which lie with it in no
+    /// plane.
     pub(super) fn points(&self) -> Vec<[f64; 3]> {
         let [first, last] = self.axis;
         let beside = (0..3).map(|k| {
@@ -57,20 +60,27 @@ impl RoundBody {
 }
 
 impl RoundBody {
-    /// Its primitives, by the numbers of these points: which of them are vertices, the edges, and what is round.
-    pub(super) fn primitives(&self) -> (&'static [bool], &'static [[u32; 2]], Round) {
-        let radius = self.radius;
+    /// Its primitives, by the numbers of these points: which of them are vertices, and the edges.
+    pub(super) fn primitives(&self) -> (&'static [bool], &'static [[u32; 2]]) {
         match self.is_ball() {
-            true => {
-                let frame = [0, 2, 3, 4];
-                let vertices = &[true, false, false, false, false];
-                (vertices, &[[0, 1]], Round { radius, frame })
-            }
-            false => {
-                let frame = [0, 4, 5, 6];
-                let vertices = &[true, false, true, false, false, false, false];
-                (vertices, &[[0, 1], [2, 3], [0, 2]], Round { radius, frame })
-            }
+            true => (&[true, false, false, false, false], &[[0, 1]]),
+            false => (
+                &[true, false, true, false, false, false, false],
+                &[[0, 1], [2, 3], [0, 2]],
+            ),
+        }
+    }
+
+    /// What is round, where the points begin at the given one: the frame is the first end and the points
+    /// beside it.
+    fn round(&self, first: usize) -> Round {
+        let beside = match self.is_ball() {
+            true => [0, 2, 3, 4],
+            false => [0, 4, 5, 6],
+        };
+        Round {
+            radius: self.radius,
+            frame: beside.map(|k| first as u32 + k),
         }
     }
 }
@@ -85,6 +95,7 @@ impl Rounds {
         self.0.push(InPlace {
             replaced,
             points: first..first + body.points().len(),
+            round: body.round(first),
             has_axis: !body.is_ball(),
         });
     }
@@ -95,6 +106,15 @@ impl Rounds {
             true => Ends::Edges,
             false => Ends::Points,
         }
+    }
+
+    /// What is round about a point.
+    pub(super) fn of(&self, point: u32) -> Option<Round> {
+        // The points of the bodies are in the order of the bodies.
+        let point = point as usize;
+        let before = self.0.partition_point(|body| body.points.end <= point);
+        let body = self.0.get(before)?;
+        body.points.contains(&point).then_some(body.round)
     }
 
     /// Whether a round body is in the place of a point.

@@ -1,11 +1,11 @@
 //! The pairs of the sheet with itself.
 
 use super::limit::{Limit, for_each_near};
-use super::motion::{SheetMotion, two_edges, vertex_face};
+use super::motion::SheetMotion;
 use super::neighbours::Neighbours;
-use crate::distance::{edge_edge, point_triangle};
-use crate::vectors::gather;
 use isosheet_dynamics::contact::{ContactKey, ContactKind};
+use isosheet_geometry::distance::{edge_edge, point_triangle};
+use isosheet_geometry::vectors::gather;
 use nalgebra::Vector3;
 
 fn key(kind: ContactKind, pair: [u32; 2]) -> ContactKey {
@@ -16,8 +16,8 @@ fn key(kind: ContactKind, pair: [u32; 2]) -> ContactKey {
     }
 }
 
-/// Appends the pairs of the sheet with itself within reach on a motion and shortens the part of it that brings nothing
-/// into contact. `neighbours` are those of the motion; `near` is room.
+/// Appends the pairs of the sheet with itself within reach on a motion and shortens the part of it that
+/// brings nothing into contact. `neighbours` are those of the motion; `near` is room.
 pub(super) fn query(
     sheet: SheetMotion<'_>,
     neighbours: &Neighbours,
@@ -31,7 +31,7 @@ pub(super) fn query(
         if !boxes.vertex_meets_face(boxes, pair) {
             return false;
         }
-        let vertices = vertex_face(mesh, pair);
+        let vertices = mesh.vertex_face(pair);
         let clearance = sheet.of_pair(vertices);
         let (places, steps) = (gather(x, vertices), gather(dx, vertices));
         let closer = approach(&steps, 1);
@@ -54,14 +54,14 @@ pub(super) fn query(
     let is_near = |(_, pair): (f64, [u32; 2])| {
         // The faces that an edge is a side of look after points.
         let [first, second] = pair;
-        let is_flat = |e: u32| mesh.round(mesh.edges()[e as usize][0]).is_none();
+        let is_flat = |e: u32| !mesh.is_round(mesh.edges()[e as usize][0]);
         if mesh.is_point(first) && is_flat(second) || mesh.is_point(second) && is_flat(first) {
             return false;
         }
         if !boxes.edge_meets_edge(boxes, pair) {
             return false;
         }
-        let vertices = two_edges(mesh, pair);
+        let vertices = mesh.edge_edge(pair);
         let clearance = sheet.of_pair(vertices);
         let (places, steps) = (gather(x, vertices), gather(dx, vertices));
         let closer = approach(&steps, 2);

@@ -1,10 +1,9 @@
 //! Whether a simulation can start.
 
 use super::evaluate::Placed;
-use crate::crossings::pierces;
-use crate::vectors::gather;
-use crate::{BroadPhase, ContactMesh, Shape};
 use isosheet_dynamics::contact::{ActiveContact, ContactError, ContactPair};
+use isosheet_geometry::vectors::gather;
+use isosheet_geometry::{BroadPhase, ContactMesh, pierces};
 use nalgebra::Vector3;
 
 /// Refuses a contact whose gap is closed or not a number, naming the closest.
@@ -63,25 +62,25 @@ pub(super) fn check_itself(boxes: &mut BroadPhase, x: &[f64]) -> Result<(), Cont
 
 /// Refuses a sheet that is inside a solid or passes through its surface, with the pair and its gap. Inside a
 /// convex body a gap is negative; this finds edges and faces that run through with their corners outside.
+/// `meets_bodies` says of a vertex whether what has it is looked at.
 pub(super) fn check_body(
     number: usize,
     Placed { body, place }: Placed<'_>,
     segments: usize,
     boxes: &BroadPhase,
     x: &[f64],
+    meets_bodies: impl Fn(u32) -> bool,
 ) -> Result<(), (ContactPair, f64)> {
     let shape = body.obstacle().shape();
     let touching = |vertex, gap| {
         let body = number;
         (ContactPair::Body { vertex, body }, gap)
     };
-    if let Shape::Surface(surface) = shape
-        && surface.is_closed()
-    {
+    if shape.is_solid() && !shape.is_convex() {
         let vertices = (0..).zip(x.as_chunks::<3>().0);
-        for (v, p) in vertices.filter(|(v, _)| boxes.mesh().meets_bodies(*v)) {
+        for (v, p) in vertices.filter(|(v, _)| meets_bodies(*v)) {
             let local = place.to_local(&Vector3::from(*p));
-            let gap = surface.signed_distance(&local).value;
+            let gap = shape.signed_distance(&local).value;
             if gap <= 0.0 {
                 return Err(touching(v, gap));
             }
@@ -100,14 +99,14 @@ pub(super) fn check_body(
     boxes.edge_faces_with(&other, &mut pairs);
     for &[e, f] in &pairs {
         let (edge, face) = (sheet.edges()[e as usize], solid.faces()[f as usize]);
-        if sheet.meets_bodies(edge[0]) && pierces(gather(x, edge), gather(&places, face)) {
+        if meets_bodies(edge[0]) && pierces(gather(x, edge), gather(&places, face)) {
             return Err(touching(edge[0], 0.0));
         }
     }
     other.edge_faces_with(boxes, &mut pairs);
     for &[e, f] in &pairs {
         let (edge, face) = (solid.edges()[e as usize], sheet.faces()[f as usize]);
-        if sheet.meets_bodies(face[0]) && pierces(gather(&places, edge), gather(x, face)) {
+        if meets_bodies(face[0]) && pierces(gather(&places, edge), gather(x, face)) {
             return Err(touching(face[0], 0.0));
         }
     }

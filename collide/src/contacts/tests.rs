@@ -6,10 +6,13 @@ mod safety;
 mod start;
 
 use super::*;
-use crate::{Keyframe, Shape, Stiffness, TriangleSurface};
+use crate::{Keyframe, Stiffness};
 use isosheet_dynamics::contact::BodyMotions;
 use isosheet_dynamics::contact::internals::{
     BarrierPotential, ContactSet, ContactTerms, CouplingSink, LaggedFriction,
+};
+use isosheet_geometry::{
+    ContactGeometry, Form, Shape, ShapeError, SignedDistance, TriangleSurface, Triangles,
 };
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Matrix3};
@@ -95,7 +98,52 @@ fn shapes() -> Vec<(&'static str, Shape)> {
         ),
         ("roof", roof()),
         ("tetrahedron", tetrahedron()),
+        ("rounded box", rounded_box()),
     ]
+}
+
+/// A box whose edges and corners are rounded, as a program describes it.
+#[derive(Debug)]
+struct Rounded {
+    core: Shape,
+    radius: f64,
+}
+
+impl Form for Rounded {
+    fn name(&self) -> &'static str {
+        "rounded box"
+    }
+
+    fn signed_distance(&self, p: &Vector3<f64>) -> SignedDistance {
+        let of_core = self.core.signed_distance(p);
+        let value = of_core.value - self.radius;
+        SignedDistance { value, ..of_core }
+    }
+
+    fn triangles(&self, sides: usize) -> Result<Option<Triangles>, ShapeError> {
+        self.core.triangles(sides)
+    }
+
+    fn contact_geometry(&self, segments: usize) -> Result<Option<ContactGeometry>, ShapeError> {
+        let of_core = self.core.contact_geometry(segments)?;
+        let radius = self.radius;
+        Ok(of_core.map(|of_core| ContactGeometry { radius, ..of_core }))
+    }
+
+    fn bounds(&self) -> Option<[Vector3<f64>; 2]> {
+        let [low, high] = self.core.bounds()?;
+        Some([low.add_scalar(-self.radius), high.add_scalar(self.radius)])
+    }
+
+    fn is_convex(&self) -> bool {
+        true
+    }
+}
+
+fn rounded_box() -> Shape {
+    let half = [0.15, 0.1, 0.05];
+    let (core, radius) = (Shape::Cuboid { half }, 0.05);
+    Shape::Other(Arc::new(Rounded { core, radius }))
 }
 
 /// Height of a body's highest point in a pose.

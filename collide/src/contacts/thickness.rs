@@ -1,6 +1,6 @@
 //! How far what touches stays apart.
 
-use crate::{CcdOptions, ContactMesh};
+use isosheet_geometry::{CcdOptions, ContactMesh};
 use std::ops::Range;
 
 /// The thickness of sheets, by their vertices.
@@ -43,8 +43,8 @@ impl Thickness {
         own.unwrap_or(self.all)
     }
 
-    /// The distance, metres, that the sheets or bodies of two vertices keep: of two sheets the mean of both, half of
-    /// which is on each side of the middle surface of a sheet.
+    /// The distance, metres, that the sheets or bodies of two vertices keep: of two sheets the mean of both,
+    /// half of which is on each side of the middle surface of a sheet.
     pub(super) fn between(&self, first: u32, second: u32) -> f64 {
         match (self.of(first), self.of(second)) {
             (Some(a), Some(b)) => 0.5 * (a + b),
@@ -57,7 +57,8 @@ impl Thickness {
         self.of(v).unwrap_or(0.0)
     }
 
-    /// Which distances count between the sheets or bodies of two vertices of a mesh, with the radii of what is round.
+    /// Which distances count between the sheets or bodies of two vertices of a mesh, with the radii of what
+    /// is round.
     pub(super) fn clearance(
         &self,
         mesh: &ContactMesh,

@@ -10,7 +10,7 @@ impl FrontMap {
     /// As [`FrontMap::realise`], and checks the two conditions that the paper's definition of a realisation has
     /// besides: two edges meet, if at all, in a common end, and no vertex lies on an edge of which it is no end.
     /// (Edges of a sheet in space rarely meet, even where its faces pass through each other, which
-    /// `isosheet_collide::crossings` finds.) Edges meet where they come closer than the [closure
+    /// `isosheet_geometry::crossings` finds.) Edges meet where they come closer than the [closure
     /// tolerance](super::RealiseOptions::closure_tolerance) times the longer one of them. Every pair is looked
     /// at: the time grows as the square of the number of edges.
     ///

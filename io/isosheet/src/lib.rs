@@ -8,6 +8,7 @@
 //! - Supports that move, vertices on curves and surfaces: [`dynamics::SheetModel::with_moving_pin`],
 //!   [`dynamics::SheetModel::with_constraint`].
 //! - Obstacles that are turned or move: [`dynamics::RigidDisplacement`], [`collide::Obstacle::new`].
+//! - Distances, continuous collision detection, shapes of one's own: [`geometry`], [`geometry::Form`].
 //! - Friction of each obstacle, thickness of the sheet: [`collide::Contacts::new`], [`collide::ContactOptions`].
 //! - Loads, air, potentials and forces of one's own: [`dynamics::SheetModel`], [`dynamics::Potential`],
 //!   [`dynamics::Force`].
@@ -32,6 +33,7 @@ pub use isosheet_collide as collide;
 pub use isosheet_coords as coords;
 pub use isosheet_dynamics as dynamics;
 pub use isosheet_dynamics::nalgebra;
+pub use isosheet_geometry as geometry;
 pub use isosheet_linalg as linalg;
 pub use isosheet_mesh as mesh;
 

@@ -2,9 +2,10 @@
 
 use super::check;
 use super::pack::{packed_doubles, packed_triangles};
-use isosheet_collide::{Obstacle, Shape};
+use isosheet_collide::Obstacle;
 use isosheet_files::DataError;
 use isosheet_formats::BodyPose;
+use isosheet_geometry::{Shape, Skin};
 use isosheet_mesh::wording::{brief, given};
 use nalgebra::Isometry3;
 use serde::Serialize;
@@ -133,33 +134,39 @@ impl Body {
     }
 }
 
+/// Sides of the circles of round bodies of which the page knows no form of its own.
+const SIDES: usize = 64;
+
+/// The page draws boxes, balls, capsules, cylinders and planes itself, and of all other shapes the triangles.
 impl From<&Shape> for BodyShape {
     fn from(shape: &Shape) -> Self {
-        match *shape {
-            Shape::HalfSpace => Self::HalfSpace,
-            Shape::Cuboid { half } => Self::Cuboid { half },
-            Shape::Sphere { radius } => Self::Sphere { radius },
-            Shape::Cylinder {
+        match shape.skin() {
+            Skin::Plane => Self::HalfSpace,
+            Skin::Round {
+                half_length: 0.0,
                 radius,
-                half_height,
-            } => Self::Cylinder {
-                radius,
-                half_height,
-            },
-            Shape::Capsule {
-                radius,
+            } => Self::Sphere { radius },
+            Skin::Round {
                 half_length,
+                radius,
             } => Self::Capsule {
                 radius,
                 half_length,
             },
-            Shape::Surface(ref surface) => Self::Mesh {
-                vertices: surface
-                    .positions()
-                    .iter()
-                    .flat_map(|p| [p.x, p.y, p.z])
-                    .collect(),
-                faces: surface.mesh().faces().to_vec(),
+            Skin::Tube {
+                half_length,
+                radius,
+            } => Self::Cylinder {
+                radius,
+                half_height: half_length,
+            },
+            Skin::Flat => match (shape, shape.triangles(SIDES).ok().flatten()) {
+                (Shape::Cuboid { half }, _) => Self::Cuboid { half: *half },
+                (_, Some(mesh)) => Self::Mesh {
+                    vertices: mesh.points.concat(),
+                    faces: mesh.faces,
+                },
+                (_, None) => Self::HalfSpace,
             },
         }
     }

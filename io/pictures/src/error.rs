@@ -1,7 +1,7 @@
 //! Why a picture cannot be made.
 
-use isosheet_collide::ObstacleError;
 use isosheet_files::{DataError, bytes_in_words};
+use isosheet_geometry::ShapeError;
 use isosheet_mesh::Advice;
 
 /// Why a picture cannot be made.
@@ -16,7 +16,7 @@ pub enum PictureError {
     Data(DataError),
     /// A body has no geometry.
     #[error(transparent)]
-    Body(#[from] ObstacleError),
+    Body(#[from] ShapeError),
     /// A vector drawing cannot be read.
     #[cfg(feature = "labels")]
     #[error("cannot read the vector drawing: {0}")]

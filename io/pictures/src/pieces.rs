@@ -267,7 +267,8 @@ mod tests {
     use super::super::solid::Solid;
     use super::super::vector::cross;
     use super::*;
-    use isosheet_collide::{Obstacle, Shape};
+    use isosheet_collide::Obstacle;
+    use isosheet_geometry::Shape;
     use isosheet_mesh::Topology;
     use nalgebra::Isometry3;
     use std::collections::BTreeMap;

@@ -449,7 +449,8 @@ mod tests {
     /// middle.
     #[test]
     fn floors_fade_out_before_the_picture_ends() {
-        use isosheet_collide::{Obstacle, Shape};
+        use isosheet_collide::Obstacle;
+        use isosheet_geometry::Shape;
         let sheet = isotropic_square(0, 0.1).unwrap();
         let floor = Obstacle::at(Shape::HalfSpace, [0.0, 0.0, -0.1]).unwrap();
         let floor = Solid::of(&floor, 0.0).unwrap();

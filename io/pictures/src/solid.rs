@@ -3,7 +3,8 @@
 use super::camera::normal;
 use super::error::PictureError;
 use super::vector::{axpy, dot, sub, unit};
-use isosheet_collide::{BodyMesh, Obstacle, Shape};
+use isosheet_collide::Obstacle;
+use isosheet_geometry::{self as geometry, Shape, Triangles as Mesh};
 use isosheet_mesh::{Topology, VertexId};
 use nalgebra::{Isometry3, Point3};
 use std::collections::BTreeMap;
@@ -13,7 +14,8 @@ use std::sync::Arc;
 /// shadows that the bodies cast.
 const SIDES: usize = 32;
 
-/// Edges are drawn where the normals of two faces differ by more than this (cosine).
+/// Edges are drawn where the normals of two faces differ by more than this (cosine), which is more than two
+/// faces beside each other on a round body differ.
 const FLAT: f64 = 0.97;
 
 /// A body as it is drawn, in a pose.
@@ -27,7 +29,7 @@ pub struct Solid {
 #[derive(Debug)]
 struct SolidForm {
     /// None for a half-space.
-    mesh: Option<BodyMesh>,
+    mesh: Option<Mesh>,
     /// Edges where two faces meet at an angle.
     edges: Vec<[u32; 2]>,
     shape: Shape,
@@ -62,12 +64,8 @@ impl Solid {
     /// # Errors
     /// [`PictureError::Body`] if the body has no geometry.
     pub fn of(body: &Obstacle, t: f64) -> Result<Self, PictureError> {
-        let mesh = BodyMesh::of(body.shape(), SIDES)?;
-        let edges = match (body.shape(), &mesh) {
-            (Shape::Cylinder { half_height, .. }, Some(mesh)) => rims(mesh, *half_height),
-            (Shape::Cuboid { .. } | Shape::Surface(_), Some(mesh)) => ridges(mesh),
-            _ => Vec::new(),
-        };
+        let mesh = body.shape().triangles(SIDES)?;
+        let edges = mesh.as_ref().map(ridges).unwrap_or_default();
         let form = SolidForm {
             mesh,
             edges,
@@ -97,37 +95,32 @@ impl Solid {
     pub(super) fn shell(&self, centre: &[f64; 3], reach: f64) -> Shell {
         let place = |p: &[f64; 3]| place(&self.pose, p);
         let ends = |half: f64| [-half, half].map(|z| place(&[0.0, 0.0, z]));
-        let skin = match self.form.shape {
-            Shape::HalfSpace => {
+        let skin = match self.form.shape.skin() {
+            geometry::Skin::Plane => {
                 let foot = self.pose.inverse() * Point3::from(*centre);
                 let foot = self.pose * Point3::new(foot.x, foot.y, 0.0);
                 let (centre, radius) = (foot.coords.into(), reach);
                 Skin::Ground { centre, radius }
             }
-            Shape::Cuboid { .. } => Skin::Flat { is_closed: true },
-            Shape::Surface(ref surface) => Skin::Flat {
-                is_closed: surface.is_closed(),
+            geometry::Skin::Flat => Skin::Flat {
+                is_closed: self.form.shape.is_solid(),
             },
-            Shape::Sphere { radius } => Skin::Round {
-                ends: ends(0.0),
-                radius,
-            },
-            Shape::Capsule {
-                radius,
+            geometry::Skin::Round {
                 half_length,
+                radius,
             } => Skin::Round {
                 ends: ends(half_length),
                 radius,
             },
-            Shape::Cylinder {
+            geometry::Skin::Tube {
+                half_length,
                 radius,
-                half_height,
             } => Skin::Tube {
-                ends: ends(half_height),
+                ends: ends(half_length),
                 radius,
             },
         };
-        let square = BodyMesh::square(reach);
+        let square = Mesh::square(reach);
         let mesh = self.form.mesh.as_ref().unwrap_or(&square);
         let mut points: Vec<[f64; 3]> = mesh.points.iter().map(place).collect();
         if let Skin::Ground { centre, .. } = skin {
@@ -155,7 +148,7 @@ fn place(pose: &Isometry3<f64>, p: &[f64; 3]) -> [f64; 3] {
 }
 
 /// The edges between faces that meet at an angle, and those with one face or with more than two.
-fn ridges(mesh: &BodyMesh) -> Vec<[u32; 2]> {
+fn ridges(mesh: &Mesh) -> Vec<[u32; 2]> {
     let mut beside: BTreeMap<[u32; 2], Vec<[f64; 3]>> = BTreeMap::new();
     for face in &mesh.faces {
         let n = normal(&face.map(|v| mesh.points[v as usize]));
@@ -170,17 +163,6 @@ fn ridges(mesh: &BodyMesh) -> Vec<[u32; 2]> {
     };
     let ridges = beside.into_iter().filter(|(_, normals)| is_ridge(normals));
     ridges.map(|(edge, _)| edge).collect()
-}
-
-/// The edges around the flat ends of a cylinder: between corners of one end that are on its rim.
-fn rims(mesh: &BodyMesh, half_height: f64) -> Vec<[u32; 2]> {
-    let edges = ridges(mesh).into_iter();
-    edges
-        .filter(|e| {
-            let [a, b] = e.map(|v| mesh.points[v as usize][2]);
-            a == b && a.abs() == half_height
-        })
-        .collect()
 }
 
 impl Skin {
@@ -350,7 +332,7 @@ impl Triangles {
     pub(super) fn add_ground(&mut self, height: f64, centre: &[f64; 3], reach: f64) {
         let first = self.x.len();
         let centre = [centre[0], centre[1], height];
-        let square = BodyMesh::square(reach);
+        let square = Mesh::square(reach);
         self.x
             .extend(square.points.iter().map(|p| axpy(p, 1.0, &centre)));
         let faces = square.faces.iter();

@@ -1,7 +1,7 @@
 //! The ground of pictures and pages of runs without a floor, which shows shadows alone.
 
 use super::Recording;
-use isosheet_collide::{BodyMesh, Obstacle, Shape};
+use isosheet_collide::Obstacle;
 use nalgebra::Point3;
 
 /// How far the ground is below bodies that stand on it, as part of the size of the space that the sheet
@@ -21,7 +21,7 @@ impl Recording {
     pub fn ground(&self, times: &[f64], [low, high]: [[f64; 3]; 2]) -> Option<f64> {
         let gravity = self.scene.scene().forces.gravity?;
         let is_down = gravity[0] == 0.0 && gravity[1] == 0.0 && gravity[2] < 0.0;
-        let is_plane = |body: &Obstacle| matches!(body.shape(), Shape::HalfSpace);
+        let is_plane = |body: &Obstacle| body.shape().bounds().is_none();
         if !is_down || self.obstacles.iter().any(is_plane) {
             return None;
         }
@@ -37,7 +37,7 @@ impl Recording {
 
 /// The lowest height of a body at some times, metres.
 fn lowest(body: &Obstacle, times: &[f64]) -> Option<f64> {
-    let mesh = BodyMesh::of(body.shape(), SIDES).ok()??;
+    let mesh = body.shape().triangles(SIDES).ok()??;
     let mut poses: Vec<_> = times.iter().map(|t| body.motion().pose(*t)).collect();
     poses.dedup();
     let heights = poses.iter().flat_map(|pose| {

@@ -1,7 +1,7 @@
 //! Which contact holds a crease open.
 
-use isosheet_collide::distance::{edge_edge, point_triangle};
-use isosheet_collide::{BroadPhase, Candidates, ContactMesh};
+use isosheet_geometry::distance::{edge_edge, point_triangle};
+use isosheet_geometry::{BroadPhase, Candidates, ContactMesh};
 use isosheet_mesh::wording::brief;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, Topology, VertexId};
 use nalgebra::Vector3;

@@ -1,6 +1,6 @@
 //! Whether panels of a sheet that does not touch itself pass through each other.
 
-use isosheet_collide::{BroadPhase, ContactMesh};
+use isosheet_geometry::{BroadPhase, ContactMesh};
 use isosheet_mesh::Topology;
 use isosheet_scenes::{Folding, size};
 

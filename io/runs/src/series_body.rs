@@ -1,7 +1,8 @@
 //! Obstacles for files of other programs.
 
-use isosheet_collide::{BodyMesh, Obstacle};
+use isosheet_collide::Obstacle;
 use isosheet_formats::{BodyPose, SeriesBody};
+use isosheet_geometry::Triangles;
 
 /// Sides of the circles of round bodies: their surface is at most 0.1 % of the radius off.
 const SIDES: usize = 64;
@@ -10,8 +11,8 @@ const SIDES: usize = 64;
 /// is a square in its plane, about the origin of its frame and with this half side (metres).
 pub fn series_body(name: String, obstacle: &Obstacle, times: &[f64], half: f64) -> SeriesBody {
     // The sides are enough for any shape.
-    let mesh = BodyMesh::of(obstacle.shape(), SIDES).ok().flatten();
-    let mesh = mesh.unwrap_or_else(|| BodyMesh::square(half));
+    let mesh = obstacle.shape().triangles(SIDES).ok().flatten();
+    let mesh = mesh.unwrap_or_else(|| Triangles::square(half));
     let mut poses: Vec<BodyPose> = Vec::with_capacity(times.len());
     for t in times {
         let pose = obstacle.motion().pose(*t);

@@ -149,8 +149,9 @@ impl Body {
     /// Sides of its circles.
     pub(super) fn sides(&self) -> usize {
         self.sides.unwrap_or(match self.shape {
-            Shape::Cylinder { .. } => TOUCHING,
-            _ => DRAWN,
+            Shape::Sphere { .. } | Shape::Capsule { .. } => DRAWN,
+            // Polyhedra have their own.
+            _ => TOUCHING,
         })
     }
 

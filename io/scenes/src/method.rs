@@ -67,8 +67,8 @@ pub enum Integrator {
     Rattle,
     /// Fourth order, symplectic; rods without contact.
     RattleComposition,
-    /// Hamilton's equations in system coordinates, see `method.chart`; rods, contact by impulses, not from a
-    /// flat state.
+    /// Hamilton's equations in system coordinates, see `method.chart`; rods, no contact, not from a flat
+    /// state.
     Chart,
 }
 

@@ -8,8 +8,8 @@ use super::pose::{Motion, Pose};
 use super::problem::{Checks, Problem};
 use super::sequence::Sequence;
 use super::unit::Unit;
-use isosheet_collide as collide;
-use isosheet_collide::{SurfaceError, TriangleSurface, rounded_line};
+use isosheet_geometry as geometry;
+use isosheet_geometry::{SurfaceError, TriangleSurface, rounded_line};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -263,22 +263,22 @@ impl Shape {
     }
 
     /// Makes the shape; `key` is its place.
-    pub(crate) fn build(&self, key: &Key, files: &mut Files) -> Result<collide::Shape, Problem> {
+    pub(crate) fn build(&self, key: &Key, files: &mut Files) -> Result<geometry::Shape, Problem> {
         let solid = |surface: Result<TriangleSurface, SurfaceError>| {
             let surface = surface.map_err(|e| form_problem(&key.name(self.name()), &e))?;
-            Ok(collide::Shape::Surface(Arc::new(surface)))
+            Ok(geometry::Shape::Surface(Arc::new(surface)))
         };
         Ok(match self {
-            Self::HalfSpace => collide::Shape::HalfSpace,
-            Self::Box { size } => collide::Shape::Cuboid {
+            Self::HalfSpace => geometry::Shape::HalfSpace,
+            Self::Box { size } => geometry::Shape::Cuboid {
                 half: size.map(|s| 0.5 * s),
             },
-            Self::Sphere { radius } => collide::Shape::Sphere { radius: *radius },
-            Self::Cylinder { radius, height } => collide::Shape::Cylinder {
+            Self::Sphere { radius } => geometry::Shape::Sphere { radius: *radius },
+            Self::Cylinder { radius, height } => geometry::Shape::Cylinder {
                 radius: *radius,
                 half_height: 0.5 * height,
             },
-            Self::Capsule { radius, length } => collide::Shape::Capsule {
+            Self::Capsule { radius, length } => geometry::Shape::Capsule {
                 radius: *radius,
                 half_length: 0.5 * length,
             },
@@ -305,7 +305,7 @@ impl Shape {
                             "repair the surface, `isosheet check` says what else is wrong with it";
                         Problem::new(key.name("path"), message, remedy)
                     })?;
-                collide::Shape::Surface(Arc::new(surface))
+                geometry::Shape::Surface(Arc::new(surface))
             }
             Self::Sequence(_) => {
                 let message = "a mesh in motion has no form of its own";

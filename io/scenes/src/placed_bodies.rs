@@ -10,16 +10,18 @@ use super::obstacles::Shape;
 use super::placed::PlacedSheets;
 use super::problem::Problem;
 use super::resolution::check_shape;
-use super::round_bodies::RoundShape;
+use super::round_bodies;
 use super::selection::{InPlace, Selection};
 use super::start::velocities;
 use isosheet_collide as collide;
-use isosheet_collide::{BodyMesh, BroadPhase, ContactMesh, RoundBody};
+use isosheet_collide::RoundBody;
 use isosheet_dynamics::contact::SurfacePoints;
 use isosheet_dynamics::{
     BodyForce, BodyTorque, JointCoordinate, Profile, RigidBody, Solid, SolidError,
 };
 use isosheet_formats::FaceGroups;
+use isosheet_geometry as geometry;
+use isosheet_geometry::{BroadPhase, ContactMesh};
 use isosheet_mesh::{MassMatrix, Part, Sheet, VertexId};
 use nalgebra::{Point3, Vector3};
 
@@ -30,6 +32,8 @@ pub(super) struct PlacedBody<'a> {
     pub(super) key: Key,
     pub(super) solid: Solid,
     pub(super) body: RigidBody,
+    /// The surface by which it touches, if that is round.
+    round: Option<RoundBody>,
     /// The four vertices that carry it.
     tetrahedron: Sheet,
     /// Its first vertex in the model.
@@ -43,8 +47,8 @@ pub(super) struct PlacedBodies<'a> {
     pub(super) list: Vec<PlacedBody<'a>>,
 }
 
-/// What is seen of sheets and bodies, and what touches: the sheets, and after them the surfaces of the bodies and of
-/// obstacles that deform, whose vertices are points that the model carries.
+/// What is seen of sheets and bodies, and what touches: the sheets, and after them the surfaces of the bodies
+/// and of obstacles that deform, whose vertices are points that the model carries.
 pub(super) struct Surface {
     pub(super) sheet: Sheet,
     pub(super) points: SurfacePoints,
@@ -61,12 +65,13 @@ impl<'a> PlacedBodies<'a> {
         let mut end = [t.vertex_count(), t.edge_count(), t.face_count()];
         let mut list = Vec::new();
         for (k, (key, of)) in Key::root().name("body").entries(bodies).enumerate() {
-            let solid = of.solid(&key, files)?;
-            let round = RoundShape::of(&of.shape);
-            let volume = round.map_or_else(|| solid.volume(), |round| round.volume());
+            let shape = of.shape.build(&key.name("shape"), files)?;
+            let solid = of.solid(&shape, &key)?;
+            let moments = round_bodies::true_moments(&shape);
+            let volume = moments.map_or_else(|| solid.volume(), |moments| moments.volume);
             let mass = of.mass.unwrap_or(of.density.unwrap_or_default() * volume);
-            let body = match round {
-                Some(round) => round.body(mass, &of.pose),
+            let body = match moments {
+                Some(moments) => round_bodies::body(&moments, mass, &of.pose),
                 None => RigidBody::of_solid(&solid, mass),
             };
             let body = body.map_err(|e| Problem::from_error(key.clone(), &e))?;
@@ -80,6 +85,7 @@ impl<'a> PlacedBodies<'a> {
                 key,
                 tetrahedron: body.tetrahedron(),
                 body,
+                round: round_bodies::surface(&shape, &of.pose),
                 solid,
                 first: VertexId::from_index(t.vertex_count() + 4 * k),
                 part: Part {
@@ -92,7 +98,8 @@ impl<'a> PlacedBodies<'a> {
         Ok(Self { list })
     }
 
-    /// The mesh of the model: the sheets, after them what carries the bodies, and after that obstacles that deform.
+    /// The mesh of the model: the sheets, after them what carries the bodies, and after that obstacles that
+    /// deform.
     pub(super) fn mesh(&self, sheets: &Sheet, driven: &DrivenObstacles) -> Result<Sheet, Problem> {
         self.beside(sheets, |body| &body.tetrahedron, driven)
     }
@@ -119,8 +126,8 @@ impl<'a> PlacedBodies<'a> {
         Sheet::union(&all).map_err(|e| Problem::from_error(Key::root().name(what), &e))
     }
 
-    /// The numbers of vertices, edges and faces of the sheets and the surfaces of the bodies, and of the vertices of
-    /// the model.
+    /// The numbers of vertices, edges and faces of the sheets and the surfaces of the bodies, and of the
+    /// vertices of the model.
     pub(super) fn counts(&self, sheets: &Sheet) -> ([usize; 3], usize) {
         let t = sheets.topology();
         let of_sheets = [t.vertex_count(), t.edge_count(), t.face_count()];
@@ -215,8 +222,8 @@ impl<'a> PlacedBodies<'a> {
         bodies.collect()
     }
 
-    /// Refuses bodies in which something else is at the start. (What passes through their surface is found with
-    /// the gaps of contact.)
+    /// Refuses bodies in which something else is at the start. (What passes through their surface is found
+    /// with the gaps of contact.)
     pub(super) fn check_empty(
         &self,
         sheets: &PlacedSheets<'_>,
@@ -236,7 +243,7 @@ impl<'a> PlacedBodies<'a> {
             points.extend(own.map(|p| (body.key.clone(), p)));
         }
         for (k, obstacle) in obstacles.iter().enumerate() {
-            let mesh = BodyMesh::of(obstacle.shape(), 4).ok().flatten();
+            let mesh = obstacle.shape().triangles(4).ok().flatten();
             let corner = mesh.and_then(|mesh| mesh.points.first().copied());
             if let Some(p) = corner {
                 let place = obstacle.motion().pose(0.0) * Point3::from(p);
@@ -360,7 +367,7 @@ impl PlacedBody<'_> {
 
     /// The surface by which it touches, if that is round.
     pub(super) fn round(&self) -> Option<RoundBody> {
-        RoundShape::of(&self.of.shape)?.surface(&self.of.pose)
+        self.round
     }
 
     /// The vertices of the model that carry it.
@@ -409,14 +416,13 @@ impl Body {
     }
 
     /// What its surface encloses, in its place.
-    fn solid(&self, key: &Key, files: &mut Files) -> Result<Solid, Problem> {
+    fn solid(&self, shape: &geometry::Shape, key: &Key) -> Result<Solid, Problem> {
         let key = key.name("shape");
-        let shape = self.shape.build(&key, files)?;
         let at = match self.shape {
             Shape::File(_) => key.name("file.path"),
             _ => key.name(self.shape.name()),
         };
-        let mesh = BodyMesh::of(&shape, self.sides());
+        let mesh = shape.triangles(self.sides());
         let mesh = mesh.map_err(|e| Problem::from_error(at.clone(), &e))?;
         let mesh = mesh.ok_or_else(|| {
             let message = "the shape encloses no volume";

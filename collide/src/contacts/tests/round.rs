@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::RoundBody;
-use crate::distance::{edge_edge, point_triangle};
 use isosheet_dynamics::RigidBody;
 use isosheet_dynamics::contact::CarriedPoint;
+use isosheet_geometry::distance::{edge_edge, point_triangle};
 use isosheet_mesh::{MassMatrix, Part, VertexId};
 use proptest::prelude::*;
 
@@ -200,7 +200,8 @@ fn lowered(bodies: &[RoundBody]) -> Scene {
     below(low)
 }
 
-/// Barrier and friction against differences by the positions of the vertices that carry all, and no force in all.
+/// Barrier and friction against differences by the positions of the vertices that carry all, and no force in
+/// all.
 #[test]
 fn derivatives_are_those_of_the_energy() {
     for (name, bodies) in scenes() {
@@ -262,8 +263,8 @@ fn derivatives_are_those_of_the_energy() {
             let sum: Vector3<f64> = g.as_chunks::<3>().0.iter().map(|g| Vector3::from(*g)).sum();
             assert!(sum.norm() < 1e-12 * largest(g), "{name}: {sum}");
         }
-        // Of friction the Hessian too; its forces act where the surfaces touch, so that their torque is that of the
-        // gap between these.
+        // Of friction the Hessian too; its forces act where the surfaces touch, so that their torque is that
+        // of the gap between these.
         let mut dense = Dense::new(3 * points.count());
         let (p, active) = evaluated(&x);
         friction.add_hessian(&p, active.bodies(), &mut dense);
@@ -310,7 +311,8 @@ fn derivatives_are_those_of_the_energy() {
 proptest! {
     #![proptest_config(isosheet_random::cases(48))]
 
-    /// No part of a motion that is said to be safe brings surfaces together, and a motion through the sheet is not safe.
+    /// No part of a motion that is said to be safe brings surfaces together, and a motion through the sheet
+    /// is not safe.
     #[test]
     fn safe_motions_keep_surfaces_apart(
         which in 0..5_usize,

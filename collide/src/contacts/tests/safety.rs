@@ -1,9 +1,7 @@
 //! No accepted motion passes anything.
 
 use super::*;
-use crate::testing::smallest_distance;
-use crate::{Candidates, CcdOptions, crossings, crossings_between};
-use isosheet_dynamics::contact::StepMotion;
+use isosheet_geometry::{Candidates, crossings, crossings_between};
 use proptest::prelude::*;
 
 /// Whether the sheet passes through the body or is inside it at progress `s` of the step.
@@ -12,7 +10,7 @@ fn passes(step: &Step, x: &[f64], s: f64) -> bool {
     let body = &contacts.bodies[0];
     let pose = step.bodies.list()[0].surface.pose(s);
     let shape = body.obstacle().shape();
-    let solid = !matches!(shape, Shape::Surface(surface) if !surface.is_closed());
+    let solid = shape.is_solid();
     if solid {
         for p in x.as_chunks::<3>().0 {
             let local = pose.inverse_transform_point(&(*p).into()).coords;
@@ -130,7 +128,7 @@ fn every_gap(contacts: &Contacts, x: &[f64]) -> f64 {
             }
         }
     }
-    smallest_distance(mesh, &all, x) - contacts.options.thickness
+    all.smallest_distance(mesh, x) - contacts.options.thickness
 }
 
 /// A die at 10 m/s, a millimetre below a sheet, and steps of a sixtieth of a second.
@@ -203,60 +201,6 @@ fn spinning_in_place_is_safe() {
         let zero = vec![0.0; x.len()];
         assert_eq!(step.query(&x, &zero), 1.0, "{name}");
     }
-}
-
-proptest! {
-    #![proptest_config(isosheet_random::cases(256))]
-
-    /// The path of a point of the sheet as seen from a body bends no more than is said.
-    #[test]
-    fn bends_are_bounded(
-        pose in proptest::array::uniform6(-1.0..1.0_f64), shift in proptest::array::uniform3(-1.0..1.0_f64),
-        turn in proptest::array::uniform3(-1.5..1.5_f64), x in proptest::array::uniform3(-1.0..1.0_f64),
-        dx in proptest::array::uniform3(-1.0..1.0_f64), s in 0.0..0.9_f64,
-    ) {
-        let v = |a: [f64; 3]| Vector3::from(a);
-        let start = Isometry3::new(Vector3::new(pose[0], pose[1], pose[2]), Vector3::new(pose[3], pose[4], pose[5]));
-        let end = Isometry3::from_parts(
-            (start.translation.vector + v(shift)).into(),
-            nalgebra::UnitQuaternion::from_scaled_axis(v(turn)) * start.rotation,
-        );
-        let motion = StepMotion::new(start, end);
-        let rest = PartOfStep::new(&motion, [s, 1.0]);
-        prop_assert!((rest.pose_at(1.0).to_matrix() - end.to_matrix()).norm() < 1e-12);
-        let course = rest.course(&v(x), &v(dx));
-        let at = |t: f64| {
-            let p = nalgebra::Point3::from(v(x) + t * v(dx));
-            motion.pose(s + t * (1.0 - s)).inverse_transform_point(&p).coords
-        };
-        prop_assert!((rest.now(&course) - at(0.0)).norm() < 1e-14);
-        let velocity = (at(1e-6) - at(-1e-6)) / 2e-6;
-        for k in 1..=10 {
-            let t = f64::from(k) / 10.0;
-            let error = (at(t) - at(0.0) - t * velocity).norm();
-            prop_assert!(error <= 0.5 * course.bend * t * t + 1e-8, "{} of {}", error, course.bend);
-            prop_assert!((at(t) - at(0.0)).norm() <= course.reach(&rest) + 1e-12);
-        }
-    }
-}
-
-/// Above the middle of a slab that turns, a point at rest moves along the slab at first and meets it
-/// nevertheless: only the bend of its path says so.
-#[test]
-fn a_point_above_a_turning_slab_is_met() {
-    let slab = Shape::Cuboid {
-        half: [1.0, 1.0, 0.1],
-    };
-    let turned = Isometry3::new(Vector3::zeros(), 0.5 * Vector3::y());
-    let motion = StepMotion::new(Isometry3::identity(), turned);
-    let rest = PartOfStep::new(&motion, [0.0, 1.0]);
-    let course = rest.course(&Vector3::new(0.0, 0.0, 0.101), &Vector3::zeros());
-    let t = rest.advance(&CcdOptions::default(), &[course], 1.0, |[p]| {
-        let d = slab.signed_distance(p);
-        (d.normal, d.normal.dot(p) - d.value)
-    });
-    let met = |gap: f64| ((0.1 + gap) / 0.101_f64).acos() / 0.5;
-    assert!(t < met(0.0) && t > met(2e-4), "{t} {}", met(0.0));
 }
 
 /// A search after many others finds the same as one by contacts that are new, in the same order: what a

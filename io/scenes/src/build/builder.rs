@@ -18,8 +18,8 @@ use crate::switch::Holder;
 use crate::switches::Switches;
 use crate::targets::Targets;
 use crate::{Origins, Scene};
-use isosheet_collide as collide;
 use isosheet_dynamics::{Patched, PlateBending, PlateLaw, PointMotion, RigidMotion, SheetModel};
+use isosheet_geometry as geometry;
 use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, EdgeId, VertexId};
 use std::collections::BTreeMap;
@@ -40,7 +40,7 @@ pub struct Kept {
     /// The plate of each sheet that is flat without stress and clamped by no line.
     pub(super) plates: Slots<PlateMadeOf, Arc<PlateBending>>,
     /// Those of the obstacles.
-    pub(super) shapes: Slots<obstacles::Shape, collide::Shape>,
+    pub(super) shapes: Slots<obstacles::Shape, geometry::Shape>,
     /// The motions that a program leads.
     pub(crate) led: Vec<Key>,
     /// Where the simulation starts, once that is known.

@@ -1,8 +1,8 @@
 //! Scenes with mesh files of several formats.
 
-use isosheet_collide::Shape;
 use isosheet_dynamics::Simulation;
 use isosheet_formats::{read_mesh, write_mesh, write_obj};
+use isosheet_geometry::Shape;
 use isosheet_mesh::generate;
 use isosheet_scenes::SceneFile;
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! Meshes, crease patterns and bodies by formula are those of the crates that make them.
 
 use crate::{parse, simulation};
-use isosheet_collide::{Shape, TriangleSurface};
+use isosheet_geometry::{Shape, TriangleSurface};
 use isosheet_mesh::generate::{
     FoldAssignment, FoldPattern, GenerateError, degree_four, delaunay, fan, hypar, kresling, miura,
     miura_zigzags, octagon_244, polygon_rings, regular_outline, square_twist, waterbomb, yoshimura,
@@ -137,7 +137,7 @@ fn bodies_are_the_surfaces_of_their_formulas() {
         [[obstacle]]
         shape = { wall = { line = [[0, -2], [1, -2], [1, -3]], corner_radius = 0.25, width = 0.4 } }";
     let made = setup("square = { side = 0.2, level = 0 }", bodies);
-    let line = isosheet_collide::rounded_line(&[[0.0, -2.0], [1.0, -2.0], [1.0, -3.0]], 0.25);
+    let line = isosheet_geometry::rounded_line(&[[0.0, -2.0], [1.0, -2.0], [1.0, -3.0]], 0.25);
     let expected = [
         TriangleSurface::prism(&regular_outline(5, 0.3).unwrap(), 0.2),
         TriangleSurface::frame(0.5, 0.2, [-1.0, -0.9]),

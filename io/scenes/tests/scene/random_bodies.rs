@@ -1,7 +1,7 @@
 //! Random scenes with bodies: nothing passes through anything, by a check that knows no distances.
 
 use crate::parse;
-use isosheet_collide::{ContactMesh, crossings};
+use isosheet_geometry::{ContactMesh, crossings};
 use isosheet_scenes::LiveScene;
 use proptest::prelude::*;
 use std::fmt::Write;

@@ -212,7 +212,7 @@ fn clearance(live: &LiveScene) -> f64 {
         .filter(|face| face[0].index() < first);
     let distances = sheet.map(|face| {
         let [a, b, c] = face.map(|v| place(v.index()));
-        isosheet_collide::distance::point_triangle(&[centre, a, b, c]).distance()
+        isosheet_geometry::distance::point_triangle(&[centre, a, b, c]).distance()
     });
     distances.fold(f64::INFINITY, f64::min)
 }
