@@ -5,7 +5,7 @@
 //! | file | what |
 //! |---|---|
 //! | `scene.toml` | the scene as it is run, edits included; mesh files are copied to `meshes/` |
-//! | `history.csv` | one row for each step ([`HistoryRow`]) |
+//! | `history.csv` | one row for each step ([`HistoryRow`](isosheet_formats::HistoryRow)) |
 //! | `loads.csv` | the loads of each support and obstacle at each step ([`LoadRow`](isosheet_formats::LoadRow)), if there are any |
 //! | `measures.csv` | what each measure of the scene shows at the start and at each step ([`MeasureRow`](isosheet_formats::MeasureRow)), if there are any |
 //! | `events.csv` | what was taken up and released ([`EventRow`](isosheet_formats::EventRow)), if anything can be |

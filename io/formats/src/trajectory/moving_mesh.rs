@@ -39,7 +39,7 @@ pub struct MovingMesh {
 
 impl MovingMesh {
     /// Reads the arrays `t`, `x` and `faces` of an archive as [`Trajectory::write`](super::Trajectory::write) makes
-    /// it, or as [`Self::archive`] does, with `frame` in place of `t`; `path` is used in errors only.
+    /// it, or of a mesh in motion ([`motion_archive`](crate::motion_archive)), with `frame` in place of `t`; `path` is used in errors only.
     ///
     /// # Errors
     /// [`FileError::Read`], naming the array and the place in it.

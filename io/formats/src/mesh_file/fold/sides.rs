@@ -138,7 +138,7 @@ impl MeshFile {
     /// assignments and angles are then those of its edges.
     ///
     /// # Errors
-    /// As [`Self::turn_creases`].
+    /// [`DataError`] for a fold between a face that is reversed and another one.
     pub fn orient_creases(&mut self, t: &isosheet_mesh::Topology) -> Result<(), DataError> {
         let of_topology = t.faces().iter().map(|f| first_least(f.map(|v| v.0)));
         let of_topology: HashSet<[u32; 3]> = of_topology.collect();
