@@ -49,6 +49,17 @@ impl Default for Friction {
     }
 }
 
+impl fmt::Display for Friction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Same(coefficient) => coefficient.fmt(f),
+            Self::Each(FrictionCoefficients { at_rest, kinetic }) => {
+                write!(f, "{at_rest} (static), {kinetic} (kinetic)")
+            }
+        }
+    }
+}
+
 impl From<f64> for Friction {
     fn from(coefficient: f64) -> Self {
         Self::Same(coefficient)
