@@ -255,11 +255,7 @@ impl Profile {
             Course::Sine {
                 mean, amplitude, ..
             } => (Vec::new(), vec![*mean, *amplitude]),
-            Course::Keyframes { keys, kinks, .. } => {
-                let (mut times, values): (Vec<f64>, _) = keys.iter().map(|[t, v]| (*t, *v)).unzip();
-                times.extend(kinks.iter().flatten());
-                (times, values)
-            }
+            Course::Keyframes { keys, .. } => keys.iter().map(|[t, v]| (*t, *v)).unzip(),
         }
     }
 
@@ -275,6 +271,12 @@ impl Profile {
             }
             if let Self::Course(Course::Sine { frequency, .. }) = self {
                 checks.number(key.name("sine.frequency"), *frequency, Unit::PerSecond);
+            }
+            if let Self::Course(Course::Keyframes { kinks, .. }) = self {
+                let kinks = kinks.as_deref().unwrap_or_default();
+                for (key, time) in key.name("keyframes.kinks").entries(kinks) {
+                    checks.number(key, *time, Unit::Second);
+                }
             }
             return;
         };

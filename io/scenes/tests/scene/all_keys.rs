@@ -183,7 +183,7 @@ pub(crate) const ALL_KEYS: [&str; 17] = [
     [[crease]]
     at = { pattern = "mountains" }
     stiffness = 1
-    angle = { keyframes = { interpolation = "linear", keys = [[0, 0]] } }
+    angle = { keyframes = { interpolation = "linear", keys = [[0, 0]], kinks = [0] } }
     [[crease]]
     at = { pattern = "valleys" }
     stiffness = 1
@@ -271,7 +271,7 @@ pub(crate) const ALL_KEYS: [&str; 17] = [
     hold = "clamp"
     [[support]]
     at = { vertices = [2, 3] }
-    hold = { moving_clamp = { poses = { frame = { position = [0, 0, 0], orientation = [1, 0, 0, 0] }, keys = [{ time = 0, position = [0, 0, 0], orientation = [1, 0, 0, 0] }] } } }
+    hold = { moving_clamp = { poses = { frame = { position = [0, 0, 0], orientation = [1, 0, 0, 0] }, keys = [{ time = 0, position = [0, 0, 0], orientation = [1, 0, 0, 0] }], kinks = [0] } } }
     [[support]]
     at = { vertices = [4, 5] }
     hold = { sliding_clamp = { direction = [1, 0, 0], motion = { z = 0.0 } } }

@@ -61,7 +61,7 @@ rest = { speed = 1e-3, duration = 0.1 }
 support_force = 10
 ";
 
-/// Shapes by formula, and motion in a chart.
+/// Shapes by formula.
 const FORMULAS: &str = "version = 1
 [sheet]
 mesh = { polygon_rings = { outline = { regular = { sides = 5, radius = 0.2 } }, rings = 2 } }
@@ -76,6 +76,20 @@ pose = { position = [0, 0, -2] }
 shape = { frame = { outer = 0.5, opening = 0.2, bottom = -1.2, top = -1.1 } }
 [[obstacle]]
 shape = { wall = { line = [[0, -3], [1, -3], [1, -4]], corner_radius = 0.25, width = 0.4 } }
+[forces]
+gravity = [0, 0, -9.81]
+[method]
+step = 0.001
+";
+
+/// Motion in a chart.
+const CHART: &str = "version = 1
+[sheet]
+mesh = { polygon_rings = { outline = { regular = { sides = 5, radius = 0.2 } }, rings = 2 } }
+mass = 0.01
+start = { perturbation = 0.1, seed = 1 }
+[[support]]
+at = { vertices = [0] }
 [forces]
 gravity = [0, 0, -9.81]
 [method]
@@ -113,11 +127,12 @@ fn numbers(value: &toml::Value, key: &str, found: &mut Vec<String>) {
 fn no_value_makes_it_panic_or_gives_nan() {
     // The smallest meshes, and few attempts at steps that cannot be taken.
     let small = ["sheet.mesh.square.level=0", "method.min_fraction=0.2"].map(str::to_owned);
-    let kinds: [(&str, &[String]); 4] = [
+    let kinds: [(&str, &[String]); 5] = [
         (StartingPoint::Drape.text(), &small),
         (StartingPoint::Fold.text(), &small[1..]),
         (VARIED, &small[1..]),
         (FORMULAS, &[]),
+        (CHART, &[]),
     ];
     let values = [
         "0",
