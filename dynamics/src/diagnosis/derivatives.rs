@@ -112,9 +112,15 @@ pub(super) fn errors(
                 let pairs = x.iter().zip(direction);
                 pairs.map(|(x, d)| x + sign * h * d).collect()
             };
-            let [ahead, behind] = [moved(1.0), moved(-1.0)];
-            slopes.push((energy(&ahead) - energy(&behind)) / (2.0 * h));
-            let [ahead, behind] = [gradient(&ahead), gradient(&behind)];
+            let places = [moved(1.0), moved(-1.0)];
+            let energies = [energy(&places[0]), energy(&places[1])];
+            let gradients = [gradient(&places[0]), gradient(&places[1])];
+            // What the round-off of energies and of positions makes of the difference.
+            let energies_size = energies[0].abs() + energies[1].abs();
+            let forces = norm(&gradients[0]) + norm(&gradients[1]);
+            let noise = f64::EPSILON * (energies_size + size * forces) / h;
+            slopes.push(((energies[0] - energies[1]) / (2.0 * h), noise));
+            let [ahead, behind] = gradients;
             let pairs = ahead.iter().zip(&behind);
             let change: Vec<f64> = pairs.map(|(a, b)| (a - b) / (2.0 * h)).collect();
             let off: Vec<f64> = change.iter().zip(&second).map(|(a, b)| a - b).collect();
@@ -136,12 +142,14 @@ pub(super) fn errors(
     errors
 }
 
-/// The value of a sequence where it changes least, and by how much it changes there.
-fn settled(values: &[f64]) -> Option<(f64, f64)> {
-    let changes = values
-        .windows(2)
-        .map(|pair| (pair[1], (pair[1] - pair[0]).abs()));
-    let finite = changes.filter(|(value, change)| value.is_finite() && change.is_finite());
+/// Of values with their noise the most certain one, and how uncertain it is: by the noise, or by how much it differs from
+/// the one before.
+fn settled(values: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let pairs = values.windows(2).map(|pair| {
+        let [(before, _), (value, noise)] = [pair[0], pair[1]];
+        (value, (value - before).abs().max(noise))
+    });
+    let finite = pairs.filter(|(value, uncertainty)| value.is_finite() && uncertainty.is_finite());
     finite.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 

@@ -14,10 +14,12 @@ use crate::engine::subdivision::Subdivision;
 use crate::model::breaks::{Breaks, Start};
 use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
-use crate::potential::Memories;
+use crate::potential::{At, Memories};
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::infeasibility::Infeasibility;
+use crate::report::potential_fault::PotentialFault;
 use crate::report::pressing::Pressing;
+use crate::report::reason::Reason;
 use crate::report::step_error::{StepError, StepOutcome, StepTotals};
 use crate::report::trace::TraceEvent;
 use crate::step::integrator::{
@@ -417,13 +419,35 @@ impl Substeps<'_, '_> {
                 }),
             };
         }
-        let known = self.locked().or_else(|| self.engine.rank_deficient());
+        let known = self
+            .locked()
+            .or_else(|| self.engine.rank_deficient())
+            .or_else(|| self.at_limit(&cause));
         Stop::Error(known.unwrap_or_else(|| StepError::StepTooSmall {
             t,
             min_step: self.lengths.part(self.engine.control.min_fraction),
             pressing: self.engine.pressing(self.lengths.end()).map(Box::new),
             cause: Box::new(cause),
         }))
+    }
+
+    /// The error of an elastic sheet that is stretched so near to its limit that the numbers of its barrier are too large for
+    /// the arithmetic, if the linear algebra failed.
+    fn at_limit(&self, cause: &StepError) -> Option<StepError> {
+        let reason = Reason::LinearAlgebra;
+        if !matches!(cause, StepError::NotConverged { reason: found, .. } if *found == reason) {
+            return None;
+        }
+        let Engine { model, motion, .. } = &*self.engine;
+        let State { t, x, .. } = &motion.state;
+        let worst = model.elastic_sheet()?.worst(At::new(*t, x))?;
+        // The barrier acts from half of the limit on, and grows without bound in its last hundredth.
+        (worst.strain > 0.99 * worst.limit).then_some(StepError::AtStrainLimit {
+            face: worst.face,
+            strain: worst.strain,
+            limit: worst.limit,
+            t: *t,
+        })
     }
 
     /// The error of a potential whose gradient is not the derivative of its energy, if there is one: no search can
@@ -433,7 +457,8 @@ impl Substeps<'_, '_> {
             state, memories, ..
         } = &self.engine.motion;
         let here = (state.t, &state.x[..]);
-        let bad = find_fault(&self.engine.model, memories, here, Differences::Compare)?;
+        let bad = find_fault(&self.engine.model, memories, here, Differences::Compare)
+            .filter(|bad| matches!(bad.fault, PotentialFault::Gradient { .. }))?;
         Some(StepError::Potential {
             t: state.t,
             bad: Box::new(bad),

@@ -41,6 +41,17 @@ pub enum PotentialFault {
     },
 }
 
+impl PotentialFault {
+    /// Whether it is of the Hessian alone.
+    pub(crate) fn is_of_hessian(&self) -> bool {
+        match self {
+            Self::NotFinite { quantity, .. } => *quantity == "Hessian",
+            Self::Block { .. } => true,
+            Self::Gradient { .. } => false,
+        }
+    }
+}
+
 impl Advice for BadPotential {
     fn advice(&self) -> Option<&'static str> {
         Some(match self.fault {

@@ -222,6 +222,21 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
+    /// An elastic sheet is stretched to the limit of its strain, where the arithmetic ends.
+    #[error(
+        "no step was found at t = {t} s, where {face} of the elastic sheet has the strain {strain} of at most {limit}",
+        strain = brief(*strain), limit = given(*limit), t = brief(*t)
+    )]
+    AtStrainLimit {
+        /// The face with the largest strain.
+        face: FaceId,
+        /// The norm of its strain ([`ElasticSheet`](crate::ElasticSheet)).
+        strain: f64,
+        /// The limit.
+        limit: f64,
+        /// Time, seconds.
+        t: f64,
+    },
     /// A sheet swells or shrinks faster than it can follow, or more than its supports allow.
     #[error(
         "as the elastic sheet swells or shrinks, {face} comes to the strain {strain} at t = {t} s, and the limit \
@@ -475,6 +490,9 @@ impl Advice for StepError {
             Self::BeyondStrainLimit { .. } => {
                 Some("start from a shape that is stretched less, or raise the limit of the strain")
             }
+            Self::AtStrainLimit { .. } => Some(
+                "pull less, hold more than a vertex where it is pulled, or raise the limit of the strain",
+            ),
             Self::SwellingBeyondLimit { .. } => Some(
                 "let it swell or shrink more slowly, or less where it is held, or raise the limit of the strain",
             ),

@@ -296,6 +296,11 @@ impl Origins {
                 "start from a shape whose lengths are nearer to those of `sheet.mesh`, choose a smaller \
                  `sheet.start.perturbation`, let `sheet.swell` begin near zero, or raise the limit, `isometry = { elastic = { limit = ... } }`",
             ),
+            StepError::AtStrainLimit { .. } => (
+                root.name("sheet"),
+                "pull less, hold more than a vertex where the sheet is pulled, or raise the limit, `isometry = { elastic = { \
+                 limit = ... } }`",
+            ),
             StepError::SwellingBeyondLimit { .. } => (
                 root.name("sheet.swell"),
                 "let it change more slowly, or less where the sheet is held, or raise the limit, `isometry = { elastic = { \

@@ -317,18 +317,18 @@ impl Lagrangian {
         })
     }
 
-    /// Refuses potentials that cannot be used at the iterate.
+    /// Refuses potentials whose Hessians cannot be used at the iterate, though their energies are finite there.
     ///
     /// # Errors
     /// [`StepError::Potential`].
     fn check_potentials(&self, problem: &StepProblem<'_>) -> Result<(), StepError> {
         let here = (problem.t(), &self.x[..]);
         match find_fault(problem.model, problem.memories, here, Differences::Skip) {
-            None => Ok(()),
-            Some(bad) => Err(StepError::Potential {
+            Some(bad) if bad.fault.is_of_hessian() => Err(StepError::Potential {
                 t: problem.state().t,
                 bad: Box::new(bad),
             }),
+            _ => Ok(()),
         }
     }
 

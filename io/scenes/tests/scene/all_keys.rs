@@ -106,7 +106,7 @@ pub(crate) const ALL_KEYS: [&str; 17] = [
     rows = 20
     [contact]
     self_contact = true
-    friction = 0.2
+    friction = { static = 0.2, kinetic = 0.1 }
     activation = 1e-3
     stiffness = 1e-3
     rest_speed = 1e-3
