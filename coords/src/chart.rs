@@ -196,7 +196,7 @@ pub trait Chart: Send {
     /// [`ChartError::Realise`] for a malformed state.
     fn margin(&self, x: &[f64]) -> Result<f64, ChartError>;
 
-    /// The same kind of chart with the reference state x. Coordinate values and rows may differ from those of
+    /// A chart of this kind with the reference state x. Coordinate values and rows may differ from those of
     /// this chart, and for a chart that selects its coordinates the pattern too: build [`Linearised`] and
     /// what depends on it anew.
     ///

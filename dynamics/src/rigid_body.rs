@@ -179,7 +179,7 @@ impl RigidBody {
         Self::new(mass, solid.centre(), moments)
     }
 
-    /// The same body with the first corner of its tetrahedron at a point (metres).
+    /// This body with the first corner of its tetrahedron at a point (metres).
     ///
     /// # Errors
     /// [`RigidBodyError::Guide`] if the point is not finite, or much too far away.
@@ -204,7 +204,7 @@ impl RigidBody {
             .ok_or(wrong)
     }
 
-    /// The same body with the first two corners of its tetrahedron on the line through a point (metres) along a
+    /// This body with the first two corners of its tetrahedron on the line through a point (metres) along a
     /// direction of any length.
     ///
     /// # Errors
@@ -243,7 +243,7 @@ impl RigidBody {
         self.inverse * (Vector3::from(point) - self.centre)
     }
 
-    /// The same body carried by other corners, given in its frame; `None` if these are flat or not finite.
+    /// This body carried by other corners, given in its frame; `None` if these are flat or not finite.
     fn carried_by(self, corners: [Vector3<f64>; 4]) -> Option<Self> {
         let columns = corners.map(|u| u.insert_row(0, 1.0));
         let weights = Matrix4::from_columns(&columns).try_inverse()?;

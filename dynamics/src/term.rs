@@ -372,7 +372,7 @@ pub struct Exchange {
     pub driven_size: f64,
     /// Energy lost to friction; not negative.
     pub friction: f64,
-    /// The same by the normal forces at the end of the step.
+    /// Energy that would be lost to friction by the normal forces at the end of the step.
     pub settled_friction: f64,
     /// Change of the energy of barriers.
     pub stored: f64,

@@ -70,7 +70,7 @@ pub(crate) struct Convert {
     /// The file to write, or to replace; its extension says the format
     #[arg(required_unless_present = "out", conflicts_with = "out")]
     output: Option<PathBuf>,
-    /// The same, as the other commands have it
+    /// The file to write, or to replace: an option, as the other commands have it
     #[arg(short, long, value_name = "OUTPUT")]
     out: Option<PathBuf>,
     #[command(flatten)]

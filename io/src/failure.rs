@@ -92,7 +92,7 @@ impl Failure {
         }
     }
 
-    /// The same failure with what to do about it.
+    /// This failure with what to do about it.
     pub(crate) fn remedy(self, remedy: impl Into<String>) -> Self {
         Self {
             remedy: Some(remedy.into()),

@@ -51,7 +51,8 @@ pub(crate) fn print_message(text: Arguments<'_>) {
     let _ = writeln!(std::io::stderr(), "{}", printable(&text, &[]));
 }
 
-/// The same for a text with colours.
+/// Writes a warning or an error with colours as a line to standard error. Nothing happens where nobody reads
+/// it any more, as behind `2>&1 | head`: the work goes on.
 pub(crate) fn print_coloured(text: &str) {
     let text = shortened(text);
     let _ = writeln!(std::io::stderr(), "{}", printable(&text, &[ESCAPE]));

@@ -19,7 +19,7 @@ impl Sheet {
         Self::new(positions, &faces)
     }
 
-    /// The same mesh with every rest position replaced by `map` of it (metres): scaled, moved, turned.
+    /// This mesh with every rest position replaced by `map` of it (metres): scaled, moved, turned.
     ///
     /// ```
     /// let flat = isosheet_mesh::generate::isotropic_square(0, 1.0)?;

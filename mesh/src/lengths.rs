@@ -36,7 +36,7 @@ impl LengthConstraints {
         }
     }
 
-    /// Those of some of the edges, in this order.
+    /// The constraints of some of the edges, in this order.
     ///
     /// # Panics
     /// If an edge does not exist.
@@ -145,7 +145,8 @@ impl LengthConstraints {
         self.max_strain_among(0..self.len(), x)
     }
 
-    /// The same over some of the edges.
+    /// The largest relative change of length over some of the edges, `max | |x_a - x_b| / l - 1 |`; NaN if a
+    /// position of their ends is.
     ///
     /// # Panics
     /// If `x` is not of length 3V, or an edge does not exist.

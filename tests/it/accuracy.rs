@@ -32,7 +32,7 @@ fn hanging(sheet: &Sheet) -> SheetModel {
         .expect("a vertex")
 }
 
-/// The same, which falls from all but flat.
+/// A sheet that is held by a corner, with damping, and falls from all but flat.
 fn falling(sheet: &Sheet) -> Simulation {
     let model = hanging(sheet);
     let mut x = sheet.positions().to_vec();

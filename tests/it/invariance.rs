@@ -123,7 +123,7 @@ impl Scene {
         points.map(|p| Vector3::from(*p)).collect()
     }
 
-    /// The same in another frame.
+    /// This scene in another frame.
     fn moved(&self, frame: &Isometry3<f64>) -> Self {
         let turn = |f: &Vector3<f64>| frame.rotation * f;
         Self {
@@ -138,8 +138,8 @@ impl Scene {
         }
     }
 
-    /// The same scene with vertex `order[i]` in place of vertex `i`, with the faces in another order, and
-    /// with each face beginning at another corner.
+    /// This scene with vertex `order[i]` in place of vertex `i`, with the faces in another order, and with
+    /// each face beginning at another corner.
     fn renumbered(&self, order: &[usize], shift: usize) -> Self {
         let mut place = vec![0; order.len()];
         order
@@ -163,7 +163,7 @@ impl Scene {
         }
     }
 
-    /// The same scene with scaled lengths and masses; times are scaled by the square root of the lengths
+    /// This scene with scaled lengths and masses; times are scaled by the square root of the lengths
     /// (Froude's ratio) and forces as the masses.
     fn scaled(&self, length: f64, mass: f64) -> Self {
         Self {

@@ -109,7 +109,7 @@ fn a_sphere_of_film_grows_by_hookes_law() {
     );
 }
 
-/// The same sphere holds air, into which more is let: it grows until Hooke's pressure is that of the gas.
+/// A sphere of film that holds air, into which more is let, grows until Hooke's pressure is that of the gas.
 #[test]
 fn a_sphere_that_is_blown_up_balances_the_gas() {
     let sheet = sphere(3, RADIUS);
@@ -156,7 +156,7 @@ const SIDE: f64 = 0.2;
 struct Pillow {
     sheet: Sheet,
     pairs: Vec<[VertexId; 2]>,
-    /// The same with the front of all faces outside.
+    /// The two squares with the front of all faces outside.
     outwards: Sheet,
 }
 

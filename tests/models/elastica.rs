@@ -23,7 +23,8 @@ pub struct Hanging {
     pub tip: [f64; 2],
     /// Energy of bending, joules per metre.
     pub bending: f64,
-    /// The same plus the potential energy of the weight (zero at the height of the clamp), joules per metre.
+    /// Energy of bending plus the potential energy of the weight (zero at the height of the clamp), joules
+    /// per metre.
     pub energy: f64,
 }
 

@@ -10,7 +10,9 @@ pub fn tumbling(sheet: &Sheet) -> (SheetModel, State) {
     tumbling_from(sheet, sheet.positions().to_vec())
 }
 
-/// The same from other positions (3V, metres) that keep the lengths.
+/// A sheet of 0.1 kg about the square `[0, 1]^2` (metres) without gravity and supports, and a start in other
+/// positions (3V, metres) that keep the lengths, at which it flies, turns and bends: smooth velocities, made
+/// compatible with the lengths.
 pub fn tumbling_from(sheet: &Sheet, x: Vec<f64>) -> (SheetModel, State) {
     let model = SheetModel::new(sheet, 0.1, MassKind::Lumped).expect("valid");
     let v = x.chunks(3).flat_map(|p| {

@@ -83,7 +83,7 @@ pub(crate) struct Origin {
 }
 
 impl Origin {
-    /// That of this working copy, for a report.
+    /// The state of this working copy, for a report.
     pub(crate) fn here(report: &str) -> Result<Self> {
         Ok(Self {
             commit: commit(),

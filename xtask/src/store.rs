@@ -219,7 +219,7 @@ impl Store {
     /// What a unit found: as it was kept if it is up to date, or made now by `work` and kept.
     ///
     /// # Errors
-    /// Those of `work`, with the title; [`Interrupted`](interrupt::Interrupted) before it begins; those of
+    /// Errors of `work`, with the title; [`Interrupted`](interrupt::Interrupted) before it begins; errors of
     /// the folder.
     pub(crate) fn keep<T: Serialize + DeserializeOwned>(
         &self,

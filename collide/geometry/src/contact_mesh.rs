@@ -167,7 +167,8 @@ impl ContactMesh {
         Self::with_elements(2, vec![[0, 1]], Vec::new(), &[])
     }
 
-    /// The same vertices without faces, and with an edge at each of them besides, both ends of which it is.
+    /// A mesh of these vertices without faces, with these edges and one at each vertex besides, both ends of
+    /// which the vertex is.
     #[must_use]
     pub fn with_points_as_edges(mut self) -> Self {
         self.edges
@@ -175,7 +176,7 @@ impl ContactMesh {
         Self::with_elements(self.vertex_count, self.edges, Vec::new(), &[])
     }
 
-    /// The same vertices without the faces, and with the edges that are to be kept.
+    /// A mesh of these vertices without faces, and with the edges that are to be kept.
     #[must_use]
     pub fn without_faces(mut self, keep: impl FnMut(&[u32; 2]) -> bool) -> Self {
         self.edges.retain(keep);

@@ -40,7 +40,7 @@ impl Body {
         self.features.as_ref()
     }
 
-    /// The same, to be moved.
+    /// Corners, edges and faces, if it has any, to be moved.
     pub(super) fn features_mut(&mut self) -> Option<&mut Features> {
         self.features.as_mut()
     }

@@ -28,7 +28,7 @@ pub(super) struct Features {
     inflation: f64,
     /// Where, and with what inflation, the boxes are those of a body that does not move.
     resting: Option<(Isometry3<f64>, f64)>,
-    /// The same of the tree.
+    /// Where, and with what inflation, the tree of the boxes is that of a body that does not move.
     resting_tree: Option<(Isometry3<f64>, f64)>,
     /// Start and end of the motion for which lists of neighbours were made, and what its boxes were enlarged
     /// by.

@@ -98,7 +98,8 @@ impl Neighbours {
         self.vertex_face.below(self.far)
     }
 
-    /// The same of two edges of the sheet.
+    /// Pairs of two edges of the sheet that may come within reach, with their distances in the middle of the
+    /// listed motion.
     pub(super) fn edge_edge(&self) -> &[(f64, [u32; 2])] {
         self.edge_edge.below(self.far)
     }

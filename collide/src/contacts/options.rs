@@ -217,7 +217,7 @@ impl ContactOptions {
         }
     }
 
-    /// Those of a scene without bodies.
+    /// The contact laws of a scene without bodies.
     pub(super) fn laws(&self) -> ContactLaws {
         ContactLaws {
             stiffness: self.stiffness,

@@ -19,7 +19,7 @@ pub struct RoundBody {
 /// The points of a round body in the place of those of a polyhedron.
 #[derive(Debug, Clone, PartialEq)]
 struct InPlace {
-    /// Those of the polyhedron.
+    /// The points of the polyhedron.
     replaced: Range<usize>,
     points: Range<usize>,
     round: Round,

@@ -6,7 +6,7 @@ use std::ops::Range;
 /// The thickness of sheets, by their vertices.
 #[derive(Debug, Clone)]
 pub(super) struct Thickness {
-    /// That of all sheets, metres, unless they have their own.
+    /// The thickness of all sheets, metres, unless they have their own.
     all: f64,
     /// Of each vertex of a sheet, where sheets have different ones; otherwise empty.
     of_vertices: Vec<f64>,
@@ -15,7 +15,7 @@ pub(super) struct Thickness {
 }
 
 impl Thickness {
-    /// The same of all sheets, which have so many vertices.
+    /// One thickness, metres, of all sheets, which have so many vertices.
     pub(super) fn new(all: f64, sheet_vertices: usize) -> Self {
         Self {
             all,
@@ -30,7 +30,7 @@ impl Thickness {
         self.of_vertices[vertices].fill(thickness);
     }
 
-    /// That of the sheet of a vertex; nothing of bodies.
+    /// The thickness of the sheet of a vertex, metres; nothing of bodies.
     fn of(&self, v: u32) -> Option<f64> {
         let v = v as usize;
         let own = || self.of_vertices.get(v).copied().unwrap_or(self.all);

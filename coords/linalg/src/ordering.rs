@@ -161,7 +161,7 @@ mod tests {
         operations: f64,
     }
 
-    /// That of a matrix in blocks of three, in an order that [`elimination_order`] returned.
+    /// The fill of a matrix in blocks of three, in an order that [`elimination_order`] returned.
     fn fill_of(pattern: &Pattern, order: &[usize]) -> Fill {
         let groups: Vec<usize> = order.iter().step_by(3).map(|i| i / 3).collect();
         let counts: Vec<f64> = column_counts(&Graph::of_blocks(pattern, 3), &groups, 3).collect();

@@ -11,7 +11,8 @@ use rayon::prelude::*;
 /// need as long as one for what takes one thread 0.2 ms, and three quarters of the time for 0.4 ms.
 const WORTH_SHARING: f64 = 3e5;
 
-/// The same where the other threads are awake, and take up work within some microseconds.
+/// Time of one thread, in nanoseconds, from which work is shared where the other threads are awake, and take
+/// up work within some microseconds.
 const WORTH_SHARING_AWAKE: f64 = 3e4;
 
 /// Time of the smallest pieces that threads take from each other, nanoseconds. Each costs some hundred nanoseconds.

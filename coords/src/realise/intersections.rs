@@ -15,7 +15,7 @@ impl FrontMap {
     /// at: the time grows as the square of the number of edges.
     ///
     /// # Errors
-    /// Those of [`FrontMap::realise`], and [`RealiseError::EdgesMeet`] naming the first pair that meets.
+    /// Errors of [`FrontMap::realise`], and [`RealiseError::EdgesMeet`] naming the first pair that meets.
     pub fn realise_checked(
         &self,
         q: &[f64],

@@ -44,7 +44,8 @@ pub(super) struct Lattice {
     /// The vertices of the sheet that the nodes move with.
     pub(super) vertices: Vec<VertexId>,
     nodes: Vec<Node>,
-    /// The same, but outside at trailing edges: their means are the centres of faces.
+    /// Nodes at the corners of rings that end outside of the boundary at trailing edges, and elsewhere where
+    /// those of `nodes` are: their means are the centres of faces.
     probes: Vec<Node>,
     /// Nodes of the corners.
     pub(super) faces: Vec<[usize; 3]>,
@@ -209,7 +210,7 @@ impl Lattice {
         &self.nodes[node].0
     }
 
-    /// The same of a probe.
+    /// The vertices that a probe moves with, by their numbers among those of the lattice, and their weights.
     pub(super) fn probe_weights(&self, node: usize) -> &[(usize, f64)] {
         &self.probes[node].0
     }

@@ -13,7 +13,8 @@ use std::sync::Arc;
 /// Part of the largest force by which forces may differ from those of the flow at the end of the step before
 /// they are renewed.
 const SETTLED: f64 = 1e-3;
-/// The same at the end of a step that is refused.
+/// Part of the largest force by which forces may differ from those of the flow at the end of a step; beyond
+/// it the step is refused.
 const UNSETTLED: f64 = 0.05;
 
 impl Force for Attached {

@@ -13,8 +13,9 @@ pub enum Equations {
     /// from step to step. Not a consistent approximation of Eq. 19: it does not converge to the
     /// motion as the step goes to zero.
     Published,
-    /// The same right-hand side, but after every step the momenta are formed anew, `p = J^T M v`, from the
-    /// velocities of the vertices at the new state. Converges with first order.
+    /// Sec. 4.1 with momenta that are formed anew after every step, `p = J^T M v`, from the velocities of the
+    /// vertices at the new state; the right-hand side is that of [`Equations::Published`]. Converges with
+    /// first order.
     Reformed,
     /// Hamilton's equations with the velocity-squared terms, `dH/dq = dV/dq + dT/dq`.
     #[default]
@@ -117,7 +118,7 @@ impl ChartMechanics {
         &self.memories
     }
 
-    /// The same, to be changed between two steps.
+    /// What the potentials remember, to be changed between two steps.
     pub(super) fn memories_mut(&mut self) -> &mut Memories {
         &mut self.memories
     }

@@ -30,7 +30,7 @@ pub enum PositionUpdate {
 /// Choice of the time step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ChartStepControl {
-    /// The same step throughout, seconds.
+    /// A constant step, seconds.
     Fixed(f64),
     /// Sec. 4.2: the largest step that changes the Hamiltonian by less than a tolerance.
     ///

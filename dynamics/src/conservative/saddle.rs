@@ -34,7 +34,7 @@ pub(crate) struct SaddleMatrix {
     pair_slots: BTreeMap<[VertexId; 2], [Block; 2]>,
     /// Multiplier columns and rows of the rods with a free end.
     rod_slots: Vec<Option<RodSlots>>,
-    /// The same of each equation of the vertex constraints.
+    /// Multiplier column and row of each equation of the vertex constraints.
     constraint_slots: Vec<[Option<EquationSlots>; 2]>,
     width: Width,
     primal: usize,

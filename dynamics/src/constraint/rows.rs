@@ -35,9 +35,9 @@ pub(crate) struct VertexRows {
 /// Which load of an equation its curvature enters a Hessian with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum RowLoad {
-    /// That of the multipliers: for steps of sequential quadratic programming.
+    /// The multipliers: for steps of sequential quadratic programming.
     Multipliers,
-    /// That of the multiplier estimates `L + r c`: for Newton's method on the augmented Lagrangian.
+    /// The multiplier estimates `L + r c`: for Newton's method on the augmented Lagrangian.
     Estimates,
 }
 

@@ -19,7 +19,7 @@ impl Coefficients {
         sliding: 0.0,
     };
 
-    /// The same coefficient at rest and in motion.
+    /// Equal coefficients `mu` at rest and in motion.
     pub const fn equal(mu: f64) -> Self {
         Self {
             rest: mu,

@@ -117,7 +117,8 @@ impl ContactTerm {
         }
     }
 
-    /// The same, for longer than the term is borrowed.
+    /// The points that contact acts between, where these are not the vertices, for longer than the term is
+    /// borrowed.
     pub(crate) fn shared_points(&self) -> Option<Arc<SurfacePoints>> {
         self.points.clone()
     }

@@ -62,7 +62,7 @@ pub(crate) struct PrimalMatrix {
     iteration: ConjugateGradients,
     /// Slots of the lower triangle of each vertex block, row by row.
     vertex_slots: Vec<Option<[u32; 6]>>,
-    /// The same by free numbers.
+    /// Slots of the lower triangle of each free vertex block, row by row, by the free number of the vertex.
     free_slots: Vec<[u32; 6]>,
     /// Slots of each edge block and whether its rows belong to end `b` (else to `a`).
     edge_slots: Vec<Option<([u32; 9], bool)>>,

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 /// cloth: vectors at the rest positions, of any length, of which the part in the plane of a face counts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MaterialDirection {
-    /// The same everywhere.
+    /// A uniform direction.
     Uniform([f64; 3]),
     /// One for each face.
     Faces(Vec<[f64; 3]>),

@@ -58,9 +58,9 @@ const PAPER_POISSON: f64 = 0.293;
 const PAPER_SHEAR: f64 = 0.387;
 
 impl Directions {
-    /// Those of paper, from the geometric means `stiffness` of the `E h` (newtons per metre) and `rigidity`
-    /// of the `D` (newton metres) of both directions: along the machine so many times the mean, across it the
-    /// mean over as much.
+    /// The elastic constants of paper, from the geometric means `stiffness` of the `E h` (newtons per metre)
+    /// and `rigidity` of the `D` (newton metres) of both directions: along the machine so many times the
+    /// mean, across it the mean over as much.
     pub(super) const fn of_paper(stiffness: f64, rigidity: f64, times: f64) -> Self {
         Self {
             along: stiffness * times,
@@ -75,9 +75,10 @@ impl Directions {
         }
     }
 
-    /// Those of woven cloth, from `E h` of warp and weft and the shear modulus (newtons per metre), and the
-    /// rigidities of warp and weft (newton metres), whose geometric mean is given, too. Twist is resisted so
-    /// much that a strip that is cut at 45 degrees is about as stiff as the mean of the others.
+    /// The elastic constants of woven cloth, from `E h` of warp and weft and the shear modulus (newtons per
+    /// metre), and the rigidities of warp and weft (newton metres), whose geometric mean is given, too. Twist
+    /// is resisted so much that a strip that is cut at 45 degrees is about as stiff as the mean of the
+    /// others.
     pub(super) const fn of_cloth(
         [along, across, shear]: [f64; 3],
         poisson: f64,
@@ -211,9 +212,10 @@ impl Material {
         Ok(sheet)
     }
 
-    /// The same material where its direction is named: stiffness, rigidity and Poisson's ratio are the
-    /// geometric means of both directions, the limit of the strain is that of [`Directions`], and the sheet
-    /// yields at the same curvature of the mean rigidity. Of a material without directions this is itself.
+    /// This material as an orthotropic one, where its direction is named: stiffness, rigidity and Poisson's
+    /// ratio are the geometric means of both directions, the limit of the strain is that of [`Directions`],
+    /// and the sheet yields at the same curvature of the mean rigidity. A material without directions is
+    /// returned as it is.
     #[must_use]
     pub fn directed(self) -> Self {
         let Some(directions) = self.directions else {

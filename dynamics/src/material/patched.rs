@@ -26,7 +26,7 @@ impl Advice for NoFace {
 }
 
 impl<L> Patched<L> {
-    /// The same everywhere.
+    /// One `ground` everywhere, without patches.
     pub fn everywhere(ground: L) -> Self {
         let patches = Vec::new();
         Self { ground, patches }
@@ -44,7 +44,7 @@ impl<L> Patched<L> {
         &self.ground
     }
 
-    /// The same patches with what is made of each.
+    /// The values that `make` gives for the ground and for each patch, on the same faces.
     pub fn map<M>(&self, make: impl Fn(&L) -> M) -> Patched<M> {
         let patches = self.patches.iter();
         let patches = patches.map(|(faces, own)| (faces.clone(), make(own)));
@@ -63,7 +63,7 @@ impl<L> Patched<L> {
         self.patches.is_empty()
     }
 
-    /// That of each of so many faces.
+    /// What each of the first `count` faces has.
     ///
     /// # Errors
     /// [`NoFace`].

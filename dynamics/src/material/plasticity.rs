@@ -102,7 +102,7 @@ pub(super) struct Flow<const N: usize> {
 }
 
 impl<const N: usize> Flow<N> {
-    /// That of a section that does not yield.
+    /// The flow of a section that does not yield: none.
     pub(super) fn none() -> Self {
         Self {
             step: SVector::zeros(),

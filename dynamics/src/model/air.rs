@@ -57,7 +57,7 @@ type WindFunction = dyn Fn([f64; 3], f64) -> [f64; 3] + Send + Sync;
 /// and the time (seconds) that returns the velocity there.
 #[derive(Clone)]
 pub enum Wind {
-    /// The same everywhere; each component follows a profile, metres per second.
+    /// A uniform wind; each component follows a profile, metres per second.
     Uniform([Profile; 3]),
     /// Any function of point and time. It has to return the same whenever it is asked for the same.
     Custom(Arc<WindFunction>),

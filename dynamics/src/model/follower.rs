@@ -16,7 +16,8 @@ use std::sync::Arc;
 /// Part of the largest load by which loads may differ from those of the place of the sheet before they are
 /// renewed.
 const SETTLED: f64 = 1e-3;
-/// The same at the end of a step that is refused: it takes more than the updates that a step has.
+/// Part of the largest load by which loads may differ from those of the place of the sheet at the end of a
+/// step; beyond it the step is refused, as it takes more than the updates that a step has.
 const UNSETTLED: f64 = 0.05;
 
 /// The corners of a face, in metres, or the forces on them, in newtons.

@@ -80,8 +80,8 @@ pub(crate) fn direction(direction: [f64; 3]) -> Result<Vector3<f64>, LoadError> 
         .ok_or(LoadError::Direction { x, y, z })
 }
 
-/// The same force on each of some vertices, `f_v = p(t) d`: the size `p` (newtons) follows a profile, the
-/// unit vector `d` is fixed in space.
+/// Equal forces on some vertices, `f_v = p(t) d`: the size `p` (newtons) follows a profile, the unit vector
+/// `d` is fixed in space.
 ///
 /// ```
 /// use isosheet_dynamics::{Profile, SheetModel, VertexLoad};

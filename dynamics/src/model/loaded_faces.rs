@@ -87,7 +87,7 @@ impl Corners {
         }
     }
 
-    /// The same face with an edge of it as its first side.
+    /// This face with one of its edges as its first side.
     pub(super) fn beginning_with(self, edge: EdgeId) -> Self {
         let first = self.sides.iter().position(|side| side.edge == edge);
         let first = first.expect("the edge is one of the face");

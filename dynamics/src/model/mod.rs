@@ -66,9 +66,9 @@ pub struct SheetModel {
     elastic: Option<ElasticSheet>,
     /// All edges with their rest lengths.
     edges: LengthConstraints,
-    /// Those that have a length to keep, where that are not all.
+    /// The edges that have a length to keep, where that are not all.
     measured: Option<LengthConstraints>,
-    /// Those that are rods.
+    /// The edges that are rods.
     rods: LengthConstraints,
     rod_edges: Vec<EdgeId>,
     mass: MassMatrix,

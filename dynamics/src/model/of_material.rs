@@ -73,7 +73,7 @@ pub struct SheetOfMaterial<'a> {
 #[derive(Debug, Clone)]
 enum WithoutStress {
     Flat,
-    /// That of the sheet.
+    /// The shape of the sheet as it is given.
     AsGiven,
     Curled(Curl),
 }

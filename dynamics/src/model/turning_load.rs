@@ -14,9 +14,9 @@ use isosheet_mesh::{FaceId, Topology, VertexId};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-/// The same load on each of some vertices, of a direction that turns with the faces around them: each face
-/// carries a share like its area, which is fixed in the face. In its plane the direction goes along with its
-/// edges; where these stretch by a part, so does that component of the load.
+/// A load on some vertices whose direction turns with the faces around them, and whose size is the same on
+/// each of them: each face carries a share like its area, which is fixed in the face. In its plane the
+/// direction goes along with its edges; where these stretch by a part, so does that component of the load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurningLoad {
     size: Profile,

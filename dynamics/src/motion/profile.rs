@@ -15,7 +15,7 @@ pub(crate) mod tests;
 /// the value to the right: that of the motion that begins there.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Profile {
-    /// The same value at all times.
+    /// A constant value.
     Constant(f64),
     /// `from` before `begin`, `to` after `end`, and linear between. The rate jumps at both ends; the
     /// acceleration is zero everywhere else and is given as zero there too.

@@ -35,7 +35,7 @@ impl fmt::Display for Infeasibility {
 }
 
 impl Infeasibility {
-    /// The same in words, with bodies by the names that their numbers have.
+    /// The demand in words, with bodies by the names that `name` gives for their numbers.
     pub fn named(&self, name: impl Fn(usize) -> String) -> String {
         let by = match self.by {
             Driver::Support(support) => support.to_string(),

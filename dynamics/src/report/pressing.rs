@@ -19,7 +19,7 @@ pub struct Pressing {
 }
 
 impl Pressing {
-    /// The same in words, with bodies by the names that their numbers have.
+    /// What presses the sheet, in words, with bodies by the names that `name` gives for their numbers.
     pub fn named(&self, name: impl Fn(usize) -> String) -> String {
         let force = brief(self.force);
         let mut words = format!("{} presses the sheet with {force} N", name(self.body));

@@ -375,7 +375,7 @@ pub enum StepError {
         h: f64,
         /// Energy lost to friction, joules.
         lost: f64,
-        /// The same by the normal forces at the end, joules.
+        /// Energy that would be lost to friction by the normal forces at the end of the step, joules.
         settled: f64,
     },
     /// A step ends in contact.

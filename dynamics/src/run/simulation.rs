@@ -320,8 +320,8 @@ impl Simulation {
         }
     }
 
-    /// The same on the points of the surface where that is not the sheet ([`SurfacePoints`]), newtons: three
-    /// for each point.
+    /// Contact forces on the points of the surface where that is not the sheet ([`SurfacePoints`]), newtons:
+    /// three components for each point.
     pub fn surface_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Moved::ByMethod(engine) => {

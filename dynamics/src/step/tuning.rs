@@ -27,9 +27,10 @@ pub struct Tuning {
     /// keep momentum and symmetries no longer to round-off. Restorations, which crumpled sheets need softer,
     /// start from a penalty of one growth less.
     pub first_stiffness: f64,
-    /// The same from then on where the multipliers do not converge, and in contact; also the largest penalty
-    /// of a restoration. Beyond it the masses drown in the round-off of the penalty. Strips of rods on edge,
-    /// at rest, need 10 to 16 factorisations a step, and 16 to 280 where every step begins with the first
+    /// Stiffness of the rods, over that of the masses, in systems that are solved for their multipliers, once
+    /// these have not converged with the first stiffness, and in contact; also the largest penalty of a
+    /// restoration. Beyond it the masses drown in the round-off of the penalty. Strips of rods on edge, at
+    /// rest, need 10 to 16 factorisations a step, and 16 to 280 where every step begins with the first
     /// stiffness.
     pub last_stiffness: f64,
     /// Length of a conjugate gradient iteration for the multipliers beyond which rods count as dependent: the

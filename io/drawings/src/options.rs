@@ -25,7 +25,7 @@ pub struct DrawingOptions {
 }
 
 impl DrawingOptions {
-    /// Those of a spacing, metres, with defaults for all else.
+    /// Options with a spacing, metres, and defaults for all else.
     pub fn with_spacing(spacing: f64) -> Self {
         Self {
             spacing,

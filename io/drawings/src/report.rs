@@ -43,7 +43,7 @@ pub struct DrawingReport {
     pub joined: Option<Places>,
     /// Lines that were drawn twice, and how long they are.
     pub doubled: Option<Places>,
-    /// Those of them that were drawn as lines of different classes, of which the strongest counts.
+    /// Lines that were drawn twice, as lines of different classes, of which the strongest counts.
     pub contradicting: Option<Places>,
     /// Creases that close the outline where cuts leave it open, and how long they are.
     pub closing: Option<Places>,
@@ -71,7 +71,7 @@ fn mm(metres: f64) -> String {
 const SAME_UNIT: f64 = 0.01;
 
 impl Places {
-    /// Those of a list of places.
+    /// The number of places in a list, and the largest one; `None` of an empty list.
     pub fn of(places: impl IntoIterator<Item = (f64, [f64; 2])>) -> Option<Self> {
         let mut found: Option<Self> = None;
         for (extent, at) in places {

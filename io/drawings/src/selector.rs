@@ -10,15 +10,15 @@ use std::str::FromStr;
 /// Some lines of a drawing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Selector {
-    /// Those in a layer, in a group or with a name of this text, in capital or small letters: `layer:NAME`.
+    /// Lines in a layer, in a group or with a name of this text, in capital or small letters: `layer:NAME`.
     Layer(String),
-    /// Those of exactly this colour: `#rrggbb`.
+    /// Lines of exactly this colour: `#rrggbb`.
     Exact(Colour),
-    /// Those of a colour that looks like the one of this name: `red`.
+    /// Lines of a colour that looks like the one of this name: `red`.
     Named(&'static str),
-    /// Those that are dashed: `dashed`.
+    /// Dashed lines: `dashed`.
     Dashed,
-    /// Those that are not: `solid`.
+    /// Lines that are not dashed: `solid`.
     Solid,
 }
 

@@ -37,12 +37,12 @@ impl DataError {
         }
     }
 
-    /// The same with what to do, if anything.
+    /// This error with what to do, if anything.
     pub fn remedy(self, remedy: Option<&'static str>) -> Self {
         Self { remedy, ..self }
     }
 
-    /// The same with the number of the part to blame.
+    /// This error with the number of the part to blame.
     pub fn at(self, index: usize) -> Self {
         Self {
             index: Some(index),
@@ -50,7 +50,7 @@ impl DataError {
         }
     }
 
-    /// The same with the number that cannot be used.
+    /// This error with the number that cannot be used.
     pub fn value(self, value: f64) -> Self {
         Self {
             value: Some(value),

@@ -15,7 +15,7 @@ pub struct NumberedFiles {
 }
 
 impl NumberedFiles {
-    /// Those of a name and an extension in a folder, which need not exist.
+    /// The files of a name and an extension in a folder, which need not exist.
     pub fn new(folder: &Path, name: &'static str, extension: &str) -> Self {
         Self {
             folder: folder.to_owned(),

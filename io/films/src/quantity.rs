@@ -25,8 +25,8 @@ pub(super) struct Quantity {
 }
 
 impl Quantity {
-    /// That of a name in some frames of a run, on a scale that has the values in all of them, or another
-    /// range.
+    /// The quantity of a name in some frames of a run, on a scale that has the values in all of them, or
+    /// another range.
     ///
     /// # Errors
     /// [`PictureError::Options`] for a name that no quantity has, with those that there are, and for a range that makes

@@ -144,7 +144,7 @@ impl<'a> Document<'a> {
         }))
     }
 
-    /// The same of a run that goes on.
+    /// The document of a run that goes on.
     pub(super) fn live(self, live: &'a LivePage) -> Self {
         Self {
             live: Some(live),

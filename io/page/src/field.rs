@@ -14,8 +14,8 @@ pub enum Centering {
     Vertex,
     /// One value for each edge, in the order of [`Topology::edges`]: by smaller, then by larger vertex.
     Edge,
-    /// The same, of which values that are not zero are shown, on the two colours of the sheet: most edges are
-    /// no creases.
+    /// One value for each edge, in the order of [`Topology::edges`], of which values that are not zero are
+    /// shown, on the two colours of the sheet: most edges are no creases.
     Crease,
     /// One value for each face.
     Face,

@@ -22,7 +22,7 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// That of no numbers.
+    /// The range of no numbers.
     pub(super) const NOTHING: Self = Self {
         low: f64::INFINITY,
         high: f64::NEG_INFINITY,

@@ -55,7 +55,7 @@ impl Camera {
         (size[0] / size[1].max(1e-9)).clamp(1.0 / 3.0, 3.0)
     }
 
-    /// The same camera, framed so that all points are inside the picture with a margin (part of its height),
+    /// This camera, framed so that all points are inside the picture with a margin (part of its height),
     /// which has the given width over height.
     pub fn framing(
         &self,

@@ -45,7 +45,7 @@ const SAMPLES: usize = 4;
 /// The strip with the scale of colours that belongs below a picture, whose height is that of both.
 ///
 /// # Errors
-/// Those of [`ColourScale::validate`], and [`PictureError::Options`] where the strip would take more than
+/// Errors of [`ColourScale::validate`], and [`PictureError::Options`] where the strip would take more than
 /// half of the picture.
 pub fn strip(scale: &ColourScale, [width, height]: [usize; 2]) -> Result<Image, PictureError> {
     scale.validate()?;

@@ -25,7 +25,8 @@ const BORDER: f64 = 0.15;
 /// Largest edge over which the light on a body is interpolated, as part of the height of the picture.
 pub(super) const GRAIN: f64 = 0.035;
 
-/// The same at the rim of a shadow, where the openness would change by more than [`CONTRAST`] within a piece.
+/// Largest edge over which the light on a body is interpolated at the rim of a shadow, where the openness
+/// would change by more than [`CONTRAST`] within a piece, as part of the height of the picture.
 const FINE_GRAIN: f64 = 0.007;
 
 /// A change of the light that is seen as an edge.
@@ -176,7 +177,7 @@ impl Look {
 /// Draws a sheet on white.
 ///
 /// # Errors
-/// Those of [`Look::validate`]; [`PictureError::Data`] for a picture that does not fit together.
+/// Errors of [`Look::validate`]; [`PictureError::Data`] for a picture that does not fit together.
 pub fn render(
     picture: &SheetPicture<'_>,
     camera: &Camera,
@@ -188,7 +189,7 @@ pub fn render(
 /// Draws a sheet on white with lines along some of its edges, where it folds, however fine its mesh is.
 ///
 /// # Errors
-/// Those of [`render`].
+/// Errors of [`render`].
 pub fn render_folded(
     picture: &SheetPicture<'_>,
     creases: &[EdgeId],

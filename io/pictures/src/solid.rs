@@ -77,7 +77,7 @@ impl Solid {
         })
     }
 
-    /// The same body in another pose.
+    /// This body in another pose.
     pub fn moved_to(&self, pose: Isometry3<f64>) -> Self {
         Self {
             form: Arc::clone(&self.form),

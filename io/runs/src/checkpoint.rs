@@ -63,7 +63,7 @@ pub(crate) struct RunProgress {
     pub(crate) slow_since: Option<f64>,
     /// Largest edge strain so far.
     pub(crate) strain: f64,
-    /// The same of each of several sheets.
+    /// Largest edge strain so far of each sheet, where there are several.
     #[serde(default)]
     pub(crate) sheet_strains: Vec<f64>,
     /// Largest displacement of a vertex so far, metres.

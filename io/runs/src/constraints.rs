@@ -46,7 +46,7 @@ pub struct HoldingBody {
 }
 
 impl HoldingBody {
-    /// Those of a scene, whose sheet stays in the box between two corners.
+    /// The bodies that hold the sheet of a scene, which stays in the box between two corners.
     pub fn all(scene: &Scene, corners: [[f64; 3]; 2]) -> Vec<Self> {
         let space = Space::of(corners);
         let body = |(support, entry): (usize, &Support)| {

@@ -28,7 +28,7 @@ pub struct ElasticSummary {
     pub at_limit: f64,
     /// Where the sheet bent most over the size of a face, if it bends.
     pub sharpest: Option<Bend>,
-    /// The same at the end.
+    /// Where the sheet bends most over the size of a face at the end, if it bends.
     #[serde(default)]
     pub at_end: Option<Bend>,
     /// The face that is the largest for its bend at rest, if the sheet is curved without stress.

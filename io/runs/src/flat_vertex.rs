@@ -23,8 +23,8 @@ pub struct UnfoldableVertex {
 const CLOSED: f64 = 1.0;
 
 impl UnfoldableVertex {
-    /// Those of a flat sheet whose creases are driven to targets, of which `assignments` say what other edges
-    /// do: an edge of which they say nothing folds freely.
+    /// The unfoldable vertices of a flat sheet whose creases are driven to targets, of which `assignments`
+    /// say what other edges do: an edge of which they say nothing folds freely.
     pub(super) fn all(
         sheet: &Sheet,
         targets: &FoldTargets,

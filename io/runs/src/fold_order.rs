@@ -13,7 +13,7 @@ pub struct GroupFold {
     /// How far the one that is furthest is from its angle when the next group begins, degrees; `None` of the
     /// last group.
     pub at_next: Option<f64>,
-    /// The same at the end.
+    /// How far the crease of the group that is furthest is from its angle at the end, degrees.
     pub at_end: f64,
 }
 

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// First bytes of the file; the last two are the version of the format.
 const MAGIC: &[u8; 8] = b"isofrm02";
-/// Those of files without bends beside creases.
+/// First bytes of files without bends beside creases.
 const WITHOUT_BENDS: &[u8; 8] = b"isofrm01";
 
 /// Sum over a frame.
@@ -66,12 +66,12 @@ impl Frame {
 pub(crate) struct FrameShape {
     /// `3V`.
     pub(crate) coordinates: usize,
-    /// Those of each quantity, zero of what there is not.
+    /// How many numbers each quantity has, zero of what there is not.
     pub(crate) data: [usize; FrameQuantity::COUNT],
 }
 
 impl FrameShape {
-    /// That of the frames of a run.
+    /// The shape of the frames of a run.
     pub(crate) fn of(setup: &Setup) -> Self {
         let model = &setup.model;
         let topology = setup.sheet.topology();
@@ -100,8 +100,8 @@ impl FrameShape {
         }
     }
 
-    /// That of the frames in a file, which may be of a version that had no bends beside creases. A file that
-    /// cannot be read has the present ones.
+    /// The shape of the frames in a file, which may be of a version that had no bends beside creases. A file
+    /// that cannot be read counts as one of the present version.
     pub(crate) fn in_file(mut self, path: &Path) -> Self {
         let mut magic = [0; MAGIC.len()];
         let begun = input::open(path).and_then(|mut file| read_whole(&mut file, &mut magic));

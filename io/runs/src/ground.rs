@@ -8,7 +8,8 @@ use nalgebra::Point3;
 /// passes through: nothing lies in its plane.
 const STANDING: f64 = 0.01;
 
-/// The same below a sheet that is lower than all bodies, and so hangs or falls.
+/// How far the ground is below a sheet that is lower than all bodies, and so hangs or falls, as part of the
+/// size of the space that the sheet passes through.
 const HANGING: f64 = 0.1;
 
 /// Sides of round bodies, whose lowest points count.

@@ -297,7 +297,7 @@ pub fn write_page(folder: &Path, file: &Path, options: &PageOptions) -> Result<u
     write_page_of(&recording, &frames, file, options)
 }
 
-/// The same for what was read already.
+/// Writes the page of a run that was read already to a file. Returns the size of the page, bytes.
 pub(crate) fn write_page_of(
     recording: &Recording,
     frames: &RunFrames,

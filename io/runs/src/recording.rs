@@ -114,7 +114,8 @@ impl Recording {
         Ok((recording, frames))
     }
 
-    /// The same for the scene of a run that is not complete yet, what it was built to, and its tables.
+    /// The recording of a run that is not complete yet, without its frames, and what shows these one at a
+    /// time. It is made of the scene of the run, what that was built to, and its tables.
     pub(crate) fn of(
         folder: &Path,
         scene: SceneFile,
@@ -239,7 +240,7 @@ pub(crate) struct Tables {
 }
 
 impl Tables {
-    /// Those that the folder of a run has.
+    /// Reads the tables that the folder of a run has.
     pub(crate) fn read(folder: &Path) -> Result<Self, RunError> {
         Ok(Self {
             history: read_history(&folder.join(RunFolder::HISTORY))?,

@@ -26,7 +26,8 @@ impl fmt::Display for TimeError {
 }
 
 impl TimeError {
-    /// That of a step, or that of the steps `before` if it is larger; none of methods without an estimate.
+    /// The error of a step, or that of the steps `before` if it is larger; none of methods without an
+    /// estimate.
     pub(crate) fn after(
         report: &StepReport,
         asked: Option<f64>,

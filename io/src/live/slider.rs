@@ -19,7 +19,7 @@ pub(super) struct Slider {
 }
 
 impl Slider {
-    /// Those of a scene. What is zero at all times is not named, and has none.
+    /// The sliders of a scene. What is zero at all times is not named, and has none.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
         let mut functions = scene.clone();
         let functions = functions.functions_mut().into_iter();

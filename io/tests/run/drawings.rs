@@ -331,7 +331,7 @@ fn curved_creases_and_holes() {
     assert!(least >= 20.0, "{least}");
 }
 
-/// The same lines by both formats are the same mesh.
+/// Equal lines in DXF and SVG files are the same mesh.
 #[test]
 fn dxf_is_read_as_svg_is() {
     let dir = tempfile::tempdir().unwrap();

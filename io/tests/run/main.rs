@@ -82,7 +82,7 @@ fn with_scene(kind: StartingPoint) -> tempfile::TempDir {
     folder
 }
 
-/// The same with the run of its first fifth of a second, `run`.
+/// A folder with one of the scenes to start from, and with the run of its first fifth of a second, `run`.
 fn with_short_run(kind: StartingPoint) -> tempfile::TempDir {
     let folder = with_scene(kind);
     let arguments = ["scene.toml", "--out", "run", "--set", "stop.time=0.2"];

@@ -24,7 +24,7 @@ impl Chord {
         Self::with_ends(curve, number, range, ends)
     }
 
-    /// The same where the ends are known, and may have been moved a little.
+    /// The chord between two ends that are known, and may have been moved a little.
     pub(super) fn with_ends(
         curve: &PlaneCurve,
         number: usize,

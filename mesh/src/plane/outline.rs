@@ -30,7 +30,7 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// That of a drawing.
+    /// The outline of a drawing.
     ///
     /// # Errors
     /// [`PlaneError`] if it is open or bounds no area.

@@ -28,8 +28,8 @@ impl Uses {
         uses
     }
 
-    /// The same between folders: a file or a folder, with the file of its name, uses those beside it that files
-    /// in it use.
+    /// The uses between folders: a file or a folder, with the file of its name, uses those beside it that
+    /// files in it use.
     pub(super) fn of_folders(&self, root: &Path) -> Self {
         let mut uses = Self(BTreeMap::new());
         for ((file, used), names) in &self.0 {

@@ -88,13 +88,13 @@ impl Chart {
         Self::new(x, y, size, series)
     }
 
-    /// The same with a title.
+    /// This chart with a title.
     pub(crate) fn titled(self, title: impl Into<String>) -> Self {
         let title = title.into();
         Self { title, ..self }
     }
 
-    /// The same with the legend elsewhere.
+    /// This chart with the legend at another place.
     pub(crate) fn with_legend(self, legend: Legend) -> Self {
         Self { legend, ..self }
     }

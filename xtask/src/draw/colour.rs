@@ -18,7 +18,7 @@ impl Colour {
         }
     }
 
-    /// The same colour with the given opacity.
+    /// This colour with the given opacity.
     pub(crate) const fn alpha(self, alpha: f64) -> Self {
         Self { alpha, ..self }
     }

@@ -23,7 +23,7 @@ impl Stroke {
         }
     }
 
-    /// The same line, dashed.
+    /// This line, dashed.
     pub(crate) const fn dashed(self) -> Self {
         Self {
             dash: Some([2.6, 2.0]),

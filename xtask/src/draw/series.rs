@@ -51,7 +51,7 @@ impl Series {
         Self::line(name, STYLES[k % STYLES.len()].0, points)
     }
 
-    /// The same with a vertical error bar at each point, from one value to another.
+    /// This series with a vertical error bar at each point, from one value to another.
     pub(crate) fn with_bars(self, bars: Vec<[f64; 2]>) -> Self {
         Self { bars, ..self }
     }
@@ -61,13 +61,13 @@ impl Series {
         Self::line(name, palette::GREY, points).dashed()
     }
 
-    /// The same with symbols.
+    /// This series with symbols.
     pub(crate) fn marked(self, marker: Marker) -> Self {
         let marker = Some(marker);
         Self { marker, ..self }
     }
 
-    /// The same with a dashed line.
+    /// This series with a dashed line.
     pub(crate) fn dashed(self) -> Self {
         let is_dashed = true;
         Self { is_dashed, ..self }

@@ -21,12 +21,12 @@ pub(crate) trait Vector {
     /// An SVG document as part of a page, larger by a factor; `title` is read by screen readers.
     fn document(&self, title: &str, factor: f64) -> Markup;
 
-    /// The same as a file, in its own size.
+    /// An SVG file, in the size that the drawing has of its own.
     fn to_svg(&self, title: &str) -> String {
         self.document(title, 1.0).into_string()
     }
 
-    /// The same as a PNG file.
+    /// A PNG file.
     ///
     /// No fonts of the system are used, so that equal drawings give equal files everywhere.
     fn to_png(&self, title: &str) -> Result<Vec<u8>> {

@@ -18,7 +18,7 @@ impl Balance {
     /// Of a scene with steps that are shorter by some factors, the first of which is 1.
     ///
     /// # Errors
-    /// Those of the runs.
+    /// Errors of the runs.
     pub(super) fn by_step(
         store: &Store,
         label: &str,

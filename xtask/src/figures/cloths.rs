@@ -22,7 +22,7 @@ pub(super) fn rectangle(level: u32, effort: Effort) -> Result<FigureScene> {
     cloth("fig14", &format!("drape-m{level}"), edits.to_vec(), effort)
 }
 
-/// The same with an irregular mesh.
+/// The scene of Fig. 14 on an irregular mesh.
 pub(super) fn irregular(effort: Effort) -> Result<FigureScene> {
     let coarse = vec!["sheet.mesh.polygon.spacing=0.15".to_owned()];
     let edits = effort.quick_or(coarse, Vec::new());

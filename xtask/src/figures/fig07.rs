@@ -116,7 +116,7 @@ fn degenerate(lengths: [f64; 3]) -> Result<(Drawing, f64)> {
     Ok((d.drawing, worst))
 }
 
-/// The same vertices with a bent line: both solutions of rule f.
+/// The places of the vertex beside a bent line, by both solutions of rule f.
 fn regular(bent: &[[f64; 3]; 3], lengths: [f64; 3]) -> Result<Drawing> {
     let mut d = sketch();
     let mut images = Vec::new();

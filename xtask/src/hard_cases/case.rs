@@ -28,7 +28,7 @@ pub(super) struct CaseFile {
     /// Edits of the scene in quick reports, after those of the variants.
     #[serde(default)]
     quick: Vec<String>,
-    /// The same in full reports.
+    /// Edits of the scene in full reports, after those of the variants.
     #[serde(default)]
     full: Vec<String>,
     /// The runs are those of all entries; without entries there is one, of the scene as it is.

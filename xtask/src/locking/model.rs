@@ -15,7 +15,8 @@ pub(super) enum Model {
     /// The elastic sheet with the stiffness of the material on every face, and a plate.
     #[serde(rename = "real stiffness")]
     Material,
-    /// The same with faces that have slack where they bend, see [`ElasticSheet::beside`].
+    /// The elastic sheet with the stiffness of the material, whose faces have slack where they bend, and a
+    /// plate: see [`ElasticSheet::beside`].
     #[serde(rename = "elastic")]
     Elastic,
 }

@@ -91,7 +91,7 @@ impl Records<'_> {
     /// soon as they are complete.
     ///
     /// # Errors
-    /// Those of [`Records::runs`].
+    /// Errors of [`Records::runs`].
     pub(super) fn of_models<J, M>(
         &self,
         jobs: &[J],

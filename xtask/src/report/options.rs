@@ -41,7 +41,7 @@ impl Options {
     /// The output folder of a report.
     ///
     /// # Errors
-    /// Those of [`Store::open`].
+    /// Errors of [`Store::open`].
     pub(crate) fn open(&self, report: &str) -> Result<Store> {
         let standard = Effort::Standard;
         self.open_with(report, if self.quick { Effort::Quick } else { standard })

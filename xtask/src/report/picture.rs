@@ -38,7 +38,7 @@ impl Picture {
     /// A shaded picture as a PNG file, of which the page has a smaller one that opens it.
     ///
     /// # Errors
-    /// Those of the file.
+    /// Errors of making the file.
     pub(crate) fn shaded(file: &str, image: &Image, alt: &str) -> Result<Self> {
         let [width, _] = image.size();
         let small = image.reduced(width.div_ceil(THUMBNAIL).max(1));

@@ -160,13 +160,13 @@ impl Table {
         Ok(table)
     }
 
-    /// The same table as the file `name.csv`.
+    /// This table as the file `name.csv`.
     pub(crate) fn named(mut self, name: &str) -> Self {
         name.clone_into(&mut self.name);
         self
     }
 
-    /// The same table with more rows, given as text.
+    /// This table with more rows, given as text.
     pub(crate) fn with_texts(mut self, rows: impl IntoIterator<Item = Vec<String>>) -> Self {
         for row in rows {
             self.push(row.into_iter().map(Cell::from).collect());

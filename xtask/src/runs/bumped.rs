@@ -39,7 +39,7 @@ pub(crate) enum Pairs {
 pub(crate) enum Bumped {
     /// A nearly flat sheet held at a corner, one second.
     Hanging,
-    /// The same sheet, free, above a table, 1.5 seconds.
+    /// A nearly flat, free sheet above a table, 1.5 seconds.
     Tablecloth(Pairs),
 }
 

@@ -254,7 +254,7 @@ impl Plan {
         }
     }
 
-    /// The same, but the run ends when the sheet is at rest, see [`Plan::rest_speed`].
+    /// This plan with an end of the run when the sheet is at rest, see [`Plan::rest_speed`].
     pub(crate) fn until_rest(self, speed: f64) -> Self {
         Self {
             rest_speed: Some(speed),
@@ -262,7 +262,7 @@ impl Plan {
         }
     }
 
-    /// The same with a limit of the time of the processor, seconds.
+    /// This plan with a limit of the time of the processor, seconds.
     pub(crate) fn within(self, patience: f64) -> Self {
         Self { patience, ..self }
     }

@@ -12,7 +12,7 @@ pub(crate) enum Grid {
     /// Squares with alternating diagonals, with mesh lines across the strip.
     #[serde(rename = "aligned")]
     Aligned,
-    /// The same, turned by 22.5 degrees, halfway between two mesh lines.
+    /// Squares with alternating diagonals, turned by 22.5 degrees, halfway between two mesh lines.
     #[serde(rename = "union jack")]
     UnionJack,
     /// Squares with diagonals in one direction, turned by 22.5 degrees.

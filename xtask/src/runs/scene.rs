@@ -52,7 +52,7 @@ impl FigureScene {
         })
     }
 
-    /// The same scene under another name, with edits.
+    /// This scene under another name, with edits.
     ///
     /// # Errors
     /// Edits that make no sense.
@@ -64,7 +64,7 @@ impl FigureScene {
         })
     }
 
-    /// The same scene with an elastic sheet of a named material in place of rods. The material brings its own
+    /// This scene with an elastic sheet of a named material in place of rods. The material brings its own
     /// mass.
     ///
     /// # Errors
@@ -80,7 +80,7 @@ impl FigureScene {
         })
     }
 
-    /// The same scene with a sheet that never yields, under another name.
+    /// This scene with a sheet that never yields, under another name.
     ///
     /// # Errors
     /// A scene that has not one sheet that yields.
@@ -91,8 +91,9 @@ impl FigureScene {
         })
     }
 
-    /// The same scene with a sheet at rest whose vertices are displaced in its plane by random vectors of up to
-    /// `part` mean edge lengths in each direction, under another name: a mesh without straight lines of edges.
+    /// This scene with a sheet at rest whose vertices are displaced in its plane by random vectors of up to
+    /// `part` mean edge lengths in each direction, under another name: a mesh without straight lines of
+    /// edges.
     ///
     /// # Errors
     /// A displacement that turns a triangle over.
@@ -111,7 +112,7 @@ impl FigureScene {
         self.edited(name, &[format!("sheet.mesh={mesh}")])
     }
 
-    /// The same scene with a change of its one table `[sheet]`, under another name.
+    /// This scene with a change of its one table `[sheet]`, under another name.
     fn with_sheet(
         &self,
         name: String,

@@ -17,7 +17,7 @@ const WEIGHTS: [(f64, [f64; 2]); 5] = [
     (1000.0, [0.04599, 0.98114]),
 ];
 
-/// That of Peirce's test: the bending length is half of what hangs over.
+/// The weight over `D / L^3` in Peirce's test: the bending length is half of what hangs over.
 const PEIRCE: f64 = 8.0;
 
 /// Strips under their weight.

@@ -167,7 +167,7 @@ pub trait Form: Debug + Send + Sync {
 pub enum Symmetry {
     /// None that are known.
     None,
-    /// Those about the z axis.
+    /// All rotations about the z axis.
     Axis,
     /// All about the origin.
     Full,

@@ -154,13 +154,13 @@ impl<'a> Fit<'a> {
         self.rows.add_gradient(&mut self.gradient);
     }
 
-    /// That of the rods.
+    /// The penalty energy of the rods.
     fn rod_energy(&self) -> f64 {
         let rods: f64 = self.tension.iter().zip(&self.c).map(|(w, c)| w * c).sum();
         0.5 * rods
     }
 
-    /// That of the strains beyond the limit.
+    /// The energy of the strains beyond the limit.
     fn excess_energy(&self) -> f64 {
         let excess = self.excess.as_ref();
         excess.map_or(0.0, |excess| excess.energy(At::new(self.t, &self.x)))

@@ -115,7 +115,8 @@ fn scripted(script: &[Answer], control: StepControl) -> (Engine, Arc<Mutex<Vec<S
     scripted_on(&[], script, control)
 }
 
-/// The same with a sheet that has pins. (The integrator takes no notice of them.)
+/// A sheet that has pins, in free flight, moved by a scripted integrator that stores one step of history, and
+/// a list of what the integrator was given in each call. (The integrator takes no notice of the pins.)
 fn scripted_on(
     pins: &[VertexId],
     script: &[Answer],

@@ -45,8 +45,8 @@ impl Arcs {
         }
     }
 
-    /// The same of a sheet in a union of several, among whose elastic faces its first one has the number
-    /// `first`.
+    /// The bends of the faces of this sheet as a part of a union of several sheets, among whose elastic faces
+    /// its first one has the number `first`.
     pub(super) fn in_union(self, part: &Part, first: usize) -> Self {
         Self {
             coordinates: part.coordinates(),

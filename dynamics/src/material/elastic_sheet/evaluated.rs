@@ -10,7 +10,8 @@ use isosheet_linalg::parallel::{Work, in_order};
 /// Nanoseconds for the state of a face with its energy, as for its part of a Hessian, by a profile of a drape of 2437
 /// vertices on one core at 2.4 GHz. It decides what is shared among threads, and no result.
 const FACE_TIME: f64 = 100.0;
-/// The same for what a face does along a displacement.
+/// Nanoseconds for what a face does along a displacement, by the profile from which [`FACE_TIME`] is. It
+/// decides what is shared among threads, and no result.
 const COURSE_TIME: f64 = 40.0;
 
 /// The faces where a sheet was evaluated last, with their energies, and room for their Hessians.

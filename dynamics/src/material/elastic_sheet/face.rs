@@ -117,7 +117,7 @@ impl Face {
         })
     }
 
-    /// The same face of a sheet in a union of several.
+    /// This face as one of a sheet that is a part of a union of several.
     pub(super) fn in_union(self, part: &Part) -> Self {
         Self {
             id: part.face(self.id),

@@ -68,7 +68,7 @@ impl Law {
         norm: Matrix3::from_array_storage(nalgebra::ArrayStorage([[0.0; 3]; 3])),
     };
 
-    /// The same law by other numbers, which give those of this one.
+    /// This law in other numbers for the strain, from which the matrix `numbers` makes those of this law.
     pub(super) fn by(self, numbers: &Matrix3<f64>) -> Self {
         match self {
             Self::Isotropic { stiffness, norm } => Self::Isotropic {
@@ -133,7 +133,7 @@ pub(super) struct At<'a> {
     pub(super) law: &'a Law,
     pub(super) strain: &'a Vector3<f64>,
     pub(super) slack: &'a Slack,
-    /// That of the law at this strain with this slack.
+    /// The norms of this strain and of the force that it takes, with this slack, by the law.
     pub(super) pull: Pull,
 }
 

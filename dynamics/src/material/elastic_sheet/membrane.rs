@@ -39,7 +39,7 @@ pub struct OrthotropicMembrane {
 /// How stiff a sheet is in its plane.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MembraneLaw {
-    /// The same in all directions.
+    /// An isotropic law.
     Isotropic {
         /// Young's modulus times thickness, N/m.
         stiffness: f64,

@@ -263,8 +263,9 @@ fn faces_bend_by_their_size_over_the_radius() {
     assert!(flat.angle.iter().all(|a| *a < 1e-6) && flat.strain.iter().all(|s| *s < 1e-12));
 }
 
-/// The same with springs at the edges, whose energy is exact on a grid that bends along its lines: to the error of
-/// chords, `(k h)^2 / 24`, each face inside bends by its size over the radius.
+/// A sheet with springs at its edges that is rolled onto a cylinder: the energy of springs is exact on a grid
+/// that bends along its lines, and to the error of chords, `(k h)^2 / 24`, each face inside bends by its size
+/// over the radius.
 #[test]
 fn faces_bend_alike_with_springs_at_their_edges() {
     let (rigidity, radius, step) = (0.3, 2.0, 0.125);

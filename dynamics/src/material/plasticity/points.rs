@@ -15,7 +15,7 @@ pub(super) struct Point {
 /// The largest number of layers.
 pub(super) const MOST: usize = 100;
 
-/// Those of all numbers of layers that have been asked for.
+/// The layers for each number of layers that has been asked for.
 static KNOWN: [OnceLock<Box<[Point]>>; MOST + 1] = [const { OnceLock::new() }; MOST + 1];
 
 /// The layers of a section in so many, the innermost first; at most [`MOST`].

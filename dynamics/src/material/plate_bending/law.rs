@@ -47,7 +47,7 @@ impl OrthotropicPlate {
 /// Which law a plate has.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlateLaw {
-    /// The same in all directions.
+    /// An isotropic plate.
     Isotropic(PlateStiffness),
     /// With two perpendicular directions.
     Orthotropic(OrthotropicPlate),

@@ -60,7 +60,7 @@ impl Curvature {
 /// A natural curvature of all faces, or of each.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NaturalTensor {
-    /// The same everywhere.
+    /// A uniform curvature.
     Uniform(Curvature),
     /// One for each face.
     Faces(Vec<Curvature>),

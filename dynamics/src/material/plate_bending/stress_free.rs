@@ -37,7 +37,7 @@ pub(super) struct StressFreeCurvature {
 /// What does not change of a point.
 #[derive(Debug)]
 struct PointOfPlate {
-    /// Those of its face, counter-clockwise.
+    /// The corners of its face, counter-clockwise.
     corners: [VertexId; 3],
     /// Its part of the area of the face, m2.
     area: f64,

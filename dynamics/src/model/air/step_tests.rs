@@ -104,7 +104,8 @@ impl Scene {
         term
     }
 
-    /// The same with a history.
+    /// The term of the air in a step that makes velocities by `x1 = rest + H v1` with a history: `rest` is
+    /// not the start.
     fn term_with_history(&self) -> Box<dyn Term> {
         self.term(|i| self.start.x[i] + wave(2e-3, 2 * i))
     }

@@ -34,9 +34,9 @@ pub(super) struct Style {
     pub(super) stroke: Ink,
     pub(super) fill: Ink,
     pub(super) dashed: bool,
-    /// That of lines alone.
+    /// The opacity of lines alone.
     pub(super) stroke_opacity: f64,
-    /// That of areas alone.
+    /// The opacity of areas alone.
     pub(super) fill_opacity: f64,
     /// The product of those of all groups.
     pub(super) group_opacity: f64,

@@ -13,7 +13,7 @@ pub struct DrawnEdges {
 }
 
 impl DrawnEdges {
-    /// Those of a mesh; `None` if it does not say of which lines it is made.
+    /// The drawn edges of a mesh; `None` if it does not say of which lines it is made.
     pub fn of(mesh: &MeshFile) -> Option<Self> {
         let edges = mesh.creases.iter().filter(|crease| crease.drawn.is_some());
         (!mesh.drawn.pens().is_empty()).then(|| Self {

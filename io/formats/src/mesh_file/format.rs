@@ -18,7 +18,7 @@ pub enum MeshFormat {
     Fold,
     /// Graphics Library Transmission Format 2.0 as text with its buffers, `.gltf`.
     Gltf,
-    /// The same in one binary file, `.glb`.
+    /// Graphics Library Transmission Format 2.0 in one binary file, `.glb`.
     Glb,
     /// Polygons of VTK, legacy files as text or binary, `.vtk`.
     Vtk,

@@ -44,7 +44,8 @@ pub struct ReadingChanges {
     pub divided_lines: usize,
     /// Lines of drawings that were left out because they lead nowhere.
     pub loose_lines: usize,
-    /// Those of them that are cuts or drawn as the outline, inside the sheet.
+    /// Lines of drawings, inside the sheet, that are cuts or drawn as the outline and were left out because
+    /// they lead nowhere.
     pub loose_cuts: usize,
     /// Lines of drawings that were left out because they lie on others.
     pub double_lines: usize,

@@ -188,14 +188,14 @@ impl MovingMesh {
         self.clock
     }
 
-    /// The same with seconds as its times, if so many frames are one.
+    /// This motion with times in seconds, if `rate` frames take one second.
     pub fn at_rate(mut self, rate: f64) -> Self {
         self.times.iter_mut().for_each(|t| *t /= rate);
         self.clock = Clock::Seconds;
         self
     }
 
-    /// The same with each position changed.
+    /// This motion with each position changed.
     pub fn map(mut self, change: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         for p in self.x.as_chunks_mut::<3>().0 {
             *p = change(*p);
@@ -203,7 +203,7 @@ impl MovingMesh {
         self
     }
 
-    /// The same at other times.
+    /// This motion `by` later, in the unit of the times.
     pub fn delayed(mut self, by: f64) -> Self {
         self.times.iter_mut().for_each(|t| *t += by);
         self

@@ -404,7 +404,7 @@ pub(crate) fn checkpoints() -> [Vec<u8>; 2] {
     .map(|s| s.checkpoint().to_bytes().expect("memory suffices"))
 }
 
-/// The same in the JSON form.
+/// Checkpoints to begin with, in the JSON form: after two steps of BDF2 and of implicit Euler.
 pub(crate) fn checkpoints_json() -> [Vec<u8>; 2] {
     [
         simulation(Method::default()),

@@ -213,7 +213,8 @@ fn a_poster_curls_to_its_roll() {
     assert!((x - expected_x).hypot(z - expected_z) < 2e-3, "{x} {z}");
 }
 
-/// The same curl by its components, and by another shape of the mesh, which is given by a file.
+/// A curl may be given by its radius, by its components, or by another shape of the mesh, which a file has:
+/// the energy is that of the one curl.
 #[test]
 fn a_curl_may_be_a_tensor_or_a_shape() {
     let folder = tempfile::tempdir().unwrap();

@@ -17,7 +17,7 @@ fn simulation(folder: &Path, text: &str) -> Simulation {
     simulation.unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The same bits after some steps.
+/// Checks that two simulations have equal bits after some steps.
 fn agree(mut a: Simulation, mut b: Simulation) {
     let start = a.state().x.clone();
     for _ in 0..10 {

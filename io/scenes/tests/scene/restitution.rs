@@ -44,7 +44,7 @@ fn bodies_part_no_faster_than_they_met() {
     }
 }
 
-/// The same holds for a body on a slider, along which it is hit, and for what an arm on a hinge hits.
+/// A body on a slider, along which it is hit, and what an arm on a hinge hits, part no faster than they met.
 #[test]
 fn guided_bodies_part_no_faster_than_they_met() {
     let slider = "guide = { slider = { direction = [1, 0, 0] } }";

@@ -252,7 +252,7 @@ fn a_ball_thrown_into_a_hammock_stays_on_it() {
     assert!(limit && least < 1e-3, "{least}");
 }
 
-/// The same steps after a resumption, in the run itself.
+/// A ball in a hammock makes equal steps in the run itself and after its resumption.
 #[test]
 fn a_resumed_ball_rolls_on_bit_for_bit() {
     let mut run = live(&hammock());

@@ -88,7 +88,7 @@ fn what_cannot_swell_is_refused() {
     }
 }
 
-/// Those that are found in a step are told of the key, too.
+/// Swelling that a sheet cannot follow is found in a step, and the error names the key.
 #[test]
 fn what_a_sheet_cannot_follow_names_the_key() {
     for (swell, supports, reason) in [

@@ -97,7 +97,7 @@ impl WorkRow {
         self.factorisations_per_step.filter(|_| self.is_good())
     }
 
-    /// The same row with what its runs gave.
+    /// This row with what its runs gave.
     fn with(self, runs: &[TimedRun]) -> Self {
         // The median of a number that all runs have.
         let median = |of: &dyn Fn(&TimedRun) -> Option<f64>| {

@@ -104,7 +104,7 @@ impl FileCrease {
         ) || self.angle.is_some_and(|angle| angle != 0.0)
     }
 
-    /// The same fold as it is seen from the other side of the sheet.
+    /// The crease as it is seen from the other side of the sheet.
     fn turned(self) -> Self {
         Self {
             assignment: match self.assignment {

@@ -225,7 +225,7 @@ fn rank(assignment: EdgeAssignment) -> u8 {
 }
 
 impl Planar {
-    /// The same, if it is a sheet.
+    /// The drawing itself, if it is a sheet.
     ///
     /// # Errors
     /// [`DataError`] for a drawing whose outline is open, or that encloses no face.

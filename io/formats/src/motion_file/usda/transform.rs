@@ -17,7 +17,7 @@ struct Operation<'a> {
 pub(super) struct Placing<'a>(Vec<Operation<'a>>);
 
 impl<'a> Placing<'a> {
-    /// That of a part in this one.
+    /// The transformations of a part in this one, with those of this one before them.
     pub(super) fn within(&self, prim: &'a Prim) -> Result<Self, String> {
         let mut all = self.0.clone();
         let order = prim.attribute("xformOpOrder").and_then(Attribute::at_first);

@@ -119,7 +119,7 @@ impl Polynomial {
 struct Sturm(Vec<Polynomial>);
 
 impl Sturm {
-    /// That of the roots of a polynomial that is not zero, each counted once.
+    /// The chain for the roots of a polynomial that is not zero, each counted once.
     fn of(polynomial: &Polynomial) -> Self {
         let first = polynomial.with_simple_roots().reduced();
         let mut chain = vec![first.derivative(), first];
@@ -165,7 +165,7 @@ impl Root {
         }
     }
 
-    /// The same number in half of its interval.
+    /// This root in half of its interval.
     fn narrowed(self) -> Self {
         let middle = middle(&self.low, &self.high);
         match self.of.count(&self.low, &middle) {
