@@ -299,12 +299,12 @@ fn other_sheets_versions_and_damage_are_refused() {
         assert!(Checkpoint::from_bytes(&bytes[..length]).is_err());
     }
     let text = checkpoint.to_json().expect("encoded");
-    let other = text.replacen("\"version\":19", "\"version\":9", 1);
+    let other = text.replacen("\"version\":20", "\"version\":9", 1);
     assert_eq!(
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
             found: 9,
-            supported: 19
+            supported: 20
         })
     );
     assert!(matches!(
