@@ -77,7 +77,7 @@ pub fn check_derivatives(
 }
 
 /// The errors of a gradient and a Hessian, which is given by its products.
-pub(super) fn errors(
+fn errors(
     x: &[f64],
     energy: &mut dyn FnMut(&[f64]) -> f64,
     gradient: &mut dyn FnMut(&[f64]) -> Vec<f64>,

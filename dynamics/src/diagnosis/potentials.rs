@@ -1,8 +1,8 @@
 //! What is wrong with the potentials of a model.
 
-use super::derivatives::errors;
+use super::derivatives::check_derivatives;
 use crate::SheetModel;
-use crate::hessian::{HessianProduct, HessianSink};
+use crate::hessian::HessianSink;
 use crate::potential::{At, Memories, Potential};
 use crate::report::potential_fault::{BadPotential, PotentialFault};
 use isosheet_mesh::{EdgeId, VertexId};
@@ -73,26 +73,7 @@ fn fault_of(
     if blocks.fault.is_some() || differences == Differences::Skip || !is_smooth {
         return blocks.fault;
     }
-    let mut energy = |x: &[f64]| potential.energy(At { x, ..at });
-    let mut gradient = |x: &[f64]| {
-        let mut sum = vec![0.0; x.len()];
-        potential.add_gradient(At { x, ..at }, &mut sum);
-        sum
-    };
-    let mut product = |d: &[f64]| {
-        let mut sum = vec![0.0; d.len()];
-        potential.add_hessian(
-            at,
-            &mut HessianProduct {
-                edges: model.edges().edges(),
-                scale: 1.0,
-                vector: d,
-                product: &mut sum,
-            },
-        );
-        sum
-    };
-    let part = errors(at.x, &mut energy, &mut gradient, &mut product).gradient;
+    let part = check_derivatives(potential, topology, at).gradient;
     (part > WRONG).then_some(PotentialFault::Gradient { part })
 }
 
