@@ -5,7 +5,6 @@
 //! to rounding, however large the coordinates' change.
 
 mod error;
-mod intersections;
 
 pub use error::RealiseError;
 
