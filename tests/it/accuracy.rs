@@ -109,18 +109,10 @@ fn a_sheet_that_comes_to_rest_takes_long_steps_again() {
 
 #[test]
 fn a_resumed_run_goes_on_with_the_same_sub_steps() {
-    let mut simulation = falling(&square());
-    for _ in 0..3 {
-        simulation.step(0.1).expect("step accepted");
-    }
-    let checkpoint = simulation.checkpoint();
-    let mut resumed =
-        Simulation::resume(hanging(&square()), None, checkpoint).expect("of this model");
-    for _ in 0..3 {
-        let [a, b] = [&mut simulation, &mut resumed].map(|s| s.step(0.1).expect("step accepted"));
-        assert_eq!(a, b);
-    }
-    assert_eq!(simulation.state(), resumed.state());
+    let start = || falling(&square());
+    super::checkpoint::compare_with("accurate", 0.1, start, |checkpoint| {
+        Simulation::resume(hanging(&square()), None, checkpoint).expect("of this model")
+    });
 }
 
 /// Where sub-steps are as short as allowed they are accepted, and the report says by how much they err.

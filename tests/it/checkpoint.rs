@@ -51,7 +51,7 @@ fn bits(state: &State) -> Vec<u64> {
 }
 
 /// Compares a resumed simulation of a chart-free method without contact, see [`compare_with`].
-fn compare(name: &str, start: impl Fn() -> Simulation, model: impl Fn() -> SheetModel) {
+pub(super) fn compare(name: &str, start: impl Fn() -> Simulation, model: impl Fn() -> SheetModel) {
     compare_with(name, STEP, start, |checkpoint| {
         Simulation::resume(model(), None, checkpoint).expect("the same model")
     });
@@ -59,7 +59,7 @@ fn compare(name: &str, start: impl Fn() -> Simulation, model: impl Fn() -> Sheet
 
 /// Runs `2 N` steps without interruption, and `N` steps, a checkpoint and `N` more steps; compares states,
 /// reports, support forces and loads on bodies.
-fn compare_with(
+pub(super) fn compare_with(
     name: &str,
     h: f64,
     start: impl Fn() -> Simulation,

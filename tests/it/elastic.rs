@@ -3,8 +3,8 @@
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::constraint::{Plane, Side};
 use isosheet_dynamics::{
-    Checkpoint, CheckpointError, ElasticSheet, ImplicitOptions, Method, PlateBending, SheetModel,
-    Simulation, SimulationError, State, VertexConstraint,
+    CheckpointError, ElasticSheet, ImplicitOptions, Method, PlateBending, SheetModel, Simulation,
+    SimulationError, State, VertexConstraint,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::Isometry3;
@@ -28,10 +28,6 @@ fn paper(sheet: &Sheet, pins: &[VertexId]) -> SheetModel {
         .with_potential(PlateBending::clamped(sheet, 5e-3, pins).expect("rigidity"))
         .with_elastic_sheet(ElasticSheet::new(sheet, 3e5, 0.3).expect("stiffness"))
         .expect("its own sheet")
-}
-
-fn bits(x: &[f64]) -> Vec<u64> {
-    x.iter().map(|x| x.to_bits()).collect()
 }
 
 /// A hanging ladder of rods, which has a motion of rods: the distance from it is of first order in the
@@ -135,24 +131,9 @@ fn a_resumed_elastic_sheet_goes_on_bit_for_bit() {
         let state = State::at_rest(sheet.positions().to_vec());
         Simulation::new(paper(&sheet, &pins), state, Method::default()).expect("starts")
     };
-    let (mut whole, mut first) = (start(), start());
-    for _ in 0..24 {
-        whole.step(STEP).expect("runs");
-    }
-    for _ in 0..12 {
-        first.step(STEP).expect("runs");
-    }
-    let bytes = first.checkpoint().to_bytes().expect("encoded");
-    let checkpoint = Checkpoint::from_bytes(&bytes).expect("decoded");
-    let mut second =
-        Simulation::resume(paper(&sheet, &pins), None, checkpoint).expect("the same model");
-    for _ in 0..12 {
-        second.step(STEP).expect("runs");
-    }
-    assert_eq!(bits(&second.state().x), bits(&whole.state().x));
-    assert_eq!(bits(&second.state().v), bits(&whole.state().v));
+    super::checkpoint::compare("elastic", start, || paper(&sheet, &pins));
     // A model of rods is another sheet.
-    let checkpoint = Checkpoint::from_bytes(&bytes).expect("decoded");
+    let checkpoint = start().checkpoint();
     let rods = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
         .expect("positive mass")
         .with_pins(&pins)
