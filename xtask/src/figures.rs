@@ -1,6 +1,5 @@
 //! The figures, one module each, and what is kept about them.
 
-mod balance;
 mod cloths;
 mod crumple;
 mod drape;

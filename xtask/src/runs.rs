@@ -15,6 +15,6 @@ pub(crate) use chart_run::{ChartSummary, chart_run};
 pub(crate) use course::{Course, Ending, Plan, unseen};
 pub(crate) use ensemble::{Ensemble, Spread, about_ensembles, members, spreads};
 pub(crate) use hanging::{Hanging, mass};
-pub(crate) use record::{Energy, Run, RunSummary, recorded};
+pub(crate) use record::{Run, RunSummary, recorded};
 pub(crate) use scene::{FigureScene, displaced, scene_fingerprint};
 pub(crate) use shape::{PLATE, SheetShape};

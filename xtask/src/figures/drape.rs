@@ -1,14 +1,13 @@
 //! Fig. 14: a rectangular cloth on a rectangular table. Fig. 15: an octagonal one on an octagonal table, and
 //! on towards the round.
 
-use super::balance::{self, Balance};
 use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{CornerFolds, Hem};
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Table, whole_percent};
-use crate::draw::{Axis, Chart, Charts, Viewpoint, mesh_name};
+use crate::draw::{Viewpoint, mesh_name};
 use crate::report::columns;
-use crate::runs::{Ensemble, FigureScene, Run, about_ensembles, members, spreads};
+use crate::runs::{Ensemble, FigureScene, Run, about_ensembles, members};
 use crate::store::Store;
 use anyhow::{Result, bail, ensure};
 use isosheet_mesh::{Dof, Sheet};
@@ -16,12 +15,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// What elastic tablecloths are made of. The bending length of this film, the third root of its rigidity over
-/// its weight, is 5 cm: longer than the edges of the finer meshes, and a fifth of the overhang. The page says
-/// how other films fold.
+/// its weight, is 5 cm: longer than the edges of the finer meshes, and a fifth of the overhang.
 const PLASTIC: &str = "acetate film";
-
-/// Films for the number of folds: softer, the same, and stiffer.
-const FILMS: [&str; 3] = ["polyethylene film", PLASTIC, "PET film"];
 
 /// Times of the pictures, seconds.
 const TIMES: [f64; 6] = [0.0, 0.15, 0.3, 0.6, 1.2, 8.0];
@@ -252,14 +247,6 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
     if effort != Effort::Quick {
         check_corners(&each[2 * levels.len() - 2..2 * levels.len()])?;
     }
-    // Of the paper's mesh, of rods and of film.
-    let mut balances = Vec::new();
-    for d in &all[..2] {
-        let factors = effort.quick_or(&FACTORS[..1], &FACTORS);
-        let balance = Balance::by_step(store, &d.name(), &d.run.scene, factors)?;
-        balance::check(&balance)?;
-        balances.extend(balance);
-    }
     Ok(Made {
         title: "Rectangular cloth on a rectangular table",
         paper: "A rectangular plastic tablecloth is draped over a rectangular table with M², and with a second resolution: the principal folds run from \
@@ -267,24 +254,16 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
         here: "The paper's own model, rods that do not resist bending, has such folds at one or two of the four corners, at others in \
                every run; the regular meshes have diagonals through the corners of the table that could favour what is to be shown, and \
                the irregular triangulation has none. On the finest regular mesh of acetate film, an elastic sheet that resists \
-               bending (the second sequence), folds run along most of these lines, and more than of rods. A large part of the \
-               energy of the fall is taken out by the time integration, the less the shorter its steps are (last table but one).",
+               bending (the second sequence), folds run along most of these lines, and more than of rods.",
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
             all[2 * levels.len() - 1].picture("fig14-elastic.png", effort)?,
             ends("fig14-ends.png", &each, effort)?,
         ],
         pages: pages(14, &each, effort)?,
-        tables: vec![
-            fold_table(&all),
-            balance::table(&balances),
-            runs_table(&each),
-        ],
+        tables: vec![fold_table(&all), runs_table(&each)],
     })
 }
-
-/// Factors by which steps are shorter of the runs whose balance of energy is compared.
-const FACTORS: [u32; 4] = [1, 4, 16, 32];
 
 /// What is seen of the folds of film where the mesh is fine enough, on the finest regular mesh of the
 /// rectangle and on the finer octagons: they run along most corner lines, and along more than those of rods.
@@ -305,20 +284,9 @@ fn check_corners(fine: &[&Draped]) -> Result<()> {
     Ok(())
 }
 
-/// What is seen of the folds: the stiffer the film, the fewer has the octagon; and on the roundest cloth with
-/// the finest mesh those of film are more uniform than those of rods.
-fn check_folds(irregular: &[Draped], films: &[Draped]) -> Result<()> {
-    // Every second cloth is round.
-    let octagons: Vec<&Draped> = films.iter().step_by(2).collect();
-    for (softer, stiffer) in octagons.iter().zip(&octagons[1..]) {
-        let folds = [softer, stiffer].map(|d| d.all.median(Drapery::folds));
-        ensure!(
-            folds[0] > folds[1],
-            "{} and {} have {folds:?} folds",
-            softer.name(),
-            stiffer.name()
-        );
-    }
+/// What is seen of the folds: on the roundest cloth with the finest mesh those of film are more uniform than
+/// those of rods.
+fn check_folds(irregular: &[Draped]) -> Result<()> {
     let [.., rods, film] = irregular else {
         bail!("there are no irregular meshes");
     };
@@ -350,8 +318,8 @@ const FEW: usize = 4;
 /// Polygons that the picture shows.
 const SHOWN: [&str; 4] = ["n = 4", "n = 8", "n = 16", "round, finer"];
 
-/// The octagons, the polygons with more and more corners, and octagons and round cloths of several films.
-fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
+/// The octagons, and the polygons with more and more corners.
+fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 2]> {
     let effort = store.effort;
     let fine = |name: &str, spacing| {
         let name = format!("drape-octagon-{name}");
@@ -374,17 +342,10 @@ fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
     for &n in effort.quick_or(&SIDES[..1], &SIDES) {
         polygons.push((format!("n = {n}"), irregular(n, 0.06)?, few));
     }
-    let round = ("round".to_owned(), irregular(48, 0.06)?, few);
     if effort != Effort::Quick {
-        polygons.push(round.clone());
+        polygons.push(("round".to_owned(), irregular(48, 0.06)?, few));
         let finer = polygon("drape-48-gon-finer", 48, 0.03, effort)?;
         polygons.push(("round, finer".to_owned(), finer, few));
-    }
-    let mut films = Vec::new();
-    for film in effort.quick_or(&FILMS[1..2], &FILMS) {
-        for (label, scene, members) in [&octagons[1], &round] {
-            films.push(drape(label, scene.made_of(film)?, *members, store)?);
-        }
     }
     for &(n, rings) in effort.quick_or(&RINGS[2..3], &RINGS) {
         // The octagon has as many as above.
@@ -395,15 +356,15 @@ fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
             members,
         ));
     }
-    Ok([of_both(octagons, store)?, of_both(polygons, store)?, films])
+    Ok([of_both(octagons, store)?, of_both(polygons, store)?])
 }
 
 pub(super) fn fig15(store: &Store) -> Result<Made> {
     let effort = store.effort;
-    let [octagons, polygons, films] = fig15_cloths(store)?;
+    let [octagons, polygons] = fig15_cloths(store)?;
     // Some cloths belong to more than one group.
     let mut seen = BTreeSet::new();
-    let mut all: Vec<&Draped> = octagons.iter().chain(&polygons).chain(&films).collect();
+    let mut all: Vec<&Draped> = octagons.iter().chain(&polygons).collect();
     all.retain(|d| seen.insert(d.run.scene.name()));
     let irregular = polygons.iter().take_while(|d| !d.label.ends_with("rings"));
     let irregular = &polygons[..irregular.count()];
@@ -412,9 +373,8 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
     if effort != Effort::Quick {
         let finer = octagons.iter().filter(|d| d.label.starts_with("fine"));
         check_corners(&finer.collect::<Vec<_>>())?;
-        check_folds(irregular, &films)?;
+        check_folds(irregular)?;
     }
-    let alt = "Folds of the hem of an octagonal and of a round cloth, by film";
     Ok(Made {
         title: "Octagonal cloth on an octagonal table",
         paper: "An octagonal plastic tablecloth (244/440) is draped over an octagonal table: principal folds run from table corners to cloth corners, and for \
@@ -422,8 +382,7 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
         here: "The paper's own model, rods that do not resist bending, has such folds at some of the corners; in the irregular \
                meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
                the meshes of concentric rings some do. On the finer meshes of acetate film (the second sequence) folds run along most of these \
-               lines, on round cloths its folds are more evenly spaced and more alike than those of rods, and the \
-               stiffer the film, the fewer folds has the octagon.",
+               lines, and on round cloths its folds are more evenly spaced and more alike than those of rods.",
         pictures: vec![
             octagons[0].picture("fig15.png", effort)?,
             // The last ones are the rings.
@@ -434,40 +393,14 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
                 effort,
             )?,
             ends("fig15-polygons.png", &shown, effort)?,
-            Picture::svg("fig15-films", &Charts::from(films_plot(&films)), alt),
         ],
         pages: pages(15, &all, effort)?,
         tables: vec![
             fold_table(&octagons),
             hem_table(&polygons),
-            hem_table(&films),
             runs_table(&all),
         ],
     })
-}
-
-/// Folds of the hem by film, of the octagon and of the round cloth, which follow each other.
-fn films_plot(films: &[Draped]) -> Chart {
-    let of = |k: usize| {
-        let beside = 0.08 * (k as f64 - 0.5);
-        let same = films.iter().skip(k).step_by(2).enumerate();
-        let place = same.map(|(at, d)| (at as f64 + beside, d.all.spread(Drapery::folds)));
-        spreads(k, ["octagon, finer", "round"][k], place)
-    };
-    let series = vec![of(0), of(1)];
-    let tops = series.iter().flat_map(|s| &s.bars).map(|bar| bar[1]);
-    let top = tops.fold(0.0, f64::max) + 1.0;
-    let names = films.iter().step_by(2).enumerate();
-    let ticks: Vec<_> = names
-        .map(|(at, d)| (at as f64, d.sheet().to_owned()))
-        .collect();
-    let x = Axis::named(
-        "the stiffer, the further to the right",
-        [-0.4, ticks.len() as f64 - 0.6],
-        ticks,
-    );
-    let y = Axis::linear("folds of the hem", [0.0, top]);
-    Chart::new(x, y, [230.0, 130.0], series)
 }
 
 fn hem_table(all: &[Draped]) -> Table {
