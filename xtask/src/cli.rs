@@ -2,7 +2,7 @@
 
 use crate::condition::{self, ConditionArgs};
 use crate::cost::{self, CostArgs};
-use crate::failure::{self, EXIT_CODES, ReportError};
+use crate::failure;
 use crate::gallery::{self, GalleryArgs};
 use crate::hard_cases::{self, HardCasesArgs};
 use crate::interrupt;
@@ -12,14 +12,14 @@ use crate::reference::{self, ReferenceArgs};
 use crate::reproduce::{self, ReproduceArgs};
 use crate::soak::{self, SoakArgs};
 use crate::validation::{self, ValidationArgs};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 
 /// Commands of the isosheet workspace.
 #[derive(Debug, Parser)]
-#[command(name = "xtask", bin_name = "cargo xtask", version, about, after_help = EXIT_CODES)]
+#[command(name = "xtask", bin_name = "cargo xtask", version, about)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -146,10 +146,8 @@ impl AllArgs {
                 failed.push(report);
             }
         }
-        if failed.is_empty() {
-            return Ok(());
-        }
         let names = failed.join(", ");
-        Err(ReportError::Reports { names }.into())
+        ensure!(failed.is_empty(), "these reports failed: {names}");
+        Ok(())
     }
 }

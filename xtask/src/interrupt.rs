@@ -2,7 +2,6 @@
 
 use anyhow::{Context, Result};
 use isosheet_dynamics::{Simulation, StepReport};
-use isosheet_mesh::Advice;
 use isosheet_runs as run;
 use isosheet_runs::{Outcome, RunError, StepPart, Summary, Tick, Watch};
 use isosheet_scenes::SceneFile;
@@ -29,14 +28,8 @@ pub(crate) fn requested() -> bool {
 
 /// The error by which a long computation gives up when [`requested`].
 #[derive(Clone, Copy, Debug, thiserror::Error)]
-#[error("stopped by Ctrl-C")]
+#[error("stopped by Ctrl-C; the same command goes on from what was finished and kept")]
 pub(crate) struct Interrupted;
-
-impl Advice for Interrupted {
-    fn advice(&self) -> Option<&'static str> {
-        Some("the same command goes on from what was finished and kept")
-    }
-}
 
 /// [`Interrupted`] when Ctrl-C was pressed.
 pub(crate) fn check() -> Result<(), Interrupted> {

@@ -32,7 +32,6 @@ mod runs;
 mod soak;
 mod sources;
 mod store;
-mod threads;
 mod validation;
 
 use clap::Parser;

@@ -4,11 +4,10 @@
 //! `<!-- /measured -->`: copies of the parts of the files in `docs/measured`, or, with
 //! `REPORT origin of PART`, of what is said there about how they were measured.
 
-use crate::failure::ReportError;
 use crate::progress;
 use crate::report::excerpt::{self, Measurement, comment};
 use crate::sources::{REPORTS, changed, root};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use isosheet_files::write_atomically;
 use std::fs;
@@ -83,11 +82,13 @@ fn check(book: &Path) -> Result<()> {
         }
     }
     names.dedup();
-    if names.is_empty() {
-        return Ok(());
-    }
-    let names = names.join(", ");
-    Err(ReportError::OutOfDate { names }.into())
+    let all = names.join(", ");
+    ensure!(
+        names.is_empty(),
+        "the sources of these reports have changed since they were measured: {all}; run them, without --quick, and \
+         `cargo xtask measured`"
+    );
+    Ok(())
 }
 
 /// The README and the pages of the book that are written by hand.
@@ -127,8 +128,10 @@ fn measured(book: &Path, words: &str) -> Result<String> {
             });
         }
     }
-    let part = name.to_owned();
-    Ok(found.ok_or(ReportError::Part { file, part })?)
+    let file = file.display();
+    found.with_context(|| {
+        format!("{file} has no part called {name}: run the whole report, without --quick")
+    })
 }
 
 fn read(path: &Path) -> Result<String> {
@@ -192,10 +195,7 @@ mod tests {
             "Measured with second."
         );
         let error = named("cost third").unwrap_err();
-        assert!(matches!(
-            error.downcast_ref(),
-            Some(ReportError::Part { .. })
-        ));
+        assert!(error.to_string().contains("no part called third"));
     }
 
     /// The numbers of the README and of the book are those that the reports wrote, and stand in the text.

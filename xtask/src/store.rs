@@ -7,12 +7,11 @@
 //! The lock file in `.stamps` also marks a folder as the program's own: a folder that has other files and not
 //! this one is refused. Quick results are not mixed with others: they have the same names.
 
-use crate::failure::ReportError;
 use crate::interrupt;
 use crate::progress;
 use crate::report::Effort;
 use crate::sources::commit;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use isosheet_files::{FileError, read_json, write_atomically, write_json};
 use isosheet_runs::{RunError, holds_other_files, remove_unfinished};
 use serde::de::DeserializeOwned;
@@ -153,7 +152,7 @@ impl Store {
             _lock: lock,
         };
         let path = store.record(CLAIM);
-        let folder = || root.to_owned();
+        let folder = root.display();
         if let Ok(Claim {
             report: of,
             effort: before,
@@ -161,10 +160,11 @@ impl Store {
         {
             let is_quick = [before, effort].map(|effort| effort == Effort::Quick);
             if of != report {
-                let folder = folder();
-                return Err(ReportError::OtherReport { folder, of }.into());
+                bail!("{folder} has results of {of}: choose another folder with --out");
             } else if is_quick == [false, true] {
-                return Err(ReportError::NotQuick { folder: folder() }.into());
+                bail!(
+                    "{folder} has results that are not quick, which quick ones would replace: choose another"
+                );
             } else if is_quick == [true, false] {
                 progress::note("quick results", "removed");
                 store.clear()?;
@@ -447,10 +447,7 @@ mod tests {
         let error = of("b").unwrap_err();
         assert_eq!(error.to_string().matches("results of a").count(), 1);
         let error = of("a").unwrap_err();
-        assert!(matches!(
-            error.downcast_ref(),
-            Some(ReportError::NotQuick { .. })
-        ));
+        assert!(error.to_string().contains("not quick"), "{error}");
     }
 
     #[test]

@@ -163,7 +163,9 @@ mod tests {
             let store = Store::open(folder.path(), "test", Effort::Quick, Remake::Never);
             let store = store.unwrap();
             let run = Run::of(&store, scene.clone()).unwrap();
-            let ends = crate::threads::pool(threads)
+            let ends = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
                 .unwrap()
                 .install(|| Ensemble::of(&store, &run, 3, |run| Ok(run.end().to_vec())));
             ends.unwrap().members

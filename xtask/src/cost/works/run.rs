@@ -5,10 +5,10 @@ use super::kinds::PreparedRun;
 use crate::progress::Progress;
 use crate::report::{Effort, extremes, median, number, peak_memory, reset_peak_memory, rounded};
 use crate::runs::{Course, Ending, Plan};
-use crate::threads;
 use anyhow::{Context, Result};
 use cpu_time::{ProcessTime, ThreadTime};
 use isosheet_dynamics::{Simulation, StepReport};
+use rayon::ThreadPoolBuilder;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -146,7 +146,7 @@ pub(super) fn measure(task: &Task, effort: Effort) -> Result<WorkRow> {
         (5, f64::INFINITY, 1800.0),
     );
     let work = task.work;
-    let pool = threads::pool(task.threads)?;
+    let pool = ThreadPoolBuilder::new().num_threads(task.threads).build()?;
     let bar = Progress::start(&task.unit.title, starts as usize);
     let start = |number| {
         let start = work.start(task.size, task.method.as_ref(), number)?;
