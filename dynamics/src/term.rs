@@ -11,11 +11,11 @@
 //! [`Term`] of its own, which an [`ImplicitForce`] of the model makes: the drag of the air, a wake, a barrier.
 
 use crate::State;
-pub use crate::hessian::{BlockSink, CouplingSink, HessianPart, HessianProduct};
-use crate::potential::{Force, Memories};
-pub use crate::report::step_error::Refused;
 use crate::report::step_error::StepError;
 use crate::report::trace::Cut;
+pub use isosheet_materials::Refused;
+pub use isosheet_materials::hessian::{BlockSink, CouplingSink, HessianPart, HessianProduct};
+use isosheet_materials::potential::{Force, Memories};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// A term has an energy with gradient and Hessian. Where it needs them, it also has the largest part of a displacement
 /// that it allows, a correction of second order, quantities that lag behind the iterates, and the energy that it
 /// exchanged in the step. It keeps nothing that a later step depends on: [`Term::begin`] forgets the step before. What
-/// has to be remembered from step to step is the [memory](crate::potential::Remembering) of a potential.
+/// has to be remembered from step to step is the [memory](isosheet_materials::potential::Remembering) of a potential.
 ///
 /// A velocity force `-c v` of each vertex, for example, has the energy `h |x - y|^2 c / (2 h^2)` with the positions `y`
 /// of [`StepStart::rest`], as `v = (x - y) / h`:

@@ -2,17 +2,17 @@
 
 use super::newton::{Newton, Terms};
 use crate::model::round_off::{strain_floor, velocity_round_off};
-use crate::options::OptionsError;
-use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
 use crate::report::reason::Reason;
 use crate::report::step_error::{StepError, StepOutcome, not_converged};
 use crate::step::history::Multipliers;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::reaction::{Balance, ForceTime};
-use crate::vectors::dot;
 use crate::{SheetModel, State};
 use isosheet_linalg::{LinalgError, norm_inf};
+use isosheet_materials::OptionsError;
+use isosheet_materials::potential::Memories;
+use isosheet_materials::vectors::dot;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 

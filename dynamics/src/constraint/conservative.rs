@@ -1,7 +1,7 @@
 //! The independent equations of vertex constraints, for the saddle-point matrix.
 
 use super::{ConstrainedVertex, LocalEquations, VertexConstraint};
-use crate::vectors::{add, point};
+use isosheet_materials::vectors::{add, point};
 use nalgebra::{Matrix2x3, Matrix3, Vector2, Vector3};
 
 /// What a vertex constraint adds to a saddle-point matrix.

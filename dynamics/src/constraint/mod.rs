@@ -14,9 +14,9 @@ pub use polyline::Polyline;
 pub use spline::Spline;
 pub use surface::{Cylinder, Plane, SignedDistanceField, Sphere, Surface, SurfacePoint};
 
-use crate::motion::{MotionError, RigidMotion};
 use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, VertexId};
+use isosheet_motion::{MotionError, RigidMotion};
 use nalgebra::{Matrix2x3, Matrix3, Vector3};
 
 /// Why a curve or surface cannot be made.

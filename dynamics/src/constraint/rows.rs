@@ -1,8 +1,8 @@
 //! The equations of all vertex constraints of a model, beside those of the rods.
 
 use super::{ConstrainedVertex, LocalEquations, VertexConstraint};
-use crate::hessian::{HessianPart, HessianSink};
-use crate::vectors::{add, point};
+use isosheet_materials::hessian::{HessianPart, HessianSink};
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 

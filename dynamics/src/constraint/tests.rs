@@ -1,8 +1,8 @@
 //! Derivatives against differences, and closest points against their definition.
 
 use super::*;
-use crate::motion::profile::Profile;
-use crate::motion::{AxisRotation, RigidDisplacement, RigidProfile};
+use isosheet_motion::Profile;
+use isosheet_motion::{AxisRotation, RigidDisplacement, RigidProfile};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
 fn v(x: f64, y: f64, z: f64) -> Vector3<f64> {

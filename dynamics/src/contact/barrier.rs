@@ -2,8 +2,8 @@
 
 use super::{BarrierError, ContactLaws, Stiffness};
 use crate::model::load_scale::{LoadScale, constant_acceleration};
-use crate::vectors::diameter;
 use crate::{SheetModel, State};
+use isosheet_materials::vectors::diameter;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

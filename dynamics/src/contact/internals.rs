@@ -6,4 +6,4 @@ pub use super::lagged::{FrictionContact, LaggedFriction};
 pub use super::set::ContactSet;
 pub use super::stencil::Stencil;
 pub use super::terms::{ContactState, ContactTerms};
-pub use crate::hessian::CouplingSink;
+pub use isosheet_materials::hessian::CouplingSink;

@@ -61,7 +61,7 @@ pub(crate) use term::ContactTerm;
 pub use terms::BodyLoad;
 pub(crate) use terms::{ContactState, ContactTerms};
 
-pub(crate) use crate::hessian::CouplingSink;
+pub(crate) use isosheet_materials::hessian::CouplingSink;
 
 use crate::{SheetModel, State};
 use nalgebra::{Matrix3, Vector3};

@@ -1,7 +1,7 @@
 //! Options of the damped methods.
 
 use crate::SheetModel;
-use crate::options::OptionsError;
+use isosheet_materials::OptionsError;
 use serde::{Deserialize, Serialize};
 
 /// Options of [`Method::ImplicitEuler`](crate::Method::ImplicitEuler) and

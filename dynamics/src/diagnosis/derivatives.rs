@@ -1,7 +1,7 @@
 //! Derivatives against differences.
 
-use crate::hessian::HessianProduct;
-use crate::potential::{At, Potential};
+use isosheet_materials::hessian::HessianProduct;
+use isosheet_materials::potential::{At, Potential};
 use isosheet_mesh::Topology;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

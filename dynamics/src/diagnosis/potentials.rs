@@ -2,9 +2,9 @@
 
 use super::derivatives::check_derivatives;
 use crate::SheetModel;
-use crate::hessian::HessianSink;
-use crate::potential::{At, Memories, Potential};
 use crate::report::potential_fault::{BadPotential, PotentialFault};
+use isosheet_materials::hessian::HessianSink;
+use isosheet_materials::potential::{At, Memories, Potential};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashSet;

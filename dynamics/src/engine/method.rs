@@ -4,11 +4,11 @@ use crate::conservative::energy_momentum::{EnergyMomentum, EnergyMomentumOptions
 use crate::conservative::rattle::{Rattle, RattleOptions};
 use crate::damped::implicit::Implicit;
 use crate::damped::options::ImplicitOptions;
-use crate::options::OptionsError;
 use crate::step::integrator::Integrator;
 use crate::step::tuning::Tuning;
 use crate::term::Formula;
 use crate::{SheetModel, SimulationError};
+use isosheet_materials::OptionsError;
 use serde::{Deserialize, Serialize};
 
 /// A chart-free integrator.

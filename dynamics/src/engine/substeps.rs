@@ -14,7 +14,6 @@ use crate::engine::subdivision::Subdivision;
 use crate::model::breaks::{Breaks, Start};
 use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
-use crate::potential::{At, Memories};
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::infeasibility::Infeasibility;
 use crate::report::potential_fault::PotentialFault;
@@ -32,6 +31,8 @@ use crate::term::{Exchange, Formula};
 use crate::{
     Fallback, HandError, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
 };
+use isosheet_materials::LimitError;
+use isosheet_materials::potential::{At, Memories};
 use isosheet_mesh::VertexId;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -140,7 +141,8 @@ impl Engine {
     ) -> Result<Self, SimulationError> {
         let mut motion = kept.motion;
         let mut memories = model.memories();
-        memories.take_over(&motion.memories)?;
+        let taken = memories.take_over(&motion.memories);
+        taken.map_err(CheckpointError::from)?;
         motion.memories = memories;
         motion.check(&model, &kept.fixed)?;
         let fixed: Vec<VertexId> = kept.fixed.iter().copied().map(VertexId).collect();
@@ -676,7 +678,7 @@ impl Substeps<'_, '_> {
         if matches!(
             refusal,
             StepError::NonFiniteMotion { .. }
-                | StepError::Swelling { .. }
+                | StepError::Limit(LimitError::Swelling { .. })
                 | StepError::Body(_)
                 | StepError::Interrupted { .. }
                 | StepError::Locked { .. }

@@ -4,7 +4,7 @@
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::linear::primal::PrimalMatrix;
-use crate::vectors::{add, dot, point};
+use isosheet_materials::vectors::{add, dot, point};
 use nalgebra::Vector3;
 
 #[cfg(test)]

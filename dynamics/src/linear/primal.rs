@@ -6,16 +6,16 @@ mod iterative;
 mod low_rank;
 mod whole;
 
-use crate::hessian::{BlockSink, CouplingSink};
 use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
 use crate::report::effort::SolverEffort;
-use crate::vectors::add;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
 use far::{FarCouplings, NotNamed, stiff_pairs};
 use isosheet_linalg::{LinalgError, Pattern, SparseLlt};
+use isosheet_materials::hessian::{BlockSink, CouplingSink};
+use isosheet_materials::vectors::add;
 use isosheet_mesh::{EdgeId, VertexId};
 use iterative::{ConjugateGradients, Ending, Goal};
 use low_rank::LowRank;

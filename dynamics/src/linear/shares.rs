@@ -5,8 +5,8 @@ use crate::constraint::rows::VertexRows;
 use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRows};
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
-use crate::vectors::{add, point};
 use isosheet_linalg::norm_inf;
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 

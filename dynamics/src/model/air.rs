@@ -5,14 +5,14 @@ mod step_tests;
 #[cfg(test)]
 mod tests;
 
-use crate::hessian::{BlockSink, HessianPart};
-use crate::motion::profile::{Profile, ProfileError};
-use crate::potential::Force;
 use crate::term::{Exchange, ImplicitForce, Iterate, StepStart, Term, Value};
-use crate::vectors::{add, point};
 use crate::{SheetModel, StepError};
+use isosheet_materials::hessian::{BlockSink, HessianPart};
+use isosheet_materials::potential::Force;
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Topology, VertexId, area_from_lengths};
+use isosheet_motion::{Profile, ProfileError};
 use nalgebra::{Matrix3, Vector3};
 use std::fmt;
 use std::sync::Arc;

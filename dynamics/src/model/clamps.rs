@@ -1,7 +1,7 @@
 //! Clamps that no line of edges runs along.
 
 use crate::SheetModel;
-use crate::vectors::point;
+use isosheet_materials::vectors::point;
 use isosheet_mesh::{FaceId, VertexId};
 use nalgebra::Vector3;
 

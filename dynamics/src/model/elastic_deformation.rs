@@ -1,8 +1,8 @@
 //! How an elastic sheet is deformed, face by face.
 
 use crate::SheetModel;
-use crate::potential::At;
-use crate::potential::Memories;
+use isosheet_materials::potential::At;
+use isosheet_materials::potential::Memories;
 
 /// How an elastic sheet is deformed, one value for each face: what a report needs to say whether the mesh is
 /// fine enough ([`SheetModel::elastic_deformation`]).

@@ -1,8 +1,8 @@
 //! Why a model cannot be built.
 
-use crate::motion::MotionError;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, MeshError, VertexId};
+use isosheet_motion::MotionError;
 
 /// Why a model cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -5,10 +5,10 @@ pub(super) mod tests;
 
 use super::loaded_faces::Corners;
 use crate::StepError;
-use crate::hessian::{BlockSink, HessianPart};
-use crate::potential::Force;
 use crate::term::{Exchange, ImplicitForce, Iterate, StepStart, Term, Value};
-use crate::vectors::{add, point};
+use isosheet_materials::hessian::{BlockSink, HessianPart};
+use isosheet_materials::potential::Force;
+use isosheet_materials::vectors::{add, point};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use std::fmt::Debug;
 use std::sync::Arc;

@@ -6,12 +6,12 @@ mod tests;
 use super::loaded_faces::LoadedFaces;
 use super::volume::Volume;
 use crate::SheetModel;
-use crate::hessian::{HessianPart, HessianSink};
-use crate::motion::profile::{Profile, ProfileError};
-use crate::potential::{At, Potential};
-use crate::vectors::add;
+use isosheet_materials::hessian::{HessianPart, HessianSink};
+use isosheet_materials::potential::{At, Potential};
+use isosheet_materials::vectors::add;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, VertexId};
+use isosheet_motion::{Profile, ProfileError};
 
 /// Why there cannot be such a gas.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! A spring by which somebody pulls at a vertex while the simulation runs.
 
-use crate::hessian::HessianSink;
-use crate::potential::{At, Potential, Remembering};
+use isosheet_materials::hessian::HessianSink;
+use isosheet_materials::potential::{At, Potential, Remembering};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, Topology, VertexId};
 use nalgebra::{Matrix3, Vector3};
@@ -395,7 +395,7 @@ mod tests {
             simulation.step(STEP).expect("accepted");
         }
         let held = Vector3::from(simulation.hand_target(CORNER).expect("a hand"));
-        let stretch = crate::vectors::point(&simulation.state().x, CORNER) - held;
+        let stretch = isosheet_materials::vectors::point(&simulation.state().x, CORNER) - held;
         let want = Vector3::new(0.0, 0.0, -mass * 9.81 / 3.0);
         assert!((stretch - want).norm() < 1e-6, "{stretch}, {want}");
     }

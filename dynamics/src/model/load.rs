@@ -1,9 +1,9 @@
 //! Prescribed forces: loads on vertices and fields of acceleration whose size follows a profile.
 
-use crate::motion::profile::{Profile, ProfileError};
-use crate::potential::Force;
+use isosheet_materials::potential::Force;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, FaceId, Topology, VertexId};
+use isosheet_motion::{Profile, ProfileError};
 use nalgebra::Vector3;
 
 /// Why a load cannot be made.

@@ -1,8 +1,8 @@
 //! The sizes of accelerations and speeds that barriers have to withstand.
 
-use crate::potential::At;
-use crate::vectors::largest_norm;
 use crate::{PAPER_GRAVITY, PotentialShape, SheetModel, State};
+use isosheet_materials::potential::At;
+use isosheet_materials::vectors::largest_norm;
 use nalgebra::Vector3;
 
 /// What a barrier has to withstand, estimated at a state.

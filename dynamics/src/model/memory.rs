@@ -1,7 +1,9 @@
 //! What the potentials of a model remember.
 
-use crate::potential::{At, MaterialReport, Memories, Potential, Reached, Remembering, Settled};
 use crate::{SheetModel, State};
+use isosheet_materials::potential::{
+    At, MaterialReport, Memories, Potential, Reached, Remembering, Settled,
+};
 use isosheet_mesh::{EdgeId, FaceId, principal_values};
 use nalgebra::Matrix2;
 

@@ -30,11 +30,13 @@ pub(crate) mod turning_load;
 mod volume;
 
 use crate::constraint::VertexConstraint;
-use crate::material::elastic_sheet::ElasticSheet;
-use crate::potential::{At, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::term::ImplicitForce;
 use damped_range::Damping;
 pub use error::ModelError;
+use isosheet_materials::ElasticSheet;
+use isosheet_materials::potential::{
+    At, Force, Gravity, Memories, PAPER_GRAVITY, Potential, PotentialShape,
+};
 use isosheet_mesh::{EdgeId, LengthConstraints, MassKind, MassMatrix, Sheet, Topology, VertexId};
 use moving_pin::MovingPin;
 

@@ -1,6 +1,6 @@
 //! Pinned vertices in prescribed motion.
 
-use crate::motion::PointMotion;
+use isosheet_motion::PointMotion;
 
 /// A pinned vertex in prescribed motion.
 #[derive(Debug)]

@@ -1,15 +1,15 @@
 //! The model of a sheet that is of one material.
 
-use crate::material::Material;
-use crate::material::direction::MaterialDirection;
-use crate::material::elastic_sheet::{ElasticSheet, ElasticSheetError};
-use crate::material::patched::{NoFace, Patched};
-use crate::material::plasticity::Yield;
-use crate::material::plate_bending::{Curl, PlateBending, PlateBendingError, PlateEdges};
-use crate::motion::profile::Profile;
-use crate::options::OptionsError;
 use crate::{Isometry, ModelError, SheetModel};
+use isosheet_materials::Material;
+use isosheet_materials::MaterialDirection;
+use isosheet_materials::OptionsError;
+use isosheet_materials::Yield;
+use isosheet_materials::{Curl, PlateBending, PlateBendingError, PlateEdges};
+use isosheet_materials::{ElasticSheet, ElasticSheetError};
+use isosheet_materials::{NoFace, Patched};
 use isosheet_mesh::{Advice, EdgeId, FaceId, MassKind, MassMatrix, Sheet, VertexId};
+use isosheet_motion::Profile;
 
 /// Why the model of a sheet of a material cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

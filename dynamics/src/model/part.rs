@@ -1,8 +1,8 @@
 //! Potentials of one of several sheets.
 
-use crate::StepError;
-use crate::hessian::HessianSink;
-use crate::potential::{
+use isosheet_materials::LimitError;
+use isosheet_materials::hessian::HessianSink;
+use isosheet_materials::potential::{
     At, CouplingKind, Limited, MaterialReport, Potential, PotentialShape, Reached, Remembering,
     Settled,
 };
@@ -121,7 +121,7 @@ impl<P: Potential> Potential for PotentialOfPart<P> {
 const ASKED: &str = "a wrapper has what its potential has";
 
 impl<P: Potential> Limited for PotentialOfPart<P> {
-    fn check(&self, at: At<'_>) -> Result<(), StepError> {
+    fn check(&self, at: At<'_>) -> Result<(), LimitError> {
         self.potential.limit().expect(ASKED).check(self.own(at))
     }
 

@@ -7,10 +7,10 @@ use super::follower::{FaceLoad, Follower, OfCorners};
 use super::loaded_faces::{Corners, LoadedFaces};
 use super::volume::Volume;
 use crate::SheetModel;
-use crate::hessian::{HessianPart, HessianSink};
-use crate::motion::profile::{Profile, ProfileError};
-use crate::potential::{At, Potential};
-use crate::vectors::add;
+use isosheet_materials::hessian::{HessianPart, HessianSink};
+use isosheet_materials::potential::{At, Potential};
+use isosheet_materials::vectors::add;
+use isosheet_motion::{Profile, ProfileError};
 use nalgebra::Matrix3;
 use std::sync::Arc;
 

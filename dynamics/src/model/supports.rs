@@ -4,10 +4,10 @@ use super::moving_pin::MovingPin;
 use super::{ModelError, PINNED, SheetModel};
 use crate::State;
 use crate::constraint::{ConstrainedVertex, VertexConstraint};
-use crate::motion::PointMotion;
 use crate::report::support::Support;
-use crate::vectors::point;
+use isosheet_materials::vectors::point;
 use isosheet_mesh::VertexId;
+use isosheet_motion::PointMotion;
 use nalgebra::Vector3;
 
 impl SheetModel {

@@ -8,9 +8,9 @@ use super::load::{LoadError, direction};
 use super::loaded_faces::Corners;
 use super::pressure::area_derivatives;
 use crate::SheetModel;
-use crate::motion::profile::Profile;
-use crate::vectors::point;
+use isosheet_materials::vectors::point;
 use isosheet_mesh::{FaceId, Topology, VertexId};
+use isosheet_motion::Profile;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 

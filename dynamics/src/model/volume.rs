@@ -4,8 +4,8 @@
 pub(super) mod tests;
 
 use super::loaded_faces::{Corners, LoadedFaces};
-use crate::hessian::{HessianPart, HessianSink};
-use crate::vectors::point;
+use isosheet_materials::hessian::{HessianPart, HessianSink};
+use isosheet_materials::vectors::point;
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;

@@ -1,11 +1,11 @@
 //! Potentials and explicit forces in a step.
 
-use crate::hessian::{BlockSink, HessianPart};
 use crate::model::PINNED;
-use crate::potential::{At, Limited};
 use crate::term::{Barrier, Exchange, Formula, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
 use isosheet_linalg::norm_inf;
+use isosheet_materials::hessian::{BlockSink, HessianPart};
+use isosheet_materials::potential::{At, Limited};
 use isosheet_mesh::VertexId;
 use std::sync::Arc;
 
@@ -109,7 +109,8 @@ impl Acting {
     /// As [`Limited::check`].
     pub(super) fn check_at(&self, at: At<'_>) -> Result<(), StepError> {
         let mut limits = self.model.potentials().filter_map(|p| p.limit());
-        limits.try_for_each(|limit| limit.check(at))
+        limits.try_for_each(|limit| limit.check(at))?;
+        Ok(())
     }
 
     /// By how much the work of the explicit forces, as they were expected of the end of a step, differs from that of the

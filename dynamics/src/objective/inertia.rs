@@ -1,11 +1,11 @@
 //! The inertia of a step.
 
 use crate::PotentialShape;
-use crate::hessian::{BlockSink, HessianPart};
 use crate::model::PINNED;
-use crate::potential::At;
 use crate::term::{Exchange, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
+use isosheet_materials::hessian::{BlockSink, HessianPart};
+use isosheet_materials::potential::At;
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;

@@ -5,20 +5,20 @@ mod inertia;
 #[cfg(test)]
 mod spring_tests;
 
-use crate::hessian::HessianProduct;
 use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
-use crate::potential::At;
 use crate::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
 use acting::Acting;
 use inertia::Inertia;
 use isosheet_linalg::LinalgError;
 use isosheet_linalg::parallel::both;
+use isosheet_materials::hessian::HessianProduct;
+use isosheet_materials::potential::At;
 use std::any::Any;
 use std::sync::Arc;
 
-pub(crate) use crate::hessian::HessianPart;
+pub(crate) use isosheet_materials::hessian::HessianPart;
 
 /// What the damped methods minimise in a step of the effective length `h`,
 ///

@@ -1,11 +1,11 @@
 //! Errors of the start of a simulation.
 
-use crate::options::OptionsError;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::contact_error::ContactError;
 use crate::report::engine_error::EngineError;
 use crate::report::step_error::StepError;
 use isosheet_linalg::LinalgError;
+use isosheet_materials::OptionsError;
 use isosheet_mesh::Advice;
 
 /// Errors of the start of a simulation.

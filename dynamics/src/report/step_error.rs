@@ -9,6 +9,7 @@ use crate::report::pressing::Pressing;
 use crate::report::reason::Reason;
 use crate::report::support::Support;
 use isosheet_linalg::LinalgError;
+use isosheet_materials::{LimitError, Refused};
 use isosheet_mesh::wording::{brief, counted, given, listed};
 use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
 
@@ -237,33 +238,9 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
-    /// A sheet swells or shrinks faster than it can follow, or more than its supports allow.
-    #[error(
-        "as the elastic sheet swells or shrinks, {face} comes to the strain {strain} at t = {t} s, and the limit \
-         is {limit}",
-        strain = brief(*strain), limit = given(*limit), t = brief(*t)
-    )]
-    SwellingBeyondLimit {
-        /// The face with the largest strain.
-        face: FaceId,
-        /// The norm of its strain ([`ElasticSheet`](crate::ElasticSheet)).
-        strain: f64,
-        /// The limit.
-        limit: f64,
-        /// Time, seconds.
-        t: f64,
-    },
-    /// A sheet would swell or shrink by a part that is out of [bounds](crate::ElasticSheet::SWELLING).
-    #[error(
-        "the lengths of an elastic sheet would grow by the part {part} at t = {t} s",
-        part = brief(*part), t = brief(*t)
-    )]
-    Swelling {
-        /// The part.
-        part: f64,
-        /// Time, seconds.
-        t: f64,
-    },
+    /// What is prescribed leaves no place within the limit of a potential.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
     /// Newton's method did not converge.
     #[error(
         "Newton's method stopped at residual {residual}, edge strain {strain} after {iterations} \
@@ -493,10 +470,7 @@ impl Advice for StepError {
             Self::AtStrainLimit { .. } => Some(
                 "pull less, hold more than a vertex where it is pulled, or raise the limit of the strain",
             ),
-            Self::SwellingBeyondLimit { .. } => Some(
-                "let it swell or shrink more slowly, or less where it is held, or raise the limit of the strain",
-            ),
-            Self::Swelling { .. } => Some("give a function of time from -0.2 to 0.2"),
+            Self::Limit(error) => error.advice(),
             Self::NotConverged { .. }
             | Self::UnsettledLoads { .. }
             | Self::EnergyGain { .. }
@@ -528,17 +502,6 @@ impl Advice for StepError {
             Self::Linalg { .. } => None,
         }
     }
-}
-
-/// What a [term](crate::term::Term) says where it refuses a step.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Refused {
-    /// What refuses, such as "the drag of the water".
-    pub by: String,
-    /// Why, in a clause.
-    pub why: String,
-    /// What to do, in the imperative.
-    pub remedy: Option<&'static str>,
 }
 
 /// What was done on the way to the end of a step, kept also if the step fails half-way.

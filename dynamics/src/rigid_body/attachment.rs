@@ -1,10 +1,10 @@
 //! Vertices of sheets that are glued to rigid bodies.
 
 use crate::contact::CarriedPoint;
-use crate::hessian::HessianSink;
-use crate::material::glue::GlueError;
-use crate::potential::{At, CouplingKind, Potential};
-use crate::vectors::{add, point};
+use isosheet_materials::GlueError;
+use isosheet_materials::hessian::HessianSink;
+use isosheet_materials::potential::{At, CouplingKind, Potential};
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, Vector3};
 

@@ -2,10 +2,10 @@
 
 use crate::contact::CarriedPoint;
 use crate::model::load::{LoadError, direction};
-use crate::motion::profile::Profile;
-use crate::potential::Force;
-use crate::vectors::{add, point};
+use isosheet_materials::potential::Force;
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::VertexId;
+use isosheet_motion::Profile;
 use nalgebra::{Matrix3, Vector3};
 
 /// A force on a point of a [`RigidBody`](crate::RigidBody): its size (newtons) follows a profile, its direction is

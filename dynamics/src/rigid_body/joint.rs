@@ -2,14 +2,14 @@
 
 use crate::HessianSink;
 use crate::StepError;
-use crate::hessian::{BlockSink, HessianPart};
 use crate::model::SheetModel;
-use crate::motion::profile::{Profile, ProfileError};
-use crate::potential::{At, Force, Potential, Reached, Remembering, Settled};
 use crate::term::{Exchange, Formula, ImplicitForce, Iterate, StepStart, Term, Value};
-use crate::vectors::{add, point};
+use isosheet_materials::hessian::{BlockSink, HessianPart};
+use isosheet_materials::potential::{At, Force, Potential, Reached, Remembering, Settled};
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, VertexId, angle_near};
+use isosheet_motion::{Profile, ProfileError};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 

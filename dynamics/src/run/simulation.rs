@@ -7,8 +7,6 @@ use crate::damped::start::{check_finite, check_motions, check_potentials, check_
 use crate::engine::substeps::Engine as MethodEngine;
 use crate::engine::{Engine, Progress};
 use crate::model::breaks::Breaks;
-use crate::potential::At;
-use crate::potential::Memories;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::effort::{SolverEffort, StepProgress, TraceSink, Watch};
 use crate::report::simulation_error::SimulationError;
@@ -17,6 +15,8 @@ use crate::report::trace::TraceEvent;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
 use crate::step::reaction::{Imbalance, Reaction};
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
+use isosheet_materials::potential::At;
+use isosheet_materials::potential::Memories;
 use isosheet_mesh::VertexId;
 use std::any::Any;
 use std::ops::ControlFlow;

@@ -2,7 +2,6 @@
 
 use crate::contact::ContactState;
 use crate::objective::Objective;
-use crate::potential::Memories;
 use crate::report::effort::SolverEffort;
 use crate::report::step_error::{StepError, StepOutcome};
 use crate::step::history::{BodyChange, History, Multipliers};
@@ -11,6 +10,7 @@ use crate::step::motion::Motion;
 use crate::step::reaction::{Balance, ForceTime};
 use crate::term::Exchange;
 use crate::{SheetModel, State};
+use isosheet_materials::potential::Memories;
 
 /// What an integrator moves: a sheet, with what damped steps minimise.
 pub(crate) struct Scene<'a> {

@@ -1,12 +1,12 @@
 //! The state of a chart-free simulation, as one value.
 
 use crate::contact::ContactState;
-use crate::potential::Memories;
 use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::energy_account::EnergyAccount;
 use crate::step::history::History;
 use crate::step::reaction::Balance;
 use crate::{SheetModel, State};
+use isosheet_materials::potential::Memories;
 use serde::{Deserialize, Serialize};
 
 /// A point of a motion: all that the next step depends on besides the scene and the options of the method. A

@@ -4,7 +4,6 @@ use super::problem::StepProblem;
 use crate::SheetModel;
 use crate::constraint::rows::{RowLoad, VertexRows};
 use crate::diagnosis::potentials::{Differences, find_fault};
-use crate::hessian::HessianPart;
 use crate::linear::constrained::{
     ConstrainedSolver, ConstrainedSystem, MultiplierGoal, RowValues, SupportRows,
 };
@@ -12,11 +11,13 @@ use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::{Refused, StepError};
+use crate::report::step_error::StepError;
 use crate::report::trace::Cut;
 use crate::step::tuning::Tuning;
-use crate::vectors::dot;
 use isosheet_linalg::{LinalgError, norm_inf};
+use isosheet_materials::Refused;
+use isosheet_materials::hessian::HessianPart;
+use isosheet_materials::vectors::dot;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};

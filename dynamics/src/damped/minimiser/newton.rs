@@ -7,12 +7,12 @@ use super::workspace::{LengthGoal, Workspace};
 use crate::constraint::rows::RowLoad;
 use crate::damped::ARMIJO;
 use crate::damped::restoration::FirstMatrix;
-use crate::hessian::HessianPart;
 use crate::linear::constrained::MultiplierGoal;
 use crate::report::effort::SolverEffort;
 use crate::report::reason::Reason;
 use crate::report::step_error::{StepError, StepOutcome};
 use crate::report::trace::{Continuation, Cut, TraceEvent};
+use isosheet_materials::hessian::HessianPart;
 
 /// How a minimisation ended.
 #[derive(Debug, Clone, Copy)]

@@ -1,10 +1,10 @@
 //! The problem of one implicit step.
 
 use crate::objective::Objective;
-use crate::potential::Memories;
 use crate::step::integrator::Phases;
 use crate::term::{Iterate, StepStart};
 use crate::{SheetModel, State};
+use isosheet_materials::potential::Memories;
 
 /// Minimise the [`Objective`] over the positions with the rest lengths and with the vertex constraints kept at
 /// the end of the step.

@@ -3,14 +3,14 @@
 use super::driver::Drive;
 use super::gaps::Gaps;
 use crate::constraint::rows::{RowLoad, VertexRows};
-use crate::hessian::HessianPart;
 use crate::linear::primal::PrimalMatrix;
-use crate::material::elastic_sheet::{ElasticSheet, StrainOfFace};
-use crate::potential::At;
 use crate::report::infeasibility::Driver;
 use crate::report::support::Support;
-use crate::vectors::{add, point};
 use crate::{Potential, SheetModel, State};
+use isosheet_materials::hessian::HessianPart;
+use isosheet_materials::potential::At;
+use isosheet_materials::vectors::{add, point};
+use isosheet_materials::{ElasticSheet, StrainOfFace};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};

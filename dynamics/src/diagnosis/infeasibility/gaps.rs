@@ -1,9 +1,10 @@
 //! Gaps between the sheet and bodies, linearised at a state.
 
 use super::driver::Drive;
+use crate::State;
 use crate::contact::{ContactState, ContactTerm, CouplingSink, StepSpan, add_at, add_weighted};
 use crate::report::infeasibility::Driver;
-use crate::{State, vectors::point};
+use isosheet_materials::vectors::point;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 

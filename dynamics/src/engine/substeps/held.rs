@@ -17,7 +17,8 @@ impl Engine {
     ) -> Result<Self, SimulationError> {
         let mut state = self.motion.state.clone();
         let mut memories = model.memories();
-        memories.take_over(&self.motion.memories)?;
+        let taken = memories.take_over(&self.motion.memories);
+        taken.map_err(CheckpointError::from)?;
         model.clear_pinned(&mut state.v);
         model.set_pin_velocities(state.t, span, &mut state.v);
         let fixed = immobile_vertices(&model, &state.x);

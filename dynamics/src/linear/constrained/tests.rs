@@ -5,7 +5,7 @@ use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
-use crate::vectors::{add, point};
+use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::Vector3;
 

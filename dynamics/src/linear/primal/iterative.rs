@@ -1,7 +1,7 @@
 //! Conjugate gradients on a matrix that differs from a factorised one by its far couplings.
 
 use super::far::FarCouplings;
-use crate::vectors::dot;
+use isosheet_materials::vectors::dot;
 
 /// Working memory, in free coordinates.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! Terms of rank one that a factorised matrix is without.
 
-use crate::vectors::dot;
 use isosheet_linalg::LinalgError;
+use isosheet_materials::vectors::dot;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// The terms `sum_k c_k v_k v_k^T` with `c_k > 0` of a symmetric matrix, dense but of a low rank: those of

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::State;
-use crate::hessian::{CouplingSink, HessianSink};
-use crate::potential::Memories;
 use crate::term::Formula;
+use isosheet_materials::hessian::{CouplingSink, HessianSink};
+use isosheet_materials::potential::Memories;
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::DMatrix;
 

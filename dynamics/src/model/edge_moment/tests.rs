@@ -1,6 +1,6 @@
 use super::*;
 use crate::model::follower::tests::{check_derivatives, crumpled, wave};
-use crate::potential::Force;
+use isosheet_materials::potential::Force;
 
 fn moment(edges: &[EdgeId], axis: [f64; 3]) -> Result<EdgeMoment, LoadError> {
     let sheet = crumpled();

@@ -1,8 +1,8 @@
 use super::*;
-use crate::hessian::HessianProduct;
-use crate::potential::Memories;
 use crate::term::Formula;
 use crate::{Profile, SheetModel, State, TurningLoad};
+use isosheet_materials::hessian::HessianProduct;
+use isosheet_materials::potential::Memories;
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 
 /// The derivatives of the loads at positions are those of differences of the forces, and loads are forces

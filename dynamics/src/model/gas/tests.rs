@@ -1,7 +1,7 @@
 use super::*;
-use crate::hessian::HessianProduct;
 use crate::model::volume::tests::octahedron;
-use crate::vectors::dot;
+use isosheet_materials::hessian::HessianProduct;
+use isosheet_materials::vectors::dot;
 
 fn enclosed(gas: Gas) -> (EnclosedGas, Vec<[usize; 2]>, Vec<f64>) {
     let (topology, x) = octahedron();

@@ -1,8 +1,8 @@
 use super::*;
 use crate::model::follower::tests::{check_derivatives, crumpled};
 use crate::model::volume::tests::octahedron;
-use crate::potential::Force;
-use crate::vectors::point;
+use isosheet_materials::potential::Force;
+use isosheet_materials::vectors::point;
 use isosheet_mesh::{MassKind, Sheet};
 use nalgebra::Vector3;
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::model::follower::tests::{check_derivatives, crumpled, wave};
-use crate::potential::Force;
+use isosheet_materials::potential::Force;
 use nalgebra::{Rotation3, Unit};
 
 const ALONG: [f64; 3] = [1.0, -0.5, 2.0];

@@ -1,6 +1,6 @@
 use super::*;
-use crate::hessian::HessianProduct;
-use crate::vectors::dot;
+use isosheet_materials::hessian::HessianProduct;
+use isosheet_materials::vectors::dot;
 use isosheet_mesh::Topology;
 
 /// The corners of an octahedron that is pushed out of shape, and its faces with their front outside.
