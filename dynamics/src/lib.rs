@@ -55,24 +55,18 @@
 //! ones for the damped methods only). Their forces are [`Simulation::reactions`].
 
 mod conservative;
-pub mod constraint;
 pub mod contact;
 mod damped;
 mod diagnosis;
 pub mod engine;
 mod linear;
-mod model;
 mod objective;
 mod report;
-mod rigid_body;
 mod run;
-mod state;
 mod step;
-pub mod term;
 
 pub use conservative::energy_momentum::EnergyMomentumOptions;
 pub use conservative::rattle::RattleOptions;
-pub use constraint::VertexConstraint;
 pub use damped::options::ImplicitOptions;
 pub use damped::start::{leave_flat, leave_flat_in, project_positions};
 pub use diagnosis::derivatives::{DerivativeErrors, check_derivatives};
@@ -88,42 +82,27 @@ pub use isosheet_materials::{
     Potential, PotentialShape, Reached, Remembering, RestAngle, Settled, Stiffening, StrainOfFace,
     UnknownMaterial, Yield, potential,
 };
+pub use isosheet_model::{
+    AccelerationField, Air, AirError, Attachment, BadPotential, BodyForce, BodyTorque,
+    ClampAcrossMesh, Continuation, Cut, Driver, EdgeMoment, ElasticDeformation, EnclosedGas, Gas,
+    GasError, GasState, Hand, HandError, Infeasibility, Isometry, JointCoordinate, JointError,
+    JointSpring, LoadError, LoadedFaces, LoadedFacesError, ModelError, PotentialFault,
+    PotentialOfPart, Pressing, Reason, RigidBody, RigidBodyError, SheetModel, SheetOfMaterial,
+    SheetOfMaterialError, Solid, SolidError, State, StepError, Support, TraceEvent, TurningLoad,
+    VertexConstraint, VertexLoad, Wind, constraint, immobile_vertices, term,
+};
 pub use isosheet_motion::{
     AxisRotation, Interpolation, Keyframe, Kinematics, Led, MotionError, PointMotion, PointProfile,
     Profile, ProfileError, RigidDisplacement, RigidMotion, RigidProfile,
 };
-pub use model::air::{Air, AirError, Wind};
-pub use model::clamps::ClampAcrossMesh;
-pub use model::edge_moment::EdgeMoment;
-pub use model::elastic_deformation::ElasticDeformation;
-pub use model::gas::{EnclosedGas, Gas, GasError, GasState};
-pub use model::hand::{Hand, HandError};
-pub use model::immobile::immobile_vertices;
-pub use model::load::{AccelerationField, LoadError, VertexLoad};
-pub use model::loaded_faces::{LoadedFaces, LoadedFacesError};
-pub use model::of_material::{SheetOfMaterial, SheetOfMaterialError};
-pub use model::part::PotentialOfPart;
-pub use model::turning_load::TurningLoad;
-pub use model::{Isometry, ModelError, SheetModel};
 pub use report::checkpoint_error::CheckpointError;
 pub use report::effort::StepProgress;
-pub use report::infeasibility::{Driver, Infeasibility};
-pub use report::potential_fault::{BadPotential, PotentialFault};
-pub use report::pressing::Pressing;
-pub use report::reason::Reason;
 pub use report::simulation_error::SimulationError;
-pub use report::step_error::{StepError, StepOutcome, StepReport};
-pub use report::support::Support;
-pub use report::trace::{Continuation, Cut, TraceEvent};
-pub use rigid_body::{
-    Attachment, BodyForce, BodyTorque, JointCoordinate, JointError, JointSpring, RigidBody,
-    RigidBodyError, Solid, SolidError,
-};
+pub use report::step_report::{StepOutcome, StepReport};
 pub use run::checkpoint::Checkpoint;
 pub use run::fold_start::start_of_folding;
 pub use run::observe::{Frames, History, Observer, RunEnd};
 pub use run::simulation::Simulation;
-pub use state::State;
 pub use step::reaction::{Imbalance, Reaction};
 #[doc(hidden)]
 pub use step::tuning::Tuning;

@@ -1,10 +1,9 @@
 //! RATTLE and its fourth-order composition.
 
 use super::newton::{Newton, Terms};
-use crate::model::round_off::{strain_floor, velocity_round_off};
 use crate::report::effort::SolverEffort;
-use crate::report::reason::Reason;
-use crate::report::step_error::{StepError, StepOutcome, not_converged};
+use crate::report::step_report::StepOutcome;
+use crate::report::totals::not_converged;
 use crate::step::history::Multipliers;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::reaction::{Balance, ForceTime};
@@ -13,6 +12,9 @@ use isosheet_linalg::{LinalgError, norm_inf};
 use isosheet_materials::OptionsError;
 use isosheet_materials::potential::Memories;
 use isosheet_materials::vectors::dot;
+use isosheet_model::Reason;
+use isosheet_model::StepError;
+use isosheet_model::{strain_floor, velocity_round_off};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 

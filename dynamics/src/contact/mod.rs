@@ -43,20 +43,19 @@ mod term;
 mod terms;
 mod vertex_data;
 
-pub use crate::report::contact_error::{
-    BarrierError, BodyMotionError, ContactError, ContactPair, FrictionError,
-};
 pub use active::{ActiveContact, ActiveContacts, Rolling, Round};
 pub(crate) use barrier::BarrierPotential;
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
 pub use friction::{Coefficients, Friction};
+pub use isosheet_model::CarriedPoint;
+pub use isosheet_model::{BarrierError, BodyMotionError, ContactError, ContactPair, FrictionError};
 pub(crate) use lagged::LaggedFriction;
 pub use laws::{ContactLaws, ObstaclePair, SheetPair, Stiffness};
 pub use parallel::ParallelEdges;
 pub(crate) use set::ContactSet;
 pub use set::{ContactKey, ContactKind, JointMotion};
-pub use surface_points::{CarriedPoint, SurfacePoints, SurfacePointsError};
+pub use surface_points::{SurfacePoints, SurfacePointsError};
 pub(crate) use term::ContactTerm;
 pub use terms::BodyLoad;
 pub(crate) use terms::{ContactState, ContactTerms};

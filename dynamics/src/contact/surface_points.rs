@@ -2,13 +2,10 @@
 
 use super::CouplingSink;
 use isosheet_mesh::{Advice, VertexId};
+use isosheet_model::CarriedPoint;
 use nalgebra::Matrix3;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-
-/// A point that is carried by vertices: their numbers and weights, which add up to one; unused places have
-/// weight zero.
-pub type CarriedPoint = [(VertexId, f64); 4];
 
 /// The points of the surface on which contact acts, `X_p = sum_k b_pk x_k` with the vertices `x_k` of a model:
 /// first vertices themselves, by their numbers, then points that vertices carry, such as those of the surface

@@ -5,9 +5,9 @@ use super::{
     ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactError, ContactSet, ContactState,
     ContactTerms, JointMotion, LaggedFriction, StepSpan, SurfacePoints, advanced,
 };
-use crate::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, State, StepError};
 use isosheet_materials::hessian::{BlockSink, HessianPart, HessianProduct};
+use isosheet_model::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use std::sync::Arc;
 
 /// Barrier and lagged friction, `B(x) + D(x - x0)`.

@@ -1,7 +1,7 @@
 //! Barrier and friction together.
 
 use super::{ActiveContacts, BarrierPotential, CouplingSink, LaggedFriction, couple};
-use crate::term::Exchange;
+use isosheet_model::term::Exchange;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

@@ -3,18 +3,18 @@
 mod correction;
 
 use crate::SheetModel;
-use crate::constraint::rows::VertexRows;
 use crate::damped::ARMIJO;
 use crate::linear::constrained::ConstrainedSolver;
+use crate::linear::constraint_rows::VertexRows;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::objective::Objective;
 use crate::report::effort::SolverEffort;
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::step::tuning::Tuning;
-use crate::term::Iterate;
 use isosheet_materials::hessian::HessianPart;
 use isosheet_materials::potential::Memories;
+use isosheet_model::term::Iterate;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -15,8 +15,8 @@
 //! before. Both are of second order in `h`, as is the part of the force of the rods that they stand for.
 
 use crate::damped::restitution::mass_matrix;
-use crate::model::PINNED;
 use crate::{SheetModel, State};
+use isosheet_model::PINNED;
 use nalgebra::{Matrix3, Matrix4, UnitQuaternion, Vector3};
 
 /// Angle of a part of the integration of a rotation, radians: its fifth power is the error of the energy.

@@ -5,10 +5,10 @@ mod fit;
 mod gaps;
 
 use crate::contact::{ContactState, ContactTerm};
-use crate::report::infeasibility::Infeasibility;
 use crate::{SheetModel, State};
 use fit::{Fit, ROD_STIFFNESS};
 use gaps::Gaps;
+use isosheet_model::Infeasibility;
 
 /// Looks for positions with the rest lengths or strains within the limit, with the supports and bodies where
 /// they are at time `t` and with gaps that are not negative, and says by how much they fail to exist.

@@ -2,10 +2,10 @@
 
 use super::derivatives::check_derivatives;
 use crate::SheetModel;
-use crate::report::potential_fault::{BadPotential, PotentialFault};
 use isosheet_materials::hessian::HessianSink;
 use isosheet_materials::potential::{At, Memories, Potential};
 use isosheet_mesh::{EdgeId, VertexId};
+use isosheet_model::{BadPotential, PotentialFault};
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashSet;
 use std::fmt::Write;

@@ -1,8 +1,8 @@
 //! Rank of the rigidity matrix.
 
 use crate::SheetModel;
-use crate::model::PINNED;
 use isosheet_linalg::{Ordering, Pattern, SparseLdlt, elimination_order};
+use isosheet_model::PINNED;
 use nalgebra::{DMatrix, Vector3};
 
 /// Rank of the length constraints at a state.

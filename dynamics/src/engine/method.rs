@@ -6,9 +6,9 @@ use crate::damped::implicit::Implicit;
 use crate::damped::options::ImplicitOptions;
 use crate::step::integrator::Integrator;
 use crate::step::tuning::Tuning;
-use crate::term::Formula;
 use crate::{SheetModel, SimulationError};
 use isosheet_materials::OptionsError;
+use isosheet_model::term::Formula;
 use serde::{Deserialize, Serialize};
 
 /// A chart-free integrator.

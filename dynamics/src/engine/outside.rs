@@ -1,9 +1,11 @@
 //! Engines from outside: other ways to move a sheet than the methods of this crate.
 
-pub use crate::report::engine_error::{AdvisedError, EngineError};
-use crate::report::step_error::{StepError, StepOutcome, StepTotals};
+use crate::report::step_report::StepOutcome;
+use crate::report::totals::StepTotals;
 pub use crate::step::reaction::{Balance, ForceTime, supports};
 use crate::{Memories, Reaction, SheetModel, State};
+use isosheet_model::StepError;
+pub use isosheet_model::{AdvisedError, EngineError};
 use std::any::Any;
 
 /// What moves a sheet in a [`Simulation`](crate::Simulation) that is made by

@@ -11,29 +11,31 @@ use crate::diagnosis::pressing::pressing;
 use crate::diagnosis::rank::rod_rank;
 use crate::engine::rod_forces::rod_forces;
 use crate::engine::subdivision::Subdivision;
-use crate::model::breaks::{Breaks, Start};
-use crate::model::immobile::immobile_vertices;
 use crate::objective::Objective;
 use crate::report::checkpoint_error::CheckpointError;
-use crate::report::infeasibility::Infeasibility;
-use crate::report::potential_fault::PotentialFault;
-use crate::report::pressing::Pressing;
-use crate::report::reason::Reason;
-use crate::report::step_error::{StepError, StepOutcome, StepTotals};
-use crate::report::trace::TraceEvent;
+use crate::report::step_report::StepOutcome;
+use crate::report::totals::StepTotals;
 use crate::step::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene,
 };
 use crate::step::motion::Motion;
 use crate::step::reaction::Balance;
 use crate::step::tuning::Tuning;
-use crate::term::{Exchange, Formula};
 use crate::{
     Fallback, HandError, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
 };
 use isosheet_materials::LimitError;
 use isosheet_materials::potential::{At, Memories};
 use isosheet_mesh::VertexId;
+use isosheet_model::Infeasibility;
+use isosheet_model::PotentialFault;
+use isosheet_model::Pressing;
+use isosheet_model::Reason;
+use isosheet_model::StepError;
+use isosheet_model::TraceEvent;
+use isosheet_model::immobile_vertices;
+use isosheet_model::term::{Exchange, Formula};
+use isosheet_model::{Breaks, Start};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

@@ -8,7 +8,6 @@ mod whole;
 
 use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{FULL, LOWER, Layout};
-use crate::model::PINNED;
 use crate::report::effort::SolverEffort;
 use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
@@ -17,6 +16,7 @@ use isosheet_linalg::{LinalgError, Pattern, SparseLlt};
 use isosheet_materials::hessian::{BlockSink, CouplingSink};
 use isosheet_materials::vectors::add;
 use isosheet_mesh::{EdgeId, VertexId};
+use isosheet_model::PINNED;
 use iterative::{ConjugateGradients, Ending, Goal};
 use low_rank::LowRank;
 use nalgebra::{Matrix3, Vector3};

@@ -1,8 +1,8 @@
 //! The forces of supports that balance given forces at free vertices.
 
 use crate::SheetModel;
-use crate::constraint::rows::VertexRows;
 use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRows};
+use crate::linear::constraint_rows::VertexRows;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use isosheet_linalg::norm_inf;

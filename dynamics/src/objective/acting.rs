@@ -1,12 +1,12 @@
 //! Potentials and explicit forces in a step.
 
-use crate::model::PINNED;
-use crate::term::{Barrier, Exchange, Formula, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
 use isosheet_linalg::norm_inf;
 use isosheet_materials::hessian::{BlockSink, HessianPart};
 use isosheet_materials::potential::{At, Limited};
 use isosheet_mesh::VertexId;
+use isosheet_model::PINNED;
+use isosheet_model::term::{Barrier, Exchange, Formula, Iterate, StepStart, Term, Value};
 use std::sync::Arc;
 
 /// `V(x, t) - f . (x - x^)`: the potentials of a model at the end of a step, and its explicit forces `f`; `x^` is

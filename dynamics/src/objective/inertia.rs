@@ -1,12 +1,12 @@
 //! The inertia of a step.
 
 use crate::PotentialShape;
-use crate::model::PINNED;
-use crate::term::{Exchange, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
 use isosheet_materials::hessian::{BlockSink, HessianPart};
 use isosheet_materials::potential::At;
 use isosheet_mesh::{EdgeId, VertexId};
+use isosheet_model::PINNED;
+use isosheet_model::term::{Exchange, Iterate, StepStart, Term, Value};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 

@@ -6,8 +6,6 @@ mod inertia;
 mod spring_tests;
 
 use crate::linear::primal::PrimalMatrix;
-use crate::model::PINNED;
-use crate::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use crate::{SheetModel, StepError};
 use acting::Acting;
 use inertia::Inertia;
@@ -15,6 +13,8 @@ use isosheet_linalg::LinalgError;
 use isosheet_linalg::parallel::both;
 use isosheet_materials::hessian::HessianProduct;
 use isosheet_materials::potential::At;
+use isosheet_model::PINNED;
+use isosheet_model::term::{Barrier, Exchange, Iterate, StepStart, Term, Value};
 use std::any::Any;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Counters of a step, with its watch and its trace.
 
-use crate::report::reason::Reason;
-use crate::report::trace::TraceEvent;
+use isosheet_model::Reason;
+use isosheet_model::TraceEvent;
 use std::fmt;
 use std::ops::ControlFlow;
 

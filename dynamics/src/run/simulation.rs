@@ -6,18 +6,20 @@ use crate::contact::{
 use crate::damped::start::{check_finite, check_motions, check_potentials, check_state};
 use crate::engine::substeps::Engine as MethodEngine;
 use crate::engine::{Engine, Progress};
-use crate::model::breaks::Breaks;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::report::effort::{SolverEffort, StepProgress, TraceSink, Watch};
 use crate::report::simulation_error::SimulationError;
-use crate::report::step_error::{StepError, StepReport, StepTotals};
-use crate::report::trace::TraceEvent;
+use crate::report::step_report::StepReport;
+use crate::report::totals::StepTotals;
 use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
 use crate::step::reaction::{Imbalance, Reaction};
 use crate::{ElasticDeformation, HandError, Method, SheetModel, State, StepControl};
 use isosheet_materials::potential::At;
 use isosheet_materials::potential::Memories;
 use isosheet_mesh::VertexId;
+use isosheet_model::Breaks;
+use isosheet_model::StepError;
+use isosheet_model::TraceEvent;
 use std::any::Any;
 use std::ops::ControlFlow;
 
@@ -478,6 +480,29 @@ impl Simulation {
 
     /// Leads the hand that holds a vertex ([`Hand`](crate::Hand)) from where it is to a point (metres) until
     /// time `end` (seconds), on a straight way with a constant speed. The energy does not jump.
+    ///
+    /// ```
+    /// use isosheet_dynamics::{Hand, Method, SheetModel, Simulation, State};
+    /// use isosheet_mesh::{MassKind, VertexId, generate};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let sheet = generate::isotropic_square(1, 0.21)?;
+    /// let corner = VertexId(20);
+    /// let hand = Hand::new(sheet.topology(), corner, 10.0, sheet.position(corner))?;
+    /// let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?.with_hand(hand);
+    /// let mut simulation = Simulation::new(model, State::at_rest(sheet.positions().to_vec()), Method::default())?;
+    /// for _ in 0..60 {
+    ///     // The hand rises by 0.1 m/s.
+    ///     let t = simulation.state().t;
+    ///     let mut to = simulation.hand_target(corner)?;
+    ///     to[2] += 0.1 / 60.0;
+    ///     simulation.lead_hand(corner, to, t + 1.0 / 60.0)?;
+    ///     simulation.step(1.0 / 60.0)?;
+    /// }
+    /// assert!((simulation.state().x[62] - 0.1).abs() < 0.01);
+    /// # Ok(())
+    /// # }
+    /// ```
     ///
     /// # Errors
     /// [`HandError`] if there is no such hand, or the point is not finite; then nothing has changed.

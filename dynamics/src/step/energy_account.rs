@@ -1,9 +1,9 @@
 //! Bound of the energy gained by damped methods.
 
-use crate::report::step_error::StepError;
-use crate::term::Exchange;
 use crate::{SheetModel, State};
 use isosheet_linalg::norm_inf;
+use isosheet_model::StepError;
+use isosheet_model::term::Exchange;
 use serde::{Deserialize, Serialize};
 
 /// Part of the energy that friction takes by which it may differ from that by the normal forces at the end of the

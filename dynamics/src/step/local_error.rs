@@ -1,8 +1,8 @@
 //! The error that a step of a damped method adds, estimated from velocities that are there anyway.
 
-use crate::model::PINNED;
-use crate::term::Formula;
 use crate::{SheetModel, State};
+use isosheet_model::PINNED;
+use isosheet_model::term::Formula;
 
 /// An estimate of the error that a step adds to the positions.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,13 +1,13 @@
 //! Forces of supports on the sheet.
 
-use crate::constraint::rows::VertexRows;
+use crate::linear::constraint_rows::VertexRows;
 use crate::report::checkpoint_error::{CheckpointError, check_finite, check_length};
-use crate::report::support::Support;
 use crate::step::residual_momentum::ResidualMomentum;
 use crate::{SheetModel, State};
 use isosheet_materials::potential::Memories;
 use isosheet_materials::vectors::{add, point};
 use isosheet_mesh::VertexId;
+use isosheet_model::Support;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

@@ -2,23 +2,23 @@
 
 use super::problem::StepProblem;
 use crate::SheetModel;
-use crate::constraint::rows::{RowLoad, VertexRows};
 use crate::diagnosis::potentials::{Differences, find_fault};
 use crate::linear::constrained::{
     ConstrainedSolver, ConstrainedSystem, MultiplierGoal, RowValues, SupportRows,
 };
+use crate::linear::constraint_rows::{RowLoad, VertexRows};
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
-use crate::model::PINNED;
 use crate::report::effort::SolverEffort;
-use crate::report::step_error::StepError;
-use crate::report::trace::Cut;
 use crate::step::tuning::Tuning;
 use isosheet_linalg::{LinalgError, norm_inf};
 use isosheet_materials::Refused;
 use isosheet_materials::hessian::HessianPart;
 use isosheet_materials::vectors::dot;
 use isosheet_mesh::VertexId;
+use isosheet_model::Cut;
+use isosheet_model::PINNED;
+use isosheet_model::StepError;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

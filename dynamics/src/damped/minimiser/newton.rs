@@ -4,15 +4,16 @@ use super::lagrangian::{Definiteness, Merit};
 use super::phase::{MultiplierUpdate, Phase, Saddle, StartingPoint};
 use super::problem::StepProblem;
 use super::workspace::{LengthGoal, Workspace};
-use crate::constraint::rows::RowLoad;
 use crate::damped::ARMIJO;
 use crate::damped::restoration::FirstMatrix;
 use crate::linear::constrained::MultiplierGoal;
+use crate::linear::constraint_rows::RowLoad;
 use crate::report::effort::SolverEffort;
-use crate::report::reason::Reason;
-use crate::report::step_error::{StepError, StepOutcome};
-use crate::report::trace::{Continuation, Cut, TraceEvent};
+use crate::report::step_report::StepOutcome;
 use isosheet_materials::hessian::HessianPart;
+use isosheet_model::Reason;
+use isosheet_model::StepError;
+use isosheet_model::{Continuation, Cut, TraceEvent};
 
 /// How a minimisation ended.
 #[derive(Debug, Clone, Copy)]

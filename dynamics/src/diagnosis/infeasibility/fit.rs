@@ -2,16 +2,16 @@
 
 use super::driver::Drive;
 use super::gaps::Gaps;
-use crate::constraint::rows::{RowLoad, VertexRows};
+use crate::linear::constraint_rows::{RowLoad, VertexRows};
 use crate::linear::primal::PrimalMatrix;
-use crate::report::infeasibility::Driver;
-use crate::report::support::Support;
 use crate::{Potential, SheetModel, State};
 use isosheet_materials::hessian::HessianPart;
 use isosheet_materials::potential::At;
 use isosheet_materials::vectors::{add, point};
 use isosheet_materials::{ElasticSheet, StrainOfFace};
 use isosheet_mesh::VertexId;
+use isosheet_model::Driver;
+use isosheet_model::Support;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

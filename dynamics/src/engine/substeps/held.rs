@@ -2,9 +2,9 @@
 
 use super::{Engine, check_energy};
 use crate::contact::{Contact, ContactTerm};
-use crate::model::immobile::immobile_vertices;
 use crate::report::checkpoint_error::CheckpointError;
 use crate::{SheetModel, SimulationError};
+use isosheet_model::immobile_vertices;
 
 impl Engine {
     /// From the present state on with a model of the same sheet that is held otherwise. Pinned vertices take the

@@ -1,9 +1,9 @@
 //! Couplings of vertices without a common edge, and what takes their place in a matrix without them.
 
-use crate::model::PINNED;
 use crate::{CouplingKind, SheetModel};
 use isosheet_linalg::parallel::pieces;
 use isosheet_mesh::VertexId;
+use isosheet_model::PINNED;
 use nalgebra::{Matrix3, Vector3};
 
 /// Part of the square of a block's norm by which the block may differ from one of rank one: round-off.
