@@ -85,7 +85,7 @@ pub fn read_mesh_with(path: &Path, options: &MeshOptions) -> Result<MeshFile, Me
         let remedy = match is_picture(path) {
             true => "trace the picture in a drawing program, and save its lines as .svg",
             false if has("abc") => {
-                "in the program that wrote it, export a mesh as .glb, .ply or .obj, and a mesh in motion as text of USD (.usda)"
+                "in the program that wrote it, export a mesh as .glb, .ply or .obj, and a mesh in motion as one of these for each frame"
             }
             false if has("fbx") => {
                 "in the program that wrote it, export the mesh as .glb, .ply or .obj; Blender opens .fbx files and exports these"
@@ -188,21 +188,4 @@ fn timed(polygons: vtk::TimedPolygons, options: &MeshOptions) -> Result<MeshFile
     let mut mesh = polygons.mesh.assemble(options)?;
     mesh.time = polygons.time;
     Ok(mesh)
-}
-
-/// The mesh of polygons, given by the numbers of their corners and these corners one after the other.
-pub(super) fn polygon_mesh(
-    points: &[f64],
-    counts: &[i64],
-    corners: &[i64],
-) -> Result<MeshFile, MeshFileProblem> {
-    let mut polygons = vtk::TimedPolygons::default();
-    let mut end = 0_i64;
-    let ends = counts.iter().map(|count| {
-        end = end.saturating_add(*count);
-        end
-    });
-    polygons.add(points, corners, &ends.collect::<Vec<_>>())?;
-    let mesh = polygons.mesh.assemble(&MeshOptions::default());
-    mesh.map_err(|(_, problem)| problem)
 }

@@ -6,7 +6,6 @@ mod named;
 mod samples;
 #[cfg(test)]
 mod tests;
-mod usda;
 
 use super::MeshFormat;
 use extension::has_extension;
@@ -20,7 +19,7 @@ const TRAJECTORY: &str = "trajectory.npz";
 /// Whether files of this name say which axis points upwards, so that their meshes, in motion or not, are read
 /// with z upwards.
 pub fn says_up(path: &Path) -> bool {
-    has_extension(path, "usda") || MeshFormat::of(path).is_some_and(MeshFormat::says_up)
+    MeshFormat::of(path).is_some_and(MeshFormat::says_up)
 }
 
 /// The files and folders that a mesh in motion, or the mesh of a file, is read from.
@@ -45,8 +44,7 @@ fn is_list(path: &Path) -> bool {
 ///
 /// - an archive itself (`.npz`), or the folder of a run, which has one;
 /// - a list of mesh files with their times, `.pvd` or `.series`;
-/// - a folder of numbered mesh files, or such files by a pattern with one `*` for their numbers;
-/// - a file of Universal Scene Description as text, `.usda`.
+/// - a folder of numbered mesh files, or such files by a pattern with one `*` for their numbers.
 ///
 /// # Errors
 /// [`FileError::Read`], naming the file and the sample.
@@ -69,16 +67,14 @@ pub fn motion_archive(path: &Path) -> Result<Vec<u8>, FileError> {
         return read(path);
     } else if is_list(path) {
         listed::read(path)?
-    } else if has("usda") {
-        usda::read(path)?
     } else {
         // Of a path that leads nowhere the extension is not the problem.
         std::fs::metadata(path).map_err(|e| FileError::unreadable(path, e))?;
         return Err(FileError::content(
             path,
             "it is no mesh in motion",
-            "give an .npz, .usda, .pvd or .series file, the folder of a run, a folder of numbered mesh files, or a \
-             pattern of their names such as `walk_*.obj`",
+            "export one .glb, .ply or .obj file for each frame, with numbers, and name them by their folder or by a \
+             pattern such as `walk_*.obj`; .npz, .pvd and .series files and the folders of runs are read as well",
         ));
     };
     mesh.archive().map_err(|e| FileError::unreadable(path, e))

@@ -1,6 +1,6 @@
 use super::motion_archive;
 use crate::mesh_file::MeshFile;
-use crate::{Clock, MovingMesh, write_mesh};
+use crate::{Clock, MovingMesh};
 use crate::{Series, SeriesOptions, Trajectory, write_series};
 use isosheet_mesh::generate;
 use std::path::Path;
@@ -31,7 +31,6 @@ fn the_exports_of_a_motion_are_that_motion() {
     for (name, is_single, has_times) in [
         ("a.npz", false, true),
         ("b.pvd", false, true),
-        ("c.usda", true, true),
         ("d.obj", false, false),
     ] {
         let motion = bending(is_single);
@@ -178,7 +177,7 @@ fn samples_that_do_not_fit_are_named() {
     );
     assert!(says("nothing_*.obj").contains("the folder has no files"));
     assert!(says("a_*_*.obj").contains("several *"));
-    assert!(says("missing.usda").contains("cannot read"));
+    assert!(says("missing.npz").contains("cannot read"));
     let four = [0.0, 1.0, 2.0, 3.0];
     write("more/a_1.obj", &obj(&four, "f 1 2 3\nf 1 3 4\n"));
     write(
@@ -244,104 +243,6 @@ fn samples_that_do_not_fit_are_named() {
     );
 }
 
-/// A mesh in centimetres with y upwards whose parts turn, move and stretch, by hand.
-#[test]
-fn parts_of_usda_are_placed() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("scene.usda");
-    let text = r#"#usda 1.0
-(
-    "a comment with ) and #"
-    customLayerData = { string name = "x" }
-    endTimeCode = 20
-    timeCodesPerSecond = 10
-)
-
-def Xform "root" ( kind = "group"
-)
-{
-    double3 xformOp:translate.timeSamples = {
-        0: (0, 0, 0),
-        20: (100, 0, 0),
-    }
-    double3 xformOp:rotateXYZ = (90, 0, 90)
-    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:rotateXYZ"]
-
-    def Mesh "leaf"
-    {
-        int[] faceVertexCounts = [3]
-        int[] faceVertexIndices = [0, 1, 2]
-        point3f[] points.timeSamples = { 10: [(0, 0, 0), (1, 0, 0), (0, 1, 0)], 20: [(0, 0, 0), (2, 0, 0), (0, 1, 0)] }
-        float3 xformOp:scale = (100, 100, 100)
-        uniform token[] xformOpOrder = ["xformOp:scale"] # in metres
-        rel material:binding = </root/m> ( bindMaterialAs = "x" )
-    }
-
-    def Material "m" { token outputs:surface.connect = </root/m/s.outputs:surface> }
-    def Mesh "hidden" { token visibility = "invisible" }
-}
-"#;
-    std::fs::write(&path, text).unwrap();
-    let found = read(&path).unwrap();
-    assert_eq!(found.times(), [0.0, 1.0, 2.0]);
-    // Turned by 90 degrees about x and then about z, x becomes y, y becomes z, and z becomes x; then y is upwards.
-    let expected = [
-        [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]],
-        [[0.5, 0.0, 0.0], [0.5, 0.0, 1.0], [0.5, -1.0, 0.0]],
-        [[1.0, 0.0, 0.0], [1.0, 0.0, 2.0], [1.0, -1.0, 0.0]],
-    ];
-    for (k, expected) in expected.iter().enumerate() {
-        let pairs = found
-            .frame(k)
-            .as_flattened()
-            .iter()
-            .zip(expected.as_flattened());
-        let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(off < 1e-14, "{:?} {expected:?}", found.frame(k));
-    }
-    for (from, to, reason) in [
-        ("#usda 1.0", "usdc", "does not begin with #usda"),
-        (
-            "kind = \"group\"",
-            "references = @a.usd@</b>",
-            "/root has references",
-        ),
-        (
-            "20: [(0, 0, 0), (2, 0, 0), (0, 1, 0)]",
-            "20: [(0, 0, 0)]",
-            "has 3 vertices, and 1 in the sample",
-        ),
-        (
-            "20: [(0, 0, 0), (2",
-            "5: [(0, 0, 0), (2",
-            "the time code 5 follows 10",
-        ),
-        (
-            "def Xform \"root\"",
-            "def PointInstancer \"root\"",
-            "/root has instances of its parts",
-        ),
-        ("[0, 1, 2]", "[0, 1, 3]", "a face refers to vertex 3"),
-        (
-            "double3 xformOp:rotateXYZ",
-            "double3 xformOp:other",
-            "/root has no attribute xformOp:rotateXYZ",
-        ),
-        ("def Mesh \"leaf\"", "def Cube \"leaf\"", "shows no meshes"),
-        ("= { 10:", "= 10:", "line 23: "),
-    ] {
-        assert!(text.contains(from));
-        std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
-        let said = read(&path).unwrap_err();
-        assert!(said.contains(reason), "{said}");
-    }
-    // Cut short anywhere it is refused or has fewer parts, and nothing panics.
-    for end in 0..text.len() {
-        std::fs::write(&path, &text[..end]).unwrap();
-        let _ = read(&path);
-    }
-}
-
 /// Files with numbers that no integer holds are refused, and not passed over.
 #[test]
 fn numbers_beyond_64_bits_are_refused() {
@@ -366,22 +267,4 @@ fn numbers_beyond_64_bits_are_refused() {
         assert!(said.contains("a18446744073709551616.obj"), "{said}");
         assert!(said.contains("larger than 18446744073709551615"), "{said}");
     }
-}
-
-/// A single mesh is a mesh that rests.
-#[test]
-fn a_still_usda_has_one_sample() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("still.usda");
-    let mesh = MeshFile::of_frame(
-        vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
-        vec![[0, 1, 2]],
-        Vec::new(),
-    );
-    write_mesh(&path, &mesh).unwrap();
-    let found = read(&path).unwrap();
-    assert_eq!(
-        (found.times(), found.frame(0)[1]),
-        (&[0.0][..], [1.0, 0.0, 0.0])
-    );
 }
