@@ -16,10 +16,8 @@
 //!
 //! SI units; positions and forces are slices of length `3V`; fold angles are positive for valleys.
 
-mod catalogue;
 mod crease;
 mod direction;
-mod directions;
 mod elastic_sheet;
 mod evaluation;
 mod glue;
@@ -35,21 +33,17 @@ pub mod potential;
 mod stiffening;
 #[cfg(test)]
 mod testing;
-#[cfg(test)]
-mod tests;
 pub mod vectors;
 
-pub use catalogue::{NamedMaterial, UnknownMaterial};
 pub use crease::{CreaseError, CreaseSpring, CreaseSprings, FLAT, RestAngle, folding_from_flat};
 pub use direction::{DirectionError, MaterialDirection};
-pub use directions::{Directions, Orthotropic};
 pub use elastic_sheet::{
     CurvedFace, ElasticSheet, ElasticSheetError, MembraneLaw, OrthotropicMembrane, StrainOfFace,
 };
 pub use glue::{Glue, GlueError};
 pub use hessian::HessianSink;
 pub use limit_error::{LimitError, Refused};
-pub use material::{Isotropic, Material};
+pub use material::{Directions, Isotropic, Material, NamedMaterial, Orthotropic, UnknownMaterial};
 pub use options::OptionsError;
 pub use patched::{NoFace, Patched};
 pub use plasticity::Yield;

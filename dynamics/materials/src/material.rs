@@ -1,6 +1,13 @@
 //! Materials of sheets: what a square metre weighs, and how it resists stretching and bending.
 
-use crate::directions::Directions;
+mod catalogue;
+mod directions;
+#[cfg(test)]
+mod tests;
+
+pub use catalogue::{NamedMaterial, UnknownMaterial};
+pub use directions::{Directions, Orthotropic};
+
 use crate::options::OptionsError;
 use crate::plasticity::Yield;
 use crate::{ElasticSheet, ElasticSheetError, PlateBending, PlateLaw, PlateStiffness};

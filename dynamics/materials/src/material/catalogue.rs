@@ -4,7 +4,7 @@
 //! for which handbooks and data sheets agree to a few per cent. Paper, cloth and leather differ from sort to
 //! sort by a factor of two, and from direction to direction as well: the numbers are typical ones.
 
-use super::plasticity::Yield;
+use crate::plasticity::Yield;
 use super::{Directions, Isotropic, Material};
 use isosheet_mesh::Advice;
 

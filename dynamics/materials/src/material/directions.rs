@@ -1,8 +1,8 @@
 //! Materials with two directions.
 
 use super::Material;
-use super::direction::MaterialDirection;
-use super::plasticity::Yield;
+use crate::direction::MaterialDirection;
+use crate::plasticity::Yield;
 use crate::options::OptionsError;
 use crate::{MembraneLaw, OrthotropicMembrane, OrthotropicPlate, PlateLaw, PlateStiffness};
 use serde::{Deserialize, Serialize};
