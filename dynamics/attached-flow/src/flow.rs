@@ -1,6 +1,6 @@
 //! The circulation of a lattice in the wind, and its forces.
 
-use super::lattice::{Lattice, Shape};
+use super::lattice::{Lattice, LatticeShape};
 use super::vortex::segment;
 use super::wake::Past;
 use isosheet_dynamics::Wind;
@@ -29,7 +29,7 @@ pub(super) struct InAir {
 /// The row of the wake that the step sheds is part of the sum, so that no vortex is at the trailing edges (the
 /// condition of Kutta).
 pub(super) struct Flow {
-    pub(super) shape: Shape,
+    pub(super) shape: LatticeShape,
     /// With the line that the step sheds.
     past: Past,
     matrix: DenseLu,
@@ -143,7 +143,7 @@ impl InAir {
     /// The forces on both ends of each ring edge by a unit of circulation along it (Kutta and Joukowski),
     /// newtons times seconds per square metre: the velocity of the air relative to the edge along the sheet,
     /// across the edge. Trailing edges have none.
-    pub(super) fn edge_forces(&self, shape: &Shape, t: f64, v: &[f64]) -> Vec<Vector3<f64>> {
+    pub(super) fn edge_forces(&self, shape: &LatticeShape, t: f64, v: &[f64]) -> Vec<Vector3<f64>> {
         let of_nodes = self.lattice.at_nodes(v);
         let force = |edge: &super::lattice::RingEdge| {
             if edge.is_trailing {
@@ -163,14 +163,14 @@ impl InAir {
 
     /// The force on each corner of a face by the rate of change of its circulation, newtons times square seconds
     /// per square metre.
-    pub(super) fn rate_force(&self, shape: &Shape, face: usize) -> Vector3<f64> {
+    pub(super) fn rate_force(&self, shape: &LatticeShape, face: usize) -> Vector3<f64> {
         -self.density * shape.areas[face] / 3.0 * shape.normals[face]
     }
 
     /// The forces on the vertices of the lattice, newtons.
     pub(super) fn forces(
         &self,
-        shape: &Shape,
+        shape: &LatticeShape,
         edge_forces: &[Vector3<f64>],
         circulation: &[f64],
         rate: &[f64],

@@ -59,7 +59,7 @@ pub(super) struct Lattice {
 
 /// A lattice in space.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Shape {
+pub(super) struct LatticeShape {
     /// Of the nodes, metres.
     pub(super) nodes: Vec<Vector3<f64>>,
     /// Of the faces.
@@ -216,16 +216,16 @@ impl Lattice {
     }
 
     /// Points of the trailing edges, metres.
-    pub(super) fn edge(&self, shape: &Shape) -> Vec<Vector3<f64>> {
+    pub(super) fn edge(&self, shape: &LatticeShape) -> Vec<Vector3<f64>> {
         let nodes = self.shedding.iter();
         nodes.map(|node| shape.nodes[*node]).collect()
     }
 
     /// The lattice at positions `x` (`3V`, metres).
-    pub(super) fn shape(&self, x: &[f64]) -> Shape {
+    pub(super) fn shape(&self, x: &[f64]) -> LatticeShape {
         let nodes = self.at_nodes(x);
         let probes = self.at_probes(x);
-        let mut shape = Shape::default();
+        let mut shape = LatticeShape::default();
         for (face, corners) in self.faces.iter().enumerate() {
             let [a, b, c] = corners.map(|k| nodes[k]);
             let across = (b - a).cross(&(c - a));
@@ -235,7 +235,7 @@ impl Lattice {
                 .push(across.try_normalize(0.0).unwrap_or_default());
             shape.areas.push(0.5 * across.norm());
         }
-        Shape { nodes, ..shape }
+        LatticeShape { nodes, ..shape }
     }
 
     /// Values of the probes at the centre of a face.

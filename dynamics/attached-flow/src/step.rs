@@ -30,7 +30,7 @@ impl ImplicitForce for Attached {
     fn term(&self, _free: Arc<[bool]>) -> Box<dyn Term> {
         Box::new(FlowStep {
             attached: self.clone(),
-            start: Start::default(),
+            start: FlowStart::default(),
             past: None,
             lagged: Lagged::default(),
         })
@@ -51,14 +51,14 @@ impl ImplicitForce for Attached {
 #[derive(Debug)]
 struct FlowStep {
     attached: Attached,
-    start: Start,
+    start: FlowStart,
     past: Option<Past>,
     lagged: Lagged,
 }
 
 /// What a step starts from.
 #[derive(Debug, Default)]
-struct Start {
+struct FlowStart {
     /// Time at its end, seconds.
     t: f64,
     /// Effective step, seconds.
@@ -309,7 +309,7 @@ impl Term for FlowStep {
         let shape = attached.air.lattice.shape(&state.x);
         let edges = attached.air.edge_forces(&shape, state.t, &state.v);
         let force = attached.air.forces(&shape, &edges, last, &past.rate);
-        self.start = Start {
+        self.start = FlowStart {
             t: step.t(),
             h: step.h,
             x: state.x.clone(),

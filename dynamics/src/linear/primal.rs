@@ -17,7 +17,7 @@ use isosheet_materials::hessian::{BlockSink, CouplingSink};
 use isosheet_materials::vectors::add;
 use isosheet_mesh::{EdgeId, VertexId};
 use isosheet_model::PINNED;
-use iterative::{ConjugateGradients, Ending, Goal};
+use iterative::{ConjugateGradients, IterationEnd, Goal};
 use low_rank::LowRank;
 use nalgebra::{Matrix3, Vector3};
 use whole::WholeMatrix;
@@ -504,16 +504,16 @@ impl PrimalMatrix {
         };
         let (ending, _) = self.iteration.solve(&mut solve, &self.far, &self.rhs, goal);
         match ending {
-            Ending::Solved => scatter(model, &self.iteration.x, out),
-            Ending::TooSlow if effort.count_factorisation() => {
+            IterationEnd::Solved => scatter(model, &self.iteration.x, out),
+            IterationEnd::TooSlow if effort.count_factorisation() => {
                 self.is_slow = true;
                 self.add_substitutes(-1.0);
                 self.factorize_whole()?;
                 self.solve(model, b, out);
             }
             // The step has been interrupted, and what follows has no meaning.
-            Ending::TooSlow => scatter(model, &self.iteration.x, out),
-            Ending::NotDefinite => {
+            IterationEnd::TooSlow => scatter(model, &self.iteration.x, out),
+            IterationEnd::NotDefinite => {
                 let (order, index) = (self.rhs.len(), 0);
                 return Err(LinalgError::NotPositiveDefinite { order, index });
             }

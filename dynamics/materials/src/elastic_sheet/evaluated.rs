@@ -1,7 +1,7 @@
 //! The faces of an elastic sheet where it is evaluated, on the threads of rayon's current pool.
 
 use super::bend::Bend;
-use super::face::{Blocks, Course, Face, Strained};
+use super::face::{Blocks, StrainCourse, Face, Strained};
 use crate::HessianSink;
 use crate::evaluation::{Evaluation, Room};
 use crate::potential::At;
@@ -19,7 +19,7 @@ const COURSE_TIME: f64 = 40.0;
 pub(super) struct EvaluatedFaces {
     states: Evaluation<(Strained, f64)>,
     blocks: Room<Vec<Blocks>>,
-    courses: Room<Vec<Option<Course>>>,
+    courses: Room<Vec<Option<StrainCourse>>>,
 }
 
 /// The stiffness of the barrier in a memory, joules per square metre; none without.
@@ -62,7 +62,7 @@ impl EvaluatedFaces {
     pub(super) fn part_within(&self, faces: &[Face], at: At<'_>, dx: &[f64]) -> f64 {
         let mut part = 1.0;
         let course = |k: usize| faces[k].course(at, dx);
-        let cut = |_, course: &Option<Course>| {
+        let cut = |_, course: &Option<StrainCourse>| {
             if let Some(course) = course {
                 part = course.safe_part(part);
             }

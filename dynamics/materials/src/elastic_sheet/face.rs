@@ -414,7 +414,7 @@ impl Face {
 
     /// The strains along the displacement `dx`, unless all of it keeps the distance from the limit but for
     /// [`KEPT_MARGIN`] of it.
-    pub(super) fn course(&self, at: At<'_>, dx: &[f64]) -> Option<Course> {
+    pub(super) fn course(&self, at: At<'_>, dx: &[f64]) -> Option<StrainCourse> {
         let growth = self.swelling.growth(at.t);
         let vectors = self.edge_vectors(at.x);
         let changes = self.edge_vectors(dx);
@@ -423,7 +423,7 @@ impl Face {
         let [e1, e2] = [first, second].map(|errors| self.strains * errors / growth);
         let e0 = self.strain(at);
         let bound = self.bound(e0.norm());
-        let course = Course {
+        let course = StrainCourse {
             strains: [e0, e1, e2],
             bound,
         };
@@ -433,14 +433,14 @@ impl Face {
 
 /// The strain of a face along a displacement.
 #[derive(Debug)]
-pub(super) struct Course {
+pub(super) struct StrainCourse {
     /// Coefficients of its powers of the part of the displacement.
     strains: [Vector3<f64>; 3],
     /// What its norm may be.
     bound: f64,
 }
 
-impl Course {
+impl StrainCourse {
     /// Whether norms alone show that it stays within its bound up to a part.
     fn is_within(&self, part: f64) -> bool {
         let [e0, e1, e2] = self.strains.map(|e| e.norm());

@@ -9,11 +9,11 @@ use nalgebra::Vector3;
 /// Corners are rounded because at a sharp one the motion of a vertex has no velocity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polyline {
-    pieces: Vec<Piece>,
+    pieces: Vec<PolylinePiece>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Piece {
+enum PolylinePiece {
     /// From `start` in the unit direction, over the range of lengths.
     Side {
         start: Vector3<f64>,
@@ -97,7 +97,7 @@ impl Polyline {
             } else {
                 length - cut(i, radius)
             };
-            pieces.push(Piece::Side {
+            pieces.push(PolylinePiece::Side {
                 start: points[i],
                 direction,
                 range: [from, to],
@@ -107,7 +107,7 @@ impl Polyline {
             }
             let next = sides[i + 1].0;
             let inward = (next - direction * direction.dot(&next)).normalize();
-            pieces.push(Piece::Arc {
+            pieces.push(PolylinePiece::Arc {
                 centre: points[i] + to * direction + radius * inward,
                 axes: [-inward, direction],
                 radius,
@@ -118,7 +118,7 @@ impl Polyline {
     }
 }
 
-impl Piece {
+impl PolylinePiece {
     fn closest(&self, p: &Vector3<f64>) -> CurvePoint {
         match self {
             Self::Side {

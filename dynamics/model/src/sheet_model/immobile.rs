@@ -60,7 +60,7 @@ struct Search<'a> {
 }
 
 /// A straight line of rods from a fixed vertex.
-struct Line {
+struct TautLine {
     start: VertexId,
     /// Metres.
     length: f64,
@@ -140,7 +140,7 @@ impl<'a> Search<'a> {
         let topology = self.model.topology();
         let firsts: Vec<VertexId> = topology.neighbours(start).collect();
         for first in firsts {
-            let mut line = Line {
+            let mut line = TautLine {
                 start,
                 length: 0.0,
                 vertices: Vec::new(),
@@ -169,7 +169,7 @@ impl<'a> Search<'a> {
     }
 
     /// The neighbour of the last vertex of a line that continues it straight.
-    fn ahead(&self, line: &Line, last: VertexId) -> Option<VertexId> {
+    fn ahead(&self, line: &TautLine, last: VertexId) -> Option<VertexId> {
         let origin = self.at(line.start);
         let is_straight = |next: &VertexId| {
             let longer = line.length + (self.at(*next) - self.at(last)).norm();
@@ -180,7 +180,7 @@ impl<'a> Search<'a> {
 
     /// Whether the line is just long enough to reach the places that the fixed neighbours of its last vertex
     /// leave for that vertex (rule 3).
-    fn is_taut(&self, line: &Line) -> bool {
+    fn is_taut(&self, line: &TautLine) -> bool {
         let Some(&last) = line.vertices.last() else {
             return false;
         };

@@ -15,13 +15,13 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 /// a solve with the factorised `K` for each term.
 #[derive(Debug, Default)]
 pub(super) struct LowRank {
-    terms: Vec<Term>,
+    terms: Vec<RankOne>,
     /// `S`.
     small: Option<Cholesky<f64, Dyn>>,
 }
 
 #[derive(Debug)]
-struct Term {
+struct RankOne {
     /// `c_k`.
     factor: f64,
     /// `v_k`, in free coordinates.
@@ -40,7 +40,7 @@ impl LowRank {
     /// Adds a term; one with a factor of zero is none.
     pub(super) fn add(&mut self, factor: f64, vector: Vec<f64>) {
         if factor != 0.0 {
-            self.terms.push(Term {
+            self.terms.push(RankOne {
                 factor,
                 vector,
                 solution: Vec::new(),
