@@ -229,8 +229,12 @@ impl Contacts {
         coefficients.validate()?;
         let number = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         let segments = self.options.segments;
-        self.bodies
-            .push(ContactBody::new(obstacle, number, segments, self.rounds.ends())?);
+        self.bodies.push(ContactBody::new(
+            obstacle,
+            number,
+            segments,
+            self.rounds.ends(),
+        )?);
         self.laws.bodies.push(coefficients);
         self.neighbours = None;
         Ok(self)

@@ -17,7 +17,7 @@ use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use plan::{Front, Plan, Subtree, WORTH_SHARING};
 use pulp::{Arch, Simd, WithSimd};
-use shared::{Job, FrontValues};
+use shared::{FrontValues, Job};
 use triangular::Factor;
 
 /// The plan of a factorisation, with working memory.

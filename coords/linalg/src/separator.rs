@@ -117,7 +117,8 @@ impl<'a> MinimumCut<'a> {
         for &v in &sorted[n - given..] {
             role[v as usize] = BandRole::Sink;
         }
-        let beside = |role: &[BandRole], v: u32, r| graph.of(v).iter().any(|&w| role[w as usize] == r);
+        let beside =
+            |role: &[BandRole], v: u32, r| graph.of(v).iter().any(|&w| role[w as usize] == r);
         for &v in &sorted[..given] {
             // A vertex beside the sink has to be cut itself.
             if !beside(&role, v, BandRole::Sink) {
@@ -308,7 +309,11 @@ mod tests {
         for v in 0..graph.len() as u32 {
             for &w in graph.of(v) {
                 let pair = (parts[v as usize], parts[w as usize]);
-                assert_ne!(pair, (SeparatorSide::First, SeparatorSide::Second), "{v} {w}");
+                assert_ne!(
+                    pair,
+                    (SeparatorSide::First, SeparatorSide::Second),
+                    "{v} {w}"
+                );
             }
         }
     }
@@ -368,7 +373,9 @@ mod tests {
             let role = cut.role.clone();
             let parts = cut.minimum();
             assert_separates(&graph, &parts);
-            let band: Vec<usize> = (0..n as usize).filter(|&v| role[v] == BandRole::Band).collect();
+            let band: Vec<usize> = (0..n as usize)
+                .filter(|&v| role[v] == BandRole::Band)
+                .collect();
             let separates = |set: u32| {
                 let removed = |v: usize| {
                     band.iter()
@@ -394,7 +401,10 @@ mod tests {
                 .filter(|&set| separates(set))
                 .map(u32::count_ones)
                 .min();
-            assert_eq!(smallest, Some(count(&parts, SeparatorSide::Separator) as u32));
+            assert_eq!(
+                smallest,
+                Some(count(&parts, SeparatorSide::Separator) as u32)
+            );
         }
     }
 }

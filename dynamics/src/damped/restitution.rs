@@ -74,7 +74,7 @@ pub(super) struct FormulaStep<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Partner {
     /// A rigid body that responds, by its number.
-    ImpactBody(usize),
+    Body(usize),
     /// An obstacle, by its number.
     Obstacle(u32),
     /// The surfaces in prescribed motion.

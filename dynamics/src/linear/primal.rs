@@ -17,7 +17,7 @@ use isosheet_materials::hessian::{BlockSink, CouplingSink};
 use isosheet_materials::vectors::add;
 use isosheet_mesh::{EdgeId, VertexId};
 use isosheet_model::PINNED;
-use iterative::{ConjugateGradients, IterationEnd, Goal};
+use iterative::{ConjugateGradients, Goal, IterationEnd};
 use low_rank::LowRank;
 use nalgebra::{Matrix3, Vector3};
 use whole::WholeMatrix;

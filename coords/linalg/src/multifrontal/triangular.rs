@@ -5,7 +5,7 @@
 //! a few columns that takes 1.4 to 1.6 times as long as the loops here (243 to 12 675 unknowns).
 
 use super::plan::{Front, Plan, Subtree};
-use super::shared::{Job, FrontValues};
+use super::shared::{FrontValues, Job};
 use std::convert::Infallible;
 
 /// Columns of a supernode that are applied together. Coordinates of a vertex are eliminated one after
@@ -155,7 +155,11 @@ impl Job<1> for Pass<'_> {
         [subtree.local.start]
     }
 
-    fn run(&self, subtree: &Subtree, [(start, part)]: [FrontValues<'_>; 1]) -> Result<(), Infallible> {
+    fn run(
+        &self,
+        subtree: &Subtree,
+        [(start, part)]: [FrontValues<'_>; 1],
+    ) -> Result<(), Infallible> {
         let local = &mut part[subtree.local.start - start..subtree.local.end - start];
         let (x, scratch) = local.split_at_mut(subtree.columns.len() + subtree.above.len());
         let fronts = &self.factor.plan.fronts[subtree.fronts.clone()];

@@ -1,7 +1,7 @@
 //! The faces of an elastic sheet where it is evaluated, on the threads of rayon's current pool.
 
 use super::bend::Bend;
-use super::face::{Blocks, StrainCourse, Face, Strained};
+use super::face::{Blocks, Face, StrainCourse, Strained};
 use crate::HessianSink;
 use crate::evaluation::{Evaluation, Room};
 use crate::potential::At;

@@ -4,8 +4,8 @@
 //! for which handbooks and data sheets agree to a few per cent. Paper, cloth and leather differ from sort to
 //! sort by a factor of two, and from direction to direction as well: the numbers are typical ones.
 
-use crate::plasticity::Yield;
 use super::{Directions, Isotropic, Material};
+use crate::plasticity::Yield;
 use isosheet_mesh::Advice;
 
 /// A material of the catalogue.

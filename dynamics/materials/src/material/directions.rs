@@ -2,8 +2,8 @@
 
 use super::Material;
 use crate::direction::MaterialDirection;
-use crate::plasticity::Yield;
 use crate::options::OptionsError;
+use crate::plasticity::Yield;
 use crate::{MembraneLaw, OrthotropicMembrane, OrthotropicPlate, PlateLaw, PlateStiffness};
 use serde::{Deserialize, Serialize};
 
